@@ -1,0 +1,27 @@
+//! The small algebra that every kernel of fractum shares.
+//!
+//! Vectors and matrices are nalgebra's; this crate adds what the mechanics needs on top: symmetric tensors in Voigt
+//! order xx yy zz xy yz zx with their principal values, ragged tables, and parallel sums whose result does not depend
+//! on the number of threads.
+//!
+//! ```
+//! use fractum_math::{Sym3, Vec3};
+//! let stress = Sym3::new(3.0, 1.0, -2.0, 0.0, 0.0, 0.0);
+//! assert_eq!(stress.principal_values()[0], 3.0);
+//! assert_eq!(stress * Vec3::x(), Vec3::new(3.0, 0.0, 0.0));
+//! ```
+
+mod ragged;
+mod reduce;
+mod sym3;
+
+pub use ragged::Ragged;
+pub use reduce::{CHUNK, sum_chunks};
+pub use sym3::Sym3;
+
+/// A vector in space (SI units of the quantity it holds).
+pub type Vec3 = nalgebra::Vector3<f64>;
+/// A 3×3 matrix.
+pub type Mat3 = nalgebra::Matrix3<f64>;
+/// A rotation as a unit quaternion.
+pub type Rotation = nalgebra::UnitQuaternion<f64>;
