@@ -1,1 +1,3 @@
-//! Placeholder front page, replaced by the crate's first content.
+//! Case files, results, checkpoints and reports.
+
+pub mod case;

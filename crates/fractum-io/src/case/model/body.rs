@@ -1,0 +1,104 @@
+//! Bodies: meshed solids and rigid tools.
+
+use fractum_math::Vec3;
+
+use super::Contact;
+use crate::case::choice::choice;
+use crate::case::{Field, Spanned, TimeFunction};
+
+/// A body of the case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Name, unique among bodies.
+    pub name: Spanned<String>,
+    /// What it is made of.
+    pub kind: BodyKind,
+}
+
+/// Kinds of bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BodyKind {
+    /// Finite elements of a mesh group.
+    Solid(SolidBody),
+    /// A rigid tool.
+    Rigid(RigidBody),
+}
+
+/// Finite elements with one material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolidBody {
+    /// Mesh group of its elements.
+    pub group: Spanned<String>,
+    /// Index into `Case::materials`.
+    pub material: usize,
+    /// Element formulation; `smoothed` where damage is on and nothing was said, else `standard`.
+    pub formulation: Formulation,
+    /// Small or large rotations.
+    pub kinematics: Kinematics,
+    /// Plane state, for two-dimensional meshes only; the place is there to refuse it in 3D.
+    pub plane: Option<Spanned<Plane>>,
+    /// Thickness [m], > 0, for two-dimensional meshes only; the place is there to refuse it in 3D.
+    pub thickness: Option<Spanned<f64>>,
+    /// Initial velocity [m/s] per axis; `None` = at rest. Time plays no part.
+    pub initial_velocity: [Option<TimeFunction>; 3],
+    /// Whether damage may occur at all: the material has it, and the body does not switch it off.
+    pub damage: bool,
+    /// Where damage may occur (a condition on the position); `None` = everywhere.
+    pub damage_where: Option<Spanned<Field>>,
+    /// Factor on the tensile strength [-]; must be checked to be > 0 where it is used. `None` = 1.
+    pub strength_factor: Option<Spanned<Field>>,
+}
+
+/// A rigid tool at rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RigidBody {
+    /// Its shape.
+    pub shape: Shape,
+    /// Contact with it.
+    pub contact: Contact,
+}
+
+/// Shapes of rigid tools.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// The half space behind a plane.
+    Plane {
+        /// A point on the plane [m].
+        point: Vec3,
+        /// Unit normal out of the tool.
+        normal: Vec3,
+    },
+}
+
+/// Element formulation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Formulation {
+    /// Strain, stress and damage on the edges.
+    Smoothed,
+    /// Plain constant-gradient element.
+    Standard,
+}
+
+choice!(Formulation { "smoothed" => Smoothed, "standard" => Standard });
+
+/// Measure of deformation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kinematics {
+    /// Small strains and rotations.
+    Small,
+    /// Small strains in a frame that rotates with the element.
+    Corotational,
+}
+
+choice!(Kinematics { "small" => Small, "corotational" => Corotational });
+
+/// State of a two-dimensional body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Plane {
+    /// No strain out of the plane.
+    Strain,
+    /// No stress out of the plane.
+    Stress,
+}
+
+choice!(Plane { "strain" => Strain, "stress" => Stress });

@@ -1,0 +1,234 @@
+//! The typed case: plain data in SI units, checked as far as the file alone allows.
+
+mod body;
+mod boundary;
+mod material;
+mod probe;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+pub use body::{Body, BodyKind, Formulation, Kinematics, Plane, RigidBody, Shape, SolidBody};
+pub use boundary::{Components, Load, LoadKind, Motion, Support};
+pub use material::{Contact, Criterion, Damage, Distribution, Material, Scatter, Softening};
+pub use probe::{CountKind, EnergyKind, Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
+
+use super::choice::choice;
+use super::{Diagnostic, Spanned};
+
+/// A case, read and checked. What needs the mesh (group names, two or three dimensions) is checked by its user, with the
+/// places kept here.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// The input as it was read.
+    pub source: CaseSource,
+    /// Title; empty where none was given.
+    pub title: String,
+    /// Values of `[parameters]` in SI, after overrides.
+    pub parameters: BTreeMap<String, f64>,
+    /// The mesh.
+    pub mesh: MeshSource,
+    /// Materials, in the order of the file.
+    pub materials: Vec<Material>,
+    /// Bodies, in the order of the file; at least one.
+    pub bodies: Vec<Body>,
+    /// Supports, in the order of the file.
+    pub supports: Vec<Support>,
+    /// Loads, in the order of the file.
+    pub loads: Vec<Load>,
+    /// Damping of the solids.
+    pub damping: Damping,
+    /// Time and its steps.
+    pub solver: Solver,
+    /// Probes, in the order of the file; expressions read earlier ones only.
+    pub probes: Vec<Probe>,
+    /// What is written, and how often.
+    pub output: Output,
+    /// Reference values.
+    pub expect: Vec<Expect>,
+    /// Whether `fractum verify --quick` runs this case.
+    pub verify_quick: bool,
+    pub(super) warnings: Vec<Diagnostic>,
+}
+
+/// The input of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseSource {
+    /// Path of the case file as given.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+    /// `--set` pairs, in order.
+    pub overrides: Vec<(String, String)>,
+    /// Files that it reads besides the mesh, as written there, with their contents.
+    pub tables: Vec<(String, Vec<u8>)>,
+}
+
+/// Where the mesh comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshSource {
+    /// Path, relative paths taken from the folder of the case file.
+    pub file: Spanned<PathBuf>,
+    /// Length of the mesh's unit [m].
+    pub unit: f64,
+}
+
+/// Damping of the solids; all zero by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Damping {
+    /// Local non-viscous damping: fraction of the unbalanced force [-], 0..1.
+    pub local: f64,
+    /// Mass-proportional [1/s], ≥ 0.
+    pub mass: f64,
+    /// Stiffness-proportional [s], ≥ 0.
+    pub stiffness: f64,
+    /// Linear bulk viscosity [-], ≥ 0.
+    pub bulk_linear: f64,
+    /// Quadratic bulk viscosity [-], ≥ 0.
+    pub bulk_quadratic: f64,
+}
+
+/// Time and its steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solver {
+    /// Kind of solver.
+    pub kind: SolverKind,
+    /// End of the run [s], > 0.
+    pub end: f64,
+    /// Factor on the stable step [-], within 0..=2.
+    pub safety: f64,
+    /// How the stable step is found.
+    pub time_step: TimeStep,
+    /// Fixed time step [s], > 0; `None` = from the stable one.
+    pub step: Option<Spanned<f64>>,
+    /// Early end.
+    pub stop_when: Option<StopWhen>,
+    /// Energy imbalance over external work at which to warn [-].
+    pub balance_warning: f64,
+    /// Energy imbalance over external work at which to stop [-].
+    pub balance_stop: f64,
+}
+
+/// Kinds of solvers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SolverKind {
+    /// Explicit central differences.
+    Explicit,
+}
+
+choice!(SolverKind { "explicit" => Explicit });
+
+/// How the stable time step is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TimeStep {
+    /// Largest frequency of the assembled mesh by power iteration.
+    PowerIteration,
+    /// Largest frequency of any single element: smaller, and rigorous.
+    Element,
+}
+
+choice!(TimeStep { "power-iteration" => PowerIteration, "element" => Element });
+
+/// Ends the run early, when a probe has fallen below a fraction of its largest value so far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StopWhen {
+    /// Index into `Case::probes` of a column of the history.
+    pub probe: usize,
+    /// Fraction of the largest value so far [-], within 0..1.
+    pub below: f64,
+    /// Not before this time [s].
+    pub after: f64,
+}
+
+/// What is written, and how often.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Output {
+    /// Time between fields [s].
+    pub fields_every: f64,
+    /// Time between rows of the history [s].
+    pub history_every: f64,
+    /// Wall time between checkpoints [s].
+    pub checkpoint_every: f64,
+}
+
+/// A reference value of the case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expect {
+    /// Probe name (a column of the history gives its last value), or a dotted path into `summary.json`.
+    pub quantity: Spanned<String>,
+    /// SI unit, as printed; `1` for a pure number.
+    pub unit: String,
+    /// What it should be.
+    pub bound: Bound,
+    /// Where the reference comes from.
+    pub source: String,
+    /// Remark, may be empty.
+    pub note: String,
+}
+
+/// What a value is held against, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bound {
+    /// A value and how far from it, in the same unit (a relative tolerance is already multiplied out).
+    Near {
+        /// Reference value.
+        value: f64,
+        /// Largest difference, > 0.
+        tolerance: f64,
+        /// The tolerance as a fraction of the reference, where it was given so.
+        relative: Option<f64>,
+    },
+    /// Between limits; at least one is there.
+    Between {
+        /// Lower limit.
+        above: Option<f64>,
+        /// Upper limit.
+        below: Option<f64>,
+    },
+}
+
+/// What a mesh group is used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GroupUse {
+    /// Elements of a body.
+    Body,
+    /// Nodes of a support.
+    Support,
+    /// Nodes or facets that share a force.
+    Force,
+    /// Facets under a traction or pressure.
+    Facets,
+    /// Nodes of a probe.
+    ProbeNodes,
+    /// Elements of a probe.
+    ProbeElements,
+}
+
+impl Case {
+    /// Doubtful choices that do not keep the case from running.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// Every mesh group the case names, with its use, in the order of bodies, supports, loads, probes.
+    pub fn groups_used(&self) -> Vec<(&Spanned<String>, GroupUse)> {
+        let bodies = self.bodies.iter().filter_map(|body| match &body.kind {
+            BodyKind::Solid(solid) => Some((&solid.group, GroupUse::Body)),
+            BodyKind::Rigid(_) => None,
+        });
+        let supports = self.supports.iter().map(|support| (&support.group, GroupUse::Support));
+        let loads = self.loads.iter().filter_map(|load| match &load.kind {
+            LoadKind::Force { group, .. } => Some((group, GroupUse::Force)),
+            LoadKind::Traction { group, .. } | LoadKind::Pressure { group, .. } => Some((group, GroupUse::Facets)),
+            LoadKind::Gravity { .. } => None,
+        });
+        let probes = self.probes.iter().filter_map(|probe| match &probe.kind {
+            ProbeKind::Reaction { group, .. }
+            | ProbeKind::Displacement { group, .. }
+            | ProbeKind::Velocity { group, .. } => Some((group, GroupUse::ProbeNodes)),
+            ProbeKind::Stress { group, .. } => Some((group, GroupUse::ProbeElements)),
+            _ => None,
+        });
+        bodies.chain(supports).chain(loads).chain(probes).collect()
+    }
+}

@@ -1,0 +1,199 @@
+//! Probes: the numbers a run records.
+
+use fractum_math::Vec3;
+
+use crate::case::Spanned;
+use crate::case::choice::choice;
+use crate::case::expression::Program;
+
+/// A named number recorded in the history, or computed from it at the end of the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Probe {
+    /// Name, unique among probes.
+    pub name: Spanned<String>,
+    /// SI unit of its values, as printed; `1` for a pure number.
+    pub unit: String,
+    /// What it measures.
+    pub kind: ProbeKind,
+}
+
+impl Probe {
+    /// Whether it is one number at the end of the run, rather than a column of the history.
+    pub fn is_scalar(&self) -> bool {
+        matches!(&self.kind, ProbeKind::Expression(expression) if expression.scalar)
+    }
+}
+
+/// What a probe measures.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ProbeKind {
+    /// Sum of support reactions on a group, along a unit vector [N].
+    Reaction {
+        /// Mesh group.
+        group: Spanned<String>,
+        /// Unit vector.
+        along: Vec3,
+    },
+    /// Mean displacement of the nodes of a group, along a unit vector [m].
+    Displacement {
+        /// Mesh group.
+        group: Spanned<String>,
+        /// Unit vector.
+        along: Vec3,
+    },
+    /// Mean velocity of the nodes of a group, along a unit vector [m/s].
+    Velocity {
+        /// Mesh group.
+        group: Spanned<String>,
+        /// Unit vector.
+        along: Vec3,
+    },
+    /// Volume mean of a stress component over the elements of a group [Pa].
+    Stress {
+        /// Mesh group of elements.
+        group: Spanned<String>,
+        /// Component.
+        component: StressComponent,
+    },
+    /// An entry of the energy ledger [J].
+    Energy(EnergyKind),
+    /// A count [-].
+    Count(CountKind),
+    /// Linear momentum of the scene along a unit vector [kg m/s].
+    Momentum {
+        /// Unit vector.
+        along: Vec3,
+    },
+    /// Angular momentum of the scene about the origin, along a unit vector [kg m²/s].
+    AngularMomentum {
+        /// Unit vector.
+        along: Vec3,
+    },
+    /// Area of the cracks [m²].
+    CrackArea,
+    /// Expression of other probes, all declared before this one.
+    Expression(ProbeExpression),
+}
+
+/// An expression of other probes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProbeExpression {
+    /// What the inputs of the program are.
+    pub inputs: Vec<ProbeInput>,
+    /// Whether it is one number at the end of the run: it reduces a history, or reads such a number.
+    pub scalar: bool,
+    pub(crate) program: Program,
+}
+
+impl ProbeExpression {
+    /// Value for the given `inputs` (SI, in the order of `ProbeExpression::inputs`).
+    pub fn value(&self, inputs: &[f64]) -> f64 {
+        self.program.evaluate(inputs)
+    }
+}
+
+/// An input of a probe expression.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ProbeInput {
+    /// The current time [s]; at the end of the run, its last.
+    Time,
+    /// Something about the probe of this index in `Case::probes`.
+    Probe {
+        /// Index into `Case::probes`.
+        probe: usize,
+        /// What about it.
+        take: Take,
+    },
+}
+
+/// What an expression takes from a probe.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Take {
+    /// Its current value; at the end of the run, its last (or only) one.
+    Current,
+    /// Largest value of its history.
+    Max,
+    /// Smallest value of its history.
+    Min,
+    /// Largest absolute value of its history.
+    AbsMax,
+    /// Mean over time of its history.
+    Mean,
+    /// Last value of its history.
+    Final,
+    /// Time of the largest value [s].
+    TimeOfMax,
+    /// Value at this time [s], interpolated.
+    At(f64),
+}
+
+/// Components of the stress tensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StressComponent {
+    /// σxx
+    Xx,
+    /// σyy
+    Yy,
+    /// σzz
+    Zz,
+    /// σxy
+    Xy,
+    /// σyz
+    Yz,
+    /// σzx
+    Zx,
+}
+
+choice!(StressComponent { "xx" => Xx, "yy" => Yy, "zz" => Zz, "xy" => Xy, "yz" => Yz, "zx" => Zx });
+
+/// Entries of the energy ledger.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EnergyKind {
+    /// Work of loads and supports.
+    External,
+    /// Kinetic.
+    Kinetic,
+    /// Elastic.
+    Elastic,
+    /// Dissipated by damage.
+    Damage,
+    /// Lost with removed elements.
+    Removed,
+    /// Stored in contacts.
+    Contact,
+    /// Dissipated by friction.
+    Friction,
+    /// Dissipated by damping.
+    Damping,
+    /// Absorbed by boundaries.
+    Absorbed,
+    /// What does not add up.
+    Residual,
+}
+
+choice!(EnergyKind {
+    "external" => External, "kinetic" => Kinetic, "elastic" => Elastic, "damage" => Damage, "removed" => Removed,
+    "contact" => Contact, "friction" => Friction, "damping" => Damping, "absorbed" => Absorbed, "residual" => Residual,
+});
+
+/// Things that are counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CountKind {
+    /// Elements removed so far.
+    RemovedElements,
+    /// Edges broken so far.
+    BrokenEdges,
+    /// Edges with damage.
+    DamagedEdges,
+    /// Discrete elements.
+    Particles,
+    /// Pieces by connectivity.
+    Fragments,
+    /// Touching pairs.
+    Contacts,
+}
+
+choice!(CountKind {
+    "removed_elements" => RemovedElements, "broken_edges" => BrokenEdges, "damaged_edges" => DamagedEdges,
+    "particles" => Particles, "fragments" => Fragments, "contacts" => Contacts,
+});
