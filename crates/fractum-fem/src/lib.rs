@@ -1,1 +1,45 @@
-//! Placeholder front page, replaced by the crate's first content.
+//! Explicit finite elements (T4 in space, T3 in the plane) with damage that lives on the edges of the mesh.
+//!
+//! A solid is a set of *cells*: small patches of nodes over which the strain is constant. In the standard formulation
+//! a cell is an element; in the smoothed one it is the domain of an edge (a share of every element around it), which
+//! makes the elements less stiff and gives damage a place to live without any heuristics. Both run through one kernel.
+//! Elements that a crack has cut through are removed; their mass stays on the nodes.
+//!
+//! Left out on purpose: discrete elements and contact (the coupling knows both), files, and the wall clock.
+//!
+//! ```
+//! use fractum_fem::{Body, Elastic, Kinematics, Plane, Region, Shape, Solid};
+//! use fractum_math::Vec3;
+//! let nodes = vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+//! let steel = Elastic { density: 7850.0, young_modulus: 210e9, poisson_ratio: 0.3 };
+//! let body = Body::new("tetrahedron", Shape::T4, vec![[0, 1, 2, 3]], steel);
+//! let mut solid = Solid::new(nodes, vec![body]).unwrap();
+//! solid.displacement[1].x = 1e-6;
+//! solid.update_internal_forces(1e-9, true);
+//! assert!(solid.force[1].x < 0.0 && solid.elastic_energy() > 0.0);
+//! # let _ = (Kinematics::Small, Plane::Strain, Region::Everywhere);
+//! ```
+
+mod block;
+mod body;
+mod cell;
+mod damage;
+mod element;
+mod error;
+mod kernel;
+mod lane;
+pub mod material;
+mod nodes;
+mod removal;
+mod solid;
+mod standard;
+mod time_step;
+
+pub use body::{Body, DamageZone, Formulation, Kinematics, Plane, Region, Shape};
+pub use damage::EdgeDamage;
+pub use element::CUT_MODES;
+pub use error::SolidError;
+pub use material::{Criterion, CriterionKind, DamageLaw, Elastic, Softening};
+pub use nodes::{LocalDamping, StepWork};
+pub use solid::{BodyState, Fracture, Solid, SolidState, Viscosity};
+pub use time_step::StableStep;

@@ -1,1 +1,26 @@
-//! Placeholder front page, replaced by the crate's first content.
+//! One simulation: its state, the step that advances it, and the coupling of solids with the discrete elements that
+//! they turn into.
+//!
+//! [`Scene`] holds everything; [`Scene::step`] reads like the equations. What changes during a run is a
+//! [`SceneState`], one value that can be saved and put back bit for bit.
+
+mod boundary;
+mod clock;
+pub mod coupling;
+mod error;
+mod fragment;
+mod ledger;
+mod probe;
+mod rigid;
+mod scene;
+mod step;
+
+pub use boundary::{Load, Loads, Motion, Support, Supports, TimeFunction};
+pub use clock::{Clock, TimeStepSettings};
+pub use error::{SceneError, StepError};
+pub use fragment::{Fragment, fragments};
+pub use ledger::{EnergyKind, Guard, Ledger};
+pub use probe::{CountKind, Probe};
+pub use rigid::RigidPlane;
+pub use scene::{Counts, Scene, SceneSettings, SceneState};
+pub use step::StepReport;

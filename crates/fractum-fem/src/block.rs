@@ -1,0 +1,137 @@
+//! Cells in blocks: the unit of parallel work.
+//!
+//! A block holds a few thousand neighbouring cells with the nodes that they touch, numbered locally, so that its
+//! displacements and forces stay in the cache of one core. Forces are first summed inside a block, in the order of its
+//! cells, and then per node over the blocks, in the order of the blocks: the same bits for any number of threads.
+
+use fractum_math::{Ragged, Vec3};
+
+use crate::lane::Lane;
+
+/// Geometry of the cells of a block.
+///
+/// A cell is a base node, n more nodes and n gradients: grad u = Σ (u_k - u_base) ⊗ g_k.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cells {
+    /// Global index of each local node.
+    pub(crate) nodes: Vec<u32>,
+    /// Cell p owns the gradients `starts[p]..starts[p + 1]`, and the local nodes `starts[p] + p ..= starts[p + 1] + p`.
+    pub(crate) starts: Vec<u32>,
+    /// Local node numbers, the base node of each cell first.
+    pub(crate) local: Vec<u16>,
+    /// Gradients [1/m].
+    pub(crate) gradients: Vec<[f64; 3]>,
+    /// Volume of each cell [m³].
+    pub(crate) volume: Vec<f64>,
+    /// Every cell has four nodes: the kernel may use loops of fixed length.
+    pub(crate) four_nodes: bool,
+}
+
+/// Most nodes that the cells of a block may touch.
+///
+/// A power of two known to the compiler: a masked local number then needs no bounds check.
+pub(crate) const BLOCK_NODES: usize = 1024;
+
+/// One value per local node.
+pub(crate) type LocalLanes = Box<[Lane; BLOCK_NODES]>;
+
+/// Local copies of nodal values, and the sums of forces.
+#[derive(Clone, Debug)]
+pub(crate) struct Scratch {
+    pub(crate) displacement: LocalLanes,
+    /// Only of viscous bodies.
+    pub(crate) velocity: Option<LocalLanes>,
+    pub(crate) force: LocalLanes,
+}
+
+fn local_lanes() -> LocalLanes {
+    let lanes = vec![Lane::ZERO; BLOCK_NODES].into_boxed_slice();
+    lanes.try_into().expect("the length is BLOCK_NODES")
+}
+
+impl Cells {
+    pub(crate) fn len(&self) -> usize {
+        self.volume.len()
+    }
+
+    /// The range of gradients of a cell.
+    #[inline(always)]
+    pub(crate) fn range(&self, cell: usize) -> std::ops::Range<usize> {
+        self.starts[cell] as usize..self.starts[cell + 1] as usize
+    }
+
+    /// Local node numbers of a cell, the base first.
+    #[inline(always)]
+    pub(crate) fn local_nodes(&self, cell: usize) -> &[u16] {
+        &self.local[self.starts[cell] as usize + cell..=self.starts[cell + 1] as usize + cell]
+    }
+
+    /// Global nodes of a cell, the base first.
+    pub(crate) fn global_nodes(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
+        self.local_nodes(cell).iter().map(|&l| self.nodes[l as usize] as usize)
+    }
+
+    /// Displacement gradient of a cell from global displacements.
+    pub(crate) fn gradient(&self, cell: usize, displacement: &[Vec3]) -> fractum_math::Mat3 {
+        let mut nodes = self.global_nodes(cell);
+        let base = displacement[nodes.next().expect("a cell has a base node")];
+        let mut h = fractum_math::Mat3::zeros();
+        for (node, g) in nodes.zip(&self.gradients[self.range(cell)]) {
+            h += (displacement[node] - base) * Vec3::from(*g).transpose();
+        }
+        h
+    }
+}
+
+impl Scratch {
+    pub(crate) fn new() -> Self {
+        Scratch { displacement: local_lanes(), velocity: None, force: local_lanes() }
+    }
+
+    /// Copies the values of the block's nodes and clears the forces.
+    #[inline]
+    pub(crate) fn load(&mut self, nodes: &[u32], displacement: &[Vec3]) {
+        for ((local, force), &node) in self.displacement.iter_mut().zip(self.force.iter_mut()).zip(nodes) {
+            *local = Lane::from_vec(&displacement[node as usize]);
+            *force = Lane::ZERO;
+        }
+    }
+
+    /// Copies the velocities of the block's nodes.
+    pub(crate) fn load_velocity(&mut self, nodes: &[u32], velocity: &[Vec3]) {
+        let lanes = self.velocity.get_or_insert_with(local_lanes);
+        for (local, &node) in lanes.iter_mut().zip(nodes) {
+            *local = Lane::from_vec(&velocity[node as usize]);
+        }
+    }
+}
+
+/// Where the forces on each node lie in the blocks.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NodeSlots {
+    slots: Ragged,
+}
+
+impl NodeSlots {
+    /// Packs block and local number into 32 bits: blocks are kept below 65,536 and so are the nodes of a block.
+    pub(crate) fn new<'a>(node_count: usize, block_nodes: impl Iterator<Item = &'a [u32]> + Clone) -> Self {
+        let mut rows = vec![Vec::new(); node_count];
+        for (block, nodes) in block_nodes.enumerate() {
+            for (local, &node) in nodes.iter().enumerate() {
+                rows[node as usize].push((block as u32) << 16 | local as u32);
+            }
+        }
+        NodeSlots { slots: Ragged::from_rows(&rows) }
+    }
+
+    /// Sums the forces on one node over the blocks.
+    #[inline(always)]
+    pub(crate) fn gather<'a>(&self, node: usize, force: impl Fn(usize) -> &'a [Lane]) -> Vec3 {
+        let mut sum = Lane::ZERO;
+        for &slot in self.slots.row(node) {
+            sum = sum.add(force((slot >> 16) as usize)[(slot & 0xffff) as usize]);
+        }
+        sum.to_vec()
+    }
+
+}

@@ -1,0 +1,162 @@
+use fractum_math::Vec3;
+use serde::{Deserialize, Serialize};
+
+use crate::material::{DamageLaw, Elastic};
+
+/// Shape of all elements of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Shape {
+    /// Four-node tetrahedra.
+    T4,
+    /// Three-node triangles in the xy-plane (the fourth entry of an element repeats the third).
+    T3,
+}
+
+impl Shape {
+    /// Nodes of an element.
+    pub fn node_count(self) -> usize {
+        match self {
+            Shape::T4 => 4,
+            Shape::T3 => 3,
+        }
+    }
+
+    /// Edges of an element.
+    pub fn edge_count(self) -> usize {
+        match self {
+            Shape::T4 => 6,
+            Shape::T3 => 3,
+        }
+    }
+}
+
+/// Where strain, stress and damage live.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Formulation {
+    /// On the elements: the plain constant-strain element.
+    Standard,
+    /// On the edges: the strain of an edge is the volume-weighted mean over the elements that share it.
+    Smoothed,
+}
+
+/// Measure of strain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Kinematics {
+    /// Linear strain, for rotations well below 0.1 rad.
+    Small,
+    /// Stretch U - 1 after the polar decomposition F = R U of each cell: any rotation, small stretch.
+    Corotational,
+}
+
+/// What a plane body assumes across its thickness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Plane {
+    /// No strain across the thickness.
+    Strain,
+    /// No stress across the thickness.
+    Stress,
+}
+
+/// Which edges of a body may be damaged.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Region {
+    /// All of them.
+    Everywhere,
+    /// Those marked, by edge in the order of [`Body::edge_midpoints`].
+    Edges(Vec<bool>),
+}
+
+/// Damage of a body: the law, and what varies over the body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DamageZone {
+    /// The law.
+    pub law: DamageLaw,
+    /// Where damage may occur.
+    pub region: Region,
+    /// Factor on the tensile strength of each edge, in the order of [`Body::edge_midpoints`]; empty means 1.
+    pub strength_factor: Vec<f64>,
+    /// Lower the strength of edges too long for their fracture energy, instead of refusing the body.
+    pub reduce_strength_to_fit: bool,
+}
+
+/// A group of elements with one material and one formulation; the input of [`crate::Solid::new`].
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// The user's name for it.
+    pub name: String,
+    /// Shape of its elements.
+    pub shape: Shape,
+    /// Node indices of its elements, positively oriented.
+    pub elements: Vec<[u32; 4]>,
+    /// Elasticity.
+    pub elastic: Elastic,
+    /// Where strain and stress live.
+    pub formulation: Formulation,
+    /// Measure of strain.
+    pub kinematics: Kinematics,
+    /// State across the thickness (T3 only).
+    pub plane: Plane,
+    /// Thickness [m] (T3 only).
+    pub thickness: f64,
+    /// Damage, or none for an elastic body.
+    pub damage: Option<DamageZone>,
+}
+
+impl Body {
+    /// An elastic body of plain elements with small strains.
+    pub fn new(name: &str, shape: Shape, elements: Vec<[u32; 4]>, elastic: Elastic) -> Self {
+        Body {
+            name: name.to_owned(),
+            shape,
+            elements,
+            elastic,
+            formulation: Formulation::Standard,
+            kinematics: Kinematics::Small,
+            plane: Plane::Strain,
+            thickness: 1.0,
+            damage: None,
+        }
+    }
+
+    /// The same body in the smoothed formulation.
+    pub fn smoothed(self) -> Self {
+        Body { formulation: Formulation::Smoothed, ..self }
+    }
+
+    /// The same body with damage everywhere by `law`.
+    pub fn with_damage(self, law: DamageLaw) -> Self {
+        let zone =
+            DamageZone { law, region: Region::Everywhere, strength_factor: Vec::new(), reduce_strength_to_fit: false };
+        Body { damage: Some(zone), ..self }
+    }
+
+    /// The edges of the body, as pairs of node indices, and the edges of each element.
+    pub fn edges(&self) -> BodyEdges {
+        match self.shape {
+            Shape::T4 => {
+                let edges = fractum_mesh::edges_of_tetrahedra(&self.elements);
+                BodyEdges { nodes: edges.nodes, of_element: edges.of_element }
+            }
+            Shape::T3 => {
+                let triangles: Vec<[u32; 3]> = self.elements.iter().map(|e| [e[0], e[1], e[2]]).collect();
+                let edges = fractum_mesh::edges_of_triangles(&triangles);
+                let of_element = edges.of_element.iter().map(|e| [e[0], e[1], e[2], 0, 0, 0]).collect();
+                BodyEdges { nodes: edges.nodes, of_element }
+            }
+        }
+    }
+
+    /// Midpoints of the edges, in the order that [`DamageZone`] uses [m].
+    pub fn edge_midpoints(&self, nodes: &[Vec3]) -> Vec<Vec3> {
+        self.edges().nodes.iter().map(|&[i, j]| (nodes[i as usize] + nodes[j as usize]) * 0.5).collect()
+    }
+}
+
+/// Edges of a body; triangles use the first three entries of `of_element`.
+#[derive(Clone, Debug)]
+pub struct BodyEdges {
+    /// The two nodes of each edge.
+    pub nodes: Vec<[u32; 2]>,
+    /// The edges of each element.
+    pub of_element: Vec<[u32; 6]>,
+}

@@ -1,0 +1,171 @@
+//! From the elements of a body to its cells, in blocks.
+
+use fractum_math::{Ragged, Vec3};
+use rayon::prelude::*;
+
+use crate::block::{BLOCK_NODES, Cells};
+use crate::body::{Body, BodyEdges, Shape};
+use crate::element::measure_and_gradients;
+use crate::error::SolidError;
+
+/// Cells per block: its displacements, forces and geometry fit the second-level cache.
+const BLOCK_CELLS: usize = 2048;
+
+/// What a body needs to build and rebuild its cells.
+pub(crate) struct Geometry<'a> {
+    pub(crate) body: &'a Body,
+    pub(crate) nodes: &'a [Vec3],
+}
+
+impl Geometry<'_> {
+    /// Corner positions of an element.
+    fn corners(&self, element: usize) -> [Vec3; 4] {
+        self.body.elements[element].map(|node| self.nodes[node as usize])
+    }
+
+    /// Volume [m³] and gradients of an element.
+    pub(crate) fn element(&self, element: usize) -> (f64, [Vec3; 4]) {
+        let (measure, gradients) = measure_and_gradients(self.body.shape, &self.corners(element));
+        let thickness = if self.body.shape == Shape::T3 { self.body.thickness } else { 1.0 };
+        (measure * thickness, gradients)
+    }
+
+    /// Volumes of all elements [m³].
+    pub(crate) fn volumes(&self) -> Result<Vec<f64>, SolidError> {
+        let volumes: Vec<f64> = (0..self.body.elements.len()).into_par_iter().map(|e| self.element(e).0).collect();
+        match volumes.iter().position(|&v| !(v > 0.0 && v.is_finite())) {
+            Some(element) => {
+                Err(SolidError::DegenerateElement { body: self.body.name.clone(), element, volume: volumes[element] })
+            }
+            None => Ok(volumes),
+        }
+    }
+
+    fn element_nodes(&self, element: usize) -> &[u32] {
+        &self.body.elements[element][..self.body.shape.node_count()]
+    }
+
+    /// Nodes of the cell of an edge: its two ends, then the ring around it in ascending order.
+    fn edge_nodes(&self, ends: [u32; 2], elements: &[u32]) -> Vec<u32> {
+        let mut ring: Vec<u32> = elements.iter().flat_map(|&e| self.element_nodes(e as usize)).copied().collect();
+        ring.retain(|node| !ends.contains(node));
+        ring.sort_unstable();
+        ring.dedup();
+        [ends.as_slice(), &ring].concat()
+    }
+
+    /// Volume of the domain of an edge and the gradients of its nodes, from the elements that are alive.
+    ///
+    /// `gradients` gets one entry per node of `nodes` after the first.
+    pub(crate) fn edge_domain(
+        &self,
+        nodes: &[u32],
+        elements: &[u32],
+        alive: impl Fn(u32) -> bool,
+        gradients: &mut [[f64; 3]],
+    ) -> f64 {
+        gradients.fill([0.0; 3]);
+        let share = 1.0 / self.body.shape.edge_count() as f64;
+        let mut total = 0.0;
+        for &element in elements.iter().filter(|&&e| alive(e)) {
+            let (volume, g) = self.element(element as usize);
+            let volume = volume * share;
+            total += volume;
+            for (node, g) in self.element_nodes(element as usize).iter().zip(g) {
+                let place = nodes.iter().position(|n| n == node).expect("the cell of an edge holds its elements");
+                if place > 0 {
+                    let sum = &mut gradients[place - 1];
+                    *sum = [sum[0] + volume * g.x, sum[1] + volume * g.y, sum[2] + volume * g.z];
+                }
+            }
+        }
+        if total > 0.0 {
+            gradients.iter_mut().for_each(|g| *g = g.map(|c| c / total));
+        }
+        total
+    }
+
+    /// Blocks of element cells, and the element of each cell.
+    pub(crate) fn element_blocks(&self) -> Vec<(Cells, Vec<u32>)> {
+        let centres: Vec<Vec3> = (0..self.body.elements.len())
+            .into_par_iter()
+            .map(|e| self.element_nodes(e).iter().map(|&n| self.nodes[n as usize]).sum::<Vec3>())
+            .collect();
+        let order = fractum_mesh::hilbert_order(&centres);
+        order
+            .par_chunks(BLOCK_CELLS)
+            .flat_map(|items| split_to_fit(items, |e| self.element_nodes(e as usize).to_vec()))
+            .map(|items| {
+                let rows: Vec<Vec<u32>> = items.iter().map(|&e| self.element_nodes(e as usize).to_vec()).collect();
+                let cells = build_block(&rows, |cell, _, gradients| {
+                    let (volume, g) = self.element(items[cell] as usize);
+                    for (stored, g) in gradients.iter_mut().zip(&g[1..]) {
+                        *stored = [g.x, g.y, g.z];
+                    }
+                    volume
+                });
+                (cells, items)
+            })
+            .collect()
+    }
+
+    /// Blocks of edge cells, and the edge of each cell; edges of different `class` never share a block.
+    pub(crate) fn edge_blocks(
+        &self,
+        edges: &BodyEdges,
+        elements_of_edge: &Ragged,
+        class: impl Fn(u32) -> bool + Sync,
+    ) -> Vec<(Cells, Vec<u32>)> {
+        let middles: Vec<Vec3> =
+            edges.nodes.par_iter().map(|&[i, j]| self.nodes[i as usize] + self.nodes[j as usize]).collect();
+        let order = fractum_mesh::hilbert_order(&middles);
+        let (first, second): (Vec<u32>, Vec<u32>) = order.into_iter().partition(|&edge| class(edge));
+        let chunks: Vec<&[u32]> = first.chunks(BLOCK_CELLS).chain(second.chunks(BLOCK_CELLS)).collect();
+        let elements = |edge: u32| elements_of_edge.row(edge as usize);
+        let row = |edge: u32| self.edge_nodes(edges.nodes[edge as usize], elements(edge));
+        chunks
+            .into_par_iter()
+            .flat_map(|items| split_to_fit(items, row))
+            .map(|mut items| {
+                // Cells of one size side by side: the loops over their nodes become predictable.
+                items.sort_by_cached_key(|&edge| (row(edge).len(), edge));
+                let rows: Vec<Vec<u32>> = items.iter().map(|&edge| row(edge)).collect();
+                let cells = build_block(&rows, |cell, nodes, gradients| {
+                    self.edge_domain(nodes, elements(items[cell]), |_| true, gradients)
+                });
+                (cells, items)
+            })
+            .collect()
+    }
+}
+
+/// Halves a run of cells until each part touches at most [`BLOCK_NODES`] nodes.
+fn split_to_fit(items: &[u32], row: impl Fn(u32) -> Vec<u32> + Copy) -> Vec<Vec<u32>> {
+    let mut nodes: Vec<u32> = items.iter().flat_map(|&item| row(item)).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    if nodes.len() <= BLOCK_NODES || items.len() == 1 {
+        return vec![items.to_vec()];
+    }
+    let (left, right) = items.split_at(items.len() / 2);
+    [split_to_fit(left, row), split_to_fit(right, row)].concat()
+}
+
+/// Lays out the cells of a block; `fill` returns the volume of a cell and writes its gradients.
+fn build_block(rows: &[Vec<u32>], fill: impl Fn(usize, &[u32], &mut [[f64; 3]]) -> f64) -> Cells {
+    let mut nodes: Vec<u32> = rows.concat();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let mut cells = Cells { nodes, starts: vec![0], four_nodes: rows.iter().all(|r| r.len() == 4), ..Cells::default() };
+    for (cell, row) in rows.iter().enumerate() {
+        for node in row {
+            let local = cells.nodes.binary_search(node).expect("the block holds the nodes of its cells");
+            cells.local.push(local as u16);
+        }
+        let start = cells.gradients.len();
+        cells.gradients.resize(start + row.len() - 1, [0.0; 3]);
+        cells.volume.push(fill(cell, row, &mut cells.gradients[start..]));
+        cells.starts.push(cells.gradients.len() as u32);
+    }
+    cells
+}

@@ -1,0 +1,44 @@
+use thiserror::Error;
+
+/// What makes a solid impossible to build or to run.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SolidError {
+    /// An element without volume.
+    #[error("body {body}: element {element} has volume {volume:e} m³; expected a positive volume, repair the mesh")]
+    DegenerateElement {
+        /// Name of the body.
+        body: String,
+        /// Index of the element in the body.
+        element: usize,
+        /// Its volume [m³].
+        volume: f64,
+    },
+    /// An element too large for its fracture energy.
+    #[error(
+        "body {body}: the edge at ({x:.4e}, {y:.4e}, {z:.4e}) m has the characteristic length {length:.4e} m; softening with this strength and fracture \
+         energy needs less than {limit:.4e} m ({count} edges are too long): refine the mesh there, raise fracture_energy or lower tensile_strength, or set \
+         reduce_strength_to_fit = true"
+    )]
+    ElementTooLarge {
+        /// Name of the body.
+        body: String,
+        /// Position of the worst edge [m].
+        x: f64,
+        /// Position of the worst edge [m].
+        y: f64,
+        /// Position of the worst edge [m].
+        z: f64,
+        /// Its characteristic length [m].
+        length: f64,
+        /// The largest length possible [m].
+        limit: f64,
+        /// How many edges are too long.
+        count: usize,
+    },
+    /// A node that belongs to no element and so has no mass.
+    #[error("node {node} belongs to no element of any solid body: it has no mass")]
+    MasslessNode {
+        /// Index of the node.
+        node: usize,
+    },
+}

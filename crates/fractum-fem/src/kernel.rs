@@ -1,0 +1,218 @@
+//! The force kernel: strain of each cell, stress by its law, forces on its nodes.
+
+use fractum_math::{Mat3, Sym3};
+
+use crate::block::{BLOCK_NODES, Cells, Scratch};
+use crate::lane::Lane;
+use crate::solid::BodyViscosity;
+
+/// Stress of a cell for its strain; owns the history of the cells of a block.
+pub(crate) trait CellLaw {
+    /// Stress [Pa] times the volume of cell `cell` [m³].
+    fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3;
+    /// Part of the stiffness that is left, 1 - d.
+    fn integrity(&self, cell: usize) -> f64;
+}
+
+/// Isotropic Hooke's law with the plane-stress variant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hooke {
+    pub(crate) lambda: f64,
+    pub(crate) mu: f64,
+    /// 1, or 0 where the stress across the thickness vanishes.
+    pub(crate) zz: f64,
+}
+
+impl Hooke {
+    #[inline(always)]
+    pub(crate) fn stress(&self, strain: Sym3) -> Sym3 {
+        let [xx, yy, zz, xy, yz, zx] = strain.0;
+        let pressure = self.lambda * (xx + yy + zz);
+        let g = 2.0 * self.mu;
+        Sym3([pressure + g * xx, pressure + g * yy, self.zz * (pressure + g * zz), g * xy, g * yz, g * zx])
+    }
+}
+
+/// An elastic block: sums its energy when asked to.
+pub(crate) struct ElasticCells {
+    pub(crate) hooke: Hooke,
+    pub(crate) energy: Option<f64>,
+}
+
+impl CellLaw for ElasticCells {
+    #[inline(always)]
+    fn scaled_stress(&mut self, _cell: usize, strain: Sym3, volume: f64) -> Sym3 {
+        let stress = self.hooke.stress(strain) * volume;
+        if let Some(energy) = &mut self.energy {
+            *energy += 0.5 * stress.dot(strain);
+        }
+        stress
+    }
+
+    #[inline(always)]
+    fn integrity(&self, _cell: usize) -> f64 {
+        1.0
+    }
+}
+
+/// Rotation R of the polar decomposition F = R U, by Higham's iteration R ← ½ (R + R⁻ᵀ).
+///
+/// A cell that is inverted or flat has no rotation; the identity then keeps the linear strain.
+pub(crate) fn polar_rotation(f: &Mat3) -> Mat3 {
+    let mut r = *f;
+    for _ in 0..40 {
+        let Some(inverse) = r.try_inverse() else { return Mat3::identity() };
+        let next = (r + inverse.transpose()) * 0.5;
+        let change = (next - r).norm_squared();
+        r = next;
+        if change < 1e-30 {
+            break;
+        }
+    }
+    if r.determinant() > 0.0 && r.iter().all(|c| c.is_finite()) { r } else { Mat3::identity() }
+}
+
+/// Strain of a displacement gradient, and the rotation of the cell.
+pub(crate) fn corotational_strain(h: &Mat3) -> (Sym3, Mat3) {
+    let f = Mat3::identity() + h;
+    let r = polar_rotation(&f);
+    (Sym3::symmetric_part(&(r.transpose() * f - Mat3::identity())), r)
+}
+
+/// Columns of a displacement gradient from lanes.
+#[inline(always)]
+fn columns_to_matrix(x: Lane, y: Lane, z: Lane) -> Mat3 {
+    let (x, y, z) = (x.0, y.0, z.0);
+    Mat3::new(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2])
+}
+
+/// A local number as an index that the compiler knows to be in range.
+#[inline(always)]
+fn slot(local: u16) -> usize {
+    usize::from(local) & (BLOCK_NODES - 1)
+}
+
+#[inline(always)]
+fn gradient_columns<const FMA: bool>(values: &[Lane; BLOCK_NODES], local: &[u16], gradients: &[[f64; 3]]) -> [Lane; 3] {
+    let base = values[slot(local[0])];
+    let (mut x, mut y, mut z) = (Lane::ZERO, Lane::ZERO, Lane::ZERO);
+    for (&node, g) in local[1..].iter().zip(gradients) {
+        let d = values[slot(node)].sub(base);
+        x = x.plus::<FMA>(d, g[0]);
+        y = y.plus::<FMA>(d, g[1]);
+        z = z.plus::<FMA>(d, g[2]);
+    }
+    [x, y, z]
+}
+
+#[inline(always)]
+fn add_cell_forces<const FMA: bool>(force: &mut [Lane; BLOCK_NODES], local: &[u16], gradients: &[[f64; 3]], stress: [Lane; 3]) {
+    let mut sum = Lane::ZERO;
+    for (&node, g) in local[1..].iter().zip(gradients) {
+        let f = Lane::ZERO.plus::<FMA>(stress[0], g[0]).plus::<FMA>(stress[1], g[1]).plus::<FMA>(stress[2], g[2]);
+        force[slot(node)] = force[slot(node)].sub(f);
+        sum = sum.add(f);
+    }
+    let base = slot(local[0]);
+    force[base] = force[base].add(sum);
+}
+
+#[inline(always)]
+fn small_strain(x: Lane, y: Lane, z: Lane) -> Sym3 {
+    let (x, y, z) = (x.0, y.0, z.0);
+    Sym3([x[0], y[1], z[2], 0.5 * (x[1] + y[0]), 0.5 * (y[2] + z[1]), 0.5 * (x[2] + z[0])])
+}
+
+#[inline(always)]
+fn symmetric_columns(s: Sym3) -> [Lane; 3] {
+    let [xx, yy, zz, xy, yz, zx] = s.0;
+    [Lane([xx, xy, zx, 0.0]), Lane([xy, yy, yz, 0.0]), Lane([zx, yz, zz, 0.0])]
+}
+
+/// Forces of the cells of a block, small strains: -∫ Bᵀσ dV added to `scratch.force`.
+///
+/// With four nodes per cell (`T4`) the loops have a fixed length.
+#[inline(always)]
+fn small_strain_forces<const FMA: bool, const T4: bool, L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
+    let Scratch { displacement, force, .. } = scratch;
+    let (mut start, mut first) = (0usize, 0usize);
+    for cell in 0..cells.len() {
+        let count = if T4 { 3 } else { cells.starts[cell + 1] as usize - start };
+        let local = &cells.local[first..first + count + 1];
+        let gradients = &cells.gradients[start..start + count];
+        let [x, y, z] = gradient_columns::<FMA>(displacement, local, gradients);
+        let stress = law.scaled_stress(cell, small_strain(x, y, z), cells.volume[cell]);
+        add_cell_forces::<FMA>(force, local, gradients, symmetric_columns(stress));
+        start += count;
+        first += count + 1;
+    }
+}
+
+/// The small-strain kernel in the widest instruction set of the machine.
+pub(crate) fn forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
+    let t4 = cells.four_nodes;
+    #[cfg(target_arch = "x86_64")]
+    if has_avx2() {
+        // SAFETY: the instruction sets were found on this machine.
+        #[allow(unsafe_code)]
+        unsafe {
+            return if t4 { forces_avx2::<true, L>(cells, scratch, law) } else { forces_avx2::<false, L>(cells, scratch, law) };
+        }
+    }
+    if t4 {
+        small_strain_forces::<false, true, L>(cells, scratch, law);
+    } else {
+        small_strain_forces::<false, false, L>(cells, scratch, law);
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn forces_avx2<const T4: bool, L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
+    small_strain_forces::<true, T4, L>(cells, scratch, law);
+}
+
+/// Whether kernels run in their AVX2 and FMA version on this machine (results differ in the last bits).
+#[cfg(target_arch = "x86_64")]
+pub(crate) fn has_avx2() -> bool {
+    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+}
+
+/// Forces with corotational strains and, if asked for, viscous stress; small strains with viscosity come here as well.
+pub(crate) fn general_forces<L: CellLaw>(
+    cells: &Cells,
+    scratch: &mut Scratch,
+    law: &mut L,
+    corotational: bool,
+    viscosity: Option<&BodyViscosity>,
+    hooke: &Hooke,
+) -> f64 {
+    let Scratch { displacement, velocity, force } = scratch;
+    let mut dissipated_power = 0.0;
+    for cell in 0..cells.len() {
+        let (local, gradients) = (cells.local_nodes(cell), &cells.gradients[cells.range(cell)]);
+        let volume = cells.volume[cell];
+        let [x, y, z] = gradient_columns::<false>(displacement, local, gradients);
+        let (strain, rotation) = if corotational {
+            corotational_strain(&columns_to_matrix(x, y, z))
+        } else {
+            (small_strain(x, y, z), Mat3::identity())
+        };
+        let mut stress = law.scaled_stress(cell, strain, volume);
+        if let (Some(viscosity), Some(velocity)) = (viscosity, velocity.as_deref()) {
+            let [x, y, z] = gradient_columns::<false>(velocity, local, gradients);
+            let rate = Sym3::symmetric_part(&(rotation.transpose() * columns_to_matrix(x, y, z)));
+            let viscous = viscosity.stress(hooke, rate, law.integrity(cell), volume) * volume;
+            dissipated_power += viscous.dot(rate);
+            stress += viscous;
+        }
+        let columns = if corotational {
+            let p = rotation * stress.to_matrix();
+            [0, 1, 2].map(|c| Lane([p[(0, c)], p[(1, c)], p[(2, c)], 0.0]))
+        } else {
+            symmetric_columns(stress)
+        };
+        add_cell_forces::<false>(force, local, gradients, columns);
+    }
+    dissipated_power
+}

@@ -1,0 +1,205 @@
+use fractum_math::Sym3;
+use serde::{Deserialize, Serialize};
+
+/// The equivalent stress of a criterion, scaled so that uniaxial tension σ gives q = σ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum CriterionKind {
+    /// Largest principal stress, max(σ₁, 0).
+    Rankine,
+    /// Mohr-Coulomb with tension cut-off, max(σ₁, (N σ₁ - σ₃) f_t/f_c), N = (1 + sin φ)/(1 - sin φ).
+    MohrCoulomb,
+    /// Mohr-Coulomb through the tensile strength, σ₁ - σ₃/N: no cut-off, loses strength where σ₃ is compressive.
+    PureMohrCoulomb,
+    /// Drucker-Prager cone through the tensile and the compressive strength.
+    DruckerPrager,
+    /// Mazars' equivalent strain times E, E √(Σ ⟨ε_i⟩²).
+    Mazars,
+    /// Modified Mohr-Coulomb of Oller with independent tensile and compressive strength.
+    ModifiedMohrCoulomb,
+}
+
+/// A criterion with the constants that its evaluation needs.
+///
+/// Besides q itself it knows, for its cheap test, linear bounds q ≤ a p + b √J₂ with p the mean stress: an edge whose
+/// bound stays below its threshold needs no eigenvalue.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Criterion {
+    kind: CriterionKind,
+    /// Pairs (a, b²) of the bounds max over pairs of a p + b √J₂.
+    bounds: [(f64, f64); 2],
+    /// The second pair says the same as the first.
+    one_bound: bool,
+    /// Square of the largest q of a stress with unit norm √(σ : σ).
+    norm_factor: f64,
+    /// Constants of the kind, see [`Criterion::new`].
+    constants: [f64; 4],
+}
+
+impl Criterion {
+    /// Prepares a criterion.
+    ///
+    /// - `friction_angle` φ [rad]; `strength_ratio` f_c/f_t; `poisson_ratio` (for Mazars' strains)
+    pub fn new(kind: CriterionKind, friction_angle: f64, strength_ratio: f64, poisson_ratio: f64) -> Self {
+        let sin = friction_angle.sin();
+        let n = (1.0 + sin) / (1.0 - sin);
+        let first = (1.0, 2.0 / 3f64.sqrt());
+        let (bounds, constants) = match kind {
+            CriterionKind::Rankine => ([first, first], [0.0; 4]),
+            CriterionKind::MohrCoulomb => {
+                let scale = 1.0 / strength_ratio;
+                let shear = ((n - 1.0) * scale, ((n - 1.0) * first.1 + 2.0) * scale);
+                ([first, shear], [n, scale, 0.0, 0.0])
+            }
+            CriterionKind::PureMohrCoulomb => {
+                let inverse = 1.0 / n;
+                let bound = (1.0 - inverse, (1.0 - inverse) * first.1 + 2.0 * inverse);
+                ([bound, bound], [inverse, 0.0, 0.0, 0.0])
+            }
+            CriterionKind::DruckerPrager => {
+                let r = strength_ratio;
+                let cone = (3.0 * (r - 1.0) / (2.0 * r), 3f64.sqrt() * (r + 1.0) / (2.0 * r));
+                ([cone, cone], [cone.0, cone.1, 0.0, 0.0])
+            }
+            CriterionKind::Mazars => {
+                let volumetric = 3f64.sqrt() * (1.0 - 2.0 * poisson_ratio);
+                let deviatoric = 2f64.sqrt() * (1.0 + poisson_ratio);
+                ([(volumetric, deviatoric), (-volumetric, deviatoric)], [poisson_ratio, 0.0, 0.0, 0.0])
+            }
+            CriterionKind::ModifiedMohrCoulomb => {
+                let alpha = strength_ratio / n;
+                let (sum, difference) = (0.5 * (1.0 + alpha), 0.5 * (1.0 - alpha));
+                let k1 = sum - difference * sin;
+                let k2_sin = sum * sin - difference;
+                let k3 = sum * sin - difference;
+                // Uniaxial tension 1: p = 1/3, √J₂ = 1/√3, Lode angle -30°.
+                let tension = k3 / 3.0 + (k1 * 0.75f64.sqrt() + 0.5 * k2_sin / 3f64.sqrt()) / 3f64.sqrt();
+                let (k1, k2_sin, k3) = (k1 / tension, k2_sin / tension, k3 / tension);
+                let bound = (k3, (k1 * k1 + k2_sin * k2_sin / 3.0).sqrt());
+                ([bound, bound], [k1, k2_sin, k3, 0.0])
+            }
+        };
+        // By Cauchy-Schwarz with σ : σ = 3 p² + 2 J₂.
+        let norm_factor = bounds.map(|(a, b)| a * a / 3.0 + b * b / 2.0).into_iter().fold(0.0, f64::max);
+        let one_bound = bounds[0] == bounds[1];
+        Criterion { kind, bounds: bounds.map(|(a, b)| (a, b * b)), one_bound, norm_factor, constants }
+    }
+
+    /// Largest principal stress (Rankine).
+    pub fn rankine() -> Self {
+        Criterion::new(CriterionKind::Rankine, 0.0, 10.0, 0.0)
+    }
+
+    /// Which criterion this is.
+    pub fn kind(&self) -> CriterionKind {
+        self.kind
+    }
+
+    /// Whether q surely stays at or below `threshold`, from invariants of the stress alone; false when in doubt.
+    #[inline(always)]
+    pub fn surely_below(&self, stress: Sym3, threshold: f64) -> bool {
+        let [xx, yy, zz, xy, yz, zx] = stress.0;
+        let square = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
+        threshold > 0.0 && (square * self.norm_factor <= threshold * threshold || self.below_by_j2(stress, square, threshold))
+    }
+
+    /// The sharper test, for stresses that are large but mostly compressive.
+    fn below_by_j2(&self, stress: Sym3, square: f64, threshold: f64) -> bool {
+        let trace = stress.trace();
+        // The slack covers the cancellation between the two terms of J₂.
+        let j2 = 0.5 * square * (1.0 + 1e-14) - trace * trace / 6.0;
+        let mean = trace / 3.0;
+        let below = |(a, b2): (f64, f64)| {
+            let room = threshold - a * mean;
+            room >= 0.0 && room * room >= b2 * j2
+        };
+        below(self.bounds[0]) && (self.one_bound || below(self.bounds[1]))
+    }
+
+    /// Equivalent stress q ≥ 0 [Pa] of an effective stress.
+    pub fn equivalent_stress(&self, stress: Sym3) -> f64 {
+        let c = self.constants;
+        let q = match self.kind {
+            CriterionKind::Rankine => stress.principal_values()[0],
+            CriterionKind::MohrCoulomb => {
+                let s = stress.principal_values();
+                s[0].max((c[0] * s[0] - s[2]) * c[1])
+            }
+            CriterionKind::PureMohrCoulomb => {
+                let s = stress.principal_values();
+                s[0] - s[2] * c[0]
+            }
+            CriterionKind::DruckerPrager => c[0] * stress.trace() / 3.0 + c[1] * stress.j2().sqrt(),
+            CriterionKind::Mazars => {
+                let s = stress.principal_values();
+                let strain = |i: usize| s[i] - c[0] * (s[(i + 1) % 3] + s[(i + 2) % 3]);
+                (0..3).map(|i| strain(i).max(0.0).powi(2)).sum::<f64>().sqrt()
+            }
+            CriterionKind::ModifiedMohrCoulomb => {
+                let j2 = stress.j2();
+                let sin3 = if j2 > 0.0 { (-1.5 * 3f64.sqrt() * stress.j3() / (j2 * j2.sqrt())).clamp(-1.0, 1.0) } else { 0.0 };
+                let lode = sin3.asin() / 3.0;
+                c[2] * stress.trace() / 3.0 + j2.sqrt() * (c[0] * lode.cos() - c[1] * lode.sin() / 3f64.sqrt())
+            }
+        };
+        q.max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const KINDS: [CriterionKind; 6] = [
+        CriterionKind::Rankine,
+        CriterionKind::MohrCoulomb,
+        CriterionKind::PureMohrCoulomb,
+        CriterionKind::DruckerPrager,
+        CriterionKind::Mazars,
+        CriterionKind::ModifiedMohrCoulomb,
+    ];
+
+    fn criterion(kind: CriterionKind) -> Criterion {
+        Criterion::new(kind, 35f64.to_radians(), 10.0, 0.2)
+    }
+
+    #[test]
+    fn uniaxial_tension_gives_the_stress_itself() {
+        for kind in KINDS {
+            let q = criterion(kind).equivalent_stress(Sym3::new(0.0, 3.0, 0.0, 0.0, 0.0, 0.0));
+            assert!((q - 3.0).abs() < 1e-6, "{kind:?}: {q}");
+        }
+    }
+
+    #[test]
+    fn uniaxial_compression_fails_at_the_compressive_strength() {
+        use CriterionKind::*;
+        for kind in [MohrCoulomb, DruckerPrager, ModifiedMohrCoulomb] {
+            let q = criterion(kind).equivalent_stress(Sym3::new(-10.0, 0.0, 0.0, 0.0, 0.0, 0.0));
+            assert!((q - 1.0).abs() < 1e-6, "{kind:?}: {q}");
+        }
+        assert_eq!(criterion(Rankine).equivalent_stress(Sym3::new(-10.0, 0.0, 0.0, 0.0, 0.0, 0.0)), 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn cheap_bound_never_hides_a_stress_above_the_threshold(c in prop::array::uniform6(-10f64..10.0), t in 0.1f64..20.0) {
+            let stress = Sym3(c);
+            for kind in KINDS {
+                let criterion = criterion(kind);
+                if criterion.surely_below(stress, t) {
+                    prop_assert!(criterion.equivalent_stress(stress) <= t * (1.0 + 1e-7), "{:?}", kind);
+                }
+            }
+        }
+
+        #[test]
+        fn equivalent_stress_is_homogeneous(c in prop::array::uniform6(-10f64..10.0), factor in 0.1f64..10.0) {
+            for kind in KINDS {
+                let criterion = criterion(kind);
+                let (once, scaled) = (criterion.equivalent_stress(Sym3(c)), criterion.equivalent_stress(Sym3(c) * factor));
+                prop_assert!((scaled - factor * once).abs() < 1e-6 * (1.0 + scaled), "{:?}", kind);
+            }
+        }
+    }
+}

@@ -1,0 +1,100 @@
+use serde::{Deserialize, Serialize};
+
+/// Shape of the stress-opening curve of a cohesive crack; all enclose the fracture energy.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Softening {
+    /// χ = exp(A (1 - κ/f_t)), A = 1/(E G_f/(l f_t²) - ½).
+    Exponential,
+    /// Straight line to the opening 2 G_f/f_t.
+    Linear,
+    /// Two straight lines: to `stress` f_t at the opening `opening` G_f/f_t, then to zero.
+    Bilinear {
+        /// Stress at the kink as a fraction of f_t.
+        stress: f64,
+        /// Opening at the kink as a multiple of G_f/f_t.
+        opening: f64,
+    },
+}
+
+impl Softening {
+    /// Petersson's bilinear curve for concrete: kink at f_t/3 and 0.8 G_f/f_t, end at 3.6 G_f/f_t.
+    pub const PETERSSON: Softening = Softening::Bilinear { stress: 1.0 / 3.0, opening: 0.8 };
+
+    /// Residual stress ratio χ = σ/f_t at the largest equivalent stress `kappa` ≥ f_t reached so far.
+    ///
+    /// - `kappa`, `strength` f_t [Pa]; `length` l [m]; `young_modulus` [Pa]; `fracture_energy` [J/m²]
+    pub fn residual_ratio(
+        &self,
+        kappa: f64,
+        strength: f64,
+        length: f64,
+        young_modulus: f64,
+        fracture_energy: f64,
+    ) -> f64 {
+        let ratio = kappa / strength;
+        // Openings and strains in units of the elastic limit strain f_t/E: x = w E/(l f_t).
+        let brittleness = young_modulus * fracture_energy / (length * strength * strength);
+        let line = |x0: f64, y0: f64, x1: f64, y1: f64| y0 + (y1 - y0) * (ratio - x0) / (x1 - x0);
+        match *self {
+            Softening::Exponential => ((1.0 - ratio) / (brittleness - 0.5)).exp(),
+            Softening::Linear => line(1.0, 1.0, 2.0 * brittleness, 0.0).max(0.0),
+            Softening::Bilinear { stress, opening } => {
+                let kink = opening * brittleness + stress;
+                let end = Self::bilinear_end(stress, opening) * brittleness;
+                if ratio < kink { line(1.0, 1.0, kink, stress) } else { line(kink, stress, end, 0.0).max(0.0) }
+            }
+        }
+    }
+
+    /// Characteristic length above which the curve would snap back [m].
+    pub fn largest_length(&self, young_modulus: f64, strength: f64, fracture_energy: f64) -> f64 {
+        let unit = young_modulus * fracture_energy / (strength * strength);
+        match *self {
+            Softening::Exponential | Softening::Linear => 2.0 * unit,
+            Softening::Bilinear { stress, opening } => {
+                let second = (Self::bilinear_end(stress, opening) - opening) / stress;
+                unit * (opening / (1.0 - stress)).min(second)
+            }
+        }
+    }
+
+    /// Opening at zero stress, in multiples of G_f/f_t, such that the area is G_f.
+    fn bilinear_end(stress: f64, opening: f64) -> f64 {
+        (2.0 - opening) / stress
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CURVES: [Softening; 3] = [Softening::Exponential, Softening::Linear, Softening::PETERSSON];
+
+    #[test]
+    fn energy_under_the_curve_is_the_fracture_energy() {
+        let (e, ft, gf, l) = (30e9, 3e6, 100.0, 0.05);
+        for curve in CURVES {
+            // Area under nominal stress against strain, times the length.
+            let steps = 400_000;
+            let top = 400.0 * ft;
+            let mut energy = 0.5 * ft * ft / e * l;
+            let mut last = ft;
+            for step in 1..=steps {
+                let kappa = ft + (top - ft) * step as f64 / steps as f64;
+                let stress = ft * curve.residual_ratio(kappa, ft, l, e, gf);
+                energy += 0.5 * (last + stress) * (top - ft) / steps as f64 / e * l;
+                last = stress;
+            }
+            assert!((energy / gf - 1.0).abs() < 1e-3, "{curve:?}: {energy}");
+        }
+    }
+
+    #[test]
+    fn curve_starts_at_one_and_falls() {
+        for curve in CURVES {
+            let ratio = |kappa: f64| curve.residual_ratio(kappa, 1.0, 0.1, 1.0, 1.0);
+            assert!((ratio(1.0) - 1.0).abs() < 1e-14);
+            assert!((1..100).all(|i| ratio(1.0 + i as f64) <= ratio(i as f64)));
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Motion of the nodes: central differences with the velocity at half steps.
+
+use fractum_math::{CHUNK, Vec3};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::solid::Solid;
+
+/// Damping that acts on the nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LocalDamping {
+    /// Fraction a of the unbalanced force that opposes the motion, -a |F| v/|v|; for quasi-static runs.
+    pub local: f64,
+    /// Mass-proportional rate α [1/s].
+    pub mass_rate: f64,
+}
+
+impl LocalDamping {
+    fn is_off(&self) -> bool {
+        self.local == 0.0 && self.mass_rate == 0.0
+    }
+}
+
+/// Energies of one step, for the ledger.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepWork {
+    /// Kinetic energy at tⁿ, ½ Σ m vⁿ⁻½ · vⁿ⁺½ [J]: with this product the explicit scheme conserves energy exactly.
+    pub kinetic: f64,
+    /// Energy taken by damping in the half step before tⁿ [J].
+    pub damped_before: f64,
+    /// Energy taken by damping in the half step after tⁿ [J].
+    pub damped_after: f64,
+}
+
+impl Solid {
+    /// Advances vⁿ⁻½ → vⁿ⁺½ and uⁿ → uⁿ⁺¹ with the forces of tⁿ.
+    ///
+    /// - `dt_before`, `dt_after`: the steps on both sides of tⁿ [s]
+    /// - `held`: bit a is set where axis a of a node is prescribed (it feels no damping); empty if none is
+    /// - `measure`: whether to sum the kinetic energy
+    pub fn kick_and_drift(
+        &mut self,
+        dt_before: f64,
+        dt_after: f64,
+        damping: LocalDamping,
+        held: &[u8],
+        measure: bool,
+    ) -> StepWork {
+        let dt_kick = 0.5 * (dt_before + dt_after);
+        let Solid { displacement, velocity, force, inverse_mass, chunk_work, .. } = self;
+        let plain = damping.is_off() && !measure;
+        displacement
+            .par_chunks_mut(CHUNK)
+            .zip(velocity.par_chunks_mut(CHUNK))
+            .zip(chunk_work.par_iter_mut())
+            .enumerate()
+            .for_each(|(chunk, ((displacement, velocity), work))| {
+                let first = chunk * CHUNK;
+                let (force, inverse_mass) = (&force[first..], &inverse_mass[first..]);
+                *work = StepWork::default();
+                if plain {
+                    for i in 0..velocity.len() {
+                        velocity[i] += force[i] * (inverse_mass[i] * dt_kick);
+                        displacement[i] += velocity[i] * dt_after;
+                    }
+                    return;
+                }
+                for i in 0..velocity.len() {
+                    let before = velocity[i];
+                    let mut total = force[i];
+                    let mut resist = Vec3::zeros();
+                    if !damping.is_off() {
+                        let free = held.get(first + i).map_or(Vec3::repeat(1.0), |&bits| free_axes(bits));
+                        resist = damping_force(damping, total.component_mul(&free), before.component_mul(&free), inverse_mass[i]);
+                        total += resist;
+                    }
+                    let after = before + total * (inverse_mass[i] * dt_kick);
+                    velocity[i] = after;
+                    displacement[i] += after * dt_after;
+                    work.kinetic += 0.5 / inverse_mass[i] * before.dot(&after);
+                    work.damped_before -= 0.5 * dt_before * resist.dot(&before);
+                    work.damped_after -= 0.5 * dt_after * resist.dot(&after);
+                }
+            });
+        chunk_work.iter().fold(StepWork::default(), |sum, part| StepWork {
+            kinetic: sum.kinetic + part.kinetic,
+            damped_before: sum.damped_before + part.damped_before,
+            damped_after: sum.damped_after + part.damped_after,
+        })
+    }
+}
+
+fn free_axes(bits: u8) -> Vec3 {
+    Vec3::from_fn(|axis, _| if bits & (1 << axis) == 0 { 1.0 } else { 0.0 })
+}
+
+/// -a |F| v/|v| - α m v, zero at rest.
+fn damping_force(damping: LocalDamping, force: Vec3, velocity: Vec3, inverse_mass: f64) -> Vec3 {
+    let speed = velocity.norm();
+    let local = if speed > 0.0 { velocity * (-damping.local * force.norm() / speed) } else { Vec3::zeros() };
+    local - velocity * (damping.mass_rate / inverse_mass)
+}

@@ -1,0 +1,193 @@
+//! Elements that a crack has cut through leave; their mass stays on the nodes.
+
+use fractum_math::Sym3;
+
+use crate::body::{Formulation, Kinematics};
+use crate::cell::Geometry;
+use crate::element::cut_modes;
+use crate::kernel;
+use crate::solid::{BlockLaw, BodyModel, Solid};
+
+impl Solid {
+    /// Removes every element for which all edges of one cut are broken, and returns the energy that went with them.
+    ///
+    /// The energy is the difference of the stored energy of the touched cells before and after [J]: an edge that keeps
+    /// some of its elements averages over these from now on.
+    ///
+    /// - `removed`: gets (body, element) of what was removed in this call
+    pub fn remove_cut_elements(&mut self, removed: &mut Vec<(usize, u32)>) -> f64 {
+        let first = removed.len();
+        for body in 0..self.bodies.len() {
+            self.find_cut_elements(body, removed);
+        }
+        if removed.len() == first {
+            return 0.0;
+        }
+        let mut energy = 0.0;
+        for body in 0..self.bodies.len() {
+            let elements: Vec<u32> = removed[first..].iter().filter(|r| r.0 == body).map(|r| r.1).collect();
+            if elements.is_empty() {
+                continue;
+            }
+            let touched = self.cells_around(body, &elements);
+            energy += self.stored_energy(&touched);
+            elements.iter().for_each(|&e| self.bodies[body].alive[e as usize] = false);
+            self.rebuild_cells_around(body, &elements);
+            energy -= self.stored_energy(&touched);
+        }
+        energy
+    }
+
+    /// Elements of a body that are newly cut through; only blocks in which an edge broke are looked at.
+    fn find_cut_elements(&mut self, body: usize, removed: &mut Vec<(usize, u32)>) {
+        let Solid { bodies, blocks, .. } = self;
+        let fresh = bodies[body].standard.as_mut().is_some_and(|standard| std::mem::take(&mut standard.fresh));
+        let model = &bodies[body];
+        let (Some(edges), Some(_)) = (&model.edges, &model.body.damage) else { return };
+        let modes = cut_modes(model.body.shape);
+        let mut candidates: Vec<u32> = Vec::new();
+        match &model.standard {
+            Some(standard) if fresh => {
+                let broken = (0..).zip(&standard.edges).filter(|(_, edge)| edge.broken);
+                broken.for_each(|(e, _)| candidates.extend(model.elements_of_edge.row(e)));
+            }
+            Some(_) => {}
+            None => {
+                for block in blocks.iter_mut().filter(|b| b.body == body) {
+                    let BlockLaw::Edges(law) = &mut block.law else { continue };
+                    if !std::mem::take(&mut law.fresh) {
+                        continue;
+                    }
+                    for (edge, _) in block.items.iter().zip(&law.edges).filter(|(_, edge)| edge.broken) {
+                        candidates.extend(model.elements_of_edge.row(*edge as usize));
+                    }
+                }
+            }
+        }
+        candidates.retain(|&e| model.alive[e as usize]);
+        candidates.sort_unstable();
+        candidates.dedup();
+        let is_broken = |edge: u32| match &model.standard {
+            Some(standard) => standard.edges[edge as usize].broken,
+            None => {
+                let (block, cell) = model.location[edge as usize];
+                matches!(&blocks[block as usize].law, BlockLaw::Edges(law) if law.edges[cell as usize].broken)
+            }
+        };
+        let is_cut = |element: u32| {
+            let of = &edges.of_element[element as usize];
+            modes.iter().any(|mode| mode.iter().all(|&local| is_broken(of[local])))
+        };
+        removed.extend(candidates.into_iter().filter(|&e| is_cut(e)).map(|e| (body, e)));
+    }
+
+    /// Blocks and cells that the elements take part in.
+    fn cells_around(&self, body: usize, elements: &[u32]) -> Vec<(u32, u32)> {
+        let model = &self.bodies[body];
+        match (&model.edges, model.body.formulation) {
+            (Some(_), Formulation::Smoothed) => {
+                touched_edges(model, elements).into_iter().map(|edge| model.location[edge as usize]).collect()
+            }
+            _ => elements.iter().map(|&e| model.location[e as usize]).collect(),
+        }
+    }
+
+    /// Elastic energy stored in these cells at the present displacements [J].
+    fn stored_energy(&self, cells: &[(u32, u32)]) -> f64 {
+        let mut sum = 0.0;
+        for &(block, cell) in cells {
+            let (block, cell) = (&self.blocks[block as usize], cell as usize);
+            let model = &self.bodies[block.body];
+            let h = block.cells.gradient(cell, &self.displacement);
+            let strain = match model.body.kinematics {
+                Kinematics::Small => Sym3::symmetric_part(&h),
+                Kinematics::Corotational => kernel::corotational_strain(&h).0,
+            };
+            sum += block.energy_of(cell, &model.hooke, strain);
+        }
+        sum
+    }
+
+    /// Recomputes the cells in which dead elements had a share, from the elements that are alive.
+    pub(crate) fn rebuild_cells_around(&mut self, body: usize, elements: &[u32]) {
+        let Solid { bodies, blocks, reference, .. } = self;
+        let model = &bodies[body];
+        if model.body.formulation == Formulation::Standard {
+            for &element in elements {
+                let (block, cell) = model.location[element as usize];
+                blocks[block as usize].cells.volume[cell as usize] = 0.0;
+            }
+            return;
+        }
+        let geometry = Geometry { body: &model.body, nodes: reference };
+        let mut nodes = Vec::new();
+        for edge in touched_edges(model, elements) {
+            let (block, cell) = model.location[edge as usize];
+            let cells = &mut blocks[block as usize].cells;
+            nodes.clear();
+            nodes.extend(cells.global_nodes(cell as usize).map(|n| n as u32));
+            let range = cells.range(cell as usize);
+            let alive = |element: u32| model.alive[element as usize];
+            let around = model.elements_of_edge.row(edge as usize);
+            cells.volume[cell as usize] =
+                geometry.edge_domain(&nodes, around, alive, &mut cells.gradients[range]);
+        }
+    }
+
+    /// Edges of removed elements that no element of any body joins any more, ascending.
+    pub fn edges_without_elements(&self, removed: &[(usize, u32)]) -> Vec<[u32; 2]> {
+        let mut edges: Vec<[u32; 2]> = removed
+            .iter()
+            .filter_map(|&(body, element)| {
+                let model = &self.bodies[body];
+                let edges = model.edges.as_ref()?;
+                Some(edges.of_element[element as usize][..model.body.shape.edge_count()].iter().map(|&e| edges.nodes[e as usize]))
+            })
+            .flatten()
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges.retain(|&edge| !self.is_live_edge(edge));
+        edges
+    }
+
+    /// Whether an element that is still there joins two nodes (ascending), in a body that has edges.
+    pub fn is_live_edge(&self, nodes: [u32; 2]) -> bool {
+        self.bodies.iter().any(|model| {
+            let Some(edges) = &model.edges else { return false };
+            edges.nodes.binary_search(&nodes).is_ok_and(|edge| {
+                model.elements_of_edge.row(edge).iter().any(|&element| model.alive[element as usize])
+            })
+        })
+    }
+
+    /// Volume of an element without load [m³].
+    pub fn element_volume(&self, body: usize, element: u32) -> f64 {
+        Geometry { body: &self.bodies[body].body, nodes: &self.reference }.element(element as usize).0
+    }
+}
+
+impl crate::solid::Block {
+    /// Elastic energy of one cell [J].
+    fn energy_of(&self, cell: usize, hooke: &kernel::Hooke, strain: Sym3) -> f64 {
+        let full = 0.5 * hooke.stress(strain).dot(strain);
+        let density = match &self.law {
+            // With unilateral damage the closed part keeps its energy.
+            BlockLaw::Edges(law) => {
+                let open = law.opening_energy_density(strain);
+                full - law.edges[cell].damage * open
+            }
+            _ => full * (1.0 - self.damage_of(cell)),
+        };
+        density * self.cells.volume[cell]
+    }
+}
+
+fn touched_edges(model: &BodyModel, elements: &[u32]) -> Vec<u32> {
+    let count = model.body.shape.edge_count();
+    let of = &model.edges.as_ref().expect("a smoothed body has edges").of_element;
+    let mut edges: Vec<u32> = elements.iter().flat_map(|&e| &of[e as usize][..count]).copied().collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}

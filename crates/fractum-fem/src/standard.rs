@@ -1,0 +1,92 @@
+//! Damage in the standard formulation: edges average the stress of their elements, elements take the damage of the way
+//! a plane cuts them (Oñate, Zárate et al. 2017, extended to three dimensions by the seven cuts of a tetrahedron).
+
+use std::sync::Arc;
+
+use fractum_math::{Ragged, Sym3};
+use rayon::prelude::*;
+
+use crate::body::Shape;
+use crate::damage::{EdgeDamage, Softens};
+use crate::element::cut_modes;
+use crate::kernel::CellLaw;
+
+/// Damage state of a standard body.
+#[derive(Clone, Debug)]
+pub(crate) struct StandardDamage {
+    pub(crate) softens: Arc<Softens>,
+    pub(crate) shape: Shape,
+    pub(crate) edges: Vec<EdgeDamage>,
+    pub(crate) strength: Vec<f64>,
+    pub(crate) length: Vec<f64>,
+    pub(crate) elements_of_edge: Ragged,
+    /// An edge broke since removal last looked.
+    pub(crate) fresh: bool,
+}
+
+/// The element cells of one block of a standard body with damage.
+#[derive(Clone, Debug)]
+pub(crate) struct StandardCells {
+    pub(crate) softens: Arc<Softens>,
+    /// Effective stress of each cell; written by the first pass, read by the edges.
+    pub(crate) stress: Vec<Sym3>,
+    pub(crate) damage: Vec<f64>,
+    pub(crate) energy_density: Vec<f64>,
+    pub(crate) dissipated: f64,
+    pub(crate) energy: Option<f64>,
+}
+
+impl StandardDamage {
+    /// Edge histories from the stresses of the elements (`stress_of`, none for a removed one); true if an edge broke.
+    pub(crate) fn update_edges(&mut self, dt: f64, stress_of: impl Fn(u32) -> Option<Sym3> + Sync) -> bool {
+        let Self { softens, edges, strength, length, elements_of_edge, .. } = self;
+        edges
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(1024)
+            .map(|(index, edge)| {
+                let (mut sum, mut count) = (Sym3::ZERO, 0);
+                for stress in elements_of_edge.row(index).iter().filter_map(|&e| stress_of(e)) {
+                    sum += stress;
+                    count += 1;
+                }
+                if count == 0 {
+                    return false;
+                }
+                let mean = sum * (1.0 / f64::from(count));
+                if softens.law.criterion.surely_below(mean, edge.kappa) {
+                    return false;
+                }
+                let was_broken = edge.broken;
+                let q = softens.law.criterion.equivalent_stress(mean);
+                softens.load(edge, q, strength[index], length[index], dt);
+                edge.broken && !was_broken
+            })
+            .reduce(|| false, |a, b| a || b)
+    }
+
+    /// Damage of an element with these edges: the largest mean over the ways a crack cuts it.
+    pub(crate) fn element_damage(&self, edges: &[u32]) -> f64 {
+        let of = |local: usize| self.edges[edges[local] as usize].damage;
+        cut_modes(self.shape)
+            .iter()
+            .map(|mode| mode.iter().map(|&local| of(local)).sum::<f64>() / mode.len() as f64)
+            .fold(0.0, f64::max)
+    }
+}
+
+impl CellLaw for StandardCells {
+    #[inline(always)]
+    fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
+        let nominal = self.softens.hooke.stress(strain) * (1.0 - self.damage[cell]);
+        if let Some(energy) = &mut self.energy {
+            *energy += 0.5 * nominal.dot(strain) * volume;
+        }
+        nominal * volume
+    }
+
+    #[inline(always)]
+    fn integrity(&self, cell: usize) -> f64 {
+        1.0 - self.damage[cell]
+    }
+}

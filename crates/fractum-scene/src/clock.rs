@@ -1,0 +1,45 @@
+use serde::{Deserialize, Serialize};
+
+/// How the time step is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TimeStepSettings {
+    /// Fraction of the stable step that is taken, 0.8.
+    pub safety: f64,
+    /// Use the rigorous element bound instead of the frequency of the whole solid.
+    pub element_bound: bool,
+    /// A step asked for by the user [s]; replaces `safety` times the stable step.
+    pub fixed: Option<f64>,
+    /// End of the run [s].
+    pub end: f64,
+}
+
+/// Time, and the steps on both sides of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Clock {
+    /// Present time tⁿ [s].
+    pub time: f64,
+    /// Steps done, n.
+    pub step: u64,
+    /// Step that led to tⁿ [s].
+    pub dt_before: f64,
+    /// Step that follows [s].
+    pub dt_after: f64,
+    /// Smallest step of the run so far [s].
+    pub dt_min: f64,
+}
+
+impl Clock {
+    /// A clock at zero.
+    pub fn new(dt: f64) -> Self {
+        Clock { time: 0.0, step: 0, dt_before: dt, dt_after: dt, dt_min: dt }
+    }
+
+    /// Passes to the next step, which will be followed by one of size `dt`.
+    pub(crate) fn advance(&mut self, dt: f64) {
+        self.time += self.dt_after;
+        self.step += 1;
+        self.dt_before = self.dt_after;
+        self.dt_after = dt;
+        self.dt_min = self.dt_min.min(dt);
+    }
+}

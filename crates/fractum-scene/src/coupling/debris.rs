@@ -1,0 +1,410 @@
+use fractum_contact::close_pairs;
+use fractum_contact::law::{ContactForce, Linear, PairMotion};
+use fractum_fem::Solid;
+use fractum_math::Vec3;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::radius::largest_radii;
+use crate::rigid::ContactWork;
+
+/// No particle at this node.
+const NONE: u32 = u32::MAX;
+
+/// Discrete elements at the nodes of removed elements, and their contacts.
+///
+/// A particle sits on its node and shares its mass and translation: forces of its contacts act on the node in the same
+/// step. As long as an element holds the node it does not turn; after that it is a free sphere (a disc in the plane)
+/// with rotation of its own.
+#[derive(Clone, Debug)]
+pub struct Debris {
+    friction: f64,
+    damping_ratio: f64,
+    /// All bodies are plane: particles are discs.
+    planar: bool,
+    /// Young's modulus and Poisson's ratio of the body of each node.
+    elasticity: Vec<(f64, f64)>,
+    /// Radius at each node [m].
+    radius: Vec<f64>,
+    state: DebrisState,
+    /// Particle of each node, or [`NONE`].
+    particle_of: Vec<u32>,
+    torque: Vec<Vec3>,
+}
+
+/// What changes in the debris during a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DebrisState {
+    /// Nodes of the particles in the order of their birth.
+    pub nodes: Vec<u32>,
+    /// Whether some element still holds the particle.
+    pub attached: Vec<bool>,
+    /// Angular velocity at the half step [rad/s].
+    pub spin: Vec<Vec3>,
+    /// Elements that still hold each node of the solid; empty before the first particle.
+    live_elements: Vec<u16>,
+    /// Pairs that may touch, ascending.
+    pairs: Vec<Pair>,
+    /// Positions at the last search [m].
+    searched_at: Vec<Vec3>,
+    skin: f64,
+    stale: bool,
+}
+
+/// Two particles that may touch.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pair {
+    /// Nodes, ascending.
+    pub nodes: [u32; 2],
+    /// Distance of the centres at which the pair touches [m].
+    pub closing: f64,
+    /// Nodes of one mesh edge, all of whose elements have been removed: they touch at their undeformed distance, until
+    /// they have parted by more than that.
+    pub neighbours: bool,
+    law: Linear,
+    slip: Vec3,
+    /// Force on the second particle [N].
+    force: Vec3,
+    stored: f64,
+    friction: f64,
+    damping_power: f64,
+}
+
+impl Debris {
+    /// Debris of a solid without any particle yet.
+    ///
+    /// - `friction` μ, `damping_ratio` of contacts between particles
+    pub fn new(solid: &Solid, friction: f64, damping_ratio: f64) -> Self {
+        let bodies = 0..solid.body_count();
+        let mut elasticity = vec![(0.0, 0.0); solid.reference.len()];
+        for body in bodies.clone().rev() {
+            let body = solid.body(body);
+            let pair = (body.elastic.young_modulus, body.elastic.poisson_ratio);
+            body.elements.iter().flatten().for_each(|&node| elasticity[node as usize] = pair);
+        }
+        Debris {
+            friction,
+            damping_ratio,
+            planar: bodies.clone().all(|b| solid.body(b).shape == fractum_fem::Shape::T3),
+            elasticity,
+            radius: Vec::new(),
+            state: DebrisState::default(),
+            particle_of: vec![NONE; solid.reference.len()],
+            torque: Vec::new(),
+        }
+    }
+
+    /// Finds the radii; needed before the first contact of any kind.
+    pub(crate) fn prepare(&mut self, solid: &Solid) {
+        if self.radius.is_empty() {
+            self.radius = largest_radii(solid);
+        }
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.state.nodes.len()
+    }
+
+    /// Whether there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.state.nodes.is_empty()
+    }
+
+    /// Particles in the order of their birth, with their nodes.
+    pub fn state(&self) -> &DebrisState {
+        &self.state
+    }
+
+    /// Radius at a node [m], particle or not.
+    pub fn radius(&self, node: u32) -> f64 {
+        self.radius[node as usize]
+    }
+
+    /// Pairs that touch at the last step.
+    pub fn touching(&self) -> impl Iterator<Item = &Pair> {
+        self.state.pairs.iter().filter(|p| p.stored > 0.0)
+    }
+
+    pub(crate) fn elasticity(&self, node: u32) -> (f64, f64) {
+        self.elasticity[node as usize]
+    }
+
+    /// Radius of the particle at a node, 0 without one [m].
+    pub(crate) fn radius_if_particle(&self, node: u32) -> f64 {
+        if self.particle_of[node as usize] == NONE { 0.0 } else { self.radius[node as usize] }
+    }
+
+    /// Angular velocity of the particle at a node, zero without one.
+    pub(crate) fn spin(&self, node: u32) -> Vec3 {
+        match self.particle_of[node as usize] {
+            NONE => Vec3::zeros(),
+            particle => self.state.spin[particle as usize],
+        }
+    }
+
+    /// Adds a torque on the particle at a node [N m]; a node that an element holds does not turn.
+    pub(crate) fn add_torque(&mut self, node: u32, torque: Vec3) {
+        let particle = self.particle_of[node as usize];
+        if particle != NONE {
+            self.torque[particle as usize] += torque;
+        }
+    }
+
+    /// Angular momentum of all spins [kg m²/s].
+    pub fn spin_momentum(&self, solid: &Solid) -> Vec3 {
+        let of = |(&node, spin): (&u32, &Vec3)| {
+            spin * self.inertia(solid.mass[node as usize], self.radius[node as usize])
+        };
+        self.state.nodes.iter().zip(&self.state.spin).map(of).sum()
+    }
+
+    /// Puts particles on the nodes of elements that were just removed, and opens the edges that lost their last
+    /// element to contact.
+    pub(crate) fn release(&mut self, solid: &Solid, removed: &[(usize, u32)]) {
+        self.prepare(solid);
+        if self.state.live_elements.is_empty() {
+            self.state.live_elements = live_elements(solid, removed);
+        }
+        for &(body, element) in removed {
+            let corners = solid.body(body).shape.node_count();
+            for &node in &solid.body(body).elements[element as usize][..corners] {
+                self.state.live_elements[node as usize] -= 1;
+                if self.particle_of[node as usize] == NONE {
+                    self.particle_of[node as usize] = self.state.nodes.len() as u32;
+                    self.state.nodes.push(node);
+                    self.state.attached.push(true);
+                    self.state.spin.push(Vec3::zeros());
+                    self.torque.push(Vec3::zeros());
+                }
+            }
+        }
+        for (attached, &node) in self.state.attached.iter_mut().zip(&self.state.nodes) {
+            *attached = self.state.live_elements[node as usize] > 0;
+        }
+        for edge in solid.edges_without_elements(removed) {
+            if let Err(place) = self.state.pairs.binary_search_by_key(&edge, |p| p.nodes) {
+                let pair = self.new_pair(solid, edge, true);
+                self.state.pairs.insert(place, pair);
+            }
+        }
+        self.state.stale = true;
+    }
+
+    /// A pair that touches no nearer than now, so that it brings no energy.
+    fn new_pair(&self, solid: &Solid, nodes: [u32; 2], neighbours: bool) -> Pair {
+        let [i, j] = nodes.map(|n| n as usize);
+        let now = (solid.position(j) - solid.position(i)).norm();
+        let rest = if neighbours {
+            (solid.reference[j] - solid.reference[i]).norm()
+        } else {
+            self.radius[i] + self.radius[j]
+        };
+        let ((e1, nu1), (e2, nu2)) = (self.elasticity[i], self.elasticity[j]);
+        let law = Linear::between_spheres(
+            2.0 * e1 * e2 / (e1 + e2),
+            0.5 * (nu1 + nu2),
+            [self.radius[i], self.radius[j]],
+            [solid.mass[i], solid.mass[j]],
+            self.friction,
+            self.damping_ratio,
+        );
+        Pair {
+            nodes,
+            closing: rest.min(now),
+            neighbours,
+            law,
+            slip: Vec3::zeros(),
+            force: Vec3::zeros(),
+            stored: 0.0,
+            friction: 0.0,
+            damping_power: 0.0,
+        }
+    }
+
+    /// Renews the list of pairs if particles came or the skin is used up; true if it did.
+    pub(crate) fn search(&mut self, solid: &Solid) -> bool {
+        if self.is_empty() {
+            return false;
+        }
+        let state = &self.state;
+        let moved = |(&node, at): (&u32, &Vec3)| (solid.position(node as usize) - at).norm_squared();
+        let limit = 0.25 * state.skin * state.skin;
+        let used_up = || state.nodes.iter().zip(&state.searched_at).any(|pair| moved(pair) > limit);
+        if !state.stale && !used_up() {
+            return false;
+        }
+        let centres: Vec<Vec3> = state.nodes.iter().map(|&n| solid.position(n as usize)).collect();
+        let radii: Vec<f64> = state.nodes.iter().map(|&n| self.radius[n as usize]).collect();
+        let skin = 0.5 * radii.iter().sum::<f64>() / radii.len() as f64;
+        let mut strangers: Vec<[u32; 2]> = close_pairs(&centres, &radii, skin)
+            .into_iter()
+            .map(|pair| {
+                let [i, j] = pair.map(|p| state.nodes[p as usize]);
+                [i.min(j), i.max(j)]
+            })
+            .collect();
+        strangers.sort_unstable();
+        let mut pairs = Vec::with_capacity(strangers.len());
+        let mut old = state.pairs.iter().peekable();
+        for nodes in strangers {
+            while let Some(pair) = old.next_if(|p| p.nodes < nodes) {
+                pairs.extend(Some(*pair).filter(|p| p.neighbours));
+            }
+            match old.next_if(|p| p.nodes == nodes) {
+                Some(pair) => pairs.push(*pair),
+                // Neighbours that an element still joins are held by it.
+                None if solid.is_live_edge(nodes) => {}
+                None => pairs.push(self.new_pair(solid, nodes, false)),
+            }
+        }
+        pairs.extend(old.filter(|p| p.neighbours));
+        self.state.pairs = pairs;
+        self.state.searched_at = centres;
+        self.state.skin = skin;
+        self.state.stale = false;
+        true
+    }
+
+    /// Adds the contact forces of all pairs to the nodes.
+    pub(crate) fn add_forces(&mut self, solid: &mut Solid, dt: f64) -> ContactWork {
+        let Debris { state, particle_of, radius, torque, .. } = self;
+        let DebrisState { pairs, spin, .. } = state;
+        torque.fill(Vec3::zeros());
+        {
+            let solid = &*solid;
+            let spin = |node: usize| spin[particle_of[node] as usize];
+            pairs.par_iter_mut().with_min_len(512).for_each(|pair| {
+                let [i, j] = pair.nodes.map(|n| n as usize);
+                let apart = solid.position(j) - solid.position(i);
+                let distance = apart.norm();
+                pair.update_closing(distance, radius[i] + radius[j], solid);
+                let normal = if distance > 0.0 { apart / distance } else { Vec3::x() };
+                let (arm_i, arm_j) = arms(normal, distance, radius[i], radius[j]);
+                let velocity =
+                    solid.velocity[j] + spin(j).cross(&arm_j) - solid.velocity[i] - spin(i).cross(&arm_i);
+                let motion = PairMotion { normal, overlap: pair.closing - distance, velocity, dt };
+                let ContactForce { on_second, stored, friction, damping_power } = pair.law.force(&motion, &mut pair.slip);
+                pair.force = on_second;
+                (pair.stored, pair.friction, pair.damping_power) = (stored, friction, damping_power);
+            });
+        }
+        // In the order of the pairs: contacts are few beside elements, and the sum has one order.
+        let mut work = ContactWork::default();
+        for pair in pairs.iter().filter(|p| p.stored > 0.0) {
+            let [i, j] = pair.nodes.map(|n| n as usize);
+            solid.force[i] -= pair.force;
+            solid.force[j] += pair.force;
+            let apart = solid.position(j) - solid.position(i);
+            let distance = apart.norm();
+            let (arm_i, arm_j) = arms(apart / distance, distance, radius[i], radius[j]);
+            torque[particle_of[i] as usize] -= arm_i.cross(&pair.force);
+            torque[particle_of[j] as usize] += arm_j.cross(&pair.force);
+            work.stored += pair.stored;
+            work.friction += pair.friction;
+            work.damping += pair.damping_power * dt;
+        }
+        work
+    }
+
+    /// Turns the free particles; returns their rotational energy at tⁿ, ½ Σ I ωⁿ⁻½ · ωⁿ⁺½ [J].
+    pub(crate) fn turn(&mut self, solid: &Solid, dt_kick: f64) -> f64 {
+        let mut energy = 0.0;
+        for particle in 0..self.len() {
+            if self.state.attached[particle] {
+                continue;
+            }
+            let node = self.state.nodes[particle] as usize;
+            let inertia = self.inertia(solid.mass[node], self.radius[node]);
+            let mut torque = self.torque[particle];
+            if self.planar {
+                (torque.x, torque.y) = (0.0, 0.0);
+            }
+            let before = self.state.spin[particle];
+            let after = before + torque * (dt_kick / inertia);
+            self.state.spin[particle] = after;
+            energy += 0.5 * inertia * before.dot(&after);
+        }
+        energy
+    }
+
+    fn inertia(&self, mass: f64, radius: f64) -> f64 {
+        (if self.planar { 0.5 } else { 0.4 }) * mass * radius * radius
+    }
+
+    /// Largest squared frequency that the contacts near closing can add to a node, by Gershgorin's rows [1/s²].
+    pub(crate) fn frequency_square(&self, solid: &Solid) -> f64 {
+        let mut rows = vec![0.0; self.len()];
+        for pair in &self.state.pairs {
+            let [i, j] = pair.nodes.map(|n| n as usize);
+            let apart = (solid.position(j) - solid.position(i)).norm();
+            if apart > pair.closing + self.state.skin {
+                continue;
+            }
+            // A turning sphere answers 1 + m r²/I = 3.5 times as fast to the tangential spring.
+            let free = |n: usize| !self.state.attached[self.particle_of[n] as usize];
+            let turning = if free(i) || free(j) { 3.5 } else { 1.0 };
+            let stiffness = pair.law.normal_stiffness.max(turning * pair.law.tangential_stiffness);
+            let coupling = stiffness / (solid.mass[i] * solid.mass[j]).sqrt();
+            rows[self.particle_of[i] as usize] += stiffness / solid.mass[i] + coupling;
+            rows[self.particle_of[j] as usize] += stiffness / solid.mass[j] + coupling;
+        }
+        rows.into_iter().fold(0.0, f64::max)
+    }
+
+    /// Puts a saved state back.
+    pub(crate) fn restore(&mut self, solid: &Solid, state: DebrisState) {
+        if !state.nodes.is_empty() {
+            self.prepare(solid);
+        }
+        self.particle_of.fill(NONE);
+        for (particle, &node) in (0..).zip(&state.nodes) {
+            self.particle_of[node as usize] = particle;
+        }
+        self.torque = vec![Vec3::zeros(); state.nodes.len()];
+        self.state = state;
+    }
+
+    /// Damping ratio of the contacts.
+    pub(crate) fn damping_ratio(&self) -> f64 {
+        self.damping_ratio
+    }
+}
+
+impl Pair {
+    /// Lets the closing distance grow back to that of free spheres once the pair has parted.
+    fn update_closing(&mut self, distance: f64, sum_of_radii: f64, solid: &Solid) {
+        if self.neighbours {
+            let [i, j] = self.nodes.map(|n| n as usize);
+            let rest = (solid.reference[j] - solid.reference[i]).norm();
+            if distance > 2.0 * rest {
+                (self.neighbours, self.closing) = (false, sum_of_radii);
+            } else if distance >= rest {
+                self.closing = rest;
+            }
+        } else if distance >= sum_of_radii {
+            self.closing = sum_of_radii;
+        }
+    }
+}
+
+/// Vectors from both centres to the point of contact, which divides the distance in the ratio of the radii.
+fn arms(normal: Vec3, distance: f64, radius_i: f64, radius_j: f64) -> (Vec3, Vec3) {
+    let share = radius_i / (radius_i + radius_j);
+    (normal * (share * distance), normal * ((share - 1.0) * distance))
+}
+
+/// Elements that hold each node, those in `removed` still counted.
+fn live_elements(solid: &Solid, removed: &[(usize, u32)]) -> Vec<u16> {
+    let mut count = vec![0u16; solid.reference.len()];
+    for body in 0..solid.body_count() {
+        let corners = solid.body(body).shape.node_count();
+        let alive = solid.alive(body);
+        for (element, nodes) in solid.body(body).elements.iter().enumerate() {
+            if alive[element] || removed.contains(&(body, element as u32)) {
+                nodes[..corners].iter().for_each(|&n| count[n as usize] = count[n as usize].saturating_add(1));
+            }
+        }
+    }
+    count
+}

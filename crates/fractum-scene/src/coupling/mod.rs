@@ -1,0 +1,7 @@
+//! The transition of damaged elements to discrete elements.
+
+mod debris;
+mod radius;
+
+pub use debris::{Debris, DebrisState, Pair};
+pub use radius::largest_radii;

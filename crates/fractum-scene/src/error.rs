@@ -1,0 +1,71 @@
+use thiserror::Error;
+
+/// What makes a scene impossible to set up.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SceneError {
+    /// Two supports disagree about one degree of freedom.
+    #[error(
+        "supports {first} and {second} both prescribe {axis} of the node at ({x:.4e}, {y:.4e}, {z:.4e}) m in different ways; \
+         let each group prescribe an axis only once"
+    )]
+    ContradictorySupports {
+        /// Name of the support that came first.
+        first: String,
+        /// Name of the other one.
+        second: String,
+        /// Axis, x, y or z.
+        axis: char,
+        /// Position of the node [m].
+        x: f64,
+        /// Position of the node [m].
+        y: f64,
+        /// Position of the node [m].
+        z: f64,
+    },
+    /// The solid cannot be built.
+    #[error(transparent)]
+    Solid(#[from] fractum_fem::SolidError),
+}
+
+/// Why a run stopped itself.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum StepError {
+    /// A displacement or an energy is not a number any more.
+    #[error(
+        "step {step}, t = {time:.6e} s: the solution is not finite near {culprit}; \u{394}t = {dt:.3e} s, stable limit {limit:.3e} s - lower \
+         solver.safety or check the material of that element"
+    )]
+    NotFinite {
+        /// Step number.
+        step: u64,
+        /// Time [s].
+        time: f64,
+        /// Step size [s].
+        dt: f64,
+        /// Estimated stable step [s].
+        limit: f64,
+        /// Body and element with the largest velocity.
+        culprit: String,
+    },
+    /// The energy balance does not close.
+    #[error(
+        "step {step}, t = {time:.6e} s: the energy balance is off by {relative:.2e} of the energy put in (limit {allowed:.0e}); largest kinetic \
+         energy at {culprit}; \u{394}t = {dt:.3e} s, stable limit {limit:.3e} s - lower solver.safety, or raise solver.balance_stop if this is expected"
+    )]
+    Unbalanced {
+        /// Step number.
+        step: u64,
+        /// Time [s].
+        time: f64,
+        /// Residual over the energy put in.
+        relative: f64,
+        /// What was allowed.
+        allowed: f64,
+        /// Step size [s].
+        dt: f64,
+        /// Estimated stable step [s].
+        limit: f64,
+        /// Where the kinetic energy is largest.
+        culprit: String,
+    },
+}

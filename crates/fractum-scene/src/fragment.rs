@@ -1,0 +1,85 @@
+use fractum_fem::Solid;
+use fractum_math::Vec3;
+
+/// A connected piece of a solid, or a single discrete element that nothing holds any more.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fragment {
+    /// Nodes in the piece.
+    pub nodes: Vec<u32>,
+    /// Elements that are still there.
+    pub elements: usize,
+    /// Mass [kg].
+    pub mass: f64,
+    /// Volume of its elements [m³]; 0 for a single discrete element.
+    pub volume: f64,
+    /// Centre of mass [m].
+    pub centroid: Vec3,
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: Vec3,
+    /// Largest side of the box around it [m].
+    pub extent: f64,
+}
+
+/// Pieces connected by elements, heaviest first.
+pub fn fragments(solid: &Solid) -> Vec<Fragment> {
+    let mut root: Vec<u32> = (0..solid.reference.len() as u32).collect();
+    fn find(root: &mut [u32], mut node: u32) -> u32 {
+        while root[node as usize] != node {
+            root[node as usize] = root[root[node as usize] as usize];
+            node = root[node as usize];
+        }
+        node
+    }
+    let mut elements = vec![0usize; root.len()];
+    let mut volume = vec![0.0; root.len()];
+    for body in 0..solid.body_count() {
+        let corners = solid.body(body).shape.node_count();
+        let alive = solid.alive(body);
+        for (nodes, _) in solid.body(body).elements.iter().zip(alive).filter(|(_, alive)| **alive) {
+            let first = find(&mut root, nodes[0]);
+            for &node in &nodes[1..corners] {
+                let other = find(&mut root, node);
+                let (low, high) = (first.min(other), first.max(other));
+                root[high as usize] = low;
+                let _ = find(&mut root, node);
+            }
+        }
+    }
+    for body in 0..solid.body_count() {
+        let model = solid.body(body);
+        let alive = solid.alive(body);
+        for (index, nodes) in model.elements.iter().enumerate().filter(|(e, _)| alive[*e]) {
+            let place = find(&mut root, nodes[0]) as usize;
+            elements[place] += 1;
+            volume[place] += solid.element_volume(body, index as u32);
+        }
+    }
+    let mut members: Vec<Vec<u32>> = vec![Vec::new(); root.len()];
+    for node in 0..root.len() as u32 {
+        let place = find(&mut root, node);
+        members[place as usize].push(node);
+    }
+    let mut pieces: Vec<Fragment> = members
+        .into_iter()
+        .enumerate()
+        .filter(|(_, nodes)| !nodes.is_empty())
+        .map(|(place, nodes)| piece(solid, nodes, elements[place], volume[place]))
+        .collect();
+    pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass).then(a.nodes[0].cmp(&b.nodes[0])));
+    pieces
+}
+
+fn piece(solid: &Solid, nodes: Vec<u32>, elements: usize, volume: f64) -> Fragment {
+    let (mut mass, mut centroid, mut velocity) = (0.0, Vec3::zeros(), Vec3::zeros());
+    let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    for &node in &nodes {
+        let (i, position) = (node as usize, solid.position(node as usize));
+        mass += solid.mass[i];
+        centroid += position * solid.mass[i];
+        velocity += solid.velocity[i] * solid.mass[i];
+        low = low.inf(&position);
+        high = high.sup(&position);
+    }
+    let extent = (high - low).max();
+    Fragment { nodes, elements, mass, volume, centroid: centroid / mass, velocity: velocity / mass, extent }
+}

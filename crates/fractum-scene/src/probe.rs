@@ -1,0 +1,103 @@
+use fractum_math::Vec3;
+
+use crate::ledger::EnergyKind;
+use crate::scene::Scene;
+
+/// What a probe counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // the names say it
+pub enum CountKind {
+    RemovedElements,
+    BrokenEdges,
+    DamagedEdges,
+    Particles,
+    Fragments,
+    Contacts,
+}
+
+/// A number that a scene yields at every instant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Probe {
+    /// Force of the supports on a set of nodes along a direction [N]; see [`crate::Supports::places`].
+    Reaction {
+        /// Prescribed degrees of freedom.
+        places: Vec<(u32, u32, u32)>,
+        /// Unit direction.
+        direction: Vec3,
+    },
+    /// Mean displacement of nodes along a direction at the instant of the last step, as its reactions are [m].
+    Displacement {
+        /// Nodes.
+        nodes: Vec<u32>,
+        /// Unit direction.
+        direction: Vec3,
+    },
+    /// Mean velocity of nodes along a direction [m/s].
+    Velocity {
+        /// Nodes.
+        nodes: Vec<u32>,
+        /// Unit direction.
+        direction: Vec3,
+    },
+    /// A column of the energy ledger [J].
+    Energy(EnergyKind),
+    /// A count.
+    Count(CountKind),
+    /// Volume mean of a stress component (xx yy zz xy yz zx) over a body [Pa].
+    Stress {
+        /// Index of the body.
+        body: usize,
+        /// Voigt index.
+        component: usize,
+    },
+    /// Linear momentum along a direction [kg m/s].
+    Momentum(Vec3),
+    /// Angular momentum about the origin along a direction [kg m²/s].
+    AngularMomentum(Vec3),
+    /// Area of crack, Σ V d/l over the damaged edges [m²].
+    CrackArea,
+}
+
+impl Probe {
+    /// Whether the value needs the energies of the instant.
+    pub fn needs_energy(&self) -> bool {
+        matches!(self, Probe::Energy(_))
+    }
+
+    /// Value at the last step that was measured.
+    pub fn value(&self, scene: &Scene) -> f64 {
+        let solid = &scene.solid;
+        let mean = |nodes: &[u32], of: &dyn Fn(usize) -> f64| {
+            nodes.iter().map(|&n| of(n as usize)).sum::<f64>() / nodes.len().max(1) as f64
+        };
+        match self {
+            Probe::Reaction { places, direction } => scene.supports().reaction(places, direction),
+            Probe::Displacement { nodes, direction } => mean(nodes, &|n| {
+                let dt = scene.clock.dt_before;
+                (solid.displacement[n] - solid.velocity[n] * dt).dot(direction)
+            }),
+            Probe::Velocity { nodes, direction } => mean(nodes, &|n| solid.velocity[n].dot(direction)),
+            Probe::Energy(kind) => scene.ledger().value(*kind),
+            Probe::Count(kind) => scene.count(*kind) as f64,
+            Probe::Stress { body, component } => {
+                let fields = solid.element_fields(*body);
+                let (mut sum, mut volume) = (0.0, 0.0);
+                for (element, (stress, _)) in fields.iter().enumerate() {
+                    let v = solid.element_volume(*body, element as u32);
+                    sum += v * stress.0[*component];
+                    volume += v;
+                }
+                sum / volume
+            }
+            Probe::Momentum(direction) => {
+                (0..solid.mass.len()).map(|i| solid.mass[i] * solid.velocity[i].dot(direction)).sum()
+            }
+            Probe::AngularMomentum(direction) => {
+                let nodes = (0..solid.mass.len())
+                    .map(|i| solid.mass[i] * solid.position(i).cross(&solid.velocity[i]).dot(direction));
+                nodes.sum::<f64>() + scene.debris.spin_momentum(solid).dot(direction)
+            }
+            Probe::CrackArea => solid.crack_area(),
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Rigid planes that nodes and particles rest on.
+
+use fractum_contact::law::{ContactForce, Linear, PairMotion};
+use fractum_fem::Solid;
+use fractum_math::Vec3;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::coupling::Debris;
+
+/// A fixed rigid half space; solids stay on the side that its normal points to.
+///
+/// It feels the nodes on the surface of the solids at the start (as points) and every particle (as a sphere). A node
+/// that turns into a particle while it lies nearer than its radius keeps touching as a point until it has left.
+#[derive(Clone, Debug)]
+pub struct RigidPlane {
+    /// A point of the plane [m].
+    pub point: Vec3,
+    /// Unit normal, out of the rigid side.
+    pub normal: Vec3,
+    /// Coulomb's coefficient.
+    pub friction: f64,
+    /// Damping ratio of its contacts.
+    pub damping_ratio: f64,
+    candidates: Vec<Candidate>,
+}
+
+/// A node that may touch a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    node: u32,
+    law: Linear,
+    radius: f64,
+    slip: Vec3,
+    force: Vec3,
+    stored: f64,
+    friction: f64,
+    damping_power: f64,
+}
+
+/// Energies of all contacts of one kind in one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ContactWork {
+    pub(crate) stored: f64,
+    pub(crate) friction: f64,
+    pub(crate) damping: f64,
+}
+
+impl RigidPlane {
+    /// A plane through `point` with unit `normal`.
+    pub fn new(point: Vec3, normal: Vec3, friction: f64, damping_ratio: f64) -> Self {
+        RigidPlane { point, normal, friction, damping_ratio, candidates: Vec::new() }
+    }
+
+    /// Sets the nodes that may touch: the surface of the solids.
+    pub(crate) fn watch(&mut self, nodes: &[u32], solid: &Solid, debris: &Debris) {
+        for &node in nodes {
+            self.watch_node(node, solid, debris);
+        }
+    }
+
+    /// Adds a node unless it is watched already.
+    pub(crate) fn watch_node(&mut self, node: u32, solid: &Solid, debris: &Debris) {
+        if let Err(place) = self.candidates.binary_search_by_key(&node, |c| c.node) {
+            let i = node as usize;
+            let (young_modulus, poisson_ratio) = debris.elasticity(node);
+            let (radius, mass) = (debris.radius(node), solid.mass[i]);
+            let law =
+                Linear::on_wall(young_modulus, poisson_ratio, radius, mass, self.friction, self.damping_ratio);
+            let candidate = Candidate {
+                node,
+                law,
+                radius: 0.0,
+                slip: Vec3::zeros(),
+                force: Vec3::zeros(),
+                stored: 0.0,
+                friction: 0.0,
+                damping_power: 0.0,
+            };
+            self.candidates.insert(place, candidate);
+        }
+    }
+
+    /// Contacts for a checkpoint.
+    pub(crate) fn state(&self) -> Vec<Candidate> {
+        self.candidates.clone()
+    }
+
+    pub(crate) fn restore(&mut self, candidates: Vec<Candidate>) {
+        self.candidates = candidates;
+    }
+
+    /// Nodes in contact at the last step.
+    pub(crate) fn touching(&self) -> usize {
+        self.candidates.iter().filter(|c| c.stored > 0.0).count()
+    }
+
+    /// Largest squared frequency that these contacts add to a node [1/s²].
+    pub(crate) fn frequency_square(&self, solid: &Solid) -> f64 {
+        let of = |c: &Candidate| (c.law.normal_stiffness + c.law.tangential_stiffness) / solid.mass[c.node as usize];
+        self.candidates.iter().map(of).fold(0.0, f64::max)
+    }
+
+    /// Adds the contact forces to the nodes, and the torques to free particles.
+    pub(crate) fn add_forces(&mut self, solid: &mut Solid, debris: &mut Debris, dt: f64) -> ContactWork {
+        let RigidPlane { point, normal, candidates, .. } = self;
+        let (point, normal) = (*point, *normal);
+        {
+            let (solid, debris) = (&*solid, &*debris);
+            candidates.par_iter_mut().with_min_len(1024).for_each(|c| {
+                let i = c.node as usize;
+                let height = (solid.reference[i] + solid.displacement[i] - point).dot(&normal);
+                let full = debris.radius_if_particle(c.node);
+                if c.radius == 0.0 && full > 0.0 && height > full {
+                    c.radius = full;
+                }
+                let arm = -normal * height;
+                let velocity = solid.velocity[i] + debris.spin(c.node).cross(&arm);
+                let motion = PairMotion { normal, overlap: c.radius - height, velocity, dt };
+                let ContactForce { on_second, stored, friction, damping_power } = c.law.force(&motion, &mut c.slip);
+                (c.force, c.stored, c.friction, c.damping_power) = (on_second, stored, friction, damping_power);
+            });
+        }
+        let mut work = ContactWork::default();
+        for c in candidates.iter().filter(|c| c.stored > 0.0) {
+            let i = c.node as usize;
+            let arm = -normal * (solid.reference[i] + solid.displacement[i] - point).dot(&normal);
+            solid.force[i] += c.force;
+            debris.add_torque(c.node, arm.cross(&c.force));
+            work.stored += c.stored;
+            work.friction += c.friction;
+            work.damping += c.damping_power * dt;
+        }
+        work
+    }
+}

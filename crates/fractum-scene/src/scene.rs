@@ -1,0 +1,221 @@
+use fractum_fem::{LocalDamping, Solid, SolidState, StableStep};
+use serde::{Deserialize, Serialize};
+
+use crate::boundary::{Loads, Supports};
+use crate::clock::{Clock, TimeStepSettings};
+use crate::coupling::{Debris, DebrisState};
+use crate::fragment::fragments;
+use crate::ledger::{Books, Guard, Ledger};
+use crate::probe::CountKind;
+use crate::rigid::{Candidate, RigidPlane};
+
+/// One simulation: bodies, boundary conditions, clock and ledger.
+#[derive(Clone)]
+pub struct Scene {
+    /// Finite elements.
+    pub solid: Solid,
+    /// Discrete elements that came from them, with their contacts.
+    pub debris: Debris,
+    /// Rigid planes.
+    pub planes: Vec<RigidPlane>,
+    /// Time and step.
+    pub clock: Clock,
+    pub(crate) supports: Supports,
+    pub(crate) loads: Loads,
+    pub(crate) settings: SceneSettings,
+    pub(crate) ledger: Ledger,
+    pub(crate) books: Books,
+    pub(crate) stable: StableStep,
+    /// Elements removed in the last step.
+    pub(crate) removed: Vec<(usize, u32)>,
+    pub(crate) removed_since_check: usize,
+    pub(crate) contact_frequency_square: f64,
+}
+
+/// What stays the same through a run, beside bodies and boundary conditions.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneSettings {
+    /// How the step is chosen.
+    pub time_step: TimeStepSettings,
+    /// Damping on the nodes.
+    pub damping: LocalDamping,
+    /// Stiffness-proportional damping time β [s], for its share in the stable step.
+    pub stiffness_time: f64,
+    /// When the balance warns and stops.
+    pub guard: Guard,
+}
+
+/// Everything that changes during a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneState {
+    clock: Clock,
+    solid: SolidState,
+    debris: DebrisState,
+    planes: Vec<Vec<Candidate>>,
+    ledger: Ledger,
+    books: Books,
+    frequency: f64,
+    governing: (usize, u32),
+    removed_since_check: usize,
+    contact_frequency_square: f64,
+}
+
+/// What there is of everything.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs)] // the names say it
+pub struct Counts {
+    pub nodes: usize,
+    pub elements: usize,
+    pub removed_elements: usize,
+    pub damaged_edges: usize,
+    pub broken_edges: usize,
+    pub particles: usize,
+    pub contacts: usize,
+}
+
+impl Scene {
+    /// Sets up a scene at t = 0 and finds its time step.
+    ///
+    /// - `surface`: nodes on the surface of the solids, which rigid planes feel
+    pub fn new(
+        mut solid: Solid,
+        supports: Supports,
+        loads: Loads,
+        mut debris: Debris,
+        mut planes: Vec<RigidPlane>,
+        surface: &[u32],
+        settings: SceneSettings,
+    ) -> Self {
+        let stable = if settings.time_step.element_bound { solid.stable_step_bound() } else { solid.stable_step() };
+        if !planes.is_empty() {
+            debris.prepare(&solid);
+            planes.iter_mut().for_each(|plane| plane.watch(surface, &solid, &debris));
+        }
+        let mut scene = Scene {
+            solid,
+            debris,
+            planes,
+            clock: Clock::new(0.0),
+            supports,
+            loads,
+            settings,
+            ledger: Ledger::default(),
+            books: Books::default(),
+            stable,
+            removed: Vec::new(),
+            removed_since_check: 0,
+            contact_frequency_square: 0.0,
+        };
+        scene.update_contact_frequency();
+        scene.clock = Clock::new(scene.next_dt(0.0));
+        scene
+    }
+
+    /// Largest stable step of the solid by itself, and what governs it.
+    pub fn stable_step(&self) -> StableStep {
+        self.stable
+    }
+
+    /// Largest stable step with contacts and damping [s].
+    pub fn stable_dt(&self) -> f64 {
+        let square = self.stable.frequency * self.stable.frequency + self.contact_frequency_square;
+        let frequency = square.sqrt();
+        let contact = if self.contact_frequency_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
+        let damping = self.settings.damping;
+        let xi = 0.5 * self.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
+        2.0 / frequency * ((1.0 + xi * xi).sqrt() - xi)
+    }
+
+    /// The step that follows `time`: never past the end.
+    pub(crate) fn next_dt(&self, time: f64) -> f64 {
+        let TimeStepSettings { safety, fixed, end, .. } = self.settings.time_step;
+        let dt = fixed.unwrap_or_else(|| safety * self.stable_dt());
+        let left = end - time;
+        // A last step of almost nothing would only add round-off.
+        if left < dt * 1.000_001 && left > 0.0 { left } else { dt }
+    }
+
+    pub(crate) fn update_contact_frequency(&mut self) {
+        let Scene { solid, debris, planes, .. } = self;
+        let walls: f64 = planes.iter().map(|plane| plane.frequency_square(solid)).sum();
+        self.contact_frequency_square = walls + debris.frequency_square(solid);
+    }
+
+    /// Whether the end of the run has been reached.
+    pub fn is_finished(&self) -> bool {
+        self.clock.time >= self.settings.time_step.end * (1.0 - 1e-12)
+    }
+
+    /// Supports, with the reactions of the last step.
+    pub fn supports(&self) -> &Supports {
+        &self.supports
+    }
+
+    /// Energies at the last step that was measured.
+    pub fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+
+    /// Settings of the scene.
+    pub fn settings(&self) -> &SceneSettings {
+        &self.settings
+    }
+
+    /// Counts of everything but fragments.
+    pub fn counts(&self) -> Counts {
+        let fracture = self.solid.fracture();
+        Counts {
+            nodes: self.solid.reference.len(),
+            elements: (0..self.solid.body_count()).map(|b| self.solid.body(b).elements.len()).sum(),
+            removed_elements: fracture.removed_elements,
+            damaged_edges: fracture.damaged_edges,
+            broken_edges: fracture.broken_edges,
+            particles: self.debris.len(),
+            contacts: self.debris.touching().count() + self.planes.iter().map(RigidPlane::touching).sum::<usize>(),
+        }
+    }
+
+    /// One count.
+    pub fn count(&self, kind: CountKind) -> usize {
+        let counts = self.counts();
+        match kind {
+            CountKind::RemovedElements => counts.removed_elements,
+            CountKind::BrokenEdges => counts.broken_edges,
+            CountKind::DamagedEdges => counts.damaged_edges,
+            CountKind::Particles => counts.particles,
+            CountKind::Contacts => counts.contacts,
+            CountKind::Fragments => fragments(&self.solid).iter().filter(|f| f.elements > 0).count(),
+        }
+    }
+
+    /// Everything that changes, for a checkpoint.
+    pub fn state(&self) -> SceneState {
+        SceneState {
+            clock: self.clock,
+            solid: self.solid.state(),
+            debris: self.debris.state().clone(),
+            planes: self.planes.iter().map(RigidPlane::state).collect(),
+            ledger: self.ledger,
+            books: self.books,
+            frequency: self.stable.frequency,
+            governing: self.stable.governing,
+            removed_since_check: self.removed_since_check,
+            contact_frequency_square: self.contact_frequency_square,
+        }
+    }
+
+    /// Puts a saved state back into a scene built from the same case.
+    pub fn restore(&mut self, state: SceneState) {
+        self.clock = state.clock;
+        self.solid.restore(state.solid);
+        self.debris.restore(&self.solid, state.debris);
+        for (plane, candidates) in self.planes.iter_mut().zip(state.planes) {
+            plane.restore(candidates);
+        }
+        self.ledger = state.ledger;
+        self.books = state.books;
+        self.stable = StableStep { frequency: state.frequency, governing: state.governing };
+        self.removed_since_check = state.removed_since_check;
+        self.contact_frequency_square = state.contact_frequency_square;
+    }
+}

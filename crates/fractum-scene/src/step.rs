@@ -1,0 +1,180 @@
+use fractum_math::Vec3;
+
+use crate::error::StepError;
+use crate::rigid::ContactWork;
+use crate::scene::Scene;
+
+/// Removals after which the stable step is looked at again, and the steps that must lie between two looks.
+const STEPS_BETWEEN_CHECKS: u64 = 200;
+
+/// What happened in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Elements removed.
+    pub removed: usize,
+    /// Discrete elements born.
+    pub particles_born: usize,
+}
+
+impl Scene {
+    /// Advances the scene from tⁿ to tⁿ⁺¹ (central differences, velocities at the half steps).
+    ///
+    /// - `measure`: whether the ledger of tⁿ is wanted; it costs one more sum over cells and nodes
+    ///
+    /// # Errors
+    /// [`StepError`] when the balance that was measured does not close, or is not a number.
+    pub fn step(&mut self, measure: bool) -> Result<StepReport, StepError> {
+        let measure = measure || self.clock.step == 0;
+        let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
+        let dt_kick = 0.5 * (dt_before + dt_after);
+
+        self.solid.update_internal_forces(dt_before, measure); // -∫ Bᵀσ dV; damage evolves
+        let contact = self.add_contact_forces(dt_before);
+        let load_before = self.loads.add_forces(&mut self.solid, time, dt_before);
+        if self.clock.step == 0 {
+            self.start_half_a_step_early(dt_before);
+        }
+
+        self.supports.remember(&self.solid);
+        let damping = self.settings.damping;
+        let motion = self.solid.kick_and_drift(dt_before, dt_after, damping, self.supports.held(), measure);
+        let support = self.supports.impose(&mut self.solid, time, dt_before, dt_after);
+        let turning = self.debris.turn(&self.solid, dt_kick);
+        let load_after = 0.5 * dt_after * self.loads.power(&self.solid);
+
+        let books = &mut self.books;
+        books.friction += contact.friction;
+        books.damping += contact.damping;
+        if self.clock.step > 0 {
+            books.external += support.before + load_before;
+            books.damping += motion.damped_before;
+        }
+        if measure {
+            self.ledger.kinetic = motion.kinetic + support.kinetic + turning;
+            self.ledger.contact = contact.stored;
+            self.close_balance()?;
+        }
+        self.books.external += support.after + load_after;
+        self.books.damping += motion.damped_after;
+
+        let report = self.release_cut_elements();
+        if self.debris.search(&self.solid) {
+            self.update_contact_frequency();
+        }
+        let dt = self.next_dt(time + dt_after);
+        self.clock.advance(dt);
+        Ok(report)
+    }
+
+    /// The velocities given at t = 0 become those of the half step before it, so that the balance starts exact.
+    fn start_half_a_step_early(&mut self, dt: f64) {
+        let Scene { solid, supports, .. } = self;
+        for i in 0..solid.mass.len() {
+            let half_kick = solid.force[i] * (0.5 * dt / solid.mass[i]);
+            let held = supports.held().get(i).copied().unwrap_or(0);
+            for axis in (0..3).filter(|axis| held & (1 << axis) == 0) {
+                solid.velocity[i][axis] -= half_kick[axis];
+            }
+        }
+    }
+
+    fn add_contact_forces(&mut self, dt: f64) -> ContactWork {
+        let mut work = ContactWork::default();
+        if self.debris.is_empty() && self.planes.is_empty() {
+            return work;
+        }
+        work = self.debris.add_forces(&mut self.solid, dt);
+        for plane in &mut self.planes {
+            let own = plane.add_forces(&mut self.solid, &mut self.debris, dt);
+            work.stored += own.stored;
+            work.friction += own.friction;
+            work.damping += own.damping;
+        }
+        work
+    }
+
+    /// Elements that a crack has cut through leave; their nodes get discrete elements.
+    fn release_cut_elements(&mut self) -> StepReport {
+        self.removed.clear();
+        let energy = self.solid.remove_cut_elements(&mut self.removed);
+        let mut report = StepReport { removed: self.removed.len(), particles_born: 0 };
+        if report.removed > 0 {
+            self.books.removed += energy;
+            let before = self.debris.len();
+            self.debris.release(&self.solid, &self.removed);
+            report.particles_born = self.debris.len() - before;
+            for plane in &mut self.planes {
+                for &node in &self.debris.state().nodes[before..] {
+                    plane.watch_node(node, &self.solid, &self.debris);
+                }
+            }
+            self.removed_since_check += report.removed;
+        }
+        // Cells that lost elements may be stiffer for their mass than any before.
+        if self.removed_since_check > 0 && self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS) {
+            self.removed_since_check = 0;
+            if !self.settings.time_step.element_bound {
+                let present = self.solid.stable_step();
+                if present.frequency > self.stable.frequency {
+                    self.stable = present;
+                }
+            }
+        }
+        report
+    }
+
+    /// Completes the ledger of tⁿ and holds it against the guard.
+    fn close_balance(&mut self) -> Result<(), StepError> {
+        let Scene { ledger, solid, books, .. } = self;
+        ledger.elastic = solid.elastic_energy();
+        ledger.damage = solid.dissipated_energy();
+        ledger.external = books.external;
+        ledger.removed = books.removed;
+        ledger.friction = books.friction;
+        ledger.damping = books.damping + solid.viscous_dissipation();
+        if self.clock.step == 0 {
+            ledger.initial = ledger.kinetic + ledger.elastic + ledger.contact;
+        }
+        ledger.update_maxima();
+        let (relative, finite) = (ledger.relative_residual(), ledger.residual().is_finite());
+        let (step, time, dt, limit) = (self.clock.step, self.clock.time, self.clock.dt_after, self.stable_dt());
+        if !finite || !relative.is_finite() {
+            return Err(StepError::NotFinite { step, time, dt, limit, culprit: self.culprit() });
+        }
+        let allowed = self.settings.guard.stop;
+        if relative > allowed {
+            return Err(StepError::Unbalanced { step, time, relative, allowed, dt, limit, culprit: self.culprit() });
+        }
+        Ok(())
+    }
+
+    /// The element with the largest kinetic energy, or with a value that is not a number.
+    fn culprit(&self) -> String {
+        let solid = &self.solid;
+        let energy = |node: u32| {
+            let i = node as usize;
+            let energy = solid.mass[i] * solid.velocity[i].norm_squared();
+            if energy.is_finite() && solid.displacement[i].iter().all(|c| c.is_finite()) { energy } else { f64::INFINITY }
+        };
+        let mut worst = (-1.0, 0, 0);
+        for body in 0..solid.body_count() {
+            let corners = solid.body(body).shape.node_count();
+            for (element, nodes) in solid.body(body).elements.iter().enumerate() {
+                let sum: f64 = nodes[..corners].iter().map(|&n| energy(n)).sum();
+                if sum > worst.0 {
+                    worst = (sum, body, element);
+                }
+            }
+        }
+        let (_, body, element) = worst;
+        let nodes = &solid.body(body).elements[element];
+        let centre: Vec3 = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / 4.0;
+        format!(
+            "element {element} of body {} at ({:.4e}, {:.4e}, {:.4e}) m",
+            solid.body(body).name,
+            centre.x,
+            centre.y,
+            centre.z
+        )
+    }
+}
