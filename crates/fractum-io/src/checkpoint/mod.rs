@@ -1,0 +1,485 @@
+//! Checkpoints: the whole state of a run in one file, from which it continues bit for bit.
+//!
+//! A checkpoint is `state-<step>.fck` in the folder `checkpoint`. It is written whole or not at all, and the one before
+//! it stays, so that a run killed at any moment finds its last state. Only the program, case and mesh that wrote it may
+//! read it; every byte is covered by a checksum.
+//!
+//! ```
+//! use fractum_io::Compression;
+//! use fractum_io::checkpoint::{Header, Identity, load_latest, save};
+//! # let folder = tempfile::tempdir().unwrap();
+//! # let folder = folder.path();
+//! let identity = Identity { program: "0.1.0".into(), case_hash: 1, mesh_hash: 2 };
+//! let state = vec![0.1, 0.2];
+//! save(folder, &Header { identity: identity.clone(), step: 40, time: 1e-4 }, &state, Compression::Fast)?;
+//! let found = load_latest::<Vec<f64>>(folder, &identity)?.unwrap();
+//! assert_eq!((found.header.step, found.state), (40, state));
+//! # Ok::<(), fractum_io::checkpoint::CheckpointError>(())
+//! ```
+
+mod container;
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+pub use container::FORMAT;
+
+use crate::atomic::{self, UNFINISHED};
+use crate::compress::Compression;
+use crate::error::WriteError;
+
+/// What a state belongs to. A state of another program version, case or mesh is refused.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    /// Version of the program, as exact as the layout of its state needs.
+    pub program: String,
+    /// Hash of everything in the case that the result depends on.
+    pub case_hash: u128,
+    /// Hash of the mesh.
+    pub mesh_hash: u128,
+}
+
+/// What a checkpoint says of itself before its state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// What the state belongs to.
+    pub identity: Identity,
+    /// Steps done.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+}
+
+/// A state that was read, and what was passed over to find it.
+#[derive(Debug)]
+pub struct Loaded<T> {
+    /// What the checkpoint says of itself.
+    pub header: Header,
+    /// The state.
+    pub state: T,
+    /// The file it is from.
+    pub path: PathBuf,
+    /// Newer checkpoints that had to be passed over, newest first, each with the reason. The user wants to know.
+    pub passed_over: Vec<CheckpointError>,
+}
+
+/// Why a checkpoint could not be saved or is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The state has no form that a file can hold.
+    #[error("the state cannot be stored: {reason}")]
+    NotStorable {
+        /// What the serialiser said.
+        reason: String,
+    },
+    /// The operating system refuses to read it.
+    #[error("{}: the checkpoint cannot be read: {source}", path.display())]
+    Unreadable {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// Something else bears the name of a checkpoint.
+    #[error("{}: not a fractum checkpoint; move it out of the folder", path.display())]
+    NotACheckpoint {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The container is of another format.
+    #[error(
+        "{}: checkpoint format {found}, this program reads {FORMAT}; continue with the program that wrote it, \
+         or start again without --resume",
+        path.display()
+    )]
+    OtherFormat {
+        /// The file.
+        path: PathBuf,
+        /// Format of the file.
+        found: u32,
+    },
+    /// The file ends too early.
+    #[error("{}: the checkpoint is cut off; delete it to continue from an older one", path.display())]
+    Truncated {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A checksum or a length is wrong.
+    #[error("{}: the checkpoint is damaged ({what}); delete it to continue from an older one", path.display())]
+    Corrupt {
+        /// The file.
+        path: PathBuf,
+        /// Where.
+        what: String,
+    },
+    /// Written by another version of the program.
+    #[error(
+        "{}: saved by fractum {found}, this is {expected}; continue with that version, \
+         or start again without --resume",
+        path.display()
+    )]
+    OtherProgram {
+        /// The file.
+        path: PathBuf,
+        /// Version that wrote it.
+        found: String,
+        /// Version that reads it.
+        expected: String,
+    },
+    /// The case is another one, or was changed.
+    #[error(
+        "{}: saved from another case, or the case was changed since; restore the case, \
+         or start again without --resume",
+        path.display()
+    )]
+    OtherCase {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The mesh is another one, or was changed.
+    #[error(
+        "{}: saved with another mesh, or the mesh was changed since; restore the mesh, \
+         or start again without --resume",
+        path.display()
+    )]
+    OtherMesh {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The bytes are whole but hold another kind of state.
+    #[error("{}: holds a state of another layout ({reason}); start again without --resume", path.display())]
+    OtherLayout {
+        /// The file.
+        path: PathBuf,
+        /// What the deserialiser said.
+        reason: String,
+    },
+}
+
+/// Saves `state` as `state-<step>.fck` in `folder` (created if absent) and returns the file's path.
+///
+/// Of the older checkpoints the newest stays; the others go, and so do those of later steps: they belong to a past that
+/// this run did not take.
+///
+/// # Errors
+/// [`CheckpointError::Write`], [`CheckpointError::NotStorable`]; the former checkpoints are then untouched.
+pub fn save<T: Serialize>(
+    folder: &Path,
+    header: &Header,
+    state: &T,
+    compression: Compression,
+) -> Result<PathBuf, CheckpointError> {
+    atomic::create_folder(folder)?;
+    let path = folder.join(format!("state-{:09}.fck", header.step));
+    let mut not_storable = None;
+    atomic::write_with(&path, |file| {
+        container::write(file, header, state, compression).map_err(|error| match error {
+            container::Failure::Io(error) => error,
+            container::Failure::Serialiser(reason) => {
+                not_storable = Some(reason);
+                io::ErrorKind::InvalidData.into()
+            }
+        })
+    })
+    .map_err(|error| match not_storable {
+        Some(reason) => CheckpointError::NotStorable { reason },
+        None => error.into(),
+    })?;
+    // The new state is safe: what cannot be removed does no harm.
+    let _ = remove_outdated(folder, header.step);
+    Ok(path)
+}
+
+/// Reads the newest checkpoint in `folder` that is whole and belongs to `identity`; `None` if there is no checkpoint.
+///
+/// # Errors
+/// If there are checkpoints but none that can be used: why the newest cannot.
+pub fn load_latest<T: DeserializeOwned>(
+    folder: &Path,
+    identity: &Identity,
+) -> Result<Option<Loaded<T>>, CheckpointError> {
+    let unreadable = |source| CheckpointError::Unreadable { path: folder.to_path_buf(), source };
+    let mut found = match checkpoints(folder) {
+        Ok(found) => found,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(unreadable(error)),
+    };
+    found.sort();
+    let mut passed_over = Vec::new();
+    for (_, path) in found.into_iter().rev() {
+        match load(&path, identity) {
+            Ok((header, state)) => return Ok(Some(Loaded { header, state, path, passed_over })),
+            Err(error) => passed_over.push(error),
+        }
+    }
+    match passed_over.into_iter().next() {
+        Some(newest) => Err(newest),
+        None => Ok(None),
+    }
+}
+
+/// Reads the checkpoint at `path`, if it belongs to `identity`.
+///
+/// # Errors
+/// [`CheckpointError`]: unreadable, not a checkpoint, of another format, program, case or mesh, cut off, or damaged.
+pub fn load<T: DeserializeOwned>(path: &Path, identity: &Identity) -> Result<(Header, T), CheckpointError> {
+    let bytes = fs::read(path).map_err(|source| CheckpointError::Unreadable { path: path.to_path_buf(), source })?;
+    let (header, rest) = container::read_header(&bytes).map_err(|refusal| refusal.at(path))?;
+    let path_buf = || path.to_path_buf();
+    let Identity { program, case_hash, mesh_hash } = &header.identity;
+    if program != &identity.program {
+        let (found, expected) = (program.clone(), identity.program.clone());
+        return Err(CheckpointError::OtherProgram { path: path_buf(), found, expected });
+    }
+    if *case_hash != identity.case_hash {
+        return Err(CheckpointError::OtherCase { path: path_buf() });
+    }
+    if *mesh_hash != identity.mesh_hash {
+        return Err(CheckpointError::OtherMesh { path: path_buf() });
+    }
+    let state = container::read_state(rest).map_err(|refusal| refusal.at(path))?;
+    Ok((header, state))
+}
+
+/// Checkpoints in `folder` with their steps.
+fn checkpoints(folder: &Path) -> io::Result<Vec<(u64, PathBuf)>> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let step = name.to_str().and_then(|name| name.strip_prefix("state-")?.strip_suffix(".fck")?.parse().ok());
+        if let Some(step) = step {
+            found.push((step, entry.path()));
+        }
+    }
+    Ok(found)
+}
+
+/// Removes all but the checkpoint of `step` and the newest before it, and what killed runs left unfinished.
+fn remove_outdated(folder: &Path, step: u64) -> io::Result<()> {
+    let mut found = checkpoints(folder)?;
+    found.sort();
+    let previous = found.iter().map(|(step, _)| *step).filter(|&other| other < step).max();
+    for (other, path) in found {
+        if other != step && Some(other) != previous {
+            fs::remove_file(path)?;
+        }
+    }
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        if name.starts_with("state-") && name.ends_with(UNFINISHED) {
+            fs::remove_file(path)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct State {
+        clock: f64,
+        positions: Vec<[f64; 3]>,
+        broken: Vec<bool>,
+        name: String,
+    }
+
+    fn state(size: usize) -> State {
+        State {
+            clock: 0.1 + 0.2,
+            positions: (0..size).map(|i| [(i as f64).sin(), f64::MIN_POSITIVE / 4.0, -0.0]).collect(),
+            broken: (0..size).map(|i| i % 3 == 0).collect(),
+            name: "disc".into(),
+        }
+    }
+
+    fn identity() -> Identity {
+        Identity { program: "0.1.0".into(), case_hash: u128::MAX - 5, mesh_hash: 7 }
+    }
+
+    fn header(step: u64) -> Header {
+        Header { identity: identity(), step, time: step as f64 * 1e-7 }
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> =
+            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// A saved state's path and bytes.
+    fn saved(folder: &Path, size: usize, compression: Compression) -> (PathBuf, Vec<u8>) {
+        let path = save(folder, &header(10), &state(size), compression).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        (path, bytes)
+    }
+
+    #[test]
+    fn a_state_comes_back_bit_for_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        // None, some, and more than one block of state.
+        for size in [0, 100, 100_000] {
+            for compression in [Compression::None, Compression::Fast] {
+                let (path, _) = saved(folder.path(), size, compression);
+                let (found, back): (Header, State) = load(&path, &identity()).unwrap();
+                assert_eq!(found, header(10));
+                assert_eq!(back, state(size));
+                assert!(size == 0 || back.positions[0][2].is_sign_negative());
+            }
+        }
+    }
+
+    #[test]
+    fn bytes_are_the_same_for_any_number_of_threads() {
+        let bytes = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let folder = tempfile::tempdir().unwrap();
+            pool.install(|| saved(folder.path(), 200_000, Compression::Fast).1)
+        };
+        assert!(bytes(1) == bytes(3));
+    }
+
+    #[test]
+    fn the_last_two_stay_and_rests_of_killed_runs_go() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        fs::write(folder.join("state-000000015.fck.part"), b"half").unwrap();
+        fs::write(folder.join("notes.txt"), b"mine").unwrap();
+        for step in [10, 20, 30] {
+            save(folder, &header(step), &state(3), Compression::Fast).unwrap();
+        }
+        assert_eq!(names(folder), ["notes.txt", "state-000000020.fck", "state-000000030.fck"]);
+        // Resumed from 20 after 30 was lost: 30 is a past that was not taken.
+        save(folder, &header(25), &state(3), Compression::Fast).unwrap();
+        assert_eq!(names(folder), ["notes.txt", "state-000000020.fck", "state-000000025.fck"]);
+    }
+
+    #[test]
+    fn the_newest_whole_one_is_taken_and_the_others_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        assert!(load_latest::<State>(&folder.join("absent"), &identity()).unwrap().is_none());
+        assert!(load_latest::<State>(folder, &identity()).unwrap().is_none());
+        for step in [10, 20] {
+            save(folder, &header(step), &state(3), Compression::Fast).unwrap();
+        }
+        let found = load_latest::<State>(folder, &identity()).unwrap().unwrap();
+        assert_eq!((found.header.step, found.passed_over.len()), (20, 0));
+
+        let newest = folder.join("state-000000020.fck");
+        let bytes = fs::read(&newest).unwrap();
+        fs::write(&newest, &bytes[..bytes.len() - 1]).unwrap();
+        let found = load_latest::<State>(folder, &identity()).unwrap().unwrap();
+        assert_eq!((found.header.step, &found.state), (10, &state(3)));
+        assert!(matches!(&found.passed_over[..], [CheckpointError::Truncated { .. }]));
+
+        fs::write(folder.join("state-000000010.fck"), b"").unwrap();
+        let error = load_latest::<State>(folder, &identity()).unwrap_err();
+        assert!(matches!(&error, CheckpointError::Truncated { path } if *path == newest), "{error}");
+    }
+
+    #[test]
+    fn a_foreign_state_is_refused_by_what_is_foreign() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, bytes) = saved(folder.path(), 5, Compression::Fast);
+        let error = |identity| load::<State>(&path, &identity).unwrap_err();
+        assert!(matches!(error(Identity { case_hash: 1, ..identity() }), CheckpointError::OtherCase { .. }));
+        assert!(matches!(error(Identity { mesh_hash: 1, ..identity() }), CheckpointError::OtherMesh { .. }));
+        let other = error(Identity { program: "0.2.0".into(), ..identity() });
+        assert!(matches!(other, CheckpointError::OtherProgram { .. }), "{other}");
+
+        let mut newer = bytes.clone();
+        newer[8] += 1;
+        fs::write(&path, newer).unwrap();
+        assert!(matches!(error(identity()), CheckpointError::OtherFormat { found, .. } if found == FORMAT + 1));
+
+        fs::write(&path, "time [s],load [N]\n0,1\n").unwrap();
+        assert!(matches!(error(identity()), CheckpointError::NotACheckpoint { .. }));
+
+        fs::write(&path, [bytes.clone(), vec![0]].concat()).unwrap();
+        assert!(matches!(error(identity()), CheckpointError::Corrupt { .. }));
+
+        fs::write(&path, bytes).unwrap();
+        let layout = load::<Vec<String>>(&path, &identity()).unwrap_err();
+        assert!(matches!(layout, CheckpointError::OtherLayout { .. }), "{layout}");
+    }
+
+    #[test]
+    fn what_cannot_be_stored_leaves_the_former_checkpoint() {
+        struct Endless;
+        impl Serialize for Endless {
+            fn serialize<S: serde::Serializer>(&self, _: S) -> Result<S::Ok, S::Error> {
+                Err(serde::ser::Error::custom("endless"))
+            }
+        }
+        let folder = tempfile::tempdir().unwrap();
+        saved(folder.path(), 5, Compression::Fast);
+        let error = save(folder.path(), &header(11), &Endless, Compression::Fast).unwrap_err();
+        assert!(matches!(error, CheckpointError::NotStorable { .. }), "{error}");
+        assert_eq!(names(folder.path()), ["state-000000010.fck"]);
+    }
+
+    proptest! {
+        #[test]
+        fn a_cut_off_file_is_refused(share in 0.0f64..1.0, size in 0usize..3000, compress: bool) {
+            let folder = tempfile::tempdir().unwrap();
+            let compression = if compress { Compression::Fast } else { Compression::None };
+            let (path, bytes) = saved(folder.path(), size, compression);
+            fs::write(&path, &bytes[..(bytes.len() as f64 * share) as usize]).unwrap();
+            let error = load::<State>(&path, &identity()).unwrap_err();
+            prop_assert!(matches!(error, CheckpointError::Truncated { .. }), "{}", error);
+        }
+
+        #[test]
+        fn flipped_bits_are_refused(
+            places in proptest::collection::vec((0.0f64..1.0, 0u8..8), 1..4),
+            size in 0usize..300,
+            compress: bool,
+        ) {
+            let folder = tempfile::tempdir().unwrap();
+            let compression = if compress { Compression::Fast } else { Compression::None };
+            let (path, whole) = saved(folder.path(), size, compression);
+            let mut bytes = whole.clone();
+            for (share, bit) in places {
+                bytes[(whole.len() as f64 * share) as usize] ^= 1 << bit;
+            }
+            prop_assume!(bytes != whole);
+            fs::write(&path, bytes).unwrap();
+            prop_assert!(load::<State>(&path, &identity()).is_err());
+        }
+
+        #[test]
+        fn random_bytes_are_refused(bytes in proptest::collection::vec(any::<u8>(), 0..300), with_magic: bool) {
+            let folder = tempfile::tempdir().unwrap();
+            let (path, whole) = saved(folder.path(), 3, Compression::None);
+            let start = if with_magic { &whole[..16] } else { &[] };
+            fs::write(&path, [start, &bytes].concat()).unwrap();
+            prop_assert!(load::<State>(&path, &identity()).is_err());
+        }
+    }
+
+    /// Not only random ones: each single bit of a small file.
+    #[test]
+    fn every_single_flipped_bit_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, whole) = saved(folder.path(), 4, Compression::Fast);
+        for bit in 0..whole.len() * 8 {
+            let mut bytes = whole.clone();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            fs::write(&path, bytes).unwrap();
+            assert!(load::<State>(&path, &identity()).is_err(), "bit {bit}");
+        }
+    }
+}

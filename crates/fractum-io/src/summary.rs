@@ -1,0 +1,421 @@
+//! `summary.json` and `verify.json`: the results that scripts read. The names of the keys are a contract.
+//!
+//! Keys come in the order of the structs, maps in the order of their names, so that equal results are equal files. JSON
+//! knows no NaN or infinity: such a number is written as `null`, and read back as NaN.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::atomic;
+use crate::error::{ReadError, WriteError};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// It reached its end time.
+    #[default]
+    Completed,
+    /// It stopped itself: unstable, not a number, or the energy guard.
+    Stopped,
+    /// The user interrupted it; it can be resumed.
+    Interrupted,
+}
+
+/// All of `summary.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Version of the program.
+    pub fractum: String,
+    /// Title of the case.
+    pub title: String,
+    /// How the run ended.
+    pub status: Status,
+    /// Threads used.
+    pub threads: usize,
+    /// Hash of the case, 32 hexadecimal digits ([`hash_text`]).
+    pub case_hash: String,
+    /// Hash of the final state, 32 hexadecimal digits.
+    pub state_hash: String,
+    /// The probes by name.
+    pub probes: BTreeMap<String, Probe>,
+    /// What the case expected, and what came out.
+    pub expect: Vec<Expectation>,
+    /// The energy ledger at the end.
+    pub energy: Energy,
+    /// Sizes at the end.
+    pub counts: Counts,
+    /// Simulated time.
+    pub time: Time,
+    /// Time on the clock.
+    pub wall: Wall,
+}
+
+/// A probe over the run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Probe {
+    /// Unit of the values.
+    pub unit: String,
+    /// Last value.
+    #[serde(with = "number")]
+    pub r#final: f64,
+    /// Largest value.
+    #[serde(with = "number")]
+    pub max: f64,
+    /// Smallest value.
+    #[serde(with = "number")]
+    pub min: f64,
+    /// When the largest value came first [s].
+    #[serde(with = "number")]
+    pub time_of_max: f64,
+}
+
+/// One `[[expect]]` of the case against the run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Expectation {
+    /// Name of the probe.
+    pub quantity: String,
+    /// Unit of value and reference.
+    pub unit: String,
+    /// What came out.
+    #[serde(with = "number")]
+    pub value: f64,
+    /// What was expected.
+    #[serde(with = "number")]
+    pub reference: f64,
+    /// (value - reference) / |reference|; for a reference of zero the value itself.
+    #[serde(with = "number")]
+    pub error: f64,
+    /// Largest |error| that passes.
+    #[serde(with = "number")]
+    pub tolerance: f64,
+    /// Whether |error| is within the tolerance; never for NaN.
+    pub pass: bool,
+    /// Where the reference is from.
+    pub source: String,
+}
+
+impl Expectation {
+    /// Holds `value` against `reference`, both in `unit`.
+    pub fn compare(quantity: &str, unit: &str, value: f64, reference: f64, tolerance: f64, source: &str) -> Self {
+        let error = if reference == 0.0 { value } else { (value - reference) / reference.abs() };
+        Self {
+            quantity: quantity.into(),
+            unit: unit.into(),
+            value,
+            reference,
+            error,
+            tolerance,
+            pass: error.abs() <= tolerance,
+            source: source.into(),
+        }
+    }
+}
+
+/// The energy ledger [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// Work of loads and supports.
+    #[serde(with = "number")]
+    pub external: f64,
+    /// Kinetic energy.
+    #[serde(with = "number")]
+    pub kinetic: f64,
+    /// Recoverable strain energy.
+    #[serde(with = "number")]
+    pub elastic: f64,
+    /// Dissipated by damage.
+    #[serde(with = "number")]
+    pub damage: f64,
+    /// Strain energy that left with removed elements.
+    #[serde(with = "number")]
+    pub removed: f64,
+    /// Stored in contacts.
+    #[serde(with = "number")]
+    pub contact: f64,
+    /// Dissipated by friction.
+    #[serde(with = "number")]
+    pub friction: f64,
+    /// Dissipated by damping.
+    #[serde(with = "number")]
+    pub damping: f64,
+    /// Let out by absorbing boundaries.
+    #[serde(with = "number")]
+    pub absorbed: f64,
+    /// Largest |imbalance| of the ledger over the run, relative to the largest external work [-].
+    #[serde(with = "number")]
+    pub residual_max_relative: f64,
+}
+
+/// Sizes at the end of the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Nodes of the mesh.
+    pub nodes: u64,
+    /// Elements of the mesh.
+    pub elements: u64,
+    /// Elements that were removed.
+    pub removed_elements: u64,
+    /// Particles.
+    pub particles: u64,
+    /// Bonds at the start.
+    pub bonds: u64,
+    /// Bonds that broke.
+    pub broken_bonds: u64,
+    /// Edges that broke.
+    pub broken_edges: u64,
+    /// Connected pieces.
+    pub fragments: u64,
+}
+
+/// Simulated time [s].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Time {
+    /// Steps done.
+    pub steps: u64,
+    /// Last time step.
+    #[serde(with = "number")]
+    pub dt: f64,
+    /// Smallest time step.
+    #[serde(with = "number")]
+    pub dt_min: f64,
+    /// Time reached.
+    #[serde(with = "number")]
+    pub end: f64,
+}
+
+/// Time on the clock [s].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Wall {
+    /// From the start of the run to its end, over all its resumptions.
+    #[serde(with = "number")]
+    pub total: f64,
+    /// By part of the step: `solid`, `damage`, `bonds`, `contact`, `output`, ...
+    pub phases: BTreeMap<String, f64>,
+}
+
+/// One line of `verify.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Verified {
+    /// Name of the case.
+    pub case: String,
+    /// Name of the probe.
+    pub quantity: String,
+    /// What came out.
+    #[serde(with = "number")]
+    pub value: f64,
+    /// What was expected.
+    #[serde(with = "number")]
+    pub reference: f64,
+    /// Relative error, as in [`Expectation`].
+    #[serde(with = "number")]
+    pub error: f64,
+    /// Largest |error| that passes.
+    #[serde(with = "number")]
+    pub tolerance: f64,
+    /// Whether it passed.
+    pub pass: bool,
+    /// Time on the clock [s].
+    #[serde(with = "number")]
+    pub seconds: f64,
+    /// Where the reference is from.
+    pub source: String,
+}
+
+impl Verified {
+    /// The line of `verify.json` for an expectation of `case`, which ran for `seconds`.
+    pub fn new(case: &str, expectation: &Expectation, seconds: f64) -> Self {
+        let Expectation { quantity, value, reference, error, tolerance, pass, source, .. } = expectation.clone();
+        Self { case: case.into(), quantity, value, reference, error, tolerance, pass, seconds, source }
+    }
+}
+
+impl Summary {
+    /// The file's text.
+    pub fn to_json(&self) -> String {
+        json(self)
+    }
+
+    /// Writes `summary.json` at `path`.
+    ///
+    /// # Errors
+    /// [`WriteError`].
+    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
+        atomic::write(path, self.to_json().as_bytes())
+    }
+
+    /// Reads a `summary.json`.
+    ///
+    /// # Errors
+    /// [`ReadError`] with the line that is not as it should be.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let text =
+            fs::read_to_string(path).map_err(|source| ReadError::Refused { path: path.to_path_buf(), source })?;
+        serde_json::from_str(&text).map_err(|error| ReadError::Malformed {
+            path: path.to_path_buf(),
+            line: error.line(),
+            found: error.to_string(),
+            expected: "a summary of this version".into(),
+        })
+    }
+}
+
+/// Writes `verify.json` at `path`.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn write_verify(path: &Path, lines: &[Verified]) -> Result<(), WriteError> {
+    atomic::write(path, json(lines).as_bytes())
+}
+
+/// A hash as it stands in the summary: 32 hexadecimal digits.
+pub fn hash_text(hash: u128) -> String {
+    format!("{hash:032x}")
+}
+
+fn json<T: Serialize + ?Sized>(value: &T) -> String {
+    // Cannot fail: the keys are strings and nothing but memory is written to.
+    let mut text = serde_json::to_string_pretty(value).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+/// A number that JSON may lack: `null` stands for NaN and the infinities, and reads back as NaN.
+mod number {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        if value.is_finite() { serializer.serialize_f64(*value) } else { serializer.serialize_none() }
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn example() -> Summary {
+        let mut summary =
+            Summary { fractum: "0.1.0".into(), title: "Brazilian".into(), threads: 2, ..Default::default() };
+        let probe = Probe { unit: "N".into(), r#final: f64::NAN, max: 1.5, min: -0.1, time_of_max: 1e-3 };
+        summary.probes.insert("load".into(), probe);
+        summary.expect.push(Expectation::compare("strength", "Pa", 10_200.0, 10_000.0, 0.05, "a paper"));
+        summary.case_hash = hash_text(0xff);
+        summary.wall.phases.insert("solid".into(), 1.25);
+        summary
+    }
+
+    /// Every key of the contract, in its order.
+    #[test]
+    fn keys_are_those_of_the_contract() {
+        let text = example().to_json();
+        let mut rest = text.as_str();
+        for key in [
+            "fractum",
+            "title",
+            "status",
+            "threads",
+            "case_hash",
+            "state_hash",
+            "probes",
+            "load",
+            "unit",
+            "final",
+            "max",
+            "min",
+            "time_of_max",
+            "expect",
+            "quantity",
+            "unit",
+            "value",
+            "reference",
+            "error",
+            "tolerance",
+            "pass",
+            "source",
+            "energy",
+            "external",
+            "kinetic",
+            "elastic",
+            "damage",
+            "removed",
+            "contact",
+            "friction",
+            "damping",
+            "absorbed",
+            "residual_max_relative",
+            "counts",
+            "nodes",
+            "elements",
+            "removed_elements",
+            "particles",
+            "bonds",
+            "broken_bonds",
+            "fragments",
+            "time",
+            "steps",
+            "dt",
+            "dt_min",
+            "end",
+            "wall",
+            "total",
+            "phases",
+            "solid",
+        ] {
+            let key = format!("\"{key}\":");
+            let at = rest.find(&key).unwrap_or_else(|| panic!("{key} is missing or out of order in\n{text}"));
+            rest = &rest[at + key.len()..];
+        }
+        assert!(text.contains("\"status\": \"completed\"") && text.contains(&format!("\"{:0>32}\"", "ff")));
+    }
+
+    #[test]
+    fn not_a_number_is_null_and_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("summary.json");
+        let summary = example();
+        summary.write(&path).unwrap();
+        assert!(fs::read_to_string(&path).unwrap().contains("\"final\": null"));
+        let back = Summary::read(&path).unwrap();
+        assert!(back.probes["load"].r#final.is_nan());
+        assert_eq!(back.to_json(), summary.to_json());
+    }
+
+    #[test]
+    fn a_torn_summary_is_refused_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("summary.json");
+        let text = example().to_json();
+        fs::write(&path, &text[..text.len() / 2]).unwrap();
+        assert!(matches!(Summary::read(&path).unwrap_err(), ReadError::Malformed { line, .. } if line > 10));
+    }
+
+    #[test]
+    fn an_expectation_passes_within_its_tolerance_only() {
+        let compare = |value, reference| Expectation::compare("q", "-", value, reference, 0.05, "");
+        assert!(compare(10.5, 10.0).pass && compare(-10.5, -10.0).pass);
+        assert!(!compare(10.51, 10.0).pass && !compare(f64::NAN, 10.0).pass);
+        assert!(compare(0.04, 0.0).pass && !compare(0.06, 0.0).pass);
+        assert_eq!(compare(-11.0, -10.0).error, -0.1);
+    }
+
+    #[test]
+    fn verify_lines_have_the_names_of_the_contract() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("verify.json");
+        let line = Verified::new("patch", &Expectation::compare("stress", "Pa", 1.0, 1.0, 0.1, "exact"), 2.0);
+        write_verify(&path, &[line]).unwrap();
+        let lines: serde_json::Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+        let keys: Vec<&String> = lines[0].as_object().unwrap().keys().collect();
+        let mut expected =
+            ["case", "quantity", "value", "reference", "error", "tolerance", "pass", "seconds", "source"];
+        expected.sort_unstable();
+        assert_eq!(keys, expected);
+    }
+}

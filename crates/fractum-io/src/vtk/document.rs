@@ -1,0 +1,171 @@
+//! The file around the arrays: XML that tells where each begins, then their bytes.
+
+use std::borrow::Cow;
+use std::fmt::Write;
+
+use rayon::prelude::*;
+
+use super::Field;
+use crate::compress::{Compression, compressor, deflate};
+
+/// Bytes compressed at a time. Small enough to share an array among threads, large enough to compress well.
+pub(super) const BLOCK: usize = 1 << 16;
+
+/// A VTK file in the making: text and arrays in their order.
+pub(super) struct Document<'a> {
+    kind: &'static str,
+    pieces: Vec<Piece<'a>>,
+}
+
+enum Piece<'a> {
+    Text(String),
+    Array { tag: String, bytes: Cow<'a, [u8]> },
+}
+
+impl<'a> Document<'a> {
+    /// Starts a file of that kind, with the time if it is known.
+    pub(super) fn new(kind: &'static str, time: Option<f64>) -> Self {
+        let mut document = Self { kind, pieces: Vec::new() };
+        if let Some(time) = time {
+            document.text("    <FieldData>\n");
+            let tag = "type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\"";
+            document.tagged(tag.into(), Cow::Owned(time.to_ne_bytes().to_vec()));
+            document.text("    </FieldData>\n");
+        }
+        document
+    }
+
+    pub(super) fn text(&mut self, text: &str) {
+        match self.pieces.last_mut() {
+            Some(Piece::Text(last)) => last.push_str(text),
+            _ => self.pieces.push(Piece::Text(text.to_string())),
+        }
+    }
+
+    /// Adds an array of `kind` (`Float64`, ...).
+    pub(super) fn array(&mut self, kind: &str, name: &str, components: usize, bytes: Cow<'a, [u8]>) {
+        let name = escape(name);
+        // One component is the default; meshio makes a matrix with one column of a scalar that says so.
+        let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
+        self.tagged(format!("type=\"{kind}\" Name=\"{name}\"{components}"), bytes);
+    }
+
+    /// Adds the points.
+    pub(super) fn points(&mut self, points: &'a [[f64; 3]]) {
+        self.text("      <Points>\n");
+        self.array("Float64", "Points", 3, Cow::Borrowed(bytemuck::cast_slice(points)));
+        self.text("      </Points>\n");
+    }
+
+    /// Adds a `PointData` or `CellData` section.
+    pub(super) fn fields(&mut self, section: &str, fields: &[Field<'a>]) {
+        self.text(&format!("      <{section}>\n"));
+        for field in fields {
+            self.array(field.values.kind(), field.name, field.components, field.values.bytes());
+        }
+        self.text(&format!("      </{section}>\n"));
+    }
+
+    /// Adds cells: the points of one after the other, and where in that list each cell ends.
+    pub(super) fn cells(&mut self, nodes: &[u32], ends: impl Iterator<Item = usize>) {
+        // 32 bits as long as all numbers fit; the file says which.
+        if i32::try_from(nodes.len()).is_ok() && nodes.iter().all(|&node| i32::try_from(node).is_ok()) {
+            let nodes: Vec<i32> = nodes.iter().map(|&node| node as i32).collect();
+            let offsets: Vec<i32> = ends.map(|end| end as i32).collect();
+            self.array("Int32", "connectivity", 1, Cow::Owned(bytemuck::cast_slice(&nodes).to_vec()));
+            self.array("Int32", "offsets", 1, Cow::Owned(bytemuck::cast_slice(&offsets).to_vec()));
+        } else {
+            let nodes: Vec<i64> = nodes.iter().map(|&node| i64::from(node)).collect();
+            let offsets: Vec<i64> = ends.map(|end| end as i64).collect();
+            self.array("Int64", "connectivity", 1, Cow::Owned(bytemuck::cast_slice(&nodes).to_vec()));
+            self.array("Int64", "offsets", 1, Cow::Owned(bytemuck::cast_slice(&offsets).to_vec()));
+        }
+    }
+
+    fn tagged(&mut self, tag: String, bytes: Cow<'a, [u8]>) {
+        self.pieces.push(Piece::Array { tag, bytes });
+    }
+
+    /// The whole file.
+    pub(super) fn into_bytes(self, compression: Compression) -> Vec<u8> {
+        let arrays: Vec<&[u8]> = self
+            .pieces
+            .iter()
+            .filter_map(|piece| match piece {
+                Piece::Array { bytes, .. } => Some(&bytes[..]),
+                Piece::Text(_) => None,
+            })
+            .collect();
+        let stored: Vec<Vec<u8>> = match compression {
+            Compression::None => arrays.par_iter().map(|bytes| raw(bytes)).collect(),
+            Compression::Fast => arrays.par_iter().map(|bytes| compressed(bytes)).collect(),
+        };
+
+        let kind = self.kind;
+        let byte_order = if cfg!(target_endian = "little") { "LittleEndian" } else { "BigEndian" };
+        let compressor = match compression {
+            Compression::None => "",
+            Compression::Fast => " compressor=\"vtkZLibDataCompressor\"",
+        };
+        let mut xml = format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"{byte_order}\" \
+             header_type=\"UInt64\"{compressor}>\n  <{kind}>\n"
+        );
+        let mut offset = 0;
+        let mut lengths = stored.iter().map(Vec::len);
+        for piece in &self.pieces {
+            match piece {
+                Piece::Text(text) => xml.push_str(text),
+                Piece::Array { tag, .. } => {
+                    // Writing to a String cannot fail.
+                    let _ = writeln!(xml, "        <DataArray {tag} format=\"appended\" offset=\"{offset}\"/>");
+                    offset += lengths.next().unwrap_or(0);
+                }
+            }
+        }
+        let _ = write!(xml, "  </{kind}>\n  <AppendedData encoding=\"raw\">\n   _");
+        // One line break between the data and the closing tag: meshio counts on it.
+        let end = b"\n  </AppendedData>\n</VTKFile>\n";
+        let mut file = Vec::with_capacity(xml.len() + offset + end.len());
+        file.extend_from_slice(xml.as_bytes());
+        stored.iter().for_each(|bytes| file.extend_from_slice(bytes));
+        file.extend_from_slice(end);
+        file
+    }
+}
+
+/// Length, then the bytes.
+fn raw(bytes: &[u8]) -> Vec<u8> {
+    let mut stored = Vec::with_capacity(8 + bytes.len());
+    stored.extend_from_slice(&(bytes.len() as u64).to_ne_bytes());
+    stored.extend_from_slice(bytes);
+    stored
+}
+
+/// Number of blocks, size of a block, size of the last block if it is partial (else 0), compressed sizes; then the
+/// compressed blocks.
+fn compressed(bytes: &[u8]) -> Vec<u8> {
+    let blocks: Vec<Vec<u8>> = bytes.par_chunks(BLOCK).map_init(compressor, deflate).collect();
+    let header = [blocks.len(), BLOCK, bytes.len() % BLOCK].into_iter().chain(blocks.iter().map(Vec::len));
+    let mut stored = Vec::with_capacity(8 * (3 + blocks.len()) + blocks.iter().map(Vec::len).sum::<usize>());
+    header.for_each(|number| stored.extend_from_slice(&(number as u64).to_ne_bytes()));
+    blocks.iter().for_each(|block| stored.extend_from_slice(block));
+    stored
+}
+
+/// Text as an XML attribute.
+pub(super) fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            // XML has no other control characters, not even escaped.
+            control if control.is_control() => escaped.push(' '),
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}
