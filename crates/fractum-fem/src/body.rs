@@ -134,12 +134,12 @@ impl Body {
     pub fn edges(&self) -> BodyEdges {
         match self.shape {
             Shape::T4 => {
-                let edges = fractum_mesh::edges_of_tetrahedra(&self.elements);
+                let edges = fractum_mesh::topology::edges_of_tetrahedra(&self.elements);
                 BodyEdges { nodes: edges.nodes, of_element: edges.of_element }
             }
             Shape::T3 => {
                 let triangles: Vec<[u32; 3]> = self.elements.iter().map(|e| [e[0], e[1], e[2]]).collect();
-                let edges = fractum_mesh::edges_of_triangles(&triangles);
+                let edges = fractum_mesh::topology::edges_of_triangles(&triangles);
                 let of_element = edges.of_element.iter().map(|e| [e[0], e[1], e[2], 0, 0, 0]).collect();
                 BodyEdges { nodes: edges.nodes, of_element }
             }

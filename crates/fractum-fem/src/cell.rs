@@ -91,7 +91,7 @@ impl Geometry<'_> {
             .into_par_iter()
             .map(|e| self.element_nodes(e).iter().map(|&n| self.nodes[n as usize]).sum::<Vec3>())
             .collect();
-        let order = fractum_mesh::hilbert_order(&centres);
+        let order = fractum_mesh::renumber::hilbert_order(&centres);
         order
             .par_chunks(BLOCK_CELLS)
             .flat_map(|items| split_to_fit(items, |e| self.element_nodes(e as usize).to_vec()))
@@ -118,7 +118,7 @@ impl Geometry<'_> {
     ) -> Vec<(Cells, Vec<u32>)> {
         let middles: Vec<Vec3> =
             edges.nodes.par_iter().map(|&[i, j]| self.nodes[i as usize] + self.nodes[j as usize]).collect();
-        let order = fractum_mesh::hilbert_order(&middles);
+        let order = fractum_mesh::renumber::hilbert_order(&middles);
         let (first, second): (Vec<u32>, Vec<u32>) = order.into_iter().partition(|&edge| class(edge));
         let chunks: Vec<&[u32]> = first.chunks(BLOCK_CELLS).chain(second.chunks(BLOCK_CELLS)).collect();
         let elements = |edge: u32| elements_of_edge.row(edge as usize);

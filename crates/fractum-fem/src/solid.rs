@@ -308,20 +308,32 @@ impl Solid {
         count
     }
 
-    /// Area of crack, Σ d V/l over edges (standard: elements) of the reference mesh [m²].
+    /// Area of crack, Σ d V/l over the edges with the volumes V of the reference mesh and the characteristic lengths l
+    /// [m²]: a crack through all of a bar counts as its cross-section.
     pub fn crack_area(&self) -> f64 {
         let mut area = 0.0;
         for (index, model) in self.bodies.iter().enumerate() {
-            let Some(edges) = model.edges.as_ref().filter(|_| model.body.damage.is_some()) else { continue };
             let share = 1.0 / model.body.shape.edge_count() as f64;
             for (edge, damage) in self.edge_damage(index).iter().enumerate().filter(|(_, e)| e.damage > 0.0) {
                 let elements = model.elements_of_edge.row(edge);
                 let volume: f64 = elements.iter().map(|&e| share * self.element_volume(index, e)).sum();
-                let [i, j] = edges.nodes[edge].map(|n| n as usize);
-                area += damage.damage * volume / (self.reference[j] - self.reference[i]).norm();
+                area += damage.damage * volume / self.characteristic_length(index, edge);
             }
         }
         area
+    }
+
+    /// Characteristic length of an edge that may be damaged [m].
+    fn characteristic_length(&self, body: usize, edge: usize) -> f64 {
+        let model = &self.bodies[body];
+        if let Some(standard) = &model.standard {
+            return standard.length[edge];
+        }
+        let (block, cell) = model.location[edge];
+        match &self.blocks[block as usize].law {
+            BlockLaw::Edges(law) => law.length[cell as usize],
+            _ => f64::INFINITY,
+        }
     }
 
     /// Everything that changes, for a checkpoint.

@@ -23,4 +23,4 @@ pub use ledger::{EnergyKind, Guard, Ledger};
 pub use probe::{CountKind, Probe};
 pub use rigid::RigidPlane;
 pub use scene::{Counts, Scene, SceneSettings, SceneState};
-pub use step::StepReport;
+pub use step::{Phase, StepReport};

@@ -43,10 +43,10 @@ pub enum Probe {
     Energy(EnergyKind),
     /// A count.
     Count(CountKind),
-    /// Volume mean of a stress component (xx yy zz xy yz zx) over a body [Pa].
+    /// Volume mean of a stress component (xx yy zz xy yz zx) over elements [Pa].
     Stress {
-        /// Index of the body.
-        body: usize,
+        /// Bodies and their elements.
+        elements: Vec<(usize, u32)>,
         /// Voigt index.
         component: usize,
     },
@@ -79,12 +79,12 @@ impl Probe {
             Probe::Velocity { nodes, direction } => mean(nodes, &|n| solid.velocity[n].dot(direction)),
             Probe::Energy(kind) => scene.ledger().value(*kind),
             Probe::Count(kind) => scene.count(*kind) as f64,
-            Probe::Stress { body, component } => {
-                let fields = solid.element_fields(*body);
+            Probe::Stress { elements, component } => {
+                let fields: Vec<_> = (0..solid.body_count()).map(|body| solid.element_fields(body)).collect();
                 let (mut sum, mut volume) = (0.0, 0.0);
-                for (element, (stress, _)) in fields.iter().enumerate() {
-                    let v = solid.element_volume(*body, element as u32);
-                    sum += v * stress.0[*component];
+                for &(body, element) in elements {
+                    let v = solid.element_volume(body, element);
+                    sum += v * fields[body][element as usize].0.0[*component];
                     volume += v;
                 }
                 sum / volume

@@ -27,7 +27,7 @@ pub struct RigidPlane {
 
 /// A node that may touch a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Candidate {
+pub(crate) struct Candidate {
     node: u32,
     law: Linear,
     radius: f64,

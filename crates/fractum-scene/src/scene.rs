@@ -161,6 +161,16 @@ impl Scene {
         &self.settings
     }
 
+    /// Whether some element that is still there holds each node.
+    pub fn attached_nodes(&self) -> Vec<bool> {
+        let mut attached = vec![true; self.solid.reference.len()];
+        let debris = self.debris.state();
+        for (&node, &held) in debris.nodes.iter().zip(&debris.attached) {
+            attached[node as usize] = held;
+        }
+        attached
+    }
+
     /// Counts of everything but fragments.
     pub fn counts(&self) -> Counts {
         let fracture = self.solid.fracture();

@@ -16,6 +16,19 @@ pub struct StepReport {
     pub particles_born: usize,
 }
 
+/// A part of the step, for those who time it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Phase {
+    /// Internal forces, damage included.
+    Solid,
+    /// Contact of particles and rigid planes, search included.
+    Contact,
+    /// Loads, supports and the motion of the nodes.
+    Motion,
+    /// Removal of elements and birth of particles.
+    Transition,
+}
+
 impl Scene {
     /// Advances the scene from tⁿ to tⁿ⁺¹ (central differences, velocities at the half steps).
     ///
@@ -24,12 +37,22 @@ impl Scene {
     /// # Errors
     /// [`StepError`] when the balance that was measured does not close, or is not a number.
     pub fn step(&mut self, measure: bool) -> Result<StepReport, StepError> {
+        self.step_observed(measure, |_| {})
+    }
+
+    /// [`Scene::step`], telling `passed` when a phase is over.
+    ///
+    /// # Errors
+    /// As [`Scene::step`].
+    pub fn step_observed(&mut self, measure: bool, mut passed: impl FnMut(Phase)) -> Result<StepReport, StepError> {
         let measure = measure || self.clock.step == 0;
         let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
         let dt_kick = 0.5 * (dt_before + dt_after);
 
         self.solid.update_internal_forces(dt_before, measure); // -∫ Bᵀσ dV; damage evolves
+        passed(Phase::Solid);
         let contact = self.add_contact_forces(dt_before);
+        passed(Phase::Contact);
         let load_before = self.loads.add_forces(&mut self.solid, time, dt_before);
         if self.clock.step == 0 {
             self.start_half_a_step_early(dt_before);
@@ -57,10 +80,13 @@ impl Scene {
         self.books.external += support.after + load_after;
         self.books.damping += motion.damped_after;
 
+        passed(Phase::Motion);
         let report = self.release_cut_elements();
+        passed(Phase::Transition);
         if self.debris.search(&self.solid) {
             self.update_contact_frequency();
         }
+        passed(Phase::Contact);
         let dt = self.next_dt(time + dt_after);
         self.clock.advance(dt);
         Ok(report)

@@ -1,0 +1,332 @@
+//! Solid bodies: elements, nodes, materials, strength.
+
+use fractum_fem as fem;
+use fractum_fem::{CriterionKind, DamageLaw, DamageZone, Elastic, Region, Solid};
+use fractum_math::Vec3;
+use fractum_mesh::renumber::hilbert_order;
+use fractum_mesh::topology;
+use rand::SeedableRng;
+use rand_distr::{Distribution as _, Uniform, Weibull};
+use rand_pcg::Pcg64Mcg;
+
+use super::{Context, use_in_words};
+use crate::case::model::{
+    BodyKind, Criterion, Damage, Distribution, Formulation, GroupUse, Kinematics, Material, Plane, Scatter, Softening,
+    SolidBody,
+};
+use crate::case::{Diagnostic, Place};
+
+/// A solid body of the case with its elements in the mesh.
+pub(super) struct Part<'a> {
+    pub(super) body: &'a SolidBody,
+    pub(super) name: &'a str,
+    pub(super) place: Place,
+    pub(super) shape: fem::Shape,
+    /// Tetrahedra or triangles of the mesh.
+    pub(super) elements: Vec<u32>,
+}
+
+/// The nodes of the scene: those of solid bodies, in an order that keeps neighbours close in memory.
+pub(super) struct Numbering {
+    pub(super) scene_node: Vec<u32>,
+    pub(super) positions: Vec<Vec3>,
+}
+
+impl Numbering {
+    /// Scene nodes in the order of the file.
+    pub(super) fn file_order(&self) -> Vec<u32> {
+        self.scene_node.iter().copied().filter(|&n| n != u32::MAX).collect()
+    }
+}
+
+impl<'a> Context<'a> {
+    /// The elements of each solid body.
+    pub(super) fn solid_parts(&mut self) -> Option<Vec<Part<'a>>> {
+        let (case, mesh) = (self.case, self.mesh);
+        let mut parts: Vec<Part<'a>> = Vec::new();
+        for body in &case.bodies {
+            let BodyKind::Solid(solid) = &body.kind else { continue };
+            let groups = mesh.group(&solid.group.value);
+            let collect = |of: fn(&fractum_mesh::Group) -> &Vec<u32>| -> Vec<u32> {
+                groups.iter().flat_map(|g| of(g)).copied().collect()
+            };
+            let (tetrahedra, triangles) = (collect(|g| &g.tetrahedra), collect(|g| &g.triangles));
+            let place = solid.group.place.clone();
+            let (shape, elements) = if !tetrahedra.is_empty() {
+                (fem::Shape::T4, tetrahedra)
+            } else if !triangles.is_empty() {
+                (fem::Shape::T3, triangles)
+            } else {
+                let found = format!("= \"{}\"", solid.group.value);
+                let wanted = format!("tetrahedra or triangles as {}", use_in_words(GroupUse::Body));
+                self.error(&place, found, wanted);
+                continue;
+            };
+            parts.push(Part { body: solid, name: &body.name.value, place, shape, elements });
+        }
+        if parts.is_empty() && self.diagnostics.is_empty() {
+            let place = self.whole_case();
+            self.error(&place, "no body of kind \"solid\"", "at least one; only rigid tools have nothing to compute");
+        }
+        for part in &parts {
+            self.check_dimension(part);
+        }
+        self.check_overlap(&parts);
+        self.diagnostics.is_empty().then_some(parts)
+    }
+
+    fn check_dimension(&mut self, part: &Part) {
+        let body = part.body;
+        if part.shape == fem::Shape::T3 {
+            let flat = part.elements.iter().flat_map(|&t| self.mesh.triangles[t as usize]);
+            let z0 = flat.clone().next().map_or(0.0, |n| self.mesh.nodes[n as usize].z);
+            let (low, high) = self.mesh.bounding_box();
+            if flat.into_iter().any(|n| (self.mesh.nodes[n as usize].z - z0).abs() > 1e-9 * (high - low).norm()) {
+                self.error(
+                    &part.place,
+                    format!("= \"{}\": triangles out of the xy-plane", body.group.value),
+                    "a plane body lies in the xy-plane; a solid needs tetrahedra",
+                );
+            }
+            return;
+        }
+        if let Some(plane) = &body.plane {
+            self.error(&plane.place, ": the body is made of tetrahedra", "no plane state in three dimensions; remove the key");
+        }
+        if let Some(thickness) = &body.thickness {
+            self.error(&thickness.place, ": the body is made of tetrahedra", "no thickness in three dimensions; remove the key");
+        }
+    }
+
+    /// An element may belong to one body only.
+    fn check_overlap(&mut self, parts: &[Part]) {
+        for (index, part) in parts.iter().enumerate() {
+            for other in &parts[..index] {
+                if other.shape != part.shape {
+                    let found = format!("= \"{}\" mixes with \"{}\"", part.body.group.value, other.body.group.value);
+                    self.error(&part.place, found, "all solid bodies of triangles, or all of tetrahedra");
+                } else if let Some(&element) = part.elements.iter().find(|e| other.elements.binary_search(e).is_ok()) {
+                    let tags = match part.shape {
+                        fem::Shape::T4 => &self.mesh.tetrahedron_tags,
+                        fem::Shape::T3 => &self.mesh.triangle_tags,
+                    };
+                    let found = format!(
+                        "= \"{}\": element {} also belongs to body \"{}\"",
+                        part.body.group.value, tags[element as usize], other.name
+                    );
+                    self.error(&part.place, found, "bodies without common elements");
+                }
+            }
+        }
+    }
+
+    /// Nodes of the bodies along a Hilbert curve.
+    pub(super) fn number_nodes(&mut self, parts: &[Part]) -> Option<Numbering> {
+        let mut scene_node = vec![u32::MAX; self.mesh.nodes.len()];
+        for part in parts {
+            for element in self.element_nodes(part) {
+                element.iter().for_each(|&n| scene_node[n as usize] = 0);
+            }
+        }
+        let used: Vec<u32> = (0..scene_node.len() as u32).filter(|&n| scene_node[n as usize] == 0).collect();
+        let points: Vec<Vec3> = used.iter().map(|&n| self.mesh.nodes[n as usize]).collect();
+        let order = hilbert_order(&points);
+        for (new, &old) in (0..).zip(&order) {
+            scene_node[used[old as usize] as usize] = new;
+        }
+        let positions = order.iter().map(|&old| points[old as usize]).collect();
+        Some(Numbering { scene_node, positions })
+    }
+
+    /// Mesh nodes of the elements of a part; triangles repeat their last node.
+    pub(super) fn element_nodes(&self, part: &Part) -> Vec<[u32; 4]> {
+        let of = |&e: &u32| match part.shape {
+            fem::Shape::T4 => self.mesh.tetrahedra[e as usize],
+            fem::Shape::T3 => {
+                let [a, b, c] = self.mesh.triangles[e as usize];
+                [a, b, c, c]
+            }
+        };
+        part.elements.iter().map(of).collect()
+    }
+
+    pub(super) fn solid_bodies(&mut self, parts: &[Part<'a>], numbering: &Numbering) -> Option<Vec<fem::Body>> {
+        let mut bodies = Vec::new();
+        for part in parts {
+            let material = &self.case.materials[part.body.material];
+            let elastic = Elastic {
+                density: material.density,
+                young_modulus: material.young_modulus,
+                poisson_ratio: material.poisson_ratio,
+            };
+            let elements = self.element_nodes(part);
+            let elements: Vec<[u32; 4]> =
+                elements.iter().map(|e| e.map(|n| numbering.scene_node[n as usize])).collect();
+            let mut body = fem::Body::new(part.name, part.shape, elements, elastic);
+            body.formulation = match part.body.formulation {
+                Formulation::Smoothed => fem::Formulation::Smoothed,
+                Formulation::Standard => fem::Formulation::Standard,
+            };
+            body.kinematics = match part.body.kinematics {
+                Kinematics::Small => fem::Kinematics::Small,
+                Kinematics::Corotational => fem::Kinematics::Corotational,
+            };
+            body.plane = match part.body.plane.as_ref().map(|p| p.value) {
+                Some(Plane::Stress) => fem::Plane::Stress,
+                _ => fem::Plane::Strain,
+            };
+            body.thickness = part.body.thickness.as_ref().map_or(1.0, |t| t.value);
+            if let Some(damage) = material.damage.as_ref().filter(|_| part.body.damage) {
+                if damage.value.unilateral && body.formulation == fem::Formulation::Standard {
+                    self.error(
+                        &damage.place,
+                        ".unilateral = true with the standard formulation",
+                        "the smoothed formulation, which alone can close cracks; remove one of the two",
+                    );
+                }
+                body.damage = Some(self.damage_zone(part, &body, material, &damage.value, numbering));
+            }
+            bodies.push(body);
+        }
+        self.diagnostics.is_empty().then_some(bodies)
+    }
+
+    fn damage_zone(
+        &mut self,
+        part: &Part,
+        body: &fem::Body,
+        material: &Material,
+        damage: &Damage,
+        numbering: &Numbering,
+    ) -> DamageZone {
+        let midpoints = body.edge_midpoints(&numbering.positions);
+        let region = match &part.body.damage_where {
+            None => Region::Everywhere,
+            Some(condition) => {
+                let marked: Vec<bool> = midpoints.iter().map(|&p| condition.value.holds_at(p)).collect();
+                if marked.iter().all(|m| !m) {
+                    self.error(&condition.place, ": no edge of the body fulfils the condition", "damage somewhere, or damage = false");
+                }
+                Region::Edges(marked)
+            }
+        };
+        let mut strength_factor = Vec::new();
+        if part.body.strength_factor.is_some() || damage.scatter.is_some() {
+            strength_factor = vec![1.0; midpoints.len()];
+        }
+        if let Some(factor) = &part.body.strength_factor {
+            for (value, &p) in strength_factor.iter_mut().zip(&midpoints) {
+                *value = factor.value.at(p);
+                if !(*value > 0.0 && value.is_finite()) {
+                    let found = format!(" is {value} at ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
+                    self.error(&factor.place, found, "a positive factor everywhere");
+                    break;
+                }
+            }
+        }
+        if let Some(scatter) = &damage.scatter {
+            for (edge, (value, &p)) in strength_factor.iter_mut().zip(&midpoints).enumerate() {
+                *value *= scatter_factor(scatter, edge as u64, p);
+            }
+        }
+        DamageZone {
+            law: damage_law(material, damage),
+            region,
+            strength_factor,
+            reduce_strength_to_fit: damage.reduce_strength_to_fit,
+        }
+    }
+
+    /// Warns where elements are large for their fracture energy, or strength had to be lowered.
+    pub(super) fn length_warnings(&self, solid: &Solid, parts: &[Part]) -> Vec<Diagnostic> {
+        let mut warnings = Vec::new();
+        for (index, part) in parts.iter().enumerate() {
+            let (reduced, ratio) = solid.length_report(index);
+            if reduced > 0 {
+                warnings.push(Diagnostic::warning(
+                    &part.place,
+                    format!(": strength lowered on {reduced} edges that are too long for the fracture energy"),
+                ));
+            } else if ratio > 0.25 {
+                let advice = "elements below a quarter of that length resolve the softening; refine where cracks are expected";
+                warnings.push(
+                    Diagnostic::warning(
+                        &part.place,
+                        format!(": the longest element reaches {:.0} % of the length at which softening snaps back", 100.0 * ratio),
+                    )
+                    .remedy(advice),
+                );
+            }
+        }
+        warnings
+    }
+
+    pub(super) fn set_initial_velocity(&self, solid: &mut Solid, parts: &[Part]) {
+        for (index, part) in parts.iter().enumerate() {
+            for (axis, function) in part.body.initial_velocity.iter().enumerate() {
+                let Some(function) = function else { continue };
+                let corners = part.shape.node_count();
+                let nodes: Vec<u32> = solid.body(index).elements.iter().flat_map(|e| &e[..corners]).copied().collect();
+                for node in nodes {
+                    let place = solid.reference[node as usize];
+                    solid.velocity[node as usize][axis] = function.value(0.0, place);
+                }
+            }
+        }
+    }
+
+    /// Outward facets of all solids (edges of plane bodies repeat their second node), in scene nodes.
+    pub(super) fn boundary(&self, parts: &[Part], numbering: &Numbering) -> Vec<[u32; 3]> {
+        let scene = |n: u32| numbering.scene_node[n as usize];
+        let elements: Vec<[u32; 4]> = parts.iter().flat_map(|part| self.element_nodes(part)).collect();
+        if parts.iter().all(|part| part.shape == fem::Shape::T4) {
+            topology::boundary_of_tetrahedra(&elements).iter().map(|f| f.nodes.map(scene)).collect()
+        } else {
+            let triangles: Vec<[u32; 3]> = elements.iter().map(|e| [e[0], e[1], e[2]]).collect();
+            let edges = topology::boundary_of_triangles(&triangles);
+            edges.iter().map(|e| [scene(e.nodes[0]), scene(e.nodes[1]), scene(e.nodes[1])]).collect()
+        }
+    }
+}
+
+fn damage_law(material: &Material, damage: &Damage) -> DamageLaw {
+    let kind = match damage.criterion {
+        Criterion::Rankine => CriterionKind::Rankine,
+        Criterion::MohrCoulomb => CriterionKind::MohrCoulomb,
+        Criterion::MohrCoulombPure => CriterionKind::PureMohrCoulomb,
+        Criterion::DruckerPrager => CriterionKind::DruckerPrager,
+        Criterion::Mazars => CriterionKind::Mazars,
+        Criterion::ModifiedMohrCoulomb => CriterionKind::ModifiedMohrCoulomb,
+    };
+    let ratio = damage.compressive_strength / damage.tensile_strength;
+    DamageLaw {
+        criterion: fem::Criterion::new(kind, damage.friction_angle, ratio, material.poisson_ratio),
+        tensile_strength: damage.tensile_strength,
+        fracture_energy: damage.fracture_energy,
+        softening: match damage.softening {
+            Softening::Exponential => fem::Softening::Exponential,
+            Softening::Linear => fem::Softening::Linear,
+            // The case gives the kink's opening as a fraction of the last one, 2 G_f/(f_t (stress + fraction)).
+            Softening::Bilinear { kink_stress, kink_opening } => fem::Softening::Bilinear {
+                stress: kink_stress,
+                opening: 2.0 * kink_opening / (kink_stress + kink_opening),
+            },
+        },
+        residual: damage.residual,
+        unilateral: damage.unilateral,
+        rate_time: damage.rate_time,
+    }
+}
+
+/// The factor of one edge: its own stream of the named generator PCG-64 MCG, so that edges are independent.
+fn scatter_factor(scatter: &Scatter, edge: u64, midpoint: Vec3) -> f64 {
+    let place = midpoint.iter().fold(scatter.seed, |hash, c| (hash ^ c.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    let mut generator = Pcg64Mcg::seed_from_u64(place ^ edge);
+    match scatter.distribution {
+        // Parameters were checked with the case; 1 would be "no scatter".
+        Distribution::Weibull { modulus } => Weibull::new(1.0, modulus).map_or(1.0, |d| d.sample(&mut generator)),
+        Distribution::Uniform { width } => {
+            Uniform::new_inclusive(1.0 - width, 1.0 + width).map_or(1.0, |d| d.sample(&mut generator))
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Supports and loads on the groups of the mesh.
+
+use std::collections::HashMap;
+
+use fractum_math::Vec3;
+use fractum_scene::{Load, Motion, Support};
+
+use super::bodies::{Numbering, Part};
+use super::{Context, function, use_in_words};
+use crate::case::model::{self, Components, GroupUse, LoadKind};
+use crate::case::{Place, Spanned};
+
+const AXES: [char; 3] = ['x', 'y', 'z'];
+
+impl Context<'_> {
+    pub(super) fn supports(&mut self, numbering: &Numbering) -> Vec<Support> {
+        let case = self.case;
+        let mut supports = Vec::new();
+        for support in &case.supports {
+            let nodes = self.group_nodes(&support.group, numbering);
+            let name = support.name.as_ref().unwrap_or(&support.group);
+            for (axis, motion) in support.motion.iter().enumerate() {
+                let Some(motion) = motion else { continue };
+                let motion = match &motion.value {
+                    model::Motion::Fixed => Motion::Fixed,
+                    model::Motion::Velocity(v) => Motion::Velocity(function(v)),
+                    model::Motion::Displacement(u) => Motion::Displacement(function(u)),
+                };
+                supports.push(Support::new(&name.value, nodes.clone(), axis, motion));
+            }
+        }
+        supports
+    }
+
+    pub(super) fn loads(&mut self, parts: &[Part], numbering: &Numbering, boundary: &[[u32; 3]]) -> Vec<Load> {
+        let case = self.case;
+        let thickness = parts.iter().find(|p| p.shape == fractum_fem::Shape::T3).map_or(0.0, |part| {
+            part.body.thickness.as_ref().map_or(1.0, |t| t.value)
+        });
+        let surface = Surface::new(boundary, thickness, &numbering.positions);
+        let mut loads = Vec::new();
+        for load in &case.loads {
+            match &load.kind {
+                LoadKind::Force { group, force } => {
+                    let nodes = self.force_shares(group, numbering, &surface);
+                    push_nodal(&mut loads, &nodes, force);
+                }
+                LoadKind::Traction { group, traction } => {
+                    let facets = self.group_facets(group, numbering, &surface);
+                    push_nodal(&mut loads, &surface.areas(&facets), traction);
+                }
+                LoadKind::Pressure { group, pressure } => {
+                    let facets = self.group_facets(group, numbering, &surface);
+                    loads.push(Load::Pressure { facets, thickness, value: function(pressure) });
+                }
+                LoadKind::Gravity { acceleration } => {
+                    for (axis, value) in acceleration.iter().enumerate() {
+                        let Some(value) = value else { continue };
+                        self.refuse_position(&load.name.as_ref().map(|n| n.place.clone()), value, AXES[axis]);
+                        loads.push(Load::Gravity { axis, value: function(value) });
+                    }
+                }
+            }
+        }
+        loads
+    }
+
+    fn refuse_position(&mut self, place: &Option<Place>, value: &crate::case::TimeFunction, axis: char) {
+        if value.depends_on_position() {
+            let place = place.clone().unwrap_or_else(|| self.whole_case());
+            self.error(&place, format!(": gravity along {axis} depends on the position"), "a function of time only");
+        }
+    }
+
+    /// Shares of a total force: by area where the group has facets, else equal.
+    fn force_shares(&mut self, group: &Spanned<String>, numbering: &Numbering, surface: &Surface) -> Vec<(u32, f64)> {
+        let facets = self.facets_in_file(group, numbering, surface);
+        let areas = surface.areas(&facets);
+        let total: f64 = areas.iter().map(|(_, area)| area).sum();
+        if total > 0.0 {
+            return areas.into_iter().map(|(node, area)| (node, area / total)).collect();
+        }
+        let nodes = self.group_nodes(group, numbering);
+        let share = 1.0 / nodes.len().max(1) as f64;
+        nodes.into_iter().map(|node| (node, share)).collect()
+    }
+
+    /// Outward facets of a group; an error if it has none on the surface.
+    fn group_facets(&mut self, group: &Spanned<String>, numbering: &Numbering, surface: &Surface) -> Vec<[u32; 3]> {
+        let facets = self.facets_in_file(group, numbering, surface);
+        if facets.is_empty() {
+            let found = format!("= \"{}\"", group.value);
+            self.error(&group.place, found, use_in_words(GroupUse::Facets));
+        }
+        facets
+    }
+
+    fn facets_in_file(&self, group: &Spanned<String>, numbering: &Numbering, surface: &Surface) -> Vec<[u32; 3]> {
+        let scene = |n: u32| numbering.scene_node[n as usize];
+        let mut facets = Vec::new();
+        for group in self.mesh.group(&group.value) {
+            if surface.thickness > 0.0 {
+                let lines = group.lines.iter().map(|&l| self.mesh.lines[l as usize].map(scene));
+                facets.extend(lines.filter_map(|[a, b]| surface.outward([a, b, b])));
+            } else {
+                let triangles = group.triangles.iter().map(|&t| self.mesh.triangles[t as usize].map(scene));
+                facets.extend(triangles.filter_map(|t| surface.outward(t)));
+            }
+        }
+        facets
+    }
+}
+
+fn push_nodal(loads: &mut Vec<Load>, nodes: &[(u32, f64)], components: &Components) {
+    for (axis, value) in components.iter().enumerate() {
+        if let Some(value) = value {
+            loads.push(Load::Nodal { nodes: nodes.to_vec(), axis, value: function(value) });
+        }
+    }
+}
+
+/// The surface of the solids, searchable by the nodes of a facet.
+struct Surface<'a> {
+    by_nodes: HashMap<[u32; 3], [u32; 3]>,
+    /// Thickness of plane bodies [m], 0 in space.
+    thickness: f64,
+    positions: &'a [Vec3],
+}
+
+impl<'a> Surface<'a> {
+    fn new(boundary: &[[u32; 3]], thickness: f64, positions: &'a [Vec3]) -> Self {
+        let by_nodes = boundary.iter().map(|&facet| (sorted(facet), facet)).collect();
+        Surface { by_nodes, thickness, positions }
+    }
+
+    /// The facet with these nodes, oriented outwards.
+    fn outward(&self, nodes: [u32; 3]) -> Option<[u32; 3]> {
+        self.by_nodes.get(&sorted(nodes)).copied()
+    }
+
+    /// Area that belongs to each node of the facets [m²], ascending by node.
+    fn areas(&self, facets: &[[u32; 3]]) -> Vec<(u32, f64)> {
+        let mut shares: Vec<(u32, f64)> = Vec::new();
+        for facet in facets {
+            let [a, b, c] = facet.map(|n| self.positions[n as usize]);
+            if self.thickness > 0.0 {
+                let half = 0.5 * (b - a).norm() * self.thickness;
+                shares.extend([(facet[0], half), (facet[1], half)]);
+            } else {
+                let third = (b - a).cross(&(c - a)).norm() / 6.0;
+                shares.extend(facet.map(|n| (n, third)));
+            }
+        }
+        shares.sort_by_key(|s| s.0);
+        let mut merged: Vec<(u32, f64)> = Vec::new();
+        for (node, area) in shares {
+            match merged.last_mut() {
+                Some(last) if last.0 == node => last.1 += area,
+                _ => merged.push((node, area)),
+            }
+        }
+        merged
+    }
+}
+
+fn sorted(mut nodes: [u32; 3]) -> [u32; 3] {
+    nodes.sort_unstable();
+    nodes
+}

@@ -1,0 +1,222 @@
+//! From a case and its mesh to a scene: names become numbers here, and every mistake that only the mesh can show is
+//! reported with its place in the case file.
+
+mod bodies;
+mod conditions;
+mod probes;
+
+use std::sync::Arc;
+
+use fractum_fem::{LocalDamping, Solid, Viscosity};
+use fractum_math::Vec3;
+use fractum_mesh::Mesh;
+use fractum_scene::coupling::Debris;
+use fractum_scene::{Guard, Loads, Probe, RigidPlane, Scene, SceneSettings, Supports, TimeStepSettings};
+
+use crate::case::model::{BodyKind, Case, GroupUse, Shape, TimeStep};
+use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction, nearest};
+
+/// A scene with what is needed to speak of it in the user's terms.
+pub struct Assembly {
+    /// The simulation at t = 0.
+    pub scene: Scene,
+    /// The probes of the case that are measured, in the order of `Case::probes`; none for expressions.
+    pub probes: Vec<Option<Probe>>,
+    /// Nodes of the mesh in the scene's numbering, or `u32::MAX` for nodes of no solid body.
+    pub scene_node: Vec<u32>,
+    /// Nodes of the scene in the order of the mesh file: outputs follow it.
+    pub file_order: Vec<u32>,
+    /// For each solid body, the mesh elements that it is made of (tetrahedra or triangles).
+    pub elements: Vec<Vec<u32>>,
+    /// Outward boundary facets of the solids at the start, in scene nodes; edges repeat their second node.
+    pub boundary: Vec<[u32; 3]>,
+    /// Doubts that do not keep the scene from running.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// What all parts of the assembly share.
+struct Context<'a> {
+    case: &'a Case,
+    mesh: &'a Mesh,
+    diagnostics: Vec<Diagnostic>,
+}
+
+/// Builds the scene of a case on its mesh (coordinates already in metres).
+///
+/// # Errors
+/// Everything that does not fit: groups that are missing or of the wrong kind, overlapping bodies, contradictory
+/// supports, elements too large for their fracture energy.
+pub fn assemble(case: &Case, mesh: &Mesh) -> Result<Assembly, Diagnostics> {
+    let mut context = Context { case, mesh, diagnostics: Vec::new() };
+    context.check_groups();
+    let assembly = context.build();
+    match assembly {
+        Some(mut assembly) if context.diagnostics.is_empty() => {
+            assembly.warnings.extend(context.case.warnings().iter().cloned());
+            Ok(assembly)
+        }
+        _ => Err(Diagnostics(context.diagnostics)),
+    }
+}
+
+impl Context<'_> {
+    /// A place for mistakes of the whole case.
+    fn whole_case(&self) -> Place {
+        Place { file: self.case.source.path.display().to_string(), line: 0, column: 0, key: String::new() }
+    }
+
+    fn error(&mut self, place: &Place, found: impl Into<String>, expected: impl Into<String>) {
+        self.diagnostics.push(Diagnostic::error(place, found).expected(expected));
+    }
+
+    /// Every group that the case names must be in the mesh, with elements.
+    fn check_groups(&mut self) {
+        let names = self.mesh.group_names();
+        for (group, _) in self.case.groups_used() {
+            if names.contains(&group.value.as_str()) {
+                if self.mesh.group_nodes(&group.value).is_empty() {
+                    self.error(&group.place, format!("= \"{}\"", group.value), "the group has no elements in the mesh");
+                }
+                continue;
+            }
+            let list = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            let mut diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value)).expected(format!(
+                "a physical group of {}; groups there: {list}",
+                self.case.mesh.file.value.display()
+            ));
+            if let Some(near) = nearest(&group.value, names.iter().copied()) {
+                diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
+            }
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    fn build(&mut self) -> Option<Assembly> {
+        if !self.diagnostics.is_empty() {
+            return None;
+        }
+        let parts = self.solid_parts()?;
+        let numbering = self.number_nodes(&parts)?;
+        let bodies = self.solid_bodies(&parts, &numbering)?;
+        let nodes = numbering.positions.clone();
+        let mut solid = match Solid::new(nodes, bodies) {
+            Ok(solid) => solid,
+            Err(error) => {
+                let place = parts.first().map_or_else(|| self.whole_case(), |part| part.place.clone());
+                self.error(&place, format!(": {error}"), "");
+                return None;
+            }
+        };
+        let mut warnings = self.length_warnings(&solid, &parts);
+        self.set_initial_velocity(&mut solid, &parts);
+        let damping = self.case.damping;
+        solid.set_viscosity(Viscosity {
+            stiffness_time: damping.stiffness,
+            bulk_linear: damping.bulk_linear,
+            bulk_quadratic: damping.bulk_quadratic,
+        });
+        let boundary = self.boundary(&parts, &numbering);
+        let supports = self.supports(&numbering);
+        let loads = self.loads(&parts, &numbering, &boundary);
+        let supports = match Supports::new(supports, &solid.reference) {
+            Ok(supports) => supports,
+            Err(error) => {
+                let place = self.case.supports.first().map(|s| s.group.place.clone());
+                let place = place.unwrap_or_else(|| self.whole_case());
+                self.error(&place, format!(": {error}"), "");
+                return None;
+            }
+        };
+        let probes = self.probes(&parts, &numbering, &supports);
+        if !self.diagnostics.is_empty() {
+            return None;
+        }
+        let contact = parts.first().map(|part| self.case.materials[part.body.material].contact).unwrap_or_default();
+        let debris = Debris::new(&solid, contact.friction, contact.damping_ratio);
+        let mut surface: Vec<u32> = boundary.iter().flatten().copied().collect();
+        surface.sort_unstable();
+        surface.dedup();
+        let scene = Scene::new(
+            solid,
+            supports,
+            Loads::new(loads, numbering.positions.len()),
+            debris,
+            self.planes(),
+            &surface,
+            self.settings(),
+        );
+        if parts.iter().skip(1).any(|part| self.case.materials[part.body.material].contact != contact) {
+            let place = self.whole_case();
+            warnings.push(Diagnostic::warning(
+                &place,
+                "the materials differ in friction or damping_ratio: contacts between discrete elements use those of the first body",
+            ));
+        }
+        Some(Assembly {
+            scene,
+            probes,
+            file_order: numbering.file_order(),
+            scene_node: numbering.scene_node,
+            elements: parts.into_iter().map(|part| part.elements).collect(),
+            boundary,
+            warnings,
+        })
+    }
+
+    fn settings(&self) -> SceneSettings {
+        let solver = &self.case.solver;
+        SceneSettings {
+            time_step: TimeStepSettings {
+                safety: solver.safety,
+                element_bound: solver.time_step == TimeStep::Element,
+                fixed: solver.step.as_ref().map(|step| step.value),
+                end: solver.end,
+            },
+            damping: LocalDamping { local: self.case.damping.local, mass_rate: self.case.damping.mass },
+            stiffness_time: self.case.damping.stiffness,
+            guard: Guard { warning: solver.balance_warning, stop: solver.balance_stop },
+        }
+    }
+
+    fn planes(&self) -> Vec<RigidPlane> {
+        let rigid = self.case.bodies.iter().filter_map(|body| match &body.kind {
+            BodyKind::Rigid(rigid) => Some(rigid),
+            BodyKind::Solid(_) => None,
+        });
+        rigid
+            .map(|rigid| {
+                let Shape::Plane { point, normal } = rigid.shape;
+                RigidPlane::new(point, normal, rigid.contact.friction, rigid.contact.damping_ratio)
+            })
+            .collect()
+    }
+
+    /// Nodes of a group that belong to solid bodies, in the scene's numbering, ascending.
+    fn group_nodes(&mut self, group: &Spanned<String>, numbering: &bodies::Numbering) -> Vec<u32> {
+        let in_file = self.mesh.group_nodes(&group.value);
+        let mut nodes: Vec<u32> =
+            in_file.iter().map(|&n| numbering.scene_node[n as usize]).filter(|&n| n != u32::MAX).collect();
+        nodes.sort_unstable();
+        if nodes.is_empty() {
+            self.error(&group.place, format!("= \"{}\"", group.value), "a group that touches a solid body");
+        }
+        nodes
+    }
+}
+
+/// A function of time and place as the scene takes it.
+fn function(function: &TimeFunction) -> fractum_scene::TimeFunction {
+    let function = function.clone();
+    Arc::new(move |time, position: &Vec3| function.value(time, *position))
+}
+
+/// Whether a group is of use where the case puts it, in words.
+fn use_in_words(group_use: GroupUse) -> &'static str {
+    match group_use {
+        GroupUse::Body => "elements of a body",
+        GroupUse::Support | GroupUse::ProbeNodes => "nodes of a solid body",
+        GroupUse::Force => "nodes or facets of a solid body",
+        GroupUse::Facets => "facets on the surface of a solid body",
+        GroupUse::ProbeElements => "elements of a solid body",
+    }
+}

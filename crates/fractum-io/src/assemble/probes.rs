@@ -1,0 +1,89 @@
+//! Probes on the groups of the mesh.
+
+use fractum_scene::{CountKind, EnergyKind, Probe, Supports};
+
+use super::Context;
+use super::bodies::{Numbering, Part};
+use super::use_in_words;
+use crate::case::model::{self, GroupUse, ProbeKind};
+
+impl Context<'_> {
+    /// The measured probes of the case; none for expressions.
+    pub(super) fn probes(&mut self, parts: &[Part], numbering: &Numbering, supports: &Supports) -> Vec<Option<Probe>> {
+        let case = self.case;
+        case.probes.iter().map(|probe| self.probe(&probe.kind, parts, numbering, supports)).collect()
+    }
+
+    fn probe(
+        &mut self,
+        kind: &ProbeKind,
+        parts: &[Part],
+        numbering: &Numbering,
+        supports: &Supports,
+    ) -> Option<Probe> {
+        Some(match kind {
+            ProbeKind::Reaction { group, along } => {
+                let places = supports.places(&self.group_nodes(group, numbering));
+                let along_held = places.iter().any(|&(_, _, axis)| along[axis as usize] != 0.0);
+                if !along_held {
+                    self.error(
+                        &group.place,
+                        format!("= \"{}\": nothing holds this group along the direction of the probe", group.value),
+                        "a group that a support prescribes",
+                    );
+                }
+                Probe::Reaction { places, direction: *along }
+            }
+            ProbeKind::Displacement { group, along } => {
+                Probe::Displacement { nodes: self.group_nodes(group, numbering), direction: *along }
+            }
+            ProbeKind::Velocity { group, along } => {
+                Probe::Velocity { nodes: self.group_nodes(group, numbering), direction: *along }
+            }
+            ProbeKind::Stress { group, component } => {
+                let wanted: Vec<&fractum_mesh::Group> = self.mesh.group(&group.value);
+                let mut elements = Vec::new();
+                for (body, part) in parts.iter().enumerate() {
+                    for (index, &element) in (0..).zip(&part.elements) {
+                        let inside = wanted.iter().any(|g| {
+                            let list = if part.shape == fractum_fem::Shape::T4 { &g.tetrahedra } else { &g.triangles };
+                            list.binary_search(&element).is_ok()
+                        });
+                        if inside {
+                            elements.push((body, index));
+                        }
+                    }
+                }
+                if elements.is_empty() {
+                    let expected = use_in_words(GroupUse::ProbeElements);
+                    self.error(&group.place, format!("= \"{}\"", group.value), expected);
+                }
+                Probe::Stress { elements, component: *component as usize }
+            }
+            ProbeKind::Energy(kind) => Probe::Energy(match kind {
+                model::EnergyKind::External => EnergyKind::External,
+                model::EnergyKind::Kinetic => EnergyKind::Kinetic,
+                model::EnergyKind::Elastic => EnergyKind::Elastic,
+                model::EnergyKind::Damage => EnergyKind::Damage,
+                model::EnergyKind::Removed => EnergyKind::Removed,
+                model::EnergyKind::Contact => EnergyKind::Contact,
+                model::EnergyKind::Friction => EnergyKind::Friction,
+                model::EnergyKind::Damping => EnergyKind::Damping,
+                model::EnergyKind::Absorbed => EnergyKind::Absorbed,
+                model::EnergyKind::Residual => EnergyKind::Residual,
+            }),
+            ProbeKind::Count(kind) => Probe::Count(match kind {
+                model::CountKind::RemovedElements => CountKind::RemovedElements,
+                model::CountKind::BrokenEdges => CountKind::BrokenEdges,
+                model::CountKind::DamagedEdges => CountKind::DamagedEdges,
+                model::CountKind::Particles => CountKind::Particles,
+                model::CountKind::Fragments => CountKind::Fragments,
+                model::CountKind::Contacts => CountKind::Contacts,
+            }),
+            ProbeKind::Momentum { along } => Probe::Momentum(*along),
+            ProbeKind::AngularMomentum { along } => Probe::AngularMomentum(*along),
+            ProbeKind::CrackArea => Probe::CrackArea,
+            ProbeKind::Expression(_) => return None,
+        })
+    }
+}

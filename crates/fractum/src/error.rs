@@ -1,0 +1,74 @@
+use fractum_io::case::{Diagnostic, Diagnostics};
+use fractum_io::checkpoint::CheckpointError;
+use fractum_io::{OutputError, WriteError};
+use fractum_scene::StepError;
+
+/// Exit codes of the program, for scripts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExitCode {
+    /// Done.
+    Done = 0,
+    /// The case or the mesh is wrong.
+    Input = 1,
+    /// The run stopped itself.
+    Stopped = 2,
+    /// The machine failed: disk, memory.
+    Machine = 3,
+    /// Interrupted by the user, state saved.
+    Interrupted = 130,
+}
+
+/// Why a command did not do what it was asked to.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// Mistakes in the case or the mesh.
+    #[error(transparent)]
+    Input(#[from] Diagnostics),
+    /// The run stopped itself; its last good state is in the results folder.
+    #[error("{error}; last good state saved in {folder}")]
+    Stopped {
+        /// Why.
+        error: StepError,
+        /// Results folder.
+        folder: String,
+    },
+    /// A file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A result could not be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A checkpoint could not be saved or does not fit.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// Threads could not be started.
+    #[error("the threads could not be started: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// A quantity of the case did not meet its reference.
+    #[error("{0}")]
+    Unmet(String),
+}
+
+impl Failure {
+    /// A mistake in the input that has no place in a case file.
+    pub fn input(message: impl Into<String>) -> Self {
+        Failure::Input(Diagnostics(vec![Diagnostic {
+            severity: fractum_io::case::Severity::Error,
+            place: None,
+            found: message.into(),
+            expected: String::new(),
+            remedy: String::new(),
+        }]))
+    }
+
+    /// The exit code that tells a script what kind of failure this is.
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Failure::Input(_) | Failure::Unmet(_) => ExitCode::Input,
+            Failure::Stopped { .. } => ExitCode::Stopped,
+            Failure::Checkpoint(CheckpointError::Write(_)) => ExitCode::Machine,
+            Failure::Checkpoint(_) => ExitCode::Input,
+            Failure::Write(_) | Failure::Output(_) | Failure::Threads(_) => ExitCode::Machine,
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! The program behind the command line: read a case, run it, leave results.
+//!
+//! - [`run`]: one case from file to results folder
+//! - [`plan`]: what a run will do, before it does it
+//! - [`verify`]: the gallery against its references
+
+mod error;
+mod input;
+pub mod plan;
+mod record;
+pub mod run;
+pub mod verify;
+
+pub use error::{ExitCode, Failure};
+pub use input::{Input, load};

@@ -1,0 +1,358 @@
+//! What a run leaves behind: history, fields, particles, pictures of numbers over time.
+
+use std::path::{Path, PathBuf};
+
+use fractum_io::Compression;
+use fractum_io::case::model::{Case, ProbeExpression, ProbeInput, ProbeKind, Take};
+use fractum_io::history::{Column, History};
+use fractum_io::vtk::{CellBlock, CellKind, Collection, Field, PolyCells, PolyData, UnstructuredGrid, Values};
+use fractum_mesh::Mesh;
+use fractum_scene::Scene;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Failure;
+
+/// Columns of the history before the probes: name and unit.
+const LEDGER_COLUMNS: [(&str, &str); 13] = [
+    ("time", "s"),
+    ("dt", "s"),
+    ("external", "J"),
+    ("kinetic", "J"),
+    ("elastic", "J"),
+    ("damage", "J"),
+    ("removed", "J"),
+    ("contact", "J"),
+    ("friction", "J"),
+    ("damping", "J"),
+    ("residual", "J"),
+    ("removed_elements", "1"),
+    ("particles", "1"),
+];
+
+/// Where recording stands; part of every checkpoint.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct RecordState {
+    /// Rows and frames written so far.
+    rows: u64,
+    frames: u64,
+    history_length: u64,
+    collection: Vec<(f64, u32, String, String)>,
+    /// Time of each row [s].
+    pub(crate) times: Vec<f64>,
+    /// Values of each probe that is a column, row by row.
+    pub(crate) series: Vec<Vec<f64>>,
+    /// The ledger at each row: external, kinetic, elastic, damage, removed, contact, friction, damping.
+    pub(crate) energies: Vec<[f64; 8]>,
+}
+
+/// Writes the results of a run while it goes.
+pub(crate) struct Recorder<'a> {
+    case: &'a Case,
+    probes: &'a [Option<fractum_scene::Probe>],
+    folder: PathBuf,
+    history: History,
+    collection: Collection,
+    state: RecordState,
+    grid: GridLayout,
+    inputs: Vec<f64>,
+}
+
+/// The mesh of the solids as VTK wants it, in the order of the file.
+struct GridLayout {
+    file_order: Vec<u32>,
+    /// Connectivity of each body in the order of `file_order`.
+    bodies: Vec<(CellKind, Vec<u32>)>,
+}
+
+impl GridLayout {
+    fn new(scene: &Scene, file_order: &[u32]) -> Self {
+        let mut place = vec![0u32; file_order.len()];
+        for (file, &node) in (0..).zip(file_order) {
+            place[node as usize] = file;
+        }
+        let bodies = (0..scene.solid.body_count())
+            .map(|body| {
+                let body = scene.solid.body(body);
+                let corners = body.shape.node_count();
+                let kind = if corners == 4 { CellKind::Tetrahedron } else { CellKind::Triangle };
+                let nodes = body.elements.iter().flat_map(|e| &e[..corners]).map(|&n| place[n as usize]).collect();
+                (kind, nodes)
+            })
+            .collect();
+        GridLayout { file_order: file_order.to_vec(), bodies }
+    }
+}
+
+impl<'a> Recorder<'a> {
+    /// Starts recording, or goes on where `resumed` stood.
+    pub(crate) fn open(
+        case: &'a Case,
+        mesh: &Mesh,
+        scene: &Scene,
+        probes: &'a [Option<fractum_scene::Probe>],
+        file_order: &[u32],
+        folder: &Path,
+        resumed: Option<RecordState>,
+    ) -> Result<Self, Failure> {
+        debug_assert!(file_order.len() <= mesh.nodes.len());
+        let columns: Vec<Column> = LEDGER_COLUMNS
+            .iter()
+            .map(|(name, unit)| Column::new(*name, *unit))
+            .chain(case.probes.iter().filter(|p| !p.is_scalar()).map(|p| Column::new(p.name.value.clone(), p.unit.clone())))
+            .collect();
+        let path = folder.join("history.csv");
+        let (history, state) = match resumed {
+            Some(state) => (History::resume(&path, &columns, state.history_length)?, state),
+            None => {
+                let series = vec![Vec::new(); case.probes.len()];
+                (History::create(&path, &columns)?, RecordState { series, ..RecordState::default() })
+            }
+        };
+        let mut collection = Collection::default();
+        for (time, part, name, file) in &state.collection {
+            collection.push(*time, *part, name.clone(), file.clone());
+        }
+        fractum_io::atomic::create_folder(&folder.join("fields"))?;
+        Ok(Recorder {
+            case,
+            probes,
+            folder: folder.to_owned(),
+            history,
+            collection,
+            grid: GridLayout::new(scene, file_order),
+            state,
+            inputs: Vec::new(),
+        })
+    }
+
+    /// Whether a row of the history is due at `time`.
+    pub(crate) fn row_is_due(&self, time: f64) -> bool {
+        is_due(time, self.state.rows, self.case.output.history_every)
+    }
+
+    /// Whether a frame of the fields is due at `time`.
+    pub(crate) fn frame_is_due(&self, time: f64) -> bool {
+        is_due(time, self.state.frames, self.case.output.fields_every)
+    }
+
+    /// What has been recorded.
+    pub(crate) fn state(&self) -> &RecordState {
+        &self.state
+    }
+
+    /// Adds a row for the instant `time` that the last step measured.
+    pub(crate) fn row(&mut self, scene: &Scene, time: f64, dt: f64) -> Result<(), Failure> {
+        let ledger = scene.ledger();
+        let counts = scene.counts();
+        let energies = [
+            ledger.external,
+            ledger.kinetic,
+            ledger.elastic,
+            ledger.damage,
+            ledger.removed,
+            ledger.contact,
+            ledger.friction,
+            ledger.damping,
+        ];
+        let mut row = vec![time, dt];
+        row.extend(energies);
+        row.extend([ledger.residual(), counts.removed_elements as f64, counts.particles as f64]);
+        self.state.times.push(time);
+        self.state.energies.push(energies);
+        for index in 0..self.case.probes.len() {
+            let value = match (&self.case.probes[index].kind, &self.probes[index]) {
+                (_, Some(probe)) => probe.value(scene),
+                (ProbeKind::Expression(expression), None) if !expression.scalar => self.expression(expression),
+                _ => continue,
+            };
+            self.state.series[index].push(value);
+            row.push(value);
+        }
+        self.history.record(&row)?;
+        self.state.rows = next_index(time, self.case.output.history_every);
+        Ok(())
+    }
+
+    /// Value of an expression of probes with what has been recorded so far.
+    fn expression(&mut self, expression: &ProbeExpression) -> f64 {
+        let mut inputs = std::mem::take(&mut self.inputs);
+        inputs.clear();
+        inputs.extend(expression.inputs.iter().map(|input| match *input {
+            ProbeInput::Time => self.state.times.last().copied().unwrap_or(0.0),
+            ProbeInput::Probe { probe, take } => self.taken(probe, take),
+        }));
+        let value = expression.value(&inputs);
+        self.inputs = inputs;
+        value
+    }
+
+    fn taken(&self, probe: usize, take: Take) -> f64 {
+        let (times, values) = (&self.state.times, &self.state.series[probe]);
+        if let ProbeKind::Expression(expression) = &self.case.probes[probe].kind
+            && expression.scalar
+        {
+            return self.scalar(expression);
+        }
+        let last = || values.last().copied().unwrap_or(f64::NAN);
+        match take {
+            Take::Current | Take::Final => last(),
+            Take::Max => values.iter().copied().fold(f64::NAN, f64::max),
+            Take::Min => values.iter().copied().fold(f64::NAN, f64::min),
+            Take::AbsMax => values.iter().map(|v| v.abs()).fold(f64::NAN, f64::max),
+            Take::TimeOfMax => times[index_of_max(values).unwrap_or(0)],
+            Take::Mean => time_mean(times, values),
+            Take::At(time) => interpolate(times, values, time),
+        }
+    }
+
+    /// Value of an expression that reduces histories.
+    pub(crate) fn scalar(&self, expression: &ProbeExpression) -> f64 {
+        let inputs: Vec<f64> = expression
+            .inputs
+            .iter()
+            .map(|input| match *input {
+                ProbeInput::Time => self.state.times.last().copied().unwrap_or(0.0),
+                ProbeInput::Probe { probe, take } => self.taken(probe, take),
+            })
+            .collect();
+        expression.value(&inputs)
+    }
+
+    /// Writes the fields of the present instant, and its particles.
+    pub(crate) fn frame(&mut self, scene: &Scene) -> Result<(), Failure> {
+        let time = scene.clock.time;
+        let name = format!("fields/solid-{:05}.vtu", self.state.frames);
+        self.write_solid(scene, &self.folder.join(&name))?;
+        self.add_to_collection(time, 0, "solid", name);
+        if !scene.debris.is_empty() {
+            fractum_io::atomic::create_folder(&self.folder.join("particles"))?;
+            let name = format!("particles/particles-{:05}.vtp", self.state.frames);
+            write_particles(scene, &self.folder.join(&name))?;
+            self.add_to_collection(time, 1, "particles", name);
+        }
+        self.collection.write(&self.folder.join("fields.pvd"))?;
+        self.state.frames = next_index(time, self.case.output.fields_every);
+        Ok(())
+    }
+
+    fn add_to_collection(&mut self, time: f64, part: u32, name: &str, file: String) {
+        self.collection.push(time, part, name, file.clone());
+        self.state.collection.push((time, part, name.to_owned(), file));
+    }
+
+    fn write_solid(&self, scene: &Scene, path: &Path) -> Result<(), Failure> {
+        let (solid, order) = (&scene.solid, &self.grid.file_order);
+        let attached = scene.attached_nodes();
+        let nodal = |of: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { order.iter().map(|&n| of(n as usize)).collect() };
+        let points = nodal(&|n| solid.reference[n].into());
+        let displacement = nodal(&|n| solid.displacement[n].into());
+        let velocity = nodal(&|n| solid.velocity[n].into());
+        let held: Vec<u8> = order.iter().map(|&n| u8::from(attached[n as usize])).collect();
+        let (mut cells, mut stress, mut damage, mut bodies) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (body, (kind, nodes)) in self.grid.bodies.iter().enumerate() {
+            let corners = kind.nodes();
+            let mut kept = Vec::with_capacity(nodes.len());
+            for (element, (s, d)) in solid.element_fields(body).into_iter().enumerate() {
+                if solid.alive(body)[element] {
+                    kept.extend_from_slice(&nodes[corners * element..corners * (element + 1)]);
+                    stress.push(s.0);
+                    damage.push(d);
+                    bodies.push(body as i32);
+                }
+            }
+            cells.push((*kind, kept));
+        }
+        let first: Vec<f64> = stress.iter().map(|s| fractum_math::Sym3(*s).principal_values()[0]).collect();
+        let cells: Vec<CellBlock> = cells.iter().map(|(kind, nodes)| CellBlock { kind: *kind, nodes }).collect();
+        let grid = UnstructuredGrid {
+            points: &points,
+            cells: &cells,
+            point_data: &[
+                Field::vector("displacement", &displacement),
+                Field::vector("velocity", &velocity),
+                Field::flag("attached", &held),
+            ],
+            cell_data: &[
+                Field::tensor("stress", &stress),
+                Field::scalar("first_principal_stress", &first),
+                Field::scalar("damage", &damage),
+                Field::integer("body", &bodies),
+            ],
+            time: Some(scene.clock.time),
+        };
+        grid.write(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    }
+
+    /// Brings the rows to the disk; the state that a checkpoint keeps.
+    pub(crate) fn sync(&mut self) -> Result<RecordState, Failure> {
+        self.state.history_length = self.history.sync()?;
+        Ok(self.state.clone())
+    }
+
+    /// Gives the history its final name.
+    pub(crate) fn finish(self) -> Result<RecordState, Failure> {
+        self.history.finish()?;
+        Ok(self.state)
+    }
+}
+
+/// Particles as vertices with their radius.
+fn write_particles(scene: &Scene, path: &Path) -> Result<(), Failure> {
+    let (solid, debris) = (&scene.solid, &scene.debris);
+    let state = debris.state();
+    let of = |f: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { state.nodes.iter().map(|&n| f(n as usize)).collect() };
+    let points = of(&|n| solid.position(n).into());
+    let velocity = of(&|n| solid.velocity[n].into());
+    let radius: Vec<f64> = state.nodes.iter().map(|&n| debris.radius(n)).collect();
+    let mass: Vec<f64> = state.nodes.iter().map(|&n| solid.mass[n as usize]).collect();
+    let attached: Vec<u8> = state.attached.iter().map(|&a| u8::from(a)).collect();
+    let spin: Vec<[f64; 3]> = state.spin.iter().map(|&s| s.into()).collect();
+    let data = PolyData {
+        points: &points,
+        cells: PolyCells::Points,
+        point_data: &[
+            Field::scalar("radius", &radius),
+            Field::scalar("mass", &mass),
+            Field::vector("velocity", &velocity),
+            Field { name: "spin", components: 3, values: Values::F64(spin.as_flattened()) },
+            Field::flag("attached", &attached),
+        ],
+        cell_data: &[],
+        time: Some(scene.clock.time),
+    };
+    data.write(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+}
+
+/// Whether output number `index` of those every `interval` is due at `time`.
+fn is_due(time: f64, index: u64, interval: f64) -> bool {
+    time >= interval * index as f64 * (1.0 - 1e-12)
+}
+
+/// The first output after `time`.
+fn next_index(time: f64, interval: f64) -> u64 {
+    (time / interval * (1.0 + 1e-12)).floor() as u64 + 1
+}
+
+pub(crate) fn index_of_max(values: &[f64]) -> Option<usize> {
+    (0..values.len()).reduce(|best, i| if values[i] > values[best] { i } else { best })
+}
+
+fn time_mean(times: &[f64], values: &[f64]) -> f64 {
+    let span = times.last().unwrap_or(&0.0) - times.first().unwrap_or(&0.0);
+    if span <= 0.0 {
+        return values.last().copied().unwrap_or(f64::NAN);
+    }
+    let trapezoid = |i: usize| 0.5 * (values[i] + values[i + 1]) * (times[i + 1] - times[i]);
+    (0..values.len().saturating_sub(1)).map(trapezoid).sum::<f64>() / span
+}
+
+fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
+    let next = times.partition_point(|&t| t <= time);
+    match (next.checked_sub(1), values.get(next)) {
+        (Some(i), Some(after)) => {
+            values[i] + (after - values[i]) * (time - times[i]) / (times[next] - times[i])
+        }
+        (Some(i), None) => values[i],
+        (None, _) => values.first().copied().unwrap_or(f64::NAN),
+    }
+}
