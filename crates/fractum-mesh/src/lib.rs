@@ -1,1 +1,37 @@
-//! Placeholder front page, replaced by the crate's first content.
+//! Meshes for fractum: the Gmsh reader and writer, and what is derived from nodes and elements alone.
+//!
+//! - [`read_msh`] and [`write_msh`]: MSH 2.2 and 4.1, ASCII and binary, from bytes and to any writer
+//! - [`Mesh`]: points, lines, triangles, quadrilaterals and tetrahedra with named [`Group`]s
+//! - [`topology`]: edges, facets, outward boundary, elements of a node
+//! - [`quality`]: volumes, altitudes, radius ratios, dihedral angles
+//! - [`renumber`]: orders that keep neighbours close in memory
+//! - [`generate`]: structured boxes and rectangles for tests and benches
+//!
+//! The crate models straight-sided simplices: elements of higher order lose their mid nodes on reading, and
+//! hexahedra, prisms and pyramids are refused where the user asked to compute with them. It opens no file; the caller
+//! hands over the bytes.
+//!
+//! ```
+//! use fractum_mesh::{MshFormat, Vec3, generate::structured_box, read_msh, topology, write_msh};
+//!
+//! let mesh = structured_box([2, 2, 2], Vec3::new(1.0, 1.0, 1.0), None);
+//! assert_eq!(mesh.tetrahedra.len(), 48);
+//! assert_eq!(mesh.group_nodes("x-").len(), 9);
+//! assert_eq!(topology::boundary_of_tetrahedra(&mesh.tetrahedra).len(), 48);
+//!
+//! let mut file = Vec::new();
+//! write_msh(&mesh, MshFormat::V4_1Binary, &mut file)?;
+//! assert_eq!(read_msh(&file)?, mesh);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod generate;
+mod gmsh;
+mod mesh;
+pub mod quality;
+pub mod renumber;
+pub mod topology;
+
+pub use fractum_math::Vec3;
+pub use gmsh::{MeshError, MshFormat, Place, Problem, read_msh, write_msh};
+pub use mesh::{Group, Mesh};
