@@ -1,0 +1,96 @@
+use std::collections::BTreeMap;
+
+use fractum_math::Vec3;
+
+use super::cursor::Cursor;
+use super::element_type::ElementType;
+
+/// A mesh as the file tells it: tags instead of indices, nothing cross-checked, and where each record lies.
+#[derive(Default)]
+pub(super) struct Raw {
+    pub(super) names: Vec<PhysicalName>,
+    /// Physical tags of each entity, by dimension and entity tag; none where the file has no such section.
+    pub(super) entities: Option<BTreeMap<(u8, i32), Vec<i32>>>,
+    pub(super) node_tags: Vec<u64>,
+    pub(super) nodes: Vec<Vec3>,
+    /// First node and records of each block of nodes.
+    pub(super) node_blocks: Vec<(usize, Records)>,
+    pub(super) element_tags: Vec<u64>,
+    /// Node tags of the corners, element after element; nothing for shapes that are not held.
+    pub(super) corners: Vec<u64>,
+    pub(super) runs: Vec<Run>,
+    pub(super) notices: Vec<String>,
+}
+
+/// A line of `$PhysicalNames`.
+pub(super) struct PhysicalName {
+    pub(super) dimension: u8,
+    pub(super) tag: i32,
+    pub(super) name: String,
+    pub(super) at: usize,
+}
+
+/// Consecutive elements of one type and one membership.
+pub(super) struct Run {
+    pub(super) kind: ElementType,
+    pub(super) membership: Membership,
+    pub(super) count: usize,
+    /// Index of the first element in [`Raw::element_tags`].
+    pub(super) first: usize,
+    /// Index of its first corner in [`Raw::corners`].
+    pub(super) first_corner: usize,
+    pub(super) records: Records,
+}
+
+/// How a run tells its physical groups.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Membership {
+    /// MSH 2.2: the physical tag itself, 0 for none.
+    Physical(i32),
+    /// MSH 4.1: the entity that lists them.
+    Entity(i32),
+}
+
+/// Where equal records lie: every `stride` bytes, or one to a line when the stride is 0.
+#[derive(Clone, Copy)]
+pub(super) struct Records {
+    pub(super) at: usize,
+    pub(super) stride: usize,
+}
+
+impl Records {
+    /// Offset of a record.
+    pub(super) fn locate(self, bytes: &[u8], index: usize) -> usize {
+        if self.stride > 0 {
+            return self.at + index * self.stride;
+        }
+        let mut cursor = Cursor { bytes, at: self.at };
+        let mut at = self.at;
+        for _ in 0..=index {
+            at = cursor.line().map_or(bytes.len(), |(start, _)| start);
+        }
+        at
+    }
+}
+
+impl Raw {
+    /// Appends to the last run where it continues, or starts a new one.
+    pub(super) fn extend_runs(&mut self, kind: ElementType, membership: Membership, records: Records) {
+        if let Some(run) = self.runs.last_mut()
+            && run.kind == kind
+            && run.membership == membership
+            && run.records.stride == 0
+            && records.stride == 0
+        {
+            run.count += 1;
+            return;
+        }
+        self.push_run(kind, membership, 1, records);
+    }
+
+    /// Starts a run whose elements are about to be appended.
+    pub(super) fn push_run(&mut self, kind: ElementType, membership: Membership, count: usize, records: Records) {
+        let (first, first_corner) = (self.element_tags.len(), self.corners.len());
+        self.runs.push(Run { kind, membership, count, first, first_corner, records });
+    }
+}

@@ -1,0 +1,184 @@
+use std::collections::BTreeMap;
+
+use super::assemble::assemble;
+use super::binary::Layout;
+use super::cursor::{Cursor, What, quote};
+use super::error::{Fault, MeshError, Problem};
+use super::raw::Raw;
+use super::{entities, names, v2, v4};
+use crate::Mesh;
+
+/// Reads a Gmsh mesh: MSH 2.2 or 4.1, ASCII or binary of either byte order.
+///
+/// - `bytes`: the whole file
+///
+/// Elements of higher order are read with their corners only, tetrahedra of negative volume are flipped, and in a
+/// plane mesh clockwise triangles too; elements listed once per group are merged. [`Mesh::notices`] tells what was
+/// done. Elements that belong to no physical group are kept, in no [`crate::Group`].
+///
+/// # Errors
+/// With the place in the file, for anything that is not such a mesh: other versions and formats, malformed or
+/// truncated sections, coordinates that are not finite, missing or repeated tags, element types that fractum does not
+/// hold where a physical group asks for them, and elements without volume, area or length.
+pub fn read_msh(bytes: &[u8]) -> Result<Mesh, MeshError> {
+    let mut binary = false;
+    read(bytes, &mut binary).map_err(|fault| fault.into_error(bytes, binary))
+}
+
+fn read(bytes: &[u8], binary: &mut bool) -> Result<Mesh, Fault> {
+    let mut cursor = Cursor::new(bytes);
+    let format = read_format(&mut cursor)?;
+    *binary = format.layout.is_some();
+    let raw = read_sections(&mut cursor, format)?;
+    assemble(raw, bytes)
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Version {
+    Two,
+    Four,
+}
+
+struct Format {
+    version: Version,
+    /// Layout of binary data; none for ASCII.
+    layout: Option<Layout>,
+}
+
+/// Reads `$MeshFormat` up to and with its end.
+fn read_format(cursor: &mut Cursor) -> Result<Format, Fault> {
+    if cursor.bytes.starts_with(b"\xef\xbb\xbf") {
+        cursor.at = 3; // byte order mark of UTF-8
+    }
+    let Some((at, line)) = cursor.line() else { return Err(Fault { at: 0, problem: Problem::Empty }) };
+    if line != b"$MeshFormat" {
+        return Err(Fault { at, problem: Problem::NotGmsh { found: quote(line), hint: hint_for(line) } });
+    }
+    let mut record = cursor.record(What::one("the mesh format"))?;
+    let at = record.at();
+    let number = record.real("the version")?;
+    let file_type = record.unsigned("the file type")?;
+    let data_size = record.unsigned("the data size")?;
+    record.end()?;
+    let version = match number {
+        2.0..=2.2 => Version::Two,
+        4.1 => Version::Four,
+        _ => return Err(Fault { at, problem: Problem::Version(number.to_string()) }),
+    };
+    let layout = match file_type {
+        0 => None,
+        1 => Some(read_layout(cursor, version, data_size, at)?),
+        other => return Err(Fault::unexpected(at, format!("file type {other}"), "0 (ASCII) or 1 (binary)")),
+    };
+    cursor.end_section("MeshFormat")?;
+    Ok(Format { version, layout })
+}
+
+/// Checks the data size and finds the byte order from the number 1 that follows the header.
+fn read_layout(cursor: &mut Cursor, version: Version, data_size: u64, at: usize) -> Result<Layout, Fault> {
+    let word = match (version, data_size) {
+        (_, 8) => 8,
+        (Version::Four, 4) => 4,
+        (Version::Four, other) => return Err(Fault::unexpected(at, format!("data size {other}"), "4 or 8 bytes")),
+        (Version::Two, other) => return Err(Fault::unexpected(at, format!("data size {other}"), "8 bytes")),
+    };
+    let one_at = cursor.at;
+    match cursor.take(4, What::one("the number 1 that tells the byte order"))? {
+        [1, 0, 0, 0] => Ok(Layout { big_endian: false, word }),
+        [0, 0, 0, 1] => Ok(Layout { big_endian: true, word }),
+        other => Err(Fault::unexpected(
+            one_at,
+            format!("bytes {other:02x?}"),
+            "the number 1 in four bytes; was the file transferred as text?",
+        )),
+    }
+}
+
+fn hint_for(line: &[u8]) -> &'static str {
+    if line == b"$NOD" {
+        "; this is MSH version 1, convert with: gmsh in.msh -save -format msh41 -o out.msh"
+    } else if line.starts_with(b"solid") || line.starts_with(b"# vtk") || line.starts_with(b"<") {
+        "; convert with: gmsh FILE -save -format msh41 -o out.msh"
+    } else {
+        ""
+    }
+}
+
+fn read_sections(cursor: &mut Cursor, format: Format) -> Result<Raw, Fault> {
+    let Format { version, layout } = format;
+    let mut raw = Raw::default();
+    let mut seen: Vec<String> = Vec::new();
+    let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
+    let mut stray = 0;
+    while let Some((at, line)) = cursor.line() {
+        let Some(name) = line.strip_prefix(b"$") else {
+            stray += 1;
+            continue;
+        };
+        let Some(name) = std::str::from_utf8(name).ok().filter(|name| is_section_name(name)) else {
+            return Err(Fault::unexpected(at, quote(line), "the name of a section"));
+        };
+        let once = matches!(
+            name,
+            "MeshFormat"
+                | "PhysicalNames"
+                | "Entities"
+                | "PartitionedEntities"
+                | "Nodes"
+                | "ParametricNodes"
+                | "Elements"
+        );
+        if once && seen.iter().any(|other| other == name) {
+            return Err(Fault::inconsistent(at, format!("section ${name} occurs twice; expected one")));
+        }
+        seen.push(name.to_owned());
+        match (version, name) {
+            (_, "PhysicalNames") => {
+                raw.names = names::read(cursor)?;
+                continue;
+            }
+            (Version::Two, "Nodes") => v2::read_nodes(cursor, layout, false, &mut raw)?,
+            (Version::Two, "ParametricNodes") => v2::read_nodes(cursor, layout, true, &mut raw)?,
+            (Version::Two, "Elements") => v2::read_elements(cursor, layout, &mut raw)?,
+            (Version::Four, "Nodes") => v4::read_nodes(cursor, layout, &mut raw)?,
+            (Version::Four, "Elements") => v4::read_elements(cursor, layout, &mut raw)?,
+            (Version::Four, "Entities") => entities::read(cursor, layout, raw.entities.get_or_insert_default())?,
+            (Version::Four, "PartitionedEntities") => {
+                // parts replace the whole: their tags continue those of the entities they split
+                entities::read_partitioned(cursor, layout, raw.entities.get_or_insert_default())?;
+            }
+            _ if name.starts_with("End") => {
+                let expected = "the start of a section; the count at the start of the section before may be wrong";
+                return Err(Fault::unexpected(at, quote(line), expected));
+            }
+            _ => {
+                cursor.skip_section(name)?;
+                if name != "Comments" {
+                    *skipped.entry(name.to_owned()).or_default() += 1;
+                }
+                continue;
+            }
+        }
+        cursor.end_section(name)?;
+    }
+    for required in ["Nodes", "Elements"] {
+        let parametric = required == "Nodes" && seen.iter().any(|name| name == "ParametricNodes");
+        if !parametric && !seen.iter().any(|name| name == required) {
+            return Err(Fault::truncated(cursor.bytes.len(), format!("section ${required}")));
+        }
+    }
+    for (name, count) in skipped {
+        raw.notices.push(match count {
+            1 => format!("section ${name} was skipped"),
+            _ => format!("{count} sections ${name} were skipped"),
+        });
+    }
+    if stray > 0 {
+        raw.notices.push(format!("{stray} line(s) outside any section were skipped"));
+    }
+    Ok(raw)
+}
+
+fn is_section_name(name: &str) -> bool {
+    !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+}
