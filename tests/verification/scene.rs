@@ -1,0 +1,1 @@
+//! Scenes made of numbers alone: energy, momentum, stability, fracture energy.
