@@ -1,0 +1,469 @@
+//! One case, from its file to its results folder.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use fractum_io::Compression;
+use fractum_io::case::model::{Bound, Case, ProbeKind};
+use fractum_io::checkpoint::{self, Header, Identity};
+use fractum_io::fragments::{self, Fragment};
+use fractum_io::log::{Progress, RunLog, Snapshot};
+use fractum_io::summary::{self, Status, Summary, hash_text};
+use fractum_scene::{Phase, Scene, SceneState, StepError};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Failure;
+use crate::input::{Input, load};
+use crate::plan::Plan;
+use crate::record::{RecordState, Recorder, index_of_max};
+
+/// How a case is run.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Results folder; `results/<folder of the case>/<case>` if none is given.
+    pub output: Option<PathBuf>,
+    /// Threads; all cores if none is given.
+    pub threads: Option<usize>,
+    /// Overrides of parameters.
+    pub overrides: Vec<(String, String)>,
+    /// Go on from the last checkpoint.
+    pub resume: bool,
+    /// No plan and no progress line.
+    pub quiet: bool,
+}
+
+/// A run that ended by itself or was interrupted.
+#[derive(Debug)]
+pub struct Outcome {
+    /// What `summary.json` says.
+    pub summary: Summary,
+    /// Results folder.
+    pub folder: PathBuf,
+}
+
+/// Set by Ctrl-C and SIGTERM: the run saves its state after the present step and ends.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Asks all runs of this process to save their state and end.
+pub fn interrupt() {
+    INTERRUPTED.store(true, Ordering::Relaxed);
+}
+
+/// The whole state of a run: what a checkpoint holds.
+#[derive(Serialize, Deserialize)]
+struct RunState {
+    scene: SceneState,
+    record: RecordState,
+}
+
+/// Runs the case at `path`.
+///
+/// # Errors
+/// [`Failure`]: mistakes in the input, a run that stopped itself, a machine that failed.
+pub fn run(path: &Path, options: &Options) -> Result<Outcome, Failure> {
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = options.threads {
+        pool = pool.num_threads(threads);
+    }
+    let pool = pool.build()?;
+    // Inside the pool, parallel loops start without a hand-over between threads.
+    pool.install(|| run_in_pool(path, options, pool.current_num_threads()))
+}
+
+fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome, Failure> {
+    let started = Instant::now();
+    let Input { case, mesh, mesh_hash, assembly } = load(path, &options.overrides)?;
+    let plan = Plan::new(&case, &mesh, &assembly);
+    let folder = options.output.clone().unwrap_or_else(|| default_folder(path));
+    fractum_io::atomic::create_folder(&folder)?;
+    let identity = Identity { program: program(), case_hash: case.hash(), mesh_hash };
+    let mut scene = assembly.scene;
+
+    let checkpoints = folder.join("checkpoint");
+    let resumed = if options.resume { restore(&checkpoints, &identity, &mut scene)? } else { None };
+    if options.resume && resumed.is_none() {
+        return Err(Failure::input(format!("{}: no checkpoint to resume from; run without --resume", folder.display())));
+    }
+    let log_path = folder.join("run.log");
+    let mut log = if resumed.is_some() { RunLog::resume(&log_path)? } else { RunLog::create(&log_path)? };
+    if resumed.is_none() {
+        checkpoint::remove_all(&checkpoints)?;
+    }
+    log.line(format!("fractum {} on {threads} threads: {}", env!("CARGO_PKG_VERSION"), path.display()))?;
+    log.line(&plan)?;
+    let mut progress = Progress::on_stderr(options.quiet);
+    if !options.quiet {
+        eprintln!("{plan}");
+        eprintln!("results in {}", folder.display());
+    }
+    for warning in &assembly.warnings {
+        progress.message(warning);
+        log.line(warning)?;
+    }
+
+    let recorder = Recorder::open(
+        &case,
+        &scene,
+        &assembly.probes,
+        &assembly.file_order,
+        &folder,
+        resumed,
+    )?;
+    let mut run = Run {
+        case: &case,
+        folder: &folder,
+        identity,
+        recorder,
+        progress,
+        log,
+        started,
+        saved: Instant::now(),
+        warned: false,
+        phases: [Duration::ZERO; PHASES.len()],
+    };
+    let end = run.advance(&mut scene);
+    run.conclude(scene, threads, end, &plan)
+}
+
+/// Why the loop over the steps ended.
+enum End {
+    Finished,
+    Interrupted,
+    Failed(StepError),
+}
+
+/// Names of the phases in `summary.json`, and of the output beside them.
+const PHASES: [&str; 5] = ["solid", "contact", "motion", "transition", "output"];
+
+struct Run<'a> {
+    case: &'a Case,
+    folder: &'a Path,
+    identity: Identity,
+    recorder: Recorder<'a>,
+    progress: Progress<std::io::Stderr>,
+    log: RunLog,
+    started: Instant,
+    saved: Instant,
+    warned: bool,
+    phases: [Duration; PHASES.len()],
+}
+
+impl Run<'_> {
+    fn advance(&mut self, scene: &mut Scene) -> Result<End, Failure> {
+        let every = Duration::from_secs_f64(self.case.output.checkpoint_every);
+        while !scene.is_finished() {
+            if INTERRUPTED.load(Ordering::Relaxed) {
+                self.save(scene)?;
+                return Ok(End::Interrupted);
+            }
+            if self.saved.elapsed() >= every {
+                self.save(scene)?;
+            }
+            let (time, dt) = (scene.clock.time, scene.clock.dt_after);
+            if self.recorder.frame_is_due(time) {
+                self.timed(PHASES.len() - 1, |run| run.recorder.frame(scene))?;
+            }
+            let row = self.recorder.row_is_due(time);
+            if let Err(error) = self.step(scene, row) {
+                return Ok(End::Failed(error));
+            }
+            if row {
+                self.timed(PHASES.len() - 1, |run| run.recorder.row(scene, time, dt))?;
+                self.warn_of_balance(scene)?;
+                if self.falls_below() {
+                    break;
+                }
+            }
+            if self.progress.due(self.started.elapsed()) {
+                self.progress.show(&self.snapshot(scene), self.started.elapsed());
+            }
+        }
+        Ok(End::Finished)
+    }
+
+    fn timed<T>(&mut self, phase: usize, what: impl FnOnce(&mut Self) -> T) -> T {
+        let start = Instant::now();
+        let result = what(self);
+        self.phases[phase] += start.elapsed();
+        result
+    }
+
+    fn step(&mut self, scene: &mut Scene, measure: bool) -> Result<(), StepError> {
+        let mut last = Instant::now();
+        let phases = &mut self.phases;
+        scene.step_observed(measure, |phase| {
+            let now = Instant::now();
+            let place = match phase {
+                Phase::Solid => 0,
+                Phase::Contact => 1,
+                Phase::Motion => 2,
+                Phase::Transition => 3,
+            };
+            phases[place] += now - last;
+            last = now;
+        })?;
+        Ok(())
+    }
+
+    /// The early end that the case asks for.
+    fn falls_below(&self) -> bool {
+        let Some(stop) = &self.case.solver.stop_when else { return false };
+        let record = self.recorder.state();
+        let (values, time) = (&record.series[stop.probe], record.times.last().copied().unwrap_or(0.0));
+        let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        largest > 0.0 && time >= stop.after && values.last().is_some_and(|&v| v < stop.below * largest)
+    }
+
+    fn warn_of_balance(&mut self, scene: &Scene) -> Result<(), Failure> {
+        let relative = scene.ledger().relative_residual();
+        if self.warned || relative <= self.case.solver.balance_warning {
+            return Ok(());
+        }
+        self.warned = true;
+        let text = format!(
+            "warning: t = {:.4e} s: the energy balance is off by {relative:.1e} of the energy put in",
+            scene.clock.time
+        );
+        self.progress.message(&text);
+        self.log.line(&text)?;
+        Ok(())
+    }
+
+    fn save(&mut self, scene: &Scene) -> Result<(), Failure> {
+        let state = RunState { scene: scene.state(), record: self.recorder.sync()? };
+        let header =
+            Header { identity: self.identity.clone(), step: scene.clock.step, time: scene.clock.time };
+        let file = checkpoint::save(&self.folder.join("checkpoint"), &header, &state, Compression::Fast)?;
+        self.log.line(format!("step {}: state saved in {}", scene.clock.step, file.display()))?;
+        self.saved = Instant::now();
+        Ok(())
+    }
+
+    fn snapshot(&self, scene: &Scene) -> Snapshot {
+        let ledger = scene.ledger();
+        let counts = scene.counts();
+        Snapshot {
+            step: scene.clock.step,
+            time: scene.clock.time,
+            end: self.case.solver.end,
+            dt: scene.clock.dt_before,
+            kinetic: ledger.kinetic,
+            elastic: ledger.elastic,
+            dissipated: ledger.damage + ledger.removed + ledger.friction + ledger.damping,
+            balance_error: ledger.relative_residual(),
+            broken_edges: counts.broken_edges as u64,
+            broken_bonds: 0,
+            particles: counts.particles as u64,
+        }
+    }
+
+    /// Last frame, last row, summary and final names.
+    fn conclude(
+        mut self,
+        mut scene: Scene,
+        threads: usize,
+        end: Result<End, Failure>,
+        plan: &Plan,
+    ) -> Result<Outcome, Failure> {
+        let end = end?;
+        let status = match &end {
+            End::Finished => Status::Completed,
+            End::Interrupted => Status::Interrupted,
+            End::Failed(_) => Status::Stopped,
+        };
+        let state_hash = state_hash(&scene.state());
+        let clock = scene.clock;
+        if !matches!(end, End::Interrupted) {
+            self.timed(PHASES.len() - 1, |run| run.recorder.frame(&scene))?;
+        }
+        if matches!(end, End::Finished) {
+            // The forces and energies of the last instant: one more step, of which nothing else is kept.
+            let (time, dt) = (clock.time, clock.dt_after);
+            if self.step(&mut scene, true).is_ok() {
+                self.recorder.row(&scene, time, dt)?;
+            }
+        }
+        self.progress.finish(&self.snapshot(&scene), self.started.elapsed());
+        let pieces = fragments_of(&scene);
+        fragments::write(&self.folder.join("fragments.csv"), &pieces)?;
+        let mut summary = self.summary(&scene, status, threads, &pieces);
+        summary.state_hash = hash_text(state_hash);
+        summary.time = summary::Time {
+            steps: clock.step,
+            dt: clock.dt_before,
+            dt_min: clock.dt_min,
+            end: clock.time,
+        };
+        summary.expect = self.case.expect.iter().map(|e| expectation(e, &summary)).collect();
+        summary.write(&self.folder.join("summary.json"))?;
+        crate::report::write(self.case, self.folder, &scene, &summary, self.recorder.state(), plan, &pieces)?;
+        self.log.line(format!("{}: {} steps, {:.2} s", status_text(status), clock.step, summary.wall.total))?;
+        self.recorder.finish()?;
+        match end {
+            End::Failed(error) => {
+                self.log.line(&error)?;
+                Err(Failure::Stopped { error, folder: self.folder.display().to_string() })
+            }
+            _ => Ok(Outcome { summary, folder: self.folder.to_owned() }),
+        }
+    }
+
+    fn summary(&self, scene: &Scene, status: Status, threads: usize, pieces: &[Fragment]) -> Summary {
+        let ledger = scene.ledger();
+        let counts = scene.counts();
+        let record = self.recorder.state();
+        let mut probes = BTreeMap::new();
+        for (index, probe) in self.case.probes.iter().enumerate() {
+            let values = &record.series[index];
+            let value = match &probe.kind {
+                ProbeKind::Expression(expression) if expression.scalar => {
+                    let value = self.recorder.scalar(expression);
+                    let unit = probe.unit.clone();
+                    summary::Probe { unit, r#final: value, max: value, min: value, time_of_max: f64::NAN }
+                }
+                _ => {
+                    let extreme = |f: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, f);
+                    summary::Probe {
+                        unit: probe.unit.clone(),
+                        r#final: values.last().copied().unwrap_or(f64::NAN),
+                        max: extreme(f64::max),
+                        min: extreme(f64::min),
+                        time_of_max: index_of_max(values).map_or(f64::NAN, |i| record.times[i]),
+                    }
+                }
+            };
+            probes.insert(probe.name.value.clone(), value);
+        }
+        let phases = PHASES.iter().zip(&self.phases).map(|(name, d)| ((*name).to_owned(), d.as_secs_f64())).collect();
+        Summary {
+            fractum: env!("CARGO_PKG_VERSION").to_owned(),
+            title: self.case.title.clone(),
+            status,
+            threads,
+            case_hash: hash_text(self.identity.case_hash),
+            probes,
+            energy: summary::Energy {
+                external: ledger.external,
+                kinetic: ledger.kinetic,
+                elastic: ledger.elastic,
+                damage: ledger.damage,
+                removed: ledger.removed,
+                contact: ledger.contact,
+                friction: ledger.friction,
+                damping: ledger.damping,
+                absorbed: ledger.absorbed,
+                residual_max_relative: ledger.residual_max_relative,
+            },
+            counts: summary::Counts {
+                nodes: counts.nodes as u64,
+                elements: counts.elements as u64,
+                removed_elements: counts.removed_elements as u64,
+                particles: counts.particles as u64,
+                bonds: 0,
+                broken_bonds: 0,
+                broken_edges: counts.broken_edges as u64,
+                fragments: pieces.iter().filter(|p| p.elements > 0).count() as u64,
+            },
+            wall: summary::Wall { total: self.started.elapsed().as_secs_f64(), phases },
+            ..Summary::default()
+        }
+    }
+}
+
+/// Restores the newest checkpoint of this case into the scene.
+fn restore(folder: &Path, identity: &Identity, scene: &mut Scene) -> Result<Option<RecordState>, Failure> {
+    let Some(loaded) = checkpoint::load_latest::<RunState>(folder, identity)? else { return Ok(None) };
+    for refused in &loaded.passed_over {
+        eprintln!("warning: {refused}");
+    }
+    scene.restore(loaded.state.scene);
+    Ok(Some(loaded.state.record))
+}
+
+/// Version of the program as far as the layout of its state goes.
+fn program() -> String {
+    format!("fractum {}", env!("CARGO_PKG_VERSION"))
+}
+
+/// Hash of everything that changes in a scene.
+fn state_hash(state: &SceneState) -> u128 {
+    let bytes = postcard::to_stdvec(state).unwrap_or_default();
+    xxhash_rust::xxh3::xxh3_128(&bytes)
+}
+
+/// `cases/brazilian-concrete/coarse.toml` → `results/brazilian-concrete/coarse`.
+fn default_folder(case: &Path) -> PathBuf {
+    let absolute = std::path::absolute(case).unwrap_or_else(|_| case.to_owned());
+    let folder = absolute.parent().and_then(Path::file_name).unwrap_or_default();
+    let name = absolute.file_stem().unwrap_or_default();
+    Path::new("results").join(folder).join(name)
+}
+
+fn status_text(status: Status) -> &'static str {
+    match status {
+        Status::Completed => "completed",
+        Status::Stopped => "stopped",
+        Status::Interrupted => "interrupted",
+    }
+}
+
+fn fragments_of(scene: &Scene) -> Vec<Fragment> {
+    fractum_scene::fragments(&scene.solid)
+        .into_iter()
+        .zip(1..)
+        .map(|(piece, id)| Fragment {
+            id,
+            mass: piece.mass,
+            volume: piece.volume,
+            nodes: piece.nodes.len() as u64,
+            elements: piece.elements as u64,
+            centroid: piece.centroid.into(),
+            velocity: piece.velocity.into(),
+            largest_extent: piece.extent,
+        })
+        .collect()
+}
+
+/// Holds a value of the summary against its reference.
+fn expectation(expect: &fractum_io::case::model::Expect, summary: &Summary) -> summary::Expectation {
+    let name = &expect.quantity.value;
+    let value = match summary.probes.get(name) {
+        Some(probe) => probe.r#final,
+        None => summary_value(summary, name),
+    };
+    let (reference, error, tolerance, pass) = match expect.bound {
+        Bound::Near { value: reference, tolerance, relative } => {
+            let error = match relative {
+                Some(_) => (value - reference) / reference.abs(),
+                None => value - reference,
+            };
+            let allowed = relative.unwrap_or(tolerance);
+            (reference, error, allowed, error.abs() <= allowed)
+        }
+        Bound::Between { above, below } => {
+            let over = below.map_or(f64::NEG_INFINITY, |limit| value - limit);
+            let under = above.map_or(f64::NEG_INFINITY, |limit| limit - value);
+            let reference = below.or(above).unwrap_or(f64::NAN);
+            (reference, over.max(under).max(0.0), 0.0, over <= 0.0 && under <= 0.0)
+        }
+    };
+    summary::Expectation {
+        quantity: name.clone(),
+        unit: expect.unit.clone(),
+        value,
+        reference,
+        error,
+        tolerance,
+        // A value that is not a number passes nothing.
+        pass: pass && value.is_finite(),
+        source: expect.source.clone(),
+    }
+}
+
+/// A number of the summary by its dotted path, such as `energy.residual_max_relative`.
+fn summary_value(summary: &Summary, path: &str) -> f64 {
+    let json = serde_json::to_value(summary).unwrap_or_default();
+    path.split('.').try_fold(&json, |value, key| value.get(key)).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
+}
