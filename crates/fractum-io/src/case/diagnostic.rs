@@ -23,12 +23,42 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// Where it stands; `None` where no file could be read.
     pub place: Option<Place>,
-    /// What was found there: the value as written for a key, else a phrase.
+    /// What was found there: `= 0.62` for the value of a key, else a phrase that follows the key.
     pub found: String,
-    /// What would have been right; may be empty.
+    /// What would have been right, as the object of "expected"; may be empty.
     pub expected: String,
     /// What to do; may be empty.
     pub remedy: String,
+}
+
+impl Diagnostic {
+    /// An error; `found` follows the key of the place.
+    pub fn error(place: &Place, found: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            place: Some(place.clone()),
+            found: found.into(),
+            expected: String::new(),
+            remedy: String::new(),
+        }
+    }
+
+    /// A warning; `found` follows the key of the place.
+    pub fn warning(place: &Place, found: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(place, found) }
+    }
+
+    /// Adds what would have been right.
+    pub fn expected(mut self, expected: impl Into<String>) -> Self {
+        self.expected = expected.into();
+        self
+    }
+
+    /// Adds what to do.
+    pub fn remedy(mut self, remedy: impl Into<String>) -> Self {
+        self.remedy = remedy.into();
+        self
+    }
 }
 
 /// `cases/beam.toml:14:17: materials.concrete.poisson_ratio = 0.62; expected between -1 and 0.5`, on one line.
@@ -36,26 +66,34 @@ impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(place) = &self.place {
             write!(f, "{place}: ")?;
-            if self.severity == Severity::Warning {
-                write!(f, "warning: ")?;
-            }
-            write!(f, "{}", place.key)?;
-            if !place.key.is_empty() && !self.found.is_empty() && !self.found.starts_with(['=', ':']) {
-                write!(f, " ")?;
-            }
         }
-        write!(f, "{}", self.found)?;
-        for part in [&self.expected, &self.remedy] {
-            if !part.is_empty() {
-                write!(f, "; {part}")?;
-            }
+        if self.severity == Severity::Warning {
+            write!(f, "warning: ")?;
+        }
+        if let Some(place) = &self.place
+            && !place.key.is_empty()
+        {
+            write!(f, "{} ", one_line(&place.key))?;
+        }
+        write!(f, "{}", one_line(&self.found))?;
+        if !self.expected.is_empty() {
+            write!(f, "; expected {}", one_line(&self.expected))?;
+        }
+        if !self.remedy.is_empty() {
+            write!(f, "; {}", one_line(&self.remedy))?;
         }
         Ok(())
     }
 }
 
+/// Text with control characters escaped, so that a diagnostic stays on its line.
+fn one_line(text: &str) -> String {
+    text.chars().flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] }).collect()
+}
+
 /// Everything found wrong in one reading, in the order of the file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(transparent)]
 pub struct Diagnostics(pub Vec<Diagnostic>);
 
 /// One diagnostic per line.
@@ -72,3 +110,27 @@ impl fmt::Display for Diagnostics {
 }
 
 impl std::error::Error for Diagnostics {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_diagnostic_reads_as_one_line() {
+        let key = "materials.concrete.poisson_ratio".to_string();
+        let place = Place { file: "cases/beam.toml".to_string(), line: 14, column: 17, key };
+        let diagnostic = Diagnostic::error(&place, "= 0.62").expected("between -1 and 0.5");
+        assert_eq!(
+            diagnostic.to_string(),
+            "cases/beam.toml:14:17: materials.concrete.poisson_ratio = 0.62; expected between -1 and 0.5"
+        );
+        let diagnostic = Diagnostic::warning(&place, "= \"a\nb\"").remedy("do this");
+        assert_eq!(
+            diagnostic.to_string(),
+            "cases/beam.toml:14:17: warning: materials.concrete.poisson_ratio = \"a\\nb\"; do this"
+        );
+        let json = serde_json::to_value(Diagnostics(vec![diagnostic])).unwrap();
+        assert_eq!(json[0]["severity"], "warning");
+        assert_eq!(json[0]["place"]["line"], 14);
+    }
+}

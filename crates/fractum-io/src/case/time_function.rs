@@ -71,10 +71,37 @@ impl TimeFunction {
             }
             Self::DoubleExponential { scale, decay, rise, start } => {
                 let tau = t - start;
-                if tau < 0.0 { 0.0 } else { scale * ((-decay * tau).exp() - (-rise * tau).exp()) }
+                // as a product, since the two exponentials nearly cancel where the rates are close
+                if tau < 0.0 { 0.0 } else { scale * (-decay * tau).exp() * -(-(rise - decay) * tau).exp_m1() }
             }
             Self::Expression(ref field) => field.value(t, position),
         }
+    }
+
+    /// A double-exponential pulse by its largest value `peak`, the time `rise` [s] from its begin at `start` [s] to that
+    /// value, and the time `decay` [s] from there until 1/e of it is left.
+    ///
+    /// `None` unless 2.1462 ≤ decay/rise ≤ 1e6: no difference of exponentials decays faster.
+    pub fn double_exponential(peak: f64, rise: f64, decay: f64, start: f64) -> Option<Self> {
+        let ratio = decay / rise;
+        if !(ratio.is_finite() && ratio <= 1e6) {
+            return None;
+        }
+        // With L = ln(b/a) the peak stands at τ = L/(b - a), so that a τ = L/(e^L - 1).
+        let a_tau = |l: f64| l / l.exp_m1();
+        let left = |l: f64| (-ratio * a_tau(l)).exp() * (-l * (1.0 + ratio)).exp_m1() / (-l).exp_m1();
+        let (mut low, mut high) = (1e-6, 30.0);
+        let target = (-1.0f64).exp();
+        if left(low) > target || left(high) < target {
+            return None;
+        }
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if left(middle) < target { low = middle } else { high = middle }
+        }
+        let decay = a_tau(low) / rise;
+        let scale = peak / ((-a_tau(low)).exp() * -(-low).exp_m1());
+        Some(Self::DoubleExponential { scale, decay, rise: decay + low / rise, start })
     }
 
     /// Whether the value differs from point to point.
@@ -98,6 +125,16 @@ impl TimeFunction {
 pub struct Field(pub(crate) Program);
 
 impl Field {
+    /// The same everywhere.
+    pub(super) fn constant(value: f64) -> Self {
+        Self(Program::of_constant(value))
+    }
+
+    /// Its value where it is the same everywhere and at all times.
+    pub fn constant_value(&self) -> Option<f64> {
+        self.0.constant()
+    }
+
     /// Value at time `t` [s] and `position` [m], in SI; 1 and 0 for the truth of a condition.
     pub fn value(&self, t: f64, position: Vec3) -> f64 {
         self.0.evaluate(&[t, position.x, position.y, position.z])
@@ -131,5 +168,73 @@ fn between(points: &[(f64, f64)], t: f64, shape: impl Fn(f64) -> f64) -> f64 {
         (Some(&(t0, v0)), Some(&(t1, v1))) => v0 + (v1 - v0) * shape((t - t0) / (t1 - t0)),
         (Some(&(_, value)), None) | (None, Some(&(_, value))) => value,
         (None, None) => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(function: &TimeFunction, t: f64) -> f64 {
+        function.value(t, Vec3::zeros())
+    }
+
+    #[test]
+    fn ramps_are_constant_outside_their_points() {
+        let points = vec![(1.0, 10.0), (2.0, 20.0), (4.0, 0.0)];
+        for function in [TimeFunction::Ramp(points.clone()), TimeFunction::SmoothRamp(points)] {
+            for (t, value) in [(-1.0, 10.0), (1.0, 10.0), (1.5, 15.0), (2.0, 20.0), (3.0, 10.0), (4.0, 0.0), (9.0, 0.0)]
+            {
+                assert_eq!(at(&function, t), value, "{function:?} at {t}");
+            }
+        }
+        assert_eq!(at(&TimeFunction::Ramp(vec![(1.0, 3.0)]), 0.0), 3.0);
+    }
+
+    #[test]
+    fn smooth_ramps_have_no_jump_in_velocity_and_acceleration() {
+        let function = TimeFunction::SmoothRamp(vec![(0.0, 0.0), (1.0, 1.0)]);
+        let h = 1e-4;
+        for t in [0.0, 1.0] {
+            let slope = (at(&function, t + h) - at(&function, t - h)) / (2.0 * h);
+            let curvature = (at(&function, t + h) - 2.0 * at(&function, t) + at(&function, t - h)) / (h * h);
+            assert!(slope.abs() < 1e-6, "{slope}"); // 5 h² from the cubic term
+            assert!(curvature.abs() < 20.0 * h, "{curvature}"); // 10 h
+        }
+    }
+
+    #[test]
+    fn pulses_begin_peak_and_end_where_they_should() {
+        let triangle = TimeFunction::Triangle { peak: 4.0, start: 1.0, duration: 4.0, rise: 1.0 };
+        for (t, value) in [(0.9, 0.0), (1.0, 0.0), (1.5, 2.0), (2.0, 4.0), (3.5, 2.0), (5.0, 0.0), (6.0, 0.0)] {
+            assert_eq!(at(&triangle, t), value, "triangle at {t}");
+        }
+        let instant = TimeFunction::Triangle { peak: 4.0, start: 0.0, duration: 4.0, rise: 0.0 };
+        assert_eq!((at(&instant, 0.0), at(&instant, 2.0)), (4.0, 2.0));
+        let saw = TimeFunction::Triangle { peak: 4.0, start: 0.0, duration: 4.0, rise: 4.0 };
+        assert_eq!((at(&saw, 2.0), at(&saw, 4.0)), (2.0, 0.0));
+        let half_sine = TimeFunction::HalfSine { peak: 2.0, start: 1.0, duration: 2.0 };
+        for (t, value) in [(0.5, 0.0), (1.0, 0.0), (2.0, 2.0), (1.0 + 1.0 / 3.0, 1.0), (3.0, 0.0), (4.0, 0.0)] {
+            assert!((at(&half_sine, t) - value).abs() < 1e-15, "half-sine at {t}");
+        }
+    }
+
+    #[test]
+    fn double_exponentials_peak_and_decay_as_asked() {
+        for ratio in [2.1462, 2.2, 3.0, 10.0, 1e3, 1e6] {
+            let (rise, start, peak) = (2e-6, 5e-6, -30e6);
+            let decay = ratio * rise;
+            let function = TimeFunction::double_exponential(peak, rise, decay, start).unwrap();
+            assert_eq!(at(&function, start), 0.0);
+            assert_eq!(at(&function, 0.0), 0.0);
+            assert!((at(&function, start + rise) / peak - 1.0).abs() < 1e-12, "{ratio}");
+            assert!((at(&function, start + rise + decay) / peak - (-1f64).exp()).abs() < 1e-6, "{ratio}");
+            for t in [0.9, 1.1] {
+                assert!(at(&function, start + t * rise) / peak < 1.0, "{ratio}: the peak stands elsewhere");
+            }
+        }
+        for ratio in [1.0, 2.14, 1e7, f64::NAN, f64::INFINITY] {
+            assert_eq!(TimeFunction::double_exponential(1.0, 1.0, ratio, 0.0), None, "{ratio}");
+        }
     }
 }

@@ -1,6 +1,5 @@
 //! A compiled expression: postfix operations on a small fixed stack.
 
-use super::super::choice::Choice;
 use crate::case::choice::choice;
 
 /// Deepest stack a program may need; the compiler refuses deeper ones.
@@ -81,7 +80,7 @@ choice!(Binary {
 
 /// A compiled expression of numbered inputs; numbers in SI. Evaluation allocates nothing and never panics.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Program {
+pub(crate) struct Program {
     code: Box<[Op]>,
 }
 
@@ -90,7 +89,7 @@ impl Program {
     pub(crate) fn new(code: Vec<Op>) -> Option<Self> {
         let mut depth = 0usize;
         for op in &code {
-            let (takes, _) = op.arity();
+            let takes = op.takes();
             depth = depth.checked_sub(takes)? + 1;
             if depth > STACK {
                 return None;
@@ -99,12 +98,17 @@ impl Program {
         (depth == 1).then(|| Self { code: code.into() })
     }
 
+    /// A program that gives this number.
+    pub(crate) fn of_constant(value: f64) -> Self {
+        Self { code: Box::new([Op::Constant(value)]) }
+    }
+
     /// Value for the given inputs; an input that is not there counts as NaN.
-    pub fn evaluate(&self, inputs: &[f64]) -> f64 {
+    pub(crate) fn evaluate(&self, inputs: &[f64]) -> f64 {
         let mut stack = [0.0f64; STACK];
         let mut top = 0; // number of values on the stack; `new` has checked that it stays within 1..=STACK
         for op in &self.code {
-            let (takes, _) = op.arity();
+            let takes = op.takes();
             let first = top - takes;
             stack[first] = match *op {
                 Op::Constant(value) => value,
@@ -120,7 +124,7 @@ impl Program {
     }
 
     /// Whether the program reads input number `index`.
-    pub fn reads(&self, index: u16) -> bool {
+    pub(crate) fn reads(&self, index: u16) -> bool {
         self.code.contains(&Op::Input(index))
     }
 
@@ -132,13 +136,13 @@ impl Program {
 }
 
 impl Op {
-    /// Values taken from the stack and given back.
-    fn arity(&self) -> (usize, usize) {
+    /// Number of values taken from the stack; one is given back.
+    fn takes(&self) -> usize {
         match self {
-            Op::Constant(_) | Op::Input(_) => (0, 1),
-            Op::Unary(_) => (1, 1),
-            Op::Binary(_) => (2, 1),
-            Op::Select => (3, 1),
+            Op::Constant(_) | Op::Input(_) => 0,
+            Op::Unary(_) => 1,
+            Op::Binary(_) => 2,
+            Op::Select => 3,
         }
     }
 }

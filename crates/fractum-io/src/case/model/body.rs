@@ -4,7 +4,7 @@ use fractum_math::Vec3;
 
 use super::Contact;
 use crate::case::choice::choice;
-use crate::case::{Field, Spanned, TimeFunction};
+use crate::case::{Field, Spanned};
 
 /// A body of the case.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,12 +35,12 @@ pub struct SolidBody {
     pub formulation: Formulation,
     /// Small or large rotations.
     pub kinematics: Kinematics,
-    /// Plane state, for two-dimensional meshes only; the place is there to refuse it in 3D.
+    /// Plane state, for two-dimensional meshes only (`None` there = plane strain); the place is there to refuse it in 3D.
     pub plane: Option<Spanned<Plane>>,
-    /// Thickness [m], > 0, for two-dimensional meshes only; the place is there to refuse it in 3D.
+    /// Thickness [m], > 0, for two-dimensional meshes only (`None` there = 1 m); the place is there to refuse it in 3D.
     pub thickness: Option<Spanned<f64>>,
-    /// Initial velocity [m/s] per axis; `None` = at rest. Time plays no part.
-    pub initial_velocity: [Option<TimeFunction>; 3],
+    /// Initial velocity [m/s] along x, y, z; `None` = at rest.
+    pub initial_velocity: [Option<Field>; 3],
     /// Whether damage may occur at all: the material has it, and the body does not switch it off.
     pub damage: bool,
     /// Where damage may occur (a condition on the position); `None` = everywhere.

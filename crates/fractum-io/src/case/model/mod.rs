@@ -14,7 +14,7 @@ pub use material::{Contact, Criterion, Damage, Distribution, Material, Scatter, 
 pub use probe::{CountKind, EnergyKind, Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
 
 use super::choice::choice;
-use super::{Diagnostic, Spanned};
+use super::{Diagnostic, Dimension, Spanned};
 
 /// A case, read and checked. What needs the mesh (group names, two or three dimensions) is checked by its user, with the
 /// places kept here.
@@ -186,6 +186,34 @@ pub enum Bound {
         below: Option<f64>,
     },
 }
+
+/// Paths of `summary.json` that a reference value may name, besides `probes.NAME.(final|max|min|time_of_max)`.
+pub const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
+    ("energy.external", Dimension::ENERGY),
+    ("energy.kinetic", Dimension::ENERGY),
+    ("energy.elastic", Dimension::ENERGY),
+    ("energy.damage", Dimension::ENERGY),
+    ("energy.removed", Dimension::ENERGY),
+    ("energy.contact", Dimension::ENERGY),
+    ("energy.friction", Dimension::ENERGY),
+    ("energy.damping", Dimension::ENERGY),
+    ("energy.absorbed", Dimension::ENERGY),
+    ("energy.residual_max_relative", Dimension::NONE),
+    ("counts.nodes", Dimension::NONE),
+    ("counts.elements", Dimension::NONE),
+    ("counts.removed_elements", Dimension::NONE),
+    ("counts.broken_edges", Dimension::NONE),
+    ("counts.damaged_edges", Dimension::NONE),
+    ("counts.particles", Dimension::NONE),
+    ("counts.contacts", Dimension::NONE),
+    ("counts.bonds", Dimension::NONE),
+    ("counts.broken_bonds", Dimension::NONE),
+    ("counts.fragments", Dimension::NONE),
+    ("time.steps", Dimension::NONE),
+    ("time.dt", Dimension::TIME),
+    ("time.dt_min", Dimension::TIME),
+    ("time.end", Dimension::TIME),
+];
 
 /// What a mesh group is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

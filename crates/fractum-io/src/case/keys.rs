@@ -1,0 +1,418 @@
+//! Every key of the case file: kind, default, meaning.
+//!
+//! The reader takes dimensions from here, so that the documentation, `explain`, the schema and the reading agree.
+
+use super::model::*;
+use super::tree::{Node, Value, join};
+use super::unit::Dimension;
+use super::{Choice, Diagnostic, nearest};
+
+/// A key of the case file.
+#[derive(Debug, Clone, Copy)]
+pub struct KeyDoc {
+    /// Dotted path; `NAME` stands for a name of the user's, `[]` for any of several, `TIME_FUNCTION` for the table form of
+    /// any time function.
+    pub path: &'static str,
+    /// What it holds.
+    pub kind: KeyKind,
+    /// Its default as written in a case, `required`, or empty where absent means nothing.
+    pub default: &'static str,
+    /// What it means, in a line.
+    pub doc: &'static str,
+}
+
+/// What a key holds.
+#[derive(Debug, Clone, Copy)]
+pub enum KeyKind {
+    /// A table of further keys.
+    Table,
+    /// Tables of further keys under names of the user's.
+    NamedTables,
+    /// Repeated tables `[[…]]`.
+    Tables,
+    /// Text.
+    Text,
+    /// `true` or `false`.
+    Flag,
+    /// A whole number.
+    Integer,
+    /// A quantity, or an expression of parameters.
+    Quantity(Dimension),
+    /// A quantity of any dimension.
+    AnyQuantity,
+    /// A unit of this dimension; of any where there is none.
+    Unit(Option<Dimension>),
+    /// One of these names.
+    Choice(fn() -> Vec<&'static str>),
+    /// A signed axis such as `-y`, or three numbers.
+    Direction,
+    /// Three quantities.
+    Point(Dimension),
+    /// A quantity, an expression of t, x, y, z, or one of the tables of `TIME_FUNCTION`.
+    TimeFunction(Dimension),
+    /// A quantity, or an expression of x, y, z.
+    Field(Dimension),
+    /// A condition on x, y, z.
+    Condition,
+    /// An expression of other probes.
+    ProbeExpression,
+    /// Pairs of time and value.
+    Points,
+}
+
+impl KeyKind {
+    /// What to write, for messages: `a pressure such as "21 GPa"`.
+    pub fn expected(self) -> String {
+        match self {
+            Self::Table | Self::NamedTables => "a table".to_string(),
+            Self::Tables => "tables in double brackets".to_string(),
+            Self::Text => "a text".to_string(),
+            Self::Flag => "true or false".to_string(),
+            Self::Integer => "a whole number".to_string(),
+            Self::Quantity(dimension) => dimension.expected(),
+            Self::AnyQuantity => "a quantity such as \"21 GPa\"".to_string(),
+            Self::Unit(Some(dimension)) => format!("a unit of {}, such as \"{dimension}\"", without_article(dimension)),
+            Self::Unit(None) => "a unit such as \"Pa\"".to_string(),
+            Self::Choice(names) => one_of(&names()),
+            Self::Direction => "an axis such as \"x\" or \"-y\", or three numbers".to_string(),
+            Self::Point(dimension) => format!("three numbers, each {}", dimension.expected()),
+            Self::TimeFunction(dimension) => {
+                format!("{}, an expression of t, x, y, z, or a table such as {{ ramp = [...] }}", dimension.expected())
+            }
+            Self::Field(dimension) => format!("{}, or an expression of x, y, z", dimension.expected()),
+            Self::Condition => "a condition such as \"abs(y) < 8 cm\"".to_string(),
+            Self::ProbeExpression => "an expression of probes such as \"2*max(load)\"".to_string(),
+            Self::Points => "pairs such as [[\"0 s\", \"0 m/s\"], [\"1 ms\", \"2 m/s\"]]".to_string(),
+        }
+    }
+
+    /// What it holds in a few words, for the documentation.
+    pub fn label(self) -> String {
+        match self {
+            Self::Table | Self::NamedTables | Self::Tables => "table".to_string(),
+            Self::Text => "text".to_string(),
+            Self::Flag => "true, false".to_string(),
+            Self::Integer => "integer".to_string(),
+            Self::Quantity(Dimension::NONE) => "number".to_string(),
+            Self::Quantity(dimension) => format!("{} [{dimension}]", without_article(dimension)),
+            Self::AnyQuantity => "quantity".to_string(),
+            Self::Unit(_) => "unit".to_string(),
+            Self::Choice(names) => names().join(", "),
+            Self::Direction => "direction".to_string(),
+            Self::Point(dimension) => format!("three of [{dimension}]"),
+            Self::TimeFunction(dimension) => format!("time function [{dimension}]"),
+            Self::Field(Dimension::NONE) => "expression".to_string(),
+            Self::Field(dimension) => format!("expression [{dimension}]"),
+            Self::Condition => "condition".to_string(),
+            Self::ProbeExpression => "probe expression".to_string(),
+            Self::Points => "list of pairs".to_string(),
+        }
+    }
+}
+
+fn without_article(dimension: Dimension) -> String {
+    let phrase = dimension.phrase();
+    phrase.trim_start_matches("an ").trim_start_matches("a ").to_string()
+}
+
+/// `"a", "b" or "c"`, in quotes.
+pub(super) fn one_of(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    match quoted.split_last() {
+        Some((last, first)) if !first.is_empty() => format!("{} or {last}", first.join(", ")),
+        Some((last, _)) => last.clone(),
+        None => String::new(),
+    }
+}
+
+fn names<T: Choice>() -> Vec<&'static str> {
+    T::NAMES.iter().map(|(name, _)| *name).collect()
+}
+
+/// Pattern of the table form of a time function, which may stand at many keys.
+pub(super) const TIME_FUNCTION: &str = "TIME_FUNCTION";
+
+const fn key(path: &'static str, kind: KeyKind, default: &'static str, doc: &'static str) -> KeyDoc {
+    KeyDoc { path, kind, default, doc }
+}
+
+/// Every key of the case file, parents before children.
+pub fn keys() -> &'static [KeyDoc] {
+    KEYS
+}
+
+/// The description of a key: a pattern as in [`KeyDoc::path`], or a path of a case such as `supports[0].group`.
+///
+/// # Errors
+/// The nearest known path, if any resembles.
+pub fn explain(path: &str) -> Result<&'static KeyDoc, Option<&'static str>> {
+    let plain: String =
+        path.split('.').map(|part| part.split('[').next().unwrap_or_default()).collect::<Vec<_>>().join(".");
+    let fits = |key: &&KeyDoc| {
+        let pattern = key.path.replace("[]", "");
+        let mut parts = pattern.split('.');
+        let mut given = plain.split('.');
+        loop {
+            match (parts.next(), given.next()) {
+                (None, None) => return true,
+                (Some(part), Some(name)) if part == name || (part == "NAME" && !name.is_empty()) => {}
+                _ => return false,
+            }
+        }
+    };
+    KEYS.iter().find(|key| key.path == path).or_else(|| KEYS.iter().find(fits)).ok_or_else(|| {
+        let last = plain.rsplit('.').next().unwrap_or_default();
+        let whole = nearest(&plain, KEYS.iter().map(|key| key.path));
+        whole.or_else(|| KEYS.iter().map(|key| key.path).find(|path| path.rsplit('.').next() == Some(last)))
+    })
+}
+
+/// The description of a key by its pattern.
+pub(super) fn describe(pattern: &str) -> Option<&'static KeyDoc> {
+    KEYS.iter().find(|key| key.path == pattern)
+}
+
+/// Names of the keys directly below a pattern.
+pub(super) fn children(pattern: &str) -> impl Iterator<Item = &'static str> {
+    let below = KEYS.iter().filter_map(move |key| match pattern {
+        "" => Some(key.path),
+        _ => key.path.strip_prefix(pattern)?.strip_prefix('.'),
+    });
+    below
+        .filter(|name| !name.contains('.') && !["NAME", TIME_FUNCTION].contains(name))
+        .map(|name| name.trim_end_matches("[]"))
+}
+
+/// Reports keys that do not exist, with the nearest that does, and takes them out of the tree.
+pub(super) fn remove_unknown(node: &mut Node, pattern: &str, report: &mut dyn FnMut(Diagnostic)) {
+    let Value::Table(entries) = &mut node.value else { return };
+    entries.retain_mut(|entry| {
+        let exact = join(pattern, &entry.name);
+        let named = join(pattern, "NAME");
+        let key = describe(&exact).or_else(|| describe(&format!("{exact}[]"))).or_else(|| describe(&named));
+        let Some(key) = key.filter(|key| key.path != TIME_FUNCTION) else {
+            let known: Vec<_> = children(pattern).collect();
+            let unknown = Diagnostic::error(&entry.key_place, "is not a key");
+            report(match nearest(&entry.name, known.iter().copied()) {
+                Some(near) => unknown.remedy(format!("did you mean {near}?")),
+                None if known.is_empty() => unknown,
+                None => unknown.remedy(format!("keys here: {}", known.join(", "))),
+            });
+            return false;
+        };
+        let below = match key.kind {
+            KeyKind::TimeFunction(_) => TIME_FUNCTION,
+            _ => key.path,
+        };
+        match &mut entry.node.value {
+            Value::Array(items) if matches!(key.kind, KeyKind::Tables) => {
+                items.iter_mut().for_each(|item| remove_unknown(item, below, report));
+            }
+            Value::Table(_) if children(below).next().is_some() || describe(&join(below, "NAME")).is_some() => {
+                remove_unknown(&mut entry.node, below, report);
+            }
+            _ => {}
+        }
+        true
+    });
+}
+
+use Dimension as D;
+use KeyKind as K;
+
+#[rustfmt::skip] // a table reads best with one row per line
+static KEYS: &[KeyDoc] = &[
+    key("fractum", K::Integer, "required", "Version of the case format: 1"),
+    key("title", K::Text, "\"\"", "Title of reports"),
+
+    key("parameters", K::NamedTables, "", "Named quantities for use in any quantity or expression; `--set NAME=value` overrides them"),
+    key("parameters.NAME", K::AnyQuantity, "", "A quantity, or an expression of parameters above it"),
+
+    key("mesh", K::Table, "required", "The mesh"),
+    key("mesh.file", K::Text, "required", "Gmsh file, relative to the case file"),
+    key("mesh.unit", K::Unit(Some(D::LENGTH)), "\"m\"", "Unit of the mesh's coordinates"),
+
+    key("materials", K::NamedTables, "", "Materials by name"),
+    key("materials.NAME", K::Table, "", "A material"),
+    key("materials.NAME.density", K::Quantity(D::DENSITY), "required", "Mass density, > 0"),
+    key("materials.NAME.young_modulus", K::Quantity(D::PRESSURE), "required", "Young's modulus, > 0"),
+    key("materials.NAME.poisson_ratio", K::Quantity(D::NONE), "required", "Poisson's ratio, between -1 and 0.5, both excluded"),
+    key("materials.NAME.damage", K::Table, "", "Softening damage; without this table the material stays elastic"),
+    key("materials.NAME.damage.criterion", K::Choice(names::<Criterion>), "\"rankine\"", "Equivalent stress that damage answers to"),
+    key("materials.NAME.damage.tension_cutoff", K::Flag, "true", "Mohr-Coulomb only: cut off by the largest principal stress; false loses about a fifth of the Brazilian strength"),
+    key("materials.NAME.damage.tensile_strength", K::Quantity(D::PRESSURE), "required", "Uniaxial tensile strength ft, > 0"),
+    key("materials.NAME.damage.fracture_energy", K::Quantity(D::FRACTURE_ENERGY), "required", "Energy per area of a full crack Gf, > 0"),
+    key("materials.NAME.damage.compressive_strength", K::Quantity(D::PRESSURE), "10 ft", "Uniaxial compressive strength, above the tensile one; for mohr-coulomb, drucker-prager, modified-mohr-coulomb"),
+    key("materials.NAME.damage.friction_angle", K::Quantity(D::NONE), "\"35 deg\"", "Angle of internal friction, from 0 to below 90 deg; for mohr-coulomb, modified-mohr-coulomb"),
+    key("materials.NAME.damage.softening", K::Choice(softenings), "\"exponential\"", "Stress against crack opening, by name or as a table"),
+    key("materials.NAME.damage.softening.kind", K::Choice(softenings), "required", "Stress against crack opening"),
+    key("materials.NAME.damage.softening.kink_stress", K::Quantity(D::NONE), "1/3", "Bilinear only: stress at the kink over ft, within 0 and 1 (Petersson 1981)"),
+    key("materials.NAME.damage.softening.kink_opening", K::Quantity(D::NONE), "2/9", "Bilinear only: opening at the kink over the last opening, within 0 and 1 (Petersson 1981)"),
+    key("materials.NAME.damage.residual", K::Quantity(D::NONE), "0.02", "Stress over strength at which an edge is broken, within 0 and 1"),
+    key("materials.NAME.damage.scatter", K::Table, "", "Random scatter of the tensile strength, drawn per edge"),
+    key("materials.NAME.damage.scatter.distribution", K::Choice(distributions), "required", "Distribution of the factor on the strength"),
+    key("materials.NAME.damage.scatter.modulus", K::Quantity(D::NONE), "", "Weibull only, required there: modulus, > 0"),
+    key("materials.NAME.damage.scatter.width", K::Quantity(D::NONE), "", "Uniform only, required there: half width around 1, within 0 and 1"),
+    key("materials.NAME.damage.scatter.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
+    key("materials.NAME.damage.reduce_strength_to_fit", K::Flag, "false", "Lower ft where an element is too large for Gf, instead of refusing it"),
+    key("materials.NAME.damage.unilateral", K::Flag, "false", "Stiffness recovers where cracks close"),
+    key("materials.NAME.damage.rate_time", K::Quantity(D::TIME), "\"0 s\"", "Time constant of the damage-rate limiter, ≥ 0; 0 is off"),
+    key("materials.NAME.contact", K::Table, "", "Contact of the discrete elements this material leaves behind"),
+    key("materials.NAME.contact.friction", K::Quantity(D::NONE), "0.5", "Coulomb friction coefficient, ≥ 0"),
+    key("materials.NAME.contact.damping_ratio", K::Quantity(D::NONE), "0.1", "Fraction of critical damping, 0 to 1"),
+
+    key("bodies[]", K::Tables, "required", "Bodies, at least one"),
+    key("bodies[].name", K::Text, "required", "Name, unique among bodies"),
+    key("bodies[].kind", K::Choice(body_kinds), "required", "What the body is"),
+    key("bodies[].group", K::Text, "", "Solid, required there: mesh group of its elements"),
+    key("bodies[].material", K::Text, "", "Solid, required there: name of its material"),
+    key("bodies[].formulation", K::Choice(names::<Formulation>), "\"smoothed\" with damage, else \"standard\"", "Solid: strain and damage on edges, or the plain element"),
+    key("bodies[].kinematics", K::Choice(names::<Kinematics>), "\"small\"", "Solid: small rotations, or a frame that turns with each element"),
+    key("bodies[].plane", K::Choice(names::<Plane>), "\"strain\"", "Solid in 2D only: plane strain or plane stress"),
+    key("bodies[].thickness", K::Quantity(D::LENGTH), "\"1 m\"", "Solid in 2D only: thickness, > 0"),
+    key("bodies[].initial_velocity", K::Table, "", "Solid: velocity at the start, by components"),
+    key("bodies[].initial_velocity.x", K::Field(D::VELOCITY), "0", "Component along x"),
+    key("bodies[].initial_velocity.y", K::Field(D::VELOCITY), "0", "Component along y"),
+    key("bodies[].initial_velocity.z", K::Field(D::VELOCITY), "0", "Component along z"),
+    key("bodies[].damage", K::Flag, "true", "Solid: false keeps the body elastic whatever its material says"),
+    key("bodies[].damage_where", K::Condition, "", "Solid: where damage may occur; absent means everywhere"),
+    key("bodies[].strength_factor", K::Field(D::NONE), "1", "Solid: factor on the tensile strength, > 0"),
+    key("bodies[].shape", K::Choice(shapes), "", "Rigid, required there: shape of the tool"),
+    key("bodies[].point", K::Point(D::LENGTH), "[0, 0, 0]", "Rigid plane: a point on it"),
+    key("bodies[].normal", K::Direction, "", "Rigid plane, required there: normal out of the tool"),
+    key("bodies[].contact", K::Table, "", "Rigid: contact with it"),
+    key("bodies[].contact.friction", K::Quantity(D::NONE), "0.5", "Coulomb friction coefficient, ≥ 0"),
+    key("bodies[].contact.damping_ratio", K::Quantity(D::NONE), "0.1", "Fraction of critical damping, 0 to 1"),
+
+    key("supports[]", K::Tables, "", "Prescribed motion of mesh groups; one of fix, velocity, displacement per axis"),
+    key("supports[].name", K::Text, "", "Name, unique among supports"),
+    key("supports[].group", K::Text, "required", "Mesh group of the nodes"),
+    key("supports[].fix", K::Text, "", "Axes held at rest: any of x, y, z, such as \"xy\""),
+    key("supports[].velocity", K::Table, "", "Velocity, by components"),
+    key("supports[].velocity.x", K::TimeFunction(D::VELOCITY), "", "Along x; absent leaves it free"),
+    key("supports[].velocity.y", K::TimeFunction(D::VELOCITY), "", "Along y; absent leaves it free"),
+    key("supports[].velocity.z", K::TimeFunction(D::VELOCITY), "", "Along z; absent leaves it free"),
+    key("supports[].displacement", K::Table, "", "Displacement from the initial position, by components"),
+    key("supports[].displacement.x", K::TimeFunction(D::LENGTH), "", "Along x; absent leaves it free"),
+    key("supports[].displacement.y", K::TimeFunction(D::LENGTH), "", "Along y; absent leaves it free"),
+    key("supports[].displacement.z", K::TimeFunction(D::LENGTH), "", "Along z; absent leaves it free"),
+
+    key("loads[]", K::Tables, "", "Loads; one of force, traction, pressure, gravity each"),
+    key("loads[].name", K::Text, "", "Name, unique among loads"),
+    key("loads[].group", K::Text, "", "Mesh group; required but for gravity, which acts on the whole scene"),
+    key("loads[].force", K::Table, "", "Total force over the group, by components"),
+    key("loads[].force.x", K::TimeFunction(D::FORCE), "0", "Component along x"),
+    key("loads[].force.y", K::TimeFunction(D::FORCE), "0", "Component along y"),
+    key("loads[].force.z", K::TimeFunction(D::FORCE), "0", "Component along z"),
+    key("loads[].traction", K::Table, "", "Force per area over the group's facets, by components"),
+    key("loads[].traction.x", K::TimeFunction(D::PRESSURE), "0", "Component along x"),
+    key("loads[].traction.y", K::TimeFunction(D::PRESSURE), "0", "Component along y"),
+    key("loads[].traction.z", K::TimeFunction(D::PRESSURE), "0", "Component along z"),
+    key("loads[].pressure", K::TimeFunction(D::PRESSURE), "", "Pressure that follows the group's facets; positive pushes into the solid"),
+    key("loads[].gravity", K::Table, "", "Acceleration of the whole scene, by components"),
+    key("loads[].gravity.x", K::TimeFunction(D::ACCELERATION), "0", "Component along x"),
+    key("loads[].gravity.y", K::TimeFunction(D::ACCELERATION), "0", "Component along y"),
+    key("loads[].gravity.z", K::TimeFunction(D::ACCELERATION), "0", "Component along z"),
+
+    key("damping", K::Table, "", "Damping of the solids"),
+    key("damping.local", K::Quantity(D::NONE), "0", "Fraction of the unbalanced force that opposes motion, from 0 to below 1; for quasi-static runs"),
+    key("damping.mass", K::Quantity(D::RATE), "\"0 1/s\"", "Mass-proportional damping, ≥ 0"),
+    key("damping.stiffness", K::Quantity(D::TIME), "\"0 s\"", "Stiffness-proportional damping, ≥ 0"),
+    key("damping.bulk_linear", K::Quantity(D::NONE), "0", "Linear bulk viscosity, ≥ 0; for shocks"),
+    key("damping.bulk_quadratic", K::Quantity(D::NONE), "0", "Quadratic bulk viscosity, ≥ 0; for shocks"),
+
+    key("solver", K::Table, "required", "Time and its steps"),
+    key("solver.kind", K::Choice(solver_kinds), "\"explicit\"", "Kind of solver"),
+    key("solver.end", K::Quantity(D::TIME), "required", "End of the run, > 0"),
+    key("solver.safety", K::Quantity(D::NONE), "0.8", "Factor on the stable time step, > 0 and at most 2; above 1 is unstable"),
+    key("solver.time_step", K::Choice(names::<TimeStep>), "\"power-iteration\"", "How the stable step is found: for the whole mesh, or rigorously by its worst element"),
+    key("solver.step", K::Quantity(D::TIME), "", "Fixed time step, > 0, instead of safety times the stable one"),
+    key("solver.stop_when", K::Table, "", "Ends the run once a probe has fallen below a fraction of its largest value so far"),
+    key("solver.stop_when.probe", K::Text, "required", "Name of the probe"),
+    key("solver.stop_when.below", K::Quantity(D::NONE), "required", "Fraction of the largest value so far, within 0 and 1"),
+    key("solver.stop_when.after", K::Quantity(D::TIME), "\"0 s\"", "Not before this time"),
+    key("solver.balance_warning", K::Quantity(D::NONE), "1e-3", "Energy imbalance over external work at which to warn, > 0"),
+    key("solver.balance_stop", K::Quantity(D::NONE), "1e-2", "Energy imbalance over external work at which to stop, ≥ balance_warning"),
+
+    key("probes[]", K::Tables, "", "Numbers to record; one quantity each"),
+    key("probes[].name", K::Text, "required", "Name, unique among probes: letters, digits, underscores"),
+    key("probes[].reaction", K::Table, "", "Sum of the support reactions on a group, in N"),
+    key("probes[].reaction.group", K::Text, "required", "Mesh group"),
+    key("probes[].reaction.along", K::Direction, "required", "Direction"),
+    key("probes[].displacement", K::Table, "", "Mean displacement of a group's nodes, in m"),
+    key("probes[].displacement.group", K::Text, "required", "Mesh group"),
+    key("probes[].displacement.along", K::Direction, "required", "Direction"),
+    key("probes[].velocity", K::Table, "", "Mean velocity of a group's nodes, in m/s"),
+    key("probes[].velocity.group", K::Text, "required", "Mesh group"),
+    key("probes[].velocity.along", K::Direction, "required", "Direction"),
+    key("probes[].stress", K::Table, "", "Volume mean of a stress component, in Pa"),
+    key("probes[].stress.group", K::Text, "required", "Mesh group of elements"),
+    key("probes[].stress.component", K::Choice(names::<StressComponent>), "required", "Component; tension is positive"),
+    key("probes[].energy", K::Choice(names::<EnergyKind>), "", "An entry of the energy ledger, in J"),
+    key("probes[].count", K::Choice(names::<CountKind>), "", "A count"),
+    key("probes[].momentum", K::Table, "", "Linear momentum of the scene, in kg m/s"),
+    key("probes[].momentum.along", K::Direction, "required", "Direction"),
+    key("probes[].angular_momentum", K::Table, "", "Angular momentum of the scene about the origin, in kg m^2/s"),
+    key("probes[].angular_momentum.along", K::Direction, "required", "Direction"),
+    key("probes[].crack_area", K::Flag, "", "true records the area of the cracks, in m^2"),
+    key("probes[].expression", K::ProbeExpression, "", "Expression of t and probes above it; max, min, absmax, mean, final, time_of_max (of a probe) and at(probe, time) make it one number at the end of the run"),
+    key("probes[].unit", K::Unit(None), "from the expression", "Expression only: its SI unit; required where a factor without unit leaves it open"),
+
+    key("output", K::Table, "", "What is written, and how often"),
+    key("output.fields", K::Table, "", "Fields for ParaView"),
+    key("output.fields.every", K::Quantity(D::TIME), "1/50 of the run", "Time between fields, > 0"),
+    key("output.history", K::Table, "", "Rows of history.csv"),
+    key("output.history.every", K::Quantity(D::TIME), "1/1000 of the run", "Time between rows, > 0"),
+    key("output.checkpoint", K::Table, "", "Checkpoints to resume from"),
+    key("output.checkpoint.every", K::Quantity(D::TIME), "\"10 min\"", "Wall time between checkpoints, > 0"),
+
+    key("expect[]", K::Tables, "", "Reference values for `fractum verify`: value and tolerance, or above and below"),
+    key("expect[].quantity", K::Text, "required", "A probe, or a path into summary.json such as energy.residual_max_relative"),
+    key("expect[].value", K::AnyQuantity, "", "Reference value"),
+    key("expect[].tolerance", K::AnyQuantity, "", "Required with value: \"5 %\" of it, or a difference in its unit"),
+    key("expect[].above", K::AnyQuantity, "", "Lower limit, instead of value"),
+    key("expect[].below", K::AnyQuantity, "", "Upper limit, instead of value"),
+    key("expect[].source", K::Text, "required", "Where the reference comes from"),
+    key("expect[].note", K::Text, "\"\"", "Remark"),
+
+    key("verify", K::Table, "", "How `fractum verify` takes this case"),
+    key("verify.quick", K::Flag, "false", "Run with --quick too"),
+
+    key("TIME_FUNCTION", K::Table, "", "Table form of any time function: one of ramp, smooth_ramp, table, pulse"),
+    key("TIME_FUNCTION.ramp", K::Points, "", "Pairs of time and value joined by straight lines, constant outside"),
+    key("TIME_FUNCTION.smooth_ramp", K::Points, "", "Pairs of time and value joined by quintic steps, smooth to the second derivative"),
+    key("TIME_FUNCTION.table", K::Text, "", "CSV file of two columns, time and value, relative to the case file; joined by straight lines"),
+    key("TIME_FUNCTION.time_unit", K::Unit(Some(D::TIME)), "\"s\"", "Table only: unit of the first column"),
+    key("TIME_FUNCTION.value_unit", K::Unit(None), "SI", "Table only: unit of the second column"),
+    key("TIME_FUNCTION.pulse", K::Choice(pulses), "", "A pulse by name"),
+    key("TIME_FUNCTION.peak", K::AnyQuantity, "", "Pulse, required there: largest value"),
+    key("TIME_FUNCTION.start", K::Quantity(D::TIME), "\"0 s\"", "Pulse: its begin; zero before"),
+    key("TIME_FUNCTION.duration", K::Quantity(D::TIME), "", "Triangle and half-sine, required there: time from begin to end, > 0"),
+    key("TIME_FUNCTION.rise", K::Quantity(D::TIME), "half the duration", "Triangle only: time from begin to peak, 0 to duration"),
+    key("TIME_FUNCTION.rise_time", K::Quantity(D::TIME), "", "Double-exponential, required there: time from begin to peak, > 0"),
+    key("TIME_FUNCTION.decay_time", K::Quantity(D::TIME), "", "Double-exponential, required there: time from the peak to 1/e of it, above 2.1462 rise_time"),
+];
+
+fn softenings() -> Vec<&'static str> {
+    vec!["exponential", "linear", "bilinear"]
+}
+
+fn distributions() -> Vec<&'static str> {
+    vec!["weibull", "uniform"]
+}
+
+fn body_kinds() -> Vec<&'static str> {
+    vec!["solid", "rigid"]
+}
+
+fn shapes() -> Vec<&'static str> {
+    vec!["plane"]
+}
+
+fn solver_kinds() -> Vec<&'static str> {
+    names::<SolverKind>()
+}
+
+fn pulses() -> Vec<&'static str> {
+    vec!["triangle", "half-sine", "double-exponential"]
+}

@@ -1,0 +1,35 @@
+//! Suggestions for misspelt names.
+
+/// Longest name worth comparing.
+const LONGEST: usize = 64;
+
+/// The candidate that resembles `name` most, if one does: at most a third of its letters differ, upper and lower case
+/// aside. The first of several equals wins.
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if name.chars().count() > LONGEST {
+        return None;
+    }
+    let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
+    let name = plain(name);
+    let distance = |candidate: &str| strsim::osa_distance(&name, &plain(candidate));
+    let allowed = |candidate: &str| (candidate.chars().count().max(name.chars().count()) / 3).max(1);
+    let close = candidates.into_iter().filter(|candidate| candidate.len() <= 4 * LONGEST);
+    let close = close.map(|candidate| (distance(candidate), candidate));
+    let close = close.filter(|&(distance, candidate)| distance <= allowed(candidate));
+    close.min_by_key(|(distance, _)| *distance).map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nearest;
+
+    #[test]
+    fn close_names_are_found_and_strange_ones_are_not() {
+        let names = ["density", "young_modulus", "poisson_ratio"];
+        assert_eq!(nearest("densty", names), Some("density"));
+        assert_eq!(nearest("young-modulus", names), Some("young_modulus"));
+        assert_eq!(nearest("Poisson_ration", names), Some("poisson_ratio"));
+        assert_eq!(nearest("viscosity", names), None);
+        assert_eq!(nearest(&"x".repeat(1000), names), None);
+    }
+}

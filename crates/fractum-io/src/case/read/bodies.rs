@@ -1,0 +1,160 @@
+//! `[[bodies]]`.
+
+use super::materials;
+use super::vectors::{components, condition, direction, field, point};
+use crate::case::model::{Body, BodyKind, Formulation, Kinematics, Material, Plane, RigidBody, Shape, SolidBody};
+use crate::case::reader::Table;
+use crate::case::tree::Value;
+use crate::case::{Diagnostic, nearest};
+use fractum_math::Vec3;
+
+/// Kinds of bodies that later versions are to have.
+const PLANNED: [&str; 2] = ["bonded", "particles"];
+
+/// Reads all bodies against the materials read before; nothing where one of them is wrong.
+pub(super) fn read(root: &Table<'_>, materials: &[(String, Option<Material>)]) -> Option<Vec<Body>> {
+    let mut used = vec![false; materials.len()];
+    let mut complete = true;
+    let mut bodies: Vec<Body> = Vec::new();
+    let tables = root.tables("bodies");
+    if !root.has("bodies") || (tables.is_empty() && root.holds_array("bodies")) {
+        let note = Diagnostic::error(&root.place_of("bodies"), "is missing");
+        root.reader.note(note.expected("at least one body in [[bodies]]"));
+    }
+    for table in tables {
+        let Some(body) = body(table, materials, &mut used) else {
+            complete = false;
+            continue;
+        };
+        complete &= unlike(root, &bodies, &body);
+        bodies.push(body);
+    }
+    for ((_, material), _) in materials.iter().zip(used).filter(|(_, used)| !used) {
+        if let Some(material) = material
+            && complete
+        {
+            root.reader.note(Diagnostic::warning(&material.name.place, "is not used by any body"));
+        }
+    }
+    (complete && !bodies.is_empty()).then_some(bodies)
+}
+
+/// Whether a body shares neither name nor group with an earlier one; notes it where it does.
+fn unlike(root: &Table<'_>, earlier: &[Body], body: &Body) -> bool {
+    if let Some(other) = earlier.iter().find(|other| other.name.value == body.name.value) {
+        let found = format!("= \"{}\" is taken by the body at line {}", body.name.value, other.name.place.line);
+        root.reader.note(Diagnostic::error(&body.name.place, found).remedy("names of bodies are unique"));
+        return false;
+    }
+    let BodyKind::Solid(solid) = &body.kind else { return true };
+    let same = earlier
+        .iter()
+        .find(|other| matches!(&other.kind, BodyKind::Solid(other) if other.group.value == solid.group.value));
+    if let Some(other) = same {
+        let found = format!("= \"{}\" is already the body \"{}\"", solid.group.value, other.name.value);
+        root.reader.note(Diagnostic::error(&solid.group.place, found).remedy("an element belongs to one body"));
+    }
+    same.is_none()
+}
+
+fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [bool]) -> Option<Body> {
+    #[derive(Clone, Copy)]
+    enum Kind {
+        Solid,
+        Rigid,
+    }
+    let name = table.text("name").spanned().required();
+    let planned = table.peek("kind").is_some_and(|node| {
+        let planned = matches!(&node.value, Value::Text(kind) if PLANNED.contains(&kind.as_str()));
+        if planned {
+            let note = Diagnostic::error(&node.place, format!("{} is not available in this version", node.found()));
+            table.reader.note(note.expected("\"solid\" or \"rigid\""));
+        }
+        planned
+    });
+    if planned {
+        return None;
+    }
+    let kind = table.one_of("kind", &[("solid", Kind::Solid), ("rigid", Kind::Rigid)]).required();
+    let (kind, why) = match kind {
+        Some(Kind::Solid) => (solid(&table, materials, used).map(BodyKind::Solid), "on a solid body"),
+        Some(Kind::Rigid) => (rigid(&table).map(BodyKind::Rigid), "on a rigid body"),
+        None => return None, // which keys belong here is not known
+    };
+    table.finish(why);
+    Some(Body { name: name?, kind: kind? })
+}
+
+fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut [bool]) -> Option<SolidBody> {
+    let group = table.text("group").spanned().required();
+    let material = table.text("material").spanned().required().and_then(|name| {
+        let found = materials.iter().position(|(known, _)| *known == name.value);
+        if found.is_none() {
+            let known = materials.iter().map(|(name, _)| name.as_str());
+            let note = Diagnostic::error(&name.place, format!("= \"{}\" is not a material of this case", name.value));
+            table.reader.note(match nearest(&name.value, known.clone()) {
+                Some(near) => note.remedy(format!("did you mean \"{near}\"?")),
+                None if materials.is_empty() => note.remedy("it has no [materials.NAME]"),
+                None => note.remedy(format!("materials here: {}", known.collect::<Vec<_>>().join(", "))),
+            });
+        }
+        found
+    });
+    if let Some(used) = material.and_then(|index| used.get_mut(index)) {
+        *used = true;
+    }
+    let material_here = material.and_then(|index| materials[index].1.as_ref());
+    // A material that is wrong itself says nothing about damage.
+    let may_damage = material_here.map(|material| material.damage.is_some());
+    if may_damage == Some(false) {
+        table.refuse("damage", "without damage in its material");
+    }
+    let damage = may_damage.unwrap_or(false) && table.flag("damage").or(true);
+    if may_damage.is_some() && !damage {
+        table.refuse("damage_where", "without damage");
+        table.refuse("strength_factor", "without damage");
+    }
+    let damage_where = optional(table, "damage_where", |name| condition(table, name).spanned().given());
+    let strength_factor = optional(table, "strength_factor", |name| {
+        let factor =
+            field(table, name).check(|field| field.constant_value().is_none_or(|value| value > 0.0), "more than 0");
+        factor.spanned().given()
+    });
+    let usual = if damage { Formulation::Smoothed } else { Formulation::Standard };
+    let formulation = table.choice("formulation").or(usual);
+    let kinematics = table.choice("kinematics").or(Kinematics::Small);
+    let plane = table.choice::<Plane>("plane").spanned().given();
+    let thickness = table.quantity("thickness").positive().spanned().given();
+    let initial_velocity =
+        optional(table, "initial_velocity", |name| components(table, name, |table, axis| field(table, axis).given()));
+    Some(SolidBody {
+        group: group?,
+        material: material?,
+        formulation,
+        kinematics,
+        plane,
+        thickness,
+        initial_velocity: initial_velocity?.unwrap_or([None, None, None]),
+        damage,
+        damage_where: damage_where?,
+        strength_factor: strength_factor?,
+    })
+}
+
+/// `Some(None)` where the key is absent, nothing where its value is wrong.
+fn optional<T>(
+    table: &Table<'_>,
+    name: &'static str,
+    read: impl FnOnce(&'static str) -> Option<T>,
+) -> Option<Option<T>> {
+    if table.has(name) { read(name).map(Some) } else { Some(None) }
+}
+
+fn rigid(table: &Table<'_>) -> Option<RigidBody> {
+    let shape = table.one_of("shape", &[("plane", ())]).required();
+    let point = point(table, "point").or(Vec3::zeros());
+    let normal = direction(table, "normal").required();
+    let contact = materials::contact(table);
+    shape?;
+    Some(RigidBody { shape: Shape::Plane { point, normal: normal? }, contact })
+}

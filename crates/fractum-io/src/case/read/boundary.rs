@@ -1,0 +1,165 @@
+//! `[[supports]]` and `[[loads]]`.
+
+use super::time_functions::time_function;
+use super::vectors::{AXES, components};
+use crate::case::model::{Load, LoadKind, Motion, Support};
+use crate::case::reader::Table;
+use crate::case::{Diagnostic, Spanned, TimeFunction};
+use fractum_math::Vec3;
+
+/// Reads all supports; nothing where one of them is wrong.
+pub(super) fn supports(root: &Table<'_>) -> Option<Vec<Support>> {
+    let mut complete = true;
+    let mut supports: Vec<Support> = Vec::new();
+    for table in root.tables("supports") {
+        let Some(support) = support(table) else {
+            complete = false;
+            continue;
+        };
+        for other in supports.iter().filter(|other| other.group.value == support.group.value) {
+            for (axis, (motion, taken)) in support.motion.iter().zip(&other.motion).enumerate() {
+                if let (Some(motion), Some(taken)) = (motion, taken) {
+                    let line = taken.place.line;
+                    let found = format!("moves group \"{}\" along {} too", support.group.value, AXES[axis]);
+                    let note = Diagnostic::error(&motion.place, found);
+                    root.reader.note(note.remedy(format!("the support at line {line} already does")));
+                    complete = false;
+                }
+            }
+        }
+        supports.push(support);
+    }
+    complete &= unique(root, supports.iter().filter_map(|support| support.name.as_ref()));
+    complete.then_some(supports)
+}
+
+/// Whether no two names are the same; notes those that are.
+fn unique<'s>(root: &Table<'_>, names: impl Iterator<Item = &'s Spanned<String>>) -> bool {
+    let mut seen: Vec<&Spanned<String>> = Vec::new();
+    let mut unique = true;
+    for name in names {
+        if let Some(other) = seen.iter().find(|other| other.value == name.value) {
+            let found = format!("= \"{}\" is taken at line {}", name.value, other.place.line);
+            root.reader.note(Diagnostic::error(&name.place, found).remedy("names are unique"));
+            unique = false;
+        }
+        seen.push(name);
+    }
+    unique
+}
+
+fn support(table: Table<'_>) -> Option<Support> {
+    let name = table.text("name").spanned().given();
+    let group = table.text("group").spanned().required();
+    let mut motion: [Option<Spanned<Motion>>; 3] = [None, None, None];
+    let mut complete = true;
+    if table.has("fix") {
+        match fixed_axes(&table) {
+            Some(fixed) => motion = fixed,
+            None => complete = false,
+        }
+    }
+    type Wrap = fn(TimeFunction) -> Motion;
+    for (key, wrap) in [("velocity", Motion::Velocity as Wrap), ("displacement", Motion::Displacement as Wrap)] {
+        if !table.has(key) {
+            continue;
+        }
+        let moved = components(&table, key, |table, axis| {
+            let function = time_function(table, axis).spanned().given()?;
+            if key == "displacement" {
+                warn_of_jump(table, &function);
+            }
+            Some(function.map(wrap))
+        });
+        complete &= moved.is_some();
+        for (axis, moved) in moved.into_iter().flatten().enumerate() {
+            match (&motion[axis], moved) {
+                (Some(_), Some(moved)) => {
+                    let note = Diagnostic::error(&moved.place, "moves an axis that this support already moves");
+                    table.reader.note(note.remedy("name each axis once among fix, velocity, displacement"));
+                    complete = false;
+                }
+                (None, Some(moved)) => motion[axis] = Some(moved),
+                (_, None) => {}
+            }
+        }
+    }
+    if complete && motion.iter().all(Option::is_none) {
+        let note = Diagnostic::error(&table.place, "prescribes no motion");
+        table.reader.note(note.expected("one of fix, velocity, displacement"));
+        complete = false;
+    }
+    table.finish("here");
+    Some(Support { name, group: group?, motion: complete.then_some(motion)? })
+}
+
+fn fixed_axes(table: &Table<'_>) -> Option<[Option<Spanned<Motion>>; 3]> {
+    let expected = "each of x, y, z at most once, such as \"xy\"";
+    let once = |axes: &String| {
+        axes.chars().all(|c| "xyz".contains(c)) && AXES.iter().all(|axis| axes.matches(axis).count() <= 1)
+    };
+    let axes = table.text("fix").check(once, expected).spanned().given()?;
+    let fixed = |axis: &str| axes.value.contains(axis).then(|| Spanned::new(Motion::Fixed, axes.place.clone()));
+    Some(AXES.map(fixed))
+}
+
+/// A displacement that is not zero at the start means an infinite velocity.
+fn warn_of_jump(table: &Table<'_>, function: &Spanned<TimeFunction>) {
+    let start = function.value.value(0.0, Vec3::zeros());
+    if !function.value.depends_on_position() && start != 0.0 {
+        let note = Diagnostic::warning(&function.place, format!("starts with a jump to {start} m"));
+        table.reader.note(note.remedy("let it begin at 0, by a ramp for instance"));
+    }
+}
+
+/// Reads all loads; nothing where one of them is wrong.
+pub(super) fn loads(root: &Table<'_>) -> Option<Vec<Load>> {
+    let loads: Vec<Option<Load>> = root.tables("loads").into_iter().map(load).collect();
+    let names = loads.iter().flatten().filter_map(|load| load.name.as_ref());
+    let unique = unique(root, names);
+    loads.into_iter().collect::<Option<_>>().filter(|_| unique)
+}
+
+fn load(table: Table<'_>) -> Option<Load> {
+    const KINDS: [&str; 4] = ["force", "traction", "pressure", "gravity"];
+    let name = table.text("name").spanned().given();
+    let kind = exactly_one(&table, &KINDS)?;
+    let group = if kind == "gravity" {
+        table.refuse("group", "with gravity, which acts on the whole scene");
+        None
+    } else {
+        table.text("group").spanned().required()
+    };
+    let by_components = || components(&table, kind, |table, axis| time_function(table, axis).given());
+    let kind = match kind {
+        "force" => by_components().and_then(|force| Some(LoadKind::Force { group: group?, force })),
+        "traction" => by_components().and_then(|traction| Some(LoadKind::Traction { group: group?, traction })),
+        "gravity" => by_components().map(|acceleration| LoadKind::Gravity { acceleration }),
+        _ => {
+            let pressure = time_function(&table, "pressure").required();
+            pressure.and_then(|pressure| Some(LoadKind::Pressure { group: group?, pressure }))
+        }
+    };
+    table.finish("here");
+    Some(Load { name, kind: kind? })
+}
+
+/// The one of these keys that a table has; notes where there is none, or several.
+pub(super) fn exactly_one(table: &Table<'_>, keys: &[&'static str]) -> Option<&'static str> {
+    let here: Vec<_> = keys.iter().filter(|key| table.has(key)).copied().collect();
+    match here[..] {
+        [one] => return Some(one),
+        [] => {
+            let note = Diagnostic::error(&table.place, format!("has none of {}", keys.join(", ")));
+            table.reader.note(note.expected("exactly one"));
+        }
+        [_, ref others @ ..] => {
+            for other in others {
+                let place = table.peek(other).map_or_else(|| table.place.clone(), |node| node.place.clone());
+                let note = Diagnostic::error(&place, format!("stands beside {}", here[0]));
+                table.reader.note(note.expected(format!("exactly one of {}", keys.join(", "))));
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,160 @@
+//! `[materials.NAME]`.
+
+use crate::case::model::{Contact, Criterion, Damage, Distribution, Material, Scatter, Softening};
+use crate::case::reader::Table;
+use crate::case::{Diagnostic, Spanned};
+
+/// Reads all materials: each with its name, and itself where nothing is wrong with it.
+pub(super) fn read(root: &Table<'_>) -> Vec<(String, Option<Material>)> {
+    let Some(table) = root.table("materials") else { return Vec::new() };
+    let materials = table.entries().map(|entry| {
+        let name = Spanned::new(entry.name.clone(), entry.key_place.clone());
+        (entry.name.clone(), material(Table::new(root.reader, &entry.node, "materials.NAME"), name))
+    });
+    let materials = materials.collect();
+    table.finish("here");
+    materials
+}
+
+fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
+    let density = table.quantity("density").positive().required();
+    let young_modulus = table.quantity("young_modulus").positive().required();
+    let poisson_ratio = table.quantity("poisson_ratio").between(-1.0, 0.5).required();
+    let damage = table.table("damage").map(|table| {
+        let place = table.place.clone();
+        damage(table).map(|damage| Spanned::new(damage, place))
+    });
+    let contact = contact(&table);
+    table.finish("here");
+    Some(Material {
+        name,
+        density: density?,
+        young_modulus: young_modulus?,
+        poisson_ratio: poisson_ratio?,
+        damage: damage.map_or(Some(None), |damage| damage.map(Some))?,
+        contact,
+    })
+}
+
+fn damage(table: Table<'_>) -> Option<Damage> {
+    let criterion = table.choice::<Criterion>("criterion").or(Criterion::Rankine);
+    let criterion = match criterion {
+        Criterion::MohrCoulomb if !table.flag("tension_cutoff").or(true) => Criterion::MohrCoulombPure,
+        Criterion::MohrCoulomb => Criterion::MohrCoulomb,
+        _ => {
+            table.refuse("tension_cutoff", "with this criterion, only with mohr-coulomb");
+            criterion
+        }
+    };
+    if criterion == Criterion::MohrCoulombPure
+        && let Some(node) = table.node("tension_cutoff")
+    {
+        let note = Diagnostic::warning(&node.place, node.found());
+        table.reader.note(note.remedy("pure Mohr-Coulomb loses about a fifth of the strength in Brazilian tests"));
+    }
+    let tensile_strength = table.quantity("tensile_strength").positive().required();
+    let fracture_energy = table.quantity("fracture_energy").positive().required();
+    let compressive_strength = if criterion.uses_compressive_strength() {
+        let above = tensile_strength.unwrap_or(0.0);
+        let strength = table.quantity("compressive_strength").positive();
+        strength.check(|strength| *strength > above, "more than the tensile strength").given()
+    } else {
+        table.refuse("compressive_strength", "with this criterion");
+        None
+    };
+    let friction_angle = if criterion.uses_friction_angle() {
+        let expected = "from 0 to below 90 deg (a number without a unit is in radians)";
+        let right = std::f64::consts::FRAC_PI_2;
+        table.quantity("friction_angle").check(|angle| (0.0..right).contains(angle), expected).given()
+    } else {
+        table.refuse("friction_angle", "with this criterion");
+        None
+    };
+    let softening = softening(&table);
+    let residual = table.quantity("residual").between(0.0, 1.0).or(0.02);
+    let scatter = table.table("scatter").map(scatter);
+    let reduce_strength_to_fit = table.flag("reduce_strength_to_fit").or(false);
+    let unilateral = table.flag("unilateral").or(false);
+    let rate_time = table.quantity("rate_time").not_negative().or(0.0);
+    table.finish("here");
+    let tensile_strength = tensile_strength?;
+    Some(Damage {
+        criterion,
+        tensile_strength,
+        fracture_energy: fracture_energy?,
+        compressive_strength: compressive_strength.unwrap_or(10.0 * tensile_strength),
+        friction_angle: friction_angle.unwrap_or(35f64.to_radians()),
+        softening: softening?,
+        residual,
+        scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,
+        reduce_strength_to_fit,
+        unilateral,
+        rate_time,
+    })
+}
+
+/// The bilinear law of Petersson (1981): the kink stands at ft/3, where the opening is 0.8 Gf/ft of 3.6 Gf/ft.
+const PETERSSON: Softening = Softening::Bilinear { kink_stress: 1.0 / 3.0, kink_opening: 2.0 / 9.0 };
+
+static SOFTENINGS: &[(&str, Softening)] =
+    &[("exponential", Softening::Exponential), ("linear", Softening::Linear), ("bilinear", PETERSSON)];
+
+/// By name, or as a table with parameters.
+fn softening(damage: &Table<'_>) -> Option<Softening> {
+    if !damage.holds_table("softening") {
+        return damage.one_of("softening", SOFTENINGS).or_if_absent(Softening::Exponential);
+    }
+    let table = damage.table("softening")?;
+    let softening = table.one_of("kind", SOFTENINGS).required();
+    let softening = match softening {
+        Some(Softening::Bilinear { kink_stress, kink_opening }) => Some(Softening::Bilinear {
+            kink_stress: table.quantity("kink_stress").between(0.0, 1.0).or(kink_stress),
+            kink_opening: table.quantity("kink_opening").between(0.0, 1.0).or(kink_opening),
+        }),
+        _ => {
+            table.refuse("kink_stress", "with this softening, only with bilinear");
+            table.refuse("kink_opening", "with this softening, only with bilinear");
+            softening
+        }
+    };
+    table.finish("here");
+    softening
+}
+
+fn scatter(table: Table<'_>) -> Option<Scatter> {
+    #[derive(Clone, Copy)]
+    enum Kind {
+        Weibull,
+        Uniform,
+    }
+    let kind = table.one_of("distribution", &[("weibull", Kind::Weibull), ("uniform", Kind::Uniform)]).required();
+    let distribution = match kind {
+        Some(Kind::Weibull) => {
+            table.refuse("width", "with this distribution");
+            table.quantity("modulus").positive().required().map(|modulus| Distribution::Weibull { modulus })
+        }
+        Some(Kind::Uniform) => {
+            table.refuse("modulus", "with this distribution");
+            table.quantity("width").between(0.0, 1.0).required().map(|width| Distribution::Uniform { width })
+        }
+        None => {
+            table.node("modulus");
+            table.node("width");
+            None
+        }
+    };
+    let seed = table.integer("seed").or(1);
+    table.finish("here");
+    Some(Scatter { distribution: distribution?, seed })
+}
+
+/// The `contact` table of a material or tool.
+pub(super) fn contact(parent: &Table<'_>) -> Contact {
+    let table = parent.table_or_empty("contact");
+    let default = Contact::default();
+    let friction = table.quantity("friction").not_negative().or(default.friction);
+    let damping_ratio = table.quantity("damping_ratio").check(|ratio| (0.0..=1.0).contains(ratio), "from 0 to 1");
+    let damping_ratio = damping_ratio.or(default.damping_ratio);
+    table.finish("here");
+    Contact { friction, damping_ratio }
+}

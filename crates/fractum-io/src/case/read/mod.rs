@@ -1,0 +1,199 @@
+//! From the tree of values to the [`Case`].
+
+mod bodies;
+mod boundary;
+mod expect;
+mod materials;
+mod parameters;
+mod probes;
+mod solver;
+mod table_file;
+mod time_functions;
+mod vectors;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::expression::parse_unit;
+use super::keys::remove_unknown;
+use super::model::{Case, CaseSource, MeshSource};
+use super::reader::{Reader, Table};
+use super::tree::{self, Node, Value};
+use super::unit::Dimension;
+use super::{Diagnostic, Diagnostics, Place, Severity, Spanned};
+
+/// The version of the case format this reads.
+const VERSION: u64 = 1;
+
+/// Largest case file or table read [bytes].
+const LARGEST: u64 = 64 << 20;
+
+/// Reads a case file with `--set` overrides: names of parameters, or dotted keys such as `solver.end` and
+/// `bodies[0].damage`.
+///
+/// # Errors
+/// Everything found wrong, with warnings, in the order of the file. Mesh groups are not checked here.
+pub fn read_case(path: &Path, overrides: &[(String, String)]) -> Result<Case, Diagnostics> {
+    let file = path.display().to_string();
+    let place = Place { file, line: 0, column: 0, key: String::new() };
+    let fail = |message: String| Diagnostics(vec![Diagnostic::error(&place, message)]);
+    let bytes = read_file(path).map_err(&fail)?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        fail(format!("line {line} is not UTF-8 text"))
+    })?;
+    parse_case(&text, path, overrides)
+}
+
+/// Reads a case from its text. `path` stands in messages, and its folder is where other files are looked for.
+///
+/// # Errors
+/// As [`read_case`].
+pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Result<Case, Diagnostics> {
+    let file = path.display().to_string();
+    let mut root = tree::parse(text, &file).map_err(|errors| sorted(errors, &file))?;
+    let reader = Reader::new(path.parent().unwrap_or(Path::new("")).to_path_buf());
+    for (name, value) in overrides {
+        let node = tree::parse_override(name, value);
+        if let Err(error) = override_value(&mut root, name, node) {
+            reader.note(error);
+        }
+    }
+    remove_unknown(&mut root, "", &mut |unknown| reader.note(unknown));
+
+    let source = CaseSource {
+        path: path.to_path_buf(),
+        text: text.to_string(),
+        overrides: overrides.to_vec(),
+        tables: Vec::new(),
+    };
+    let case = case(&reader, &root, source);
+    parameters::report_unused(&reader);
+    let tables = reader.tables.take();
+    let diagnostics = reader.into_diagnostics();
+    let wrong = diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
+    let diagnostics = sorted(diagnostics, &file);
+    match case {
+        Some(mut case) if !wrong => {
+            case.source.tables = tables;
+            case.warnings = diagnostics.0;
+            Ok(case)
+        }
+        _ => Err(diagnostics),
+    }
+}
+
+/// Replaces a parameter, which must be there, or the value at a dotted key.
+fn override_value(root: &mut Node, name: &str, node: Node) -> Result<(), Diagnostic> {
+    if name.contains('.') {
+        let parameter = name.strip_prefix("parameters.").unwrap_or_default();
+        return if parameter.is_empty() { tree::set(root, name, node) } else { override_value(root, parameter, node) };
+    }
+    let declared = parameters::declared(root);
+    if declared.iter().any(|known| known == name) {
+        return tree::set(root, &format!("parameters.{name}"), node);
+    }
+    let error = Diagnostic::error(&node.place, "is not a parameter of this case");
+    Err(match super::nearest(name, declared.iter().map(String::as_str)) {
+        Some(near) => error.remedy(format!("did you mean {near}?")),
+        None if declared.is_empty() => error.remedy("it declares none; keys are set by their path, such as solver.end"),
+        None => error.remedy(format!("parameters here: {}", declared.join(", "))),
+    })
+}
+
+/// Errors and warnings in the order of the file, the command line first, each once.
+fn sorted(mut diagnostics: Vec<Diagnostic>, file: &str) -> Diagnostics {
+    let rank = |diagnostic: &Diagnostic| {
+        let place = diagnostic.place.as_ref();
+        place.map(|place| (place.file == file, place.line, place.column))
+    };
+    diagnostics.sort_by_key(rank);
+    diagnostics.dedup();
+    Diagnostics(diagnostics)
+}
+
+/// Reads every part, so that all mistakes are found; gives the case where none is missing.
+fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
+    let table = Table::new(reader, root, "");
+    let version = table.integer("fractum").check(|version| *version == VERSION, "1, the version this program reads");
+    let version = version.required();
+    let title = table.text("title").or(String::new());
+    let parameters = parameters::read(&table);
+    let mesh = mesh(&table);
+    let materials = materials::read(&table);
+    let bodies = bodies::read(&table, &materials);
+    let supports = boundary::supports(&table);
+    let loads = boundary::loads(&table);
+    let damping = solver::damping(&table);
+    let probes = probes::read(&table);
+    let solver = solver::read(&table, &probes);
+    let output = solver::output(&table, solver.as_ref().map(|solver| solver.end));
+    let expect = expect::read(&table, &probes);
+    let verify = table.table_or_empty("verify");
+    let verify_quick = verify.flag("quick").or(false);
+    verify.finish("here");
+    table.finish("here");
+    version?;
+    Some(Case {
+        source,
+        title,
+        parameters,
+        mesh: mesh?,
+        materials: materials.into_iter().map(|(_, material)| material).collect::<Option<_>>()?,
+        bodies: bodies?,
+        supports: supports?,
+        loads: loads?,
+        damping,
+        solver: solver?,
+        probes: probes.into_iter().map(|probe| probe.probe).collect::<Option<_>>()?,
+        output: output?,
+        expect: expect?,
+        verify_quick,
+        warnings: Vec::new(),
+    })
+}
+
+fn mesh(root: &Table<'_>) -> Option<MeshSource> {
+    let table = root.table_or_empty("mesh");
+    let file = table.text("file").spanned().required();
+    let unit = unit(&table, "unit", Dimension::LENGTH).unwrap_or(1.0);
+    table.finish("here");
+    let Spanned { value, place } = file?;
+    Some(MeshSource { file: Spanned::new(table_path(root.reader, &value), place), unit })
+}
+
+fn table_path(reader: &Reader, file: &str) -> std::path::PathBuf {
+    reader.folder.join(file)
+}
+
+/// The size in SI of a unit that must have this dimension; `None` where absent or wrong.
+fn unit(table: &Table<'_>, name: &'static str, dimension: Dimension) -> Option<f64> {
+    let read = table.read(name, |node| {
+        let Value::Text(text) = &node.value else {
+            table.reader.note(Diagnostic::error(&node.place, node.found()).expected("a unit in quotes"));
+            return None;
+        };
+        let unit = parse_unit(text).map_err(|error| table.reader.note_expression(node, error)).ok()?;
+        if unit.dimension != dimension {
+            let note =
+                Diagnostic::error(&node.place, format!("{}, a unit of {}", node.found(), unit.dimension.phrase()));
+            table.reader.note(note.expected(format!("a unit of {}, such as \"{dimension}\"", dimension.phrase())));
+            return None;
+        }
+        Some(unit.size())
+    });
+    read.given()
+}
+
+/// Contents of a file of reasonable size, or what keeps them from being read.
+fn read_file(path: &Path) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|error| format!("cannot be opened: {error}"))?;
+    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|error| format!("cannot be read: {error}"))?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(format!("is larger than {} MiB", LARGEST >> 20));
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,287 @@
+//! `[[probes]]`.
+
+use super::boundary::exactly_one;
+use super::parameters::check_name;
+use super::vectors::direction;
+use crate::case::expression::{Named, Names, Op, Type, parse_unit};
+use crate::case::model::{Probe, ProbeExpression, ProbeInput, ProbeKind, Take};
+use crate::case::reader::{ParameterNames, Table};
+use crate::case::tree::{Node, Value};
+use crate::case::unit::Dimension;
+use crate::case::{Diagnostic, Spanned};
+
+/// A probe as far as it could be read.
+pub(super) struct ReadProbe {
+    pub(super) name: String,
+    /// Dimension of its values; unknown where the probe is wrong.
+    pub(super) dimension: Option<Dimension>,
+    pub(super) scalar: bool,
+    pub(super) probe: Option<Probe>,
+}
+
+/// Functions that reduce the history of a probe to a number.
+const REDUCTIONS: [(&str, Take); 6] = [
+    ("max", Take::Max),
+    ("min", Take::Min),
+    ("absmax", Take::AbsMax),
+    ("mean", Take::Mean),
+    ("final", Take::Final),
+    ("time_of_max", Take::TimeOfMax),
+];
+
+/// Reads all probes in order.
+pub(super) fn read(root: &Table<'_>) -> Vec<ReadProbe> {
+    let tables = root.tables("probes");
+    let name = |table: &Table<'_>| match table.peek("name").map(|node| &node.value) {
+        Some(Value::Text(name)) => name.clone(),
+        _ => String::new(),
+    };
+    let names: Vec<String> = tables.iter().map(name).collect();
+    let mut probes = Vec::new();
+    for table in tables {
+        let probe = probe(table, &probes, &names);
+        probes.push(probe);
+    }
+    probes
+}
+
+fn probe(table: Table<'_>, earlier: &[ReadProbe], names: &[String]) -> ReadProbe {
+    let name = table.text("name").spanned().required().filter(|name| good_name(&table, name, earlier));
+    let own_name = names.get(earlier.len()).cloned().unwrap_or_default();
+    let mut read = ReadProbe { name: own_name, dimension: None, scalar: false, probe: None };
+    const KINDS: [&str; 10] = [
+        "reaction",
+        "displacement",
+        "velocity",
+        "stress",
+        "energy",
+        "count",
+        "momentum",
+        "angular_momentum",
+        "crack_area",
+        "expression",
+    ];
+    let Some(key) = exactly_one(&table, &KINDS) else { return read };
+    let mut unit = None;
+    let measured = match key {
+        "expression" => expression(&table, earlier, names).map(|expression| {
+            unit = expression.unit;
+            read.scalar = expression.probe.scalar;
+            (ProbeKind::Expression(expression.probe), expression.dimension)
+        }),
+        _ => measured(&table, key),
+    };
+    table.finish(&format!("with {key}"));
+    if let Some((kind, dimension)) = measured {
+        read.dimension = Some(dimension);
+        let unit = unit.unwrap_or_else(|| dimension.symbol());
+        read.probe = name.map(|name| Probe { name, unit, kind });
+    }
+    read
+}
+
+/// Whether expressions can use the name, and no other probe or parameter has it.
+fn good_name(table: &Table<'_>, name: &Spanned<String>, earlier: &[ReadProbe]) -> bool {
+    let reader = table.reader;
+    check_name(reader, &name.value, &name.place);
+    let taken = if earlier.iter().any(|other| other.name == name.value) {
+        "is the name of an earlier probe"
+    } else if reader.parameters.borrow().contains_key(&name.value) {
+        "is the name of a parameter"
+    } else if name.value == "at" || REDUCTIONS.iter().any(|(known, _)| *known == name.value) {
+        "is the name of a function"
+    } else {
+        return true;
+    };
+    reader.note(Diagnostic::error(&name.place, format!("= \"{}\" {taken}", name.value)).remedy("rename it"));
+    false
+}
+
+/// Everything but expressions, with its dimension.
+fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimension)> {
+    let group_along = || {
+        let inner = table.table(key)?;
+        let group = inner.text("group").spanned().required();
+        let along = direction(&inner, "along").required();
+        inner.finish("here");
+        Some((group?, along?))
+    };
+    let along = || {
+        let inner = table.table(key)?;
+        let along = direction(&inner, "along").required();
+        inner.finish("here");
+        along
+    };
+    Some(match key {
+        "reaction" => group_along().map(|(group, along)| (ProbeKind::Reaction { group, along }, Dimension::FORCE))?,
+        "displacement" => {
+            group_along().map(|(group, along)| (ProbeKind::Displacement { group, along }, Dimension::LENGTH))?
+        }
+        "velocity" => {
+            group_along().map(|(group, along)| (ProbeKind::Velocity { group, along }, Dimension::VELOCITY))?
+        }
+        "stress" => {
+            let inner = table.table(key)?;
+            let group = inner.text("group").spanned().required();
+            let component = inner.choice("component").required();
+            inner.finish("here");
+            (ProbeKind::Stress { group: group?, component: component? }, Dimension::PRESSURE)
+        }
+        "energy" => (ProbeKind::Energy(table.choice("energy").required()?), Dimension::ENERGY),
+        "count" => (ProbeKind::Count(table.choice("count").required()?), Dimension::NONE),
+        "momentum" => (ProbeKind::Momentum { along: along()? }, Dimension::MOMENTUM),
+        "angular_momentum" => (ProbeKind::AngularMomentum { along: along()? }, Dimension::ANGULAR_MOMENTUM),
+        _ => {
+            table.flag("crack_area").check(|on| *on, "true; leave the probe out where it is not wanted").required()?;
+            (ProbeKind::CrackArea, Dimension::AREA)
+        }
+    })
+}
+
+struct ReadExpression {
+    probe: ProbeExpression,
+    dimension: Dimension,
+    /// As written.
+    unit: Option<String>,
+}
+
+fn expression(table: &Table<'_>, earlier: &[ReadProbe], names: &[String]) -> Option<ReadExpression> {
+    let reader = table.reader;
+    let unit = table.has("unit").then(|| si_unit(table));
+    let node = table.node("expression")?;
+    let Value::Text(text) = &node.value else {
+        reader.note(Diagnostic::error(&node.place, node.found()).expected("an expression in quotes"));
+        return None;
+    };
+    let parameters = reader.names(&[]);
+    let mut names = ProbeNames { parameters, earlier, names, inputs: Vec::new(), scalar: false, broken: false };
+    let compiled = reader.compile(node, text, &mut names, true)?;
+    let Type::Number { dimension, bare, loose } = compiled.kind else {
+        let note = Diagnostic::error(&node.place, format!("{}, which is a condition", node.found()));
+        reader.note(note.expected("a number").remedy("write if(condition, 1, 0)"));
+        return None;
+    };
+    let (unit, dimension) = match unit {
+        Some(unit) => {
+            let (unit, meant) = unit?;
+            if !compiled.kind.fits(meant, true) && !names.broken {
+                let found = format!("{}, which is {}", node.found(), compiled.kind.phrase());
+                let note = Diagnostic::error(&node.place, found);
+                reader.note(note.expected(format!("{}, by its unit \"{unit}\"", meant.phrase())));
+                return None;
+            }
+            (Some(unit), meant)
+        }
+        None if names.broken => return None,
+        None if loose && !(bare && names.inputs.is_empty()) => {
+            let note = Diagnostic::error(&table.place_of("unit"), "is missing");
+            let note = note.expected("the SI unit of the expression, such as \"Pa\"");
+            reader.note(note.remedy("a factor without a unit leaves it open"));
+            return None;
+        }
+        None => (None, dimension),
+    };
+    let probe = ProbeExpression { inputs: names.inputs, scalar: names.scalar, program: compiled.program };
+    Some(ReadExpression { probe, dimension, unit })
+}
+
+/// The unit of an expression, as written and as dimension; it must be SI, as all results are.
+fn si_unit(table: &Table<'_>) -> Option<(String, Dimension)> {
+    let read = |node: &Node| {
+        let Value::Text(text) = &node.value else {
+            table.reader.note(Diagnostic::error(&node.place, node.found()).expected("a unit in quotes"));
+            return None;
+        };
+        let unit = parse_unit(text).map_err(|error| table.reader.note_expression(node, error)).ok()?;
+        if unit.size() != 1.0 {
+            let note = Diagnostic::error(&node.place, node.found());
+            table.reader.note(note.expected(format!("the SI unit \"{}\", as in all results", unit.dimension)));
+            return None;
+        }
+        Some((text.trim().to_string(), unit.dimension))
+    };
+    table.read("unit", read).given()
+}
+
+/// Names of a probe expression: t, parameters, earlier probes and reductions of them.
+struct ProbeNames<'a> {
+    parameters: ParameterNames<'a>,
+    earlier: &'a [ReadProbe],
+    /// Names of all probes.
+    names: &'a [String],
+    inputs: Vec<ProbeInput>,
+    scalar: bool,
+    /// Whether it reads a probe that is wrong itself.
+    broken: bool,
+}
+
+impl ProbeNames<'_> {
+    fn input(&mut self, input: ProbeInput, kind: Type) -> Result<Named, String> {
+        let known = self.inputs.iter().position(|other| *other == input);
+        let index = known.unwrap_or_else(|| {
+            self.inputs.push(input);
+            self.inputs.len() - 1
+        });
+        let index = u16::try_from(index).map_err(|_| "too many probes in one expression".to_string())?;
+        Ok(Named { op: Op::Input(index), kind })
+    }
+
+    /// Index of an earlier probe with the type of its values.
+    fn probe(&mut self, name: &str) -> Result<(usize, Type), String> {
+        let index = self.earlier.iter().position(|probe| probe.name == name);
+        let index = index.ok_or_else(|| format!("probe \"{name}\" must be declared above this one"))?;
+        self.broken |= self.earlier[index].dimension.is_none();
+        Ok((index, self.earlier[index].dimension.map_or(Type::BARE, Type::number)))
+    }
+
+    fn take(&mut self, probe: usize, take: Take, kind: Type) -> Result<Named, String> {
+        self.input(ProbeInput::Probe { probe, take }, kind)
+    }
+}
+
+impl Names for ProbeNames<'_> {
+    fn contains(&self, name: &str) -> bool {
+        name == "t" || self.names.iter().any(|known| known == name) || self.parameters.contains(name)
+    }
+
+    fn find(&mut self, name: &str) -> Option<Result<Named, String>> {
+        if name == "t" {
+            return Some(self.input(ProbeInput::Time, Type::number(Dimension::TIME)));
+        }
+        if !self.names.iter().any(|known| known == name) {
+            return self.parameters.find(name);
+        }
+        Some(self.probe(name).and_then(|(index, kind)| {
+            self.scalar |= self.earlier[index].scalar;
+            self.take(index, Take::Current, kind)
+        }))
+    }
+
+    fn all(&self) -> Vec<String> {
+        let probes = self.names.iter().filter(|name| !name.is_empty()).cloned();
+        probes.chain(["t".to_string()]).chain(self.parameters.all()).collect()
+    }
+
+    fn reduces(&self, function: &str) -> bool {
+        function == "at" || REDUCTIONS.iter().any(|(name, _)| *name == function)
+    }
+
+    fn reduce(&mut self, function: &str, name: &str, at: Option<f64>) -> Result<Named, String> {
+        if !self.names.iter().any(|known| known == name) {
+            return Err(format!("{function}() needs a probe; \"{name}\" is none"));
+        }
+        let (probe, kind) = self.probe(name)?;
+        if self.earlier[probe].scalar {
+            return Err(format!("\"{name}\" is one number already and has no history for {function}()"));
+        }
+        self.scalar = true;
+        let take = match at {
+            Some(time) => Take::At(time),
+            None => {
+                let found = REDUCTIONS.iter().find(|(name, _)| *name == function);
+                found.map(|(_, take)| *take).ok_or_else(|| format!("unknown function \"{function}\""))?
+            }
+        };
+        self.take(probe, take, if take == Take::TimeOfMax { Type::number(Dimension::TIME) } else { kind })
+    }
+}

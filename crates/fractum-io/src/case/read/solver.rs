@@ -1,0 +1,126 @@
+//! `[damping]`, `[solver]` and `[output]`.
+
+use super::probes::ReadProbe;
+use crate::case::model::{Damping, Output, Solver, SolverKind, StopWhen, TimeStep};
+use crate::case::reader::Table;
+use crate::case::tree::Value;
+use crate::case::{Diagnostic, nearest};
+
+pub(super) fn damping(root: &Table<'_>) -> Damping {
+    let table = root.table_or_empty("damping");
+    let damping = Damping {
+        local: table.quantity("local").check(|local| (0.0..1.0).contains(local), "from 0 to below 1").or(0.0),
+        mass: table.quantity("mass").not_negative().or(0.0),
+        stiffness: table.quantity("stiffness").not_negative().or(0.0),
+        bulk_linear: table.quantity("bulk_linear").not_negative().or(0.0),
+        bulk_quadratic: table.quantity("bulk_quadratic").not_negative().or(0.0),
+    };
+    table.finish("here");
+    damping
+}
+
+/// Safety factor above which a run is close to the edge of stability.
+const RISKY_SAFETY: f64 = 0.95;
+
+pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe]) -> Option<Solver> {
+    let table = root.table_or_empty("solver");
+    let kind = solver_kind(&table);
+    let end = table.quantity("end").positive().required();
+    let step = table.quantity("step").positive();
+    let step =
+        step.check(|step| end.is_none_or(|end| *step <= end), "no more than the end of the run").spanned().given();
+    if step.is_some() {
+        table.refuse("safety", "beside a fixed step");
+    }
+    let safety =
+        table.quantity("safety").check(|safety| *safety > 0.0 && *safety <= 2.0, "more than 0, at most 2").or(0.8);
+    if let Some(node) = table.peek("safety")
+        && safety > RISKY_SAFETY
+    {
+        let why = if safety > 1.0 { "above 1 the run is unstable" } else { "this is close to the limit of stability" };
+        let note = Diagnostic::warning(&node.place, node.found()).remedy(format!("{why}; 0.8 is usual"));
+        table.reader.note(note);
+    }
+    let time_step = table.choice("time_step").or(TimeStep::PowerIteration);
+    let stop_when = if table.has("stop_when") { stop_when(&table, probes).map(Some) } else { Some(None) };
+    let balance_warning = table.quantity("balance_warning").positive().or(1e-3);
+    let expected = format!("at least balance_warning, which is {balance_warning}");
+    let balance_stop = table.quantity("balance_stop").check(|stop| *stop >= balance_warning, &expected);
+    let balance_stop = balance_stop.or(balance_warning.max(1e-2));
+    table.finish("here");
+    Some(Solver {
+        kind: kind?,
+        end: end?,
+        safety,
+        time_step,
+        step,
+        stop_when: stop_when?,
+        balance_warning,
+        balance_stop,
+    })
+}
+
+fn solver_kind(table: &Table<'_>) -> Option<SolverKind> {
+    if let Some(node) = table.peek("kind")
+        && matches!(&node.value, Value::Text(kind) if kind == "static")
+    {
+        table.node("kind");
+        let note = Diagnostic::error(&node.place, format!("{} is not available in this version", node.found()));
+        table.reader.note(note.expected("\"explicit\""));
+        return None;
+    }
+    table.choice("kind").or_if_absent(SolverKind::Explicit)
+}
+
+fn stop_when(solver: &Table<'_>, probes: &[ReadProbe]) -> Option<StopWhen> {
+    let table = solver.table("stop_when")?;
+    let probe = table.text("probe").spanned().required().and_then(|name| {
+        let columns = probes.iter().filter(|probe| !probe.scalar).map(|probe| probe.name.as_str());
+        let found = probes.iter().position(|probe| probe.name == name.value && !probe.scalar);
+        if found.is_none() {
+            let note = Diagnostic::error(&name.place, format!("= \"{}\" is not a probe with a history", name.value));
+            table.reader.note(match nearest(&name.value, columns.clone()) {
+                Some(near) => note.remedy(format!("did you mean \"{near}\"?")),
+                None => note.remedy(format!("there are: {}", columns.collect::<Vec<_>>().join(", "))),
+            });
+        }
+        found
+    });
+    let below = table.quantity("below").between(0.0, 1.0).required();
+    let after = table.quantity("after").not_negative().or(0.0);
+    table.finish("here");
+    Some(StopWhen { probe: probe?, below: below?, after })
+}
+
+/// Frames of fields and rows of the history where nothing is said.
+const FRAMES: f64 = 50.0;
+const ROWS: f64 = 1000.0;
+/// Wall time between checkpoints where nothing is said [s].
+const CHECKPOINT: f64 = 600.0;
+
+/// Reads what is written; `end` is that of the run, where it is known.
+pub(super) fn output(root: &Table<'_>, end: Option<f64>) -> Option<Output> {
+    let table = root.table_or_empty("output");
+    let every = |name: &'static str, longest: Option<f64>| {
+        let inner = table.table(name)?;
+        let every = inner.quantity("every").positive().spanned().required();
+        inner.finish("here");
+        if let (Some(every), Some(longest)) = (&every, longest)
+            && every.value > longest
+        {
+            let note = Diagnostic::warning(&every.place, format!("is longer than the run of {longest} s"));
+            table.reader.note(note);
+        }
+        every.map(|every| every.value)
+    };
+    let fields = every("fields", end);
+    let history = every("history", end);
+    let checkpoint = every("checkpoint", None);
+    table.finish("here");
+    let end = end?;
+    Some(Output {
+        fields_every: fields.unwrap_or(end / FRAMES),
+        history_every: history.unwrap_or(end / ROWS),
+        checkpoint_every: checkpoint.unwrap_or(CHECKPOINT),
+    })
+}

@@ -1,0 +1,413 @@
+//! Typed access to the tables of a case: every mistake is noted, none ends the reading.
+
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use super::expression::{Compiled, ExpressionError, Named, Names, Op, Type, compile};
+use super::keys::{KeyKind, describe};
+use super::tree::{Entry, Node, Value, join};
+use super::unit::Dimension;
+use super::{Choice, Diagnostic, Place, Spanned, nearest};
+
+/// What the whole reading shares.
+pub(super) struct Reader {
+    /// Folder of the case file.
+    pub(super) folder: PathBuf,
+    /// Parameters read so far.
+    pub(super) parameters: RefCell<BTreeMap<String, Parameter>>,
+    /// Tables read from other files: name as written, contents.
+    pub(super) tables: RefCell<Vec<(String, Vec<u8>)>>,
+    diagnostics: RefCell<Vec<Diagnostic>>,
+}
+
+/// A named quantity.
+#[derive(Debug, Clone)]
+pub(super) struct Parameter {
+    pub(super) value: f64,
+    pub(super) kind: Type,
+    pub(super) place: Place,
+    pub(super) used: bool,
+}
+
+impl Reader {
+    pub(super) fn new(folder: PathBuf) -> Self {
+        Self { folder, parameters: RefCell::default(), tables: RefCell::default(), diagnostics: RefCell::default() }
+    }
+
+    /// Notes a mistake or a doubt.
+    pub(super) fn note(&self, diagnostic: Diagnostic) {
+        self.diagnostics.borrow_mut().push(diagnostic);
+    }
+
+    /// Everything noted.
+    pub(super) fn into_diagnostics(self) -> Vec<Diagnostic> {
+        self.diagnostics.into_inner()
+    }
+
+    /// Compiles the text of `node`, noting what is wrong.
+    pub(super) fn compile(&self, node: &Node, text: &str, names: &mut dyn Names, lenient: bool) -> Option<Compiled> {
+        let compiled = compile(text, names, lenient);
+        compiled.map_err(|error| self.note_expression(node, error)).ok()
+    }
+
+    /// Notes a mistake in an expression or unit, at its very column.
+    pub(super) fn note_expression(&self, node: &Node, error: ExpressionError) {
+        let place = node.place_inside(error.offset);
+        self.note(Diagnostic::error(&place, format!("{}: {}", node.found(), error.message)).remedy(error.remedy));
+    }
+
+    /// A constant quantity with its type: a number, or an expression of parameters.
+    pub(super) fn constant(&self, node: &Node, expected: &str) -> Option<(f64, Type)> {
+        let (value, kind) = match &node.value {
+            Value::Number(value) => (*value, Type::BARE),
+            Value::Text(text) => {
+                let compiled = self.compile(node, text, &mut self.names(&[]), false)?;
+                (compiled.program.constant().unwrap_or(f64::NAN), compiled.kind)
+            }
+            _ => {
+                self.note(Diagnostic::error(&node.place, node.found()).expected(expected));
+                return None;
+            }
+        };
+        if !value.is_finite() {
+            self.note(Diagnostic::error(&node.place, node.found()).expected("a finite number"));
+            return None;
+        }
+        Some((value, kind))
+    }
+
+    /// A constant quantity of this dimension.
+    pub(super) fn quantity(&self, node: &Node, dimension: Dimension) -> Option<f64> {
+        let (value, kind) = self.constant(node, &dimension.expected())?;
+        self.check_dimension(node, kind, dimension).then_some(value)
+    }
+
+    /// Whether a type fits a dimension; notes it where not.
+    pub(super) fn check_dimension(&self, node: &Node, kind: Type, dimension: Dimension) -> bool {
+        if kind.fits(dimension, false) {
+            return true;
+        }
+        let note = Diagnostic::error(&node.place, format!("{}, which is {}", node.found(), kind.phrase()));
+        let note = note.expected(dimension.expected());
+        self.note(if kind.fits(dimension, true) {
+            note.remedy("in a product a number without a unit is a pure number; give it its unit")
+        } else {
+            note
+        });
+        false
+    }
+
+    /// Names for an expression of parameters and these variables, which become its inputs in order.
+    pub(super) fn names<'a>(&'a self, variables: &'a [(&'a str, Dimension)]) -> ParameterNames<'a> {
+        ParameterNames { reader: self, variables }
+    }
+}
+
+/// Parameters and variables as names of an expression.
+pub(super) struct ParameterNames<'a> {
+    reader: &'a Reader,
+    variables: &'a [(&'a str, Dimension)],
+}
+
+impl Names for ParameterNames<'_> {
+    fn contains(&self, name: &str) -> bool {
+        self.variables.iter().any(|(known, _)| *known == name) || self.reader.parameters.borrow().contains_key(name)
+    }
+
+    fn find(&mut self, name: &str) -> Option<Result<Named, String>> {
+        if let Some(index) = self.variables.iter().position(|(known, _)| *known == name) {
+            return Some(Ok(Named { op: Op::Input(index as u16), kind: Type::number(self.variables[index].1) }));
+        }
+        let mut parameters = self.reader.parameters.borrow_mut();
+        let parameter = parameters.get_mut(name)?;
+        parameter.used = true;
+        Some(Ok(Named { op: Op::Constant(parameter.value), kind: parameter.kind }))
+    }
+
+    fn all(&self) -> Vec<String> {
+        let variables = self.variables.iter().map(|(name, _)| name.to_string());
+        variables.chain(self.reader.parameters.borrow().keys().cloned()).collect()
+    }
+}
+
+/// A table of the case while it is read. [`Table::finish`] reports the keys that nobody asked for.
+pub(super) struct Table<'a> {
+    pub(super) reader: &'a Reader,
+    /// Where it stands.
+    pub(super) place: Place,
+    pattern: String,
+    entries: Vec<(&'a Entry, Cell<bool>)>,
+}
+
+impl<'a> Table<'a> {
+    /// A table of this pattern in the list of keys. A node that is no table is reported and counts as empty.
+    pub(super) fn new(reader: &'a Reader, node: &'a Node, pattern: impl Into<String>) -> Self {
+        let entries = match &node.value {
+            Value::Table(entries) => entries.iter().map(|entry| (entry, Cell::new(false))).collect(),
+            _ => {
+                reader.note(Diagnostic::error(&node.place, node.found()).expected("a table"));
+                Vec::new()
+            }
+        };
+        Self { reader, place: node.place.clone(), pattern: pattern.into(), entries }
+    }
+
+    /// The entries of a table with names of the user's, in the order of the file.
+    pub(super) fn entries(&self) -> impl Iterator<Item = &'a Entry> {
+        self.entries.iter().map(|(entry, used)| {
+            used.set(true);
+            *entry
+        })
+    }
+
+    /// Whether there is such a key.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.entries.iter().any(|(entry, _)| entry.name == name)
+    }
+
+    /// Whether the value of a key is a table.
+    pub(super) fn holds_table(&self, name: &str) -> bool {
+        self.peek(name).is_some_and(|node| matches!(node.value, Value::Table(_)))
+    }
+
+    /// Whether the value of a key is an array.
+    pub(super) fn holds_array(&self, name: &str) -> bool {
+        self.peek(name).is_some_and(|node| matches!(node.value, Value::Array(_)))
+    }
+
+    /// Looks at the value of a key without taking it.
+    pub(super) fn peek(&self, name: &str) -> Option<&'a Node> {
+        self.entries.iter().find(|(entry, _)| entry.name == name).map(|(entry, _)| &entry.node)
+    }
+
+    /// Takes the value of a key.
+    pub(super) fn node(&self, name: &str) -> Option<&'a Node> {
+        let (entry, used) = self.entries.iter().find(|(entry, _)| entry.name == name)?;
+        used.set(true);
+        Some(&entry.node)
+    }
+
+    /// Takes a table.
+    pub(super) fn table(&self, name: &str) -> Option<Table<'a>> {
+        Some(Table::new(self.reader, self.node(name)?, join(&self.pattern, name)))
+    }
+
+    /// Takes a table, an empty one where there is none.
+    pub(super) fn table_or_empty(&self, name: &str) -> Table<'a> {
+        let place = Place { key: join(&self.place.key, name), ..self.place.clone() };
+        let empty = Table { reader: self.reader, place, pattern: join(&self.pattern, name), entries: Vec::new() };
+        self.table(name).unwrap_or(empty)
+    }
+
+    /// Takes repeated tables `[[name]]`.
+    pub(super) fn tables(&self, name: &str) -> Vec<Table<'a>> {
+        let pattern = format!("{}[]", join(&self.pattern, name));
+        let Some(node) = self.node(name) else { return Vec::new() };
+        let Value::Array(items) = &node.value else {
+            let note = Diagnostic::error(&node.place, node.found());
+            self.reader.note(note.expected("tables in double brackets").remedy(format!("write [[{name}]]")));
+            return Vec::new();
+        };
+        items.iter().map(|item| Table::new(self.reader, item, pattern.clone())).collect()
+    }
+
+    /// Place for a key that is not there.
+    pub(super) fn place_of(&self, name: &str) -> Place {
+        Place { key: join(&self.place.key, name), ..self.place.clone() }
+    }
+
+    /// What the list of keys says a key holds.
+    pub(super) fn kind(&self, name: &str) -> Option<KeyKind> {
+        describe(&join(&self.pattern, name)).map(|key| key.kind)
+    }
+
+    /// Dimension of a key by the list of keys.
+    pub(super) fn dimension(&self, name: &str) -> Dimension {
+        match self.kind(name) {
+            Some(KeyKind::Quantity(d) | KeyKind::Field(d) | KeyKind::Point(d) | KeyKind::TimeFunction(d)) => d,
+            Some(KeyKind::Unit(Some(d))) => d,
+            _ => Dimension::NONE,
+        }
+    }
+
+    /// Takes a value, read by `read`, which notes what is wrong and then gives nothing.
+    pub(super) fn read<T>(&self, name: &'static str, read: impl FnOnce(&'a Node) -> Option<T>) -> Reading<'_, 'a, T> {
+        let node = self.node(name);
+        let state = match node.map(read) {
+            None => State::Absent,
+            Some(None) => State::Wrong,
+            Some(Some(value)) => State::Given(value),
+        };
+        Reading { table: self, name, node, state }
+    }
+
+    /// Takes a text.
+    pub(super) fn text(&self, name: &'static str) -> Reading<'_, 'a, String> {
+        self.read(name, |node| match &node.value {
+            Value::Text(text) if !text.trim().is_empty() => Some(text.clone()),
+            _ => {
+                self.reader.note(Diagnostic::error(&node.place, node.found()).expected("a text that is not empty"));
+                None
+            }
+        })
+    }
+
+    /// Takes a flag.
+    pub(super) fn flag(&self, name: &'static str) -> Reading<'_, 'a, bool> {
+        self.read(name, |node| match node.value {
+            Value::Flag(flag) => Some(flag),
+            _ => {
+                self.reader.note(Diagnostic::error(&node.place, node.found()).expected("true or false"));
+                None
+            }
+        })
+    }
+
+    /// Takes a constant quantity of the key's dimension, in SI.
+    pub(super) fn quantity(&self, name: &'static str) -> Reading<'_, 'a, f64> {
+        self.read(name, |node| self.reader.quantity(node, self.dimension(name)))
+    }
+
+    /// Takes a whole number from 0 to 2^53.
+    pub(super) fn integer(&self, name: &'static str) -> Reading<'_, 'a, u64> {
+        let whole =
+            self.quantity(name).check(|v| *v >= 0.0 && *v == v.round() && *v < 9e15, "a whole number, at least 0");
+        whole.map(|value| value as u64)
+    }
+
+    /// Takes one of a closed list of names.
+    pub(super) fn choice<T: Choice>(&self, name: &'static str) -> Reading<'_, 'a, T> {
+        self.one_of(name, T::NAMES)
+    }
+
+    /// Takes one of these names.
+    pub(super) fn one_of<T: Copy>(&self, name: &'static str, known: &[(&'static str, T)]) -> Reading<'_, 'a, T> {
+        self.read(name, |node| self.choose(node, known))
+    }
+
+    /// Finds the text of a node among these names.
+    pub(super) fn choose<T: Copy>(&self, node: &Node, known: &[(&'static str, T)]) -> Option<T> {
+        let text = if let Value::Text(text) = &node.value { text.as_str() } else { "" };
+        let found = known.iter().find(|(name, _)| *name == text);
+        if found.is_none() {
+            let all: Vec<_> = known.iter().map(|(name, _)| *name).collect();
+            let note = Diagnostic::error(&node.place, node.found()).expected(super::keys::one_of(&all));
+            let near = nearest(text, all).filter(|_| known.len() > 1);
+            self.reader.note(match near {
+                Some(near) => note.remedy(format!("did you mean \"{near}\"?")),
+                None => note,
+            });
+        }
+        found.map(|(_, value)| *value)
+    }
+
+    /// Notes that a key which is there has no effect, and why.
+    pub(super) fn refuse(&self, name: &str, why: &str) {
+        if let Some(node) = self.node(name) {
+            self.reader.note(Diagnostic::error(&node.place, format!("has no effect {why}")).remedy("remove it"));
+        }
+    }
+
+    /// Reports the keys that nobody asked for: they have no effect, for the reason given.
+    pub(super) fn finish(self, why: &str) {
+        for (entry, used) in &self.entries {
+            if !used.get() {
+                let note = Diagnostic::error(&entry.key_place, format!("has no effect {why}"));
+                self.reader.note(note.remedy("remove it"));
+            }
+        }
+    }
+}
+
+/// A value on its way out of a table: absent, wrong (and noted), or given.
+pub(super) struct Reading<'t, 'a, T> {
+    table: &'t Table<'a>,
+    name: &'static str,
+    node: Option<&'a Node>,
+    state: State<T>,
+}
+
+enum State<T> {
+    Absent,
+    Wrong,
+    Given(T),
+}
+
+impl<'t, 'a, T> Reading<'t, 'a, T> {
+    /// Holds a given value against a condition.
+    pub(super) fn check(mut self, holds: impl FnOnce(&T) -> bool, expected: &str) -> Self {
+        if let (State::Given(value), Some(node)) = (&self.state, self.node)
+            && !holds(value)
+        {
+            self.table.reader.note(Diagnostic::error(&node.place, node.found()).expected(expected));
+            self.state = State::Wrong;
+        }
+        self
+    }
+
+    /// Another value from a given one.
+    pub(super) fn map<U>(self, f: impl FnOnce(T) -> U) -> Reading<'t, 'a, U> {
+        let state = match self.state {
+            State::Absent => State::Absent,
+            State::Wrong => State::Wrong,
+            State::Given(value) => State::Given(f(value)),
+        };
+        Reading { table: self.table, name: self.name, node: self.node, state }
+    }
+
+    /// Keeps the place of a given value.
+    pub(super) fn spanned(self) -> Reading<'t, 'a, Spanned<T>> {
+        let place = self.node.map_or_else(|| self.table.place_of(self.name), |node| node.place.clone());
+        self.map(|value| Spanned::new(value, place))
+    }
+
+    /// The value, which must be there.
+    pub(super) fn required(self) -> Option<T> {
+        if matches!(self.state, State::Absent) {
+            let expected = self.table.kind(self.name).map_or(String::new(), KeyKind::expected);
+            let note = Diagnostic::error(&self.table.place_of(self.name), "is missing");
+            self.table.reader.note(note.expected(expected));
+        }
+        self.given()
+    }
+
+    /// The value where it is there and right.
+    pub(super) fn given(self) -> Option<T> {
+        match self.state {
+            State::Given(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// The value where it is right, this where it is absent, nothing where it is wrong.
+    pub(super) fn or_if_absent(self, default: T) -> Option<T> {
+        match self.state {
+            State::Given(value) => Some(value),
+            State::Absent => Some(default),
+            State::Wrong => None,
+        }
+    }
+
+    /// The value where it is there and right, else this.
+    pub(super) fn or(self, default: T) -> T {
+        self.given().unwrap_or(default)
+    }
+}
+
+impl Reading<'_, '_, f64> {
+    /// Above zero.
+    pub(super) fn positive(self) -> Self {
+        self.check(|value| *value > 0.0, "more than 0")
+    }
+
+    /// At least zero.
+    pub(super) fn not_negative(self) -> Self {
+        self.check(|value| *value >= 0.0, "at least 0")
+    }
+
+    /// Between limits, both excluded.
+    pub(super) fn between(self, low: f64, high: f64) -> Self {
+        self.check(|value| *value > low && *value < high, &format!("between {low} and {high}"))
+    }
+}
