@@ -10,7 +10,9 @@ mod compress;
 pub mod error;
 pub mod fragments;
 pub mod history;
+pub mod log;
 pub mod number;
+pub mod picture;
 pub mod summary;
 pub mod vtk;
 

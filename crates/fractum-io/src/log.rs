@@ -1,0 +1,315 @@
+//! What a run tells while it goes: `run.log` for later, a progress line for now.
+
+use std::fmt;
+use std::fs::File;
+use std::io::{self, IsTerminal, Stderr, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use crate::error::WriteError;
+use crate::number::{quantity, significant};
+
+/// `run.log`: plain lines, appended as they come, under its final name from the start, so that it can be watched and
+/// tells what happened if the run was killed.
+#[derive(Debug)]
+pub struct RunLog {
+    path: PathBuf,
+    file: File,
+}
+
+impl RunLog {
+    /// Starts an empty log.
+    ///
+    /// # Errors
+    /// [`WriteError`].
+    pub fn create(path: &Path) -> Result<Self, WriteError> {
+        Self::open(path, File::options().write(true).create(true).truncate(true))
+    }
+
+    /// Goes on with the log of a run that is resumed; starts one if there is none.
+    ///
+    /// # Errors
+    /// [`WriteError`].
+    pub fn resume(path: &Path) -> Result<Self, WriteError> {
+        Self::open(path, File::options().append(true).create(true))
+    }
+
+    fn open(path: &Path, options: &std::fs::OpenOptions) -> Result<Self, WriteError> {
+        let file = options.open(path).map_err(|error| WriteError::new(path, error))?;
+        Ok(Self { path: path.to_path_buf(), file })
+    }
+
+    /// Adds a line; of a text with several lines, each.
+    ///
+    /// # Errors
+    /// [`WriteError`].
+    pub fn line(&mut self, text: impl fmt::Display) -> Result<(), WriteError> {
+        self.file.write_all(format!("{text}\n").as_bytes()).map_err(|error| WriteError::new(&self.path, error))
+    }
+}
+
+/// Where a run stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Snapshot {
+    /// Steps done.
+    pub step: u64,
+    /// Simulated time [s].
+    pub time: f64,
+    /// Simulated time at which the run ends [s].
+    pub end: f64,
+    /// Time step [s].
+    pub dt: f64,
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+    /// Elastic energy [J].
+    pub elastic: f64,
+    /// Energy dissipated so far, by damage, friction, damping and removal [J].
+    pub dissipated: f64,
+    /// Imbalance of the energy ledger relative to the external work [-].
+    pub balance_error: f64,
+    /// Broken edges.
+    pub broken_edges: u64,
+    /// Broken bonds.
+    pub broken_bonds: u64,
+    /// Particles.
+    pub particles: u64,
+}
+
+impl fmt::Display for Snapshot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { step, time, dt, kinetic, elastic, dissipated, balance_error, .. } = *self;
+        write!(f, "step {step}  t {}  dt {}", quantity(time, "s"), quantity(dt, "s"))?;
+        let [kinetic, elastic, dissipated] = [kinetic, elastic, dissipated].map(|energy| quantity(energy, "J"));
+        write!(f, "  kinetic {kinetic}  elastic {elastic}  dissipated {dissipated}")?;
+        write!(f, "  balance {}", significant(balance_error, 2))?;
+        let counts =
+            [(self.broken_edges, "broken edges"), (self.broken_bonds, "broken bonds"), (self.particles, "particles")];
+        counts.iter().filter(|(count, _)| *count > 0).try_for_each(|(count, name)| write!(f, "  {count} {name}"))
+    }
+}
+
+/// How progress is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// Not at all; messages still are.
+    Quiet,
+    /// One line that is overwritten, for a terminal.
+    Overwrite,
+    /// A line now and then, for a file or a batch system.
+    Lines,
+}
+
+/// The progress line. Errors of its output are ignored: nobody watching is no reason to stop.
+#[derive(Debug)]
+pub struct Progress<W: Write> {
+    out: W,
+    style: Style,
+    /// Elapsed and simulated time when it was shown last.
+    shown: Option<(Duration, f64)>,
+    /// Simulated time per time on the clock, smoothed.
+    rate: Option<f64>,
+    line_open: bool,
+}
+
+impl Progress<Stderr> {
+    /// The progress line on stderr, in the style that suits what stderr is.
+    pub fn on_stderr(quiet: bool) -> Self {
+        let style = match (quiet, io::stderr().is_terminal()) {
+            (true, _) => Style::Quiet,
+            (false, true) => Style::Overwrite,
+            (false, false) => Style::Lines,
+        };
+        Self::new(io::stderr(), style)
+    }
+}
+
+impl<W: Write> Progress<W> {
+    /// A progress line on `out`.
+    pub fn new(out: W, style: Style) -> Self {
+        Self { out, style, shown: None, rate: None, line_open: false }
+    }
+
+    /// Whether it is time to show progress again, `elapsed` after the run began. Cheap: ask after every step.
+    pub fn due(&self, elapsed: Duration) -> bool {
+        let pause = match self.style {
+            Style::Quiet => return false,
+            Style::Overwrite => Duration::from_millis(200),
+            Style::Lines => Duration::from_secs(10),
+        };
+        self.shown.is_none_or(|(last, _)| elapsed.saturating_sub(last) >= pause)
+    }
+
+    /// Shows where the run stands, `elapsed` after it began (or was resumed).
+    pub fn show(&mut self, snapshot: &Snapshot, elapsed: Duration) {
+        if self.style == Style::Quiet {
+            return;
+        }
+        self.update_rate(snapshot, elapsed);
+        let percent = match 100.0 * snapshot.time / snapshot.end {
+            share if share.is_finite() => format!("{:3.0} %", share.clamp(0.0, 100.0)),
+            _ => "  ? %".into(),
+        };
+        let line = format!("{percent}  ETA {}  {snapshot}", self.eta(snapshot));
+        // Write errors are nobody's business, see the type. Without wrapping, a line wider than the terminal is cut at
+        // its edge, so that the next can overwrite it.
+        let _ = match self.style {
+            Style::Overwrite => write!(self.out, "\r\x1b[K\x1b[?7l{line}\x1b[?7h"),
+            _ => writeln!(self.out, "{line}"),
+        };
+        let _ = self.out.flush();
+        self.line_open = self.style == Style::Overwrite;
+    }
+
+    /// Shows a message on a line of its own, in every style: what a user should know comes through.
+    pub fn message(&mut self, text: impl fmt::Display) {
+        let clear = if self.line_open { "\r\x1b[K" } else { "" };
+        let _ = writeln!(self.out, "{clear}{text}");
+        self.line_open = false;
+    }
+
+    /// Leaves the last state standing on its line.
+    pub fn finish(&mut self, snapshot: &Snapshot, elapsed: Duration) {
+        self.show(snapshot, elapsed);
+        if self.line_open {
+            let _ = writeln!(self.out);
+        }
+        self.line_open = false;
+    }
+
+    fn update_rate(&mut self, snapshot: &Snapshot, elapsed: Duration) {
+        if let Some((last, time)) = self.shown {
+            let seconds = elapsed.saturating_sub(last).as_secs_f64();
+            let rate = (snapshot.time - time) / seconds;
+            if rate.is_finite() && rate >= 0.0 {
+                // Fades over some ten seconds: cracks slow a run down, and the ETA should tell soon.
+                let weight = 1.0 - (-seconds / 10.0).exp();
+                self.rate = Some(self.rate.map_or(rate, |old| old + weight * (rate - old)));
+            }
+        }
+        self.shown = Some((elapsed, snapshot.time));
+    }
+
+    fn eta(&self, snapshot: &Snapshot) -> String {
+        let seconds = self.rate.map(|rate| (snapshot.end - snapshot.time).max(0.0) / rate);
+        match seconds {
+            Some(seconds) if seconds < 1e7 => duration(seconds),
+            _ => "--:--".into(),
+        }
+    }
+}
+
+/// `0:32`, `12:05`, `3:25:10`, `2 d 3 h`.
+pub fn duration(seconds: f64) -> String {
+    if !(seconds.is_finite() && seconds >= 0.0) {
+        return "--:--".into();
+    }
+    let total = seconds.round() as u64;
+    let (minutes, hours, days) = (total / 60, total / 3600, total / 86_400);
+    match (days, hours) {
+        (0, 0) => format!("{minutes}:{:02}", total % 60),
+        (0, _) => format!("{hours}:{:02}:{:02}", minutes % 60, total % 60),
+        _ => format!("{days} d {} h", hours % 24),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn snapshot(time: f64) -> Snapshot {
+        Snapshot {
+            step: 1200,
+            time,
+            end: 2e-3,
+            dt: 7.3e-8,
+            kinetic: 1.2e-3,
+            elastic: 0.034,
+            balance_error: 1.234e-6,
+            broken_edges: 12,
+            ..Default::default()
+        }
+    }
+
+    fn text(progress: &Progress<Vec<u8>>) -> &str {
+        std::str::from_utf8(&progress.out).unwrap()
+    }
+
+    #[test]
+    fn a_snapshot_names_what_is_there_and_no_more() {
+        let text = snapshot(1.84e-4).to_string();
+        assert_eq!(
+            text,
+            "step 1200  t 184 µs  dt 73 ns  kinetic 1.2 mJ  elastic 34 mJ  dissipated 0 J  balance 1.2e-6  12 broken edges"
+        );
+    }
+
+    #[test]
+    fn a_terminal_line_is_overwritten_and_a_message_stands_alone() {
+        let mut progress = Progress::new(Vec::new(), Style::Overwrite);
+        progress.show(&snapshot(1e-4), Duration::from_secs(1));
+        progress.message("warning: element 5 is large");
+        progress.finish(&snapshot(2e-3), Duration::from_secs(2));
+        let text = text(&progress);
+        assert!(text.starts_with("\r\x1b[K\x1b[?7l  5 %  ETA --:--  step 1200"), "{text:?}");
+        assert!(text.contains("\x1b[?7h\r\x1b[Kwarning: element 5 is large\n\r\x1b[K\x1b[?7l100 %"), "{text:?}");
+        assert!(text.ends_with("\x1b[?7h\n"), "{text:?}");
+    }
+
+    #[test]
+    fn lines_come_now_and_then_without_control_characters() {
+        let mut progress = Progress::new(Vec::new(), Style::Lines);
+        assert!(progress.due(Duration::ZERO));
+        progress.show(&snapshot(0.0), Duration::ZERO);
+        assert!(!progress.due(Duration::from_secs(9)));
+        assert!(progress.due(Duration::from_secs(10)));
+        progress.show(&snapshot(5e-4), Duration::from_secs(10));
+        assert_eq!(text(&progress).lines().count(), 2);
+        assert!(!text(&progress).contains(['\r', '\x1b']));
+        // 0.5 ms took 10 s, 1.5 ms are left.
+        assert!(text(&progress).lines().last().unwrap().starts_with(" 25 %  ETA 0:30  "), "{}", text(&progress));
+    }
+
+    #[test]
+    fn quiet_shows_messages_only() {
+        let mut progress = Progress::new(Vec::new(), Style::Quiet);
+        assert!(!progress.due(Duration::from_secs(100)));
+        progress.show(&snapshot(0.0), Duration::ZERO);
+        progress.finish(&snapshot(0.0), Duration::ZERO);
+        assert_eq!(text(&progress), "");
+        progress.message("error");
+        assert_eq!(text(&progress), "error\n");
+    }
+
+    #[test]
+    fn a_run_that_stands_still_or_has_no_end_has_no_eta() {
+        let mut progress = Progress::new(Vec::new(), Style::Lines);
+        for end in [2e-3, f64::NAN, 0.0] {
+            for seconds in [0, 10, 20] {
+                progress.show(&Snapshot { end, ..snapshot(1e-3) }, Duration::from_secs(seconds));
+            }
+        }
+        assert!(text(&progress).lines().all(|line| line.contains("ETA --:--") || line.contains("ETA 0:00")));
+    }
+
+    #[test]
+    fn durations_read_as_on_a_clock() {
+        let cases = [(0.4, "0:00"), (32.0, "0:32"), (725.0, "12:05"), (12_310.0, "3:25:10"), (2e5, "2 d 7 h")];
+        for (seconds, text) in cases {
+            assert_eq!(duration(seconds), text);
+        }
+        assert_eq!(duration(f64::INFINITY), "--:--");
+    }
+
+    #[test]
+    fn a_resumed_log_goes_on_and_a_new_one_begins_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.log");
+        RunLog::resume(&path).unwrap().line("one").unwrap();
+        RunLog::resume(&path).unwrap().line(format_args!("two {}", 2)).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "one\ntwo 2\n");
+        RunLog::create(&path).unwrap().line("again").unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "again\n");
+        let error = RunLog::create(&folder.path().join("absent").join("run.log")).unwrap_err();
+        assert!(matches!(error, WriteError::MissingFolder { .. }));
+    }
+}
