@@ -3,6 +3,7 @@
 //! Output modules know no simulation: they take slices and small structs, and write files that are whole or absent
 //! ([`atomic`]).
 
+pub mod assemble;
 pub mod atomic;
 pub mod case;
 pub mod checkpoint;

@@ -6,7 +6,6 @@ use fractum_io::Compression;
 use fractum_io::case::model::{Case, ProbeExpression, ProbeInput, ProbeKind, Take};
 use fractum_io::history::{Column, History};
 use fractum_io::vtk::{CellBlock, CellKind, Collection, Field, PolyCells, PolyData, UnstructuredGrid, Values};
-use fractum_mesh::Mesh;
 use fractum_scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -87,14 +86,12 @@ impl<'a> Recorder<'a> {
     /// Starts recording, or goes on where `resumed` stood.
     pub(crate) fn open(
         case: &'a Case,
-        mesh: &Mesh,
         scene: &Scene,
         probes: &'a [Option<fractum_scene::Probe>],
         file_order: &[u32],
         folder: &Path,
         resumed: Option<RecordState>,
     ) -> Result<Self, Failure> {
-        debug_assert!(file_order.len() <= mesh.nodes.len());
         let columns: Vec<Column> = LEDGER_COLUMNS
             .iter()
             .map(|(name, unit)| Column::new(*name, *unit))

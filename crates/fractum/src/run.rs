@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use fractum_io::Compression;
+use fractum_io::{Compression, WriteError};
 use fractum_io::case::model::{Bound, Case, ProbeKind};
 use fractum_io::checkpoint::{self, Header, Identity};
 use fractum_io::fragments::{self, Fragment};
@@ -89,7 +89,7 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     let log_path = folder.join("run.log");
     let mut log = if resumed.is_some() { RunLog::resume(&log_path)? } else { RunLog::create(&log_path)? };
     if resumed.is_none() {
-        checkpoint::remove_all(&checkpoints)?;
+        discard_checkpoints(&checkpoints)?;
     }
     log.line(format!("fractum {} on {threads} threads: {}", env!("CARGO_PKG_VERSION"), path.display()))?;
     log.line(&plan)?;
@@ -298,7 +298,6 @@ impl Run<'_> {
         };
         summary.expect = self.case.expect.iter().map(|e| expectation(e, &summary)).collect();
         summary.write(&self.folder.join("summary.json"))?;
-        crate::report::write(self.case, self.folder, &scene, &summary, self.recorder.state(), plan, &pieces)?;
         self.log.line(format!("{}: {} steps, {:.2} s", status_text(status), clock.step, summary.wall.total))?;
         self.recorder.finish()?;
         match end {
@@ -380,6 +379,14 @@ fn restore(folder: &Path, identity: &Identity, scene: &mut Scene) -> Result<Opti
     }
     scene.restore(loaded.state.scene);
     Ok(Some(loaded.state.record))
+}
+
+/// A run that starts anew leaves no state of an earlier one to resume from.
+fn discard_checkpoints(folder: &Path) -> Result<(), Failure> {
+    match std::fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(WriteError::new(folder, error).into()),
+        _ => Ok(()),
+    }
 }
 
 /// Version of the program as far as the layout of its state goes.

@@ -1,0 +1,210 @@
+//! The commands: arguments in, exit code out.
+
+mod mesh;
+mod new;
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use fractum::run::{Options, Outcome};
+use fractum::{ExitCode, Failure};
+use fractum_io::summary::Status;
+
+/// Fracture of solids: finite elements with damage, discrete elements, and the transition between them.
+#[derive(Parser)]
+#[command(version, about)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// How errors are written to stderr.
+    #[arg(long, global = true, value_enum, default_value = "text")]
+    format: Format,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// One line each.
+    Text,
+    /// One JSON value each.
+    Json,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a case and leave its results in a folder.
+    Run(RunArguments),
+    /// Find every mistake of a case and show the plan.
+    Check {
+        /// Case file.
+        case: PathBuf,
+        /// Replace a value of [parameters].
+        #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+        set: Vec<(String, String)>,
+    },
+    /// Start a case file from a template.
+    New {
+        /// Template; without one, the list of templates.
+        template: Option<String>,
+        /// File to write; the name of the template if not given.
+        #[arg(short, long)]
+        output: Option<PathBuf>,
+    },
+    /// Run the gallery against its references and print the table of errors and run times.
+    Verify {
+        /// Only cases whose path contains one of these.
+        names: Vec<String>,
+        /// Only the quick set.
+        #[arg(long)]
+        quick: bool,
+        /// Folder with the cases.
+        #[arg(long, default_value = "cases")]
+        cases: PathBuf,
+        /// Folder for results and verify.json.
+        #[arg(short, long, default_value = "results/verify")]
+        output: PathBuf,
+        /// Threads per case; all cores by default.
+        #[arg(long)]
+        threads: Option<usize>,
+    },
+    /// Look at a mesh, or write it in another format.
+    Mesh {
+        #[command(subcommand)]
+        command: mesh::MeshCommand,
+    },
+    /// Print the JSON schema of the case file.
+    Schema,
+    /// Explain a key of the case file, such as bodies.formulation.
+    Explain {
+        /// Dotted path of the key; without one, all keys.
+        key: Option<String>,
+    },
+}
+
+#[derive(Args)]
+struct RunArguments {
+    /// Case file.
+    case: PathBuf,
+    /// Results folder; results/<folder>/<case> by default.
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    /// Threads; all cores by default. Results do not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Replace a value of [parameters].
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    set: Vec<(String, String)>,
+    /// Go on from the last checkpoint in the results folder.
+    #[arg(long)]
+    resume: bool,
+    /// No plan and no progress line.
+    #[arg(long)]
+    quiet: bool,
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, such as --set velocity=\"2 mm/s\"")?;
+    Ok((name.trim().to_owned(), value.trim().to_owned()))
+}
+
+/// Carries a command out; what went wrong is on stderr.
+pub(crate) fn execute(arguments: Arguments) -> ExitCode {
+    let json = arguments.format == Format::Json;
+    let result = match arguments.command {
+        Command::Run(run) => run_case(run),
+        Command::Check { case, set } => check(&case, &set),
+        Command::New { template, output } => new::new(template.as_deref(), output),
+        Command::Verify { names, quick, cases, output, threads } => {
+            let selection = fractum::verify::Selection { cases, names, quick, output, threads };
+            fractum::verify::verify(&selection).and_then(|lines| match lines.iter().filter(|l| !l.pass).count() {
+                0 => Ok(ExitCode::Done),
+                failed => Err(Failure::Unmet(format!("{failed} of {} references are not met", lines.len()))),
+            })
+        }
+        Command::Mesh { command } => mesh::execute(command),
+        Command::Schema => {
+            println!("{}", serde_json::to_string_pretty(&fractum_io::case::schema()).unwrap_or_default());
+            Ok(ExitCode::Done)
+        }
+        Command::Explain { key } => explain(key.as_deref()),
+    };
+    result.unwrap_or_else(|failure| {
+        report(&failure, json);
+        failure.exit_code()
+    })
+}
+
+fn report(failure: &Failure, json: bool) {
+    if !json {
+        eprintln!("{failure}");
+        return;
+    }
+    match failure {
+        Failure::Input(diagnostics) => {
+            for diagnostic in &diagnostics.0 {
+                eprintln!("{}", serde_json::to_string(diagnostic).unwrap_or_default());
+            }
+        }
+        other => eprintln!(
+            "{}",
+            serde_json::json!({ "severity": "error", "place": null, "found": other.to_string(), "expected": "", "remedy": "" })
+        ),
+    }
+}
+
+fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
+    let options = Options {
+        output: run.output,
+        threads: run.threads,
+        overrides: run.set,
+        resume: run.resume,
+        quiet: run.quiet,
+    };
+    let Outcome { summary, folder } = fractum::run::run(&run.case, &options)?;
+    if summary.status == Status::Interrupted {
+        eprintln!("interrupted; state saved, go on with: fractum run {} -o {} --resume", run.case.display(), folder.display());
+        return Ok(ExitCode::Interrupted);
+    }
+    if !run.quiet {
+        for (name, probe) in &summary.probes {
+            println!("{name:<28} {}", fractum_io::number::quantity(probe.r#final, &probe.unit));
+        }
+        for expect in &summary.expect {
+            let verdict = if expect.pass { "meets" } else { "MISSES" };
+            println!(
+                "{:<28} {} {verdict} its reference {} ({})",
+                expect.quantity,
+                fractum_io::number::quantity(expect.value, &expect.unit),
+                fractum_io::number::quantity(expect.reference, &expect.unit),
+                expect.source
+            );
+        }
+        println!("results in {}", folder.display());
+    }
+    Ok(ExitCode::Done)
+}
+
+fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, Failure> {
+    let input = fractum::load(case, set)?;
+    println!("{}", fractum::plan::Plan::new(&input.case, &input.mesh, &input.assembly));
+    for warning in &input.assembly.warnings {
+        println!("{warning}");
+    }
+    Ok(ExitCode::Done)
+}
+
+fn explain(key: Option<&str>) -> Result<ExitCode, Failure> {
+    let Some(key) = key else {
+        for doc in fractum_io::case::keys() {
+            println!("{:<40} {}", doc.path, doc.doc);
+        }
+        return Ok(ExitCode::Done);
+    };
+    match fractum_io::case::explain(key) {
+        Ok(doc) => {
+            println!("{}\n  {}\n  type: {}, default: {}", doc.path, doc.doc, doc.kind.label(), doc.default);
+            Ok(ExitCode::Done)
+        }
+        Err(Some(near)) => Err(Failure::input(format!("no key \"{key}\"; did you mean \"{near}\"?"))),
+        Err(None) => Err(Failure::input(format!("no key \"{key}\"; fractum explain lists all of them"))),
+    }
+}

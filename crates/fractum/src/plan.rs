@@ -1,0 +1,247 @@
+//! What a run will do: bodies, physics on and skipped, time step, size, time.
+
+use std::fmt;
+
+use fractum_fem::{Formulation, Kinematics, Shape};
+use fractum_io::assemble::Assembly;
+use fractum_io::case::model::{BodyKind, Case, LoadKind, SolidBody};
+use fractum_io::number::quantity;
+use fractum_mesh::Mesh;
+use fractum_scene::Scene;
+
+/// Nanoseconds per element and step on one core of a common machine: standard, smoothed, smoothed with damage.
+const COST: [f64; 3] = [20.0, 45.0, 50.0];
+/// Bytes per element: standard, smoothed, smoothed with damage.
+const MEMORY: [f64; 3] = [250.0, 450.0, 550.0];
+
+/// The plan of a run, as text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    lines: Vec<(String, String)>,
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, (topic, text)) in self.lines.iter().enumerate() {
+            let end = if index + 1 == self.lines.len() { "" } else { "\n" };
+            write!(f, "{topic:<12} {text}{end}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Plan {
+    /// The plan of a case on its mesh.
+    pub fn new(case: &Case, mesh: &Mesh, assembly: &Assembly) -> Self {
+        let mut plan = Plan { lines: Vec::new() };
+        let scene = &assembly.scene;
+        if !case.title.is_empty() {
+            plan.add("case", &case.title);
+        }
+        plan.describe_mesh(case, mesh);
+        plan.describe_bodies(case, scene);
+        plan.describe_conditions(case, mesh, scene);
+        plan.describe_physics(case, scene);
+        plan.describe_time(case, scene);
+        plan.describe_size(case, scene);
+        plan
+    }
+
+    fn add(&mut self, topic: &str, text: impl Into<String>) {
+        self.lines.push((topic.to_owned(), text.into()));
+    }
+
+    fn describe_mesh(&mut self, case: &Case, mesh: &Mesh) {
+        let (low, high) = mesh.bounding_box();
+        let size = high - low;
+        self.add(
+            "mesh",
+            format!(
+                "{}: {} nodes, {} tetrahedra, {} triangles, {} x {} x {}",
+                case.mesh.file.value.display(),
+                mesh.nodes.len(),
+                mesh.tetrahedra.len(),
+                mesh.triangles.len(),
+                quantity(size.x, "m"),
+                quantity(size.y, "m"),
+                quantity(size.z, "m")
+            ),
+        );
+        for notice in &mesh.notices {
+            self.add("", notice.clone());
+        }
+    }
+
+    fn describe_bodies(&mut self, case: &Case, scene: &Scene) {
+        let mut index = 0;
+        for body in &case.bodies {
+            match &body.kind {
+                BodyKind::Solid(solid) => {
+                    self.describe_solid(case, scene, &body.name.value, solid, index);
+                    index += 1;
+                }
+                BodyKind::Rigid(rigid) => {
+                    let text = format!("{}: rigid plane, friction {}", body.name.value, rigid.contact.friction);
+                    self.add("body", text);
+                }
+            }
+        }
+    }
+
+    fn describe_solid(&mut self, case: &Case, scene: &Scene, name: &str, solid: &SolidBody, index: usize) {
+        let body = scene.solid.body(index);
+        let material = &case.materials[solid.material];
+        let formulation = match body.formulation {
+            Formulation::Standard => "standard",
+            Formulation::Smoothed => "smoothed",
+        };
+        let shape = match body.shape {
+            Shape::T4 => "tetrahedra",
+            Shape::T3 => "triangles",
+        };
+        let kinematics = match body.kinematics {
+            Kinematics::Small => "small strains",
+            Kinematics::Corotational => "corotational",
+        };
+        let count = body.elements.len();
+        let volume: f64 = (0..count as u32).map(|e| scene.solid.element_volume(index, e)).sum();
+        self.add(
+            "body",
+            format!(
+                "{name}: {count} {formulation} {shape}, {kinematics}, {}, mass {}, mean size {}",
+                material.name.value,
+                quantity(volume * material.density, "kg"),
+                quantity(mean_size(scene, index, volume), "m")
+            ),
+        );
+        if let Some(damage) = material.damage.as_ref().filter(|_| solid.damage) {
+            let d = &damage.value;
+            let zone = material.young_modulus * d.fracture_energy / (d.tensile_strength * d.tensile_strength);
+            let (_, ratio) = scene.solid.length_report(index);
+            self.add(
+                "",
+                format!(
+                    "process zone E Gf/ft\u{b2} = {}; longest element at {:.1} % of the snap-back length",
+                    quantity(zone, "m"),
+                    100.0 * ratio
+                ),
+            );
+        }
+    }
+
+    fn describe_conditions(&mut self, case: &Case, mesh: &Mesh, scene: &Scene) {
+        for support in &case.supports {
+            let axes: String = (0..3).filter(|&a| support.motion[a].is_some()).map(|a| ['x', 'y', 'z'][a]).collect();
+            let nodes = mesh.group_nodes(&support.group.value).len();
+            self.add("support", format!("{}: {axes} of {nodes} nodes", support.group.value));
+        }
+        for load in &case.loads {
+            let text = match &load.kind {
+                LoadKind::Force { group, .. } => format!("force on {}", group.value),
+                LoadKind::Traction { group, .. } => {
+                    format!("traction on {} ({})", group.value, area_of(mesh, &group.value))
+                }
+                LoadKind::Pressure { group, .. } => {
+                    format!("pressure on {} ({})", group.value, area_of(mesh, &group.value))
+                }
+                LoadKind::Gravity { .. } => "gravity on everything".to_owned(),
+            };
+            self.add("load", text);
+        }
+        if scene.supports().count() == 0 && case.loads.is_empty() {
+            self.add("load", "none: only initial velocities move this scene");
+        }
+    }
+
+    fn describe_physics(&mut self, case: &Case, scene: &Scene) {
+        let (mut on, mut off) = (vec!["elasticity"], Vec::new());
+        let mut choose = |active: bool, name: &'static str, reason: &'static str| {
+            if active { on.push(name) } else { off.push(format!("{name} ({reason})")) }
+        };
+        let damage = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).damage.is_some());
+        choose(damage, "damage and removal of elements", "no body can be damaged");
+        choose(damage, "discrete elements (from the first removal)", "nothing turns into them");
+        choose(!scene.planes.is_empty(), "contact with rigid planes", "no rigid body");
+        let damping = case.damping;
+        choose(damping.local > 0.0 || damping.mass > 0.0, "damping on the nodes", "not asked for");
+        let viscous = damping.stiffness > 0.0 || damping.bulk_linear > 0.0 || damping.bulk_quadratic > 0.0;
+        choose(viscous, "viscous stress", "not asked for");
+        let turning = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).kinematics == Kinematics::Corotational);
+        choose(turning, "large rotations", "all bodies have small strains");
+        self.add("physics", on.join(", "));
+        self.add("skipped", off.join(", "));
+    }
+
+    fn describe_time(&mut self, case: &Case, scene: &Scene) {
+        let stable = scene.stable_step();
+        let (body, element) = stable.governing;
+        self.add(
+            "time step",
+            format!(
+                "{} ({} of the stable {}), governed by element {element} of {}",
+                quantity(scene.clock.dt_after, "s"),
+                case.solver.step.as_ref().map_or_else(|| format!("{}", case.solver.safety), |_| "fixed; ".to_owned()),
+                quantity(scene.stable_dt(), "s"),
+                scene.solid.body(body).name
+            ),
+        );
+        let steps = (case.solver.end / scene.clock.dt_after).ceil();
+        self.add("steps", format!("{steps} to t = {}", quantity(case.solver.end, "s")));
+    }
+
+    fn describe_size(&mut self, case: &Case, scene: &Scene) {
+        let (mut nanoseconds, mut bytes, mut elements) = (0.0, 0.0, 0usize);
+        for index in 0..scene.solid.body_count() {
+            let body = scene.solid.body(index);
+            let kind = match (body.formulation, &body.damage) {
+                (Formulation::Standard, _) => 0,
+                (Formulation::Smoothed, None) => 1,
+                (Formulation::Smoothed, Some(_)) => 2,
+            };
+            let turning = if body.kinematics == Kinematics::Corotational { 10.0 } else { 1.0 };
+            nanoseconds += COST[kind] * turning * body.elements.len() as f64;
+            bytes += MEMORY[kind] * body.elements.len() as f64;
+            elements += body.elements.len();
+        }
+        let steps = case.solver.end / scene.clock.dt_after;
+        let frames = (case.solver.end / case.output.fields_every).ceil() + 1.0;
+        let rows = (case.solver.end / case.output.history_every).ceil();
+        let threads = rayon::current_num_threads() as f64;
+        self.add(
+            "size",
+            format!(
+                "memory {}, {frames} frames of about {} each, {rows} rows of history",
+                megabytes(bytes),
+                megabytes(60.0 * elements as f64)
+            ),
+        );
+        self.add(
+            "wall time",
+            format!("about {} on {threads} threads, without output", quantity(1e-9 * nanoseconds * steps / threads, "s")),
+        );
+    }
+}
+
+fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
+    let model = scene.solid.body(body);
+    let each = volume / model.elements.len() as f64;
+    match model.shape {
+        Shape::T4 => (6.0 * 2f64.sqrt() * each).cbrt(),
+        Shape::T3 => (4.0 * each / model.thickness / 3f64.sqrt()).sqrt(),
+    }
+}
+
+fn area_of(mesh: &Mesh, group: &str) -> String {
+    let mut area = 0.0;
+    for group in mesh.group(group) {
+        for &triangle in &group.triangles {
+            let [a, b, c] = mesh.triangles[triangle as usize].map(|n| mesh.nodes[n as usize]);
+            area += 0.5 * (b - a).cross(&(c - a)).norm();
+        }
+    }
+    quantity(area, "m^2")
+}
+
+fn megabytes(bytes: f64) -> String {
+    format!("{} MB", (bytes / 1e6).ceil())
+}

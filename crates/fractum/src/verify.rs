@@ -1,0 +1,102 @@
+//! The gallery against its references.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use fractum_io::case::read_case;
+use fractum_io::summary::{Verified, write_verify};
+
+use crate::error::Failure;
+use crate::run::{Options, run};
+
+/// What is verified, and where results go.
+#[derive(Clone, Debug)]
+pub struct Selection {
+    /// Folder with the cases.
+    pub cases: PathBuf,
+    /// Only cases whose path contains one of these; all if empty.
+    pub names: Vec<String>,
+    /// Only cases marked `[verify] quick = true`.
+    pub quick: bool,
+    /// Folder for results and `verify.json`.
+    pub output: PathBuf,
+    /// Threads per case; all cores if none is given.
+    pub threads: Option<usize>,
+}
+
+/// Runs the selected cases that expect something, prints the table and writes `verify.json`; the lines of the table.
+///
+/// # Errors
+/// [`Failure::Input`] if nothing is selected, [`Failure::Write`] if the table cannot be written. A case that fails to
+/// run is a line that does not pass.
+pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
+    let mut cases = Vec::new();
+    find_cases(&selection.cases, &mut cases).map_err(|error| {
+        Failure::input(format!("{}: cannot list the cases: {error}; name the folder with --cases", selection.cases.display()))
+    })?;
+    cases.sort();
+    let name_of = |path: &Path| path.strip_prefix(&selection.cases).unwrap_or(path).with_extension("").display().to_string();
+    cases.retain(|path| selection.names.is_empty() || selection.names.iter().any(|n| name_of(path).contains(n.as_str())));
+    let mut lines = Vec::new();
+    println!("{:<44} {:<34} {:>14} {:>14} {:>10} {:>10}  {:<5} {:>8}", "case", "quantity", "value", "reference", "error", "tolerance", "pass", "seconds");
+    for path in cases {
+        let name = name_of(&path);
+        let case = read_case(&path, &[])?;
+        if case.expect.is_empty() || selection.quick && !case.verify_quick {
+            continue;
+        }
+        let options = Options {
+            output: Some(selection.output.join(&name)),
+            threads: selection.threads,
+            quiet: true,
+            ..Options::default()
+        };
+        let started = Instant::now();
+        let outcome = run(&path, &options);
+        let seconds = started.elapsed().as_secs_f64();
+        let first = lines.len();
+        match outcome {
+            Ok(outcome) => lines.extend(outcome.summary.expect.iter().map(|e| Verified::new(&name, e, seconds))),
+            Err(error) => {
+                eprintln!("{name}: {error}");
+                lines.push(Verified { case: name.clone(), quantity: "run".into(), pass: false, seconds, source: error.to_string(), ..Verified::default() });
+            }
+        }
+        lines[first..].iter().for_each(print_line);
+    }
+    if lines.is_empty() {
+        return Err(Failure::input(format!("{}: no case with [[expect]] matches", selection.cases.display())));
+    }
+    fractum_io::atomic::create_folder(&selection.output)?;
+    write_verify(&selection.output.join("verify.json"), &lines)?;
+    let passed = lines.iter().filter(|line| line.pass).count();
+    println!("{passed} of {} passed; {}", lines.len(), selection.output.join("verify.json").display());
+    Ok(lines)
+}
+
+fn print_line(line: &Verified) {
+    println!(
+        "{:<44} {:<34} {:>14.6e} {:>14.6e} {:>10.2e} {:>10.2e}  {:<5} {:>8.2}",
+        line.case,
+        line.quantity,
+        line.value,
+        line.reference,
+        line.error,
+        line.tolerance,
+        if line.pass { "pass" } else { "FAIL" },
+        line.seconds
+    );
+}
+
+fn find_cases(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            find_cases(&path, found)?;
+        } else if path.extension().is_some_and(|e| e == "toml") {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
