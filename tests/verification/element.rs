@@ -143,7 +143,12 @@ fn internal_forces_have_no_resultant() {
             // Small strains are invariant about the reference, corotational ones about the present configuration.
             let arm = |i: usize| if kinematics == Kinematics::Small { solid.reference[i] } else { solid.position(i) };
             let moment: Vec3 = (0..solid.force.len()).map(|i| arm(i).cross(&solid.force[i])).sum();
-            assert!(sum.norm() < 1e-14 * scale && moment.norm() < 1e-13 * scale, "{formulation:?} {kinematics:?}: {:e} {:e}", sum.norm() / scale, moment.norm() / scale);
+            assert!(
+                sum.norm() < 1e-14 * scale && moment.norm() < 1e-13 * scale,
+                "{formulation:?} {kinematics:?}: {:e} {:e}",
+                sum.norm() / scale,
+                moment.norm() / scale
+            );
         }
     }
 }

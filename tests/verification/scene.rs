@@ -1,1 +1,303 @@
-//! Scenes made of numbers alone: energy, momentum, stability, fracture energy.
+//! Scenes made of numbers alone: energy, momentum, stability, fracture, sameness.
+
+use std::sync::Arc;
+
+use fractum_fem::{Body, Criterion, DamageLaw, Formulation, Kinematics, LocalDamping, Softening, Solid, Viscosity};
+use fractum_math::Vec3;
+use fractum_scene::coupling::Debris;
+use fractum_scene::{
+    Guard, Load, Loads, Motion, RigidPlane, Scene, SceneSettings, StepError, Support, Supports, TimeStepSettings,
+};
+use fractum_tests::{jittered_box, noise};
+
+const GUARD: Guard = Guard { warning: 1e-3, stop: 1e-2 };
+
+fn settings(end: f64) -> SceneSettings {
+    SceneSettings {
+        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end },
+        damping: LocalDamping::default(),
+        stiffness_time: 0.0,
+        guard: GUARD,
+    }
+}
+
+fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, settings: SceneSettings) -> Scene {
+    let supports = Supports::new(supports, &solid.reference).unwrap();
+    let loads = Loads::new(loads, solid.reference.len());
+    let debris = Debris::new(&solid, 0.5, 0.1);
+    Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
+}
+
+fn run(scene: &mut Scene) -> Result<(), StepError> {
+    while !scene.is_finished() {
+        let measure = scene.clock.step.is_multiple_of(20);
+        scene.step(measure)?;
+    }
+    scene.step(true).map(|_| ())
+}
+
+fn nodes_where(solid: &Solid, keep: impl Fn(&Vec3) -> bool) -> Vec<u32> {
+    (0..solid.reference.len() as u32).filter(|&n| keep(&solid.reference[n as usize])).collect()
+}
+
+const CELLS: [u32; 3] = [8, 3, 3];
+const SIZE: Vec3 = Vec3::new(0.4, 0.12, 0.12);
+
+/// A law under which the box breaks within tens of microseconds.
+fn brittle() -> DamageLaw {
+    DamageLaw {
+        criterion: Criterion::rankine(),
+        tensile_strength: 3e6,
+        fracture_energy: 100.0,
+        softening: Softening::Exponential,
+        residual: 0.02,
+        unilateral: false,
+        rate_time: 0.0,
+    }
+}
+
+/// The box with damage and a weak slab across its middle.
+fn weak(nodes: &[Vec3], body: Body) -> Body {
+    let mut body = body.with_damage(brittle());
+    let factor = |p: &Vec3| if (p.x - 0.5 * SIZE.x).abs() < 0.03 { 0.8 } else { 1.0 };
+    let factors = body.edge_midpoints(nodes).iter().map(factor).collect();
+    body.damage.as_mut().unwrap().strength_factor = factors;
+    body
+}
+
+/// The box, pulled apart at both ends with smooth velocities of ± `speed`.
+fn pulled(body: Body, nodes: Vec<Vec3>, speed: f64, end: f64) -> Scene {
+    let solid = Solid::new(nodes, vec![body]).unwrap();
+    let pull = |sign: f64| Motion::Velocity(Arc::new(move |t: f64, _: &Vec3| sign * speed * (t / 2e-4).min(1.0)));
+    let left = nodes_where(&solid, |p| p.x < 1e-9);
+    let right = nodes_where(&solid, |p| p.x > SIZE.x - 1e-9);
+    let supports = vec![Support::new("left", left, 0, pull(-1.0)), Support::new("right", right, 0, pull(1.0))];
+    scene(solid, supports, Vec::new(), settings(end))
+}
+
+#[test]
+fn a_free_elastic_body_keeps_energy_and_momentum() {
+    for (formulation, kinematics) in [
+        (Formulation::Standard, Kinematics::Small),
+        (Formulation::Smoothed, Kinematics::Small),
+        (Formulation::Smoothed, Kinematics::Corotational),
+    ] {
+        let (nodes, body) = jittered_box(CELLS, SIZE);
+        let mut solid = Solid::new(nodes, vec![Body { formulation, kinematics, ..body }]).unwrap();
+        let spin = Vec3::new(30.0, -50.0, 80.0);
+        for i in 0..solid.velocity.len() {
+            solid.velocity[i] = Vec3::from_fn(|a, _| 2.0 * noise(3 * i + a)) + spin.cross(&solid.reference[i]);
+        }
+        let mut scene = scene(solid, Vec::new(), Vec::new(), settings(2e-3));
+        let momentum =
+            |s: &Scene| -> Vec3 { (0..s.solid.mass.len()).map(|i| s.solid.velocity[i] * s.solid.mass[i]).sum() };
+        // Positions of the half step go with the velocities of the half step; small strains turn about the reference.
+        let angular = |s: &Scene| -> Vec3 {
+            let half = 0.5 * s.clock.dt_before;
+            (0..s.solid.mass.len())
+                .map(|i| {
+                    let arm = match kinematics {
+                        Kinematics::Small => s.solid.reference[i],
+                        Kinematics::Corotational => s.solid.position(i) - s.solid.velocity[i] * half,
+                    };
+                    arm.cross(&s.solid.velocity[i]) * s.solid.mass[i]
+                })
+                .sum()
+        };
+        scene.step(true).unwrap();
+        let (p, l) = (momentum(&scene), angular(&scene));
+        run(&mut scene).unwrap();
+        let drift = (momentum(&scene) - p).norm() / p.norm();
+        let turn = (angular(&scene) - l).norm() / l.norm();
+        assert!(drift < 1e-12 && turn < 1e-11, "{formulation:?} {kinematics:?}: {drift:e} {turn:e}");
+        let residual = scene.ledger().residual_max_relative;
+        let limit = if kinematics == Kinematics::Small { 1e-12 } else { 1e-5 };
+        assert!(residual < limit, "{formulation:?} {kinematics:?}: balance {residual:e}");
+    }
+}
+
+#[test]
+fn steps_below_the_limit_agree_and_above_it_the_guard_names_an_element() {
+    let elastic = |safety: f64, end: f64| {
+        let (nodes, body) = jittered_box(CELLS, SIZE);
+        let mut solid = Solid::new(nodes, vec![body.smoothed()]).unwrap();
+        for i in 0..solid.velocity.len() {
+            solid.velocity[i] = Vec3::x() * (solid.reference[i].x - 0.5 * SIZE.x) * 10.0;
+        }
+        let mut settings = settings(end);
+        settings.time_step.safety = safety;
+        let mut scene = scene(solid, Vec::new(), Vec::new(), settings);
+        run(&mut scene).map(|()| scene.ledger().elastic)
+    };
+    let energies = [0.5, 0.7, 0.9].map(|safety| elastic(safety, 2e-4).unwrap());
+    assert!(energies.iter().all(|e| (e / energies[0] - 1.0).abs() < 0.02), "{energies:?}");
+    // The estimate carries 2 % in reserve.
+    for safety in [1.05, 1.2] {
+        let error = elastic(safety, 5e-3).unwrap_err().to_string();
+        assert!(error.contains("element") && error.contains("of body box"), "{error}");
+    }
+}
+
+#[test]
+fn a_bar_that_breaks_keeps_its_mass_and_closes_its_balance() {
+    let (nodes, body) = jittered_box(CELLS, SIZE);
+    let mut scene = pulled(weak(&nodes, body.smoothed()), nodes, 0.1, 2e-3);
+    let mass: f64 = scene.solid.mass.iter().sum();
+    run(&mut scene).unwrap();
+    let counts = scene.counts();
+    assert!(counts.removed_elements > 0 && counts.particles > 0, "{counts:?}");
+    assert_eq!(mass, scene.solid.mass.iter().sum::<f64>());
+    let ledger = scene.ledger();
+    assert!(ledger.residual_max_relative < 1e-3, "{ledger:?}");
+    assert!(ledger.damage > 0.0 && ledger.friction >= 0.0 && ledger.contact >= 0.0);
+    let pieces = fractum_scene::fragments(&scene.solid);
+    assert!(pieces.iter().filter(|p| p.elements > 0).count() >= 2);
+    let total: f64 = pieces.iter().map(|p| p.mass).sum();
+    assert!((total / mass - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn contact_of_debris_never_delivers_energy() {
+    // The bar breaks, then its halves are driven together again.
+    let (nodes, body) = jittered_box(CELLS, SIZE);
+    let solid = {
+        let body = weak(&nodes, body.smoothed());
+        Solid::new(nodes, vec![body]).unwrap()
+    };
+    let back = |sign: f64| {
+        Motion::Velocity(Arc::new(move |t: f64, _: &Vec3| {
+            let wave = if t < 1e-3 { (t / 2e-4).min(1.0) } else { -1.0 };
+            sign * 0.1 * wave
+        }))
+    };
+    let left = nodes_where(&solid, |p| p.x < 1e-9);
+    let right = nodes_where(&solid, |p| p.x > SIZE.x - 1e-9);
+    let supports = vec![Support::new("left", left, 0, back(-1.0)), Support::new("right", right, 0, back(1.0))];
+    let mut scene = scene(solid, supports, Vec::new(), settings(2.2e-3));
+    let mut touched = 0.0f64;
+    while !scene.is_finished() {
+        scene.step(true).unwrap();
+        touched = touched.max(scene.ledger().contact);
+    }
+    let ledger = scene.ledger();
+    assert!(touched > 0.0, "the halves met");
+    assert!(ledger.residual_max_relative < 1e-3, "{ledger:?}");
+    assert!(ledger.damping >= 0.0 && ledger.friction >= 0.0);
+}
+
+#[test]
+fn the_same_bits_for_any_number_of_threads() {
+    let state = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let (nodes, body) = jittered_box([16, 6, 6], SIZE);
+            let mut scene = pulled(weak(&nodes, body.smoothed()), nodes, 0.1, 8e-4);
+            run(&mut scene).unwrap();
+            assert!(scene.counts().removed_elements > 0);
+            scene.state()
+        })
+    };
+    let one = state(1);
+    assert!(one == state(2) && one == state(7));
+}
+
+#[test]
+fn a_restored_state_goes_on_with_the_same_bits() {
+    for formulation in [Formulation::Smoothed, Formulation::Standard] {
+        let build = || {
+            let (nodes, body) = jittered_box(CELLS, SIZE);
+            pulled(weak(&nodes, Body { formulation, ..body }), nodes, 0.1, 1e-3)
+        };
+        let mut whole = build();
+        run(&mut whole).unwrap();
+        assert!(whole.counts().removed_elements > 0);
+        let mut first = build();
+        while first.clock.time < 8e-4 {
+            first.step(false).unwrap();
+        }
+        let mut second = build();
+        second.restore(first.state());
+        run(&mut second).unwrap();
+        assert!(whole.state() == second.state(), "{formulation:?}");
+    }
+}
+
+#[test]
+fn damping_of_every_kind_is_booked() {
+    let (nodes, body) = jittered_box(CELLS, SIZE);
+    let mut solid = Solid::new(nodes, vec![body.smoothed()]).unwrap();
+    solid.set_viscosity(Viscosity { stiffness_time: 2e-7, bulk_linear: 0.06, bulk_quadratic: 1.2 });
+    for i in 0..solid.velocity.len() {
+        solid.velocity[i] = Vec3::x() * (solid.reference[i].x - 0.5 * SIZE.x) * 10.0;
+    }
+    let mut settings = settings(1e-3);
+    settings.damping = LocalDamping { local: 0.1, mass_rate: 200.0 };
+    settings.stiffness_time = 2e-7;
+    let mut scene = scene(solid, Vec::new(), Vec::new(), settings);
+    run(&mut scene).unwrap();
+    let ledger = scene.ledger();
+    assert!(ledger.damping > 0.2 * ledger.initial, "{ledger:?}");
+    assert!(ledger.residual_max_relative < 1e-3, "{ledger:?}");
+}
+
+#[test]
+fn loads_do_the_work_that_the_ledger_says() {
+    // A traction in x, a pressure and gravity on a free body: the balance closes to round-off while strains are linear.
+    let (nodes, body) = jittered_box(CELLS, SIZE);
+    let facets: Vec<[u32; 3]> = fractum_mesh::topology::boundary_of_tetrahedra(&body.elements)
+        .iter()
+        .map(|f| f.nodes)
+        .filter(|f| f.iter().all(|&n| nodes[n as usize].x > SIZE.x - 1e-9))
+        .collect();
+    let solid = Solid::new(nodes, vec![body]).unwrap();
+    let end = nodes_where(&solid, |p| p.x < 1e-9).into_iter().map(|n| (n, 1e-3)).collect();
+    let loads = vec![
+        Load::Nodal { nodes: end, axis: 1, value: Arc::new(|t, _| 1e6 * (t * 2e4).sin()) },
+        Load::Pressure { facets, thickness: 0.0, value: Arc::new(|t, _| 1e5 * (t * 1e4).cos()) },
+        Load::Gravity { axis: 2, value: Arc::new(|t, _| -9.81 * (1.0 + 1e3 * t)) },
+    ];
+    let mut scene = scene(solid, Vec::new(), loads, settings(1e-3));
+    run(&mut scene).unwrap();
+    let ledger = scene.ledger();
+    assert!(ledger.external > 0.0);
+    let residual = ledger.residual().abs() / ledger.scale;
+    assert!(residual < 1e-11, "{residual:e}: {ledger:?}");
+}
+
+#[test]
+fn contradictory_supports_are_named() {
+    let (nodes, body) = jittered_box(CELLS, SIZE);
+    let solid = Solid::new(nodes, vec![body]).unwrap();
+    let moving = Motion::Velocity(Arc::new(|_, _| 1.0));
+    let supports = vec![
+        Support::new("clamp", vec![0, 1, 2], 0, Motion::Fixed),
+        Support::new("again", vec![2, 3], 0, Motion::Fixed),
+        Support::new("piston", vec![1], 0, moving),
+    ];
+    let error = Supports::new(supports, &solid.reference).err().unwrap().to_string();
+    assert!(error.contains("clamp") && error.contains("piston"), "{error}");
+}
+
+#[test]
+fn a_block_dropped_on_a_plane_bounces_and_closes_its_balance() {
+    let (nodes, body) = jittered_box([4, 3, 3], Vec3::new(0.12, 0.1, 0.1));
+    let nodes: Vec<Vec3> = nodes.into_iter().map(|p| p + Vec3::z() * 1e-4).collect();
+    let surface: Vec<u32> = (0..nodes.len() as u32).collect();
+    let body = Body { kinematics: Kinematics::Corotational, ..body };
+    let mut solid = Solid::new(nodes, vec![body]).unwrap();
+    solid.velocity.fill(Vec3::new(0.3, 0.0, -1.0));
+    let debris = Debris::new(&solid, 0.5, 0.1);
+    let planes = vec![RigidPlane::new(Vec3::zeros(), Vec3::z(), 0.3, 0.1)];
+    let supports = Supports::default();
+    let mut scene = Scene::new(solid, supports, Loads::default(), debris, planes, &surface, settings(8e-4));
+    let mut stored = 0.0f64;
+    while !scene.is_finished() {
+        scene.step(true).unwrap();
+        stored = stored.max(scene.ledger().contact);
+    }
+    let ledger = scene.ledger();
+    let mean = scene.solid.velocity.iter().sum::<Vec3>() / scene.solid.velocity.len() as f64;
+    assert!(stored > 0.0 && mean.z > 0.0, "it came back up: {mean:?}");
+    assert!(ledger.friction > 0.0 && mean.x < 0.3, "friction slowed it");
+    assert!(ledger.residual_max_relative < 2e-3, "{ledger:?}");
+}

@@ -133,5 +133,4 @@ impl NodeSlots {
         }
         sum.to_vec()
     }
-
 }

@@ -15,8 +15,8 @@ pub struct EdgeDamage {
     pub kappa: f64,
     /// Damage d, 0 to 1.
     pub damage: f64,
-    /// Energy density that damage acts on, at the last step [J/m³].
-    pub energy_density: f64,
+    /// Strain at the last step, kept from the onset of damage on.
+    pub strain: Sym3,
     /// Whether the residual stress ratio has fallen to the limit.
     pub broken: bool,
 }
@@ -24,7 +24,7 @@ pub struct EdgeDamage {
 impl EdgeDamage {
     /// An edge that nothing has happened to yet.
     pub(crate) fn intact(strength: f64) -> Self {
-        EdgeDamage { kappa: strength, damage: 0.0, energy_density: 0.0, broken: false }
+        EdgeDamage { kappa: strength, damage: 0.0, strain: Sym3::ZERO, broken: false }
     }
 
     /// What the cheap test compares with: never passed by a damaged edge.
@@ -54,8 +54,7 @@ impl Softens {
         }
         let law = &self.law;
         edge.kappa += (q - edge.kappa) * if law.rate_time > 0.0 { (dt / law.rate_time).min(1.0) } else { 1.0 };
-        let chi =
-            law.softening.residual_ratio(edge.kappa, strength, length, self.young_modulus, law.fracture_energy);
+        let chi = law.softening.residual_ratio(edge.kappa, strength, length, self.young_modulus, law.fracture_energy);
         let before = edge.damage;
         edge.damage = before.max(1.0 - strength / edge.kappa * chi);
         edge.broken = edge.broken || chi <= law.residual;
@@ -100,13 +99,13 @@ impl EdgeCells {
         self.threshold[cell] = edge.threshold();
         let closed = softens.closed_stress(strain);
         let opening = stress - closed;
-        let density = 0.5 * opening.dot(strain);
         if growth > 0.0 {
-            // The mean of the density before and after closes the energy balance to second order in the step.
-            let before = if was_intact { density } else { edge.energy_density };
-            self.dissipated += 0.5 * (before + density) * growth * volume;
+            // The work of the step between the strains ε⁰ and ε¹ minus the change of the stored energy is exactly
+            // ½ σ¹ : ε⁰ per damage. An edge that was intact has kept no strain: it is taken at its strength.
+            let before = if was_intact { strain * (self.strength[cell] / q) } else { edge.strain };
+            self.dissipated += 0.5 * opening.dot(before) * growth * volume;
         }
-        edge.energy_density = density;
+        edge.strain = strain;
         self.fresh |= edge.broken && !was_broken;
         let nominal = opening * (1.0 - edge.damage) + closed;
         if let Some(energy) = &mut self.energy {
@@ -143,6 +142,7 @@ fn compressive_stress(hooke: &Hooke, strain: Sym3) -> Sym3 {
         let n = directions.column(i);
         part += (n * n.transpose()) * value.min(0.0);
     }
-    let stress = Sym3::symmetric_part(&part) * (2.0 * hooke.mu) + Sym3::isotropic(hooke.lambda * strain.trace().min(0.0));
+    let stress =
+        Sym3::symmetric_part(&part) * (2.0 * hooke.mu) + Sym3::isotropic(hooke.lambda * strain.trace().min(0.0));
     Sym3([stress.0[0], stress.0[1], hooke.zz * stress.0[2], stress.0[3], stress.0[4], stress.0[5]])
 }

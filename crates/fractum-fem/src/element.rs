@@ -52,12 +52,8 @@ mod tests {
 
     #[test]
     fn gradients_reproduce_a_linear_field() {
-        let x = [
-            Vec3::new(0.1, 0.2, 0.0),
-            Vec3::new(1.1, 0.1, 0.3),
-            Vec3::new(0.2, 1.3, 0.1),
-            Vec3::new(0.0, 0.3, 0.9),
-        ];
+        let x =
+            [Vec3::new(0.1, 0.2, 0.0), Vec3::new(1.1, 0.1, 0.3), Vec3::new(0.2, 1.3, 0.1), Vec3::new(0.0, 0.3, 0.9)];
         let slope = Vec3::new(2.0, -3.0, 0.5);
         let (volume, gradients) = measure_and_gradients(Shape::T4, &x);
         let sum: Vec3 = x.iter().zip(gradients).map(|(p, g)| g * slope.dot(p)).sum();

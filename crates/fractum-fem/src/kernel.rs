@@ -106,7 +106,12 @@ fn gradient_columns<const FMA: bool>(values: &[Lane; BLOCK_NODES], local: &[u16]
 }
 
 #[inline(always)]
-fn add_cell_forces<const FMA: bool>(force: &mut [Lane; BLOCK_NODES], local: &[u16], gradients: &[[f64; 3]], stress: [Lane; 3]) {
+fn add_cell_forces<const FMA: bool>(
+    force: &mut [Lane; BLOCK_NODES],
+    local: &[u16],
+    gradients: &[[f64; 3]],
+    stress: [Lane; 3],
+) {
     let mut sum = Lane::ZERO;
     for (&node, g) in local[1..].iter().zip(gradients) {
         let f = Lane::ZERO.plus::<FMA>(stress[0], g[0]).plus::<FMA>(stress[1], g[1]).plus::<FMA>(stress[2], g[2]);
@@ -156,7 +161,11 @@ pub(crate) fn forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut
         // SAFETY: the instruction sets were found on this machine.
         #[allow(unsafe_code)]
         unsafe {
-            return if t4 { forces_avx2::<true, L>(cells, scratch, law) } else { forces_avx2::<false, L>(cells, scratch, law) };
+            return if t4 {
+                forces_avx2::<true, L>(cells, scratch, law)
+            } else {
+                forces_avx2::<false, L>(cells, scratch, law)
+            };
         }
     }
     if t4 {
@@ -179,6 +188,9 @@ pub(crate) fn has_avx2() -> bool {
 }
 
 /// Forces with corotational strains and, if asked for, viscous stress; small strains with viscosity come here as well.
+///
+/// - `viscous_before`: viscous stress times volume of the last step; replaced by that of this one
+/// - returns the mean power of the viscous stress over the step [W]
 pub(crate) fn general_forces<L: CellLaw>(
     cells: &Cells,
     scratch: &mut Scratch,
@@ -186,6 +198,7 @@ pub(crate) fn general_forces<L: CellLaw>(
     corotational: bool,
     viscosity: Option<&BodyViscosity>,
     hooke: &Hooke,
+    viscous_before: &mut [Sym3],
 ) -> f64 {
     let Scratch { displacement, velocity, force } = scratch;
     let mut dissipated_power = 0.0;
@@ -203,7 +216,8 @@ pub(crate) fn general_forces<L: CellLaw>(
             let [x, y, z] = gradient_columns::<false>(velocity, local, gradients);
             let rate = Sym3::symmetric_part(&(rotation.transpose() * columns_to_matrix(x, y, z)));
             let viscous = viscosity.stress(hooke, rate, law.integrity(cell), volume) * volume;
-            dissipated_power += viscous.dot(rate);
+            // The mean of the stress at both ends of the step, at the rate between them.
+            dissipated_power += 0.5 * (viscous + std::mem::replace(&mut viscous_before[cell], viscous)).dot(rate);
             stress += viscous;
         }
         let columns = if corotational {

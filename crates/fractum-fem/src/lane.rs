@@ -32,8 +32,6 @@ impl Lane {
     /// `self + a · factor`, fused where the instruction set of the caller has it.
     #[inline(always)]
     pub(crate) fn plus<const FMA: bool>(self, a: Lane, factor: f64) -> Lane {
-        Lane(std::array::from_fn(|i| {
-            if FMA { a.0[i].mul_add(factor, self.0[i]) } else { a.0[i] * factor + self.0[i] }
-        }))
+        Lane(std::array::from_fn(|i| if FMA { a.0[i].mul_add(factor, self.0[i]) } else { a.0[i] * factor + self.0[i] }))
     }
 }

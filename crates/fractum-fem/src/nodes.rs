@@ -24,7 +24,8 @@ impl LocalDamping {
 /// Energies of one step, for the ledger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepWork {
-    /// Kinetic energy at tⁿ, ½ Σ m vⁿ⁻½ · vⁿ⁺½ [J]: with this product the explicit scheme conserves energy exactly.
+    /// Kinetic energy at tⁿ, ½ Σ m vⁿ⁻½ · (vⁿ⁻½ + Δt aⁿ) [J], which is ½ Σ m vⁿ⁻½ · vⁿ⁺½ for equal steps: with this
+    /// product central differences conserve the energy of a linear body exactly.
     pub kinetic: f64,
     /// Energy taken by damping in the half step before tⁿ [J].
     pub damped_before: f64,
@@ -71,13 +72,19 @@ impl Solid {
                     let mut resist = Vec3::zeros();
                     if !damping.is_off() {
                         let free = held.get(first + i).map_or(Vec3::repeat(1.0), |&bits| free_axes(bits));
-                        resist = damping_force(damping, total.component_mul(&free), before.component_mul(&free), inverse_mass[i]);
+                        resist = damping_force(
+                            damping,
+                            total.component_mul(&free),
+                            before.component_mul(&free),
+                            inverse_mass[i],
+                        );
                         total += resist;
                     }
                     let after = before + total * (inverse_mass[i] * dt_kick);
                     velocity[i] = after;
                     displacement[i] += after * dt_after;
-                    work.kinetic += 0.5 / inverse_mass[i] * before.dot(&after);
+                    let mirrored = before + total * (inverse_mass[i] * dt_before);
+                    work.kinetic += 0.5 / inverse_mass[i] * before.dot(&mirrored);
                     work.damped_before -= 0.5 * dt_before * resist.dot(&before);
                     work.damped_after -= 0.5 * dt_after * resist.dot(&after);
                 }

@@ -129,8 +129,7 @@ impl Solid {
             let range = cells.range(cell as usize);
             let alive = |element: u32| model.alive[element as usize];
             let around = model.elements_of_edge.row(edge as usize);
-            cells.volume[cell as usize] =
-                geometry.edge_domain(&nodes, around, alive, &mut cells.gradients[range]);
+            cells.volume[cell as usize] = geometry.edge_domain(&nodes, around, alive, &mut cells.gradients[range]);
         }
     }
 
@@ -141,7 +140,11 @@ impl Solid {
             .filter_map(|&(body, element)| {
                 let model = &self.bodies[body];
                 let edges = model.edges.as_ref()?;
-                Some(edges.of_element[element as usize][..model.body.shape.edge_count()].iter().map(|&e| edges.nodes[e as usize]))
+                Some(
+                    edges.of_element[element as usize][..model.body.shape.edge_count()]
+                        .iter()
+                        .map(|&e| edges.nodes[e as usize]),
+                )
             })
             .flatten()
             .collect();
@@ -155,9 +158,10 @@ impl Solid {
     pub fn is_live_edge(&self, nodes: [u32; 2]) -> bool {
         self.bodies.iter().any(|model| {
             let Some(edges) = &model.edges else { return false };
-            edges.nodes.binary_search(&nodes).is_ok_and(|edge| {
-                model.elements_of_edge.row(edge).iter().any(|&element| model.alive[element as usize])
-            })
+            edges
+                .nodes
+                .binary_search(&nodes)
+                .is_ok_and(|edge| model.elements_of_edge.row(edge).iter().any(|&element| model.alive[element as usize]))
         })
     }
 

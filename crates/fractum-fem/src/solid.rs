@@ -76,6 +76,8 @@ pub(crate) struct Block {
     pub(crate) scratch: Scratch,
     /// Power of the viscous stress in the last step [W].
     pub(crate) viscous_power: f64,
+    /// Viscous stress times volume of each cell at the last step; empty without viscosity.
+    pub(crate) viscous: Vec<Sym3>,
 }
 
 /// A body as it runs.
@@ -127,8 +129,8 @@ pub struct BodyState {
     pub alive: Vec<bool>,
     /// Edge histories; empty without damage.
     pub edges: Vec<EdgeDamage>,
-    /// Damage and energy density of elements (standard formulation with damage).
-    pub elements: Vec<(f64, f64)>,
+    /// Damage and last effective stress of elements (standard formulation with damage).
+    pub elements: Vec<(f64, Sym3)>,
 }
 
 /// What changes in a solid during a run.
@@ -144,6 +146,8 @@ pub struct SolidState {
     pub dissipated: Vec<f64>,
     /// Energy dissipated by viscosity [J].
     pub viscous_dissipation: f64,
+    /// Viscous stress times volume of the cells, block by block; empty without viscosity.
+    pub viscous: Vec<Vec<Sym3>>,
 }
 
 /// How far the damage of a solid has come.
@@ -211,6 +215,9 @@ impl Solid {
                 wave_speed: elastic.p_wave_speed(),
             });
         }
+        for block in self.blocks.iter_mut().filter(|_| !viscosity.is_off()) {
+            block.viscous = vec![Sym3::ZERO; block.cells.len()];
+        }
     }
 
     /// Position of a node at tⁿ [m].
@@ -226,7 +233,9 @@ impl Solid {
     pub fn update_internal_forces(&mut self, dt: f64, measure: bool) {
         self.update_standard_damage(dt);
         let Solid { displacement, velocity, blocks, bodies, .. } = self;
-        blocks.par_iter_mut().for_each(|block| block.evaluate(&bodies[block.body], displacement, velocity, dt, measure));
+        blocks
+            .par_iter_mut()
+            .for_each(|block| block.evaluate(&bodies[block.body], displacement, velocity, dt, measure));
         let power: f64 = blocks.iter().map(|b| b.viscous_power).sum();
         self.viscous_dissipation += power * dt;
         self.gather_forces();
@@ -344,6 +353,7 @@ impl Solid {
             bodies: (0..self.bodies.len()).map(|b| self.body_state(b)).collect(),
             dissipated: self.blocks.iter().map(Block::dissipated).collect(),
             viscous_dissipation: self.viscous_dissipation,
+            viscous: self.blocks.iter().map(|b| b.viscous.clone()).collect(),
         }
     }
 
@@ -366,8 +376,8 @@ impl Solid {
     fn body_state(&self, body: usize) -> BodyState {
         let model = &self.bodies[body];
         let of = |&(block, cell): &(u32, u32)| match &self.blocks[block as usize].law {
-            BlockLaw::Standard(law) => (law.damage[cell as usize], law.energy_density[cell as usize]),
-            _ => (0.0, 0.0),
+            BlockLaw::Standard(law) => (law.damage[cell as usize], law.stress[cell as usize]),
+            _ => (0.0, Sym3::ZERO),
         };
         let elements = if model.standard.is_some() { model.location.iter().map(of).collect() } else { Vec::new() };
         BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements }
@@ -392,7 +402,7 @@ impl Solid {
                         law.threshold[cell as usize] = body.edges[place].threshold();
                     }
                     BlockLaw::Standard(law) => {
-                        (law.damage[cell as usize], law.energy_density[cell as usize]) = body.elements[place];
+                        (law.damage[cell as usize], law.stress[cell as usize]) = body.elements[place];
                     }
                     BlockLaw::Elastic { .. } => {}
                 }
@@ -403,6 +413,9 @@ impl Solid {
             model.alive = body.alive;
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
             self.rebuild_cells_around(index, &removed);
+        }
+        for (block, viscous) in self.blocks.iter_mut().zip(state.viscous) {
+            block.viscous = viscous;
         }
         for (block, dissipated) in self.blocks.iter_mut().zip(state.dissipated) {
             match &mut block.law {
@@ -446,8 +459,7 @@ impl Solid {
         let cell_field = |&(block, cell): &(u32, u32)| {
             let (block, cell) = (&self.blocks[block as usize], cell as usize);
             let h = block.cells.gradient(cell, &self.displacement);
-            let strain =
-                if corotational { kernel::corotational_strain(&h).0 } else { Sym3::symmetric_part(&h) };
+            let strain = if corotational { kernel::corotational_strain(&h).0 } else { Sym3::symmetric_part(&h) };
             let damage = block.damage_of(cell);
             (model.hooke.stress(strain) * (1.0 - damage), damage)
         };
@@ -497,9 +509,10 @@ impl BodyModel {
             (Some(zone), Some(edges)) => Some(Threshold::new(&body, zone, edges, &elements_of_edge, nodes, volumes)?),
             _ => None,
         };
-        let softens = body.damage.as_ref().map(|zone| {
-            Arc::new(Softens { law: zone.law.clone(), hooke, young_modulus: elastic.young_modulus })
-        });
+        let softens = body
+            .damage
+            .as_ref()
+            .map(|zone| Arc::new(Softens { law: zone.law.clone(), hooke, young_modulus: elastic.young_modulus }));
         let cells = match &edges {
             Some(edges) if smoothed => geometry.edge_blocks(edges, &elements_of_edge, |edge| {
                 threshold.as_ref().is_some_and(|t| t.strength[edge as usize].is_finite())
@@ -531,14 +544,14 @@ impl BodyModel {
                     softens: softens.clone(),
                     stress: vec![Sym3::ZERO; items.len()],
                     damage: vec![0.0; items.len()],
-                    energy_density: vec![0.0; items.len()],
+                    mixed_energy: vec![0.0; items.len()],
                     dissipated: 0.0,
                     energy: None,
                 }),
                 _ => BlockLaw::Elastic { energy: None },
             };
             let scratch = Scratch::new();
-            blocks.push(Block { body: index, cells, items, law, scratch, viscous_power: 0.0 });
+            blocks.push(Block { body: index, cells, items, law, scratch, viscous_power: 0.0, viscous: Vec::new() });
         }
         let (reduced_edges, largest_length_ratio) =
             threshold.as_ref().map_or((0, 0.0), |t| (t.reduced_edges, t.largest_length_ratio));
@@ -599,18 +612,13 @@ impl Threshold {
         let thickness = if body.shape == Shape::T3 { body.thickness } else { 1.0 };
         let length = |edge: usize| {
             let elements = elements_of_edge.row(edge);
-            let sum: f64 =
-                elements.iter().map(|&e| regular_edge(body.shape, volumes[e as usize] / thickness)).sum();
+            let sum: f64 = elements.iter().map(|&e| regular_edge(body.shape, volumes[e as usize] / thickness)).sum();
             factor * sum / elements.len() as f64
         };
         let count = edges.nodes.len();
         let length: Vec<f64> = (0..count).into_par_iter().map(length).collect();
-        let mut threshold = Threshold {
-            strength: vec![f64::INFINITY; count],
-            length,
-            reduced_edges: 0,
-            largest_length_ratio: 0.0,
-        };
+        let mut threshold =
+            Threshold { strength: vec![f64::INFINITY; count], length, reduced_edges: 0, largest_length_ratio: 0.0 };
         let mut worst: Option<(usize, f64, f64)> = None;
         for edge in 0..count {
             if matches!(&zone.region, Region::Edges(marked) if !marked[edge]) {
@@ -652,7 +660,7 @@ impl Threshold {
 impl Block {
     /// Forces of all cells of the block into its scratch.
     fn evaluate(&mut self, model: &BodyModel, displacement: &[Vec3], velocity: &[Vec3], dt: f64, measure: bool) {
-        let Block { cells, scratch, law, viscous_power, .. } = self;
+        let Block { cells, scratch, law, viscous_power, viscous, .. } = self;
         scratch.load(&cells.nodes, displacement);
         if model.viscosity.is_some() {
             scratch.load_velocity(&cells.nodes, velocity);
@@ -661,17 +669,17 @@ impl Block {
         *viscous_power = match law {
             BlockLaw::Elastic { energy } => {
                 let mut law = ElasticCells { hooke: model.hooke, energy: start };
-                let power = run(model, cells, scratch, &mut law);
+                let power = run(model, cells, scratch, &mut law, viscous);
                 *energy = law.energy;
                 power
             }
             BlockLaw::Edges(law) => {
                 (law.dt, law.energy) = (dt, start);
-                run(model, cells, scratch, law)
+                run(model, cells, scratch, law, viscous)
             }
             BlockLaw::Standard(law) => {
                 law.energy = start;
-                run(model, cells, scratch, law)
+                run(model, cells, scratch, law, viscous)
             }
         };
     }
@@ -691,10 +699,8 @@ impl Block {
                 Kinematics::Small => Sym3::symmetric_part(&h),
                 Kinematics::Corotational => kernel::corotational_strain(&h).0,
             };
+            law.mixed_energy[cell] = 0.5 * law.stress[cell].dot(strain);
             law.stress[cell] = model.hooke.stress(strain);
-            // Elastic energy density ½ σ : ε, which damage will take its share of.
-            let density = 0.5 * law.stress[cell].dot(strain);
-            law.energy_density[cell] = density;
         }
     }
 
@@ -703,7 +709,7 @@ impl Block {
         let Block { cells, items, law: BlockLaw::Standard(law), .. } = self else { return };
         for (cell, &element) in items.iter().enumerate() {
             let damage = damage_of(element).max(law.damage[cell]);
-            law.dissipated += (damage - law.damage[cell]) * law.energy_density[cell] * cells.volume[cell];
+            law.dissipated += (damage - law.damage[cell]) * law.mixed_energy[cell] * cells.volume[cell];
             law.damage[cell] = damage;
         }
     }
@@ -731,10 +737,24 @@ impl Block {
 }
 
 /// Runs the cheapest kernel that the body allows; returns the viscous power [W].
-fn run<L: kernel::CellLaw>(model: &BodyModel, cells: &Cells, scratch: &mut Scratch, law: &mut L) -> f64 {
+fn run<L: kernel::CellLaw>(
+    model: &BodyModel,
+    cells: &Cells,
+    scratch: &mut Scratch,
+    law: &mut L,
+    viscous: &mut [Sym3],
+) -> f64 {
     let corotational = model.body.kinematics == Kinematics::Corotational;
     if corotational || model.viscosity.is_some() {
-        return kernel::general_forces(cells, scratch, law, corotational, model.viscosity.as_ref(), &model.hooke);
+        return kernel::general_forces(
+            cells,
+            scratch,
+            law,
+            corotational,
+            model.viscosity.as_ref(),
+            &model.hooke,
+            viscous,
+        );
     }
     kernel::forces(cells, scratch, law);
     0.0

@@ -30,8 +30,9 @@ pub(crate) struct StandardCells {
     pub(crate) softens: Arc<Softens>,
     /// Effective stress of each cell; written by the first pass, read by the edges.
     pub(crate) stress: Vec<Sym3>,
+    /// ½ σ : ε between the stress before and the strain after the step: what damage dissipates per volume.
     pub(crate) damage: Vec<f64>,
-    pub(crate) energy_density: Vec<f64>,
+    pub(crate) mixed_energy: Vec<f64>,
     pub(crate) dissipated: f64,
     pub(crate) energy: Option<f64>,
 }

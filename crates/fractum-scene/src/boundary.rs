@@ -165,7 +165,7 @@ impl Supports {
                 *reaction = mass * change / dt_kick;
                 work.before += 0.5 * *reaction * before * dt_before;
                 work.after += 0.5 * *reaction * velocity * dt_after;
-                work.kinetic += 0.5 * mass * before * change;
+                work.kinetic += 0.5 * *reaction * before * dt_before;
             }
         }
         work

@@ -47,6 +47,25 @@ pub enum StepError {
         /// Body and element with the largest velocity.
         culprit: String,
     },
+    /// The step is above the stable limit.
+    #[error(
+        "step {step}, t = {time:.6e} s: unstable: the elements hold {ratio:.1} times the energy put in; fastest near {culprit}; \u{394}t = {dt:.3e} s, \
+         stable limit {limit:.3e} s - lower solver.safety"
+    )]
+    Unstable {
+        /// Step number.
+        step: u64,
+        /// Time [s].
+        time: f64,
+        /// Elastic energy over the largest energy put in.
+        ratio: f64,
+        /// Step size [s].
+        dt: f64,
+        /// Estimated stable step [s].
+        limit: f64,
+        /// Where the kinetic energy is largest.
+        culprit: String,
+    },
     /// The energy balance does not close.
     #[error(
         "step {step}, t = {time:.6e} s: the energy balance is off by {relative:.2e} of the energy put in (limit {allowed:.0e}); largest kinetic \

@@ -1,6 +1,6 @@
 //! Rigid planes that nodes and particles rest on.
 
-use fractum_contact::law::{ContactForce, Linear, PairMotion};
+use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion};
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 use rayon::prelude::*;
@@ -31,11 +31,11 @@ pub(crate) struct Candidate {
     node: u32,
     law: Linear,
     radius: f64,
-    slip: Vec3,
+    memory: ContactMemory,
     force: Vec3,
     stored: f64,
     friction: f64,
-    damping_power: f64,
+    damping: f64,
 }
 
 /// Energies of all contacts of one kind in one step.
@@ -65,17 +65,16 @@ impl RigidPlane {
             let i = node as usize;
             let (young_modulus, poisson_ratio) = debris.elasticity(node);
             let (radius, mass) = (debris.radius(node), solid.mass[i]);
-            let law =
-                Linear::on_wall(young_modulus, poisson_ratio, radius, mass, self.friction, self.damping_ratio);
+            let law = Linear::on_wall(young_modulus, poisson_ratio, radius, mass, self.friction, self.damping_ratio);
             let candidate = Candidate {
                 node,
                 law,
                 radius: 0.0,
-                slip: Vec3::zeros(),
+                memory: ContactMemory::default(),
                 force: Vec3::zeros(),
                 stored: 0.0,
                 friction: 0.0,
-                damping_power: 0.0,
+                damping: 0.0,
             };
             self.candidates.insert(place, candidate);
         }
@@ -117,19 +116,19 @@ impl RigidPlane {
                 let arm = -normal * height;
                 let velocity = solid.velocity[i] + debris.spin(c.node).cross(&arm);
                 let motion = PairMotion { normal, overlap: c.radius - height, velocity, dt };
-                let ContactForce { on_second, stored, friction, damping_power } = c.law.force(&motion, &mut c.slip);
-                (c.force, c.stored, c.friction, c.damping_power) = (on_second, stored, friction, damping_power);
+                let ContactForce { on_second, stored, friction, damping } = c.law.force(&motion, &mut c.memory);
+                (c.force, c.stored, c.friction, c.damping) = (on_second, stored, friction, damping);
             });
         }
         let mut work = ContactWork::default();
-        for c in candidates.iter().filter(|c| c.stored > 0.0) {
+        for c in candidates.iter().filter(|c| c.stored > 0.0 || c.damping != 0.0) {
             let i = c.node as usize;
             let arm = -normal * (solid.reference[i] + solid.displacement[i] - point).dot(&normal);
             solid.force[i] += c.force;
             debris.add_torque(c.node, arm.cross(&c.force));
             work.stored += c.stored;
             work.friction += c.friction;
-            work.damping += c.damping_power * dt;
+            work.damping += c.damping;
         }
         work
     }

@@ -9,6 +9,10 @@ use crate::ledger::{Books, Guard, Ledger};
 use crate::probe::CountKind;
 use crate::rigid::{Candidate, RigidPlane};
 
+/// How much faster than it is a wall contact counts in the stable step: the whole weight of a body may come on few of
+/// them, and half a period of contact wants some twenty steps for the energy balance.
+const RESOLUTION: f64 = 4.0;
+
 /// One simulation: bodies, boundary conditions, clock and ledger.
 #[derive(Clone)]
 pub struct Scene {
@@ -126,19 +130,19 @@ impl Scene {
         2.0 / frequency * ((1.0 + xi * xi).sqrt() - xi)
     }
 
-    /// The step that follows `time`: never past the end.
+    /// The step that follows `time`: the largest that is allowed and divides what is left into equal steps, since a
+    /// change of the step costs a little of the energy balance.
     pub(crate) fn next_dt(&self, time: f64) -> f64 {
         let TimeStepSettings { safety, fixed, end, .. } = self.settings.time_step;
         let dt = fixed.unwrap_or_else(|| safety * self.stable_dt());
         let left = end - time;
-        // A last step of almost nothing would only add round-off.
-        if left < dt * 1.000_001 && left > 0.0 { left } else { dt }
+        if left > 1e-9 * dt { left / (left / dt * (1.0 - 1e-9)).ceil() } else { dt }
     }
 
     pub(crate) fn update_contact_frequency(&mut self) {
         let Scene { solid, debris, planes, .. } = self;
         let walls: f64 = planes.iter().map(|plane| plane.frequency_square(solid)).sum();
-        self.contact_frequency_square = walls + debris.frequency_square(solid);
+        self.contact_frequency_square = RESOLUTION * RESOLUTION * walls + debris.frequency_square(solid);
     }
 
     /// Whether the end of the run has been reached.

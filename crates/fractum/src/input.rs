@@ -40,8 +40,7 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<Input, Failur
         };
         fail(format!("= \"{}\": cannot read the mesh: {error}", file.value.display()), remedy)
     })?;
-    let mut mesh =
-        read_msh(&bytes).map_err(|error| fail(format!(": {}: {error}", file.value.display()), ""))?;
+    let mut mesh = read_msh(&bytes).map_err(|error| fail(format!(": {}: {error}", file.value.display()), ""))?;
     if case.mesh.unit != 1.0 {
         mesh.nodes.iter_mut().for_each(|node| *node *= case.mesh.unit);
     }

@@ -217,7 +217,10 @@ impl Plan {
         );
         self.add(
             "wall time",
-            format!("about {} on {threads} threads, without output", quantity(1e-9 * nanoseconds * steps / threads, "s")),
+            format!(
+                "about {} on {threads} threads, without output",
+                quantity(1e-9 * nanoseconds * steps / threads, "s")
+            ),
         );
     }
 }

@@ -95,7 +95,12 @@ impl<'a> Recorder<'a> {
         let columns: Vec<Column> = LEDGER_COLUMNS
             .iter()
             .map(|(name, unit)| Column::new(*name, *unit))
-            .chain(case.probes.iter().filter(|p| !p.is_scalar()).map(|p| Column::new(p.name.value.clone(), p.unit.clone())))
+            .chain(
+                case.probes
+                    .iter()
+                    .filter(|p| !p.is_scalar())
+                    .map(|p| Column::new(p.name.value.clone(), p.unit.clone())),
+            )
             .collect();
         let path = folder.join("history.csv");
         let (history, state) = match resumed {
@@ -240,7 +245,8 @@ impl<'a> Recorder<'a> {
     fn write_solid(&self, scene: &Scene, path: &Path) -> Result<(), Failure> {
         let (solid, order) = (&scene.solid, &self.grid.file_order);
         let attached = scene.attached_nodes();
-        let nodal = |of: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { order.iter().map(|&n| of(n as usize)).collect() };
+        let nodal =
+            |of: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { order.iter().map(|&n| of(n as usize)).collect() };
         let points = nodal(&|n| solid.reference[n].into());
         let displacement = nodal(&|n| solid.displacement[n].into());
         let velocity = nodal(&|n| solid.velocity[n].into());
@@ -346,9 +352,7 @@ fn time_mean(times: &[f64], values: &[f64]) -> f64 {
 fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
     let next = times.partition_point(|&t| t <= time);
     match (next.checked_sub(1), values.get(next)) {
-        (Some(i), Some(after)) => {
-            values[i] + (after - values[i]) * (time - times[i]) / (times[next] - times[i])
-        }
+        (Some(i), Some(after)) => values[i] + (after - values[i]) * (time - times[i]) / (times[next] - times[i]),
         (Some(i), None) => values[i],
         (None, _) => values.first().copied().unwrap_or(f64::NAN),
     }

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use fractum_io::{Compression, WriteError};
 use fractum_io::case::model::{Bound, Case, ProbeKind};
 use fractum_io::checkpoint::{self, Header, Identity};
 use fractum_io::fragments::{self, Fragment};
 use fractum_io::log::{Progress, RunLog, Snapshot};
 use fractum_io::summary::{self, Status, Summary, hash_text};
+use fractum_io::{Compression, WriteError};
 use fractum_scene::{Phase, Scene, SceneState, StepError};
 use serde::{Deserialize, Serialize};
 
@@ -84,7 +84,10 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     let checkpoints = folder.join("checkpoint");
     let resumed = if options.resume { restore(&checkpoints, &identity, &mut scene)? } else { None };
     if options.resume && resumed.is_none() {
-        return Err(Failure::input(format!("{}: no checkpoint to resume from; run without --resume", folder.display())));
+        return Err(Failure::input(format!(
+            "{}: no checkpoint to resume from; run without --resume",
+            folder.display()
+        )));
     }
     let log_path = folder.join("run.log");
     let mut log = if resumed.is_some() { RunLog::resume(&log_path)? } else { RunLog::create(&log_path)? };
@@ -103,14 +106,7 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
         log.line(warning)?;
     }
 
-    let recorder = Recorder::open(
-        &case,
-        &scene,
-        &assembly.probes,
-        &assembly.file_order,
-        &folder,
-        resumed,
-    )?;
+    let recorder = Recorder::open(&case, &scene, &assembly.probes, &assembly.file_order, &folder, resumed)?;
     let mut run = Run {
         case: &case,
         folder: &folder,
@@ -233,8 +229,7 @@ impl Run<'_> {
 
     fn save(&mut self, scene: &Scene) -> Result<(), Failure> {
         let state = RunState { scene: scene.state(), record: self.recorder.sync()? };
-        let header =
-            Header { identity: self.identity.clone(), step: scene.clock.step, time: scene.clock.time };
+        let header = Header { identity: self.identity.clone(), step: scene.clock.step, time: scene.clock.time };
         let file = checkpoint::save(&self.folder.join("checkpoint"), &header, &state, Compression::Fast)?;
         self.log.line(format!("step {}: state saved in {}", scene.clock.step, file.display()))?;
         self.saved = Instant::now();
@@ -290,12 +285,7 @@ impl Run<'_> {
         fragments::write(&self.folder.join("fragments.csv"), &pieces)?;
         let mut summary = self.summary(&scene, status, threads, &pieces);
         summary.state_hash = hash_text(state_hash);
-        summary.time = summary::Time {
-            steps: clock.step,
-            dt: clock.dt_before,
-            dt_min: clock.dt_min,
-            end: clock.time,
-        };
+        summary.time = summary::Time { steps: clock.step, dt: clock.dt_before, dt_min: clock.dt_min, end: clock.time };
         summary.expect = self.case.expect.iter().map(|e| expectation(e, &summary)).collect();
         summary.write(&self.folder.join("summary.json"))?;
         self.log.line(format!("{}: {} steps, {:.2} s", status_text(status), clock.step, summary.wall.total))?;

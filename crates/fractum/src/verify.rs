@@ -33,13 +33,22 @@ pub struct Selection {
 pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
     let mut cases = Vec::new();
     find_cases(&selection.cases, &mut cases).map_err(|error| {
-        Failure::input(format!("{}: cannot list the cases: {error}; name the folder with --cases", selection.cases.display()))
+        Failure::input(format!(
+            "{}: cannot list the cases: {error}; name the folder with --cases",
+            selection.cases.display()
+        ))
     })?;
     cases.sort();
-    let name_of = |path: &Path| path.strip_prefix(&selection.cases).unwrap_or(path).with_extension("").display().to_string();
-    cases.retain(|path| selection.names.is_empty() || selection.names.iter().any(|n| name_of(path).contains(n.as_str())));
+    let name_of =
+        |path: &Path| path.strip_prefix(&selection.cases).unwrap_or(path).with_extension("").display().to_string();
+    cases.retain(|path| {
+        selection.names.is_empty() || selection.names.iter().any(|n| name_of(path).contains(n.as_str()))
+    });
     let mut lines = Vec::new();
-    println!("{:<44} {:<34} {:>14} {:>14} {:>10} {:>10}  {:<5} {:>8}", "case", "quantity", "value", "reference", "error", "tolerance", "pass", "seconds");
+    println!(
+        "{:<44} {:<34} {:>14} {:>14} {:>10} {:>10}  {:<5} {:>8}",
+        "case", "quantity", "value", "reference", "error", "tolerance", "pass", "seconds"
+    );
     for path in cases {
         let name = name_of(&path);
         let case = read_case(&path, &[])?;
@@ -60,7 +69,14 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
             Ok(outcome) => lines.extend(outcome.summary.expect.iter().map(|e| Verified::new(&name, e, seconds))),
             Err(error) => {
                 eprintln!("{name}: {error}");
-                lines.push(Verified { case: name.clone(), quantity: "run".into(), pass: false, seconds, source: error.to_string(), ..Verified::default() });
+                lines.push(Verified {
+                    case: name.clone(),
+                    quantity: "run".into(),
+                    pass: false,
+                    seconds,
+                    source: error.to_string(),
+                    ..Verified::default()
+                });
             }
         }
         lines[first..].iter().for_each(print_line);

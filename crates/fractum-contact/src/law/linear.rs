@@ -36,8 +36,17 @@ pub struct ContactForce {
     pub stored: f64,
     /// Energy taken by friction in this step [J].
     pub friction: f64,
-    /// Power of the normal damper [W].
-    pub damping_power: f64,
+    /// Energy taken by the normal damper in this step [J].
+    pub damping: f64,
+}
+
+/// What a contact remembers from step to step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactMemory {
+    /// Stretch of the tangential spring [m].
+    pub slip: Vec3,
+    /// Force of the normal damper at the last step [N].
+    damper: f64,
 }
 
 impl Linear {
@@ -59,7 +68,7 @@ impl Linear {
         Linear::new(stiffness, poisson_ratio, mass, friction, damping_ratio)
     }
 
-    /// The law of a sphere on a rigid wall: one half of the spring between two equal spheres, k_n = E π r.
+    /// The law of a sphere on a rigid wall, that of a sphere on its mirror image: k_n = E π r/2.
     pub fn on_wall(
         young_modulus: f64,
         poisson_ratio: f64,
@@ -68,7 +77,7 @@ impl Linear {
         friction: f64,
         damping_ratio: f64,
     ) -> Self {
-        let stiffness = young_modulus * std::f64::consts::PI * radius;
+        let stiffness = 0.5 * young_modulus * std::f64::consts::PI * radius;
         Linear::new(stiffness, poisson_ratio, mass, friction, damping_ratio)
     }
 
@@ -81,41 +90,38 @@ impl Linear {
         }
     }
 
-    /// Force of a pair; `slip` is the stretch of its tangential spring [m] and advances with the call.
+    /// Force of a pair; its memory advances with the call.
     ///
-    /// Out of contact the slip is forgotten. The damper never pulls: the normal force stays ≥ 0.
-    pub fn force(&self, motion: &PairMotion, slip: &mut Vec3) -> ContactForce {
-        if motion.overlap <= 0.0 {
-            *slip = Vec3::zeros();
-            return ContactForce::default();
-        }
+    /// Out of contact the slip is forgotten. The damper never pulls: the normal force stays ≥ 0. Energies are those of
+    /// the step that led here, with the mean of the forces at its ends, as central differences book them.
+    pub fn force(&self, motion: &PairMotion, memory: &mut ContactMemory) -> ContactForce {
         let n = motion.normal;
         let approach = -motion.velocity.dot(&n);
+        let last = std::mem::take(&mut memory.damper);
+        if motion.overlap <= 0.0 {
+            memory.slip = Vec3::zeros();
+            return ContactForce { damping: 0.5 * last * approach * motion.dt, ..ContactForce::default() };
+        }
         let elastic = self.normal_stiffness * motion.overlap;
-        let damping = (self.normal_damping * approach).max(-elastic);
-        let normal_force = elastic + damping;
+        let damper = (self.normal_damping * approach).max(-elastic);
+        let normal_force = elastic + damper;
+        memory.damper = damper;
 
         // The spring lives in the tangent plane of the moment; turned there it keeps its length.
-        let length = slip.norm();
-        let flat = *slip - n * slip.dot(&n);
+        let length = memory.slip.norm();
+        let flat = memory.slip - n * memory.slip.dot(&n);
         let flat_length = flat.norm();
-        *slip = if flat_length > 0.0 { flat * (length / flat_length) } else { Vec3::zeros() };
-        *slip += (motion.velocity + n * approach) * motion.dt;
-        let (mut friction, limit) = (0.0, self.friction * normal_force);
-        let trial = self.tangential_stiffness * slip.norm();
-        if trial > limit {
-            let kept = limit / trial;
-            let sliding = slip.norm() * (1.0 - kept);
-            *slip *= kept;
-            // Mean of the force before and after the slide: the trial spring gives back what it had stored.
-            friction = limit * sliding + 0.5 * self.tangential_stiffness * sliding * sliding;
-        }
+        let before = if flat_length > 0.0 { flat * (length / flat_length) } else { Vec3::zeros() };
+        let trial = before + (motion.velocity + n * approach) * motion.dt;
+        let (reach, limit) = (self.tangential_stiffness * trial.norm(), self.friction * normal_force);
+        memory.slip = if reach > limit { trial * (limit / reach) } else { trial };
+        let mean_force = (before + memory.slip) * (0.5 * self.tangential_stiffness);
         ContactForce {
-            on_second: n * normal_force - *slip * self.tangential_stiffness,
+            on_second: n * normal_force - memory.slip * self.tangential_stiffness,
             stored: 0.5 * self.normal_stiffness * motion.overlap * motion.overlap
-                + 0.5 * self.tangential_stiffness * slip.norm_squared(),
-            friction,
-            damping_power: damping * approach,
+                + 0.5 * self.tangential_stiffness * memory.slip.norm_squared(),
+            friction: mean_force.dot(&(trial - memory.slip)).max(0.0),
+            damping: 0.5 * (last + damper) * approach * motion.dt,
         }
     }
 }
@@ -140,13 +146,13 @@ mod tests {
             let normal = Vec3::from(normal);
             prop_assume!(normal.norm() > 0.1);
             let motion = PairMotion { normal: normal.normalize(), overlap, velocity: velocity.into(), dt: 1e-5 };
-            let mut slip = Vec3::from(slip);
-            let force = law().force(&motion, &mut slip);
+            let mut memory = ContactMemory { slip: Vec3::from(slip), damper: 0.0 };
+            let force = law().force(&motion, &mut memory);
             let along = force.on_second.dot(&motion.normal);
             let across = (force.on_second - motion.normal * along).norm();
             prop_assert!(along >= 0.0);
             prop_assert!(across <= law().friction * along * (1.0 + 1e-9) + 1e-9);
-            prop_assert!(force.friction >= 0.0 && force.stored >= 0.0 && force.damping_power >= 0.0);
+            prop_assert!(force.friction >= 0.0 && force.stored >= 0.0 && force.damping >= 0.0);
             if overlap <= 0.0 {
                 prop_assert_eq!(force, ContactForce::default());
             }
@@ -159,9 +165,10 @@ mod tests {
         let (mass, xi): (f64, f64) = (0.2, 0.05);
         let law = Linear::new(1e5, 0.2, mass, 0.0, xi);
         let (mut x, mut v, dt) = (0.0, -1.0, 1e-7);
+        let mut memory = ContactMemory::default();
         loop {
             let motion = PairMotion { normal: Vec3::x(), overlap: -x, velocity: Vec3::x() * v, dt };
-            v += law.force(&motion, &mut Vec3::zeros()).on_second.x / mass * dt;
+            v += law.force(&motion, &mut memory).on_second.x / mass * dt;
             x += v * dt;
             if x > 0.0 {
                 break;

@@ -2,4 +2,4 @@
 
 mod linear;
 
-pub use linear::{ContactForce, Linear, PairMotion};
+pub use linear::{ContactForce, ContactMemory, Linear, PairMotion};

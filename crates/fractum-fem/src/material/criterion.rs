@@ -99,7 +99,8 @@ impl Criterion {
     pub fn surely_below(&self, stress: Sym3, threshold: f64) -> bool {
         let [xx, yy, zz, xy, yz, zx] = stress.0;
         let square = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
-        threshold > 0.0 && (square * self.norm_factor <= threshold * threshold || self.below_by_j2(stress, square, threshold))
+        threshold > 0.0
+            && (square * self.norm_factor <= threshold * threshold || self.below_by_j2(stress, square, threshold))
     }
 
     /// The sharper test, for stresses that are large but mostly compressive.
@@ -136,7 +137,8 @@ impl Criterion {
             }
             CriterionKind::ModifiedMohrCoulomb => {
                 let j2 = stress.j2();
-                let sin3 = if j2 > 0.0 { (-1.5 * 3f64.sqrt() * stress.j3() / (j2 * j2.sqrt())).clamp(-1.0, 1.0) } else { 0.0 };
+                let sin3 =
+                    if j2 > 0.0 { (-1.5 * 3f64.sqrt() * stress.j3() / (j2 * j2.sqrt())).clamp(-1.0, 1.0) } else { 0.0 };
                 let lode = sin3.asin() / 3.0;
                 c[2] * stress.trace() / 3.0 + j2.sqrt() * (c[0] * lode.cos() - c[1] * lode.sin() / 3f64.sqrt())
             }

@@ -91,10 +91,18 @@ impl<'a> Context<'a> {
             return;
         }
         if let Some(plane) = &body.plane {
-            self.error(&plane.place, ": the body is made of tetrahedra", "no plane state in three dimensions; remove the key");
+            self.error(
+                &plane.place,
+                ": the body is made of tetrahedra",
+                "no plane state in three dimensions; remove the key",
+            );
         }
         if let Some(thickness) = &body.thickness {
-            self.error(&thickness.place, ": the body is made of tetrahedra", "no thickness in three dimensions; remove the key");
+            self.error(
+                &thickness.place,
+                ": the body is made of tetrahedra",
+                "no thickness in three dimensions; remove the key",
+            );
         }
     }
 
@@ -205,7 +213,11 @@ impl<'a> Context<'a> {
             Some(condition) => {
                 let marked: Vec<bool> = midpoints.iter().map(|&p| condition.value.holds_at(p)).collect();
                 if marked.iter().all(|m| !m) {
-                    self.error(&condition.place, ": no edge of the body fulfils the condition", "damage somewhere, or damage = false");
+                    self.error(
+                        &condition.place,
+                        ": no edge of the body fulfils the condition",
+                        "damage somewhere, or damage = false",
+                    );
                 }
                 Region::Edges(marked)
             }
@@ -248,11 +260,15 @@ impl<'a> Context<'a> {
                     format!(": strength lowered on {reduced} edges that are too long for the fracture energy"),
                 ));
             } else if ratio > 0.25 {
-                let advice = "elements below a quarter of that length resolve the softening; refine where cracks are expected";
+                let advice =
+                    "elements below a quarter of that length resolve the softening; refine where cracks are expected";
                 warnings.push(
                     Diagnostic::warning(
                         &part.place,
-                        format!(": the longest element reaches {:.0} % of the length at which softening snaps back", 100.0 * ratio),
+                        format!(
+                            ": the longest element reaches {:.0} % of the length at which softening snaps back",
+                            100.0 * ratio
+                        ),
                     )
                     .remedy(advice),
                 );

@@ -34,9 +34,10 @@ impl Context<'_> {
 
     pub(super) fn loads(&mut self, parts: &[Part], numbering: &Numbering, boundary: &[[u32; 3]]) -> Vec<Load> {
         let case = self.case;
-        let thickness = parts.iter().find(|p| p.shape == fractum_fem::Shape::T3).map_or(0.0, |part| {
-            part.body.thickness.as_ref().map_or(1.0, |t| t.value)
-        });
+        let thickness = parts
+            .iter()
+            .find(|p| p.shape == fractum_fem::Shape::T3)
+            .map_or(0.0, |part| part.body.thickness.as_ref().map_or(1.0, |t| t.value));
         let surface = Surface::new(boundary, thickness, &numbering.positions);
         let mut loads = Vec::new();
         for load in &case.loads {

@@ -80,10 +80,8 @@ impl Context<'_> {
                 continue;
             }
             let list = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-            let mut diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value)).expected(format!(
-                "a physical group of {}; groups there: {list}",
-                self.case.mesh.file.value.display()
-            ));
+            let mut diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value))
+                .expected(format!("a physical group of {}; groups there: {list}", self.case.mesh.file.value.display()));
             if let Some(near) = nearest(&group.value, names.iter().copied()) {
                 diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
             }

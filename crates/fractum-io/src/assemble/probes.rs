@@ -14,13 +14,7 @@ impl Context<'_> {
         case.probes.iter().map(|probe| self.probe(&probe.kind, parts, numbering, supports)).collect()
     }
 
-    fn probe(
-        &mut self,
-        kind: &ProbeKind,
-        parts: &[Part],
-        numbering: &Numbering,
-        supports: &Supports,
-    ) -> Option<Probe> {
+    fn probe(&mut self, kind: &ProbeKind, parts: &[Part], numbering: &Numbering, supports: &Supports) -> Option<Probe> {
         Some(match kind {
             ProbeKind::Reaction { group, along } => {
                 let places = supports.places(&self.group_nodes(group, numbering));

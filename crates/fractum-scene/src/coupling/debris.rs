@@ -1,5 +1,5 @@
 use fractum_contact::close_pairs;
-use fractum_contact::law::{ContactForce, Linear, PairMotion};
+use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion};
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 use rayon::prelude::*;
@@ -62,12 +62,12 @@ pub struct Pair {
     /// they have parted by more than that.
     pub neighbours: bool,
     law: Linear,
-    slip: Vec3,
+    memory: ContactMemory,
     /// Force on the second particle [N].
     force: Vec3,
     stored: f64,
     friction: f64,
-    damping_power: f64,
+    damping: f64,
 }
 
 impl Debris {
@@ -153,9 +153,8 @@ impl Debris {
 
     /// Angular momentum of all spins [kg m²/s].
     pub fn spin_momentum(&self, solid: &Solid) -> Vec3 {
-        let of = |(&node, spin): (&u32, &Vec3)| {
-            spin * self.inertia(solid.mass[node as usize], self.radius[node as usize])
-        };
+        let of =
+            |(&node, spin): (&u32, &Vec3)| spin * self.inertia(solid.mass[node as usize], self.radius[node as usize]);
         self.state.nodes.iter().zip(&self.state.spin).map(of).sum()
     }
 
@@ -195,11 +194,8 @@ impl Debris {
     fn new_pair(&self, solid: &Solid, nodes: [u32; 2], neighbours: bool) -> Pair {
         let [i, j] = nodes.map(|n| n as usize);
         let now = (solid.position(j) - solid.position(i)).norm();
-        let rest = if neighbours {
-            (solid.reference[j] - solid.reference[i]).norm()
-        } else {
-            self.radius[i] + self.radius[j]
-        };
+        let rest =
+            if neighbours { (solid.reference[j] - solid.reference[i]).norm() } else { self.radius[i] + self.radius[j] };
         let ((e1, nu1), (e2, nu2)) = (self.elasticity[i], self.elasticity[j]);
         let law = Linear::between_spheres(
             2.0 * e1 * e2 / (e1 + e2),
@@ -214,11 +210,11 @@ impl Debris {
             closing: rest.min(now),
             neighbours,
             law,
-            slip: Vec3::zeros(),
+            memory: ContactMemory::default(),
             force: Vec3::zeros(),
             stored: 0.0,
             friction: 0.0,
-            damping_power: 0.0,
+            damping: 0.0,
         }
     }
 
@@ -281,17 +277,16 @@ impl Debris {
                 pair.update_closing(distance, radius[i] + radius[j], solid);
                 let normal = if distance > 0.0 { apart / distance } else { Vec3::x() };
                 let (arm_i, arm_j) = arms(normal, distance, radius[i], radius[j]);
-                let velocity =
-                    solid.velocity[j] + spin(j).cross(&arm_j) - solid.velocity[i] - spin(i).cross(&arm_i);
+                let velocity = solid.velocity[j] + spin(j).cross(&arm_j) - solid.velocity[i] - spin(i).cross(&arm_i);
                 let motion = PairMotion { normal, overlap: pair.closing - distance, velocity, dt };
-                let ContactForce { on_second, stored, friction, damping_power } = pair.law.force(&motion, &mut pair.slip);
+                let ContactForce { on_second, stored, friction, damping } = pair.law.force(&motion, &mut pair.memory);
                 pair.force = on_second;
-                (pair.stored, pair.friction, pair.damping_power) = (stored, friction, damping_power);
+                (pair.stored, pair.friction, pair.damping) = (stored, friction, damping);
             });
         }
         // In the order of the pairs: contacts are few beside elements, and the sum has one order.
         let mut work = ContactWork::default();
-        for pair in pairs.iter().filter(|p| p.stored > 0.0) {
+        for pair in pairs.iter().filter(|p| p.stored > 0.0 || p.damping != 0.0) {
             let [i, j] = pair.nodes.map(|n| n as usize);
             solid.force[i] -= pair.force;
             solid.force[j] += pair.force;
@@ -302,13 +297,13 @@ impl Debris {
             torque[particle_of[j] as usize] += arm_j.cross(&pair.force);
             work.stored += pair.stored;
             work.friction += pair.friction;
-            work.damping += pair.damping_power * dt;
+            work.damping += pair.damping;
         }
         work
     }
 
-    /// Turns the free particles; returns their rotational energy at tⁿ, ½ Σ I ωⁿ⁻½ · ωⁿ⁺½ [J].
-    pub(crate) fn turn(&mut self, solid: &Solid, dt_kick: f64) -> f64 {
+    /// Turns the free particles; returns their rotational energy at tⁿ, measured as that of the nodes [J].
+    pub(crate) fn turn(&mut self, solid: &Solid, dt_before: f64, dt_kick: f64) -> f64 {
         let mut energy = 0.0;
         for particle in 0..self.len() {
             if self.state.attached[particle] {
@@ -323,7 +318,7 @@ impl Debris {
             let before = self.state.spin[particle];
             let after = before + torque * (dt_kick / inertia);
             self.state.spin[particle] = after;
-            energy += 0.5 * inertia * before.dot(&after);
+            energy += 0.5 * before.dot(&(before * inertia + torque * dt_before));
         }
         energy
     }

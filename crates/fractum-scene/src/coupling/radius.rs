@@ -50,9 +50,8 @@ mod tests {
         let nodes: Vec<Vec3> = [0.0, 1.0, 1.4, 3.0].iter().map(|&x| Vec3::x() * x).collect();
         let edges = [[0, 1], [1, 2], [2, 3]];
         let radius = grow(&nodes, &edges);
-        let room = |[i, j]: [u32; 2]| {
-            (nodes[i as usize] - nodes[j as usize]).norm() - radius[i as usize] - radius[j as usize]
-        };
+        let room =
+            |[i, j]: [u32; 2]| (nodes[i as usize] - nodes[j as usize]).norm() - radius[i as usize] - radius[j as usize];
         assert!(edges.iter().all(|&e| room(e) >= 0.0));
         for node in 0..4u32 {
             let tightest = edges.iter().filter(|e| e.contains(&node)).map(|&e| room(e)).fold(f64::INFINITY, f64::min);

@@ -57,7 +57,8 @@ pub(crate) fn execute(command: MeshCommand) -> Result<ExitCode, Failure> {
 }
 
 fn read(file: &Path) -> Result<Mesh, Failure> {
-    let bytes = fs::read(file).map_err(|error| Failure::input(format!("{}: cannot read the mesh: {error}", file.display())))?;
+    let bytes =
+        fs::read(file).map_err(|error| Failure::input(format!("{}: cannot read the mesh: {error}", file.display())))?;
     read_msh(&bytes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
 }
 
@@ -76,7 +77,13 @@ fn info(file: &Path, mesh: &Mesh) {
     let (low, high) = mesh.bounding_box();
     println!("  x {:e} .. {:e}, y {:e} .. {:e}, z {:e} .. {:e}", low.x, high.x, low.y, high.y, low.z, high.z);
     for group in &mesh.groups {
-        println!("  group \"{}\" (dimension {}, tag {}): {} elements", group.name, group.dimension, group.tag, group.element_count());
+        println!(
+            "  group \"{}\" (dimension {}, tag {}): {} elements",
+            group.name,
+            group.dimension,
+            group.tag,
+            group.element_count()
+        );
     }
     for notice in &mesh.notices {
         println!("  {notice}");

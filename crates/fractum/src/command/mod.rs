@@ -152,16 +152,15 @@ fn report(failure: &Failure, json: bool) {
 }
 
 fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
-    let options = Options {
-        output: run.output,
-        threads: run.threads,
-        overrides: run.set,
-        resume: run.resume,
-        quiet: run.quiet,
-    };
+    let options =
+        Options { output: run.output, threads: run.threads, overrides: run.set, resume: run.resume, quiet: run.quiet };
     let Outcome { summary, folder } = fractum::run::run(&run.case, &options)?;
     if summary.status == Status::Interrupted {
-        eprintln!("interrupted; state saved, go on with: fractum run {} -o {} --resume", run.case.display(), folder.display());
+        eprintln!(
+            "interrupted; state saved, go on with: fractum run {} -o {} --resume",
+            run.case.display(),
+            folder.display()
+        );
         return Ok(ExitCode::Interrupted);
     }
     if !run.quiet {
