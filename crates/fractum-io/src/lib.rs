@@ -12,8 +12,11 @@ pub mod error;
 pub mod fragments;
 pub mod history;
 pub mod log;
+mod markup;
 pub mod number;
 pub mod picture;
+pub mod plot;
+pub mod report;
 pub mod summary;
 pub mod vtk;
 

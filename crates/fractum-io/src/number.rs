@@ -86,6 +86,22 @@ pub fn readable_unit(unit: &str) -> String {
     unit.replace("^2", "²").replace("^3", "³").replace("^4", "⁴").replace("^-1", "⁻¹").replace('*', "·")
 }
 
+/// `12345` as `12 345`, with a narrow space that does not break.
+pub fn grouped(number: &str) -> String {
+    let digits = number.trim_start_matches('-');
+    if digits.len() < 5 || digits.contains('.') {
+        return number.to_string();
+    }
+    let mut text = String::from(&number[..number.len() - digits.len()]);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 fn without_trailing_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
@@ -124,6 +140,14 @@ mod tests {
         assert_eq!(
             ["0.1", "3", "1e-7", "-0", "2.5e20", "NaN", "inf"].map(|t| shortest(t.parse().unwrap())),
             ["0.1", "3", "1e-7", "-0", "2.5e20", "NaN", "inf"]
+        );
+    }
+
+    #[test]
+    fn large_counts_are_grouped_by_thousands() {
+        assert_eq!(
+            ["9999", "12345", "-1234567", "12345.5"].map(grouped),
+            ["9999", "12\u{202f}345", "-1\u{202f}234\u{202f}567", "12345.5"]
         );
     }
 
