@@ -159,8 +159,7 @@ mod tests {
     fn ticks_are_round_numbers_in_the_prefixed_unit() {
         assert_eq!(labels(&Axis::new("load", "N"), &[0.0, 25_000.0]), ["0", "5", "10", "15", "20", "25"]);
         assert_eq!(labels(&Axis::new("time", "s"), &[0.0, 1e-3]), ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
-        assert_eq!(labels(&Axis::new("edges", "-"), &[0.0, 20_000.0])[2], "8\u{202f}000".replace('\u{202f}', ""));
-        assert_eq!(labels(&Axis::new("edges", "-"), &[0.0, 50_000.0])[1], "10\u{202f}000");
+        assert_eq!(labels(&Axis::new("edges", "-"), &[0.0, 19_000.0])[1..3], ["5000", "10\u{202f}000"]);
         assert_eq!(labels(&Axis::new("u", "m"), &[-0.003, 0.003]), ["-2", "0", "2"]);
     }
 
