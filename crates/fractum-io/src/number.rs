@@ -52,7 +52,7 @@ pub fn prefixed(largest: f64, unit: &str) -> Prefixed {
 pub fn quantity(value: f64, unit: &str) -> String {
     let prefixed = prefixed(value.abs(), unit);
     let number = significant(value / prefixed.factor, 4);
-    if prefixed.unit.is_empty() { number } else { format!("{number} {}", prefixed.unit) }
+    if prefixed.unit.is_empty() || value.is_nan() { number } else { format!("{number} {}", prefixed.unit) }
 }
 
 /// `value` with `digits` significant digits at most, no trailing zeros, and an exponent where it is shorter.
@@ -169,7 +169,7 @@ mod tests {
             (0.05, "-", "0.05"),
             (12_345.6, "-", "12346"),
             (0.0, "Pa", "0 Pa"),
-            (f64::NAN, "Pa", "n/a Pa"),
+            (f64::NAN, "Pa", "n/a"),
             (5.0, "kN", "5 kN"),
         ];
         for (value, unit, text) in cases {
