@@ -52,7 +52,7 @@ pub fn prefixed(largest: f64, unit: &str) -> Prefixed {
 pub fn quantity(value: f64, unit: &str) -> String {
     let prefixed = prefixed(value.abs(), unit);
     let number = significant(value / prefixed.factor, 4);
-    if prefixed.unit.is_empty() { number } else { format!("{number} {}", prefixed.unit) }
+    if prefixed.unit.is_empty() || value.is_nan() { number } else { format!("{number} {}", prefixed.unit) }
 }
 
 /// `value` with `digits` significant digits at most, no trailing zeros, and an exponent where it is shorter.
@@ -84,6 +84,22 @@ pub fn readable_unit(unit: &str) -> String {
         return String::new();
     }
     unit.replace("^2", "²").replace("^3", "³").replace("^4", "⁴").replace("^-1", "⁻¹").replace('*', "·")
+}
+
+/// `12345` as `12 345`, with a narrow space that does not break.
+pub fn grouped(number: &str) -> String {
+    let digits = number.trim_start_matches('-');
+    if digits.len() < 5 || digits.contains('.') {
+        return number.to_string();
+    }
+    let mut text = String::from(&number[..number.len() - digits.len()]);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 fn without_trailing_zeros(text: &str) -> &str {
@@ -128,6 +144,14 @@ mod tests {
     }
 
     #[test]
+    fn large_counts_are_grouped_by_thousands() {
+        assert_eq!(
+            ["9999", "12345", "-1234567", "12345.5"].map(grouped),
+            ["9999", "12\u{202f}345", "-1\u{202f}234\u{202f}567", "12345.5"]
+        );
+    }
+
+    #[test]
     fn quantities_take_the_prefix_of_their_size() {
         let cases = [
             (10_241.3, "Pa", "10.24 kPa"),
@@ -145,7 +169,7 @@ mod tests {
             (0.05, "-", "0.05"),
             (12_345.6, "-", "12346"),
             (0.0, "Pa", "0 Pa"),
-            (f64::NAN, "Pa", "n/a Pa"),
+            (f64::NAN, "Pa", "n/a"),
             (5.0, "kN", "5 kN"),
         ];
         for (value, unit, text) in cases {

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::document::escape;
 use crate::atomic;
 use crate::error::WriteError;
+use crate::markup::escape;
 use crate::number::push_shortest;
 
 /// One file of a time series.

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::Field;
 use crate::compress::{Compression, compressor, deflate};
+use crate::markup::escape;
 
 /// Bytes compressed at a time. Small enough to share an array among threads, large enough to compress well.
 pub(super) const BLOCK: usize = 1 << 16;
@@ -151,21 +152,4 @@ fn compressed(bytes: &[u8]) -> Vec<u8> {
     header.for_each(|number| stored.extend_from_slice(&(number as u64).to_ne_bytes()));
     blocks.iter().for_each(|block| stored.extend_from_slice(block));
     stored
-}
-
-/// Text as an XML attribute.
-pub(super) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            // XML has no other control characters, not even escaped.
-            control if control.is_control() => escaped.push(' '),
-            other => escaped.push(other),
-        }
-    }
-    escaped
 }

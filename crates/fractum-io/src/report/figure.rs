@@ -1,0 +1,92 @@
+//! Pictures inside the page, with the bar that tells what the colours mean.
+
+use crate::markup::escape;
+use crate::number::{prefixed, significant};
+use crate::picture::ColourMap;
+
+/// What the colours of a picture mean.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColourBar {
+    /// Name of the field.
+    pub label: String,
+    /// Its SI unit, `-` for a pure number.
+    pub unit: String,
+    /// The colour map.
+    pub map: ColourMap,
+    /// Values at its ends.
+    pub range: (f64, f64),
+}
+
+impl ColourBar {
+    /// The bar with five labelled values as an SVG element.
+    pub fn to_svg(&self) -> String {
+        let (low, high) = self.range;
+        let prefix = prefixed(low.abs().max(high.abs()), &self.unit);
+        let label =
+            if prefix.unit.is_empty() { self.label.clone() } else { format!("{} [{}]", self.label, prefix.unit) };
+        let label = escape(&label);
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 420 46\" role=\"img\" aria-label=\"{label}\" \
+             font-family=\"system-ui, sans-serif\" font-size=\"12\" fill=\"#333\"><g shape-rendering=\"crispEdges\">"
+        );
+        // A gradient needs a name that is unique in the page; bands of one colour each need none.
+        let bands = 128;
+        for band in 0..bands {
+            let [r, g, b] = self.map.colour((band as f64 + 0.5) / f64::from(bands));
+            let x = 20.0 + 380.0 * f64::from(band) / f64::from(bands);
+            svg += &format!("<rect x=\"{x:.2}\" y=\"0\" width=\"3.2\" height=\"12\" fill=\"#{r:02x}{g:02x}{b:02x}\"/>");
+        }
+        svg.push_str("</g>");
+        for tick in 0..=4 {
+            let share = f64::from(tick) / 4.0;
+            let x = 20.0 + 380.0 * share;
+            let value = significant((low + share * (high - low)) / prefix.factor, 3);
+            svg += &format!("<text x=\"{x:.1}\" y=\"27\" text-anchor=\"middle\">{value}</text>");
+        }
+        svg + &format!("<text x=\"210\" y=\"43\" text-anchor=\"middle\">{label}</text></svg>\n")
+    }
+}
+
+/// `bytes` of a PNG as the address of an image inside the page.
+pub(super) fn data_address(png: &[u8]) -> String {
+    format!("data:image/png;base64,{}", base64(png))
+}
+
+/// RFC 4648, section 4.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let byte = |index: usize| u32::from(group.get(index).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for letter in 0..4 {
+            let known = letter <= group.len();
+            text.push(if known { LETTERS[(bits >> (18 - 6 * letter) & 63) as usize].into() } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The test vectors of RFC 4648, section 10.
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        let cases =
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("fooba", "Zm9vYmE=")];
+        for (plain, encoded) in cases {
+            assert_eq!(base64(plain.as_bytes()), encoded);
+        }
+        assert_eq!(base64(&[0xff, 0xef, 0xbe]), "/+++");
+    }
+
+    #[test]
+    fn a_colour_bar_tells_its_ends_in_the_prefixed_unit() {
+        let bar =
+            ColourBar { label: "stress xx".into(), unit: "Pa".into(), map: ColourMap::Viridis, range: (-2e3, 1e4) };
+        let svg = bar.to_svg();
+        assert!(svg.contains(">-2</text>") && svg.contains(">10</text>") && svg.contains(">stress xx [kPa]</text>"));
+    }
+}
