@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Makes the meshes of this folder: `pip install gmsh==4.15.2`, then `python3 make.py`.
+
+    make.py [NAME...]     make the meshes whose names begin with one of NAME (all of those in git by default)
+    make.py --large       make the large ones for timing, in large/ (not in git)
+    make.py --table       print what the files hold, as the table of README.md
+
+One thread and fixed seeds: the same gmsh makes the same files. Another version of gmsh makes other, equally good ones;
+then the expected counts in README.md no longer hold.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import gmsh
+
+import boxes
+import quality
+
+HERE = Path(__file__).resolve().parent
+GMSH = "4.15.2"
+
+# name: (geometry, its parameters, binary). Small meshes are text, to be read by eye; the finest is text too, because
+# binary MSH writes every tag with 8 bytes and grows above 2.5 MiB.
+UNSTRUCTURED = {
+    "brazilian/coarse": ("brazilian/brazilian.geo", {"bulk": 0.0153, "across": 3}, True),
+    "brazilian/medium": ("brazilian/brazilian.geo", {"bulk": 0.0098, "across": 4}, True),
+    "brazilian/fine": ("brazilian/brazilian.geo", {"bulk": 0.00775, "across": 5}, False),
+    "tension-bar/gmsh-coarse": ("tension-bar/bar.geo", {"h": 0.0044}, False),
+    "tension-bar/gmsh-fine": ("tension-bar/bar.geo", {"h": 0.0025}, True),
+    "patch/cube": ("patch/cube.geo", {}, False),
+    "falling-block/block": ("falling-block/block.geo", {}, False),
+}
+
+LARGE = {
+    "large/56k": ("cube.geo", {"h": 0.0436}, True),
+    "large/500k": ("cube.geo", {"h": 0.0211}, True),
+    "large/2M": ("cube.geo", {"h": 0.0131}, True),
+}
+
+ENDS = {"left": ["x_min"], "right": ["x_max"]}
+BAR = {"corner": (-0.05, -0.01, -0.01), "size": (0.1, 0.02, 0.02), "body": "bar", "groups": ENDS}
+BEAM = {
+    "corner": (0.0, -0.05, -0.05),
+    "size": (1.0, 0.1, 0.1),
+    "body": "beam",
+    "groups": {"clamp": ["x_min"], "tip": ["x_max"]},
+}
+WAVE_BAR = {
+    "corner": (0.0, -0.001, -0.001),
+    "size": (0.4, 0.002, 0.002),
+    "cells": (400, 2, 2),
+    "binary": False,
+    "body": "bar",
+    "groups": {
+        **ENDS,
+        "y_faces": ["y_min", "y_max"],
+        "z_faces": ["z_min", "z_max"],
+        "lateral": ["y_min", "y_max", "z_min", "z_max"],
+    },
+}
+
+# name: arguments of boxes.box; text is also the shorter form of round coordinates
+STRUCTURED = {
+    "tension-bar/aligned-coarse": {**BAR, "cells": (25, 5, 5), "binary": False},
+    "tension-bar/aligned-fine": {**BAR, "cells": (45, 9, 9), "binary": False},
+    "tension-bar/jittered-coarse": {**BAR, "cells": (25, 5, 5), "jitter": 0.2, "binary": False},
+    "tension-bar/jittered-fine": {**BAR, "cells": (45, 9, 9), "jitter": 0.2},
+    "wave-bar/bar": WAVE_BAR,
+    "cantilever/depth-2": {**BEAM, "cells": (20, 2, 2), "binary": False},
+    "cantilever/depth-4": {**BEAM, "cells": (40, 4, 4), "binary": False},
+    "cantilever/depth-8": {**BEAM, "cells": (80, 8, 8), "binary": False},
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("name", nargs="*")
+    parser.add_argument("--large", action="store_true")
+    parser.add_argument("--table", action="store_true")
+    arguments = parser.parse_args()
+
+    known = [*LARGE] if arguments.large else [*UNSTRUCTURED, *STRUCTURED]
+    chosen = [name for name in known if not arguments.name or name.startswith(tuple(arguments.name))]
+    if not chosen:
+        sys.exit(f"no mesh begins with {' or '.join(arguments.name)}; there are {', '.join(known)}")
+    if arguments.table:
+        print(quality.HEADER)
+    for name in sorted(chosen):
+        path = HERE / f"{name}.msh"
+        if arguments.table:
+            with_gmsh({}, lambda: print(quality.row(name, path)))
+        else:
+            make(name, path)
+
+
+def make(name, path):
+    if gmsh.__version__ != GMSH:
+        print(f"gmsh is {gmsh.__version__}; the meshes in git were made by {GMSH}", file=sys.stderr)
+    path.parent.mkdir(exist_ok=True)
+    if name in STRUCTURED:
+        with_gmsh({}, lambda: boxes.box(path, **STRUCTURED[name]))
+    else:
+        geometry, parameters, binary = (UNSTRUCTURED | LARGE)[name]
+        with_gmsh(parameters, lambda: unstructured(path, geometry, binary))
+    print(f"{name}.msh: {path.stat().st_size / 1024:,.0f} KiB")
+
+
+def unstructured(path, geometry, binary):
+    gmsh.open(str(HERE / geometry))
+    gmsh.model.mesh.generate(3)
+    gmsh.option.setNumber("Mesh.Binary", int(binary))
+    gmsh.write(str(path))
+
+
+def with_gmsh(parameters, work):
+    """Runs `work` in a fresh gmsh, so that no option of one mesh reaches the next."""
+    settings = [text for name, value in parameters.items() for text in ("-setnumber", name, str(value))]
+    gmsh.initialize(["gmsh", *settings], readConfigFiles=False)
+    gmsh.option.setNumber("General.Verbosity", 2)
+    gmsh.option.setNumber("General.NumThreads", 1)
+    try:
+        work()
+    finally:
+        gmsh.finalize()
+
+
+if __name__ == "__main__":
+    main()
