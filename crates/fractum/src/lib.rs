@@ -2,12 +2,15 @@
 //!
 //! - [`run`]: one case from file to results folder
 //! - [`plan`]: what a run will do, before it does it
+//! - [`report`]: the page of a results folder
 //! - [`verify`]: the gallery against its references
 
 mod error;
+mod gallery;
 mod input;
 pub mod plan;
 mod record;
+pub mod report;
 pub mod run;
 pub mod verify;
 

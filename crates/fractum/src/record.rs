@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::Failure;
 
 /// Columns of the history before the probes: name and unit.
-const LEDGER_COLUMNS: [(&str, &str); 13] = [
+pub(crate) const LEDGER_COLUMNS: [(&str, &str); 13] = [
     ("time", "s"),
     ("dt", "s"),
     ("external", "J"),

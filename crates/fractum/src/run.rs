@@ -18,6 +18,7 @@ use crate::error::Failure;
 use crate::input::{Input, load};
 use crate::plan::Plan;
 use crate::record::{RecordState, Recorder, index_of_max};
+use crate::report::{self, Notes};
 
 /// How a case is run.
 #[derive(Clone, Debug, Default)]
@@ -78,6 +79,7 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     let plan = Plan::new(&case, &mesh, &assembly);
     let folder = options.output.clone().unwrap_or_else(|| default_folder(path));
     fractum_io::atomic::create_folder(&folder)?;
+    fractum_io::atomic::create_folder(&folder.join("pictures"))?;
     let identity = Identity { program: program(), case_hash: case.hash(), mesh_hash };
     let mut scene = assembly.scene;
 
@@ -117,6 +119,7 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
         started,
         saved: Instant::now(),
         warned: false,
+        warnings: assembly.warnings.iter().map(ToString::to_string).collect(),
         phases: [Duration::ZERO; PHASES.len()],
     };
     let end = run.advance(&mut scene);
@@ -143,6 +146,7 @@ struct Run<'a> {
     started: Instant,
     saved: Instant,
     warned: bool,
+    warnings: Vec<String>,
     phases: [Duration; PHASES.len()],
 }
 
@@ -224,6 +228,7 @@ impl Run<'_> {
         );
         self.progress.message(&text);
         self.log.line(&text)?;
+        self.warnings.push(text);
         Ok(())
     }
 
@@ -289,7 +294,15 @@ impl Run<'_> {
         summary.expect = self.case.expect.iter().map(|e| expectation(e, &summary)).collect();
         summary.write(&self.folder.join("summary.json"))?;
         self.log.line(format!("{}: {} steps, {:.2} s", status_text(status), clock.step, summary.wall.total))?;
+        let notes = Notes {
+            case_file: self.case.source.path.display().to_string(),
+            plan: plan.to_string(),
+            warnings: self.warnings,
+            pictures: crate::gallery::draw(&scene, self.folder),
+        };
         self.recorder.finish()?;
+        report::keep(self.folder, &notes)?;
+        report::write(self.folder)?;
         match end {
             End::Failed(error) => {
                 self.log.line(&error)?;

@@ -71,6 +71,11 @@ enum Command {
         #[command(subcommand)]
         command: mesh::MeshCommand,
     },
+    /// Write the report of a results folder again.
+    Report {
+        /// Results folder of a run.
+        folder: PathBuf,
+    },
     /// Print the JSON schema of the case file.
     Schema,
     /// Explain a key of the case file, such as bodies.formulation.
@@ -121,6 +126,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
             })
         }
         Command::Mesh { command } => mesh::execute(command),
+        Command::Report { folder } => fractum::report::write(&folder).map(|()| ExitCode::Done),
         Command::Schema => {
             println!("{}", serde_json::to_string_pretty(&fractum_io::case::schema()).unwrap_or_default());
             Ok(ExitCode::Done)

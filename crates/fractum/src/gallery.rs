@@ -1,0 +1,124 @@
+//! Pictures of a scene: its surface with the particles, coloured by damage and by stress.
+
+use std::path::Path;
+
+use fractum_fem::Shape;
+use fractum_io::number::quantity;
+use fractum_io::picture::{ColourMap, Paint, Picture, Spheres, Surface, View, range};
+use fractum_math::Vec3;
+use fractum_mesh::topology::boundary_of_tetrahedra;
+use fractum_scene::Scene;
+
+use crate::report::PictureNote;
+
+/// The largest displacement in a picture, as a fraction of the size of the body.
+const SHOWN_DISPLACEMENT: f64 = 0.04;
+
+/// What is seen from outside: facets with the damage and stress of their elements.
+struct Skin {
+    points: Vec<[f64; 3]>,
+    facets: Vec<[u32; 3]>,
+    damage: Vec<f64>,
+    stress: Vec<f64>,
+}
+
+/// Draws the scene into the folder `pictures` of the results; a picture that cannot be drawn is left out.
+pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
+    let solid = &scene.solid;
+    let size = extent(&solid.reference).norm();
+    let attached = scene.attached_nodes();
+    let largest =
+        (0..attached.len()).filter(|&n| attached[n]).map(|n| solid.displacement[n].norm()).fold(0.0, f64::max);
+    // Small displacements are magnified, large ones shown as they are.
+    let scale = if largest > 0.0 { (SHOWN_DISPLACEMENT * size / largest).max(1.0) } else { 1.0 };
+    let shown = |n: usize| -> [f64; 3] { (solid.reference[n] + solid.displacement[n] * scale).into() };
+    let skin = skin(scene, &shown);
+    let debris = scene.debris.state();
+    let centres: Vec<[f64; 3]> = debris.nodes.iter().map(|&n| shown(n as usize)).collect();
+    let radii: Vec<f64> = debris.nodes.iter().map(|&n| scene.debris.radius(n)).collect();
+    let view = view(&solid.reference);
+    let time = quantity(scene.clock.time, "s");
+    let magnified = if scale > 1.0 { format!(", displacements x {scale:.0}") } else { String::new() };
+    let mut notes = Vec::new();
+    let mut add = |file: &str, title: &str, label: &str, unit: &str, values: &[f64], damage: bool| {
+        let range = if damage { (0.0, 1.0) } else { range(values) };
+        let surface =
+            Surface { points: &skin.points, triangles: &skin.facets, paint: Paint::Facets(values), mesh_lines: true };
+        let spheres = Spheres { centres: &centres, radii: &radii, paint: Paint::Plain([200, 120, 40]) };
+        let picture = Picture {
+            surfaces: &[surface],
+            spheres: &[spheres],
+            map: if damage { ColourMap::Damage } else { ColourMap::Viridis },
+            range,
+            clip: None,
+        };
+        let drawn = picture.render(&view).and_then(|image| image.write(&folder.join("pictures").join(file)));
+        if drawn.is_ok() {
+            notes.push(PictureNote {
+                file: file.to_owned(),
+                title: format!("{title} at {time}{magnified}"),
+                label: label.to_owned(),
+                unit: unit.to_owned(),
+                damage,
+                range,
+            });
+        }
+    };
+    if skin.damage.iter().any(|&d| d > 0.0) {
+        add("damage.png", "Damage and discrete elements", "damage", "1", &skin.damage, true);
+    }
+    add("stress.png", "First principal stress", "first principal stress", "Pa", &skin.stress, false);
+    notes
+}
+
+fn skin(scene: &Scene, shown: &dyn Fn(usize) -> [f64; 3]) -> Skin {
+    let solid = &scene.solid;
+    let points = (0..solid.reference.len()).map(shown).collect();
+    let mut skin = Skin { points, facets: Vec::new(), damage: Vec::new(), stress: Vec::new() };
+    for body in 0..solid.body_count() {
+        let model = solid.body(body);
+        let fields = solid.element_fields(body);
+        let alive: Vec<usize> = (0..model.elements.len()).filter(|&e| solid.alive(body)[e]).collect();
+        let mut push = |nodes: [u32; 3], element: usize| {
+            let (stress, damage) = fields[element];
+            skin.facets.push(nodes);
+            skin.damage.push(damage);
+            skin.stress.push(stress.principal_values()[0]);
+        };
+        match model.shape {
+            Shape::T4 => {
+                let elements: Vec<[u32; 4]> = alive.iter().map(|&e| model.elements[e]).collect();
+                for facet in boundary_of_tetrahedra(&elements) {
+                    push(facet.nodes, alive[facet.element as usize]);
+                }
+            }
+            Shape::T3 => {
+                for &element in &alive {
+                    let [a, b, c, _] = model.elements[element];
+                    push([a, b, c], element);
+                }
+            }
+        }
+    }
+    skin
+}
+
+fn extent(points: &[Vec3]) -> Vec3 {
+    let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    for p in points {
+        low = low.inf(p);
+        high = high.sup(p);
+    }
+    high - low
+}
+
+/// Flat bodies are seen from their broad side, others from the front, right and above with z up.
+fn view(points: &[Vec3]) -> View {
+    let size = extent(points);
+    let camera = if size.z < 0.75 * size.x.min(size.y) {
+        View { direction: [-0.35, -0.25, -1.0], up: [0.0, 1.0, 0.0], ..View::default() }
+    } else {
+        View::default()
+    };
+    View { width: 900, height: 760, ..camera }
+}
