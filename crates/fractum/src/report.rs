@@ -136,7 +136,7 @@ fn curves(history: &Table) -> Vec<Curve> {
 fn fragments_of(table: &Table) -> Vec<Fragment> {
     let rows = table.values.first().map_or(0, Vec::len);
     let value = |name: &str, row: usize| table.column(name).map_or(0.0, |(values, _)| values[row]);
-    let vector = |name: &str, row: usize| ["x", "y", "z"].map(|axis| value(&format!("{name}_{axis}"), row));
+    let vector = |prefix: &str, row: usize| ["x", "y", "z"].map(|axis| value(&format!("{prefix}{axis}"), row));
     (0..rows)
         .map(|row| Fragment {
             id: value("id", row) as u64,
@@ -144,8 +144,8 @@ fn fragments_of(table: &Table) -> Vec<Fragment> {
             volume: value("volume", row),
             nodes: value("nodes", row) as u64,
             elements: value("elements", row) as u64,
-            centroid: vector("centroid", row),
-            velocity: vector("velocity", row),
+            centroid: vector("", row),
+            velocity: vector("velocity_", row),
             largest_extent: value("largest_extent", row),
         })
         .collect()
