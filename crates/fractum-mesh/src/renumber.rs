@@ -4,6 +4,7 @@ use fractum_math::Vec3;
 use rayon::prelude::*;
 
 use crate::mesh::bounding_box;
+use crate::{Group, Mesh};
 
 /// Bits per axis of the grid on which points are ordered.
 const BITS: u32 = 20;
@@ -43,6 +44,113 @@ pub fn invert(order: &[u32]) -> Vec<u32> {
     inverse
 }
 
+/// The orders of a renumbered mesh: new index k holds old index `order[k]`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Renumbering {
+    /// Order of the nodes.
+    pub nodes: Vec<u32>,
+    /// Order of the point elements.
+    pub points: Vec<u32>,
+    /// Order of the lines.
+    pub lines: Vec<u32>,
+    /// Order of the triangles.
+    pub triangles: Vec<u32>,
+    /// Order of the quadrilaterals.
+    pub quads: Vec<u32>,
+    /// Order of the tetrahedra.
+    pub tetrahedra: Vec<u32>,
+}
+
+/// Renumbers the nodes along a Hilbert curve and the elements along the same curve through their centroids. Elements
+/// keep the order of their own nodes; groups and tags follow.
+pub fn renumber_along_hilbert_curve(mesh: &Mesh) -> (Mesh, Renumbering) {
+    let renumbering = Renumbering {
+        nodes: hilbert_order(&mesh.nodes),
+        points: order_of_centroids(&mesh.nodes, &mesh.points),
+        lines: order_of_centroids(&mesh.nodes, &mesh.lines),
+        triangles: order_of_centroids(&mesh.nodes, &mesh.triangles),
+        quads: order_of_centroids(&mesh.nodes, &mesh.quads),
+        tetrahedra: order_of_centroids(&mesh.nodes, &mesh.tetrahedra),
+    };
+    (renumbering.apply(mesh), renumbering)
+}
+
+impl Renumbering {
+    /// The mesh in the new order.
+    ///
+    /// # Panics
+    /// If the orders are not those of a mesh of this size.
+    pub fn apply(&self, mesh: &Mesh) -> Mesh {
+        let new_node = invert(&self.nodes);
+        let group = |group: &Group| Group {
+            points: members(&group.points, &self.points),
+            lines: members(&group.lines, &self.lines),
+            triangles: members(&group.triangles, &self.triangles),
+            quads: members(&group.quads, &self.quads),
+            tetrahedra: members(&group.tetrahedra, &self.tetrahedra),
+            ..group.clone()
+        };
+        Mesh {
+            nodes: permute(&mesh.nodes, &self.nodes),
+            node_tags: permute(&mesh.node_tags, &self.nodes),
+            points: elements(&mesh.points, &self.points, &new_node),
+            point_tags: permute(&mesh.point_tags, &self.points),
+            lines: elements(&mesh.lines, &self.lines, &new_node),
+            line_tags: permute(&mesh.line_tags, &self.lines),
+            triangles: elements(&mesh.triangles, &self.triangles, &new_node),
+            triangle_tags: permute(&mesh.triangle_tags, &self.triangles),
+            quads: elements(&mesh.quads, &self.quads, &new_node),
+            quad_tags: permute(&mesh.quad_tags, &self.quads),
+            tetrahedra: elements(&mesh.tetrahedra, &self.tetrahedra, &new_node),
+            tetrahedron_tags: permute(&mesh.tetrahedron_tags, &self.tetrahedra),
+            groups: mesh.groups.iter().map(group).collect(),
+            notices: mesh.notices.clone(),
+        }
+    }
+
+    /// The renumbering that leads back.
+    pub fn inverse(&self) -> Renumbering {
+        Renumbering {
+            nodes: invert(&self.nodes),
+            points: invert(&self.points),
+            lines: invert(&self.lines),
+            triangles: invert(&self.triangles),
+            quads: invert(&self.quads),
+            tetrahedra: invert(&self.tetrahedra),
+        }
+    }
+}
+
+/// Values in the new order: `permute(values, order)[k] == values[order[k]]`. With [`invert`] of the order, the way
+/// back.
+///
+/// # Panics
+/// If the lengths differ.
+pub fn permute<T: Copy + Send + Sync>(values: &[T], order: &[u32]) -> Vec<T> {
+    assert_eq!(values.len(), order.len(), "as many values as places");
+    order.par_iter().map(|&old| values[old as usize]).collect()
+}
+
+fn elements<const N: usize>(elements: &[[u32; N]], order: &[u32], new_node: &[u32]) -> Vec<[u32; N]> {
+    assert_eq!(elements.len(), order.len(), "as many elements as places");
+    order.par_iter().map(|&old| elements[old as usize].map(|node| new_node[node as usize])).collect()
+}
+
+/// New indices of the members of a group, ascending.
+fn members(members: &[u32], order: &[u32]) -> Vec<u32> {
+    if members.is_empty() {
+        return Vec::new();
+    }
+    let mut is_member = vec![false; order.len()];
+    members.iter().for_each(|&member| is_member[member as usize] = true);
+    (0..order.len() as u32).filter(|&new| is_member[order[new as usize] as usize]).collect()
+}
+
+fn order_of_centroids<const N: usize>(nodes: &[Vec3], elements: &[[u32; N]]) -> Vec<u32> {
+    let centroid = |element: &[u32; N]| element.iter().map(|&node| nodes[node as usize]).sum::<Vec3>() / N as f64;
+    hilbert_order(&elements.par_iter().map(centroid).collect::<Vec<_>>())
+}
+
 /// Position of a grid cell along the Hilbert curve of [`BITS`] levels, from the coordinates to their transpose and
 /// then bit by bit. Skilling, *Programming the Hilbert curve*, AIP Conf. Proc. 707 (2004) 381-387.
 fn hilbert_index(mut cell: [u32; 3]) -> u64 {
@@ -51,13 +159,11 @@ fn hilbert_index(mut cell: [u32; 3]) -> u64 {
     while level > 1 {
         let below = level - 1;
         for axis in 0..3 {
-            if cell[axis] & level != 0 {
-                cell[0] ^= below;
-            } else {
-                let swap = (cell[0] ^ cell[axis]) & below;
-                cell[0] ^= swap;
-                cell[axis] ^= swap;
-            }
+            // where the bit is set invert the lower bits of x, else exchange them with those of this axis
+            let set = if cell[axis] & level != 0 { below } else { 0 };
+            let swap = (cell[0] ^ cell[axis]) & below & !set;
+            cell[0] ^= swap | set;
+            cell[axis] ^= swap;
         }
         level >>= 1;
     }
@@ -67,9 +173,7 @@ fn hilbert_index(mut cell: [u32; 3]) -> u64 {
     let mut flip = 0;
     let mut level = 1 << (BITS - 1);
     while level > 1 {
-        if cell[2] & level != 0 {
-            flip ^= level - 1;
-        }
+        flip ^= if cell[2] & level != 0 { level - 1 } else { 0 };
         level >>= 1;
     }
     cell.iter_mut().for_each(|x| *x ^= flip);
@@ -89,6 +193,7 @@ fn spread(x: u32) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::generate::{Jitter, structured_box};
 
     #[test]
     fn consecutive_cells_of_a_full_grid_share_a_face() {
@@ -100,6 +205,48 @@ mod tests {
             let step = points[pair[0] as usize] - points[pair[1] as usize];
             assert_eq!(step.abs().sum(), 1.0);
         }
+    }
+
+    #[test]
+    fn renumbering_and_its_inverse_give_the_mesh_back() {
+        let jitter = Some(Jitter { fraction: 0.1, seed: 3 });
+        let mesh = structured_box([5, 4, 3], Vec3::new(1.0, 1.0, 0.4), jitter);
+        let (new, renumbering) = renumber_along_hilbert_curve(&mesh);
+        assert_ne!(new.nodes, mesh.nodes);
+        assert_eq!(renumbering.inverse().apply(&new), mesh);
+        let values: Vec<u64> = permute(&mesh.node_tags, &renumbering.nodes);
+        assert_eq!(values, new.node_tags);
+        for (group, old) in new.groups.iter().zip(&mesh.groups) {
+            assert!(group.triangles.is_sorted() && group.tetrahedra.is_sorted());
+            let tags = |mesh: &Mesh, group: &Group| -> Vec<u64> {
+                let mut tags: Vec<u64> =
+                    mesh.group_nodes(&group.name).iter().map(|&n| mesh.node_tags[n as usize]).collect();
+                tags.sort_unstable();
+                tags
+            };
+            assert_eq!(tags(&new, group), tags(&mesh, old));
+        }
+    }
+
+    #[test]
+    fn neighbours_come_close_in_the_order() {
+        let mesh = structured_box([16, 16, 16], Vec3::new(1.0, 1.0, 1.0), None);
+        let shuffled: Vec<u32> = (0..4913u64).map(|k| (k * 1999 % 4913) as u32).collect();
+        let scattered = Renumbering {
+            nodes: shuffled,
+            triangles: (0..mesh.triangles.len() as u32).collect(),
+            tetrahedra: (0..mesh.tetrahedra.len() as u32).collect(),
+            ..Renumbering::default()
+        };
+        let span = |mesh: &Mesh| -> f64 {
+            let spread = |e: &[u32; 4]| f64::from(e.iter().max().unwrap() - e.iter().min().unwrap());
+            let mut spans: Vec<f64> = mesh.tetrahedra.iter().map(spread).collect();
+            spans.sort_by(f64::total_cmp);
+            spans[spans.len() / 2]
+        };
+        let scattered = scattered.apply(&mesh);
+        let (ordered, _) = renumber_along_hilbert_curve(&scattered);
+        assert!(span(&ordered) < 200.0 && span(&scattered) > 2000.0);
     }
 
     #[test]

@@ -41,16 +41,16 @@ impl<'a> Cursor<'a> {
         self.bytes.len() - self.at
     }
 
-    /// The next line that is not blank, without its end, and where it starts.
+    /// The next line that is not blank, without the blanks around it, and where it starts.
     pub(super) fn line(&mut self) -> Option<(usize, &'a [u8])> {
         while self.at < self.bytes.len() {
             let start = self.at;
             let rest = &self.bytes[start..];
             let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
             self.at = (start + length + 1).min(self.bytes.len());
-            let line = rest[..length].trim_ascii();
+            let line = rest[..length].trim_ascii_start();
             if !line.is_empty() {
-                return Some((start, line));
+                return Some((start + length - line.len(), line.trim_ascii_end()));
             }
         }
         None
@@ -61,10 +61,7 @@ impl<'a> Cursor<'a> {
         match self.line() {
             None => Err(Fault::truncated(self.bytes.len(), what.to_string())),
             Some((at, line)) if line[0] == b'$' => Err(Fault::unexpected(at, quote(line), what.to_string())),
-            Some((at, line)) => {
-                let indent = line.as_ptr() as usize - self.bytes[at..].as_ptr() as usize;
-                Ok(Record { rest: line, at: at + indent, what })
-            }
+            Some((at, line)) => Ok(Record { rest: line, at, what }),
         }
     }
 

@@ -9,6 +9,7 @@ mod cursor;
 mod element_type;
 mod entities;
 mod error;
+mod groups;
 mod names;
 mod raw;
 mod read;

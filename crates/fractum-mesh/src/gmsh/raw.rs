@@ -45,7 +45,7 @@ pub(super) struct Run {
 /// How a run tells its physical groups.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Membership {
-    /// MSH 2.2: the physical tag itself, 0 for none.
+    /// MSH 2.2: the physical tag itself without sign, 0 for none.
     Physical(i32),
     /// MSH 4.1: the entity that lists them.
     Entity(i32),
@@ -74,6 +74,18 @@ impl Records {
 }
 
 impl Raw {
+    /// Physical tags of a run, without sign.
+    pub(super) fn physical_tags<'a>(&'a self, run: &'a Run) -> &'a [i32] {
+        match &run.membership {
+            Membership::Physical(0) => &[],
+            Membership::Physical(tag) => std::slice::from_ref(tag),
+            Membership::Entity(tag) => {
+                let entities = self.entities.as_ref();
+                entities.and_then(|map| map.get(&(run.kind.shape.dimension(), *tag))).map_or(&[], Vec::as_slice)
+            }
+        }
+    }
+
     /// Appends to the last run where it continues, or starts a new one.
     pub(super) fn extend_runs(&mut self, kind: ElementType, membership: Membership, records: Records) {
         if let Some(run) = self.runs.last_mut()

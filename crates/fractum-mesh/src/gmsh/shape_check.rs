@@ -4,7 +4,7 @@ use fractum_math::Vec3;
 
 use super::error::{Fault, Problem};
 use super::raw::Raw;
-use super::table::Table;
+use super::table::{Table, Tables};
 use crate::quality::{area_vector, signed_volume};
 
 /// An element below this share of (longest edge)^dimension has no volume, area or length.
@@ -39,15 +39,9 @@ pub(super) fn check_tetrahedra(
 
 /// Refuses triangles and quadrilaterals without area; in a plane mesh, where they are the bodies, turns those seen
 /// from below.
-pub(super) fn check_flat(
-    raw: &Raw,
-    triangles: &mut Table<3>,
-    quads: &mut Table<4>,
-    no_tetrahedra: bool,
-    bytes: &[u8],
-    notices: &mut Vec<String>,
-) -> Result<(), Fault> {
-    let plane = no_tetrahedra && is_plane(raw, triangles, quads);
+pub(super) fn check_flat(raw: &Raw, tables: &mut Tables, bytes: &[u8], notices: &mut Vec<String>) -> Result<(), Fault> {
+    let Tables { triangles, quads, tetrahedra, .. } = tables;
+    let plane = tetrahedra.elements.is_empty() && is_plane(raw, triangles, quads);
     let mut flipped = 0;
     for element in 0..triangles.elements.len() {
         let [a, b, c] = triangles.elements[element];

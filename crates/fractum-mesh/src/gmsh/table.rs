@@ -15,6 +15,32 @@ pub(super) struct Table<const N: usize> {
     new_index: Option<Vec<u32>>,
 }
 
+/// The elements of all shapes that a mesh holds.
+pub(super) struct Tables {
+    pub(super) points: Table<1>,
+    pub(super) lines: Table<2>,
+    pub(super) triangles: Table<3>,
+    pub(super) quads: Table<4>,
+    pub(super) tetrahedra: Table<4>,
+}
+
+impl Tables {
+    /// [`Table::merge_duplicates`] for each shape.
+    pub(super) fn merge_duplicates(&mut self, node_count: usize) -> usize {
+        self.points.merge_duplicates(node_count)
+            + self.lines.merge_duplicates(node_count)
+            + self.triangles.merge_duplicates(node_count)
+            + self.quads.merge_duplicates(node_count)
+            + self.tetrahedra.merge_duplicates(node_count)
+    }
+
+    /// [`Table::kept`] of each shape, in the order of [`Shape`].
+    pub(super) fn kept(&self) -> [&[u32]; 5] {
+        let Tables { points, lines, triangles, quads, tetrahedra } = self;
+        [&points.kept, &lines.kept, &triangles.kept, &quads.kept, &tetrahedra.kept]
+    }
+}
+
 impl<const N: usize> Table<N> {
     /// Collects the elements of a shape and turns their node tags into indices.
     pub(super) fn collect(raw: &Raw, index: &NodeIndex, shape: Shape, bytes: &[u8]) -> Result<Self, Fault> {

@@ -105,7 +105,7 @@ fn read_elements_ascii(cursor: &mut Cursor, count: u64, raw: &mut Raw) -> Result
         for index in 0..tag_count {
             let value = record.integer32("a tag")?;
             if index == 0 {
-                physical = value;
+                physical = value.saturating_abs(); // negative: the group sees the element reversed
             }
         }
         raw.extend_runs(kind, Membership::Physical(physical), Records { at, stride: 0 });
@@ -122,7 +122,7 @@ fn read_elements_ascii(cursor: &mut Cursor, count: u64, raw: &mut Raw) -> Result
 }
 
 fn read_elements_binary(cursor: &mut Cursor, layout: Layout, count: u64, raw: &mut Raw) -> Result<(), Fault> {
-    let what = What { noun: "element", index: 0, count: usize::try_from(count).unwrap_or(usize::MAX) };
+    let what = What { noun: "element", index: 0, count: count as usize };
     let room = cursor.capacity(count, 8);
     raw.element_tags.reserve(room);
     raw.corners.reserve(4 * cursor.capacity(count, 20));
@@ -164,7 +164,7 @@ fn push_elements(
     let mut current = None;
     for (index, record) in block.chunks_exact(stride).enumerate() {
         let at = start + index * stride;
-        let physical = if tag_count == 0 { 0 } else { layout.i32(&record[4..8]) };
+        let physical = if tag_count == 0 { 0 } else { layout.i32(&record[4..8]).saturating_abs() };
         if current == Some(physical) {
             raw.runs.last_mut().expect("a run is open").count += 1;
         } else {

@@ -4,6 +4,7 @@ use fractum_math::Vec3;
 
 use super::binary::Layout;
 use super::cursor::{Cursor, What};
+use super::element_type::ElementType;
 use super::error::Fault;
 use super::raw::{Membership, Raw, Records};
 use super::v2::element_type;
@@ -60,7 +61,7 @@ fn read_node_block_binary(
     parameters: usize,
     raw: &mut Raw,
 ) -> Result<(), Fault> {
-    let what = |noun| What { noun, index: 0, count: usize::try_from(count).unwrap_or(usize::MAX) };
+    let what = |noun| What { noun, index: 0, count: count as usize };
     raw.node_blocks.push((raw.nodes.len(), Records { at: cursor.at, stride: layout.word }));
     let tags = cursor.take_records(count, layout.word, what("node tag"))?;
     raw.node_tags.extend(tags.chunks_exact(layout.word).map(|tag| layout.word(tag)));
@@ -93,47 +94,48 @@ pub(super) fn read_elements(cursor: &mut Cursor, layout: Option<Layout>, raw: &m
             let found = format!("a block of {}s on an entity of dimension {dimension}", kind.shape.singular());
             return Err(Fault::unexpected(block_at, found, format!("dimension {}", kind.shape.dimension())));
         }
-        if block_count == 0 {
-            continue;
-        }
-        let (stride, at) = (layout.map_or(0, |layout| layout.word * (1 + kind.nodes)), cursor.at);
-        let size = if stride > 0 { stride } else { 2 * (1 + kind.nodes) };
-        if block_count > (cursor.remaining() / size) as u64 + 1 {
-            let expected = format!(
-                "{} as announced ({} bytes left)",
-                kind.shape.counted(block_count as usize),
-                cursor.remaining()
-            );
-            return Err(Fault::truncated(at, expected));
-        }
-        raw.push_run(kind, Membership::Entity(entity), block_count as usize, Records { at, stride });
-        let corners = kind.shape.corners();
-        let what = |index| What { noun: "element", index, count: block_count as usize };
+        let stride = layout.map_or(0, |layout| layout.word * (1 + kind.nodes));
+        let (first, records) = (raw.element_tags.len(), Records { at: cursor.at, stride });
+        raw.push_run(kind, Membership::Entity(entity), 0, records);
         match layout {
-            None => {
-                for index in 0..block_count as usize {
-                    let mut record = cursor.record(what(index))?;
-                    raw.element_tags.push(record.unsigned("the tag")?);
-                    for corner in 0..kind.nodes {
-                        let node = record.unsigned("a node")?;
-                        if corner < corners {
-                            raw.corners.push(node);
-                        }
-                    }
-                    record.end()?;
-                }
-            }
-            Some(layout) => {
-                let block = cursor.take_records(block_count, stride, what(0))?;
-                for record in block.chunks_exact(stride) {
-                    let mut words = record.chunks_exact(layout.word).map(|word| layout.word(word));
-                    raw.element_tags.extend(words.next());
-                    raw.corners.extend(words.take(corners));
-                }
-            }
+            None => read_element_block_ascii(cursor, block_count, kind, raw)?,
+            Some(layout) => read_element_block_binary(cursor, layout, block_count, kind, raw)?,
         }
+        raw.runs.last_mut().expect("pushed above").count = raw.element_tags.len() - first;
     }
     compare_totals(header_at, "elements", raw.element_tags.len(), count)
+}
+
+fn read_element_block_ascii(cursor: &mut Cursor, count: u64, kind: ElementType, raw: &mut Raw) -> Result<(), Fault> {
+    for index in 0..count {
+        let mut record = cursor.record(What { noun: "element", index: index as usize, count: count as usize })?;
+        raw.element_tags.push(record.unsigned("the tag")?);
+        for corner in 0..kind.nodes {
+            let node = record.unsigned("a node")?;
+            if corner < kind.shape.corners() {
+                raw.corners.push(node);
+            }
+        }
+        record.end()?;
+    }
+    Ok(())
+}
+
+fn read_element_block_binary(
+    cursor: &mut Cursor,
+    layout: Layout,
+    count: u64,
+    kind: ElementType,
+    raw: &mut Raw,
+) -> Result<(), Fault> {
+    let stride = layout.word * (1 + kind.nodes);
+    let block = cursor.take_records(count, stride, What { noun: "element", index: 0, count: count as usize })?;
+    for record in block.chunks_exact(stride) {
+        let mut words = record.chunks_exact(layout.word).map(|word| layout.word(word));
+        raw.element_tags.extend(words.next());
+        raw.corners.extend(words.take(kind.shape.corners()));
+    }
+    Ok(())
 }
 
 /// Number of blocks and of items; the extreme tags that follow are not needed.
