@@ -370,7 +370,7 @@ fn each_mistake_has_one_clear_message() {
         (
             "poisson_ratio = 0.3",
             "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, friction_angle = 0.5 }",
-            "8:73: materials.steel.damage.friction_angle has no effect with this criterion; remove it",
+            "8:56: materials.steel.damage.friction_angle has no effect with this criterion; remove it",
         ),
         (
             "poisson_ratio = 0.3",
@@ -471,7 +471,7 @@ fn overrides_set_parameters_and_keys() {
         ("solver.ende", "1", "--set: solver.ende is not a key; did you mean end?"),
         ("solver.end", "1 mm", "--set: solver.end = 1 mm, which is a length; expected a time such as \"0.2 ms\""),
         ("bodies[9].damage", "false", "--set: bodies[9].damage cannot be set; the case has 3 of these"),
-        ("parameters.new", "1", "--set: new is not a parameter of this case; did you mean nu?"),
+        ("parameters.new", "1", "parameters here: size, E0, E1, nu"),
         ("nu", "0.6", "= \"nu\"; expected between -1 and 0.5"),
     ] {
         let errors = parse(&text, &[(name, value)]).expect_err(name);

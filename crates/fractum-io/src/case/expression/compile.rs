@@ -523,7 +523,7 @@ mod tests {
         assert_eq!(message("x && t"), "\"&&\" needs conditions on both sides");
         assert_eq!(message("(x < 1) + 2"), "a condition and a number without a unit cannot be added or compared");
         assert_eq!(message("-(x < 1)"), "a sign needs a number, not a condition");
-        assert_eq!(dimension("sqrt(E*x)*sqrt(x)"), Type::number(Dimension::FORCE.over(Dimension::LENGTH).unwrap()));
+        assert_eq!(dimension("sqrt(E*x)*sqrt(E*x)"), Type::number(Dimension::FORCE.over(Dimension::LENGTH).unwrap()));
     }
 
     #[test]
