@@ -38,6 +38,8 @@ pub enum KeyKind {
     Integer,
     /// A quantity, or an expression of parameters.
     Quantity(Dimension),
+    /// An angle, in radians where it has no unit.
+    Angle,
     /// A quantity of any dimension.
     AnyQuantity,
     /// A unit of this dimension; of any where there is none.
@@ -70,6 +72,7 @@ impl KeyKind {
             Self::Flag => "true or false".to_string(),
             Self::Integer => "a whole number".to_string(),
             Self::Quantity(dimension) => dimension.expected(),
+            Self::Angle => "an angle such as \"35 deg\"".to_string(),
             Self::AnyQuantity => "a quantity such as \"21 GPa\"".to_string(),
             Self::Unit(Some(dimension)) => format!("a unit of {}, such as \"{dimension}\"", without_article(dimension)),
             Self::Unit(None) => "a unit such as \"Pa\"".to_string(),
@@ -95,6 +98,7 @@ impl KeyKind {
             Self::Integer => "integer".to_string(),
             Self::Quantity(Dimension::NONE) => "number".to_string(),
             Self::Quantity(dimension) => format!("{} [{dimension}]", without_article(dimension)),
+            Self::Angle => "angle [rad]".to_string(),
             Self::AnyQuantity => "quantity".to_string(),
             Self::Unit(_) => "unit".to_string(),
             Self::Choice(names) => names().join(", "),
@@ -223,7 +227,7 @@ use KeyKind as K;
 #[rustfmt::skip] // a table reads best with one row per line
 static KEYS: &[KeyDoc] = &[
     key("fractum", K::Integer, "required", "Version of the case format: 1"),
-    key("title", K::Text, "\"\"", "Title of reports"),
+    key("title", K::Text, "", "Title of reports"),
 
     key("parameters", K::NamedTables, "", "Named quantities for use in any quantity or expression; `--set NAME=value` overrides them"),
     key("parameters.NAME", K::AnyQuantity, "", "A quantity, or an expression of parameters above it"),
@@ -243,7 +247,7 @@ static KEYS: &[KeyDoc] = &[
     key("materials.NAME.damage.tensile_strength", K::Quantity(D::PRESSURE), "required", "Uniaxial tensile strength ft, > 0"),
     key("materials.NAME.damage.fracture_energy", K::Quantity(D::FRACTURE_ENERGY), "required", "Energy per area of a full crack Gf, > 0"),
     key("materials.NAME.damage.compressive_strength", K::Quantity(D::PRESSURE), "10 ft", "Uniaxial compressive strength, above the tensile one; for mohr-coulomb, drucker-prager, modified-mohr-coulomb"),
-    key("materials.NAME.damage.friction_angle", K::Quantity(D::NONE), "\"35 deg\"", "Angle of internal friction, from 0 to below 90 deg; for mohr-coulomb, modified-mohr-coulomb"),
+    key("materials.NAME.damage.friction_angle", K::Angle, "\"35 deg\"", "Angle of internal friction, from 0 to below 90 deg; for mohr-coulomb, modified-mohr-coulomb"),
     key("materials.NAME.damage.softening", K::Choice(softenings), "\"exponential\"", "Stress against crack opening, by name or as a table"),
     key("materials.NAME.damage.softening.kind", K::Choice(softenings), "required", "Stress against crack opening"),
     key("materials.NAME.damage.softening.kink_stress", K::Quantity(D::NONE), "1/3", "Bilinear only: stress at the kink over ft, within 0 and 1 (Petersson 1981)"),
@@ -373,7 +377,7 @@ static KEYS: &[KeyDoc] = &[
     key("expect[].above", K::AnyQuantity, "", "Lower limit, instead of value"),
     key("expect[].below", K::AnyQuantity, "", "Upper limit, instead of value"),
     key("expect[].source", K::Text, "required", "Where the reference comes from"),
-    key("expect[].note", K::Text, "\"\"", "Remark"),
+    key("expect[].note", K::Text, "", "Remark"),
 
     key("verify", K::Table, "", "How `fractum verify` takes this case"),
     key("verify.quick", K::Flag, "false", "Run with --quick too"),
