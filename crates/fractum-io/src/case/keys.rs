@@ -150,25 +150,34 @@ pub fn keys() -> &'static [KeyDoc] {
 /// # Errors
 /// The nearest known path, if any resembles.
 pub fn explain(path: &str) -> Result<&'static KeyDoc, Option<&'static str>> {
-    let plain: String =
-        path.split('.').map(|part| part.split('[').next().unwrap_or_default()).collect::<Vec<_>>().join(".");
+    if let Some(key) = fitting(path) {
+        return Ok(key);
+    }
+    let (parent, last) = path.rsplit_once('.').unwrap_or(("", path));
+    if matches!(fitting(parent), Some(KeyDoc { kind: KeyKind::TimeFunction(_), .. }))
+        && let Some(key) = describe(&join(TIME_FUNCTION, last))
+    {
+        return Ok(key);
+    }
+    let paths = || KEYS.iter().map(|key| key.path);
+    let whole = nearest(&without_indices(path), paths());
+    Err(whole.or_else(|| paths().find(|path| path.rsplit('.').next() == Some(last))))
+}
+
+/// The key whose pattern a path of a case, or itself, fits.
+fn fitting(path: &str) -> Option<&'static KeyDoc> {
+    let plain = without_indices(path);
     let fits = |key: &&KeyDoc| {
-        let pattern = key.path.replace("[]", "");
-        let mut parts = pattern.split('.');
-        let mut given = plain.split('.');
-        loop {
-            match (parts.next(), given.next()) {
-                (None, None) => return true,
-                (Some(part), Some(name)) if part == name || (part == "NAME" && !name.is_empty()) => {}
-                _ => return false,
-            }
-        }
+        let pattern = without_indices(key.path);
+        let same = |(part, name): (&str, &str)| part == name || (part == "NAME" && !name.is_empty());
+        pattern.split('.').count() == plain.split('.').count() && pattern.split('.').zip(plain.split('.')).all(same)
     };
-    KEYS.iter().find(|key| key.path == path).or_else(|| KEYS.iter().find(fits)).ok_or_else(|| {
-        let last = plain.rsplit('.').next().unwrap_or_default();
-        let whole = nearest(&plain, KEYS.iter().map(|key| key.path));
-        whole.or_else(|| KEYS.iter().map(|key| key.path).find(|path| path.rsplit('.').next() == Some(last)))
-    })
+    describe(path).or_else(|| KEYS.iter().find(fits))
+}
+
+/// A path without what stands in square brackets.
+fn without_indices(path: &str) -> String {
+    path.split('.').map(|part| part.split('[').next().unwrap_or_default()).collect::<Vec<_>>().join(".")
 }
 
 /// The description of a key by its pattern.
@@ -246,7 +255,7 @@ static KEYS: &[KeyDoc] = &[
     key("materials.NAME.damage.tension_cutoff", K::Flag, "true", "Mohr-Coulomb only: cut off by the largest principal stress; false loses about a fifth of the Brazilian strength"),
     key("materials.NAME.damage.tensile_strength", K::Quantity(D::PRESSURE), "required", "Uniaxial tensile strength ft, > 0"),
     key("materials.NAME.damage.fracture_energy", K::Quantity(D::FRACTURE_ENERGY), "required", "Energy per area of a full crack Gf, > 0"),
-    key("materials.NAME.damage.compressive_strength", K::Quantity(D::PRESSURE), "10 ft", "Uniaxial compressive strength, above the tensile one; for mohr-coulomb, drucker-prager, modified-mohr-coulomb"),
+    key("materials.NAME.damage.compressive_strength", K::Quantity(D::PRESSURE), "10 ft", "Uniaxial compressive strength, above ft, with mohr-coulomb at least ft (1 + sin φ)/(1 - sin φ); for mohr-coulomb with cut-off, drucker-prager, modified-mohr-coulomb"),
     key("materials.NAME.damage.friction_angle", K::Angle, "\"35 deg\"", "Angle of internal friction, from 0 to below 90 deg; for mohr-coulomb, modified-mohr-coulomb"),
     key("materials.NAME.damage.softening", K::Choice(softenings), "\"exponential\"", "Stress against crack opening, by name or as a table"),
     key("materials.NAME.damage.softening.kind", K::Choice(softenings), "required", "Stress against crack opening"),

@@ -162,25 +162,25 @@ fn shortened(raw: &str) -> String {
 }
 
 /// Puts a value at a dotted path such as `solver.end` or `bodies[0].damage`, making tables on the way.
-pub(super) fn set(root: &mut Node, path: &str, value: Node) -> Result<(), Diagnostic> {
+pub(super) fn set(root: &mut Node, path: &str, value: Node) -> Result<(), Box<Diagnostic>> {
     let place = value.place.clone();
-    let fail = |found: String| Diagnostic::error(&place, found);
+    let fail = |found: &str, remedy: String| Box::new(Diagnostic::error(&place, found).remedy(remedy));
     let mut at = root;
     let mut so_far = String::new();
     for part in path.split('.') {
         let (name, index) = match part.split_once('[') {
             Some((name, index)) => {
                 let index = index.strip_suffix(']').and_then(|index| index.parse::<usize>().ok());
-                (name, Some(index.ok_or_else(|| fail("is not a key".to_string()))?))
+                (name, Some(index.ok_or_else(|| fail("is not a key", String::new()))?))
             }
             None => (part, None),
         };
         if name.is_empty() {
-            return Err(fail("is not a key".to_string()));
+            return Err(fail("is not a key", String::new()));
         }
         so_far = join(&so_far, name);
         let Value::Table(entries) = &mut at.value else {
-            return Err(fail("cannot be set".to_string()).remedy("what stands before the last \".\" is not a table"));
+            return Err(fail("cannot be set", format!("{so_far} does not stand in a table")));
         };
         let found = match entries.iter().position(|entry| entry.name == name) {
             Some(found) => found,
@@ -197,7 +197,7 @@ pub(super) fn set(root: &mut Node, path: &str, value: Node) -> Result<(), Diagno
             let count = if let Value::Array(items) = &at.value { items.len() } else { 0 };
             match &mut at.value {
                 Value::Array(items) if index < count => at = &mut items[index],
-                _ => return Err(fail("cannot be set".to_string()).remedy(format!("the case has {count} of these"))),
+                _ => return Err(fail("cannot be set", format!("the case has {count} of these"))),
             }
         }
     }

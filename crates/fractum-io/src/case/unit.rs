@@ -242,7 +242,7 @@ static SYMBOLS: &[(&str, Unit, bool)] = &[
     ("%", unit(-2, 1.0, Dimension::NONE), false),
     ("in", unit(0, 0.0254, Dimension::LENGTH), false),
     ("ft", unit(0, 0.3048, Dimension::LENGTH), false),
-    ("psi", unit(0, 6894.757_293_168_361, Dimension::PRESSURE), false),
+    ("psi", unit(0, 6_894.757_293_168_361, Dimension::PRESSURE), false),
 ];
 
 static PREFIXES: &[(&str, i32)] = &[

@@ -126,6 +126,8 @@ fn the_document_describes_every_key() {
         let row = format!("| `{}` | {} | {} | {} |", key.path, key.kind.label(), key.default, key.doc);
         assert!(document.contains(&row), "docs/case-file.md lacks the row\n{row}");
     }
+    let example = document.split("```").nth(1).and_then(|block| block.strip_prefix("toml")).unwrap();
+    assert_eq!(good(example, &[]).warnings(), []);
 }
 
 #[test]
@@ -155,6 +157,7 @@ fn keys_are_explained_by_pattern_and_by_path() {
     {
         assert!(explain(path).is_ok(), "{path}");
     }
+    assert_eq!(explain("supports[0].velocity.y.ramp").unwrap().path, "TIME_FUNCTION.ramp");
     assert_eq!(explain("solver.saftey").unwrap_err(), Some("solver.safety"));
     assert_eq!(explain("poisson_ratio").unwrap_err(), Some("materials.NAME.poisson_ratio"));
     assert_eq!(explain("").unwrap_err(), None);

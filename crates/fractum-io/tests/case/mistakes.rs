@@ -143,6 +143,19 @@ fn each_mistake_has_one_clear_message() {
             "8:55: materials.steel.damage.tension_cutoff has no effect with this criterion, only with mohr-coulomb; remove it",
         ),
         (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, criterion = \"mohr-coulomb\", \
+             friction_angle = \"30 deg\", compressive_strength = 2.9 }",
+            "8:133: materials.steel.damage.compressive_strength is 2.9 Pa as compressive strength, too low for its friction \
+             angle; expected at least 3 Pa; raise compressive_strength or lower friction_angle",
+        ),
+        (
+            "young_modulus = 210e9",
+            "young_modulus = \"2*GPa\"",
+            "6:20: materials.steel.young_modulus = \"2*GPa\": unknown name \"GPa\"; a unit stands right behind its number, as \
+             in 2 mm",
+        ),
+        (
             "material = \"steel\"",
             "material = \"steel\"\ndamage_where = \"x < 1\"",
             "13:1: bodies[0].damage_where has no effect without damage; remove it",

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use crate::{every_key, leaves, parse};
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
     fn mutated_cases_never_panic(

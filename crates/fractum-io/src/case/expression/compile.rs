@@ -6,7 +6,7 @@ use super::program::{Binary, Op, Program, Unary};
 use super::rules::Rules;
 use super::types::{Names, Type};
 use super::units::unit_after_number;
-use crate::case::unit::Dimension;
+use crate::case::unit::{Dimension, Unit};
 use crate::case::{Choice, nearest};
 
 /// Deepest nesting of brackets and signs.
@@ -197,6 +197,7 @@ impl<'t> Compiler<'t, '_> {
         all.push("pi".to_string());
         let error = ExpressionError::new(offset, format!("unknown name \"{name}\""));
         match nearest(name, all.iter().map(String::as_str)) {
+            _ if Unit::find(name).is_some() => error.remedy("a unit stands right behind its number, as in 2 mm"),
             Some(near) => error.remedy(format!("did you mean \"{near}\"?")),
             None => error.remedy(format!("names here: {}", all.join(", "))),
         }
