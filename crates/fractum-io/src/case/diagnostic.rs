@@ -23,7 +23,8 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// Where it stands; `None` where no file could be read.
     pub place: Option<Place>,
-    /// What was found there: `= 0.62` for the value of a key, else a phrase that follows the key.
+    /// What was found there: `= 0.62` for the value of a key, else a phrase that follows the key: `is missing`, or
+    /// `: triangles in space`.
     pub found: String,
     /// What would have been right, as the object of "expected"; may be empty.
     pub expected: String,
@@ -73,7 +74,8 @@ impl fmt::Display for Diagnostic {
         if let Some(place) = &self.place
             && !place.key.is_empty()
         {
-            write!(f, "{} ", one_line(&place.key))?;
+            let space = if self.found.starts_with([':', ',']) { "" } else { " " };
+            write!(f, "{}{space}", one_line(&place.key))?;
         }
         write!(f, "{}", one_line(&self.found))?;
         if !self.expected.is_empty() {

@@ -38,6 +38,8 @@ pub enum KeyKind {
     Integer,
     /// A quantity, or an expression of parameters.
     Quantity(Dimension),
+    /// An angle, in radians where it has no unit.
+    Angle,
     /// A quantity of any dimension.
     AnyQuantity,
     /// A unit of this dimension; of any where there is none.
@@ -70,6 +72,7 @@ impl KeyKind {
             Self::Flag => "true or false".to_string(),
             Self::Integer => "a whole number".to_string(),
             Self::Quantity(dimension) => dimension.expected(),
+            Self::Angle => "an angle such as \"35 deg\"".to_string(),
             Self::AnyQuantity => "a quantity such as \"21 GPa\"".to_string(),
             Self::Unit(Some(dimension)) => format!("a unit of {}, such as \"{dimension}\"", without_article(dimension)),
             Self::Unit(None) => "a unit such as \"Pa\"".to_string(),
@@ -95,6 +98,7 @@ impl KeyKind {
             Self::Integer => "integer".to_string(),
             Self::Quantity(Dimension::NONE) => "number".to_string(),
             Self::Quantity(dimension) => format!("{} [{dimension}]", without_article(dimension)),
+            Self::Angle => "angle [rad]".to_string(),
             Self::AnyQuantity => "quantity".to_string(),
             Self::Unit(_) => "unit".to_string(),
             Self::Choice(names) => names().join(", "),
@@ -146,25 +150,34 @@ pub fn keys() -> &'static [KeyDoc] {
 /// # Errors
 /// The nearest known path, if any resembles.
 pub fn explain(path: &str) -> Result<&'static KeyDoc, Option<&'static str>> {
-    let plain: String =
-        path.split('.').map(|part| part.split('[').next().unwrap_or_default()).collect::<Vec<_>>().join(".");
+    if let Some(key) = fitting(path) {
+        return Ok(key);
+    }
+    let (parent, last) = path.rsplit_once('.').unwrap_or(("", path));
+    if matches!(fitting(parent), Some(KeyDoc { kind: KeyKind::TimeFunction(_), .. }))
+        && let Some(key) = describe(&join(TIME_FUNCTION, last))
+    {
+        return Ok(key);
+    }
+    let paths = || KEYS.iter().map(|key| key.path);
+    let whole = nearest(&without_indices(path), paths());
+    Err(whole.or_else(|| paths().find(|path| path.rsplit('.').next() == Some(last))))
+}
+
+/// The key whose pattern a path of a case, or itself, fits.
+fn fitting(path: &str) -> Option<&'static KeyDoc> {
+    let plain = without_indices(path);
     let fits = |key: &&KeyDoc| {
-        let pattern = key.path.replace("[]", "");
-        let mut parts = pattern.split('.');
-        let mut given = plain.split('.');
-        loop {
-            match (parts.next(), given.next()) {
-                (None, None) => return true,
-                (Some(part), Some(name)) if part == name || (part == "NAME" && !name.is_empty()) => {}
-                _ => return false,
-            }
-        }
+        let pattern = without_indices(key.path);
+        let same = |(part, name): (&str, &str)| part == name || (part == "NAME" && !name.is_empty());
+        pattern.split('.').count() == plain.split('.').count() && pattern.split('.').zip(plain.split('.')).all(same)
     };
-    KEYS.iter().find(|key| key.path == path).or_else(|| KEYS.iter().find(fits)).ok_or_else(|| {
-        let last = plain.rsplit('.').next().unwrap_or_default();
-        let whole = nearest(&plain, KEYS.iter().map(|key| key.path));
-        whole.or_else(|| KEYS.iter().map(|key| key.path).find(|path| path.rsplit('.').next() == Some(last)))
-    })
+    describe(path).or_else(|| KEYS.iter().find(fits))
+}
+
+/// A path without what stands in square brackets.
+fn without_indices(path: &str) -> String {
+    path.split('.').map(|part| part.split('[').next().unwrap_or_default()).collect::<Vec<_>>().join(".")
 }
 
 /// The description of a key by its pattern.
@@ -223,7 +236,7 @@ use KeyKind as K;
 #[rustfmt::skip] // a table reads best with one row per line
 static KEYS: &[KeyDoc] = &[
     key("fractum", K::Integer, "required", "Version of the case format: 1"),
-    key("title", K::Text, "\"\"", "Title of reports"),
+    key("title", K::Text, "", "Title of reports"),
 
     key("parameters", K::NamedTables, "", "Named quantities for use in any quantity or expression; `--set NAME=value` overrides them"),
     key("parameters.NAME", K::AnyQuantity, "", "A quantity, or an expression of parameters above it"),
@@ -242,8 +255,8 @@ static KEYS: &[KeyDoc] = &[
     key("materials.NAME.damage.tension_cutoff", K::Flag, "true", "Mohr-Coulomb only: cut off by the largest principal stress; false loses about a fifth of the Brazilian strength"),
     key("materials.NAME.damage.tensile_strength", K::Quantity(D::PRESSURE), "required", "Uniaxial tensile strength ft, > 0"),
     key("materials.NAME.damage.fracture_energy", K::Quantity(D::FRACTURE_ENERGY), "required", "Energy per area of a full crack Gf, > 0"),
-    key("materials.NAME.damage.compressive_strength", K::Quantity(D::PRESSURE), "10 ft", "Uniaxial compressive strength, above the tensile one; for mohr-coulomb, drucker-prager, modified-mohr-coulomb"),
-    key("materials.NAME.damage.friction_angle", K::Quantity(D::NONE), "\"35 deg\"", "Angle of internal friction, from 0 to below 90 deg; for mohr-coulomb, modified-mohr-coulomb"),
+    key("materials.NAME.damage.compressive_strength", K::Quantity(D::PRESSURE), "10 ft", "Uniaxial compressive strength, above ft, with mohr-coulomb at least ft (1 + sin φ)/(1 - sin φ); for mohr-coulomb with cut-off, drucker-prager, modified-mohr-coulomb"),
+    key("materials.NAME.damage.friction_angle", K::Angle, "\"35 deg\"", "Angle of internal friction, from 0 to below 90 deg; for mohr-coulomb, modified-mohr-coulomb"),
     key("materials.NAME.damage.softening", K::Choice(softenings), "\"exponential\"", "Stress against crack opening, by name or as a table"),
     key("materials.NAME.damage.softening.kind", K::Choice(softenings), "required", "Stress against crack opening"),
     key("materials.NAME.damage.softening.kink_stress", K::Quantity(D::NONE), "1/3", "Bilinear only: stress at the kink over ft, within 0 and 1 (Petersson 1981)"),
@@ -373,7 +386,7 @@ static KEYS: &[KeyDoc] = &[
     key("expect[].above", K::AnyQuantity, "", "Lower limit, instead of value"),
     key("expect[].below", K::AnyQuantity, "", "Upper limit, instead of value"),
     key("expect[].source", K::Text, "required", "Where the reference comes from"),
-    key("expect[].note", K::Text, "\"\"", "Remark"),
+    key("expect[].note", K::Text, "", "Remark"),
 
     key("verify", K::Table, "", "How `fractum verify` takes this case"),
     key("verify.quick", K::Flag, "false", "Run with --quick too"),

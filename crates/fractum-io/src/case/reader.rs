@@ -304,17 +304,22 @@ impl<'a> Table<'a> {
 
     /// Notes that a key which is there has no effect, and why.
     pub(super) fn refuse(&self, name: &str, why: &str) {
-        if let Some(node) = self.node(name) {
-            self.reader.note(Diagnostic::error(&node.place, format!("has no effect {why}")).remedy("remove it"));
+        if let Some((entry, used)) = self.entries.iter().find(|(entry, _)| entry.name == name) {
+            used.set(true);
+            self.no_effect(entry, why);
         }
+    }
+
+    fn no_effect(&self, entry: &Entry, why: &str) {
+        let note = Diagnostic::error(&entry.key_place, format!("has no effect {why}"));
+        self.reader.note(note.remedy("remove it"));
     }
 
     /// Reports the keys that nobody asked for: they have no effect, for the reason given.
     pub(super) fn finish(self, why: &str) {
         for (entry, used) in &self.entries {
             if !used.get() {
-                let note = Diagnostic::error(&entry.key_place, format!("has no effect {why}"));
-                self.reader.note(note.remedy("remove it"));
+                self.no_effect(entry, why);
             }
         }
     }

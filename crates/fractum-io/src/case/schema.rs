@@ -52,7 +52,7 @@ fn value(path: &str, kind: KeyKind, doc: &str, default: &str) -> Value {
         KeyKind::Tables => return json!({ "type": "array", "description": doc, "items": object(path, doc) }),
         KeyKind::Text | KeyKind::Unit(_) | KeyKind::Condition | KeyKind::ProbeExpression => json!({ "type": "string" }),
         KeyKind::Flag => json!({ "type": "boolean" }),
-        KeyKind::Integer | KeyKind::Quantity(_) | KeyKind::AnyQuantity | KeyKind::Field(_) => {
+        KeyKind::Integer | KeyKind::Quantity(_) | KeyKind::Angle | KeyKind::AnyQuantity | KeyKind::Field(_) => {
             json!({ "type": ["number", "string"] })
         }
         KeyKind::Choice(names) => {

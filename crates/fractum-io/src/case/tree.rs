@@ -162,25 +162,25 @@ fn shortened(raw: &str) -> String {
 }
 
 /// Puts a value at a dotted path such as `solver.end` or `bodies[0].damage`, making tables on the way.
-pub(super) fn set(root: &mut Node, path: &str, value: Node) -> Result<(), Diagnostic> {
+pub(super) fn set(root: &mut Node, path: &str, value: Node) -> Result<(), Box<Diagnostic>> {
     let place = value.place.clone();
-    let fail = |found: String| Diagnostic::error(&place, found);
+    let fail = |found: &str, remedy: String| Box::new(Diagnostic::error(&place, found).remedy(remedy));
     let mut at = root;
     let mut so_far = String::new();
     for part in path.split('.') {
         let (name, index) = match part.split_once('[') {
             Some((name, index)) => {
                 let index = index.strip_suffix(']').and_then(|index| index.parse::<usize>().ok());
-                (name, Some(index.ok_or_else(|| fail("is not a key".to_string()))?))
+                (name, Some(index.ok_or_else(|| fail("is not a key", String::new()))?))
             }
             None => (part, None),
         };
         if name.is_empty() {
-            return Err(fail("is not a key".to_string()));
+            return Err(fail("is not a key", String::new()));
         }
         so_far = join(&so_far, name);
         let Value::Table(entries) = &mut at.value else {
-            return Err(fail("cannot be set".to_string()).remedy("what stands before the last \".\" is not a table"));
+            return Err(fail("cannot be set", format!("{so_far} does not stand in a table")));
         };
         let found = match entries.iter().position(|entry| entry.name == name) {
             Some(found) => found,
@@ -197,7 +197,7 @@ pub(super) fn set(root: &mut Node, path: &str, value: Node) -> Result<(), Diagno
             let count = if let Value::Array(items) = &at.value { items.len() } else { 0 };
             match &mut at.value {
                 Value::Array(items) if index < count => at = &mut items[index],
-                _ => return Err(fail("cannot be set".to_string()).remedy(format!("the case has {count} of these"))),
+                _ => return Err(fail("cannot be set", format!("the case has {count} of these"))),
             }
         }
     }
@@ -216,12 +216,12 @@ mod tests {
 
     #[test]
     fn every_value_knows_its_place() {
-        let text = "a = 1\n[m.é]\n  ü = \"5 mm\"\n[[b]]\nx = [1, inf]\n[[b]]\nx = { y = true }\n";
+        let text = "a = 1\n[m.\"é\"]\n  \"ü\" = \"5 mm\"\n[[b]]\nx = [1, inf]\n[[b]]\nx = { y = true }\n";
         let root = parse(text, "f.toml").unwrap();
         let value = find(find(find(&root, "m"), "é"), "ü");
-        assert_eq!((value.place.line, value.place.column), (3, 7), "columns count characters");
+        assert_eq!((value.place.line, value.place.column), (3, 9), "columns count characters");
         assert_eq!((value.place.key.as_str(), value.raw.as_str()), ("m.é.ü", "\"5 mm\""));
-        assert_eq!(value.place_inside(2).column, 10, "the unit");
+        assert_eq!(value.place_inside(2).column, 12, "the unit");
         let Value::Array(bodies) = &find(&root, "b").value else { panic!() };
         let items = find(&bodies[0], "x");
         let Value::Array(items) = &items.value else { panic!() };
@@ -242,7 +242,7 @@ mod tests {
     fn syntax_errors_have_line_and_column() {
         let errors = parse("a = 1\nb = 2 3\n[q\nc = 1", "f.toml").unwrap_err();
         let places: Vec<_> = errors.iter().filter_map(|e| e.place.clone()).map(|p| (p.line, p.column)).collect();
-        assert!(places.contains(&(2, 7)), "{places:?}");
+        assert!(places.contains(&(2, 5)), "{places:?}");
         assert!(places.contains(&(3, 3)), "{places:?}");
     }
 

@@ -242,7 +242,7 @@ static SYMBOLS: &[(&str, Unit, bool)] = &[
     ("%", unit(-2, 1.0, Dimension::NONE), false),
     ("in", unit(0, 0.0254, Dimension::LENGTH), false),
     ("ft", unit(0, 0.3048, Dimension::LENGTH), false),
-    ("psi", unit(0, 6894.757_293_168_361, Dimension::PRESSURE), false),
+    ("psi", unit(0, 6_894.757_293_168_361, Dimension::PRESSURE), false),
 ];
 
 static PREFIXES: &[(&str, i32)] = &[
@@ -320,6 +320,5 @@ mod tests {
         assert_eq!(Dimension::LENGTH.power(0.3), None);
         assert_eq!(Dimension::LENGTH.power(1e300), None);
         assert_eq!(Unit::nearest("Gpa").as_deref(), Some("GPa"));
-        assert_eq!(Unit::nearest("sec").as_deref(), Some("s"));
     }
 }

@@ -3,9 +3,10 @@
 use super::ExpressionError;
 use super::lexer::{Kind, Token, tokens};
 use super::program::{Binary, Op, Program, Unary};
+use super::rules::Rules;
 use super::types::{Names, Type};
 use super::units::unit_after_number;
-use crate::case::unit::Dimension;
+use crate::case::unit::{Dimension, Unit};
 use crate::case::{Choice, nearest};
 
 /// Deepest nesting of brackets and signs.
@@ -21,7 +22,7 @@ pub(crate) struct Compiled {
 /// Compiles `text`. `lenient`: a factor without unit may carry any dimension.
 pub(crate) fn compile(text: &str, names: &mut dyn Names, lenient: bool) -> Result<Compiled, ExpressionError> {
     let tokens = tokens(text)?;
-    let mut compiler = Compiler { tokens: &tokens, at: 0, code: Vec::new(), names, lenient, depth: 0 };
+    let mut compiler = Compiler { tokens: &tokens, at: 0, code: Vec::new(), names, rules: Rules { lenient }, depth: 0 };
     let kind = compiler.expression(0)?;
     let left = compiler.peek();
     match left.kind {
@@ -39,7 +40,7 @@ struct Compiler<'t, 'n> {
     at: usize,
     code: Vec<Op>,
     names: &'n mut dyn Names,
-    lenient: bool,
+    rules: Rules,
     depth: u32,
 }
 
@@ -113,9 +114,10 @@ impl<'t> Compiler<'t, '_> {
                 _ => self.expression(strength + 1)?,
             };
             left = if operator == Binary::Power {
-                self.power(left, right, start, token.offset)?
+                let exponent = Program::new(self.code[start..].to_vec()).and_then(|program| program.constant());
+                self.rules.power(left, right, exponent, token.offset)?
             } else {
-                self.binary(operator, left, right, token.offset)?
+                self.rules.binary(operator, left, right, token.offset)?
             };
             self.code.push(Op::Binary(operator));
             let chained = matches!(self.peek().kind, Kind::Symbol("<" | "<=" | ">" | ">=" | "==" | "!="));
@@ -141,11 +143,11 @@ impl<'t> Compiler<'t, '_> {
             Kind::Symbol("-") => {
                 let kind = self.expression(SIGN)?;
                 self.code.push(Op::Unary(Unary::Negate));
-                self.number(kind, "a sign", token.offset)
+                self.rules.number(kind, "a sign", token.offset)
             }
             Kind::Symbol("+") => {
                 let kind = self.expression(SIGN)?;
-                self.number(kind, "a sign", token.offset)
+                self.rules.number(kind, "a sign", token.offset)
             }
             Kind::Symbol("!") => {
                 let kind = self.expression(SIGN)?;
@@ -195,6 +197,7 @@ impl<'t> Compiler<'t, '_> {
         all.push("pi".to_string());
         let error = ExpressionError::new(offset, format!("unknown name \"{name}\""));
         match nearest(name, all.iter().map(String::as_str)) {
+            _ if Unit::find(name).is_some() => error.remedy("a unit stands right behind its number, as in 2 mm"),
             Some(near) => error.remedy(format!("did you mean \"{near}\"?")),
             None => error.remedy(format!("names here: {}", all.join(", "))),
         }
@@ -227,7 +230,7 @@ impl<'t> Compiler<'t, '_> {
             if let Some(operator) = folding(name)
                 && let [.., a, b] = arguments[..]
             {
-                let common = self.binary(operator, a, b, offset)?;
+                let common = self.rules.binary(operator, a, b, offset)?;
                 self.code.push(Op::Binary(operator));
                 arguments = vec![common];
                 if self.peek().kind != Kind::Symbol(",") {
@@ -243,9 +246,12 @@ impl<'t> Compiler<'t, '_> {
                 let usage = if name == "at" { "at(load, 1 ms)".to_string() } else { format!("{name}(load)") };
                 Err(error.remedy(format!("write it as {usage}; a probe of its own may hold an expression")))
             }
-            [a] if let Some(function) = find::<Unary>(name) => self.unary(function, name, a, offset),
+            [a] if let Some(function) = find::<Unary>(name) => {
+                self.code.push(Op::Unary(function));
+                self.rules.unary(function, a, offset)
+            }
             [a, b] if let Some(operator) = find::<Binary>(name) => {
-                let kind = self.binary(operator, a, b, offset)?;
+                let kind = self.rules.binary(operator, a, b, offset)?;
                 self.code.push(Op::Binary(operator));
                 Ok(kind)
             }
@@ -255,7 +261,7 @@ impl<'t> Compiler<'t, '_> {
                     return Err(ExpressionError::new(offset, message));
                 }
                 self.code.push(Op::Select);
-                self.common(a, b, offset)
+                self.rules.common(a, b, offset)
             }
             _ => Err(wrong_call(name, arguments.len(), offset)),
         }
@@ -279,106 +285,6 @@ impl<'t> Compiler<'t, '_> {
         match value.filter(|value| value.is_finite() && kind.fits(dimension, false)) {
             Some(value) => Ok(value),
             None => Err(ExpressionError::new(offset, format!("{what} must be {}", dimension.expected()))),
-        }
-    }
-
-    fn number(&self, kind: Type, what: &str, offset: usize) -> Result<Type> {
-        match kind {
-            Type::Truth => Err(ExpressionError::new(offset, format!("{what} needs a number, not a condition"))),
-            Type::Number { .. } => Ok(kind),
-        }
-    }
-
-    fn common(&self, a: Type, b: Type, offset: usize) -> Result<Type> {
-        a.unify(b, self.lenient).ok_or_else(|| {
-            let message = format!("{} and {} cannot be added or compared", a.phrase(), b.phrase());
-            ExpressionError::new(offset, message)
-        })
-    }
-
-    fn binary(&self, operator: Binary, a: Type, b: Type, offset: usize) -> Result<Type> {
-        use Binary::*;
-        match operator {
-            And | Or => {
-                if a == Type::Truth && b == Type::Truth {
-                    return Ok(Type::Truth);
-                }
-                let message = format!("\"{}\" needs conditions on both sides", operator.name());
-                Err(ExpressionError::new(offset, message))
-            }
-            Multiply | Divide => self.product(operator, a, b, offset),
-            Add | Subtract | Min | Max | Hypot => {
-                let common = self.common(a, b, offset)?;
-                self.number(common, "an operator", offset)
-            }
-            Less | LessEqual | Greater | GreaterEqual | Equal | NotEqual => {
-                let common = self.common(a, b, offset)?;
-                self.number(common, "a comparison", offset)?;
-                Ok(Type::Truth)
-            }
-            Atan2 => {
-                let common = self.common(a, b, offset)?;
-                self.number(common, "atan2()", offset)?;
-                Ok(Type::number(Dimension::NONE))
-            }
-            Power => Err(ExpressionError::new(offset, "unexpected \"^\"")),
-        }
-    }
-
-    fn product(&self, operator: Binary, a: Type, b: Type, offset: usize) -> Result<Type> {
-        let (
-            Type::Number { dimension: a_dimension, bare: a_bare, loose: a_loose },
-            Type::Number { dimension: b_dimension, bare: b_bare, loose: b_loose },
-        ) = (a, b)
-        else {
-            return Err(ExpressionError::new(offset, "a product needs numbers, not conditions"));
-        };
-        let dimension = match operator {
-            Binary::Divide => a_dimension.over(b_dimension),
-            _ => a_dimension.times(b_dimension),
-        };
-        let dimension = dimension.ok_or_else(|| too_high(offset))?;
-        Ok(Type::Number { dimension, bare: a_bare && b_bare, loose: a_loose || b_loose })
-    }
-
-    /// Type of `base ^ exponent`, the code of the exponent beginning at `start`.
-    fn power(&self, base: Type, exponent: Type, start: usize, offset: usize) -> Result<Type> {
-        if !exponent.fits(Dimension::NONE, self.lenient) {
-            let message = format!("an exponent must be a pure number, not {}", exponent.phrase());
-            return Err(ExpressionError::new(offset, message));
-        }
-        match base {
-            Type::Truth => Err(ExpressionError::new(offset, "a power needs a number, not a condition")),
-            Type::Number { dimension: Dimension::NONE, .. } => Ok(base),
-            Type::Number { dimension, loose, .. } => {
-                let value = Program::new(self.code[start..].to_vec()).and_then(|program| program.constant());
-                let Some(value) = value else {
-                    let message = format!("{} can be raised to a constant power only", dimension.phrase());
-                    return Err(ExpressionError::new(offset, message));
-                };
-                let dimension = dimension.power(value).ok_or_else(|| too_high(offset))?;
-                Ok(Type::Number { dimension, bare: false, loose })
-            }
-        }
-    }
-
-    fn unary(&mut self, function: Unary, name: &str, a: Type, offset: usize) -> Result<Type> {
-        self.code.push(Op::Unary(function));
-        let Type::Number { dimension, bare, loose } = a else {
-            return Err(ExpressionError::new(offset, format!("{name}() needs a number, not a condition")));
-        };
-        match function {
-            Unary::Abs => Ok(a),
-            Unary::Sign => Ok(Type::number(Dimension::NONE)),
-            Unary::Sqrt => {
-                let dimension = dimension.power(0.5).ok_or_else(|| too_high(offset))?;
-                Ok(Type::Number { dimension, bare, loose })
-            }
-            _ if a.fits(Dimension::NONE, self.lenient) => Ok(Type::Number { dimension: Dimension::NONE, bare, loose }),
-            _ => {
-                let error = ExpressionError::new(offset, format!("{name}() of {}", a.phrase()));
-                Err(error.remedy("divide by a quantity of that kind first"))
-            }
         }
     }
 }
@@ -409,10 +315,6 @@ fn wrong_call(name: &str, arguments: usize, offset: usize) -> ExpressionError {
         Some(near) => error.remedy(format!("did you mean {near}()?")),
         None => error.remedy(format!("functions: {}", functions().collect::<Vec<_>>().join(", "))),
     }
-}
-
-fn too_high(offset: usize) -> ExpressionError {
-    ExpressionError::new(offset, "the units of this have no meaning")
 }
 
 #[cfg(test)]
@@ -523,7 +425,7 @@ mod tests {
         assert_eq!(message("x && t"), "\"&&\" needs conditions on both sides");
         assert_eq!(message("(x < 1) + 2"), "a condition and a number without a unit cannot be added or compared");
         assert_eq!(message("-(x < 1)"), "a sign needs a number, not a condition");
-        assert_eq!(dimension("sqrt(E*x)*sqrt(x)"), Type::number(Dimension::FORCE.over(Dimension::LENGTH).unwrap()));
+        assert_eq!(dimension("sqrt(E*x)*sqrt(E*x)"), Type::number(Dimension::FORCE.over(Dimension::LENGTH).unwrap()));
     }
 
     #[test]

@@ -7,6 +7,7 @@
 mod compile;
 mod lexer;
 mod program;
+mod rules;
 mod types;
 mod units;
 

@@ -29,7 +29,8 @@ pub struct Damage {
     pub tensile_strength: f64,
     /// Energy per area of a full crack [J/m²], > 0.
     pub fracture_energy: f64,
-    /// Uniaxial compressive strength [Pa], above the tensile one; 10 times the tensile one where not given.
+    /// Uniaxial compressive strength [Pa], above the tensile one, with Mohr-Coulomb by (1 + sin φ)/(1 - sin φ) or more;
+    /// 10 times the tensile one where not given.
     pub compressive_strength: f64,
     /// Friction angle [rad], within 0..π/2; 35° where not given.
     pub friction_angle: f64,
@@ -72,7 +73,7 @@ impl Criterion {
 
     /// Whether the compressive strength enters.
     pub fn uses_compressive_strength(self) -> bool {
-        self.uses_friction_angle() || self == Self::DruckerPrager
+        matches!(self, Self::MohrCoulomb | Self::DruckerPrager | Self::ModifiedMohrCoulomb)
     }
 }
 

@@ -54,22 +54,16 @@ fn damage(table: Table<'_>) -> Option<Damage> {
     }
     let tensile_strength = table.quantity("tensile_strength").positive().required();
     let fracture_energy = table.quantity("fracture_energy").positive().required();
-    let compressive_strength = if criterion.uses_compressive_strength() {
-        let above = tensile_strength.unwrap_or(0.0);
-        let strength = table.quantity("compressive_strength").positive();
-        strength.check(|strength| *strength > above, "more than the tensile strength").given()
-    } else {
-        table.refuse("compressive_strength", "with this criterion");
-        None
-    };
     let friction_angle = if criterion.uses_friction_angle() {
         let expected = "from 0 to below 90 deg (a number without a unit is in radians)";
         let right = std::f64::consts::FRAC_PI_2;
-        table.quantity("friction_angle").check(|angle| (0.0..right).contains(angle), expected).given()
+        let angle = table.quantity("friction_angle").check(|angle| (0.0..right).contains(angle), expected);
+        angle.or(FRICTION_ANGLE.to_radians())
     } else {
         table.refuse("friction_angle", "with this criterion");
-        None
+        FRICTION_ANGLE.to_radians()
     };
+    let compressive_strength = compressive_strength(&table, criterion, friction_angle, tensile_strength);
     let softening = softening(&table);
     let residual = table.quantity("residual").between(0.0, 1.0).or(0.02);
     let scatter = table.table("scatter").map(scatter);
@@ -77,13 +71,12 @@ fn damage(table: Table<'_>) -> Option<Damage> {
     let unilateral = table.flag("unilateral").or(false);
     let rate_time = table.quantity("rate_time").not_negative().or(0.0);
     table.finish("here");
-    let tensile_strength = tensile_strength?;
     Some(Damage {
         criterion,
-        tensile_strength,
+        tensile_strength: tensile_strength?,
         fracture_energy: fracture_energy?,
-        compressive_strength: compressive_strength.unwrap_or(10.0 * tensile_strength),
-        friction_angle: friction_angle.unwrap_or(35f64.to_radians()),
+        compressive_strength: compressive_strength?,
+        friction_angle,
         softening: softening?,
         residual,
         scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,
@@ -91,6 +84,39 @@ fn damage(table: Table<'_>) -> Option<Damage> {
         unilateral,
         rate_time,
     })
+}
+
+/// Friction angle where none is given [deg].
+const FRICTION_ANGLE: f64 = 35.0;
+
+/// Compressive over tensile strength where it is not given.
+const STRENGTH_RATIO: f64 = 10.0;
+
+/// The compressive strength, high enough for the criterion to give the tensile strength in tension.
+fn compressive_strength(
+    table: &Table<'_>,
+    criterion: Criterion,
+    friction_angle: f64,
+    tensile_strength: Option<f64>,
+) -> Option<f64> {
+    if !criterion.uses_compressive_strength() {
+        table.refuse("compressive_strength", "with this criterion");
+        return tensile_strength.map(|strength| STRENGTH_RATIO * strength);
+    }
+    let given = table.quantity("compressive_strength").positive();
+    let tensile_strength = tensile_strength?;
+    let given = given.check(|strength| *strength > tensile_strength, "more than the tensile strength");
+    let strength = given.or_if_absent(STRENGTH_RATIO * tensile_strength)?;
+    // Below this the shear plane would cut off uniaxial tension before its strength.
+    let least = tensile_strength * (1.0 + friction_angle.sin()) / (1.0 - friction_angle.sin());
+    if criterion == Criterion::MohrCoulomb && strength < least {
+        let place = table.peek("compressive_strength").map_or_else(|| table.place.clone(), |node| node.place.clone());
+        let found = format!("is {strength} Pa as compressive strength, too low for its friction angle");
+        let note = Diagnostic::error(&place, found).expected(format!("at least {least} Pa"));
+        table.reader.note(note.remedy("raise compressive_strength or lower friction_angle"));
+        return None;
+    }
+    Some(strength)
 }
 
 /// The bilinear law of Petersson (1981): the kink stands at ft/3, where the opening is 0.8 Gf/ft of 3.6 Gf/ft.

@@ -58,7 +58,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
     for (name, value) in overrides {
         let node = tree::parse_override(name, value);
         if let Err(error) = override_value(&mut root, name, node) {
-            reader.note(error);
+            reader.note(*error);
         }
     }
     remove_unknown(&mut root, "", &mut |unknown| reader.note(unknown));
@@ -86,7 +86,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
 }
 
 /// Replaces a parameter, which must be there, or the value at a dotted key.
-fn override_value(root: &mut Node, name: &str, node: Node) -> Result<(), Diagnostic> {
+fn override_value(root: &mut Node, name: &str, node: Node) -> Result<(), Box<Diagnostic>> {
     if name.contains('.') {
         let parameter = name.strip_prefix("parameters.").unwrap_or_default();
         return if parameter.is_empty() { tree::set(root, name, node) } else { override_value(root, parameter, node) };
@@ -96,11 +96,11 @@ fn override_value(root: &mut Node, name: &str, node: Node) -> Result<(), Diagnos
         return tree::set(root, &format!("parameters.{name}"), node);
     }
     let error = Diagnostic::error(&node.place, "is not a parameter of this case");
-    Err(match super::nearest(name, declared.iter().map(String::as_str)) {
+    Err(Box::new(match super::nearest(name, declared.iter().map(String::as_str)) {
         Some(near) => error.remedy(format!("did you mean {near}?")),
         None if declared.is_empty() => error.remedy("it declares none; keys are set by their path, such as solver.end"),
         None => error.remedy(format!("parameters here: {}", declared.join(", "))),
-    })
+    }))
 }
 
 /// Errors and warnings in the order of the file, the command line first, each once.

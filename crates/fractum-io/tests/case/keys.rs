@@ -1,0 +1,164 @@
+//! The list of keys against the reader, the documentation and the schema.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use fractum_io::case::{Case, Diagnostic, KeyKind, explain, keys, schema};
+
+use crate::{SMALL, every_key, good, leaves, parse};
+
+#[test]
+fn the_sample_holds_every_key_of_the_list() {
+    let mut found = BTreeSet::new();
+    paths(&toml::from_str(&every_key()).unwrap(), "", &mut found);
+    let missing: Vec<_> = keys().iter().map(|key| key.path).filter(|path| !found.contains(*path)).collect();
+    assert_eq!(missing, ["solver.step"], "a fixed step excludes the safety factor");
+    good(&SMALL.replace("end = 1e-3", "end = 1e-3\nstep = 1e-6"), &[]);
+}
+
+/// Paths of the keys in a document, as in the list of keys.
+fn paths(value: &toml::Value, path: &str, found: &mut BTreeSet<String>) {
+    let described = |path: &str| keys().iter().find(|key| key.path == path);
+    match value {
+        toml::Value::Table(table) => {
+            for (name, value) in table {
+                let join = |name: &str| if path.is_empty() { name.to_string() } else { format!("{path}.{name}") };
+                let candidates = [join(name), join(name) + "[]", join("NAME")];
+                let key = candidates.iter().find_map(|path| described(path)).unwrap_or_else(|| panic!("{path}.{name}"));
+                found.insert(key.path.to_string());
+                let function = matches!(key.kind, KeyKind::TimeFunction(_)) && value.is_table();
+                if function {
+                    found.insert("TIME_FUNCTION".to_string());
+                }
+                paths(value, if function { "TIME_FUNCTION" } else { key.path }, found);
+            }
+        }
+        toml::Value::Array(items) if path.ends_with("[]") => items.iter().for_each(|item| paths(item, path, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn no_value_goes_unread() {
+    let text = every_key();
+    let mut found = Vec::new();
+    leaves(&toml::from_str(&text).unwrap(), "", &mut found);
+    assert!(found.len() > 140, "{}", found.len());
+    for path in found {
+        let errors = parse(&text, &[(&path, "1979-05-27")]).expect_err(&path);
+        let at_path = |error: &Diagnostic| error.place.as_ref().is_some_and(|place| place.key == path);
+        assert!(errors.0.iter().any(at_path), "{path} = a date: {errors}");
+    }
+}
+
+#[test]
+fn documented_defaults_are_the_defaults() {
+    let text = every_key();
+    let same = |a: &Case, b: &Case| {
+        let plain = |case: &Case| {
+            let mut case = case.clone();
+            case.source.overrides.clear();
+            // places differ between what is written and what is not
+            format!("{case:?}")
+                .split("place: Place")
+                .map(|part| part.split_once('}').map_or(part, |p| p.1))
+                .collect::<String>()
+        };
+        plain(a) == plain(b)
+    };
+    // Where a key may stand in the two samples.
+    let samples = [
+        (text.as_str(), "concrete", "bodies[0]", "loads[3].pressure"),
+        (text.as_str(), "mortar", "bodies[2]", "supports[1].displacement.y"),
+        (SMALL, "steel", "bodies[0]", ""),
+    ];
+    let mut untried = Vec::new();
+    for key in keys() {
+        let Ok(default) = format!("v = {}", key.default).parse::<toml::Table>() else {
+            continue; // none, or described in words
+        };
+        let mut tried = false;
+        for (text, material, body, function) in samples {
+            let path = key.path.replace("NAME", material).replace("bodies[]", body).replace("TIME_FUNCTION", function);
+            let value = default["v"].to_string();
+            // Take the key out first, so that the document is silent about it.
+            let silent = without(text, &path).unwrap_or(text.to_string());
+            if let (Ok(silent), Ok(written)) = (parse(&silent, &[]), parse(&silent, &[(&path, &value)])) {
+                let absent_is_cheaper = matches!(key.kind, KeyKind::Field(_) | KeyKind::TimeFunction(_));
+                let kept_for_the_mesh = ["bodies[].plane", "bodies[].thickness"].contains(&key.path);
+                if !absent_is_cheaper && !kept_for_the_mesh {
+                    assert!(same(&silent, &written), "{path} = {value} is not the default");
+                    tried = true;
+                }
+            }
+        }
+        if !tried {
+            untried.push(key.path);
+        }
+    }
+    // In these, absent is `None` in the model: no function at all, or left to the number of dimensions.
+    let optional = |path: &&&str| path.starts_with("loads[].") || path.starts_with("bodies[].");
+    assert_eq!(untried.iter().filter(|path| !optional(path)).count(), 0, "{untried:?}");
+    assert_eq!(untried.len(), 9 + 3 + 1 + 2, "{untried:?}");
+}
+
+/// The document without the key at `path`; nothing where the path leads nowhere.
+fn without(text: &str, path: &str) -> Option<String> {
+    let mut root: toml::Value = toml::from_str(text).ok()?;
+    let (parents, last) = path.rsplit_once('.')?;
+    let mut at = &mut root;
+    for part in parents.split('.') {
+        let (name, index) = part.trim_end_matches(']').split_once('[').unwrap_or((part, ""));
+        at = at.get_mut(name)?;
+        if !index.is_empty() {
+            at = at.get_mut(index.parse::<usize>().ok()?)?;
+        }
+    }
+    at.as_table_mut()?.remove(last);
+    toml::to_string(&root).ok()
+}
+
+#[test]
+fn the_document_describes_every_key() {
+    let document = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/case-file.md");
+    let document = std::fs::read_to_string(document).unwrap();
+    for key in keys() {
+        let row = format!("| `{}` | {} | {} | {} |", key.path, key.kind.label(), key.default, key.doc);
+        assert!(document.contains(&row), "docs/case-file.md lacks the row\n{row}");
+    }
+    let example = document.split("```").nth(1).and_then(|block| block.strip_prefix("toml")).unwrap();
+    assert_eq!(good(example, &[]).warnings(), []);
+}
+
+#[test]
+fn the_schema_describes_every_key() {
+    let schema = schema();
+    for key in keys().iter().filter(|key| key.path != "TIME_FUNCTION") {
+        let mut at = &schema;
+        for part in key.path.split('.') {
+            at = match part {
+                "TIME_FUNCTION" => &schema["$defs"]["time_function"],
+                "NAME" => &at["additionalProperties"],
+                _ if part.ends_with("[]") => &at["properties"][part.trim_end_matches("[]")]["items"],
+                _ => {
+                    let table = at.get("anyOf").map_or(at, |any| &any[1]);
+                    &table["properties"][part]
+                }
+            };
+        }
+        assert!(at.is_object(), "{}", key.path);
+    }
+}
+
+#[test]
+fn keys_are_explained_by_pattern_and_by_path() {
+    for path in
+        ["materials.NAME.density", "materials.concrete.density", "bodies[].group", "bodies[2].group", "bodies.group"]
+    {
+        assert!(explain(path).is_ok(), "{path}");
+    }
+    assert_eq!(explain("supports[0].velocity.y.ramp").unwrap().path, "TIME_FUNCTION.ramp");
+    assert_eq!(explain("solver.saftey").unwrap_err(), Some("solver.safety"));
+    assert_eq!(explain("poisson_ratio").unwrap_err(), Some("materials.NAME.poisson_ratio"));
+    assert_eq!(explain("").unwrap_err(), None);
+}

@@ -1,0 +1,232 @@
+//! Wrong cases, and what is said about them.
+
+use std::path::Path;
+
+use fractum_io::case::read_case;
+
+use crate::{SMALL, folder, parse};
+
+/// Everything wrong with `text`, each without the name of the file.
+fn mistakes(text: &str) -> Vec<String> {
+    let errors = parse(text, &[]).expect_err(text);
+    let file = format!("{}:", folder().join("case.toml").display());
+    errors.0.iter().map(|error| error.to_string().replacen(&file, "", 1)).collect()
+}
+
+#[test]
+fn each_mistake_has_one_clear_message() {
+    let cases: &[(&str, &str, &str)] = &[
+        // what is replaced, by what, message
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.62",
+            "7:17: materials.steel.poisson_ratio = 0.62; expected between -1 and 0.5",
+        ),
+        (
+            "density = 7800",
+            "densty = 7800",
+            "4:1: materials.steel.density is missing; expected a density such as \"2400 kg/m^3\"",
+        ),
+        ("density = 7800", "density = -1", "5:11: materials.steel.density = -1; expected more than 0"),
+        ("density = 7800", "density = inf", "5:11: materials.steel.density = inf; expected a finite number"),
+        (
+            "density = 7800",
+            "density = true",
+            "5:11: materials.steel.density = true; expected a density such as \"2400 kg/m^3\"",
+        ),
+        (
+            "young_modulus = 210e9",
+            "young_modulus = \"210 mm\"",
+            "6:17: materials.steel.young_modulus = \"210 mm\", which is a length; expected a pressure such as \"21 GPa\"",
+        ),
+        (
+            "young_modulus = 210e9",
+            "young_modulus = \"210 Gpa\"",
+            "6:22: materials.steel.young_modulus = \"210 Gpa\": \"Gpa\" is not a unit; did you mean \"GPa\"?",
+        ),
+        (
+            "young_modulus = 210e9",
+            "young_modulus = \"2*E1\"",
+            "6:20: materials.steel.young_modulus = \"2*E1\": unknown name \"E1\"; names here: pi",
+        ),
+        ("end = 1e-3", "end = 1e-3\nsafty = 0.5", "15:1: solver.safty is not a key; did you mean safety?"),
+        (
+            "end = 1e-3",
+            "end = 1e-3\nqqqqqq = 0.5",
+            "15:1: solver.qqqqqq is not a key; keys here: kind, end, safety, time_step, step, stop_when, balance_warning, \
+             balance_stop",
+        ),
+        (
+            "kind = \"solid\"",
+            "kind = \"sold\"",
+            "10:8: bodies[0].kind = \"sold\"; expected \"solid\" or \"rigid\"; did you mean \"solid\"?",
+        ),
+        (
+            "kind = \"solid\"",
+            "kind = \"bonded\"",
+            "10:8: bodies[0].kind = \"bonded\" is not available in this version; expected \"solid\" or \"rigid\"",
+        ),
+        (
+            "material = \"steel\"",
+            "material = \"stel\"",
+            "12:12: bodies[0].material = \"stel\" is not a material of this case; did you mean \"steel\"?",
+        ),
+        ("fractum = 1", "fractum = 2", "1:11: fractum = 2; expected 1, the version this program reads"),
+        ("fractum = 1", "", "fractum is missing; expected a whole number"),
+        ("end = 1e-3", "", "13:1: solver.end is missing; expected a time such as \"0.2 ms\""),
+        ("file = \"bar.msh\"", "file = \"\"", "3:8: mesh.file = \"\"; expected a text that is not empty"),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[suports]]\ngroup = \"a\"\nfix = \"x\"",
+            "15:3: suports is not a key; did you mean supports?",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[supports]]\ngroup = \"a\"\nfix = \"xx\"",
+            "17:7: supports[0].fix = \"xx\"; expected each of x, y, z at most once, such as \"xy\"",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[supports]]\ngroup = \"a\"\nfix = \"xy\"\nvelocity = { y = 1 }",
+            "18:18: supports[0].velocity.y moves an axis that this support already moves; name each axis once among fix, \
+             velocity, displacement",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[supports]]\ngroup = \"a\"",
+            "15:1: supports[0] prescribes no motion; expected one of fix, velocity, displacement",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[supports]]\ngroup = \"a\"\nfix = \"x\"\n[[supports]]\ngroup = \"a\"\nfix = \"xy\"",
+            "20:7: supports[1].fix moves group \"a\" along x too; the support at line 17 already does",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[supports]]\ngroup = \"a\"\nvelocity.x = { ramp = [[0, 0], [0, 1]] }",
+            "17:32: supports[0].velocity.x.ramp[1] = [0, 1]; expected a time after 0 s, that of the pair before it",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[supports]]\ngroup = \"a\"\nvelocity.x = { ramp = [[0, 0]], peak = 1 }",
+            "17:33: supports[0].velocity.x.peak has no effect with ramp; remove it",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[loads]]\ngroup = \"a\"\npressure = 1\nforce.x = 1",
+            "17:12: loads[0].pressure stands beside force; expected exactly one of force, traction, pressure, gravity",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[loads]]\ngroup = \"a\"\ngravity.x = 1",
+            "16:1: loads[0].group has no effect with gravity, which acts on the whole scene; remove it",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[loads]]\ngroup = \"a\"\npressure = \"1 MPa + 2 N\"",
+            "17:19: loads[0].pressure = \"1 MPa + 2 N\": a pressure and a force cannot be added or compared",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[loads]]\ngroup = \"a\"\npressure = \"1000*9.81*y\"",
+            "17:12: loads[0].pressure = \"1000*9.81*y\", which is a length; expected a pressure such as \"21 GPa\"; in a product \
+             a number without a unit is a pure number; give it its unit",
+        ),
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, friction_angle = 0.5 }",
+            "8:55: materials.steel.damage.friction_angle has no effect with this criterion; remove it",
+        ),
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, tension_cutoff = true }",
+            "8:55: materials.steel.damage.tension_cutoff has no effect with this criterion, only with mohr-coulomb; remove it",
+        ),
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, criterion = \"mohr-coulomb\", \
+             friction_angle = \"30 deg\", compressive_strength = 2.9 }",
+            "8:133: materials.steel.damage.compressive_strength is 2.9 Pa as compressive strength, too low for its friction \
+             angle; expected at least 3 Pa; raise compressive_strength or lower friction_angle",
+        ),
+        (
+            "young_modulus = 210e9",
+            "young_modulus = \"2*GPa\"",
+            "6:20: materials.steel.young_modulus = \"2*GPa\": unknown name \"GPa\"; a unit stands right behind its number, as \
+             in 2 mm",
+        ),
+        (
+            "material = \"steel\"",
+            "material = \"steel\"\ndamage_where = \"x < 1\"",
+            "13:1: bodies[0].damage_where has no effect without damage; remove it",
+        ),
+        (
+            "material = \"steel\"",
+            "material = \"steel\"\nshape = \"plane\"",
+            "13:1: bodies[0].shape has no effect on a solid body; remove it",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[probes]]\nname = \"a\"\nexpression = \"b\"\n[[probes]]\nname = \"b\"\nexpression = \"a\"",
+            "17:15: probes[0].expression = \"b\": probe \"b\" must be declared above this one",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[probes]]\nname = \"a\"\nenergy = \"kinetc\"",
+            "17:10: probes[0].energy = \"kinetc\"; expected \"external\", \"kinetic\", \"elastic\", \"damage\", \"removed\", \
+             \"contact\", \"friction\", \"damping\", \"absorbed\" or \"residual\"; did you mean \"kinetic\"?",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[probes]]\nname = \"a b\"\ncrack_area = true",
+            "16:8: probes[0].name is not a name an expression can use; begin with a letter and go on with letters, digits \
+             and underscores",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[expect]]\nquantity = \"energy.resid_max_relative\"\nbelow = 1\nsource = \"s\"",
+            "16:12: expect[0].quantity = \"energy.resid_max_relative\" is neither a probe nor a path of summary.json; did you \
+             mean \"energy.residual_max_relative\"?",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[expect]]\nquantity = \"time.end\"\nvalue = \"1 mm\"\ntolerance = \"1 %\"\nsource = \"s\"",
+            "17:9: expect[0].value = \"1 mm\", which is a length; expected a time such as \"0.2 ms\"",
+        ),
+        (
+            "kind = \"solid\"",
+            "kind = \"rigid\"\nshape = \"plane\"\nnormal = [0, 0, 0]",
+            "12:10: bodies[0].normal = [0, 0, 0]; \
+             expected an axis such as \"x\" or \"-y\", or three numbers that are not all zero",
+        ),
+    ];
+    for (old, new, expected) in cases {
+        assert!(SMALL.contains(old), "{old}");
+        let found = mistakes(&SMALL.replacen(old, new, 1));
+        let found: Vec<_> = found.iter().map(|message| message.trim_start_matches(' ').to_string()).collect();
+        assert!(found.iter().any(|message| message == expected), "{new}\nexpected {expected}\nfound {found:#?}");
+    }
+}
+
+#[test]
+fn all_mistakes_are_reported_at_once_and_in_order() {
+    let text = SMALL.replace("7800", "\"7800 kg\"").replace("0.3", "0.7").replace("1e-3", "0").replace("bar.msh", " ");
+    let lines: Vec<_> =
+        parse(&text, &[]).unwrap_err().0.iter().map(|error| error.place.as_ref().unwrap().line).collect();
+    assert_eq!(lines, [3, 5, 7, 14]);
+}
+
+#[test]
+fn files_that_are_no_cases_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("case.toml");
+    let message = |path: &Path| read_case(path, &[]).unwrap_err().to_string();
+    assert!(message(&path).contains("cannot be opened"));
+    assert!(message(dir.path()).contains("cannot be"));
+    std::fs::write(&path, b"fractum = 1\n\xff").unwrap();
+    assert!(message(&path).contains("line 2 is not UTF-8 text"));
+    std::fs::write(&path, "").unwrap();
+    assert!(message(&path).contains("fractum is missing"));
+    std::fs::write(&path, "fractum = = 1").unwrap();
+    assert!(message(&path).contains("case.toml:1:"), "{}", message(&path));
+}

@@ -1,0 +1,95 @@
+//! A case with every key, read into SI.
+
+use fractum_io::case::model::{BodyKind, Bound, Criterion, Formulation, LoadKind, Motion, ProbeKind, Softening};
+use fractum_io::case::{Severity, Spanned, TimeFunction, read_case};
+use fractum_math::Vec3;
+
+use crate::{SMALL, folder, good};
+
+#[test]
+fn a_case_with_every_key_is_read_into_si() {
+    let case = read_case(&folder().join("every_key.toml"), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(case.warnings(), []);
+    assert_eq!(case.title, "Every key");
+    assert_eq!(case.mesh.file.value, folder().join("meshes/block.msh"));
+    assert_eq!(case.mesh.unit, 1e-3);
+    assert_eq!(case.parameters["E1"], 42e9);
+
+    let [concrete, mortar] = &case.materials[..] else { panic!() };
+    assert_eq!((concrete.density, concrete.young_modulus, concrete.poisson_ratio), (2400.0, 21e9, 0.2));
+    let damage = &concrete.damage.as_ref().unwrap().value;
+    assert_eq!(
+        (damage.criterion, damage.tensile_strength, damage.fracture_energy),
+        (Criterion::MohrCoulomb, 3e6, 100.0)
+    );
+    assert_eq!(damage.friction_angle, 32.0 * (std::f64::consts::PI / 180.0));
+    assert_eq!(damage.softening, Softening::Bilinear { kink_stress: 0.25, kink_opening: 0.15 });
+    let soft = &mortar.damage.as_ref().unwrap().value;
+    assert_eq!((mortar.young_modulus, soft.compressive_strength), (14e9, 20e6));
+    assert_eq!(soft.friction_angle, 35f64.to_radians());
+
+    let BodyKind::Solid(block) = &case.bodies[0].kind else { panic!() };
+    let here = Vec3::new(0.05, -0.07, 0.0);
+    assert_eq!((block.formulation, block.material, block.damage), (Formulation::Standard, 0, true));
+    assert_eq!(block.initial_velocity[1].as_ref().unwrap().at(here), 0.5);
+    assert_eq!(block.initial_velocity[2].as_ref().unwrap().at(here), -0.5);
+    let zone = &block.damage_where.as_ref().unwrap().value;
+    assert!(zone.holds_at(here) && !zone.holds_at(Vec3::new(0.0, 0.09, 0.0)) && !zone.holds_at(-here));
+    assert!((block.strength_factor.as_ref().unwrap().value.at(Vec3::new(0.025, 0.0, 0.0)) - 1.1).abs() < 1e-15);
+    let BodyKind::Solid(joint) = &case.bodies[1].kind else { panic!() };
+    assert_eq!((joint.formulation, joint.material), (Formulation::Smoothed, 1), "smoothed where there is damage");
+
+    let value = |motion: &Option<_>, t: f64| match motion.as_ref().map(|m: &Spanned<Motion>| &m.value) {
+        Some(Motion::Velocity(f) | Motion::Displacement(f)) => f.value(t, Vec3::zeros()),
+        other => panic!("{other:?}"),
+    };
+    let [bottom, top, side] = &case.supports[..] else { panic!() };
+    assert_eq!(bottom.motion[0].as_ref().unwrap().value, Motion::Fixed);
+    assert_eq!((value(&bottom.motion[1], 0.1e-3), value(&bottom.motion[1], 1.0)), (-0.5e-3, -1e-3));
+    assert!((value(&top.motion[0], 1e-3) - 1e-3 / std::f64::consts::E).abs() < 1e-18);
+    assert_eq!((value(&top.motion[1], 0.5e-3), value(&top.motion[2], 0.5e-3)), (0.25e-3, 0.5));
+    assert_eq!((value(&side.motion[0], 2e-3), value(&side.motion[2], 1.0)), (2e-3, 0.0));
+
+    let LoadKind::Pressure { pressure, .. } = &case.loads[2].kind else { panic!() };
+    assert!((pressure.value(3e-6, Vec3::zeros()) / 100e6 - 1.0).abs() < 1e-12);
+    let LoadKind::Gravity { acceleration } = &case.loads[4].kind else { panic!() };
+    assert_eq!(acceleration[1], Some(TimeFunction::Constant(-9.81)));
+
+    assert_eq!(case.damping.mass, 50.0);
+    assert_eq!((case.solver.end, case.solver.stop_when.as_ref().unwrap().probe), (2e-3, 0));
+    assert_eq!((case.output.history_every, case.output.checkpoint_every), (2e-6, 300.0));
+
+    let units: Vec<_> = case.probes.iter().map(|probe| probe.unit.as_str()).collect();
+    let expected = ["N", "m", "m/s", "Pa", "J", "1", "kg m/s", "kg m^2/s", "m^2", "Pa", "J/m^2", "N"];
+    assert_eq!(units, expected, "N/m is J/m^2");
+    let ProbeKind::Expression(strength) = &case.probes[9].kind else { panic!() };
+    assert!((strength.value(&[314.159_265_358_979_3]) / 1e4 - 1.0).abs() < 1e-12);
+    assert!(case.probes[9].is_scalar() && case.probes[11].is_scalar() && !case.probes[0].is_scalar());
+
+    assert_eq!(case.expect[0].bound, Bound::Near { value: 1e4, tolerance: 500.0, relative: Some(0.05) });
+    assert_eq!(case.expect[2].bound, Bound::Between { above: Some(1e-4), below: Some(2e-3) });
+    assert_eq!(case.groups_used().len(), 2 + 3 + 4 + 4);
+}
+
+#[test]
+fn risky_settings_are_warned_of() {
+    let warned = |text: &str| {
+        let case = good(text, &[]);
+        case.warnings()
+            .iter()
+            .map(|warning| {
+                assert_eq!(warning.severity, Severity::Warning);
+                warning.place.as_ref().unwrap().key.clone()
+            })
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(warned(SMALL), Vec::<String>::new());
+    assert_eq!(warned(&SMALL.replace("1e-3", "1e-3\nsafety = 1.1")), ["solver.safety"]);
+    assert_eq!(
+        warned(&SMALL.replace("[mesh]", "[materials.idle]\ndensity=1\nyoung_modulus=1\npoisson_ratio=0\n[mesh]")),
+        ["materials.idle"]
+    );
+    assert_eq!(warned(&format!("{SMALL}[output.fields]\nevery = 1\n")), ["output.fields.every"]);
+    let jump = format!("{SMALL}[[supports]]\ngroup = \"a\"\ndisplacement.x = \"1 mm\"\n");
+    assert_eq!(warned(&jump), ["supports[0].displacement.x"]);
+}
