@@ -1,3 +1,5 @@
+use std::collections::BTreeSet;
+
 use fractum_math::Vec3;
 
 /// Nodes, straight-sided elements and named groups. Elements name nodes by their index in [`Mesh::nodes`].
@@ -70,13 +72,8 @@ impl Mesh {
 
     /// The distinct names of the groups, in the order of [`Mesh::groups`].
     pub fn group_names(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = Vec::new();
-        for group in &self.groups {
-            if !names.contains(&group.name.as_str()) {
-                names.push(&group.name);
-            }
-        }
-        names
+        let mut seen = BTreeSet::new();
+        self.groups.iter().map(|group| group.name.as_str()).filter(|name| seen.insert(*name)).collect()
     }
 
     /// The nodes of all elements in the groups of that name, ascending, each once.

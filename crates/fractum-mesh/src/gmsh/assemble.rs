@@ -37,7 +37,7 @@ pub(super) fn assemble(mut raw: Raw, bytes: &[u8]) -> Result<Mesh, Fault> {
     shape_check::check_lines(&raw, &tables.lines, bytes)?;
     note_mid_nodes(&raw, tables.kept(), &mut notices);
 
-    let groups = groups::build(&raw, &tables, &mut notices)?;
+    let groups = groups::build(&raw, &tables, bytes, &mut notices)?;
     let Tables { points, lines, triangles, quads, tetrahedra } = tables;
     let mut mesh = Mesh {
         nodes: raw.nodes,

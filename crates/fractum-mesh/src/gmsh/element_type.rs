@@ -53,7 +53,7 @@ impl Shape {
         }
     }
 
-    fn plural(self) -> &'static str {
+    pub(super) fn plural(self) -> &'static str {
         match self {
             Shape::Point => "points",
             Shape::Line => "lines",

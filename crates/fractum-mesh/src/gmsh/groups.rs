@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::cursor::list;
 use super::element_type::Shape;
 use super::error::Fault;
 use super::raw::{Membership, PhysicalName, Raw, Run};
@@ -11,6 +12,9 @@ use crate::Group;
 /// Groups per element, on average, beyond which a file is refused: entities that list thousands of groups could ask
 /// for memory far beyond their own size.
 const MOST_GROUPS_PER_ELEMENT: usize = 64;
+
+/// Physical groups beyond which a file is refused.
+const MOST_GROUPS: usize = 1 << 16;
 
 /// Refuses files whose groups would hold a multiple of their elements.
 pub(super) fn limit_memberships(raw: &Raw, bytes: &[u8]) -> Result<(), Fault> {
@@ -41,7 +45,7 @@ fn made_up_name(tag: i32) -> String {
 }
 
 /// The groups of a file, ascending by dimension and tag, with those that have a name but no elements.
-pub(super) fn build(raw: &Raw, tables: &Tables, notices: &mut Vec<String>) -> Result<Vec<Group>, Fault> {
+pub(super) fn build(raw: &Raw, tables: &Tables, bytes: &[u8], notices: &mut Vec<String>) -> Result<Vec<Group>, Fault> {
     let mut groups = named_groups(&raw.names)?;
     let mut nameless: Vec<String> = Vec::new();
     let mut positions = [0usize; 5];
@@ -52,6 +56,9 @@ pub(super) fn build(raw: &Raw, tables: &Tables, notices: &mut Vec<String>) -> Re
         positions[shape as usize] += run.count;
         for &tag in raw.physical_tags(run) {
             let dimension = shape.dimension();
+            if groups.len() == MOST_GROUPS && !groups.contains_key(&(dimension, tag)) {
+                return Err(too_many_groups(run.records.locate(bytes, 0)));
+            }
             let group = groups.entry((dimension, tag)).or_insert_with(|| {
                 let name = made_up_name(tag);
                 nameless.push(format!("\"{name}\" of dimension {dimension}"));
@@ -85,6 +92,9 @@ pub(super) fn build(raw: &Raw, tables: &Tables, notices: &mut Vec<String>) -> Re
 fn named_groups(names: &[PhysicalName]) -> Result<BTreeMap<(u8, i32), Group>, Fault> {
     let mut groups: BTreeMap<(u8, i32), Group> = BTreeMap::new();
     for PhysicalName { dimension, tag, name, at } in names {
+        if groups.len() == MOST_GROUPS && !groups.contains_key(&(*dimension, *tag)) {
+            return Err(too_many_groups(*at));
+        }
         let group = Group { name: name.clone(), dimension: *dimension, tag: *tag, ..Group::default() };
         if let Some(other) = groups.insert((*dimension, *tag), group)
             && other.name != *name
@@ -97,6 +107,13 @@ fn named_groups(names: &[PhysicalName]) -> Result<BTreeMap<(u8, i32), Group>, Fa
         }
     }
     Ok(groups)
+}
+
+fn too_many_groups(at: usize) -> Fault {
+    Fault::unsupported(
+        at,
+        format!("found more than {MOST_GROUPS} physical groups; give parts that act alike one group"),
+    )
 }
 
 fn note_empty_groups(raw: &Raw, groups: &[Group], notices: &mut Vec<String>) {
@@ -127,11 +144,4 @@ fn note_unlisted_entities(raw: &Raw, notices: &mut Vec<String>) {
     if count > 0 {
         notices.push(format!("{count} element(s) lie on entities that $Entities does not list: they are in no group"));
     }
-}
-
-/// The first few of many.
-fn list(items: &[String]) -> String {
-    const SHOWN: usize = 8;
-    let more = if items.len() > SHOWN { format!(" and {} more", items.len() - SHOWN) } else { String::new() };
-    format!("{}{more}", items[..items.len().min(SHOWN)].join(", "))
 }

@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use super::assemble::assemble;
 use super::binary::Layout;
-use super::cursor::{Cursor, What, quote};
+use super::cursor::{Cursor, What, list, quote};
 use super::error::{Fault, MeshError, Problem};
 use super::raw::Raw;
 use super::{entities, names, v2, v4};
@@ -167,11 +167,9 @@ fn read_sections(cursor: &mut Cursor, format: Format) -> Result<Raw, Fault> {
             return Err(Fault::truncated(cursor.bytes.len(), format!("section ${required}")));
         }
     }
-    for (name, count) in skipped {
-        raw.notices.push(match count {
-            1 => format!("section ${name} was skipped"),
-            _ => format!("{count} sections ${name} were skipped"),
-        });
+    if !skipped.is_empty() {
+        let name = |(name, count)| if count == 1 { format!("${name}") } else { format!("${name} ({count} times)") };
+        raw.notices.push(format!("section(s) skipped: {}", list(&skipped.into_iter().map(name).collect::<Vec<_>>())));
     }
     if stray > 0 {
         raw.notices.push(format!("{stray} line(s) outside any section were skipped"));

@@ -91,7 +91,7 @@ pub(super) fn read_elements(cursor: &mut Cursor, layout: Option<Layout>, raw: &m
         let (dimension, entity, code, block_count) = read_block_header(cursor, layout, "a block of elements")?;
         let kind = element_type(code.into(), block_at)?;
         if i64::from(dimension) != i64::from(kind.shape.dimension()) {
-            let found = format!("a block of {}s on an entity of dimension {dimension}", kind.shape.singular());
+            let found = format!("a block of {} on an entity of dimension {dimension}", kind.shape.plural());
             return Err(Fault::unexpected(block_at, found, format!("dimension {}", kind.shape.dimension())));
         }
         let stride = layout.map_or(0, |layout| layout.word * (1 + kind.nodes));

@@ -32,8 +32,8 @@ impl MshFormat {
 ///
 /// # Errors
 /// Those of `out`; and [`io::ErrorKind::InvalidInput`] for what the format cannot hold: a name with a quote or a line
-/// break, a group tag below 1 or used twice in a dimension, a group member or tag list that does not fit the elements,
-/// a tag beyond 32 bits in MSH 2.2.
+/// break, a group tag below 1 or used twice in a dimension, a group member, a node or a tag list that does not
+/// fit the arrays, a tag beyond 32 bits in MSH 2.2.
 pub fn write_msh(mesh: &Mesh, format: MshFormat, out: &mut impl Write) -> io::Result<()> {
     check_groups(mesh)?;
     let families = families(mesh)?;
@@ -65,14 +65,32 @@ struct Family<'a> {
     groups: Ragged,
 }
 
+/// The elements of each shape.
 fn families(mesh: &Mesh) -> io::Result<[Family<'_>; 5]> {
     let members = |select: fn(&Group) -> &Vec<u32>| mesh.groups.iter().map(move |group| select(group).as_slice());
+    let node_count = mesh.nodes.len();
     Ok([
-        family(15, 0, mesh.points.as_flattened(), 1, &mesh.point_tags, members(|group| &group.points))?,
-        family(1, 1, mesh.lines.as_flattened(), 2, &mesh.line_tags, members(|group| &group.lines))?,
-        family(2, 2, mesh.triangles.as_flattened(), 3, &mesh.triangle_tags, members(|group| &group.triangles))?,
-        family(3, 2, mesh.quads.as_flattened(), 4, &mesh.quad_tags, members(|group| &group.quads))?,
-        family(4, 3, mesh.tetrahedra.as_flattened(), 4, &mesh.tetrahedron_tags, members(|group| &group.tetrahedra))?,
+        family(15, 0, mesh.points.as_flattened(), 1, &mesh.point_tags, node_count, members(|group| &group.points))?,
+        family(1, 1, mesh.lines.as_flattened(), 2, &mesh.line_tags, node_count, members(|group| &group.lines))?,
+        family(
+            2,
+            2,
+            mesh.triangles.as_flattened(),
+            3,
+            &mesh.triangle_tags,
+            node_count,
+            members(|group| &group.triangles),
+        )?,
+        family(3, 2, mesh.quads.as_flattened(), 4, &mesh.quad_tags, node_count, members(|group| &group.quads))?,
+        family(
+            4,
+            3,
+            mesh.tetrahedra.as_flattened(),
+            4,
+            &mesh.tetrahedron_tags,
+            node_count,
+            members(|group| &group.tetrahedra),
+        )?,
     ])
 }
 
@@ -82,6 +100,7 @@ fn family<'a>(
     nodes: &'a [u32],
     size: usize,
     tags: &'a [u64],
+    node_count: usize,
     members: impl Iterator<Item = &'a [u32]> + Clone,
 ) -> io::Result<Family<'a>> {
     let count = nodes.len() / size;
@@ -90,6 +109,9 @@ fn family<'a>(
     }
     if let Some(member) = members.clone().flatten().find(|&&member| member as usize >= count) {
         return Err(invalid(format!("a group names element {member} of {count} of Gmsh type {code}")));
+    }
+    if let Some(node) = nodes.iter().find(|&&node| node as usize >= node_count) {
+        return Err(invalid(format!("an element of Gmsh type {code} names node {node} of {node_count}")));
     }
     Ok(Family { code, dimension, size, nodes, tags, groups: Ragged::inverse(count, members) })
 }

@@ -234,8 +234,8 @@ def describe(file):
     of_meshio = [len(distinct.get(name, ())) for name in FAMILIES.values()]
     if of_meshio != counts:
         print(f"// meshio finds {of_meshio}")
-    sets = {name: sum(len(x) for x in lists if x is not None) for name, lists in mesh.cell_sets.items() if "gmsh:" not in name}
-    print("//", sets)
+    lengths = {name: sum(len(x) for x in lists if x is not None) for name, lists in mesh.cell_sets.items()}
+    print("//", {name: length for name, length in lengths.items() if "gmsh:" not in name})
 
 
 def main():
