@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use crate::topology::{TETRAHEDRON_EDGES, TETRAHEDRON_FACETS};
 
-/// Signed volume of a tetrahedron, (b − a) · ((c − a) × (d − a)) / 6. Positive where a, b, c turn clockwise seen
-/// from d's far side, as origin, x, y, z do.
+/// Signed volume of a tetrahedron, (b − a) · ((c − a) × (d − a)) / 6. Positive where a, b, c turn counter-clockwise
+/// seen from d, as origin, x, y, z do.
 #[inline]
 pub fn signed_volume([a, b, c, d]: [Vec3; 4]) -> f64 {
     (b - a).dot(&(c - a).cross(&(d - a))) / 6.0
