@@ -5,7 +5,7 @@ use fractum_math::Vec3;
 /// Nodes, straight-sided elements and named groups. Elements name nodes by their index in [`Mesh::nodes`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// Coordinates [m, or the unit of the file], in file order; only nodes that some element uses.
+    /// Coordinates (m, or the unit of the file), in file order; only nodes that some element uses.
     pub nodes: Vec<Vec3>,
     /// The file's tag of each node.
     pub node_tags: Vec<u64>,

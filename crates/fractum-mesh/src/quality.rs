@@ -34,9 +34,9 @@ pub struct Shape {
     /// Radius of the inscribed over that of the circumscribed circle or sphere, times 2 or 3: 1 for the regular
     /// shape, 0 for a flat one.
     pub radius_ratio: f64,
-    /// Smallest angle at a corner, or dihedral angle at an edge [rad].
+    /// Smallest angle at a corner, or dihedral angle at an edge, in radians.
     pub smallest_angle: f64,
-    /// Largest such angle [rad].
+    /// Largest such angle, in radians.
     pub largest_angle: f64,
 }
 
@@ -113,9 +113,9 @@ pub struct Summary {
     pub mean_radius_ratio: f64,
     /// Lowest radius ratio.
     pub worst_radius_ratio: Extreme,
-    /// Smallest angle [rad].
+    /// Smallest angle, in radians.
     pub smallest_angle: Extreme,
-    /// Largest angle [rad].
+    /// Largest angle, in radians.
     pub largest_angle: Extreme,
 }
 
