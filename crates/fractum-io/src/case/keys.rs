@@ -10,8 +10,8 @@ use super::{Choice, Diagnostic, nearest};
 /// A key of the case file.
 #[derive(Debug, Clone, Copy)]
 pub struct KeyDoc {
-    /// Dotted path; `NAME` stands for a name of the user's, `[]` for any of several, `TIME_FUNCTION` for the table form of
-    /// any time function.
+    /// Dotted path; `NAME` stands for a name of the user's, `[]` for any of several, `TIME_FUNCTION` for the table form
+    /// of any time function.
     pub path: &'static str,
     /// What it holds.
     pub kind: KeyKind,

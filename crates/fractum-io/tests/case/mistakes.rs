@@ -34,7 +34,8 @@ fn each_mistake_has_one_clear_message() {
         (
             "young_modulus = 210e9",
             "young_modulus = \"210 mm\"",
-            "6:17: materials.steel.young_modulus = \"210 mm\", which is a length; expected a pressure such as \"21 GPa\"",
+            "6:17: materials.steel.young_modulus = \"210 mm\", which is a length; expected a pressure such as \"21 \
+             GPa\"",
         ),
         (
             "young_modulus = 210e9",
@@ -50,8 +51,8 @@ fn each_mistake_has_one_clear_message() {
         (
             "end = 1e-3",
             "end = 1e-3\nqqqqqq = 0.5",
-            "15:1: solver.qqqqqq is not a key; keys here: kind, end, safety, time_step, step, stop_when, balance_warning, \
-             balance_stop",
+            "15:1: solver.qqqqqq is not a key; keys here: kind, end, safety, time_step, step, stop_when, \
+             balance_warning, balance_stop",
         ),
         (
             "kind = \"solid\"",
@@ -85,8 +86,8 @@ fn each_mistake_has_one_clear_message() {
         (
             "end = 1e-3",
             "end = 1e-3\n[[supports]]\ngroup = \"a\"\nfix = \"xy\"\nvelocity = { y = 1 }",
-            "18:18: supports[0].velocity.y moves an axis that this support already moves; name each axis once among fix, \
-             velocity, displacement",
+            "18:18: supports[0].velocity.y moves an axis that this support already moves; name each axis once among \
+             fix, velocity, displacement",
         ),
         (
             "end = 1e-3",
@@ -126,8 +127,8 @@ fn each_mistake_has_one_clear_message() {
         (
             "end = 1e-3",
             "end = 1e-3\n[[loads]]\ngroup = \"a\"\npressure = \"1000*9.81*y\"",
-            "17:12: loads[0].pressure = \"1000*9.81*y\", which is a length; expected a pressure such as \"21 GPa\"; in a product \
-             a number without a unit is a pure number; give it its unit",
+            "17:12: loads[0].pressure = \"1000*9.81*y\", which is a length; expected a pressure such as \"21 GPa\"; \
+             in a product a number without a unit is a pure number; give it its unit",
         ),
         (
             "poisson_ratio = 0.3",
@@ -137,20 +138,21 @@ fn each_mistake_has_one_clear_message() {
         (
             "poisson_ratio = 0.3",
             "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, tension_cutoff = true }",
-            "8:55: materials.steel.damage.tension_cutoff has no effect with this criterion, only with mohr-coulomb; remove it",
+            "8:55: materials.steel.damage.tension_cutoff has no effect with this criterion, only with mohr-coulomb; \
+             remove it",
         ),
         (
             "poisson_ratio = 0.3",
             "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, criterion = \"mohr-coulomb\", \
              friction_angle = \"30 deg\", compressive_strength = 2.9 }",
-            "8:133: materials.steel.damage.compressive_strength is 2.9 Pa as compressive strength, too low for its friction \
-             angle; expected at least 3 Pa; raise compressive_strength or lower friction_angle",
+            "8:133: materials.steel.damage.compressive_strength is 2.9 Pa as compressive strength, too low for its \
+             friction angle; expected at least 3 Pa; raise compressive_strength or lower friction_angle",
         ),
         (
             "young_modulus = 210e9",
             "young_modulus = \"2*GPa\"",
-            "6:20: materials.steel.young_modulus = \"2*GPa\": unknown name \"GPa\"; a unit stands right behind its number, as \
-             in 2 mm",
+            "6:20: materials.steel.young_modulus = \"2*GPa\": unknown name \"GPa\"; a unit stands right behind its \
+             number, as in 2 mm",
         ),
         (
             "material = \"steel\"",
@@ -170,20 +172,21 @@ fn each_mistake_has_one_clear_message() {
         (
             "end = 1e-3",
             "end = 1e-3\n[[probes]]\nname = \"a\"\nenergy = \"kinetc\"",
-            "17:10: probes[0].energy = \"kinetc\"; expected \"external\", \"kinetic\", \"elastic\", \"damage\", \"removed\", \
+            "17:10: probes[0].energy = \"kinetc\"; expected \"external\", \"kinetic\", \"elastic\", \"damage\", \
+             \"removed\", \
              \"contact\", \"friction\", \"damping\", \"absorbed\" or \"residual\"; did you mean \"kinetic\"?",
         ),
         (
             "end = 1e-3",
             "end = 1e-3\n[[probes]]\nname = \"a b\"\ncrack_area = true",
-            "16:8: probes[0].name is not a name an expression can use; begin with a letter and go on with letters, digits \
-             and underscores",
+            "16:8: probes[0].name is not a name an expression can use; begin with a letter and go on with letters, \
+             digits and underscores",
         ),
         (
             "end = 1e-3",
             "end = 1e-3\n[[expect]]\nquantity = \"energy.resid_max_relative\"\nbelow = 1\nsource = \"s\"",
-            "16:12: expect[0].quantity = \"energy.resid_max_relative\" is neither a probe nor a path of summary.json; did you \
-             mean \"energy.residual_max_relative\"?",
+            "16:12: expect[0].quantity = \"energy.resid_max_relative\" is neither a probe nor a path of \
+             summary.json; did you mean \"energy.residual_max_relative\"?",
         ),
         (
             "end = 1e-3",
