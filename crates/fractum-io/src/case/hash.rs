@@ -5,8 +5,8 @@ use xxhash_rust::xxh3::Xxh3;
 use super::Case;
 
 impl Case {
-    /// Hash of everything read besides the mesh: text, overrides, tables. The path plays no part, so a case keeps its hash
-    /// when it moves.
+    /// Hash of everything read besides the mesh: text, overrides, tables. The path plays no part, so a case keeps its
+    /// hash when it moves.
     pub fn hash(&self) -> u128 {
         let source = &self.source;
         let mut hasher = Xxh3::new();

@@ -10,8 +10,8 @@ use super::{Choice, Diagnostic, nearest};
 /// A key of the case file.
 #[derive(Debug, Clone, Copy)]
 pub struct KeyDoc {
-    /// Dotted path; `NAME` stands for a name of the user's, `[]` for any of several, `TIME_FUNCTION` for the table form of
-    /// any time function.
+    /// Dotted path; `NAME` stands for a name of the user's, `[]` for any of several, `TIME_FUNCTION` for the table form
+    /// of any time function.
     pub path: &'static str,
     /// What it holds.
     pub kind: KeyKind,
@@ -196,20 +196,32 @@ pub(super) fn children(pattern: &str) -> impl Iterator<Item = &'static str> {
         .map(|name| name.trim_end_matches("[]"))
 }
 
+/// An unknown key, and the path of the key that was probably meant.
+pub(super) struct Unknown {
+    pub(super) diagnostic: Diagnostic,
+    pub(super) meant: Option<String>,
+}
+
 /// Reports keys that do not exist, with the nearest that does, and takes them out of the tree.
-pub(super) fn remove_unknown(node: &mut Node, pattern: &str, report: &mut dyn FnMut(Diagnostic)) {
+pub(super) fn remove_unknown(node: &mut Node, pattern: &str, report: &mut dyn FnMut(Unknown)) {
     let Value::Table(entries) = &mut node.value else { return };
+    let table = &node.place.key;
     entries.retain_mut(|entry| {
         let exact = join(pattern, &entry.name);
         let named = join(pattern, "NAME");
         let key = describe(&exact).or_else(|| describe(&format!("{exact}[]"))).or_else(|| describe(&named));
         let Some(key) = key.filter(|key| key.path != TIME_FUNCTION) else {
             let known: Vec<_> = children(pattern).collect();
-            let unknown = Diagnostic::error(&entry.key_place, "is not a key");
+            let diagnostic = Diagnostic::error(&entry.key_place, "is not a key");
             report(match nearest(&entry.name, known.iter().copied()) {
-                Some(near) => unknown.remedy(format!("did you mean {near}?")),
-                None if known.is_empty() => unknown,
-                None => unknown.remedy(format!("keys here: {}", known.join(", "))),
+                Some(near) => Unknown {
+                    diagnostic: diagnostic.remedy(format!("did you mean {near}?")),
+                    meant: Some(join(table, near)),
+                },
+                None if known.is_empty() => Unknown { diagnostic, meant: None },
+                None => {
+                    Unknown { diagnostic: diagnostic.remedy(format!("keys here: {}", known.join(", "))), meant: None }
+                }
             });
             return false;
         };

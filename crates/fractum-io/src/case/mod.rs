@@ -1,8 +1,8 @@
 //! The case file: TOML with units in, a typed and checked [`Case`] out.
 //!
-//! [`read_case`] reads a file and reports every mistake at once, each with its line and column, what was expected and the
-//! nearest valid name. All numbers of a [`Case`] are in SI. What only the mesh can tell, such as whether a named group
-//! exists, is left to the user of the case, who finds the place of each name beside it.
+//! [`read_case`] reads a file and reports every mistake at once, each with its line and column, what was expected and
+//! the nearest valid name. All numbers of a [`Case`] are in SI. What only the mesh can tell, such as whether a named
+//! group exists, is left to the user of the case, who finds the place of each name beside it.
 //!
 //! ```
 //! use fractum_io::case::parse_case;

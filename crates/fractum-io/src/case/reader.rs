@@ -1,11 +1,11 @@
 //! Typed access to the tables of a case: every mistake is noted, none ends the reading.
 
 use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use super::expression::{Compiled, ExpressionError, Named, Names, Op, Type, compile};
-use super::keys::{KeyKind, describe};
+use super::keys::{KeyKind, Unknown, describe};
 use super::tree::{Entry, Node, Value, join};
 use super::unit::Dimension;
 use super::{Choice, Diagnostic, Place, Spanned, nearest};
@@ -19,6 +19,8 @@ pub(super) struct Reader {
     /// Tables read from other files: name as written, contents.
     pub(super) tables: RefCell<Vec<(String, Vec<u8>)>>,
     diagnostics: RefCell<Vec<Diagnostic>>,
+    /// Paths of keys that were probably meant by unknown ones: these are not missing too.
+    meant: RefCell<BTreeSet<String>>,
 }
 
 /// A named quantity.
@@ -32,12 +34,31 @@ pub(super) struct Parameter {
 
 impl Reader {
     pub(super) fn new(folder: PathBuf) -> Self {
-        Self { folder, parameters: RefCell::default(), tables: RefCell::default(), diagnostics: RefCell::default() }
+        Self {
+            folder,
+            parameters: RefCell::default(),
+            tables: RefCell::default(),
+            diagnostics: RefCell::default(),
+            meant: RefCell::default(),
+        }
     }
 
     /// Notes a mistake or a doubt.
     pub(super) fn note(&self, diagnostic: Diagnostic) {
         self.diagnostics.borrow_mut().push(diagnostic);
+    }
+
+    /// Notes a key that does not exist.
+    pub(super) fn note_unknown(&self, unknown: Unknown) {
+        self.note(unknown.diagnostic);
+        self.meant.borrow_mut().extend(unknown.meant);
+    }
+
+    /// Notes a key that is not there, unless its name was misspelt.
+    pub(super) fn note_missing(&self, place: &Place, expected: impl Into<String>) {
+        if !self.meant.borrow().contains(&place.key) {
+            self.note(Diagnostic::error(place, "is missing").expected(expected));
+        }
     }
 
     /// Everything noted.
@@ -371,8 +392,7 @@ impl<'t, 'a, T> Reading<'t, 'a, T> {
     pub(super) fn required(self) -> Option<T> {
         if matches!(self.state, State::Absent) {
             let expected = self.table.kind(self.name).map_or(String::new(), KeyKind::expected);
-            let note = Diagnostic::error(&self.table.place_of(self.name), "is missing");
-            self.table.reader.note(note.expected(expected));
+            self.table.reader.note_missing(&self.table.place_of(self.name), expected);
         }
         self.given()
     }

@@ -78,8 +78,8 @@ impl TimeFunction {
         }
     }
 
-    /// A double-exponential pulse by its largest value `peak`, the time `rise` [s] from its begin at `start` [s] to that
-    /// value, and the time `decay` [s] from there until 1/e of it is left.
+    /// A double-exponential pulse by its largest value `peak`, the time `rise` [s] from its begin at `start` [s] to
+    /// that value, and the time `decay` [s] from there until 1/e of it is left.
     ///
     /// `None` unless 2.1462 ≤ decay/rise ≤ 1e6: no difference of exponentials decays faster.
     pub fn double_exponential(peak: f64, rise: f64, decay: f64, start: f64) -> Option<Self> {

@@ -179,8 +179,12 @@ impl Unit {
         })
     }
 
-    /// The symbol that resembles this one most.
+    /// The unit that was probably meant by this symbol: `m^3` for `m3`, else one that resembles it.
     pub(super) fn nearest(symbol: &str) -> Option<String> {
+        let base = symbol.trim_end_matches(|c: char| c.is_ascii_digit());
+        if base != symbol && Unit::find(base).is_some() {
+            return Some(format!("{base}^{}", &symbol[base.len()..]));
+        }
         let prefixed = SYMBOLS.iter().filter(|(.., prefixed)| *prefixed);
         let with_prefix =
             prefixed.flat_map(|(name, ..)| PREFIXES.iter().map(move |(prefix, _)| format!("{prefix}{name}")));
@@ -320,5 +324,6 @@ mod tests {
         assert_eq!(Dimension::LENGTH.power(0.3), None);
         assert_eq!(Dimension::LENGTH.power(1e300), None);
         assert_eq!(Unit::nearest("Gpa").as_deref(), Some("GPa"));
+        assert_eq!(Unit::nearest("m3").as_deref(), Some("m^3"));
     }
 }

@@ -25,7 +25,10 @@ proptest! {
     }
 
     #[test]
-    fn shuffled_lines_never_panic(order in Just((0..every_key().lines().count()).collect::<Vec<_>>()).prop_shuffle(), keep in 1usize..200) {
+    fn shuffled_lines_never_panic(
+        order in Just((0..every_key().lines().count()).collect::<Vec<_>>()).prop_shuffle(),
+        keep in 1usize..200,
+    ) {
         let text = every_key();
         let lines: Vec<&str> = text.lines().collect();
         let text: Vec<&str> = order.iter().take(keep).map(|i| lines[*i]).collect();

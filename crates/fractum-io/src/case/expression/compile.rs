@@ -199,8 +199,20 @@ impl<'t> Compiler<'t, '_> {
         match nearest(name, all.iter().map(String::as_str)) {
             _ if Unit::find(name).is_some() => error.remedy("a unit stands right behind its number, as in 2 mm"),
             Some(near) => error.remedy(format!("did you mean \"{near}\"?")),
+            None if self.continues_unit()
+                && let Some(near) = Unit::nearest(name) =>
+            {
+                error.remedy(format!("did you mean \"{near}\"?"))
+            }
             None => error.remedy(format!("names here: {}", all.join(", "))),
         }
+    }
+
+    /// Whether the name just read follows a unit and `*` or `/`, so that it may have been meant as a unit too.
+    fn continues_unit(&self) -> bool {
+        let before = |back: usize| self.at.checked_sub(back).and_then(|at| self.tokens.get(at)).map(|token| token.kind);
+        matches!(before(2), Some(Kind::Symbol("*" | "/")))
+            && matches!(before(3), Some(Kind::Name(unit)) if !self.names.contains(unit) && Unit::find(unit).is_some())
     }
 
     fn call(&mut self, name: &str, offset: usize) -> Result<Type> {
@@ -448,6 +460,10 @@ mod tests {
         ] {
             assert_eq!(message(text), expected, "{text}");
         }
+        let remedy = |text: &str| compile(text, &mut Some4, false).expect_err(text).remedy;
+        assert_eq!(remedy("3 kg/m3"), "did you mean \"m^3\"?");
+        assert_eq!(remedy("3*mm"), "a unit stands right behind its number, as in 2 mm");
+        assert_eq!(remedy("3*foo"), "names here: x, t, E, f, pi");
         assert_eq!(message(&"(".repeat(100_000)), "the expression is nested too deeply");
         assert_eq!(message(&format!("{}1{}", "1+(".repeat(39), ")".repeat(39))), "the expression is nested too deeply");
         assert_eq!(message(&"-".repeat(100_000)), "the expression is nested too deeply");

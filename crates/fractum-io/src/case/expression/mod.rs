@@ -1,8 +1,8 @@
 //! Expressions of the case file: text in, a checked flat program out.
 //!
-//! A number followed by a unit is one quantity (`100 MPa*exp(-t/5 ms)` divides t by 5 ms), and every operation is checked
-//! for its dimensions. A number without a unit takes the dimension of what it is added to or compared with, SI then being
-//! meant; in a product it is a pure number.
+//! A number followed by a unit is one quantity (`100 MPa*exp(-t/5 ms)` divides t by 5 ms), and every operation is
+//! checked for its dimensions. A number without a unit takes the dimension of what it is added to or compared with, SI
+//! then being meant; in a product it is a pure number.
 
 mod compile;
 mod lexer;

@@ -36,7 +36,8 @@ pub struct SolidBody {
     pub formulation: Formulation,
     /// Small or large rotations.
     pub kinematics: Kinematics,
-    /// Plane state, for two-dimensional meshes only (`None` there = plane strain); the place is there to refuse it in 3D.
+    /// Plane state, for two-dimensional meshes only (`None` there = plane strain); the place is there to refuse it in
+    /// 3D.
     pub plane: Option<Spanned<Plane>>,
     /// Thickness [m], > 0, for two-dimensional meshes only (`None` there = 1 m); the place is there to refuse it in 3D.
     pub thickness: Option<Spanned<f64>>,

@@ -16,8 +16,8 @@ pub use probe::{CountKind, EnergyKind, Probe, ProbeExpression, ProbeInput, Probe
 use super::choice::choice;
 use super::{Diagnostic, Dimension, Spanned};
 
-/// A case, read and checked. What needs the mesh (group names, two or three dimensions) is checked by its user, with the
-/// places kept here.
+/// A case, read and checked. What needs the mesh (group names, two or three dimensions) is checked by its user, with
+/// the places kept here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
     /// The input as it was read.

@@ -18,8 +18,7 @@ pub(super) fn read(root: &Table<'_>, materials: &[(String, Option<Material>)]) -
     let mut bodies: Vec<Body> = Vec::new();
     let tables = root.tables("bodies");
     if !root.has("bodies") || (tables.is_empty() && root.holds_array("bodies")) {
-        let note = Diagnostic::error(&root.place_of("bodies"), "is missing");
-        root.reader.note(note.expected("at least one body in [[bodies]]"));
+        root.reader.note_missing(&root.place_of("bodies"), "at least one body in [[bodies]]");
     }
     for table in tables {
         let Some(body) = body(table, materials, &mut used) else {

@@ -61,7 +61,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
             reader.note(*error);
         }
     }
-    remove_unknown(&mut root, "", &mut |unknown| reader.note(unknown));
+    remove_unknown(&mut root, "", &mut |unknown| reader.note_unknown(unknown));
 
     let source = CaseSource {
         path: path.to_path_buf(),

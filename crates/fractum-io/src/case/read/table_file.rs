@@ -25,8 +25,8 @@ pub(super) fn read(reader: &Reader, name: &Spanned<String>) -> Option<Vec<(f64, 
     points
 }
 
-/// Parses rows of two numbers separated by comma, semicolon or blanks. Blank lines and comments (`#`) are skipped, and so is
-/// a first row of words.
+/// Parses rows of two numbers separated by comma, semicolon or blanks. Blank lines and comments (`#`) are skipped, and
+/// so is a first row of words.
 fn parse(text: &str, mut report: impl FnMut(u32, String)) -> Option<Vec<(f64, f64)>> {
     let mut points: Vec<(f64, f64)> = Vec::new();
     let mut first = true;

@@ -84,7 +84,13 @@ fn file(table: &Table<'_>, dimension: Dimension) -> Option<Vec<(f64, f64)>> {
     let value_unit = unit(table, "value_unit", dimension).unwrap_or(1.0);
     let name = table.text("table").spanned().required()?;
     let points = table_file::read(table.reader, &name)?;
-    Some(points.into_iter().map(|(time, value)| (time * time_unit, value * value_unit)).collect())
+    let points: Vec<_> = points.into_iter().map(|(time, value)| (time * time_unit, value * value_unit)).collect();
+    if points.iter().any(|(time, value)| !time.is_finite() || !value.is_finite()) {
+        let found = format!("= \"{}\" holds numbers too large for their units", name.value);
+        table.reader.note(Diagnostic::error(&name.place, found));
+        return None;
+    }
+    Some(points)
 }
 
 fn pulse(table: &Table<'_>, dimension: Dimension) -> Option<TimeFunction> {

@@ -56,7 +56,8 @@ fn triple(reader: &Reader, node: &Node, dimension: Dimension) -> Option<Vec3> {
     }
 }
 
-/// Takes components along x, y, z from a table, at least one; nothing where the table is absent or a component is wrong.
+/// Takes components along x, y, z from a table, at least one; nothing where the table is absent or a component is
+/// wrong.
 pub(super) fn components<T>(
     parent: &Table<'_>,
     name: &'static str,
