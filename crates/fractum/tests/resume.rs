@@ -284,4 +284,5 @@ fn without_a_checkpoint_there_is_nothing_to_resume() {
     assert_eq!(ended.code, Some(1));
     assert_eq!(ended.stderr.lines().count(), 1, "{}", ended.stderr);
     assert!(ended.stderr.contains("never: no checkpoint to resume from; run without --resume"), "{}", ended.stderr);
+    assert!(!place.path("never").exists());
 }
