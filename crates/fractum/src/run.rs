@@ -78,8 +78,6 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     let Input { case, mesh, mesh_hash, assembly } = load(path, &options.overrides)?;
     let plan = Plan::new(&case, &mesh, &assembly);
     let folder = options.output.clone().unwrap_or_else(|| default_folder(path));
-    fractum_io::atomic::create_folder(&folder)?;
-    fractum_io::atomic::create_folder(&folder.join("pictures"))?;
     let identity = Identity { program: program(), case_hash: case.hash(), mesh_hash };
     let mut scene = assembly.scene;
 
@@ -91,6 +89,8 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
             folder.display()
         )));
     }
+    fractum_io::atomic::create_folder(&folder)?;
+    fractum_io::atomic::create_folder(&folder.join("pictures"))?;
     let log_path = folder.join("run.log");
     let mut log = if resumed.is_some() { RunLog::resume(&log_path)? } else { RunLog::create(&log_path)? };
     if resumed.is_none() {

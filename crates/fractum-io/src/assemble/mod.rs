@@ -11,9 +11,9 @@ use fractum_fem::{LocalDamping, Solid, Viscosity};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_scene::coupling::Debris;
-use fractum_scene::{Guard, Loads, Probe, RigidPlane, Scene, SceneSettings, Supports, TimeStepSettings};
+use fractum_scene::{Guard, Loads, Probe, RigidPlane, Scene, SceneError, SceneSettings, Supports, TimeStepSettings};
 
-use crate::case::model::{BodyKind, Case, GroupUse, Shape, TimeStep};
+use crate::case::model::{BodyKind, Case, GroupUse, Shape, Support, TimeStep};
 use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction, nearest};
 
 /// A scene with what is needed to speak of it in the user's terms.
@@ -119,8 +119,7 @@ impl Context<'_> {
         let supports = match Supports::new(supports, &solid.reference) {
             Ok(supports) => supports,
             Err(error) => {
-                let place = self.case.supports.first().map(|s| s.group.place.clone());
-                let place = place.unwrap_or_else(|| self.whole_case());
+                let place = self.place_of_support(&error);
                 self.error(&place, format!(": {error}"), "");
                 return None;
             }
@@ -159,6 +158,13 @@ impl Context<'_> {
             boundary,
             warnings,
         })
+    }
+
+    /// The support that contradicts one above it.
+    fn place_of_support(&self, error: &SceneError) -> Place {
+        let SceneError::ContradictorySupports { second, .. } = error else { return self.whole_case() };
+        let name = |s: &&Support| s.name.as_ref().unwrap_or(&s.group).value == *second;
+        self.case.supports.iter().rev().find(name).map_or_else(|| self.whole_case(), |s| s.group.place.clone())
     }
 
     fn settings(&self) -> SceneSettings {

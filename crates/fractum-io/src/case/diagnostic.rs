@@ -74,8 +74,9 @@ impl fmt::Display for Diagnostic {
         if let Some(place) = &self.place
             && !place.key.is_empty()
         {
-            let space = if self.found.starts_with([':', ',']) { "" } else { " " };
-            write!(f, "{}{space}", one_line(&place.key))?;
+            // What begins with a stop belongs to the key: `mesh.file: cannot be read`.
+            let gap = if self.found.starts_with([':', ',', '.']) { "" } else { " " };
+            write!(f, "{}{gap}", one_line(&place.key))?;
         }
         write!(f, "{}", one_line(&self.found))?;
         if !self.expected.is_empty() {
@@ -130,6 +131,10 @@ mod tests {
         assert_eq!(
             diagnostic.to_string(),
             "cases/beam.toml:14:17: warning: materials.concrete.poisson_ratio = \"a\\nb\"; do this"
+        );
+        assert_eq!(
+            Diagnostic::error(&place, ": too stiff").to_string(),
+            "cases/beam.toml:14:17: materials.concrete.poisson_ratio: too stiff"
         );
         let json = serde_json::to_value(Diagnostics(vec![diagnostic])).unwrap();
         assert_eq!(json[0]["severity"], "warning");

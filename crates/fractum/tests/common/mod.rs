@@ -1,0 +1,165 @@
+//! A folder with a small mesh and a case, and the program as its user starts it.
+
+#![allow(dead_code)] // each test file uses its own part
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+use fractum_math::Vec3;
+use fractum_mesh::generate::structured_box;
+use fractum_mesh::{Mesh, MshFormat, write_msh};
+
+/// A bar with a weak slab in its middle, pulled apart while it falls on a rigid plane: damage, removed elements,
+/// discrete elements, contacts between them and with the plane.
+pub(crate) const BREAKING_BAR: &str = r#"fractum = 1
+title = "A bar that breaks above a floor"
+
+[parameters]
+end = "1 ms"
+
+[mesh]
+file = "bar.msh"
+
+[materials.concrete]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+[materials.concrete.damage]
+criterion = "rankine"
+tensile_strength = "3 MPa"
+fracture_energy = "100 J/m^2"
+[materials.concrete.damage.scatter]
+distribution = "uniform"
+width = 0.1
+seed = 3
+[materials.concrete.contact]
+friction = 0.4
+damping_ratio = 0.05
+
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "concrete"
+kinematics = "corotational"
+strength_factor = "if(abs(x - 20 cm) < 3 cm, 0.5, 1.0)"
+initial_velocity = { y = "-0.1 m/s" }
+
+[[bodies]]
+name = "floor"
+kind = "rigid"
+shape = "plane"
+point = ["0 m", "-0.005 mm", "0 m"]
+normal = "y"
+contact = { friction = 0.3, damping_ratio = 0.05 }
+
+[[supports]]
+group = "x-"
+velocity = { x = { ramp = [["0 s", "0 m/s"], ["0.2 ms", "-0.2 m/s"]] } }
+
+[[supports]]
+group = "x+"
+velocity = { x = { ramp = [["0 s", "0 m/s"], ["0.2 ms", "0.2 m/s"]] } }
+
+[[loads]]
+gravity = { y = "-9.81 m/s^2" }
+
+[solver]
+kind = "explicit"
+end = "end"
+
+[[probes]]
+name = "load"
+reaction = { group = "x+", along = "x" }
+
+[[probes]]
+name = "largest_load"
+expression = "max(load)"
+
+[output]
+fields = { every = "0.1 ms" }
+history = { every = "10 us" }
+checkpoint = { every = "5 ms" }
+"#;
+
+/// A folder of one test, gone at its end.
+pub(crate) struct Workplace {
+    folder: tempfile::TempDir,
+}
+
+/// How a command ended.
+#[derive(Debug)]
+pub(crate) struct Ended {
+    /// Exit code; none if a signal ended it.
+    pub(crate) code: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Workplace {
+    /// A folder that holds `case.toml` and `bar.msh`.
+    pub(crate) fn new(case: &str) -> Self {
+        Self::with_mesh(case, &mesh_bytes(&bar(), MshFormat::V4_1Binary))
+    }
+
+    pub(crate) fn with_mesh(case: &str, mesh: &[u8]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("bar.msh"), mesh).unwrap();
+        fs::write(folder.path().join("case.toml"), case).unwrap();
+        Workplace { folder }
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// `fractum ARGUMENTS` in the folder, not yet started.
+    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_fractum"));
+        command.args(arguments).current_dir(self.folder.path()).stdin(Stdio::null());
+        command
+    }
+
+    /// `fractum ARGUMENTS`, to its end.
+    pub(crate) fn fractum(&self, arguments: &[&str]) -> Ended {
+        let output = self.command(arguments).output().unwrap();
+        Ended {
+            code: output.status.code(),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    /// `fractum ARGUMENTS`, left running with its output thrown away.
+    pub(crate) fn start(&self, arguments: &[&str]) -> Child {
+        self.command(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+    }
+}
+
+/// The bar: 0.4 m × 0.12 m × 0.12 m, 432 tetrahedra.
+pub(crate) fn bar() -> Mesh {
+    structured_box([8, 3, 3], Vec3::new(0.4, 0.12, 0.12), None)
+}
+
+pub(crate) fn mesh_bytes(mesh: &Mesh, format: MshFormat) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_msh(mesh, format, &mut bytes).unwrap();
+    bytes
+}
+
+/// Names of the files below `folder` whose name ends with `suffix`, sorted.
+pub(crate) fn files_below(folder: &Path, suffix: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let Ok(entries) = fs::read_dir(folder) else { return found };
+    for entry in entries.flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(files_below(&path, suffix));
+        } else if path.to_string_lossy().ends_with(suffix) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}

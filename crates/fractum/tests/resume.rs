@@ -1,0 +1,288 @@
+//! A run that is killed, interrupted or spread over other threads gives the same bits as one that is not.
+
+mod common;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command};
+use std::thread;
+use std::time::Duration;
+
+use common::{BREAKING_BAR, Workplace, files_below};
+use serde_json::Value;
+
+/// Everything of a results folder that must not depend on how the run went.
+#[derive(PartialEq)]
+struct Results {
+    state_hash: String,
+    history: String,
+    frames: Vec<(PathBuf, Vec<u8>)>,
+    summary: Value,
+}
+
+impl Results {
+    fn read(folder: &Path) -> Self {
+        let text = |name: &str| fs::read_to_string(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let mut summary: Value = serde_json::from_str(&text("summary.json")).unwrap();
+        assert_eq!(summary["status"], "completed");
+        let state_hash = summary["state_hash"].as_str().unwrap().to_owned();
+        // Of the summary, only these tell about the machine.
+        for key in ["wall", "threads"] {
+            assert!(summary.as_object_mut().unwrap().remove(key).is_some(), "{key}");
+        }
+        let mut frames = vec![PathBuf::from("fields.pvd"), PathBuf::from("fragments.csv")];
+        let below = |suffix| files_below(folder, suffix);
+        let relative = |path: PathBuf| path.strip_prefix(folder).unwrap().to_owned();
+        frames.extend(below(".vtu").into_iter().chain(below(".vtp")).map(relative));
+        let frames = frames.into_iter().map(|name| (name.clone(), fs::read(folder.join(&name)).unwrap())).collect();
+        Results { state_hash, history: text("history.csv"), frames, summary }
+    }
+
+    /// Fails with the first thing that differs, rather than with all bytes.
+    fn assert_same(&self, other: &Results, what: &str) {
+        assert_eq!(self.summary, other.summary, "{what}");
+        for (row, (ours, theirs)) in self.history.lines().zip(other.history.lines()).enumerate() {
+            assert_eq!(ours, theirs, "{what}: row {row} of history.csv");
+        }
+        assert_eq!(self.history.len(), other.history.len(), "{what}: length of history.csv");
+        let names = |results: &Results| results.frames.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+        assert_eq!(names(self), names(other), "{what}");
+        for ((name, ours), (_, theirs)) in self.frames.iter().zip(&other.frames) {
+            assert!(ours == theirs, "{what}: {} differs", name.display());
+        }
+    }
+}
+
+fn uninterrupted(place: &Workplace, folder: &str, threads: &str) -> Results {
+    let ended = place.fractum(&["run", "case.toml", "-o", folder, "--threads", threads, "--quiet"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    Results::read(&place.path(folder))
+}
+
+/// Steps of the checkpoints in a results folder, ascending.
+fn checkpoints(results: &Path) -> Vec<u64> {
+    let step = |path: PathBuf| path.file_stem()?.to_str()?.strip_prefix("state-")?.parse().ok();
+    files_below(&results.join("checkpoint"), ".fck").into_iter().filter_map(step).collect()
+}
+
+/// Waits until the run has saved a step after `step`, or has ended.
+fn wait_for_checkpoint(run: &mut Child, results: &Path, step: u64) {
+    while checkpoints(results).last().is_none_or(|&saved| saved <= step) && run.try_wait().unwrap().is_none() {
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+fn signal(run: &Child, name: &str) {
+    let sent = Command::new("sh").args(["-c", &format!("kill -{name} {}", run.id())]).status().unwrap();
+    assert!(sent.success());
+}
+
+/// The same numbers on every machine (SplitMix64).
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, limit: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) % limit
+    }
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let place = Workplace::new(BREAKING_BAR);
+    let one = uninterrupted(&place, "one", "1");
+    // The case must exercise what it is for.
+    let counts = &one.summary["counts"];
+    for what in ["removed_elements", "particles", "broken_edges"] {
+        assert!(counts[what].as_u64().unwrap() > 0, "{what}: {counts}");
+    }
+    assert!(counts["fragments"].as_u64().unwrap() >= 2, "{counts}");
+    assert!(one.summary["energy"]["friction"].as_f64().unwrap() > 0.0);
+    for threads in ["2", "7"] {
+        one.assert_same(&uninterrupted(&place, threads, threads), threads);
+    }
+}
+
+#[test]
+fn killed_at_any_moment_and_resumed_gives_the_same_bits() {
+    let place = Workplace::new(BREAKING_BAR);
+    let expected = uninterrupted(&place, "whole", "2");
+    let mut dice = Dice(20);
+    for trial in 0..2 {
+        let folder = format!("killed-{trial}");
+        let results = place.path(&folder);
+        let (mut kills, mut resumed_from) = (0, Vec::new());
+        loop {
+            let saved = checkpoints(&results);
+            let threads = (1 + dice.below(4)).to_string();
+            let mut arguments = vec!["run", "case.toml", "-o", &folder, "--quiet", "--threads", &threads];
+            if kills > 0 {
+                if saved.is_empty() {
+                    // Killed before it saved anything: there is nothing to resume, and it says so.
+                    let ended = place.fractum(&[&arguments[..], &["--resume"]].concat());
+                    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+                    assert!(ended.stderr.contains("no checkpoint to resume from"), "{}", ended.stderr);
+                } else {
+                    resumed_from.push(saved.last().copied().unwrap_or(0));
+                    arguments.push("--resume");
+                }
+            }
+            let mut run = place.start(&arguments);
+            if kills < 6 {
+                // Early kills hit the start of the program, the others a run that has come further than before.
+                if kills > 1 || (trial == 0 && kills > 0) {
+                    wait_for_checkpoint(&mut run, &results, saved.last().copied().unwrap_or(0));
+                }
+                thread::sleep(Duration::from_micros(dice.below(60_000)));
+                run.kill().unwrap();
+                let status = run.wait().unwrap();
+                kills += 1;
+                if status.success() {
+                    break;
+                }
+            } else {
+                assert!(run.wait().unwrap().success());
+                break;
+            }
+        }
+        assert!(!resumed_from.is_empty(), "no run was resumed");
+        expected.assert_same(&Results::read(&results), &format!("trial {trial}, resumed from {resumed_from:?}"));
+        assert_eq!(files_below(&results, ".part"), Vec::<PathBuf>::new(), "nothing unfinished is left behind");
+    }
+}
+
+#[test]
+fn a_signal_saves_the_state_and_the_run_goes_on_from_it() {
+    let place = Workplace::new(BREAKING_BAR);
+    // A run that does not end by itself while this test lasts.
+    let arguments = ["run", "case.toml", "-o", "long", "--set", "end=1000 s"];
+    let results = place.path("long");
+    let mut step = 0;
+    for name in ["INT", "TERM"] {
+        let resume: &[&str] = if step > 0 { &["--resume"] } else { &[] };
+        let mut run = place.start(&[&arguments[..], resume].concat());
+        wait_for_checkpoint(&mut run, &results, step);
+        signal(&run, name);
+        assert_eq!(run.wait().unwrap().code(), Some(130), "SIG{name}");
+        let summary: Value = serde_json::from_slice(&fs::read(results.join("summary.json")).unwrap()).unwrap();
+        assert_eq!(summary["status"], "interrupted");
+        let saved = checkpoints(&results).last().copied().unwrap();
+        assert_eq!(summary["time"]["steps"].as_u64(), Some(saved), "the state of the last step is the one saved");
+        assert!(saved > step);
+        step = saved;
+    }
+}
+
+#[test]
+fn interrupted_and_resumed_gives_the_same_bits() {
+    let place = Workplace::new(BREAKING_BAR);
+    let expected = uninterrupted(&place, "whole", "2");
+    let results = place.path("stopped");
+    let mut code = None;
+    for (round, name) in ["INT", "TERM", "INT"].into_iter().enumerate() {
+        let saved = checkpoints(&results).last().copied().unwrap_or(0);
+        let threads = (round + 1).to_string();
+        let mut arguments = vec!["run", "case.toml", "-o", "stopped", "--quiet", "--threads", &threads];
+        arguments.extend((round > 0).then_some("--resume"));
+        let mut run = place.start(&arguments);
+        wait_for_checkpoint(&mut run, &results, saved);
+        signal(&run, name);
+        code = run.wait().unwrap().code();
+        // It may end before the signal comes.
+        assert!(matches!(code, Some(0 | 130)), "{code:?}");
+        if code == Some(0) {
+            break;
+        }
+    }
+    if code != Some(0) {
+        let ended = place.fractum(&["run", "case.toml", "-o", "stopped", "--quiet", "--resume"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    }
+    expected.assert_same(&Results::read(&results), "after signals");
+}
+
+#[test]
+fn a_finished_run_resumes_to_the_same_results() {
+    let place = Workplace::new(BREAKING_BAR);
+    let expected = uninterrupted(&place, "done", "2");
+    let ended = place.fractum(&["run", "case.toml", "-o", "done", "--quiet", "--resume"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    expected.assert_same(&Results::read(&place.path("done")), "resumed after its end");
+}
+
+#[test]
+fn a_bad_checkpoint_is_refused_with_its_reason() {
+    let place = Workplace::new(BREAKING_BAR);
+    uninterrupted(&place, "done", "2");
+    let folder = place.path("done").join("checkpoint");
+    let saved = files_below(&folder, ".fck");
+    let newest = saved.last().unwrap().clone();
+    // Only one is left, so that no older one can step in.
+    saved.iter().filter(|path| **path != newest).for_each(|path| fs::remove_file(path).unwrap());
+    let whole = fs::read(&newest).unwrap();
+    let flipped = |byte: usize| {
+        let mut bytes = whole.clone();
+        bytes[byte] ^= 0x10;
+        bytes
+    };
+    let middle = whole.len() / 2;
+    let cases: [(&str, Vec<u8>, &[&str]); 7] = [
+        ("truncated", whole[..middle].to_vec(), &["cut off", "older one"]),
+        ("one byte short", whole[..whole.len() - 1].to_vec(), &["cut off"]),
+        ("empty", Vec::new(), &["checkpoint"]),
+        ("foreign", b"PNG, or anything else that is no checkpoint at all".to_vec(), &["not a fractum checkpoint"]),
+        ("bit flipped in the state", flipped(middle), &["damaged"]),
+        ("bit flipped at the end", flipped(whole.len() - 1), &["damaged"]),
+        ("bytes appended", [&whole[..], b"more"].concat(), &["damaged"]),
+    ];
+    let before = Results::read(&place.path("done"));
+    for (what, bytes, words) in cases {
+        fs::write(&newest, bytes).unwrap();
+        let ended = place.fractum(&["run", "case.toml", "-o", "done", "--quiet", "--resume"]);
+        assert_eq!(ended.code, Some(1), "{what}: {}", ended.stderr);
+        assert_eq!(ended.stderr.lines().count(), 1, "{what}: {}", ended.stderr);
+        assert!(ended.stderr.contains(&*newest.file_name().unwrap().to_string_lossy()), "{what}: {}", ended.stderr);
+        for word in words {
+            assert!(ended.stderr.contains(word), "{what}: {}", ended.stderr);
+        }
+        before.assert_same(&Results::read(&place.path("done")), what);
+    }
+    // Whole, but of another case or mesh.
+    fs::write(&newest, &whole).unwrap();
+    let ended = place.fractum(&["run", "case.toml", "-o", "done", "--quiet", "--resume", "--set", "end=1 ms"]);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    assert!(ended.stderr.contains("another case"), "{}", ended.stderr);
+    let mut mesh = common::bar();
+    mesh.nodes[0].x += 1e-6;
+    fs::write(place.path("bar.msh"), common::mesh_bytes(&mesh, fractum_mesh::MshFormat::V4_1Binary)).unwrap();
+    let ended = place.fractum(&["run", "case.toml", "-o", "done", "--quiet", "--resume"]);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    assert!(ended.stderr.contains("another mesh"), "{}", ended.stderr);
+}
+
+#[test]
+fn a_damaged_checkpoint_gives_way_to_the_one_before() {
+    let place = Workplace::new(BREAKING_BAR);
+    let expected = uninterrupted(&place, "done", "2");
+    let saved = files_below(&place.path("done").join("checkpoint"), ".fck");
+    assert_eq!(saved.len(), 2, "the newest and the one before: {saved:?}");
+    let whole = fs::read(&saved[1]).unwrap();
+    fs::write(&saved[1], &whole[..whole.len() / 3]).unwrap();
+    let ended = place.fractum(&["run", "case.toml", "-o", "done", "--quiet", "--resume"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stderr.contains("warning") && ended.stderr.contains("cut off"), "{}", ended.stderr);
+    expected.assert_same(&Results::read(&place.path("done")), "from the older checkpoint");
+}
+
+#[test]
+fn without_a_checkpoint_there_is_nothing_to_resume() {
+    let place = Workplace::new(BREAKING_BAR);
+    let ended = place.fractum(&["run", "case.toml", "-o", "never", "--resume"]);
+    assert_eq!(ended.code, Some(1));
+    assert_eq!(ended.stderr.lines().count(), 1, "{}", ended.stderr);
+    assert!(ended.stderr.contains("never: no checkpoint to resume from; run without --resume"), "{}", ended.stderr);
+    assert!(!place.path("never").exists());
+}
