@@ -88,9 +88,24 @@ impl EdgeCells {
         0.5 * (self.softens.hooke.stress(strain) - self.softens.closed_stress(strain)).dot(strain)
     }
 
+    /// Takes over the strain that an edge has all at once because elements around it left; what damage this brings acts at
+    /// that strain.
+    pub(crate) fn settle(&mut self, cell: usize, strain: Sym3, volume: f64) {
+        let stress = self.softens.hooke.stress(strain);
+        if self.softens.law.criterion.surely_below(stress, self.threshold[cell]) {
+            return;
+        }
+        let energy = self.energy.take();
+        self.edges[cell].strain = strain;
+        self.loaded_stress(cell, strain, stress, volume, Some(strain));
+        self.energy = energy;
+    }
+
     /// The path of an edge that is damaged or may become so.
+    ///
+    /// - `before`: strain at the last step, where it is known better than by the edge's own history
     #[inline(never)]
-    fn loaded_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3, volume: f64) -> Sym3 {
+    fn loaded_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3, volume: f64, before: Option<Sym3>) -> Sym3 {
         let softens = Arc::as_ref(&self.softens);
         let edge = &mut self.edges[cell];
         let (was_broken, was_intact) = (edge.broken, edge.damage == 0.0);
@@ -102,7 +117,8 @@ impl EdgeCells {
         if growth > 0.0 {
             // The work of the step between the strains ε⁰ and ε¹ minus the change of the stored energy is exactly
             // ½ σ¹ : ε⁰ per damage. An edge that was intact has kept no strain: it is taken at its strength.
-            let before = if was_intact { strain * (self.strength[cell] / q) } else { edge.strain };
+            let kept = if was_intact { strain * (self.strength[cell] / q) } else { edge.strain };
+            let before = before.unwrap_or(kept);
             self.dissipated += 0.5 * opening.dot(before) * growth * volume;
         }
         edge.strain = strain;
@@ -125,7 +141,7 @@ impl CellLaw for EdgeCells {
             }
             return stress * volume;
         }
-        self.loaded_stress(cell, strain, stress, volume)
+        self.loaded_stress(cell, strain, stress, volume, None)
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Elements that a crack has cut through leave; their mass stays on the nodes.
 
-use fractum_math::Sym3;
+use fractum_math::{Sym3, Vec3};
 
 use crate::body::{Formulation, Kinematics};
 use crate::cell::Geometry;
@@ -34,8 +34,21 @@ impl Solid {
             elements.iter().for_each(|&e| self.bodies[body].alive[e as usize] = false);
             self.rebuild_cells_around(body, &elements);
             energy -= self.stored_energy(&touched);
+            self.settle(&touched);
         }
         energy
+    }
+
+    /// Lets damage follow the strains that rebuilt edges jumped to.
+    fn settle(&mut self, cells: &[(u32, u32)]) {
+        let Solid { blocks, bodies, displacement, .. } = self;
+        for &(block, cell) in cells {
+            let (block, cell) = (&mut blocks[block as usize], cell as usize);
+            let strain = block.strain_of(cell, bodies[block.body].body.kinematics, displacement);
+            if let BlockLaw::Edges(law) = &mut block.law {
+                law.settle(cell, strain, block.cells.volume[cell]);
+            }
+        }
     }
 
     /// Elements of a body that are newly cut through; only blocks in which an edge broke are looked at.
@@ -98,11 +111,7 @@ impl Solid {
         for &(block, cell) in cells {
             let (block, cell) = (&self.blocks[block as usize], cell as usize);
             let model = &self.bodies[block.body];
-            let h = block.cells.gradient(cell, &self.displacement);
-            let strain = match model.body.kinematics {
-                Kinematics::Small => Sym3::symmetric_part(&h),
-                Kinematics::Corotational => kernel::corotational_strain(&h).0,
-            };
+            let strain = block.strain_of(cell, model.body.kinematics, &self.displacement);
             sum += block.energy_of(cell, &model.hooke, strain);
         }
         sum
@@ -172,6 +181,15 @@ impl Solid {
 }
 
 impl crate::solid::Block {
+    /// Strain of one cell at these displacements.
+    fn strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
+        let h = self.cells.gradient(cell, displacement);
+        match kinematics {
+            Kinematics::Small => Sym3::symmetric_part(&h),
+            Kinematics::Corotational => kernel::corotational_strain(&h).0,
+        }
+    }
+
     /// Elastic energy of one cell [J].
     fn energy_of(&self, cell: usize, hooke: &kernel::Hooke, strain: Sym3) -> f64 {
         let full = 0.5 * hooke.stress(strain).dot(strain);
