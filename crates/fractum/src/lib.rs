@@ -3,6 +3,7 @@
 //! - [`run`]: one case from file to results folder
 //! - [`plan`]: what a run will do, before it does it
 //! - [`report`]: the page of a results folder
+//! - [`terminal`]: lines on stdout and stderr
 //! - [`verify`]: the gallery against its references
 
 mod error;
@@ -12,6 +13,7 @@ pub mod plan;
 mod record;
 pub mod report;
 pub mod run;
+pub mod terminal;
 pub mod verify;
 
 pub use error::{ExitCode, Failure};

@@ -5,13 +5,22 @@ mod command;
 use clap::Parser;
 
 fn main() {
-    let arguments = command::Arguments::parse();
+    let arguments = match command::Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(usage) => {
+            // Help and version come this way too. A wrong option is wrong input; 2 means that a run stopped itself.
+            let code = if usage.use_stderr() { fractum::ExitCode::Input } else { fractum::ExitCode::Done };
+            let _ = usage.print();
+            std::process::exit(code as i32);
+        }
+    };
     let code = match ctrlc::set_handler(fractum::run::interrupt) {
         Ok(()) => command::execute(arguments),
         Err(error) => {
-            eprintln!("the handler for Ctrl-C could not be set: {error}");
+            fractum::tell!("the handler for Ctrl-C could not be set: {error}");
             fractum::ExitCode::Machine
         }
     };
-    std::process::exit(code as i32);
+    let lost = code == fractum::ExitCode::Done && fractum::terminal::has_failed();
+    std::process::exit(if lost { fractum::ExitCode::Machine } else { code } as i32);
 }

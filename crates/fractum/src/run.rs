@@ -19,6 +19,7 @@ use crate::input::{Input, load};
 use crate::plan::Plan;
 use crate::record::{RecordState, Recorder, index_of_max};
 use crate::report::{self, Notes};
+use crate::tell;
 
 /// How a case is run.
 #[derive(Clone, Debug, Default)]
@@ -100,8 +101,8 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     log.line(&plan)?;
     let mut progress = Progress::on_stderr(options.quiet);
     if !options.quiet {
-        eprintln!("{plan}");
-        eprintln!("results in {}", folder.display());
+        tell!("{plan}");
+        tell!("results in {}", folder.display());
     }
     for warning in &assembly.warnings {
         progress.message(warning);
@@ -378,7 +379,7 @@ impl Run<'_> {
 fn restore(folder: &Path, identity: &Identity, scene: &mut Scene) -> Result<Option<RecordState>, Failure> {
     let Some(loaded) = checkpoint::load_latest::<RunState>(folder, identity)? else { return Ok(None) };
     for refused in &loaded.passed_over {
-        eprintln!("warning: {refused}");
+        tell!("warning: {refused}");
     }
     scene.restore(loaded.state.scene);
     Ok(Some(loaded.state.record))

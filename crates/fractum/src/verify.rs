@@ -9,6 +9,7 @@ use fractum_io::summary::{Verified, write_verify};
 
 use crate::error::Failure;
 use crate::run::{Options, run};
+use crate::{say, tell};
 
 /// What is verified, and where results go.
 #[derive(Clone, Debug)]
@@ -45,9 +46,16 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
         selection.names.is_empty() || selection.names.iter().any(|n| name_of(path).contains(n.as_str()))
     });
     let mut lines = Vec::new();
-    println!(
+    say!(
         "{:<44} {:<34} {:>14} {:>14} {:>10} {:>10}  {:<5} {:>8}",
-        "case", "quantity", "value", "reference", "error", "tolerance", "pass", "seconds"
+        "case",
+        "quantity",
+        "value",
+        "reference",
+        "error",
+        "tolerance",
+        "pass",
+        "seconds"
     );
     for path in cases {
         let name = name_of(&path);
@@ -68,7 +76,7 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
         match outcome {
             Ok(outcome) => lines.extend(outcome.summary.expect.iter().map(|e| Verified::new(&name, e, seconds))),
             Err(error) => {
-                eprintln!("{name}: {error}");
+                tell!("{name}: {error}");
                 lines.push(Verified {
                     case: name.clone(),
                     quantity: "run".into(),
@@ -87,12 +95,12 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
     fractum_io::atomic::create_folder(&selection.output)?;
     write_verify(&selection.output.join("verify.json"), &lines)?;
     let passed = lines.iter().filter(|line| line.pass).count();
-    println!("{passed} of {} passed; {}", lines.len(), selection.output.join("verify.json").display());
+    say!("{passed} of {} passed; {}", lines.len(), selection.output.join("verify.json").display());
     Ok(lines)
 }
 
 fn print_line(line: &Verified) {
-    println!(
+    say!(
         "{:<44} {:<34} {:>14.6e} {:>14.6e} {:>10.2e} {:>10.2e}  {:<5} {:>8.2}",
         line.case,
         line.quantity,

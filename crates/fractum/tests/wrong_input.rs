@@ -95,18 +95,10 @@ fn the_case_that_these_tests_spoil_is_right() {
 
 #[test]
 fn a_typo_in_a_key_names_the_nearest_one() {
+    // A required key under a wrong name is one mistake, not one more that is missing.
+    let words = ["is not a key", "did you mean young_modulus?"];
     let case = with("young_modulus", "young_modulos");
-    let workplace = Workplace::new(&case);
-    let ended = workplace.fractum(&RUN);
-    // The key that is missing now is a mistake of its own.
-    check_failure(&workplace, &ended, 1, 2, "typo");
-    let start = format!("{}materials.concrete.young_modulos is not a key", place(&case, "young_modulos"));
-    let line = ended.stderr.lines().find(|l| l.starts_with(&start)).unwrap_or_else(|| panic!("{}", ended.stderr));
-    assert!(line.contains("did you mean young_modulus?"), "{line}");
-}
-
-#[test]
-fn a_typo_in_an_optional_key_is_one_mistake() {
+    refused(&case, "young_modulos", "materials.concrete.young_modulos", &words);
     let case = with("kind = \"explicit\"", "kind = \"explicit\"\nsafty = 0.8");
     refused(&case, "safty", "solver.safty", &["is not a key", "did you mean safety?"]);
 }
@@ -375,4 +367,37 @@ fn a_wrong_override_is_refused() {
             assert!(ended.stderr.contains(word), "{set}, expected {word}: {}", ended.stderr);
         }
     }
+}
+
+#[test]
+fn a_wrong_option_is_wrong_input() {
+    let workplace = Workplace::new(SMALL);
+    for arguments in [&["run", "case.toml", "--thread", "2"][..], &["run"], &["walk"], &[]] {
+        let ended = workplace.fractum(arguments);
+        assert_eq!(ended.code, Some(1), "{arguments:?}: {ended:?}");
+    }
+    assert_eq!(workplace.fractum(&["--help"]).code, Some(0));
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn output_that_nobody_takes_is_no_panic() {
+    let workplace = Workplace::new(SMALL);
+    let full = || fs::File::options().write(true).open("/dev/full").unwrap();
+    let ended = workplace.command(&["schema"]).stdout(full()).output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(3), "{said}");
+    assert!(said.starts_with("standard output cannot be written: ") && said.lines().count() == 1, "{said}");
+    // Plan and progress are lost, the run is not.
+    let ended = workplace.command(&["run", "case.toml", "-o", "out"]).stderr(full()).output().unwrap();
+    assert_eq!(ended.status.code(), Some(0));
+    assert!(workplace.path("out/summary.json").is_file());
+    // A pipe whose reader has gone.
+    let mut listing = workplace.command(&["explain"]);
+    let mut listing =
+        listing.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().unwrap();
+    drop(listing.stdout.take());
+    let ended = listing.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!((ended.status.code(), said.as_str()), (Some(0), ""));
 }

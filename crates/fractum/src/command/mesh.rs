@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Subcommand, ValueEnum};
-use fractum::{ExitCode, Failure};
+use fractum::{ExitCode, Failure, say};
 use fractum_mesh::{Mesh, MshFormat, read_msh, write_msh};
 
 #[derive(Subcommand)]
@@ -63,7 +63,7 @@ fn read(file: &Path) -> Result<Mesh, Failure> {
 }
 
 fn info(file: &Path, mesh: &Mesh) {
-    println!("{}: {} nodes", file.display(), mesh.nodes.len());
+    say!("{}: {} nodes", file.display(), mesh.nodes.len());
     let kinds = [
         ("points", mesh.points.len()),
         ("lines", mesh.lines.len()),
@@ -72,12 +72,12 @@ fn info(file: &Path, mesh: &Mesh) {
         ("tetrahedra", mesh.tetrahedra.len()),
     ];
     for (name, count) in kinds.iter().filter(|(_, count)| *count > 0) {
-        println!("  {count:>9} {name}");
+        say!("  {count:>9} {name}");
     }
     let (low, high) = mesh.bounding_box();
-    println!("  x {:e} .. {:e}, y {:e} .. {:e}, z {:e} .. {:e}", low.x, high.x, low.y, high.y, low.z, high.z);
+    say!("  x {:e} .. {:e}, y {:e} .. {:e}, z {:e} .. {:e}", low.x, high.x, low.y, high.y, low.z, high.z);
     for group in &mesh.groups {
-        println!(
+        say!(
             "  group \"{}\" (dimension {}, tag {}): {} elements",
             group.name,
             group.dimension,
@@ -86,6 +86,6 @@ fn info(file: &Path, mesh: &Mesh) {
         );
     }
     for notice in &mesh.notices {
-        println!("  {notice}");
+        say!("  {notice}");
     }
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use fractum::run::{Options, Outcome};
-use fractum::{ExitCode, Failure};
+use fractum::{ExitCode, Failure, say, tell};
 use fractum_io::summary::Status;
 
 /// Fracture of solids: finite elements with damage, discrete elements, and the transition between them.
@@ -128,7 +128,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Mesh { command } => mesh::execute(command),
         Command::Report { folder } => fractum::report::write(&folder).map(|()| ExitCode::Done),
         Command::Schema => {
-            println!("{}", serde_json::to_string_pretty(&fractum_io::case::schema()).unwrap_or_default());
+            say!("{}", serde_json::to_string_pretty(&fractum_io::case::schema()).unwrap_or_default());
             Ok(ExitCode::Done)
         }
         Command::Explain { key } => explain(key.as_deref()),
@@ -141,16 +141,16 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
 
 fn report(failure: &Failure, json: bool) {
     if !json {
-        eprintln!("{failure}");
+        tell!("{failure}");
         return;
     }
     match failure {
         Failure::Input(diagnostics) => {
             for diagnostic in &diagnostics.0 {
-                eprintln!("{}", serde_json::to_string(diagnostic).unwrap_or_default());
+                tell!("{}", serde_json::to_string(diagnostic).unwrap_or_default());
             }
         }
-        other => eprintln!(
+        other => tell!(
             "{}",
             serde_json::json!({ "severity": "error", "place": null, "found": other.to_string(), "expected": "", "remedy": "" })
         ),
@@ -162,7 +162,7 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
         Options { output: run.output, threads: run.threads, overrides: run.set, resume: run.resume, quiet: run.quiet };
     let Outcome { summary, folder } = fractum::run::run(&run.case, &options)?;
     if summary.status == Status::Interrupted {
-        eprintln!(
+        tell!(
             "interrupted; state saved, go on with: fractum run {} -o {} --resume",
             run.case.display(),
             folder.display()
@@ -171,11 +171,11 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
     }
     if !run.quiet {
         for (name, probe) in &summary.probes {
-            println!("{name:<28} {}", fractum_io::number::quantity(probe.r#final, &probe.unit));
+            say!("{name:<28} {}", fractum_io::number::quantity(probe.r#final, &probe.unit));
         }
         for expect in &summary.expect {
             let verdict = if expect.pass { "meets" } else { "MISSES" };
-            println!(
+            say!(
                 "{:<28} {} {verdict} its reference {} ({})",
                 expect.quantity,
                 fractum_io::number::quantity(expect.value, &expect.unit),
@@ -183,16 +183,16 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
                 expect.source
             );
         }
-        println!("results in {}", folder.display());
+        say!("results in {}", folder.display());
     }
     Ok(ExitCode::Done)
 }
 
 fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, Failure> {
     let input = fractum::load(case, set)?;
-    println!("{}", fractum::plan::Plan::new(&input.case, &input.mesh, &input.assembly));
+    say!("{}", fractum::plan::Plan::new(&input.case, &input.mesh, &input.assembly));
     for warning in &input.assembly.warnings {
-        println!("{warning}");
+        say!("{warning}");
     }
     Ok(ExitCode::Done)
 }
@@ -200,13 +200,13 @@ fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, F
 fn explain(key: Option<&str>) -> Result<ExitCode, Failure> {
     let Some(key) = key else {
         for doc in fractum_io::case::keys() {
-            println!("{:<40} {}", doc.path, doc.doc);
+            say!("{:<40} {}", doc.path, doc.doc);
         }
         return Ok(ExitCode::Done);
     };
     match fractum_io::case::explain(key) {
         Ok(doc) => {
-            println!("{}\n  {}\n  type: {}, default: {}", doc.path, doc.doc, doc.kind.label(), doc.default);
+            say!("{}\n  {}\n  type: {}, default: {}", doc.path, doc.doc, doc.kind.label(), doc.default);
             Ok(ExitCode::Done)
         }
         Err(Some(near)) => Err(Failure::input(format!("no key \"{key}\"; did you mean \"{near}\"?"))),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use fractum::{ExitCode, Failure};
+use fractum::{ExitCode, Failure, say};
 
 /// Templates: name, what it is, text. They are cases of the gallery, so that they always run.
 const TEMPLATES: [(&str, &str, &str); 2] = [
@@ -21,7 +21,7 @@ const TEMPLATES: [(&str, &str, &str); 2] = [
 pub(crate) fn new(template: Option<&str>, output: Option<PathBuf>) -> Result<ExitCode, Failure> {
     let Some(name) = template else {
         for (name, what, _) in TEMPLATES {
-            println!("{name:<16} {what}");
+            say!("{name:<16} {what}");
         }
         return Ok(ExitCode::Done);
     };
@@ -34,6 +34,6 @@ pub(crate) fn new(template: Option<&str>, output: Option<PathBuf>) -> Result<Exi
         return Err(Failure::input(format!("{}: exists already; name another file with -o", path.display())));
     }
     fractum_io::atomic::write(&path, text.as_bytes())?;
-    println!("{}: put your mesh beside it and name it under [mesh]", path.display());
+    say!("{}: put your mesh beside it and name it under [mesh]", path.display());
     Ok(ExitCode::Done)
 }

@@ -1,0 +1,168 @@
+//! Once warm, a step asks for no memory, on any thread.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use fractum_fem::{Body, Criterion, DamageLaw, Elastic, Kinematics, Shape, Softening, Solid, Viscosity};
+use fractum_math::Vec3;
+use fractum_mesh::generate::{Jitter, structured_box};
+use fractum_scene::coupling::Debris;
+use fractum_scene::{
+    Guard, Load, Loads, Motion, RigidPlane, Scene, SceneSettings, Support, Supports, TimeStepSettings,
+};
+
+/// The allocator of the system, counting requests while it is told to.
+struct Counting;
+
+static ARMED: AtomicBool = AtomicBool::new(false);
+static REQUESTS: AtomicUsize = AtomicUsize::new(0);
+
+fn count() {
+    if ARMED.load(Ordering::Relaxed) {
+        REQUESTS.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+// Only an allocator sees every allocation, and the trait of allocators is unsafe to implement. This one hands every
+// request on to the system's, whose contract it thereby keeps.
+#[allow(unsafe_code)]
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+const SIZE: Vec3 = Vec3::new(0.8, 0.3, 0.3);
+const ELASTIC: Elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+const STRENGTH: f64 = 3e6;
+
+/// Nodes and a body large enough for several blocks and several chunks of nodes.
+fn block() -> (Vec<Vec3>, Body) {
+    let mesh = structured_box([32, 12, 12], SIZE, Some(Jitter { fraction: 0.1, seed: 1 }));
+    (mesh.nodes, Body::new("block", Shape::T4, mesh.tetrahedra, ELASTIC))
+}
+
+fn armed(body: Body) -> Body {
+    body.with_damage(DamageLaw {
+        criterion: Criterion::rankine(),
+        tensile_strength: STRENGTH,
+        fracture_energy: 10e3,
+        softening: Softening::Exponential,
+        residual: 0.02,
+        unilateral: false,
+        rate_time: 0.0,
+    })
+}
+
+fn where_x(nodes: &[Vec3], x: f64) -> Vec<u32> {
+    (0..).zip(nodes).filter(|(_, p)| (p.x - x).abs() < 1e-9).map(|(n, _)| n).collect()
+}
+
+/// The block, held at one end and pulled at the other at `speed` [m/s], with a pressure and gravity.
+fn pulled(nodes: Vec<Vec3>, body: Body, speed: f64, viscosity: Viscosity) -> Scene {
+    let (left, right) = (where_x(&nodes, 0.0), where_x(&nodes, SIZE.x));
+    let supports = vec![
+        Support::new("left", left, 0, Motion::Fixed),
+        Support::new("right", right.clone(), 0, Motion::Velocity(Arc::new(move |_, _| speed))),
+    ];
+    let loads = vec![
+        Load::Nodal { nodes: right.iter().map(|&n| (n, 1e-3)).collect(), axis: 1, value: Arc::new(|t, _| 1e3 * t) },
+        Load::Gravity { axis: 2, value: Arc::new(|_, _| -9.81) },
+    ];
+    let mut solid = Solid::new(nodes, vec![body]).unwrap();
+    solid.set_viscosity(viscosity);
+    scene(solid, supports, loads, Vec::new())
+}
+
+/// The block, falling on a plane through its lower side.
+fn landing(nodes: Vec<Vec3>, body: Body) -> Scene {
+    let mut solid = Solid::new(nodes, vec![body]).unwrap();
+    solid.velocity.fill(Vec3::new(0.1, 0.0, -0.1));
+    scene(solid, Vec::new(), Vec::new(), vec![RigidPlane::new(Vec3::zeros(), Vec3::z(), 0.3, 0.05)])
+}
+
+fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<RigidPlane>) -> Scene {
+    let supports = Supports::new(supports, &solid.reference).unwrap();
+    let loads = Loads::new(loads, solid.reference.len());
+    let debris = Debris::new(&solid, 0.5, 0.1);
+    let surface: Vec<u32> = (0..).zip(&solid.reference).filter(|(_, p)| p.z < 1e-9).map(|(n, _)| n).collect();
+    let settings = SceneSettings {
+        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end: 1.0 },
+        damping: Default::default(),
+        stiffness_time: 0.0,
+        guard: Guard { warning: 1e-3, stop: 1e-2 },
+    };
+    Scene::new(solid, supports, loads, debris, planes, &surface, settings)
+}
+
+/// Requests for memory in 100 steps, after 50 that warm up; the queues of the threads grow in these.
+fn requests(scene: &mut Scene) -> usize {
+    let mut advance = |steps: usize| (0..steps).all(|_| scene.step(false).unwrap().removed == 0);
+    assert!(advance(50));
+    REQUESTS.store(0, Ordering::Relaxed);
+    ARMED.store(true, Ordering::Relaxed);
+    let intact = advance(100);
+    ARMED.store(false, Ordering::Relaxed);
+    assert!(intact, "removal of elements may ask for memory: the scene must do without");
+    REQUESTS.load(Ordering::Relaxed)
+}
+
+// One test for all: the count is that of the whole process.
+#[test]
+fn a_warm_step_allocates_nothing() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+    pool.install(|| {
+        let (nodes, plain) = block();
+        let corotational = Body { kinematics: Kinematics::Corotational, ..plain.clone() };
+        let smoothed = plain.clone().smoothed();
+        let viscosity = Viscosity { stiffness_time: 1e-9, bulk_linear: 0.06, bulk_quadratic: 1.2 };
+        let calm = Viscosity::default();
+
+        let mut scene = pulled(nodes.clone(), plain.clone(), 0.01, calm);
+        assert_eq!(requests(&mut scene), 0, "plain elastic");
+
+        let mut scene = pulled(nodes.clone(), corotational.smoothed(), 0.01, viscosity);
+        assert_eq!(requests(&mut scene), 0, "smoothed, large rotations, viscous");
+
+        let mut scene = pulled(nodes.clone(), armed(smoothed.clone()), 0.01, calm);
+        assert_eq!(requests(&mut scene), 0, "smoothed with armed damage");
+        assert_eq!(scene.counts().damaged_edges, 0);
+
+        // ρ c v = 4.7 MPa: the end that is pulled is damaged; it is too tough to be cut through in these steps.
+        let mut scene = pulled(nodes.clone(), armed(smoothed.clone()), 0.5, calm);
+        assert_eq!(requests(&mut scene), 0, "smoothed with growing damage");
+        assert!(scene.counts().damaged_edges > 0);
+
+        let mut scene = pulled(nodes.clone(), armed(plain.clone()), 0.5, calm);
+        assert_eq!(requests(&mut scene), 0, "standard with growing damage");
+        assert!(scene.counts().damaged_edges > 0);
+
+        let mut scene = landing(nodes, armed(smoothed));
+        assert_eq!(requests(&mut scene), 0, "on a rigid plane");
+        assert!(scene.counts().contacts > 0);
+    });
+    // A count that cannot count proves nothing.
+    ARMED.store(true, Ordering::Relaxed);
+    drop(std::hint::black_box(vec![1u8; 100]));
+    ARMED.store(false, Ordering::Relaxed);
+    assert!(REQUESTS.load(Ordering::Relaxed) > 0);
+}
