@@ -1,6 +1,7 @@
 //! Discrete elements: particles joined by cohesive beams, in motion and at rest.
 //!
-//! [`BeamSection`] is the material of a bond. [`Lattice`] finds the static equilibrium of a bonded body for small
+//! [`BeamSection`] is the material of a bond. [`BeamNetwork`] moves [`Particles`] through time, with large rotations;
+//! [`Lattice`] finds the static equilibrium of a bonded body for small
 //! displacements in one solve. [`stress`] and [`strain`] turn its state into macroscopic fields.
 //!
 //! ```
@@ -23,9 +24,11 @@
 mod bond;
 mod error;
 mod lattice;
+mod particles;
 pub mod strain;
 pub mod stress;
 
-pub use bond::BeamSection;
+pub use bond::{BeamEnergy, BeamForces, BeamNetwork, BeamSection, BondedPair, cohesive_beam, cohesive_beam_energy};
 pub use error::DemError;
 pub use lattice::{Dof6, Equilibrium, Lattice, Supports, Tolerance};
+pub use particles::{Integrator, Particles};

@@ -5,6 +5,7 @@ use fractum_math::Vec3;
 use fractum_pack::Domain;
 use serde::Serialize;
 
+use super::STRAIN;
 use crate::{CalibrateError, Sample};
 
 /// Result of a cantilever bending test on a cylinder.
@@ -51,56 +52,51 @@ fn cantilever<'a>(sample: &'a Sample, test: &'static str) -> Result<Cantilever<'
     Ok(Cantilever { face, supports, axis: start, length, radius })
 }
 
-/// Bends a cylinder held at `x-` by a transverse force spread over the particles of `x+`, and compares the mean
-/// deflection of that face with Euler–Bernoulli theory for the measured length and radius (Jebahi et al. 2015, 2.4.2.5).
+/// Bends a cylinder held at `x-` by a uniform transverse displacement of the particles of `x+`, which may turn freely,
+/// and compares the force with Euler–Bernoulli theory for the measured length and radius (Jebahi et al. 2015, 2.4.2.5).
 ///
 /// # Errors
 /// Another shape; a solve that does not converge.
 pub fn bending(sample: &Sample, tolerance: Tolerance) -> Result<(Bending, Equilibrium), CalibrateError> {
-    let Cantilever { face, supports, length, radius, .. } = cantilever(sample, "bending")?;
-    let mut loads = vec![[0.0; 6]; sample.packing.len()];
-    let force = sample.lattice.section().young_modulus * radius * radius * 1e-6;
-    face.iter().for_each(|&i| loads[i as usize][1] = force / face.len() as f64);
-    let guess = vec![[0.0; 6]; sample.packing.len()];
-    let rest = sample.lattice.solve(&supports, Some(&loads), &guess, tolerance)?;
-    let deflection = face.iter().map(|&i| rest.state[i as usize][1]).sum::<f64>() / face.len() as f64;
+    let Cantilever { face, mut supports, axis, length, radius } = cantilever(sample, "bending")?;
+    let deflection = STRAIN * length;
+    face.iter().for_each(|&i| supports.set(i, 1, deflection));
+    // The cubic of a cantilever is a far better start than zero.
+    let guess: Vec<Dof6> = sample
+        .packing
+        .position
+        .iter()
+        .map(|x| {
+            let s = ((x.x - axis.x) / length).clamp(0.0, 1.0);
+            let slope = 1.5 * deflection * (2.0 * s - s * s) / length;
+            let u = 0.5 * deflection * s * s * (3.0 - s);
+            [-slope * (x.y - axis.y), u, 0.0, 0.0, 0.0, slope]
+        })
+        .collect();
+    let rest = sample.lattice.solve(&supports, None, &guess, tolerance)?;
+    let force = 2.0 * rest.energy / deflection;
     let inertia = PI * radius.powi(4) / 4.0;
     let young_modulus = force * length.powi(3) / (3.0 * inertia * deflection);
     Ok((Bending { young_modulus, compliance: deflection / force, iterations: rest.iterations }, rest))
 }
 
-/// Twists a cylinder held at `x-` by tangential forces on the particles of `x+` proportional to their distance from
-/// the axis, and compares the rotation of that face with theory for the measured length and radius.
+/// Twists a cylinder held at `x-` by a rotation of the particles of `x+` about the axis, and compares the moment with
+/// theory for the measured length and radius.
 ///
 /// # Errors
 /// Another shape; a solve that does not converge.
 pub fn torsion(sample: &Sample, tolerance: Tolerance) -> Result<(Torsion, Equilibrium), CalibrateError> {
-    let Cantilever { face, supports, axis, length, radius } = cantilever(sample, "torsion")?;
-    let arm = |i: u32| {
-        let x = sample.packing.position[i as usize];
-        (x.y - axis.y, x.z - axis.z)
-    };
-    let unit = sample.lattice.section().young_modulus * radius * 1e-6 / face.len() as f64;
-    let mut loads: Vec<Dof6> = vec![[0.0; 6]; sample.packing.len()];
-    let mut moment = 0.0;
+    let Cantilever { face, mut supports, axis, length, radius } = cantilever(sample, "torsion")?;
+    let rotation = STRAIN * length / radius;
+    let turn = |x: &Vec3, angle: f64| [0.0, -angle * (x.z - axis.z), angle * (x.y - axis.y), angle, 0.0, 0.0];
     for &i in face {
-        let (y, z) = arm(i);
-        (loads[i as usize][1], loads[i as usize][2]) = (-unit * z, unit * y);
-        moment += unit * (y * y + z * z);
+        let u = turn(&sample.packing.position[i as usize], rotation);
+        (1..3).for_each(|d| supports.set(i, d, u[d]));
     }
-    let guess = vec![[0.0; 6]; sample.packing.len()];
-    let rest = sample.lattice.solve(&supports, Some(&loads), &guess, tolerance)?;
-    let moved = |&i: &u32| {
-        let (y, z) = arm(i);
-        let s = rest.state[i as usize];
-        y * s[2] - z * s[1]
-    };
-    let square = |&i: &u32| {
-        let (y, z) = arm(i);
-        y * y + z * z
-    };
-    // Best-fit rotation of the face about the axis.
-    let rotation = face.iter().map(moved).sum::<f64>() / face.iter().map(square).sum::<f64>();
+    let guess: Vec<Dof6> =
+        sample.packing.position.iter().map(|x| turn(x, rotation * (x.x - axis.x) / length)).collect();
+    let rest = sample.lattice.solve(&supports, None, &guess, tolerance)?;
+    let moment = 2.0 * rest.energy / rotation;
     let polar = PI * radius.powi(4) / 2.0;
     let shear_modulus = moment * length / (polar * rotation);
     Ok((Torsion { shear_modulus, compliance: rotation / moment, iterations: rest.iterations }, rest))

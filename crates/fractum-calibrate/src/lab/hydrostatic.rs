@@ -1,5 +1,4 @@
 use fractum_dem::{Dof6, Equilibrium, Supports, Tolerance};
-use fractum_math::Vec3;
 use fractum_pack::Domain;
 use serde::Serialize;
 
@@ -17,8 +16,9 @@ pub struct Hydrostatic {
     pub iterations: usize,
 }
 
-/// Compresses a sphere or a box: the wall particles move inward by a uniform normal displacement and are free to slide;
-/// the pressure is the sum of their normal forces over the area (Nguyen et al. 2019, eqs. 23–24).
+/// Compresses a sphere or a box: the wall particles move inward by a uniform normal displacement, and the pressure
+/// follows from the work of their normal forces, p ΔV (Nguyen et al. 2019, eqs. 23–24). On a box they are free to slide
+/// along their wall.
 ///
 /// # Errors
 /// Another shape; a solve that does not converge.
@@ -43,34 +43,14 @@ pub fn hydrostatic(sample: &Sample, tolerance: Tolerance) -> Result<(Hydrostatic
         }
         Domain::Sphere { .. } => {
             let radius = sample.sphere_radius().unwrap_or(0.5 * (upper.x - lower.x));
-            let set = sample.packing.wall("radius").unwrap_or_default();
-            // Equal radial forces on the surface particles; the pressure is their sum over 4πR².
-            let inward = |i: u32| (centre - position[i as usize]).normalize();
-            let mut loads = vec![[0.0; 6]; position.len()];
-            let unit = sample.lattice.section().young_modulus * radius * radius * STRAIN / set.len().max(1) as f64;
-            let mut total = Vec3::zeros();
-            for &i in set {
-                total += inward(i) * unit;
+            let mut supports = Supports::none(position.len());
+            for &i in sample.packing.wall("radius").unwrap_or_default() {
+                let inward = (centre - position[i as usize]).normalize() * (STRAIN * radius);
+                (0..3).for_each(|axis| supports.set(i, axis, inward[axis]));
             }
-            for &i in set {
-                // The small resultant of a random set is taken off, so that the loads are in balance.
-                let f = inward(i) * unit - total / set.len() as f64;
-                loads[i as usize] = translation(f);
-            }
-            let supports = Supports::none(position.len());
-            let rest = sample.lattice.solve(&supports, Some(&loads), &affine, tolerance)?;
-            let sum: f64 = set
-                .iter()
-                .map(|&i| Vec3::new(loads[i as usize][0], loads[i as usize][1], loads[i as usize][2]).dot(&inward(i)))
-                .sum();
-            let pressure = sum / (4.0 * std::f64::consts::PI * radius * radius);
-            let shrink = |&i: &u32| {
-                let u = rest.state[i as usize];
-                Vec3::new(u[0], u[1], u[2]).dot(&inward(i))
-            };
-            let change = set.iter().map(shrink).sum::<f64>() / set.len() as f64;
-            // ΔV/V = 3 ΔR/R; scaled to STRAIN so that both shapes read alike.
-            (pressure * STRAIN / (change / radius), rest)
+            let rest = sample.lattice.solve(&supports, None, &affine, tolerance)?;
+            let volume = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+            (2.0 * rest.energy / (3.0 * STRAIN * volume), rest)
         }
         _ => return Err(CalibrateError::Shape { test: "hydrostatic compression", shape: "a box or a sphere" }),
     };

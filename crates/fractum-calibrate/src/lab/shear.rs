@@ -18,7 +18,8 @@ pub struct Shear {
 }
 
 /// Pure shear of a box in the xy-plane: particles on the four walls x and y follow the affine field u = γ/2 (y, x, 0),
-/// the walls z are free.
+/// the walls z are free. As in tension, the walls are displaced as far as the faces of the measured box would be, half a
+/// particle outside their centres.
 ///
 /// # Errors
 /// Another shape; a solve that does not converge.
@@ -29,7 +30,9 @@ pub fn shear(sample: &Sample, tolerance: Tolerance) -> Result<(Shear, Equilibriu
     let position = &sample.packing.position;
     let (lower, upper) = sample.packing.domain.bounds();
     let centre = (lower + upper) * 0.5;
-    let field = |x: &Vec3| Vec3::new(x.y - centre.y, x.x - centre.x, 0.0) * (0.5 * STRAIN);
+    let outside = |axis: usize| extents[axis] / (extents[axis] - 2.0 * sample.mean_radius);
+    let (fx, fy) = (outside(0), outside(1));
+    let field = |x: &Vec3| Vec3::new((x.y - centre.y) * fy, (x.x - centre.x) * fx, 0.0) * (0.5 * STRAIN);
     let affine: Vec<Dof6> = position.iter().map(|x| translation(field(x))).collect();
     let mut supports = Supports::none(position.len());
     for wall in ["x-", "x+", "y-", "y+"] {

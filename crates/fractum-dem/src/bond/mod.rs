@@ -1,5 +1,12 @@
 //! Laws of the bonds that join particles.
 
+mod cohesive_beam;
+mod lanes;
+mod network;
+
+pub use cohesive_beam::{BeamEnergy, BeamForces, BondedPair, cohesive_beam, cohesive_beam_energy};
+pub use network::BeamNetwork;
+
 use serde::{Deserialize, Serialize};
 
 use crate::DemError;

@@ -1,0 +1,125 @@
+//! Virtual tests against the tables of Nguyen, André and Huger (2019) and of Jebahi et al. (2015), ch. 2.
+//!
+//! The packings are our own, so that agreement is statistical: tolerances are a few times the scatter over packings
+//! (about 0.4 % in E, 0.3 % in ν at 10,000 particles) plus the difference the authors print for themselves.
+
+use fractum_calibrate::{Micro, Sample, lab};
+use fractum_dem::Tolerance;
+use fractum_pack::{Convention, Domain, PackSpec, Packing, pack};
+
+struct Row {
+    material: String,
+    values: Vec<f64>,
+}
+
+fn rows(text: &str) -> Vec<Row> {
+    let data = text.lines().filter(|l| l.starts_with("glass") || l.starts_with("alumina"));
+    data.map(|line| {
+        let mut words = line.split(',');
+        let material = words.next().unwrap().to_string();
+        Row { material, values: words.map(|w| w.parse().unwrap()).collect() }
+    })
+    .collect()
+}
+
+fn target(material: &str) -> (f64, f64, f64) {
+    if material == "glass" { (72e9, 0.23, 44.44e9) } else { (340e9, 0.24, 217.9e9) }
+}
+
+fn bonded(packing: &Packing, coordination: f64, radius_ratio: f64, young_modulus: f64) -> Sample {
+    let mut sample = Sample::new(packing.clone(), coordination, Convention::All).unwrap();
+    sample.set_micro(Micro { radius_ratio, young_modulus }).unwrap();
+    sample
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn tension_reproduces_tables_5_and_6() {
+    let packings: Vec<Packing> =
+        (1..=3).map(|seed| pack(&PackSpec::new(Domain::cuboid(2e-3, 2e-3, 2e-3), 10_000, seed)).unwrap()).collect();
+    for Row { material, values } in rows(include_str!("../reference/nguyen2019_elastic.csv")) {
+        let (coordination, young, poisson) = (values[0], target(&material).0, target(&material).1);
+        let (mut mean_e, mut mean_nu) = (0.0, 0.0);
+        for packing in &packings {
+            let sample = bonded(packing, coordination, values[1], values[2] * 1e9);
+            let (tension, _) = lab::tension(&sample, 0, None, Tolerance::default()).unwrap();
+            mean_e += (tension.young_modulus / young - 1.0) / 3.0;
+            mean_nu += (tension.poisson_ratio / poisson - 1.0) / 3.0;
+        }
+        println!("{material:8} cn {coordination:2}: E {:+.2} %  nu {:+.2} %", 100.0 * mean_e, 100.0 * mean_nu);
+        // The authors' own alumina row at 13 is already 1.7 % off its target.
+        let (allowed_e, allowed_nu) = match (coordination, material.as_str()) {
+            (13.0, "alumina") => (0.035, 0.015),
+            (8.0.., _) => (0.02, 0.015),
+            _ => (0.04, 0.04),
+        };
+        assert!(mean_e.abs() < allowed_e, "{material} cn {coordination}: E off by {mean_e}");
+        assert!(mean_nu.abs() < allowed_nu, "{material} cn {coordination}: nu off by {mean_nu}");
+    }
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn hydrostatic_compression_of_a_sphere_reproduces_tables_7_and_8() {
+    let packing = pack(&PackSpec::new(Domain::sphere(5e-3), 15_000, 1)).unwrap();
+    for Row { material, values } in rows(include_str!("../reference/nguyen2019_elastic.csv")) {
+        let sample = bonded(&packing, values[0], values[1], values[2] * 1e9);
+        let (result, _) = lab::hydrostatic(&sample, Tolerance::default()).unwrap();
+        let difference = result.bulk_modulus / target(&material).2 - 1.0;
+        println!(
+            "{material:8} cn {:2}: K {:+.2} % gauge {:?}",
+            values[0],
+            100.0 * difference,
+            result.gauge_bulk_modulus
+        );
+        assert!(difference.abs() < 0.025, "{material} cn {}: K off by {difference}", values[0]);
+    }
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn a_silica_cylinder_pulls_bends_and_twists_like_table_2_5() {
+    let (young, poisson) = (75e9, 0.17);
+    let packing = pack(&PackSpec::new(Domain::cylinder(5e-3, 0.5e-3), 10_000, 1)).unwrap();
+    let mut sample = Sample::new(packing, 6.2, Convention::Interior).unwrap();
+    sample.set_micro(Micro { radius_ratio: 0.68, young_modulus: 295.5e9 }).unwrap();
+    let (tension, _) = lab::tension(&sample, 0, None, Tolerance::default()).unwrap();
+    let (bending, _) = lab::bending(&sample, Tolerance::default()).unwrap();
+    let (torsion, _) = lab::torsion(&sample, Tolerance::default()).unwrap();
+    let shear = young / (2.0 * (1.0 + poisson));
+    // Displacements go as one over the modulus.
+    let differences =
+        [young / tension.young_modulus - 1.0, young / bending.young_modulus - 1.0, shear / torsion.shear_modulus - 1.0];
+    println!(
+        "tension, bending, torsion: {differences:.4?}  nu {:.4} iterations {} {} {}",
+        tension.poisson_ratio, tension.iterations, bending.iterations, torsion.iterations
+    );
+    // The book prints 1.20, 4.16 and 6.13 % for a cylinder whose size it does not give. On ours, 13 particles across, the
+    // loose layer at the wall weighs more in torsion, which feels the fourth power of the radius.
+    for (difference, allowed) in differences.iter().zip([0.020, 0.0416, 0.125]) {
+        assert!(difference.abs() <= allowed, "{difference} against {allowed}");
+    }
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn the_moduli_of_one_material_agree() {
+    // E and ν from tension, K from compression, G from shear of the same box: K = E/3(1-2ν), G = E/2(1+ν).
+    let packing = pack(&PackSpec::new(Domain::cuboid(1e-3, 1e-3, 1e-3), 10_000, 4)).unwrap();
+    let sample = bonded(&packing, 10.0, 0.348, 677.94e9);
+    let (tension, _) = lab::tension(&sample, 0, None, Tolerance::default()).unwrap();
+    let (compression, _) = lab::hydrostatic(&sample, Tolerance::default()).unwrap();
+    let (shear, _) = lab::shear(&sample, Tolerance::default()).unwrap();
+    let (e, nu) = (tension.young_modulus, tension.poisson_ratio);
+    let (bulk, rigidity) = (e / (3.0 * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu)));
+    println!(
+        "K {:.4} G {:.4}  {tension:?} {compression:?} {shear:?}",
+        compression.bulk_modulus / bulk,
+        shear.shear_modulus / rigidity
+    );
+    assert!((compression.bulk_modulus / bulk - 1.0).abs() < 0.03);
+    assert!((shear.shear_modulus / rigidity - 1.0).abs() < 0.03);
+    // Walls cost a few per cent, so that the gauge section is stiffer by about that much.
+    let gauge = tension.gauge_young_modulus.unwrap() / e;
+    assert!((0.99..1.05).contains(&gauge), "{gauge}");
+}
