@@ -3,7 +3,7 @@
 //! The packings are our own, so that agreement is statistical: tolerances are a few times the scatter over packings
 //! (about 0.4 % in E, 0.3 % in ν at 10,000 particles) plus the difference the authors print for themselves.
 
-use fractum_calibrate::{Micro, Sample, lab};
+use fractum_calibrate::{CalibrateError, Micro, Request, Sample, calibrate, lab};
 use fractum_dem::Tolerance;
 use fractum_pack::{Convention, Domain, PackSpec, Packing, pack};
 
@@ -122,4 +122,31 @@ fn the_moduli_of_one_material_agree() {
     // Walls cost a few per cent, so that the gauge section is stiffer by about that much.
     let gauge = tension.gauge_young_modulus.unwrap() / e;
     assert!((0.99..1.05).contains(&gauge), "{gauge}");
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn calibrated_materials_pass_an_independent_test_within_one_per_cent() {
+    // Glass, alumina, silica, steel, concrete, granite.
+    for (young, poisson) in [(72e9, 0.23), (340e9, 0.24), (75e9, 0.17), (210e9, 0.29), (30e9, 0.20), (60e9, 0.25)] {
+        let result = calibrate(&Request { seed: 21, ..Request::new(young, poisson) }).unwrap();
+        let (e, nu) = (result.check_young_modulus / young - 1.0, result.check_poisson_ratio / poisson - 1.0);
+        println!("E {:.0} GPa, nu {poisson}: {:+.2} %, {:+.2} %", young / 1e9, 100.0 * e, 100.0 * nu);
+        assert!(e.abs() < 0.01 && nu.abs() < 0.01, "{result:?}");
+    }
+}
+
+#[test]
+fn impossible_materials_are_refused_with_what_is_possible() {
+    let request = |young, poisson| Request { particles: 1000, ..Request::new(young, poisson) };
+    assert!(matches!(calibrate(&request(-1.0, 0.2)), Err(CalibrateError::Material { .. })));
+    assert!(matches!(calibrate(&request(1e9, 0.5)), Err(CalibrateError::Material { .. })));
+    assert!(matches!(calibrate(&request(f64::NAN, 0.2)), Err(CalibrateError::Material { .. })));
+    let error = calibrate(&request(1e9, 0.45)).unwrap_err();
+    assert!(matches!(error, CalibrateError::PoissonRange { .. }), "{error}");
+    let asked = Request { coordination: Some(10.0), ..request(1e9, 0.35) };
+    let error = calibrate(&asked).unwrap_err();
+    assert!(matches!(error, CalibrateError::PoissonRange { highest, .. } if highest < 0.35), "{error}");
+    let error = calibrate(&Request { coordination: Some(90.0), ..request(1e9, 0.2) }).unwrap_err();
+    assert!(matches!(error, CalibrateError::Pack(_)), "{error}");
 }
