@@ -78,10 +78,10 @@ pub fn invert(
         last = Some((log, poisson));
         *(if miss > 0.0 { &mut above } else { &mut below }) = Some((log, poisson));
         let mut next = (log - miss / slope).clamp(log - 0.7, log + 0.7).clamp(thin, thick);
-        if let (Some((a, _)), Some((b, _))) = (above, below) {
-            if next <= a || next >= b {
-                next = 0.5 * (a + b);
-            }
+        if let (Some((a, _)), Some((b, _))) = (above, below)
+            && (next <= a || next >= b)
+        {
+            next = 0.5 * (a + b);
         }
         if next == log {
             // At an end of the range with the target beyond it.

@@ -340,7 +340,8 @@ mod tests {
 
     #[test]
     fn stored_laws_pass_through_the_published_points() {
-        // Tables 5 and 6 are points on the authors' laws: E/E_m within 5 %, ν within 3 %, and r_m within 0.02 where the
+        // Tables 5 and 6 are points on the authors' laws: E/E_m within 5 %, ν within 1.5 % (4 % at 6
+        // and 7), and r_m within 0.02 where the
         // inverse is well conditioned. For thin beams at high coordination ν hardly depends on r_m (alumina at 12 and 13
         // differs by 0.025 for 0.4 % of ν), and at 6 a packing's weakest contacts decide (glass differs by 0.0207).
         let law = stored(Convention::All).unwrap();
@@ -350,7 +351,8 @@ mod tests {
             let poisson = law.poisson_ratio(a.radius_ratio, a.coordination) / a.poisson_ratio;
             let radius = micro.radius_ratio - a.radius_ratio;
             println!("cn {}: r_m {radius:+.4}, E {:+.4}, nu {:+.4}", a.coordination, ratio - 1.0, poisson - 1.0);
-            assert!((ratio - 1.0).abs() < 0.05 && (poisson - 1.0).abs() < 0.03, "{a:?} {ratio} {poisson}");
+            let close = if a.coordination < 8.0 { 0.04 } else { 0.015 };
+            assert!((ratio - 1.0).abs() < 0.05 && (poisson - 1.0).abs() < close, "{a:?} {ratio} {poisson}");
             if (7.0..=11.0).contains(&a.coordination) {
                 assert!(radius.abs() < 0.02, "{a:?} {micro:?}");
             }

@@ -56,7 +56,7 @@ impl Particles {
             return Err(DemError::Length { what: "radius", found: radius.len(), expected: n });
         }
         let bad = |v: &f64| !(v.is_finite() && *v > 0.0);
-        if let Some(particle) = radius.iter().position(|r| bad(r)) {
+        if let Some(particle) = radius.iter().position(bad) {
             return Err(DemError::BadParticle { particle, what: "radius", value: radius[particle] });
         }
         if bad(&total_mass) {

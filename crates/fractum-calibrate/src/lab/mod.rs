@@ -1,16 +1,18 @@
-//! The virtual laboratory: tests on bonded samples, each by one static solve.
+//! The virtual laboratory: tests on bonded samples, each by one static solve, and vibrations by explicit steps.
 
 mod bending;
 mod gauge;
 mod hydrostatic;
 mod shear;
 mod tension;
+mod vibration;
 
 pub use bending::{Bending, Torsion, bending, torsion};
 pub use gauge::Gauge;
 pub use hydrostatic::{Hydrostatic, hydrostatic};
 pub use shear::{Shear, shear};
 pub use tension::{Tension, tension};
+pub use vibration::{Impact, Mode, Vibration, impact, vibration};
 
 use fractum_dem::Dof6;
 use fractum_math::Vec3;
