@@ -252,5 +252,6 @@ fn the_stable_step_is_stable_and_not_far_below_the_limit() {
         particles.kinetic_energy()
     };
     assert!(growth(0.99) < 1e-6, "{}", growth(0.99));
-    assert!(!(growth(1.6) < 1e-6), "{}", growth(1.6));
+    let beyond = growth(1.6);
+    assert!(beyond.is_nan() || beyond > 1e-6, "{beyond}");
 }

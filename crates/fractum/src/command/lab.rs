@@ -9,6 +9,7 @@ use fractum_dem::Tolerance;
 use fractum_io::atomic;
 use fractum_pack::{Domain, PackSpec, Packing, pack};
 
+use super::convergence::{Diagram, Series, svg};
 use super::shape::{Convention, ShapeArguments, pressure};
 
 /// Arguments of `fractum lab`.
@@ -22,7 +23,7 @@ pub(crate) enum LabCommand {
         #[arg(long, default_value_t = 3)]
         seeds: u64,
     },
-    /// E and Poisson's ratio against the number of particles, both conventions, as CSV.
+    /// E and Poisson's ratio against the number of particles, both conventions, as CSV and as a plot beside it.
     Convergence {
         /// Packings per size.
         #[arg(long, default_value_t = 4)]
@@ -177,20 +178,24 @@ const STUDY: (f64, Micro) = (10.0, Micro { radius_ratio: 0.348, young_modulus: 6
 fn convergence(seeds: u64, largest: usize, output: &Path) -> Result<(), Failure> {
     let mut text =
         String::from("particles,convention,packings,E [Pa],E scatter [%],nu,nu scatter [%],gauge E [Pa],gauge nu\n");
+    let conventions = [(fractum_pack::Convention::All, "#b42"), (fractum_pack::Convention::Interior, "#06c")];
+    let series = || conventions.map(|(c, colour)| Series { name: c.to_string(), colour, points: Vec::new() }).into();
+    let mut young = Diagram { title: "Young's modulus [GPa] against particles", series: series() };
+    let mut poisson = Diagram { title: "Poisson's ratio against particles", series: series() };
     for count in SIZES.into_iter().filter(|&c| c <= largest) {
-        for convention in [fractum_pack::Convention::All, fractum_pack::Convention::Interior] {
-            let tests = (1..=seeds).map(|seed| -> Result<lab::Tension, CalibrateError> {
-                let packing = pack(&PackSpec::new(Domain::cuboid(2e-3, 2e-3, 2e-3), count, seed))?;
-                let mut sample = Sample::new(packing, STUDY.0, convention)?;
+        let cube = |seed| pack(&PackSpec::new(Domain::cuboid(2e-3, 2e-3, 2e-3), count, seed));
+        let packings: Vec<Packing> = (1..=seeds).map(cube).collect::<Result<_, _>>().map_err(|e| wrong(e.into()))?;
+        for (k, (convention, _)) in conventions.into_iter().enumerate() {
+            let tests = packings.iter().map(|packing| -> Result<lab::Tension, CalibrateError> {
+                let mut sample = Sample::new(packing.clone(), STUDY.0, convention)?;
                 sample.set_micro(STUDY.1)?;
                 Ok(lab::tension(&sample, 0, None, Tolerance::default())?.0)
             });
             let tests = tests.collect::<Result<Vec<_>, _>>().map_err(wrong)?;
-            let column = |f: &dyn Fn(&lab::Tension) -> Option<f64>| tests.iter().filter_map(f).collect::<Vec<f64>>();
-            let ((e, se), (n, sn)) =
-                (spread(&column(&|t| Some(t.young_modulus))), spread(&column(&|t| Some(t.poisson_ratio))));
-            let (ge, gn) =
-                (spread(&column(&|t| t.gauge_young_modulus)).0, spread(&column(&|t| t.gauge_poisson_ratio)).0);
+            let column =
+                |f: &dyn Fn(&lab::Tension) -> Option<f64>| spread(&tests.iter().filter_map(f).collect::<Vec<f64>>());
+            let ((e, se), (n, sn)) = (column(&|t| Some(t.young_modulus)), column(&|t| Some(t.poisson_ratio)));
+            let (ge, gn) = (column(&|t| t.gauge_young_modulus).0, column(&|t| t.gauge_poisson_ratio).0);
             let line = format!(
                 "{count},{convention},{seeds},{e:.4e},{:.3},{n:.5},{:.3},{ge:.4e},{gn:.5}",
                 100.0 * se,
@@ -198,8 +203,11 @@ fn convergence(seeds: u64, largest: usize, output: &Path) -> Result<(), Failure>
             );
             println!("{line}");
             text += &(line + "\n");
+            young.series[k].points.push([count as f64, e / 1e9, se * e / 1e9]);
+            poisson.series[k].points.push([count as f64, n, sn * n]);
         }
     }
     atomic::write(output, text.as_bytes())?;
+    atomic::write(&output.with_extension("svg"), svg(&[young, poisson]).as_bytes())?;
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! The commands: arguments in, exit code out.
 
 mod calibrate;
+mod convergence;
 mod lab;
 mod mesh;
 mod new;
