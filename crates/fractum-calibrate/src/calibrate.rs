@@ -61,9 +61,12 @@ pub struct Calibration {
     pub law: Option<Micro>,
     /// Reachable Poisson's ratios at this coordination, lowest and highest, by the stored laws.
     pub poisson_range: [f64; 2],
-    /// E of a tension test on a packing not used before [Pa].
+    /// E and ν of tension tests along x, y, z on the first packing, from rest and to a tighter tolerance than the
+    /// inversion's [Pa, -].
+    pub own_check: [(f64, f64); 3],
+    /// E on a packing not used before, mean over the three axes [Pa].
     pub check_young_modulus: f64,
-    /// ν of that test.
+    /// ν on that packing, mean over the three axes.
     pub check_poisson_ratio: f64,
     /// Seed of that packing.
     pub check_seed: u64,
@@ -106,8 +109,11 @@ pub fn calibrate(request: &Request) -> Result<Calibration, CalibrateError> {
         Sample::new(packing, coordination, request.convention)
     };
     let mut inverted = Vec::new();
+    let mut first = None;
     for k in 0..request.packings.max(1) as u64 {
-        inverted.push(invert(&mut cube(request.seed + k)?, request.young_modulus, request.poisson_ratio, start)?);
+        let mut sample = cube(request.seed + k)?;
+        inverted.push(invert(&mut sample, request.young_modulus, request.poisson_ratio, start)?);
+        first.get_or_insert(sample);
     }
     let count = inverted.len() as f64;
     let mean = |f: &dyn Fn(&Inverted) -> f64| inverted.iter().map(f).sum::<f64>() / count;
@@ -122,9 +128,14 @@ pub fn calibrate(request: &Request) -> Result<Calibration, CalibrateError> {
         ]
     });
     let check_seed = request.seed + inverted.len() as u64;
-    let mut sample = cube(check_seed)?;
+    let fresh = cube(check_seed)?;
+    let mut own = first.map_or_else(|| cube(request.seed), Ok)?;
+    own.set_micro(micro)?;
+    let own_check = test_axes(&own)?;
+    let mut sample = fresh;
     sample.set_micro(micro)?;
-    let (check, _) = lab::tension(&sample, 0, None, Tolerance::default())?;
+    let check = test_axes(&sample)?;
+    let average = |f: fn(&(f64, f64)) -> f64| check.iter().map(f).sum::<f64>() / 3.0;
     let [highest, lowest] = law.poisson_range(coordination);
     // The published strength law counts bonds over all particles.
     let strength = |s: f64| s / published::strength_ratio(micro.radius_ratio, sample.network.coordination_all);
@@ -136,9 +147,21 @@ pub fn calibrate(request: &Request) -> Result<Calibration, CalibrateError> {
         inverted,
         law: proposed,
         poisson_range: [lowest, highest],
-        check_young_modulus: check.young_modulus,
-        check_poisson_ratio: check.poisson_ratio,
+        own_check,
+        check_young_modulus: average(|c| c.0),
+        check_poisson_ratio: average(|c| c.1),
         check_seed,
         beam_strength: request.tensile_strength.map(strength),
     })
+}
+
+/// E and ν along x, y, z.
+fn test_axes(sample: &Sample) -> Result<[(f64, f64); 3], CalibrateError> {
+    let tolerance = Tolerance { residual: 1e-6, ..Tolerance::default() };
+    let mut found = [(0.0, 0.0); 3];
+    for (axis, slot) in found.iter_mut().enumerate() {
+        let (tension, _) = lab::tension(sample, axis, None, tolerance)?;
+        *slot = (tension.young_modulus, tension.poisson_ratio);
+    }
+    Ok(found)
 }

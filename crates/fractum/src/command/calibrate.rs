@@ -123,12 +123,20 @@ fn show(c: &Calibration, seconds: f64) {
             c.inverted.len()
         );
     }
+    let percent = |found: f64, asked: f64| 100.0 * (found / asked - 1.0);
+    for (axis, (young, poisson)) in ["x", "y", "z"].iter().zip(c.own_check) {
+        println!(
+            "tension along {axis}      E {young:.4e} Pa ({:+.2} %), nu {poisson:.4} ({:+.2} %)",
+            percent(young, e),
+            percent(poisson, nu)
+        );
+    }
     println!(
-        "independent test     E {:.4e} Pa ({:+.2} %), nu {:.4} ({:+.2} %) on the packing of seed {}",
+        "another packing      E {:.4e} Pa ({:+.2} %), nu {:.4} ({:+.2} %), seed {}, mean over the axes",
         c.check_young_modulus,
-        100.0 * (c.check_young_modulus / e - 1.0),
+        percent(c.check_young_modulus, e),
         c.check_poisson_ratio,
-        100.0 * (c.check_poisson_ratio / nu - 1.0),
+        percent(c.check_poisson_ratio, nu),
         c.check_seed
     );
     if let Some(strength) = c.beam_strength {
