@@ -3,7 +3,7 @@
 //! A [`Sample`] is a bonded packing. [`lab`] tests it in tension, compression, bending, torsion and shear, each by one
 //! static solve. [`invert`] finds the beams that give it a Young's modulus and a Poisson's ratio; [`laws`] holds fits
 //! over many such tests; [`published`] the numbers of the literature; [`calibrate`] goes the whole way and checks the
-//! result on a packing not used before.
+//! result on a packing not used before; [`prepare`] makes a body ready to move.
 //!
 //! ```
 //! use fractum_calibrate::{Sample, invert};
@@ -20,10 +20,12 @@ mod error;
 mod inversion;
 pub mod lab;
 pub mod laws;
+mod prepare;
 pub mod published;
 mod sample;
 
 pub use calibrate::{Calibration, Request, calibrate};
 pub use error::CalibrateError;
 pub use inversion::{Inverted, RADIUS_RATIOS, invert};
+pub use prepare::{BondedBody, BondedMaterial, prepare};
 pub use sample::{Micro, Sample};

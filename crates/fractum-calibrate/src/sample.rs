@@ -83,6 +83,15 @@ impl Sample {
         Some(self.mean_distance(centre, Vec3::repeat(1.0))? + self.mean_radius)
     }
 
+    /// Volume of the measured body [m³]; that of the domain where no measure is defined.
+    pub fn measured_volume(&self) -> f64 {
+        use std::f64::consts::PI;
+        let cuboid = || self.box_extents().map(|e| e.product());
+        let cylinder = || self.cylinder_extents().map(|(l, r)| PI * r * r * l);
+        let sphere = || self.sphere_radius().map(|r| 4.0 / 3.0 * PI * r.powi(3));
+        cuboid().or_else(cylinder).or_else(sphere).unwrap_or_else(|| self.packing.domain.volume())
+    }
+
     /// Mean distance of the set `radius` from a point, along the axes of `mask`.
     fn mean_distance(&self, from: Vec3, mask: Vec3) -> Option<f64> {
         let set = self.packing.wall("radius").filter(|s| !s.is_empty())?;
