@@ -7,6 +7,7 @@ use fractum::{ExitCode, Failure};
 use fractum_calibrate::{CalibrateError, Micro, Sample, lab, published};
 use fractum_dem::Tolerance;
 use fractum_io::atomic;
+use fractum_io::case::{Dimension, parse_quantity};
 use fractum_pack::{Domain, PackSpec, Packing, pack};
 
 use super::convergence::{Diagram, Series, svg};
@@ -57,6 +58,9 @@ pub(crate) struct TestArguments {
     /// Young's modulus of the beams, such as "700 GPa".
     #[arg(long, default_value = "1 GPa")]
     beam_young: String,
+    /// Density of the continuum, for the tests in time.
+    #[arg(long, default_value = "1000 kg/m^3")]
+    density: String,
     /// Axis of a tension test.
     #[arg(long, value_enum, default_value = "x")]
     axis: Axis,
@@ -69,6 +73,14 @@ enum Test {
     Shear,
     Bending,
     Torsion,
+    /// Period of free vibration along a cylinder.
+    TensionPeriod,
+    /// Period of free vibration across a cylinder.
+    BendingPeriod,
+    /// Period of free vibration about a cylinder's axis.
+    TorsionPeriod,
+    /// Speed of a pulse along a cylinder.
+    Impact,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -94,6 +106,10 @@ pub(crate) fn run(command: &LabCommand) -> Result<ExitCode, Failure> {
 
 fn test(arguments: &TestArguments) -> Result<(), Failure> {
     let micro = Micro { radius_ratio: arguments.radius_ratio, young_modulus: pressure(&arguments.beam_young)? };
+    let density = parse_quantity(&arguments.density, Dimension::DENSITY).map_err(Failure::input)?;
+    if density <= 0.0 {
+        return Err(Failure::input(format!("density {density}; expected a positive number of kg/m^3")));
+    }
     let packing = arguments.shape.packing()?;
     let result = (|| -> Result<serde_json::Value, CalibrateError> {
         let mut sample = Sample::new(packing, arguments.coordination, arguments.convention.into())?;
@@ -105,6 +121,18 @@ fn test(arguments: &TestArguments) -> Result<(), Failure> {
             Test::Shear => serde_json::to_value(lab::shear(&sample, tolerance)?.0),
             Test::Bending => serde_json::to_value(lab::bending(&sample, tolerance)?.0),
             Test::Torsion => serde_json::to_value(lab::torsion(&sample, tolerance)?.0),
+            // The theory takes the elastic constants that the same sample shows in tension.
+            timed => {
+                let tension = lab::tension(&sample, 0, None, tolerance)?.0;
+                let (young, poisson) = (tension.young_modulus, tension.poisson_ratio);
+                let mode = match timed {
+                    Test::TensionPeriod => lab::Mode::Tension,
+                    Test::BendingPeriod => lab::Mode::Bending,
+                    Test::TorsionPeriod => lab::Mode::Torsion,
+                    _ => return Ok(serde_json::to_value(lab::impact(&sample, density, young)?).unwrap_or_default()),
+                };
+                serde_json::to_value(lab::vibration(&sample, mode, density, young, poisson)?)
+            }
         };
         Ok(value.unwrap_or_default())
     })();
