@@ -1,7 +1,12 @@
 //! The commands: arguments in, exit code out.
 
+mod calibrate;
+mod convergence;
+mod lab;
 mod mesh;
 mod new;
+mod pack;
+mod shape;
 
 use std::path::PathBuf;
 
@@ -76,6 +81,15 @@ enum Command {
         /// Results folder of a run.
         folder: PathBuf,
     },
+    /// Fill a shape with particles and certify the packing.
+    Pack(Box<pack::PackArguments>),
+    /// Test bonded packings in the virtual laboratory.
+    Lab {
+        #[command(subcommand)]
+        command: lab::LabCommand,
+    },
+    /// Find the bonds that give a material its elastic constants.
+    Calibrate(Box<calibrate::CalibrateArguments>),
     /// Print the JSON schema of the case file.
     Schema,
     /// Explain a key of the case file, such as bodies.formulation.
@@ -127,6 +141,9 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         }
         Command::Mesh { command } => mesh::execute(command),
         Command::Report { folder } => fractum::report::write(&folder).map(|()| ExitCode::Done),
+        Command::Pack(arguments) => pack::run(&arguments),
+        Command::Lab { command } => lab::run(&command),
+        Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Schema => {
             say!("{}", serde_json::to_string_pretty(&fractum_io::case::schema()).unwrap_or_default());
             Ok(ExitCode::Done)

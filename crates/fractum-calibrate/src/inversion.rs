@@ -1,0 +1,144 @@
+//! Calibration on the packing at hand: ν fixes the beam radius, then E scales their modulus.
+
+use fractum_dem::{Equilibrium, Tolerance};
+
+use crate::{CalibrateError, Micro, Sample, lab};
+
+/// Micro-parameters found on a sample, and what they give there.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct Inverted {
+    /// The micro-parameters.
+    pub micro: Micro,
+    /// E along each axis tested (x only on a cylinder) with these parameters [Pa].
+    pub young_modulus: f64,
+    /// ν, mean over the axes.
+    pub poisson_ratio: f64,
+    /// Relative spread (largest minus smallest) of E over the axes.
+    pub anisotropy: f64,
+    /// Solves used.
+    pub solves: usize,
+}
+
+/// Beam radii searched, in mean radii.
+pub const RADIUS_RATIOS: [f64; 2] = [0.05, 1.2];
+/// Difference of ν at which the search stops.
+const CLOSE: f64 = 1e-4;
+
+/// Finds the beam radius and modulus that give a sample Young's modulus and Poisson's ratio, by a safeguarded secant
+/// search on ν(ln r_m) with warm-started solves. On a box, the result is for the mean over the three axes.
+///
+/// - `start`: beam radius over the mean radius to begin with
+///
+/// # Errors
+/// An impossible material; a Poisson's ratio out of reach, with the reachable range; a solve that does not converge.
+pub fn invert(
+    sample: &mut Sample,
+    young_modulus: f64,
+    poisson_ratio: f64,
+    start: f64,
+) -> Result<Inverted, CalibrateError> {
+    check_material(young_modulus, poisson_ratio)?;
+    let axes = if sample.box_extents().is_some() { 3 } else { 1 };
+    let tolerance = Tolerance::default();
+    let mut warm: Vec<Option<Equilibrium>> = vec![None; 3];
+    let mut solves = 0;
+    let mut test = |sample: &mut Sample, log: f64, axes: usize| -> Result<(f64, f64, f64), CalibrateError> {
+        sample.set_micro(Micro { radius_ratio: log.exp(), young_modulus: 1.0 })?;
+        let (mut young, mut poisson) = (Vec::new(), 0.0);
+        for axis in 0..axes {
+            let (tension, rest) = lab::tension(sample, axis, warm[axis].as_ref(), tolerance)?;
+            warm[axis] = Some(rest);
+            young.push(tension.young_modulus);
+            poisson += tension.poisson_ratio / axes as f64;
+            solves += 1;
+        }
+        let mean = young.iter().sum::<f64>() / axes as f64;
+        let (low, high) = young.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &y| (l.min(y), h.max(y)));
+        Ok((mean, poisson, (high - low) / mean))
+    };
+    let [thin, thick] = RADIUS_RATIOS.map(f64::ln);
+    // ν falls with the radius; (ln r, ν) of the points that bracket the target.
+    let mut above: Option<(f64, f64)> = None;
+    let mut below: Option<(f64, f64)> = None;
+    let mut log = start.clamp(RADIUS_RATIOS[0], RADIUS_RATIOS[1]).ln();
+    let mut last: Option<(f64, f64)> = None;
+    let mut slope: f64 = -0.1;
+    for _ in 0..30 {
+        let (young, poisson, anisotropy) = test(sample, log, axes)?;
+        let miss = poisson - poisson_ratio;
+        if miss.abs() < CLOSE {
+            let micro = Micro { radius_ratio: log.exp(), young_modulus: young_modulus / young };
+            sample.set_micro(micro)?;
+            return Ok(Inverted { micro, young_modulus, poisson_ratio: poisson, anisotropy, solves });
+        }
+        if let Some((l, p)) = last.filter(|l| l.0 != log) {
+            let measured = (poisson - p) / (log - l);
+            slope = if measured < -1e-3 { measured } else { slope };
+        }
+        last = Some((log, poisson));
+        *(if miss > 0.0 { &mut above } else { &mut below }) = Some((log, poisson));
+        let mut next = (log - miss / slope).clamp(log - 0.7, log + 0.7).clamp(thin, thick);
+        if let (Some((a, _)), Some((b, _))) = (above, below)
+            && (next <= a || next >= b)
+        {
+            next = 0.5 * (a + b);
+        }
+        if next == log {
+            // At an end of the range with the target beyond it.
+            let other = if log == thin { thick } else { thin };
+            let (_, beyond, _) = test(sample, other, 1)?;
+            let (highest, lowest) = (poisson.max(beyond), poisson.min(beyond));
+            let (coordination, convention) = (coordination_of(sample), sample.convention);
+            let [thin, thick] = RADIUS_RATIOS;
+            return Err(CalibrateError::PoissonRange {
+                asked: poisson_ratio,
+                coordination,
+                convention,
+                thin,
+                thick,
+                lowest,
+                highest,
+            });
+        }
+        log = next;
+    }
+    let coordination = coordination_of(sample);
+    let [thin, thick] = RADIUS_RATIOS;
+    let nu = last.map_or(f64::NAN, |l| l.1);
+    let convention = sample.convention;
+    Err(CalibrateError::PoissonRange {
+        asked: poisson_ratio,
+        coordination,
+        convention,
+        thin,
+        thick,
+        lowest: nu,
+        highest: nu,
+    })
+}
+
+fn coordination_of(sample: &Sample) -> f64 {
+    match sample.convention {
+        fractum_pack::Convention::All => sample.network.coordination_all,
+        fractum_pack::Convention::Interior => sample.network.coordination_interior,
+    }
+}
+
+/// Refuses what is no isotropic elastic material.
+pub(crate) fn check_material(young_modulus: f64, poisson_ratio: f64) -> Result<(), CalibrateError> {
+    if !(young_modulus.is_finite() && young_modulus > 0.0) {
+        return Err(CalibrateError::Material {
+            what: "Young's modulus",
+            value: young_modulus,
+            expected: "a positive number of pascals",
+        });
+    }
+    if !(poisson_ratio > -1.0 && poisson_ratio < 0.5) {
+        return Err(CalibrateError::Material {
+            what: "Poisson's ratio",
+            value: poisson_ratio,
+            expected: "between -1 and 0.5",
+        });
+    }
+    Ok(())
+}

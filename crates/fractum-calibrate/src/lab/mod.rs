@@ -1,0 +1,26 @@
+//! The virtual laboratory: tests on bonded samples, each by one static solve, and vibrations by explicit steps.
+
+mod bending;
+mod gauge;
+mod hydrostatic;
+mod shear;
+mod tension;
+mod vibration;
+
+pub use bending::{Bending, Torsion, bending, torsion};
+pub use gauge::Gauge;
+pub use hydrostatic::{Hydrostatic, hydrostatic};
+pub use shear::{Shear, shear};
+pub use tension::{Tension, tension};
+pub use vibration::{Impact, Mode, Vibration, impact, vibration};
+
+use fractum_dem::Dof6;
+use fractum_math::Vec3;
+
+/// Strain of the strain-driven tests; the solves are linear, so that it only sets the size of the numbers.
+pub(crate) const STRAIN: f64 = 1e-4;
+
+/// A displacement without rotation.
+pub(crate) fn translation(u: Vec3) -> Dof6 {
+    [u.x, u.y, u.z, 0.0, 0.0, 0.0]
+}

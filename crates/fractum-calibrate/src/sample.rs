@@ -1,0 +1,101 @@
+use fractum_dem::{BeamSection, DemError, Lattice};
+use fractum_math::Vec3;
+use fractum_pack::{BondNetwork, Convention, Domain, Packing, bond, interior_fraction};
+
+use crate::CalibrateError;
+
+/// A bonded packing ready for virtual tests.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// The packing.
+    pub packing: Packing,
+    /// Its bonds.
+    pub network: BondNetwork,
+    /// The convention that counted them.
+    pub convention: Convention,
+    /// The lattice of the bonds.
+    pub lattice: Lattice,
+    /// Mean radius [m].
+    pub mean_radius: f64,
+    /// Volume fraction of the interior (0.64 where the sample has no interior).
+    pub fraction: f64,
+}
+
+/// Micro-parameters: what a bonded body needs besides its packing.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Micro {
+    /// Beam radius over the mean particle radius, r_m.
+    pub radius_ratio: f64,
+    /// Young's modulus of the beams E_m [Pa].
+    pub young_modulus: f64,
+}
+
+/// Volume fraction taken where a sample is too small to measure its interior.
+const RANDOM_CLOSE: f64 = 0.64;
+
+impl Sample {
+    /// Bonds a packing to a coordination.
+    ///
+    /// # Errors
+    /// An unreachable coordination.
+    pub fn new(packing: Packing, coordination: f64, convention: Convention) -> Result<Self, CalibrateError> {
+        let network = bond(&packing, coordination, convention)?;
+        let mean_radius = packing.mean_radius();
+        let section = BeamSection::new(1.0, 0.5 * mean_radius)?;
+        let lattice = Lattice::new(&packing.position, &network.pairs, section, mean_radius)?;
+        let fraction = interior_fraction(&packing).unwrap_or(RANDOM_CLOSE);
+        Ok(Sample { packing, network, convention, lattice, mean_radius, fraction })
+    }
+
+    /// Sets the beams of all bonds.
+    ///
+    /// # Errors
+    /// Numbers that make no beam.
+    pub fn set_micro(&mut self, micro: Micro) -> Result<(), DemError> {
+        self.lattice.set_section(BeamSection::new(micro.young_modulus, micro.radius_ratio * self.mean_radius)?)
+    }
+
+    /// Mean coordinate of a wall set along an axis [m].
+    pub(crate) fn mean_along(&self, wall: &str, axis: usize) -> Option<f64> {
+        let set = self.packing.wall(wall).filter(|s| !s.is_empty())?;
+        Some(set.iter().map(|&i| self.packing.position[i as usize][axis]).sum::<f64>() / set.len() as f64)
+    }
+
+    /// Extents of a box sample: distance of the mean face positions plus one mean diameter (Nguyen et al. 2019, 2.4).
+    pub fn box_extents(&self) -> Option<Vec3> {
+        matches!(self.packing.domain, Domain::Box { .. }).then_some(())?;
+        let extent = |axis: usize, low: &str, high: &str| {
+            Some(self.mean_along(high, axis)? - self.mean_along(low, axis)? + 2.0 * self.mean_radius)
+        };
+        Some(Vec3::new(extent(0, "x-", "x+")?, extent(1, "y-", "y+")?, extent(2, "z-", "z+")?))
+    }
+
+    /// Length and radius of a cylinder sample, measured in the same way (Jebahi et al. 2015, eqs. 2.20–2.21).
+    pub fn cylinder_extents(&self) -> Option<(f64, f64)> {
+        let Domain::Cylinder { start, .. } = self.packing.domain else { return None };
+        let length = self.mean_along("x+", 0)? - self.mean_along("x-", 0)? + 2.0 * self.mean_radius;
+        Some((length, self.mean_distance(start, Vec3::new(0.0, 1.0, 1.0))? + self.mean_radius))
+    }
+
+    /// Radius of a sphere sample, measured in the same way.
+    pub fn sphere_radius(&self) -> Option<f64> {
+        let Domain::Sphere { centre, .. } = self.packing.domain else { return None };
+        Some(self.mean_distance(centre, Vec3::repeat(1.0))? + self.mean_radius)
+    }
+
+    /// Volume of the measured body [m³]; that of the domain where no measure is defined.
+    pub fn measured_volume(&self) -> f64 {
+        use std::f64::consts::PI;
+        let cuboid = || self.box_extents().map(|e| e.product());
+        let cylinder = || self.cylinder_extents().map(|(l, r)| PI * r * r * l);
+        let sphere = || self.sphere_radius().map(|r| 4.0 / 3.0 * PI * r.powi(3));
+        cuboid().or_else(cylinder).or_else(sphere).unwrap_or_else(|| self.packing.domain.volume())
+    }
+
+    /// Mean distance of the set `radius` from a point, along the axes of `mask`.
+    fn mean_distance(&self, from: Vec3, mask: Vec3) -> Option<f64> {
+        let set = self.packing.wall("radius").filter(|s| !s.is_empty())?;
+        let distance = |&i: &u32| (self.packing.position[i as usize] - from).component_mul(&mask).norm();
+        Some(set.iter().map(distance).sum::<f64>() / set.len() as f64)
+    }
+}

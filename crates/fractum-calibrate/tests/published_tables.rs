@@ -1,0 +1,185 @@
+//! Virtual tests against the tables of Nguyen, André and Huger (2019) and of Jebahi et al. (2015), ch. 2.
+//!
+//! The packings are our own, so that agreement is statistical: tolerances are a few times the scatter over packings
+//! (about 0.4 % in E, 0.3 % in ν at 10,000 particles) plus the difference the authors print for themselves.
+
+use fractum_calibrate::{CalibrateError, Micro, Request, Sample, calibrate, invert, lab};
+use fractum_dem::Tolerance;
+use fractum_pack::{Convention, Domain, PackSpec, Packing, pack};
+
+struct Row {
+    material: String,
+    values: Vec<f64>,
+}
+
+fn rows(text: &str) -> Vec<Row> {
+    let data = text.lines().filter(|l| l.starts_with("glass") || l.starts_with("alumina"));
+    data.map(|line| {
+        let mut words = line.split(',');
+        let material = words.next().unwrap().to_string();
+        Row { material, values: words.map(|w| w.parse().unwrap()).collect() }
+    })
+    .collect()
+}
+
+fn target(material: &str) -> (f64, f64, f64) {
+    if material == "glass" { (72e9, 0.23, 44.44e9) } else { (340e9, 0.24, 217.9e9) }
+}
+
+fn bonded(packing: &Packing, coordination: f64, radius_ratio: f64, young_modulus: f64) -> Sample {
+    let mut sample = Sample::new(packing.clone(), coordination, Convention::All).unwrap();
+    sample.set_micro(Micro { radius_ratio, young_modulus }).unwrap();
+    sample
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn tension_reproduces_tables_5_and_6() {
+    let packings: Vec<Packing> =
+        (1..=3).map(|seed| pack(&PackSpec::new(Domain::cuboid(2e-3, 2e-3, 2e-3), 10_000, seed)).unwrap()).collect();
+    for Row { material, values } in rows(include_str!("../reference/nguyen2019_elastic.csv")) {
+        let (coordination, young, poisson) = (values[0], target(&material).0, target(&material).1);
+        let (mut mean_e, mut mean_nu) = (0.0, 0.0);
+        for packing in &packings {
+            let sample = bonded(packing, coordination, values[1], values[2] * 1e9);
+            let (tension, _) = lab::tension(&sample, 0, None, Tolerance::default()).unwrap();
+            mean_e += (tension.young_modulus / young - 1.0) / 3.0;
+            mean_nu += (tension.poisson_ratio / poisson - 1.0) / 3.0;
+        }
+        println!("{material:8} cn {coordination:2}: E {:+.2} %  nu {:+.2} %", 100.0 * mean_e, 100.0 * mean_nu);
+        // The authors' own alumina row at 13 is already 1.7 % off its target.
+        let (allowed_e, allowed_nu) = match (coordination, material.as_str()) {
+            (13.0, "alumina") => (0.035, 0.015),
+            (8.0.., _) => (0.02, 0.015),
+            _ => (0.04, 0.04),
+        };
+        assert!(mean_e.abs() < allowed_e, "{material} cn {coordination}: E off by {mean_e}");
+        assert!(mean_nu.abs() < allowed_nu, "{material} cn {coordination}: nu off by {mean_nu}");
+    }
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn hydrostatic_compression_of_a_sphere_reproduces_tables_7_and_8() {
+    let packing = pack(&PackSpec::new(Domain::sphere(5e-3), 15_000, 1)).unwrap();
+    for Row { material, values } in rows(include_str!("../reference/nguyen2019_elastic.csv")) {
+        let sample = bonded(&packing, values[0], values[1], values[2] * 1e9);
+        let (result, _) = lab::hydrostatic(&sample, Tolerance::default()).unwrap();
+        let difference = result.bulk_modulus / target(&material).2 - 1.0;
+        println!(
+            "{material:8} cn {:2}: K {:+.2} % gauge {:?}",
+            values[0],
+            100.0 * difference,
+            result.gauge_bulk_modulus
+        );
+        assert!(difference.abs() < 0.025, "{material} cn {}: K off by {difference}", values[0]);
+    }
+}
+
+/// A silica cylinder (75 GPa, 0.17, 2200 kg/m³), 13 particles across, with the coordination of the book.
+fn silica() -> Sample {
+    let packing = pack(&PackSpec::new(Domain::cylinder(5e-3, 0.5e-3), 10_000, 1)).unwrap();
+    Sample::new(packing, 6.2, Convention::Interior).unwrap()
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn a_silica_cylinder_pulls_bends_and_twists_like_table_2_5() {
+    let (young, poisson) = (75e9, 0.17);
+    let shear = young / (2.0 * (1.0 + poisson));
+    let differences = |sample: &Sample| {
+        let (tension, _) = lab::tension(sample, 0, None, Tolerance::default()).unwrap();
+        let (bending, _) = lab::bending(sample, Tolerance::default()).unwrap();
+        let (torsion, _) = lab::torsion(sample, Tolerance::default()).unwrap();
+        // Displacements go as one over the modulus.
+        [young / tension.young_modulus - 1.0, young / bending.young_modulus - 1.0, shear / torsion.shear_modulus - 1.0]
+    };
+    let mut sample = silica();
+    sample.set_micro(Micro { radius_ratio: 0.68, young_modulus: 295.5e9 }).unwrap();
+    println!("published beams:  tension, bending, torsion {:.4?}", differences(&sample));
+    let found = invert(&mut sample, young, poisson, 0.68).unwrap();
+    let calibrated = differences(&sample);
+    println!("calibrated beams: tension, bending, torsion {calibrated:.4?} {:?}", found.micro);
+    // The book prints 1.20, 4.16 and 6.13 % for a cylinder whose size it does not give. On ours the loose layer at the
+    // wall weighs more in torsion, which feels the fourth power of the radius: 9 % remain there.
+    for (difference, allowed) in calibrated.iter().zip([0.0120, 0.0416, 0.10]) {
+        assert!(difference.abs() <= allowed, "{difference} against {allowed}");
+    }
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn a_silica_cylinder_vibrates_like_table_2_6() {
+    let (young, poisson, density) = (75e9, 0.17, 2200.0);
+    let mut sample = silica();
+    invert(&mut sample, young, poisson, 0.68).unwrap();
+    let impact = lab::impact(&sample, density, young).unwrap();
+    let speed = impact.wave_speed / impact.theory - 1.0;
+    println!("wave speed {speed:+.4}");
+    // The book prints 0.38, 6.63, 0.50 and 0.40 %; torsion stays 3 % slow here as in the static test.
+    assert!(speed.abs() <= 0.006, "wave speed {speed}");
+    for (mode, allowed) in [(lab::Mode::Tension, 0.0038), (lab::Mode::Bending, 0.0663), (lab::Mode::Torsion, 0.035)] {
+        let v = lab::vibration(&sample, mode, density, young, poisson).unwrap();
+        let difference = v.period / v.theory - 1.0;
+        println!("{mode:?} {difference:+.4} in {} steps", v.steps);
+        assert!(difference.abs() <= allowed, "{mode:?}: {difference} against {allowed}");
+    }
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn the_moduli_of_one_material_agree() {
+    // E and ν from tension, K from compression, G from shear of the same box: K = E/3(1-2ν), G = E/2(1+ν).
+    let packing = pack(&PackSpec::new(Domain::cuboid(1e-3, 1e-3, 1e-3), 10_000, 4)).unwrap();
+    let sample = bonded(&packing, 10.0, 0.348, 677.94e9);
+    let (tension, _) = lab::tension(&sample, 0, None, Tolerance::default()).unwrap();
+    let (compression, _) = lab::hydrostatic(&sample, Tolerance::default()).unwrap();
+    let (shear, _) = lab::shear(&sample, Tolerance::default()).unwrap();
+    let (e, nu) = (tension.young_modulus, tension.poisson_ratio);
+    let (bulk, rigidity) = (e / (3.0 * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu)));
+    println!(
+        "K {:.4} G {:.4}  {tension:?} {compression:?} {shear:?}",
+        compression.bulk_modulus / bulk,
+        shear.shear_modulus / rigidity
+    );
+    assert!((compression.bulk_modulus / bulk - 1.0).abs() < 0.03);
+    assert!((shear.shear_modulus / rigidity - 1.0).abs() < 0.03);
+    // Walls cost a few per cent, so that the gauge section is stiffer by about that much.
+    let gauge = tension.gauge_young_modulus.unwrap() / e;
+    assert!((0.99..1.05).contains(&gauge), "{gauge}");
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn calibrated_materials_pass_an_independent_test_within_one_per_cent() {
+    // Glass, alumina, silica, steel, concrete, granite.
+    for (young, poisson) in [(72e9, 0.23), (340e9, 0.24), (75e9, 0.17), (210e9, 0.29), (30e9, 0.20), (60e9, 0.25)] {
+        let result = calibrate(&Request { seed: 21, ..Request::new(young, poisson) }).unwrap();
+        let miss = |(e, nu): (f64, f64)| (e / young - 1.0, nu / poisson - 1.0);
+        for axis in result.own_check.map(miss) {
+            println!("E {:.0} GPa, nu {poisson}: {:+.2} %, {:+.2} %", young / 1e9, 100.0 * axis.0, 100.0 * axis.1);
+            assert!(axis.0.abs() < 0.01 && axis.1.abs() < 0.01, "{result:?}");
+        }
+        // Another packing differs by the scatter between packings, which thin beams at low coordination (steel, 7.5)
+        // raise to about 1 %.
+        let other = miss((result.check_young_modulus, result.check_poisson_ratio));
+        println!("  another packing: {:+.2} %, {:+.2} %", 100.0 * other.0, 100.0 * other.1);
+        let allowed = if result.coordination < 8.0 { 0.02 } else { 0.01 };
+        assert!(other.0.abs() < allowed && other.1.abs() < allowed, "{result:?}");
+    }
+}
+
+#[test]
+fn impossible_materials_are_refused_with_what_is_possible() {
+    let request = |young, poisson| Request { particles: 1000, ..Request::new(young, poisson) };
+    assert!(matches!(calibrate(&request(-1.0, 0.2)), Err(CalibrateError::Material { .. })));
+    assert!(matches!(calibrate(&request(1e9, 0.5)), Err(CalibrateError::Material { .. })));
+    assert!(matches!(calibrate(&request(f64::NAN, 0.2)), Err(CalibrateError::Material { .. })));
+    let error = calibrate(&request(1e9, 0.45)).unwrap_err();
+    assert!(matches!(error, CalibrateError::PoissonRange { .. }), "{error}");
+    let asked = Request { coordination: Some(10.0), ..request(1e9, 0.35) };
+    let error = calibrate(&asked).unwrap_err();
+    assert!(matches!(error, CalibrateError::PoissonRange { highest, .. } if highest < 0.35), "{error}");
+    let error = calibrate(&Request { coordination: Some(90.0), ..request(1e9, 0.2) }).unwrap_err();
+    assert!(matches!(error, CalibrateError::Pack(_)), "{error}");
+}

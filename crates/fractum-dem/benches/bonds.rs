@@ -1,0 +1,72 @@
+//! Time per step of a bonded body and of one static product, on the threads given by `RAYON_NUM_THREADS`.
+//!
+//! The body is a jittered cubic lattice in Morton-like order with about five bonds per particle (coordination 10),
+//! as a packing gives it.
+
+use fractum_dem::{BeamNetwork, BeamSection, Dof6, Integrator, Lattice, Particles};
+use fractum_math::Vec3;
+
+fn main() {
+    divan::main();
+}
+
+/// Particles in cubes of 8³ sites, cube after cube, and their bonds: nearest sites and two diagonals.
+fn body(side: usize) -> (Vec<Vec3>, Vec<[u32; 2]>) {
+    const CUBE: usize = 8;
+    let mut sites = Vec::new();
+    let cubes = side.div_ceil(CUBE);
+    for c in 0..cubes.pow(3) {
+        let corner = [c % cubes, c / cubes % cubes, c / (cubes * cubes)].map(|k| k * CUBE);
+        for s in 0..CUBE.pow(3) {
+            let site: [usize; 3] = [s % CUBE, s / CUBE % CUBE, s / (CUBE * CUBE)];
+            let site: [usize; 3] = std::array::from_fn(|a| corner[a] + site[a]);
+            if site.iter().all(|&k| k < side) {
+                sites.push(site);
+            }
+        }
+    }
+    let mut id = vec![0u32; side.pow(3)];
+    let flat = |s: [usize; 3]| (s[2] * side + s[1]) * side + s[0];
+    sites.iter().enumerate().for_each(|(i, &s)| id[flat(s)] = i as u32);
+    let jitter = |i: usize, a: usize| 0.1 * (((i * 3 + a) as f64) * 12.9898).sin();
+    let position = sites.iter().enumerate().map(|(i, s)| Vec3::from_fn(|a, _| s[a] as f64 + jitter(i, a))).collect();
+    let mut pairs = Vec::new();
+    for &s in &sites {
+        for step in [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [0, 1, 1]] {
+            let t: [usize; 3] = std::array::from_fn(|a| s[a] + step[a]);
+            if t.iter().all(|&k| k < side) {
+                pairs.push([id[flat(s)], id[flat(t)]]);
+            }
+        }
+    }
+    (position, pairs)
+}
+
+/// 22³ = 10,648 and 47³ = 103,823 particles.
+#[divan::bench(args = [22, 47], sample_count = 20)]
+fn step(bencher: divan::Bencher, side: usize) {
+    let (position, pairs) = body(side);
+    let (Ok(section), n) = (BeamSection::new(1e9, 0.3), position.len()) else { return };
+    let (Ok(mut bonds), Ok(mut particles)) =
+        (BeamNetwork::new(&position, &pairs, section), Particles::at_rest(position, vec![0.5; n], n as f64))
+    else {
+        return;
+    };
+    let dt = bonds.stable_step(&particles, 0.7);
+    particles.velocity.iter_mut().enumerate().for_each(|(i, v)| v.x = 1e-3 * (i as f64).sin());
+    bencher.counter(divan::counter::ItemsCount::new(pairs.len())).bench_local(|| {
+        particles.kick_and_drift(dt, Integrator::VelocityVerlet);
+        particles.clear_forces();
+        bonds.add_forces(&mut particles);
+        particles.kick(dt, Integrator::VelocityVerlet);
+    });
+}
+
+#[divan::bench(args = [22, 47], sample_count = 20)]
+fn static_product(bencher: divan::Bencher, side: usize) {
+    let (position, pairs) = body(side);
+    let lattice = BeamSection::new(1e9, 0.3).and_then(|section| Lattice::new(&position, &pairs, section, 0.5));
+    let Ok(lattice) = lattice else { return };
+    let state: Vec<Dof6> = (0..position.len()).map(|i| std::array::from_fn(|d| ((6 * i + d) as f64).sin())).collect();
+    bencher.counter(divan::counter::ItemsCount::new(pairs.len())).bench_local(|| lattice.internal(&state));
+}

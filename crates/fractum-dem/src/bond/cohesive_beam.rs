@@ -1,0 +1,239 @@
+use fractum_math::{Rotation, Vec3};
+
+use super::BeamSection;
+use super::lanes::{Lanes, Vector, add, cross, dot, rotate, scale, sub};
+
+/// What a bond does to its two particles.
+#[derive(Clone, Copy, Debug)]
+pub struct BeamForces {
+    /// Force on the second particle [N]; the first gets the opposite.
+    pub force: Vec3,
+    /// Moments on the first and the second particle [N m].
+    pub moment: [Vec3; 2],
+}
+
+/// Elastic energy of a bond [J] by the way it deforms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct BeamEnergy {
+    /// ½ (E S/l₀) (l − l₀)².
+    pub tension: f64,
+    /// (2 E I/l₀) (θ₁² + θ₁·θ₂ + θ₂²).
+    pub bending: f64,
+    /// ½ (G I₀/l₀) τ².
+    pub torsion: f64,
+}
+
+impl BeamEnergy {
+    /// Sum of the three.
+    pub fn total(&self) -> f64 {
+        self.tension + self.bending + self.torsion
+    }
+}
+
+/// The two particles of a bond.
+#[derive(Clone, Copy, Debug)]
+pub struct BondedPair {
+    /// Centres [m].
+    pub position: [Vec3; 2],
+    /// Rotations since the bond was made.
+    pub rotation: [Rotation; 2],
+    /// Unit vector from the first to the second particle when the bond was made.
+    pub axis: Vec3,
+    /// Distance then [m].
+    pub length: f64,
+}
+
+/// Forces of a cohesive beam: the derivative of its energy
+///
+/// U = ½ (E S/l₀)(l − l₀)² + (2 E I/l₀)(θ₁² + θ₁·θ₂ + θ₂²) + ½ (G I₀/l₀) τ²
+///
+/// with the chord direction n, the tangents tᵢ = Rᵢ n₀ that the particles carry, θᵢ = n × tᵢ (the bending rotation of
+/// end i against the chord, exact to third order), and the twist τ = 2 v·n₀ of the relative rotation (s, v) = R₁⁻¹ R₂.
+/// U depends on relative quantities only, so that rigid motion gives no force and momentum and angular momentum are
+/// kept to round-off at any rotation. For small motion it is the 12 × 12 Euler–Bernoulli stiffness.
+///
+/// After Jebahi et al. (2015), 2.4.1, with the signs corrected.
+pub fn cohesive_beam(pair: &BondedPair, section: &BeamSection) -> BeamForces {
+    let lanes = |v: Vec3| [Lanes([v.x]), Lanes([v.y]), Lanes([v.z])];
+    let vector = |v: Vector<1>| Vec3::new(v[0].0[0], v[1].0[0], v[2].0[0]);
+    let turn = |r: &Rotation| (Lanes([r.w]), [Lanes([r.i]), Lanes([r.j]), Lanes([r.k])]);
+    let gap = lanes(pair.position[1] - pair.position[0]);
+    let inverse = Lanes([1.0 / pair.length]);
+    let turns = [turn(&pair.rotation[0]), turn(&pair.rotation[1])];
+    let (force, first, second) = beam(gap, turns, lanes(pair.axis), inverse, Lanes([1.0]), section);
+    BeamForces { force: vector(force), moment: [vector(first), vector(second)] }
+}
+
+/// A rotation as a unit quaternion: scalar and vector part.
+pub(super) type Turn<const W: usize> = (Lanes<W>, Vector<W>);
+
+/// The law for `W` bonds side by side: force on the second particles, moments on the first and on the second.
+///
+/// - `gap`: x₂ − x₁; `inverse`: 1/l₀; `live`: 1 for a bond, 0 for a broken one
+#[inline(always)]
+pub(super) fn beam<const W: usize>(
+    gap: Vector<W>,
+    turns: [Turn<W>; 2],
+    axis: Vector<W>,
+    inverse: Lanes<W>,
+    live: Lanes<W>,
+    section: &BeamSection,
+) -> (Vector<W>, Vector<W>, Vector<W>) {
+    let stiffness = inverse * live;
+    let axial = stiffness * Lanes::splat(section.axial());
+    let bend = stiffness * Lanes::splat(2.0 * section.bending());
+    let twist = stiffness * Lanes::splat(section.torsion());
+    let [(w1, u1), (w2, u2)] = turns;
+    let square = dot(gap, gap);
+    let l = square.sqrt();
+    let over = l.recip();
+    let n = scale(gap, over);
+    let (t1, t2) = (rotate(w1, u1, axis), rotate(w2, u2, axis));
+    let (a, b) = (cross(n, t1), cross(n, t2));
+    let sum = add(a, b);
+    // Derivatives of the bending energy with respect to θ₁ and θ₂.
+    let (m1, m2) = (scale(add(a, sum), bend), scale(add(b, sum), bend));
+    // Twist: relative rotation seen from the first particle, v·n₀ and its derivative s n₀ + v × n₀.
+    let s = w1 * w2 + dot(u1, u2);
+    let v = sub(sub(scale(u2, w1), scale(u1, w2)), cross(u1, u2));
+    let torque = twist * (dot(v, axis) + dot(v, axis));
+    let torque = scale(rotate(w1, u1, add(scale(axis, s), cross(v, axis))), torque);
+    // Shear from the moments over the length, so that angular momentum is kept exactly.
+    let h = add(cross(t1, m1), cross(t2, m2));
+    let h = scale(sub(h, scale(n, dot(h, n))), over);
+    let rest = inverse.recip();
+    let force = sub(scale(n, -(axial * (l - rest))), h);
+    let end = |m: Vector<W>, t: Vector<W>| sub(scale(n, dot(t, m)), scale(m, dot(t, n)));
+    (force, add(end(m1, t1), torque), sub(end(m2, t2), torque))
+}
+
+/// Elastic energy of a cohesive beam, by parts; see [`cohesive_beam`].
+pub fn cohesive_beam_energy(pair: &BondedPair, section: &BeamSection) -> BeamEnergy {
+    let gap = pair.position[1] - pair.position[0];
+    let l = gap.norm();
+    let n = gap / l;
+    let [a, b] = pair.rotation.map(|r| n.cross(&(r * pair.axis)));
+    let relative = pair.rotation[0].inverse() * pair.rotation[1];
+    let twist = 2.0 * relative.imag().dot(&pair.axis);
+    BeamEnergy {
+        tension: 0.5 * section.axial() / pair.length * (l - pair.length).powi(2),
+        bending: 2.0 * section.bending() / pair.length * (a.dot(&a) + a.dot(&b) + b.dot(&b)),
+        torsion: 0.5 * section.torsion() / pair.length * twist * twist,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Lattice;
+    use proptest::prelude::*;
+
+    fn pair_of(x: [f64; 3], r: [f64; 3], s: [f64; 3], axis: [f64; 3]) -> BondedPair {
+        let axis = (Vec3::from(axis) + Vec3::new(2.5, 0.0, 0.0)).normalize();
+        let place = axis * 1.3 + Vec3::from(x) * 0.3;
+        let rotation = [Rotation::from_scaled_axis(Vec3::from(r)), Rotation::from_scaled_axis(Vec3::from(s))];
+        BondedPair {
+            position: [Vec3::new(0.3, -0.2, 0.1), Vec3::new(0.3, -0.2, 0.1) + place],
+            rotation,
+            axis,
+            length: 1.2,
+        }
+    }
+
+    const UNIT: std::ops::Range<f64> = -1.0..1.0;
+
+    fn section() -> BeamSection {
+        BeamSection { young_modulus: 2.0, poisson_ratio: 0.3, radius: 0.6 }
+    }
+
+    proptest! {
+        #[test]
+        fn forces_are_the_derivative_of_the_energy(
+            x in prop::array::uniform3(UNIT), r in prop::array::uniform3(UNIT), s in prop::array::uniform3(UNIT), n in prop::array::uniform3(UNIT),
+        ) {
+            let pair = pair_of(x, r, s, n);
+            let forces = cohesive_beam(&pair, &section());
+            let energy = |p: &BondedPair| cohesive_beam_energy(p, &section()).total();
+            let h = 1e-5;
+            let size = forces.force.norm() + forces.moment[0].norm() + forces.moment[1].norm() + 1e-3;
+            for axis in 0..3 {
+                let mut step = Vec3::zeros();
+                step[axis] = h;
+                let slope = |moved: &dyn Fn(f64) -> BondedPair| (energy(&moved(1.0)) - energy(&moved(-1.0))) / (2.0 * h);
+                for end in 0..2 {
+                    let push = slope(&|k| { let mut p = pair; p.position[end] += step * k; p });
+                    let force = if end == 1 { forces.force } else { -forces.force };
+                    prop_assert!((push + force[axis]).abs() < 1e-7 * size, "force {push} {}", force[axis]);
+                    let turn = slope(&|k| { let mut p = pair; p.rotation[end] = Rotation::from_scaled_axis(step * k) * p.rotation[end]; p });
+                    prop_assert!((turn + forces.moment[end][axis]).abs() < 1e-7 * size, "moment {turn} {}", forces.moment[end][axis]);
+                }
+            }
+        }
+
+        #[test]
+        fn momentum_and_angular_momentum_are_kept_to_round_off(
+            x in prop::array::uniform3(UNIT), r in prop::array::uniform3(UNIT), s in prop::array::uniform3(UNIT), n in prop::array::uniform3(UNIT),
+        ) {
+            let pair = pair_of(x, r, s, n);
+            let BeamForces { force, moment } = cohesive_beam(&pair, &section());
+            let arm = pair.position[1] - pair.position[0];
+            let total = arm.cross(&force) + moment[0] + moment[1];
+            prop_assert!(total.norm() < 1e-13 * (arm.norm() * force.norm() + moment[0].norm() + moment[1].norm()));
+        }
+
+        #[test]
+        fn rigid_motion_gives_no_force_at_any_rotation(
+            x in prop::array::uniform3(-9.0f64..9.0), r in prop::array::uniform3(-3.0f64..3.0), n in prop::array::uniform3(UNIT),
+        ) {
+            let rotation = Rotation::from_scaled_axis(Vec3::from(r));
+            let axis = (Vec3::from(n) + Vec3::new(2.5, 0.0, 0.0)).normalize();
+            let start = Vec3::from(x);
+            let pair = BondedPair { position: [start, start + rotation * axis * 1.2], rotation: [rotation; 2], axis, length: 1.2 };
+            let BeamForces { force, moment } = cohesive_beam(&pair, &section());
+            let stiff = section().axial() / 1.2;
+            prop_assert!(force.norm() + moment[0].norm() + moment[1].norm() < 3e-14 * stiff * (1.0 + start.norm()));
+        }
+
+        #[test]
+        fn rotating_everything_rotates_the_forces(
+            x in prop::array::uniform3(UNIT), r in prop::array::uniform3(UNIT), s in prop::array::uniform3(UNIT), q in prop::array::uniform3(-3.0f64..3.0),
+        ) {
+            let pair = pair_of(x, r, s, [0.0; 3]);
+            let turn = Rotation::from_scaled_axis(Vec3::from(q));
+            let turned = BondedPair { position: pair.position.map(|p| turn * p), rotation: pair.rotation.map(|r| turn * r), ..pair };
+            let (a, b) = (cohesive_beam(&pair, &section()), cohesive_beam(&turned, &section()));
+            prop_assert!((turn * a.force - b.force).norm() < 1e-13 * (1.0 + a.force.norm()));
+            prop_assert!((turn * a.moment[0] - b.moment[0]).norm() < 1e-13 * (1.0 + a.moment[0].norm()));
+        }
+    }
+
+    #[test]
+    fn small_motion_has_the_stiffness_of_the_lattice() {
+        let start = pair_of([0.0; 3], [0.0; 3], [0.0; 3], [0.3, 0.8, -0.4]);
+        let start = BondedPair { position: [Vec3::zeros(), start.axis * 1.2], ..start };
+        let lattice = Lattice::new(&start.position, &[[0, 1]], section(), 0.5).unwrap();
+        let h = 1e-7;
+        for dof in 0..12 {
+            let mut state = [[0.0; 6]; 2];
+            state[dof / 6][dof % 6] = h;
+            let shift = |e: usize, o: usize| Vec3::new(state[e][o], state[e][o + 1], state[e][o + 2]);
+            let moved = BondedPair {
+                position: [start.position[0] + shift(0, 0), start.position[1] + shift(1, 0)],
+                rotation: [Rotation::from_scaled_axis(shift(0, 3)), Rotation::from_scaled_axis(shift(1, 3))],
+                ..start
+            };
+            let BeamForces { force, moment } = cohesive_beam(&moved, &section());
+            let expected = lattice.internal(&state);
+            for a in 0..3 {
+                for (found, row) in [
+                    (-force[a], expected[0][a]),
+                    (force[a], expected[1][a]),
+                    (moment[0][a], expected[0][a + 3]),
+                    (moment[1][a], expected[1][a + 3]),
+                ] {
+                    assert!((found + row).abs() < 1e-6 * h * section().axial(), "dof {dof} axis {a}: {found} {row}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+use thiserror::Error;
+
+use crate::BeamSection;
+
+/// Why a discrete body could not be built or solved.
+#[derive(Debug, Error, Clone, PartialEq)]
+pub enum DemError {
+    /// Numbers that make no beam.
+    #[error("{0:?} is no beam; expected positive modulus and radius, and Poisson's ratio between -1 and 0.5")]
+    BadSection(BeamSection),
+    /// A bond that names a missing particle, or joins a particle with itself or with one at the same place.
+    #[error("bond {bond} joins particles {first} and {second} of {count}: {reason}")]
+    BadBond {
+        /// Which bond.
+        bond: usize,
+        /// First particle.
+        first: u32,
+        /// Second particle.
+        second: u32,
+        /// Number of particles.
+        count: usize,
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// Arrays of different lengths.
+    #[error("{what}: {found} entries for {expected} particles")]
+    Length {
+        /// Which array.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// Number of particles.
+        expected: usize,
+    },
+    /// A mass or radius that is not positive.
+    #[error("particle {particle} has {what} {value}; expected a positive, finite number")]
+    BadParticle {
+        /// Which particle.
+        particle: usize,
+        /// Which quantity.
+        what: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// The static solve did not converge.
+    #[error(
+        "the lattice is not in equilibrium after {iterations} iterations: residual {residual:.2e} of the applied forces, asked {asked:.2e}; is a part held by nothing?"
+    )]
+    NotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Relative residual reached.
+        residual: f64,
+        /// Relative residual asked.
+        asked: f64,
+    },
+}

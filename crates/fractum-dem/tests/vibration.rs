@@ -1,0 +1,257 @@
+//! Bonded bodies in motion: conservation, order of accuracy, and the chains of Jebahi et al. (2015), 2.4.3.
+
+use std::f64::consts::PI;
+
+use fractum_dem::{BeamNetwork, BeamSection, Integrator, Particles};
+use fractum_math::Vec3;
+
+const VERLET: Integrator = Integrator::VelocityVerlet;
+
+fn step(particles: &mut Particles, bonds: &mut BeamNetwork, dt: f64, integrator: Integrator) {
+    particles.kick_and_drift(dt, integrator);
+    particles.clear_forces();
+    bonds.add_forces(particles);
+    particles.kick(dt, integrator);
+}
+
+/// A deterministic number in (-1, 1).
+fn noise(k: usize) -> f64 {
+    let x = (k as f64 * 12.9898 + 4.1414).sin() * 43_758.545_3;
+    2.0 * (x - x.floor()) - 1.0
+}
+
+/// A jittered lattice bonded to near neighbours.
+fn assembly(side: usize) -> (Particles, BeamNetwork) {
+    let sites = side.pow(3);
+    let place = |i: usize| {
+        let site = Vec3::new((i % side) as f64, (i / side % side) as f64, (i / side / side) as f64);
+        site + Vec3::from_fn(|a, _| 0.2 * noise(3 * i + a))
+    };
+    let position: Vec<Vec3> = (0..sites).map(place).collect();
+    let close = |i: usize, j: usize| (position[i] - position[j]).norm() < 1.35;
+    let pairs: Vec<[u32; 2]> = (0..sites)
+        .flat_map(|i| {
+            let ahead = i + 1..(i + side * side + side + 2).min(sites);
+            ahead.filter(move |&j| close(i, j)).map(move |j| [i as u32, j as u32])
+        })
+        .collect();
+    let radius = (0..sites).map(|i| 0.5 + 0.05 * noise(7 * i)).collect();
+    let bonds = BeamNetwork::new(&position, &pairs, BeamSection::new(1e3, 0.3).unwrap()).unwrap();
+    (Particles::at_rest(position, radius, sites as f64).unwrap(), bonds)
+}
+
+fn shake(particles: &mut Particles, size: f64) {
+    for i in 0..particles.len() {
+        particles.velocity[i] = Vec3::from_fn(|a, _| size * noise(11 * i + a));
+        particles.spin[i] = Vec3::from_fn(|a, _| size * noise(13 * i + a + 5));
+    }
+}
+
+#[test]
+fn a_tumbling_assembly_keeps_momentum_and_angular_momentum() {
+    let (mut particles, mut bonds) = assembly(5);
+    shake(&mut particles, 3.0);
+    let totals = |p: &Particles| {
+        let linear: Vec3 = (0..p.len()).map(|i| p.velocity[i] * p.mass[i]).sum();
+        let angular: Vec3 =
+            (0..p.len()).map(|i| p.position[i].cross(&p.velocity[i]) * p.mass[i] + p.spin[i] * p.inertia[i]).sum();
+        (linear, angular)
+    };
+    let size: f64 = (0..particles.len()).map(|i| particles.mass[i] * particles.velocity[i].norm()).sum();
+    let dt = bonds.stable_step(&particles, 0.5);
+    let before = totals(&particles);
+    for _ in 0..2000 {
+        step(&mut particles, &mut bonds, dt, VERLET);
+    }
+    let after = totals(&particles);
+    let turned = particles.orientation.iter().map(|q| q.angle()).fold(0.0, f64::max);
+    assert!(turned > 0.3, "the test should see large rotations, not {turned}");
+    assert!((after.0 - before.0).norm() < 1e-12 * size);
+    assert!((after.1 - before.1).norm() < 1e-12 * size * 5.0);
+}
+
+#[test]
+fn the_network_gives_the_sum_of_single_bonds_and_the_same_bits_for_any_threads() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let (mut particles, mut bonds) = assembly(17);
+            shake(&mut particles, 1.0);
+            bonds.break_bond(100);
+            bonds.break_bond(9_000);
+            let dt = bonds.stable_step(&particles, 0.5);
+            (0..5).for_each(|_| step(&mut particles, &mut bonds, dt, VERLET));
+            (particles, bonds)
+        })
+    };
+    let (one, bonds) = run(1);
+    for threads in [2, 7] {
+        let (other, _) = run(threads);
+        assert!(one.position == other.position && one.moment == other.moment, "{threads} threads");
+    }
+    let mut force = vec![Vec3::zeros(); one.len()];
+    let mut moment = vec![Vec3::zeros(); one.len()];
+    for bond in (0..bonds.len()).filter(|&b| bonds.is_live(b)) {
+        let [i, j] = bonds.pairs()[bond].map(|i| i as usize);
+        let forces = bonds.forces_of(bond, &one);
+        force[i] -= forces.force;
+        force[j] += forces.force;
+        moment[i] += forces.moment[0];
+        moment[j] += forces.moment[1];
+    }
+    let size = force.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    for i in 0..one.len() {
+        assert!((force[i] - one.force[i]).norm() < 1e-12 * size && (moment[i] - one.moment[i]).norm() < 1e-12 * size);
+    }
+    assert!(!bonds.is_live(100) && !bonds.is_live(9_000));
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn energy_drifts_less_than_a_millionth_in_a_million_steps() {
+    let (mut particles, mut bonds) = assembly(2);
+    shake(&mut particles, 0.02);
+    let dt = bonds.stable_step(&particles, 0.15);
+    // Velocity Verlet keeps a nearby energy: the mean over many periods shows drift without its ripple.
+    let mut mean = |particles: &mut Particles, steps: usize| {
+        let mut sum = 0.0;
+        for _ in 0..steps {
+            step(particles, &mut bonds, dt, VERLET);
+            sum += particles.kinetic_energy() + bonds.energy(particles).total();
+        }
+        sum / steps as f64
+    };
+    let first = mean(&mut particles, 100_000);
+    let mut rest = 0;
+    while rest < 8 {
+        mean(&mut particles, 100_000);
+        rest += 1;
+    }
+    let last = mean(&mut particles, 100_000);
+    println!("relative drift {:.2e}", last / first - 1.0);
+    assert!((last / first - 1.0).abs() < 1e-6, "drift {}", last / first - 1.0);
+}
+
+/// Period from upward zero crossings of `signal`, which advances time by `dt` per call.
+fn period(dt: f64, count: usize, mut signal: impl FnMut() -> f64) -> f64 {
+    let (mut last, mut time, mut crossings) = (signal(), 0.0, Vec::new());
+    while crossings.len() <= count {
+        let value = signal();
+        if last < 0.0 && value >= 0.0 {
+            crossings.push(time + dt * last / (last - value));
+        }
+        last = value;
+        time += dt;
+    }
+    (crossings[count] - crossings[0]) / count as f64
+}
+
+#[test]
+fn the_period_converges_with_second_order_in_the_step() {
+    let section = BeamSection::new(1e3, 0.2).unwrap();
+    let exact = 2.0 * PI / (section.axial() * 2.0).sqrt();
+    let error = |dt: f64| {
+        let position = vec![Vec3::zeros(), Vec3::x()];
+        let mut bonds = BeamNetwork::new(&position, &[[0, 1]], section).unwrap();
+        let mut particles = Particles::at_rest(position, vec![0.3; 2], 2.0).unwrap();
+        particles.velocity = vec![Vec3::x() * 1e-5, Vec3::x() * -1e-5];
+        let measured = period(dt, 50, || {
+            step(&mut particles, &mut bonds, dt, VERLET);
+            (particles.position[1] - particles.position[0]).x - 1.0
+        });
+        (measured / exact - 1.0).abs()
+    };
+    let errors = [error(exact / 20.0), error(exact / 40.0), error(exact / 80.0)];
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.05, "order {order} from {errors:?}");
+    }
+}
+
+#[test]
+fn the_dissipative_scheme_damps_the_fast_mode_and_leaves_the_slow_one() {
+    // A chain of ten, clamped: the slowest axial mode and a zigzag.
+    let decay = |integrator: Integrator, zigzag: bool| {
+        let (mut particles, mut bonds) = chain(10, 0.0);
+        for i in 1..11 {
+            let shape = if zigzag { (-1.0f64).powi(i as i32) } else { (PI * i as f64 / 21.0).sin() };
+            particles.velocity[i] = Vec3::x() * (1e-6 * shape);
+        }
+        let dt = bonds.stable_step(&particles, 0.5);
+        let energy = |p: &Particles, b: &BeamNetwork| p.kinetic_energy() + b.energy(p).total();
+        let start = energy(&particles, &bonds);
+        (0..400).for_each(|_| step(&mut particles, &mut bonds, dt, integrator));
+        energy(&particles, &bonds) / start
+    };
+    let damped = Integrator::TchamwaWielgosz { phi: 1.2 };
+    assert!(decay(VERLET, true) > 0.9);
+    assert!(decay(damped, true) < 0.01, "{}", decay(damped, true));
+    assert!(decay(damped, false) > 0.5, "{}", decay(damped, false));
+}
+
+const RADIUS: f64 = 0.05;
+const YOUNG: f64 = 1e9;
+const DENSITY: f64 = 1000.0;
+
+/// `n` particles in a row after a clamped one, with the mass of the bar; beams of the bar's own section. The bar has a
+/// length of 2 m less the half spacing at its end.
+fn chain(n: usize, poisson_ratio: f64) -> (Particles, BeamNetwork) {
+    let spacing = 2.0 / n as f64;
+    let position: Vec<Vec3> = (0..=n).map(|i| Vec3::x() * (spacing * i as f64)).collect();
+    let pairs: Vec<[u32; 2]> = (0..n as u32).map(|i| [i, i + 1]).collect();
+    let section = BeamSection { young_modulus: YOUNG, poisson_ratio, radius: RADIUS };
+    let bonds = BeamNetwork::new(&position, &pairs, section).unwrap();
+    let mass = DENSITY * PI * RADIUS * RADIUS * spacing * (n + 1) as f64;
+    let mut particles = Particles::at_rest(position, vec![RADIUS; n + 1], mass).unwrap();
+    particles.held[0] = 0b111111;
+    (particles, bonds)
+}
+
+#[test]
+fn chains_vibrate_with_the_periods_of_a_clamped_bar() {
+    // Length to the end of the last particle's share.
+    let n = 40;
+    let length = 2.0 + 1.0 / n as f64;
+    let run = |kick: &dyn Fn(&mut Particles), read: &dyn Fn(&Particles) -> f64| {
+        let (mut particles, mut bonds) = chain(n, 0.25);
+        kick(&mut particles);
+        let dt = bonds.stable_step(&particles, 0.7);
+        period(dt, 2, || {
+            step(&mut particles, &mut bonds, dt, VERLET);
+            read(&particles)
+        })
+    };
+    let mode = |x: f64| (0.5 * PI * x / length).sin();
+    let wave = (DENSITY / YOUNG).sqrt();
+    let tension =
+        run(&|p| (0..=n).for_each(|i| p.velocity[i].x = 1e-4 * mode(p.position[i].x)), &|p| p.position[n].x - 2.0);
+    let expected = 4.0 * length * wave;
+    assert!((tension / expected - 1.0).abs() < 0.002, "tension {tension} {expected}");
+
+    let bending = run(&|p| (0..=n).for_each(|i| p.velocity[i].y = 1e-4 * (p.position[i].x / length).powf(1.8)), &|p| {
+        p.position[n].y
+    });
+    // 2π/1.8751² √(ρ S/(E I)) L² = 1.787 …; the rotary inertia of the spheres adds a little.
+    let expected = 2.0 * PI / 1.875_104_f64.powi(2) * length * length * wave * 2.0 / RADIUS;
+    assert!((bending / expected - 1.0).abs() < 0.02, "bending {bending} {expected}");
+
+    let torsion = run(&|p| (0..=n).for_each(|i| p.spin[i].x = 1e-4 * mode(p.position[i].x)), &|p| p.orientation[n].i);
+    // Spheres of the bar's mass have 2/5 m R² where the bar has 1/2 m R²: √0.8 of the period (eq. 2.32).
+    let shear = YOUNG / 2.5;
+    let expected = 0.8f64.sqrt() * 4.0 * length * (DENSITY / shear).sqrt();
+    assert!((torsion / expected - 1.0).abs() < 0.002, "torsion {torsion} {expected}");
+}
+
+#[test]
+fn the_stable_step_is_stable_and_not_far_below_the_limit() {
+    let growth = |safety: f64| {
+        let (mut particles, mut bonds) = assembly(4);
+        shake(&mut particles, 1e-6);
+        let dt = bonds.stable_step(&particles, safety);
+        (0..3000).for_each(|_| step(&mut particles, &mut bonds, dt, VERLET));
+        particles.kinetic_energy()
+    };
+    assert!(growth(0.99) < 1e-6, "{}", growth(0.99));
+    let beyond = growth(1.6);
+    assert!(beyond.is_nan() || beyond > 1e-6, "{beyond}");
+}

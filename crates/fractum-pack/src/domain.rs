@@ -1,0 +1,249 @@
+use std::f64::consts::PI;
+
+use fractum_math::Vec3;
+use serde::{Deserialize, Serialize};
+
+use crate::surface::SurfaceData;
+use crate::{ClosedSurface, PackError};
+
+/// A closed shape to fill with particles.
+#[derive(Clone, Debug)]
+pub enum Domain {
+    /// A box with faces normal to the axes; walls `x-`, `x+`, `y-`, `y+`, `z-`, `z+`.
+    Box {
+        /// Lower corner [m].
+        lower: Vec3,
+        /// Upper corner [m].
+        upper: Vec3,
+    },
+    /// A circular cylinder along x; walls `x-`, `x+`, `radius`.
+    Cylinder {
+        /// Centre of the face `x-` [m].
+        start: Vec3,
+        /// Length [m].
+        length: f64,
+        /// Radius [m].
+        radius: f64,
+    },
+    /// A sphere; wall `radius`.
+    Sphere {
+        /// Centre [m].
+        centre: Vec3,
+        /// Radius [m].
+        radius: f64,
+    },
+    /// A closed triangulated surface; wall `surface`.
+    Surface(ClosedSurface),
+}
+
+/// A domain's numbers, as stored in files.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum DomainData {
+    /// See [`Domain::Box`].
+    Box([f64; 3], [f64; 3]),
+    /// See [`Domain::Cylinder`].
+    Cylinder([f64; 3], f64, f64),
+    /// See [`Domain::Sphere`].
+    Sphere([f64; 3], f64),
+    /// See [`Domain::Surface`].
+    Surface(SurfaceData),
+}
+
+/// A particle pressed against a wall.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WallContact {
+    /// Index into [`Domain::wall_names`].
+    pub(crate) wall: usize,
+    /// Overlap [m], positive when touching.
+    pub(crate) overlap: f64,
+    /// Unit vector that pushes the particle back.
+    pub(crate) inward: Vec3,
+}
+
+/// Directions closer than this count as one wall of a triangulated surface (cosine of about 25°): neighbouring facets
+/// of a curved surface must not push twice.
+const SAME_WALL_COSINE: f64 = 0.9;
+
+impl Domain {
+    /// A box from the origin with the given edges [m].
+    pub fn cuboid(x: f64, y: f64, z: f64) -> Self {
+        Domain::Box { lower: Vec3::zeros(), upper: Vec3::new(x, y, z) }
+    }
+
+    /// A cylinder along x from the origin [m].
+    pub fn cylinder(length: f64, radius: f64) -> Self {
+        Domain::Cylinder { start: Vec3::zeros(), length, radius }
+    }
+
+    /// A sphere about the origin [m].
+    pub fn sphere(radius: f64) -> Self {
+        Domain::Sphere { centre: Vec3::zeros(), radius }
+    }
+
+    /// Refuses dimensions that are not positive and finite.
+    ///
+    /// # Errors
+    /// [`PackError::BadDimension`].
+    pub fn check(&self) -> Result<(), PackError> {
+        let lengths: Vec<(&'static str, f64)> = match self {
+            Domain::Box { lower, upper } => {
+                let d = upper - lower;
+                vec![("extent in x", d.x), ("extent in y", d.y), ("extent in z", d.z)]
+            }
+            Domain::Cylinder { length, radius, start } => {
+                vec![("length", *length), ("radius", *radius), ("place", 1.0 + 0.0 * start.sum())]
+            }
+            Domain::Sphere { radius, centre } => vec![("radius", *radius), ("place", 1.0 + 0.0 * centre.sum())],
+            Domain::Surface(_) => vec![],
+        };
+        match lengths.into_iter().find(|&(_, value)| !(value.is_finite() && value > 0.0)) {
+            Some((what, value)) => Err(PackError::BadDimension { what, value }),
+            None => Ok(()),
+        }
+    }
+
+    /// Volume [m³].
+    pub fn volume(&self) -> f64 {
+        match self {
+            Domain::Box { lower, upper } => (upper - lower).product(),
+            Domain::Cylinder { length, radius, .. } => PI * radius * radius * length,
+            Domain::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
+            Domain::Surface(surface) => surface.volume(),
+        }
+    }
+
+    /// Area of the boundary [m²].
+    pub fn area(&self) -> f64 {
+        match self {
+            Domain::Box { lower, upper } => {
+                let d = upper - lower;
+                2.0 * (d.x * d.y + d.y * d.z + d.z * d.x)
+            }
+            Domain::Cylinder { length, radius, .. } => 2.0 * PI * radius * (length + radius),
+            Domain::Sphere { radius, .. } => 4.0 * PI * radius * radius,
+            Domain::Surface(surface) => surface.area(),
+        }
+    }
+
+    /// Lower and upper corner of the bounding box [m].
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        match self {
+            Domain::Box { lower, upper } => (*lower, *upper),
+            Domain::Cylinder { start, length, radius } => {
+                let half = Vec3::new(0.0, *radius, *radius);
+                (start - half, start + half + Vec3::new(*length, 0.0, 0.0))
+            }
+            Domain::Sphere { centre, radius } => (centre.add_scalar(-radius), centre.add_scalar(*radius)),
+            Domain::Surface(surface) => surface.bounds(),
+        }
+    }
+
+    /// Distance from `x` to the nearest wall [m], positive inside.
+    pub fn depth(&self, x: &Vec3) -> f64 {
+        match self {
+            Domain::Surface(surface) => surface.depth(x),
+            _ => {
+                let mut least = f64::INFINITY;
+                self.plain_walls(x, |_, depth, _| least = least.min(depth));
+                least
+            }
+        }
+    }
+
+    /// Names of the walls, in the order of their sets.
+    pub fn wall_names(&self) -> &'static [&'static str] {
+        match self {
+            Domain::Box { .. } => &["x-", "x+", "y-", "y+", "z-", "z+"],
+            Domain::Cylinder { .. } => &["x-", "x+", "radius"],
+            Domain::Sphere { .. } => &["radius"],
+            Domain::Surface(_) => &["surface"],
+        }
+    }
+
+    /// Calls `visit(wall, depth of x below it, inward normal)` for every wall of an analytic shape.
+    #[inline]
+    fn plain_walls(&self, x: &Vec3, mut visit: impl FnMut(usize, f64, Vec3)) {
+        match self {
+            Domain::Box { lower, upper } => {
+                for axis in 0..3 {
+                    let mut normal = Vec3::zeros();
+                    normal[axis] = 1.0;
+                    visit(2 * axis, x[axis] - lower[axis], normal);
+                    visit(2 * axis + 1, upper[axis] - x[axis], -normal);
+                }
+            }
+            Domain::Cylinder { start, length, radius } => {
+                visit(0, x.x - start.x, Vec3::x());
+                visit(1, start.x + length - x.x, -Vec3::x());
+                let out = Vec3::new(0.0, x.y - start.y, x.z - start.z);
+                let distance = out.norm();
+                visit(2, radius - distance, if distance > 0.0 { -out / distance } else { Vec3::y() });
+            }
+            Domain::Sphere { centre, radius } => {
+                let out = x - centre;
+                let distance = out.norm();
+                visit(0, radius - distance, if distance > 0.0 { -out / distance } else { Vec3::y() });
+            }
+            Domain::Surface(_) => {}
+        }
+    }
+
+    /// Visits the walls that a sphere touches; `candidates` are the triangles near it (triangulated surfaces only).
+    #[inline]
+    pub(crate) fn contacts(&self, x: &Vec3, r: f64, candidates: &[u32], mut visit: impl FnMut(WallContact)) {
+        let Domain::Surface(surface) = self else {
+            return self.plain_walls(x, |wall, depth, inward| {
+                if depth < r {
+                    visit(WallContact { wall, overlap: r - depth, inward });
+                }
+            });
+        };
+        // Deepest first, so that a facet hidden behind a nearer one of about the same direction is skipped.
+        let mut kept: Vec<(f64, Vec3)> = Vec::new();
+        let mut touching: Vec<(f64, Vec3)> = Vec::new();
+        for &triangle in candidates {
+            let (offset, normal) = surface.offset(triangle, x);
+            let distance = offset.norm();
+            let outside = offset.dot(&normal) > 0.0;
+            let depth = if outside { -distance } else { distance };
+            if depth < r && distance < r {
+                let inward = if outside || distance == 0.0 { -normal } else { offset / distance };
+                touching.push((r - depth, inward));
+            }
+        }
+        touching.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (overlap, inward) in touching {
+            if kept.iter().all(|(_, other)| other.dot(&inward) < SAME_WALL_COSINE) {
+                kept.push((overlap, inward));
+                visit(WallContact { wall: 0, overlap, inward });
+            }
+        }
+    }
+
+    /// The numbers to store.
+    pub fn data(&self) -> DomainData {
+        match self {
+            Domain::Box { lower, upper } => DomainData::Box((*lower).into(), (*upper).into()),
+            Domain::Cylinder { start, length, radius } => DomainData::Cylinder((*start).into(), *length, *radius),
+            Domain::Sphere { centre, radius } => DomainData::Sphere((*centre).into(), *radius),
+            Domain::Surface(surface) => DomainData::Surface(surface.data()),
+        }
+    }
+
+    /// Rebuilds a domain from stored numbers.
+    ///
+    /// # Errors
+    /// Those of [`Domain::check`] and [`ClosedSurface::new`].
+    pub fn from_data(data: &DomainData) -> Result<Self, PackError> {
+        let domain = match data {
+            DomainData::Box(lower, upper) => Domain::Box { lower: (*lower).into(), upper: (*upper).into() },
+            DomainData::Cylinder(start, length, radius) => {
+                Domain::Cylinder { start: (*start).into(), length: *length, radius: *radius }
+            }
+            DomainData::Sphere(centre, radius) => Domain::Sphere { centre: (*centre).into(), radius: *radius },
+            DomainData::Surface(data) => Domain::Surface(ClosedSurface::from_data(data)?),
+        };
+        domain.check()?;
+        Ok(domain)
+    }
+}

@@ -1,0 +1,80 @@
+use thiserror::Error;
+
+/// Why a packing or a bond network could not be made.
+#[derive(Debug, Error, Clone, PartialEq)]
+pub enum PackError {
+    /// A dimension of the domain is not positive and finite.
+    #[error("the domain's {what} is {value} m; expected a positive, finite length")]
+    BadDimension {
+        /// Which dimension.
+        what: &'static str,
+        /// The value found [m].
+        value: f64,
+    },
+    /// The size distribution is outside what the cooker packs well.
+    #[error(
+        "dispersion kappa = {0}; expected between 0 and 1 (0.25 is the usual choice; below 0.15 packings tend to order)"
+    )]
+    Dispersion(f64),
+    /// Too few particles to call it a packing, or a domain thinner than a few particles.
+    #[error(
+        "the domain is too small for {count} particles: its narrowest extent {extent:.3e} m holds {across:.2} mean diameters \
+         (at least {needed} are needed); ask for more and smaller particles"
+    )]
+    TooSmall {
+        /// Number of particles.
+        count: usize,
+        /// Narrowest extent of the domain [m].
+        extent: f64,
+        /// Mean diameters across that extent.
+        across: f64,
+        /// Mean diameters needed.
+        needed: f64,
+    },
+    /// A count outside the supported range.
+    #[error("{0} particles asked; expected between 20 and 20 million")]
+    Count(usize),
+    /// The surface has edges that do not join exactly two triangles in opposite directions.
+    #[error(
+        "the surface is not closed: {open} edges do not join exactly two consistently oriented triangles (first near {near:?}); repair it in the mesher"
+    )]
+    OpenSurface {
+        /// Number of bad edges.
+        open: usize,
+        /// A point of the first bad edge [m].
+        near: [f64; 3],
+    },
+    /// The surface encloses nothing, or names missing points.
+    #[error("the surface is unusable: {0}")]
+    BadSurface(String),
+    /// An STL file that cannot be read.
+    #[error("STL: {0}")]
+    Stl(String),
+    /// The compaction ended short of its own targets.
+    #[error("the packing misses its target: {target}; reached {reached}; {remedy}")]
+    Refused {
+        /// What was asked.
+        target: String,
+        /// What was reached.
+        reached: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// No search radius gives the asked coordination.
+    #[error(
+        "coordination {asked} is out of reach: this packing gives {lowest:.2} to {highest:.2} (search radius 1 to {reach} times the touching distance)"
+    )]
+    Coordination {
+        /// The asked value.
+        asked: f64,
+        /// Lowest reachable value.
+        lowest: f64,
+        /// Highest reachable value.
+        highest: f64,
+        /// Largest search factor tried.
+        reach: f64,
+    },
+    /// A stored packing that cannot be read.
+    #[error("packing file: {0}; make it again with `fractum pack`")]
+    File(String),
+}

@@ -1,0 +1,39 @@
+//! Random packings of spheres: a closed shape in, a checked packing and its bond network out.
+//!
+//! [`pack`] fills a box, a cylinder, a sphere or any closed triangulated surface with spheres of uniformly scattered
+//! radii (the *cooker* of Jebahi et al. 2015: random insertion, forced insertion, relaxation, compaction, wall
+//! release). [`Certificate`] measures the result. [`bond`] joins neighbours to an asked coordination number.
+//!
+//! Not modelled: friction and gravity during packing, periodic boundaries, prescribed size distributions other than
+//! uniform.
+//!
+//! ```
+//! use fractum_pack::{Convention, Domain, PackSpec, bond, pack};
+//! let packing = pack(&PackSpec::new(Domain::cuboid(1.0, 1.0, 1.0), 300, 7))?;
+//! let network = bond(&packing, 8.0, Convention::All)?;
+//! assert!((network.coordination_all - 8.0).abs() < 0.01);
+//! # Ok::<(), fractum_pack::PackError>(())
+//! ```
+
+mod certificate;
+mod cooker;
+mod domain;
+mod error;
+mod isotropy;
+mod neighbours;
+mod network;
+mod packing;
+mod random;
+mod relax;
+mod stl;
+mod surface;
+
+pub use certificate::{Certificate, interior_fraction};
+pub use cooker::{PackSize, PackSpec, pack};
+pub use domain::{Domain, DomainData};
+pub use error::PackError;
+pub use isotropy::Isotropy;
+pub use network::{BondNetwork, Convention, bond};
+pub use packing::{Compaction, Packing};
+pub use stl::read_stl;
+pub use surface::{ClosedSurface, SurfaceData};

@@ -1,0 +1,167 @@
+//! `fractum calibrate`: a material in, micro-parameters out.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Args;
+use fractum::{ExitCode, Failure};
+use fractum_calibrate::{Calibration, Request, calibrate, laws};
+use fractum_io::atomic;
+use fractum_io::case::{Dimension, parse_quantity};
+
+use super::shape::{Convention, pressure};
+
+/// Arguments of `fractum calibrate`.
+#[derive(Args)]
+pub(crate) struct CalibrateArguments {
+    /// Young's modulus, such as "72 GPa".
+    #[arg(long, required_unless_present = "refit")]
+    young: Option<String>,
+    /// Poisson's ratio.
+    #[arg(long, required_unless_present = "refit")]
+    poisson: Option<f64>,
+    /// Density, written into material.toml.
+    #[arg(long)]
+    density: Option<String>,
+    /// Tensile strength, such as "50 MPa".
+    #[arg(long)]
+    strength: Option<String>,
+    /// Coordination of the bonds; chosen to suit Poisson's ratio if not given.
+    #[arg(long)]
+    coordination: Option<f64>,
+    /// How the coordination is counted.
+    #[arg(long, value_enum, default_value = "interior")]
+    convention: Convention,
+    /// Particles of the calibration packings.
+    #[arg(long, default_value_t = 10_000)]
+    particles: usize,
+    /// Seed of the first packing.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Packings to calibrate on; the result is their mean.
+    #[arg(long, default_value_t = 1)]
+    packings: usize,
+    /// Folder for material.toml and calibration.json.
+    #[arg(short, long, default_value = "calibration")]
+    output: PathBuf,
+    /// Make the stored laws again, into laws.csv and database.csv of the output folder.
+    #[arg(long)]
+    refit: bool,
+}
+
+/// Calibrates, checks, reports and writes.
+pub(crate) fn run(arguments: &CalibrateArguments) -> Result<ExitCode, Failure> {
+    let wrong = |error: fractum_calibrate::CalibrateError| Failure::input(error.to_string());
+    let started = Instant::now();
+    let folder = &arguments.output;
+    if arguments.refit {
+        let points = laws::survey(&laws::Survey::default()).map_err(wrong)?;
+        let fit = |convention| laws::Law::fit(&points, convention).map_err(wrong);
+        let laws = [fit(fractum_pack::Convention::All)?, fit(fractum_pack::Convention::Interior)?];
+        atomic::create_folder(folder)?;
+        atomic::write(&folder.join("laws.csv"), laws::write(&laws).as_bytes())?;
+        atomic::write(&folder.join("database.csv"), laws::write_database(&points).as_bytes())?;
+        for law in &laws {
+            let ([nu, nu_max], [e, e_max]) = (law.poisson_residual, law.young_residual);
+            println!(
+                "{:8} {} tests: nu rms {nu:.5} max {nu_max:.5}, E rms {:.2} % max {:.2} %",
+                law.convention,
+                law.tests,
+                100.0 * e,
+                100.0 * e_max
+            );
+        }
+        println!("{} tests in {:.0} s; laws in {}", points.len(), started.elapsed().as_secs_f64(), folder.display());
+        return Ok(ExitCode::Done);
+    }
+    let mut request =
+        Request::new(pressure(arguments.young.as_deref().unwrap_or_default())?, arguments.poisson.unwrap_or(f64::NAN));
+    request.tensile_strength = arguments.strength.as_deref().map(pressure).transpose()?;
+    request.coordination = arguments.coordination;
+    request.convention = arguments.convention.into();
+    request.particles = arguments.particles;
+    request.seed = arguments.seed;
+    request.packings = arguments.packings;
+    let density = arguments
+        .density
+        .as_deref()
+        .map(|text| parse_quantity(text, Dimension::DENSITY).map_err(Failure::input))
+        .transpose()?;
+    let result = calibrate(&request).map_err(wrong)?;
+    let seconds = started.elapsed().as_secs_f64();
+    show(&result, seconds);
+    atomic::create_folder(folder)?;
+    let mut json = serde_json::to_value(&result).unwrap_or_default();
+    json["seconds"] = seconds.into();
+    atomic::write(
+        &folder.join("calibration.json"),
+        serde_json::to_string_pretty(&json).unwrap_or_default().as_bytes(),
+    )?;
+    atomic::write(&folder.join("material.toml"), material(&result, density).as_bytes())?;
+    println!("material.toml and calibration.json in {}", folder.display());
+    Ok(ExitCode::Done)
+}
+
+fn show(c: &Calibration, seconds: f64) {
+    let (e, nu) = (c.request.young_modulus, c.request.poisson_ratio);
+    println!(
+        "coordination         {} ({}), reachable Poisson's ratio {:.3} to {:.3}",
+        c.coordination, c.request.convention, c.poisson_range[0], c.poisson_range[1]
+    );
+    println!(
+        "beams                radius {:.5} mean radii, E_m {:.4e} Pa, Poisson's ratio 0.3",
+        c.micro.radius_ratio, c.micro.young_modulus
+    );
+    if let Some(law) = c.law {
+        println!("stored law says      radius {:.5}, E_m {:.4e} Pa", law.radius_ratio, law.young_modulus);
+    }
+    if let Some([r, y]) = c.scatter {
+        println!(
+            "scatter              {:.2} % in radius, {:.2} % in E_m over {} packings",
+            100.0 * r,
+            100.0 * y,
+            c.inverted.len()
+        );
+    }
+    let percent = |found: f64, asked: f64| 100.0 * (found / asked - 1.0);
+    for (axis, (young, poisson)) in ["x", "y", "z"].iter().zip(c.own_check) {
+        println!(
+            "tension along {axis}      E {young:.4e} Pa ({:+.2} %), nu {poisson:.4} ({:+.2} %)",
+            percent(young, e),
+            percent(poisson, nu)
+        );
+    }
+    println!(
+        "another packing      E {:.4e} Pa ({:+.2} %), nu {:.4} ({:+.2} %), seed {}, mean over the axes",
+        c.check_young_modulus,
+        percent(c.check_young_modulus, e),
+        c.check_poisson_ratio,
+        percent(c.check_poisson_ratio, nu),
+        c.check_seed
+    );
+    if let Some(strength) = c.beam_strength {
+        println!("strength criterion   {strength:.4e} Pa (virial, Nguyen et al. 2019, eq. 22)");
+    }
+    println!("{seconds:.1} s");
+}
+
+/// The material as a part of a case file.
+fn material(c: &Calibration, density: Option<f64>) -> String {
+    let mut text = format!(
+        "# made by fractum calibrate; independent test: E {:.4e} Pa, nu {:.4}\n[materials.calibrated]\n",
+        c.check_young_modulus, c.check_poisson_ratio
+    );
+    if let Some(density) = density {
+        text += &format!("density = \"{density} kg/m^3\"\n");
+    }
+    text +=
+        &format!("young_modulus = \"{:e} Pa\"\npoisson_ratio = {}\n", c.request.young_modulus, c.request.poisson_ratio);
+    text += &format!(
+        "[materials.calibrated.bonds]\ncoordination = {}\nconvention = \"{}\"\nradius_ratio = {}\nyoung_modulus = \"{:e} Pa\"\n",
+        c.coordination, c.request.convention, c.micro.radius_ratio, c.micro.young_modulus
+    );
+    if let Some(strength) = c.beam_strength {
+        text += &format!("strength = \"{strength:e} Pa\"\n");
+    }
+    text
+}

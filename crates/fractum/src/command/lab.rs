@@ -1,0 +1,241 @@
+//! `fractum lab`: virtual tests on bonded packings.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand, ValueEnum};
+use fractum::{ExitCode, Failure};
+use fractum_calibrate::{CalibrateError, Micro, Sample, lab, published};
+use fractum_dem::Tolerance;
+use fractum_io::atomic;
+use fractum_io::case::{Dimension, parse_quantity};
+use fractum_pack::{Domain, PackSpec, Packing, pack};
+
+use super::convergence::{Diagram, Series, svg};
+use super::shape::{Convention, ShapeArguments, pressure};
+
+/// Arguments of `fractum lab`.
+#[derive(Subcommand)]
+pub(crate) enum LabCommand {
+    /// One test on one sample.
+    Test(Box<TestArguments>),
+    /// Tables 5 to 8 of Nguyen et al. (2019): the published micro-parameters on our own packings.
+    Tables {
+        /// Packings per row.
+        #[arg(long, default_value_t = 3)]
+        seeds: u64,
+    },
+    /// E and Poisson's ratio against the number of particles, both conventions, as CSV and as a plot beside it.
+    Convergence {
+        /// Packings per size.
+        #[arg(long, default_value_t = 4)]
+        seeds: u64,
+        /// Largest number of particles.
+        #[arg(long, default_value_t = 50_000)]
+        largest: usize,
+        /// CSV file to write.
+        #[arg(short, long, default_value = "convergence.csv")]
+        output: PathBuf,
+    },
+}
+
+/// One virtual test.
+#[derive(Args)]
+pub(crate) struct TestArguments {
+    /// What is done to the sample.
+    #[arg(value_enum)]
+    test: Test,
+    #[command(flatten)]
+    shape: ShapeArguments,
+    /// Coordination of the bonds.
+    #[arg(long, default_value_t = 10.0)]
+    coordination: f64,
+    /// How the coordination is counted.
+    #[arg(long, value_enum, default_value = "interior")]
+    convention: Convention,
+    /// Beam radius over the mean particle radius.
+    #[arg(long, default_value_t = 0.4)]
+    radius_ratio: f64,
+    /// Young's modulus of the beams, such as "700 GPa".
+    #[arg(long, default_value = "1 GPa")]
+    beam_young: String,
+    /// Density of the continuum, for the tests in time.
+    #[arg(long, default_value = "1000 kg/m^3")]
+    density: String,
+    /// Axis of a tension test.
+    #[arg(long, value_enum, default_value = "x")]
+    axis: Axis,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Test {
+    Tension,
+    Hydrostatic,
+    Shear,
+    Bending,
+    Torsion,
+    /// Period of free vibration along a cylinder.
+    TensionPeriod,
+    /// Period of free vibration across a cylinder.
+    BendingPeriod,
+    /// Period of free vibration about a cylinder's axis.
+    TorsionPeriod,
+    /// Speed of a pulse along a cylinder.
+    Impact,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+fn wrong(error: CalibrateError) -> Failure {
+    Failure::input(error.to_string())
+}
+
+/// Carries out a laboratory command.
+pub(crate) fn run(command: &LabCommand) -> Result<ExitCode, Failure> {
+    match command {
+        LabCommand::Test(arguments) => test(arguments)?,
+        LabCommand::Tables { seeds } => tables(*seeds).map_err(wrong)?,
+        LabCommand::Convergence { seeds, largest, output } => convergence(*seeds, *largest, output)?,
+    }
+    Ok(ExitCode::Done)
+}
+
+fn test(arguments: &TestArguments) -> Result<(), Failure> {
+    let micro = Micro { radius_ratio: arguments.radius_ratio, young_modulus: pressure(&arguments.beam_young)? };
+    let density = parse_quantity(&arguments.density, Dimension::DENSITY).map_err(Failure::input)?;
+    if density <= 0.0 {
+        return Err(Failure::input(format!("density {density}; expected a positive number of kg/m^3")));
+    }
+    let packing = arguments.shape.packing()?;
+    let result = (|| -> Result<serde_json::Value, CalibrateError> {
+        let mut sample = Sample::new(packing, arguments.coordination, arguments.convention.into())?;
+        sample.set_micro(micro)?;
+        let tolerance = Tolerance::default();
+        let value = match arguments.test {
+            Test::Tension => serde_json::to_value(lab::tension(&sample, arguments.axis as usize, None, tolerance)?.0),
+            Test::Hydrostatic => serde_json::to_value(lab::hydrostatic(&sample, tolerance)?.0),
+            Test::Shear => serde_json::to_value(lab::shear(&sample, tolerance)?.0),
+            Test::Bending => serde_json::to_value(lab::bending(&sample, tolerance)?.0),
+            Test::Torsion => serde_json::to_value(lab::torsion(&sample, tolerance)?.0),
+            // The theory takes the elastic constants that the same sample shows in tension.
+            timed => {
+                let tension = lab::tension(&sample, 0, None, tolerance)?.0;
+                let (young, poisson) = (tension.young_modulus, tension.poisson_ratio);
+                let mode = match timed {
+                    Test::TensionPeriod => lab::Mode::Tension,
+                    Test::BendingPeriod => lab::Mode::Bending,
+                    Test::TorsionPeriod => lab::Mode::Torsion,
+                    _ => return Ok(serde_json::to_value(lab::impact(&sample, density, young)?).unwrap_or_default()),
+                };
+                serde_json::to_value(lab::vibration(&sample, mode, density, young, poisson)?)
+            }
+        };
+        Ok(value.unwrap_or_default())
+    })();
+    let result = result.map_err(wrong)?;
+    println!("{}", serde_json::to_string_pretty(&result).unwrap_or_default());
+    Ok(())
+}
+
+fn tables(seeds: u64) -> Result<(), CalibrateError> {
+    let make = |domain: Domain, count: usize| -> Result<Vec<Packing>, CalibrateError> {
+        Ok((1..=seeds).map(|seed| pack(&PackSpec::new(domain.clone(), count, seed))).collect::<Result<_, _>>()?)
+    };
+    let cubes = make(Domain::cuboid(2e-3, 2e-3, 2e-3), 10_000)?;
+    let spheres = make(Domain::sphere(5e-3), 15_000)?;
+    println!("mean over {seeds} packings; differences from the target in %, scatter as standard deviation in %");
+    println!(
+        "target E, nu           cn    r_m   E_m GPa |  E GPa   diff  scatter |    nu    diff  scatter |  K GPa   diff  scatter"
+    );
+    for a in published::anchors() {
+        let bonded = |packing: &Packing| -> Result<Sample, CalibrateError> {
+            let mut sample = Sample::new(packing.clone(), a.coordination, fractum_pack::Convention::All)?;
+            sample.set_micro(Micro { radius_ratio: a.radius_ratio, young_modulus: a.beam_modulus })?;
+            Ok(sample)
+        };
+        let (mut young, mut poisson, mut bulk) = (Vec::new(), Vec::new(), Vec::new());
+        for packing in &cubes {
+            let (tension, _) = lab::tension(&bonded(packing)?, 0, None, Tolerance::default())?;
+            young.push(tension.young_modulus);
+            poisson.push(tension.poisson_ratio);
+        }
+        for packing in &spheres {
+            bulk.push(lab::hydrostatic(&bonded(packing)?, Tolerance::default())?.0.bulk_modulus);
+        }
+        let target = a.young_modulus / (3.0 * (1.0 - 2.0 * a.poisson_ratio));
+        let ((e, se), (n, sn), (k, sk)) = (spread(&young), spread(&poisson), spread(&bulk));
+        println!(
+            "{:5.0} GPa {:5.2} {:12.0} {:6.3} {:9.2} | {:6.2} {:+6.2} {:8.2} | {:.4} {:+6.2} {:8.2} | {:6.2} {:+6.2} {:8.2}",
+            a.young_modulus / 1e9,
+            a.poisson_ratio,
+            a.coordination,
+            a.radius_ratio,
+            a.beam_modulus / 1e9,
+            e / 1e9,
+            100.0 * (e / a.young_modulus - 1.0),
+            100.0 * se,
+            n,
+            100.0 * (n / a.poisson_ratio - 1.0),
+            100.0 * sn,
+            k / 1e9,
+            100.0 * (k / target - 1.0),
+            100.0 * sk,
+        );
+    }
+    Ok(())
+}
+
+/// Mean, and standard deviation over the mean.
+fn spread(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let square: f64 = values.iter().map(|v| (v / mean - 1.0).powi(2)).sum();
+    (mean, (square / (count - 1.0).max(1.0)).sqrt())
+}
+
+/// Sizes of the convergence study.
+const SIZES: [usize; 8] = [200, 500, 1_000, 2_000, 5_000, 10_000, 20_000, 50_000];
+
+/// Beams of the study: glass at coordination 10 (Nguyen et al. 2019, Table 5).
+const STUDY: (f64, Micro) = (10.0, Micro { radius_ratio: 0.348, young_modulus: 677.94e9 });
+
+fn convergence(seeds: u64, largest: usize, output: &Path) -> Result<(), Failure> {
+    let mut text =
+        String::from("particles,convention,packings,E [Pa],E scatter [%],nu,nu scatter [%],gauge E [Pa],gauge nu\n");
+    let conventions = [(fractum_pack::Convention::All, "#b42"), (fractum_pack::Convention::Interior, "#06c")];
+    let series = || conventions.map(|(c, colour)| Series { name: c.to_string(), colour, points: Vec::new() }).into();
+    let mut young = Diagram { title: "Young's modulus [GPa] against particles", series: series() };
+    let mut poisson = Diagram { title: "Poisson's ratio against particles", series: series() };
+    for count in SIZES.into_iter().filter(|&c| c <= largest) {
+        let cube = |seed| pack(&PackSpec::new(Domain::cuboid(2e-3, 2e-3, 2e-3), count, seed));
+        let packings: Vec<Packing> = (1..=seeds).map(cube).collect::<Result<_, _>>().map_err(|e| wrong(e.into()))?;
+        for (k, (convention, _)) in conventions.into_iter().enumerate() {
+            let tests = packings.iter().map(|packing| -> Result<lab::Tension, CalibrateError> {
+                let mut sample = Sample::new(packing.clone(), STUDY.0, convention)?;
+                sample.set_micro(STUDY.1)?;
+                Ok(lab::tension(&sample, 0, None, Tolerance::default())?.0)
+            });
+            let tests = tests.collect::<Result<Vec<_>, _>>().map_err(wrong)?;
+            let column =
+                |f: &dyn Fn(&lab::Tension) -> Option<f64>| spread(&tests.iter().filter_map(f).collect::<Vec<f64>>());
+            let ((e, se), (n, sn)) = (column(&|t| Some(t.young_modulus)), column(&|t| Some(t.poisson_ratio)));
+            let (ge, gn) = (column(&|t| t.gauge_young_modulus).0, column(&|t| t.gauge_poisson_ratio).0);
+            let line = format!(
+                "{count},{convention},{seeds},{e:.4e},{:.3},{n:.5},{:.3},{ge:.4e},{gn:.5}",
+                100.0 * se,
+                100.0 * sn
+            );
+            println!("{line}");
+            text += &(line + "\n");
+            young.series[k].points.push([count as f64, e / 1e9, se * e / 1e9]);
+            poisson.series[k].points.push([count as f64, n, sn * n]);
+        }
+    }
+    atomic::write(output, text.as_bytes())?;
+    atomic::write(&output.with_extension("svg"), svg(&[young, poisson]).as_bytes())?;
+    Ok(())
+}

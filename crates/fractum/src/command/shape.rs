@@ -1,0 +1,170 @@
+//! Options that the packing, laboratory and calibration commands share.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use fractum::Failure;
+use fractum_io::case::{Dimension, parse_quantity};
+use fractum_mesh::{read_msh, topology};
+use fractum_pack::{ClosedSurface, Domain, PackSize, PackSpec, Packing, pack, read_stl};
+
+/// The shape to fill and the particles to fill it with.
+#[derive(Args, Clone)]
+pub(crate) struct ShapeArguments {
+    /// A box with these edges, such as "2 mm, 2 mm, 2 mm".
+    #[arg(long = "box", value_name = "X,Y,Z")]
+    cuboid: Option<String>,
+    /// A cylinder along x with this length and radius, such as "10 mm, 1 mm".
+    #[arg(long, value_name = "LENGTH,RADIUS")]
+    cylinder: Option<String>,
+    /// A sphere with this radius.
+    #[arg(long, value_name = "RADIUS")]
+    sphere: Option<String>,
+    /// A closed surface from an STL file.
+    #[arg(long, value_name = "FILE")]
+    stl: Option<PathBuf>,
+    /// Length of one STL unit.
+    #[arg(long, default_value = "1 mm", value_name = "LENGTH")]
+    stl_unit: String,
+    /// A closed group of a gmsh mesh: tetrahedra, or triangles that enclose a volume.
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+    /// Name of the group; all tetrahedra without it.
+    #[arg(long, value_name = "NAME", requires = "mesh")]
+    group: Option<String>,
+    /// Number of particles.
+    #[arg(long, default_value_t = 10_000)]
+    count: usize,
+    /// Mean particle radius; the count follows.
+    #[arg(long, value_name = "LENGTH")]
+    radius: Option<String>,
+    /// (R_max - R_min)/R_mean of the uniform radii.
+    #[arg(long, default_value_t = 0.25)]
+    dispersion: f64,
+    /// Seed of the random generator.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Contacts per particle at which compaction stops.
+    #[arg(long, default_value_t = 6.2)]
+    contacts: f64,
+    /// A packing made before; the other options on shape and particles are not used.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["cuboid", "cylinder", "sphere", "stl", "mesh"])]
+    packing: Option<PathBuf>,
+}
+
+/// How coordination is counted.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Convention {
+    /// 2 x bonds / particles.
+    All,
+    /// Mean over the particles that touch no wall.
+    Interior,
+}
+
+impl From<Convention> for fractum_pack::Convention {
+    fn from(convention: Convention) -> Self {
+        match convention {
+            Convention::All => fractum_pack::Convention::All,
+            Convention::Interior => fractum_pack::Convention::Interior,
+        }
+    }
+}
+
+impl ShapeArguments {
+    /// Makes the packing, or reads it.
+    pub(crate) fn packing(&self) -> Result<Packing, Failure> {
+        if let Some(file) = &self.packing {
+            let wrong = |error| Failure::input(format!("{}: {error}", file.display()));
+            return Packing::from_bytes(&read(file)?).map_err(wrong);
+        }
+        let size = match &self.radius {
+            Some(radius) => PackSize::MeanRadius(length(radius)?),
+            None => PackSize::Count(self.count),
+        };
+        let domain = self.domain()?;
+        let spec = PackSpec { domain, size, dispersion: self.dispersion, seed: self.seed, coordination: self.contacts };
+        pack(&spec).map_err(|error| Failure::input(error.to_string()))
+    }
+
+    fn domain(&self) -> Result<Domain, Failure> {
+        let given = [
+            self.cuboid.is_some(),
+            self.cylinder.is_some(),
+            self.sphere.is_some(),
+            self.stl.is_some(),
+            self.mesh.is_some(),
+        ];
+        if given.iter().filter(|&&g| g).count() > 1 {
+            return Err(Failure::input("more than one shape; give one of --box, --cylinder, --sphere, --stl, --mesh"));
+        }
+        if let Some(text) = &self.cuboid {
+            let [x, y, z] = lengths(text)?;
+            return Ok(Domain::cuboid(x, y, z));
+        }
+        if let Some(text) = &self.cylinder {
+            let [length, radius] = lengths(text)?;
+            return Ok(Domain::cylinder(length, radius));
+        }
+        if let Some(text) = &self.sphere {
+            return Ok(Domain::sphere(length(text)?));
+        }
+        if let Some(file) = &self.stl {
+            let surface = read_stl(&read(file)?, length(&self.stl_unit)?);
+            return surface
+                .map(Domain::Surface)
+                .map_err(|error| Failure::input(format!("{}: {error}", file.display())));
+        }
+        match &self.mesh {
+            Some(file) => group_surface(file, self.group.as_deref()).map(Domain::Surface),
+            None => {
+                Err(Failure::input("no shape; give one of --box, --cylinder, --sphere, --stl, --mesh, or --packing"))
+            }
+        }
+    }
+}
+
+/// The closed surface of a group.
+fn group_surface(file: &Path, group: Option<&str>) -> Result<ClosedSurface, Failure> {
+    let wrong = |what: String| Failure::input(format!("{}: {what}", file.display()));
+    let mesh = read_msh(&read(file)?).map_err(|error| wrong(error.to_string()))?;
+    let (mut tetrahedra, mut triangles) = (Vec::new(), Vec::new());
+    match group {
+        None => tetrahedra.clone_from(&mesh.tetrahedra),
+        Some(name) => {
+            let groups = mesh.group(name);
+            if groups.is_empty() {
+                return Err(wrong(format!("no group \"{name}\"; groups here: {}", mesh.group_names().join(", "))));
+            }
+            for part in groups {
+                tetrahedra.extend(part.tetrahedra.iter().map(|&e| mesh.tetrahedra[e as usize]));
+                triangles.extend(part.triangles.iter().map(|&e| mesh.triangles[e as usize]));
+            }
+        }
+    }
+    if !tetrahedra.is_empty() {
+        triangles = topology::boundary_of_tetrahedra(&tetrahedra).iter().map(|f| f.nodes).collect();
+    }
+    ClosedSurface::new(&mesh.nodes, &triangles).map_err(|error| wrong(error.to_string()))
+}
+
+/// Reads a file.
+pub(crate) fn read(file: &Path) -> Result<Vec<u8>, Failure> {
+    fs::read(file).map_err(|error| Failure::input(format!("{}: cannot read: {error}", file.display())))
+}
+
+/// Reads a length with its unit.
+pub(crate) fn length(text: &str) -> Result<f64, Failure> {
+    parse_quantity(text, Dimension::LENGTH).map_err(Failure::input)
+}
+
+/// Reads a pressure with its unit.
+pub(crate) fn pressure(text: &str) -> Result<f64, Failure> {
+    parse_quantity(text, Dimension::PRESSURE).map_err(Failure::input)
+}
+
+fn lengths<const N: usize>(text: &str) -> Result<[f64; N], Failure> {
+    let values: Vec<f64> = text.split(',').map(|part| length(part.trim())).collect::<Result<_, _>>()?;
+    <[f64; N]>::try_from(values)
+        .map_err(|v| Failure::input(format!("\"{text}\": {} lengths; expected {N}, separated by commas", v.len())))
+}
