@@ -602,9 +602,10 @@ impl Threshold {
         nodes: &[Vec3],
         volumes: &[f64],
     ) -> Result<Self, SolidError> {
-        // Measured on tension bars, where they make the dissipated energy G_f times the area.
+        // Measured on the tension bars of the gallery (aligned, jittered and Delaunay meshes of two sizes), never on other
+        // cases: the middle of the range in which all of them dissipate G_f times the area within 6 %.
         let factor = match (body.formulation, body.shape) {
-            (Formulation::Smoothed, Shape::T4) => 1.0,
+            (Formulation::Smoothed, Shape::T4) => 1.09,
             (Formulation::Smoothed, Shape::T3) => 1.124,
             (Formulation::Standard, Shape::T4) => 1.11,
             (Formulation::Standard, Shape::T3) => 1.28,

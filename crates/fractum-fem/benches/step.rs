@@ -1,0 +1,80 @@
+//! Time per element and step: plain elements, smoothed ones, damage armed and damage growing. One thread.
+//!
+//! `cargo bench -p fractum-fem` prints items (elements) per second on meshes of 56,000 and 511,000 tetrahedra, one in
+//! the cache and one larger than it.
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, main as run_benches};
+use fractum_fem::{Body, Criterion, DamageLaw, Elastic, LocalDamping, Shape, Softening, Solid};
+use fractum_math::Vec3;
+use fractum_mesh::generate::{Jitter, structured_box};
+use fractum_mesh::renumber::renumber_along_hilbert_curve;
+
+const CONCRETE: Elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+const CELLS: [u32; 2] = [21, 44];
+
+fn main() {
+    // The kernels are timed on one thread.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(1).build_global();
+    run_benches();
+}
+
+fn solid(cells: u32, prepare: impl Fn(Body) -> Body) -> (Solid, usize, f64) {
+    let mesh = structured_box([cells; 3], Vec3::new(1.0, 1.0, 1.0), Some(Jitter { fraction: 0.1, seed: 1 }));
+    let (mesh, _) = renumber_along_hilbert_curve(&mesh);
+    let count = mesh.tetrahedra.len();
+    let body = prepare(Body::new("box", Shape::T4, mesh.tetrahedra, CONCRETE));
+    let mut solid = Solid::new(mesh.nodes, vec![body]).expect("a structured mesh makes a solid");
+    for (i, u) in solid.displacement.iter_mut().enumerate() {
+        u.x = 1e-7 * (0.1 * i as f64).sin();
+    }
+    let dt = 0.8 * solid.stable_step().dt();
+    (solid, count, dt)
+}
+
+fn law(strength: f64) -> DamageLaw {
+    DamageLaw {
+        criterion: Criterion::rankine(),
+        tensile_strength: strength,
+        fracture_energy: 1e3,
+        softening: Softening::Exponential,
+        residual: 0.02,
+        unilateral: false,
+        rate_time: 0.0,
+    }
+}
+
+fn bench_step(bencher: Bencher, cells: u32, prepare: impl Fn(Body) -> Body) {
+    let (mut solid, count, dt) = solid(cells, prepare);
+    bencher.counter(ItemsCount::new(count)).bench_local(|| {
+        solid.update_internal_forces(dt, false);
+        solid.kick_and_drift(dt, dt, LocalDamping::default(), &[], false)
+    });
+}
+
+#[divan::bench(args = CELLS)]
+fn plain(bencher: Bencher, cells: u32) {
+    bench_step(bencher, cells, |body| body);
+}
+
+#[divan::bench(args = CELLS)]
+fn smoothed(bencher: Bencher, cells: u32) {
+    bench_step(bencher, cells, Body::smoothed);
+}
+
+#[divan::bench(args = CELLS)]
+fn smoothed_armed(bencher: Bencher, cells: u32) {
+    bench_step(bencher, cells, |body| body.smoothed().with_damage(law(3e6)));
+}
+
+/// Every edge is loaded beyond its strength: the price of the damage path.
+#[divan::bench(args = [21])]
+fn smoothed_damaged(bencher: Bencher, cells: u32) {
+    bench_step(bencher, cells, |body| body.smoothed().with_damage(law(1e3)));
+}
+
+/// Building the cells, and the Lanczos process for the stable step.
+#[divan::bench(args = [21])]
+fn set_up(bencher: Bencher, cells: u32) {
+    bencher.bench_local(|| solid(cells, Body::smoothed).2);
+}
