@@ -68,7 +68,7 @@ enum Command {
         #[arg(short, long, default_value = "results/verify")]
         output: PathBuf,
         /// Threads per case; all cores by default.
-        #[arg(long)]
+        #[arg(long, value_parser = thread_count)]
         threads: Option<usize>,
     },
     /// Look at a mesh, or write it in another format.
@@ -107,7 +107,7 @@ struct RunArguments {
     #[arg(short, long)]
     output: Option<PathBuf>,
     /// Threads; all cores by default. Results do not depend on it.
-    #[arg(long)]
+    #[arg(long, value_parser = thread_count)]
     threads: Option<usize>,
     /// Replace a value of [parameters].
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -118,6 +118,16 @@ struct RunArguments {
     /// No plan and no progress line.
     #[arg(long)]
     quiet: bool,
+}
+
+/// More threads than this help nobody, and starve the machine.
+const MOST_THREADS: usize = 1024;
+
+fn thread_count(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count) if (1..=MOST_THREADS).contains(&count) => Ok(count),
+        _ => Err(format!("expected a whole number from 1 to {MOST_THREADS}")),
+    }
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {

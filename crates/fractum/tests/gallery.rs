@@ -1,0 +1,26 @@
+//! The quick part of the gallery meets its references.
+
+use std::path::Path;
+
+use fractum::verify::{Selection, verify};
+
+#[test]
+fn quick_cases_meet_their_references() {
+    let output = tempfile::tempdir().unwrap();
+    let selection = Selection {
+        cases: Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases"),
+        names: Vec::new(),
+        quick: true,
+        output: output.path().to_owned(),
+        threads: None,
+    };
+    let lines = verify(&selection).unwrap();
+    let missed: Vec<String> = lines
+        .iter()
+        .filter(|line| !line.pass)
+        .map(|line| format!("{} {}: {} against {}", line.case, line.quantity, line.value, line.reference))
+        .collect();
+    assert!(lines.len() > 40, "{} references were checked", lines.len());
+    assert!(missed.is_empty(), "{missed:#?}");
+    assert!(output.path().join("verify.json").is_file());
+}
