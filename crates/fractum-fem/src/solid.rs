@@ -409,6 +409,7 @@ impl Solid {
             }
             if let Some(standard) = &mut model.standard {
                 standard.edges = body.edges;
+                standard.fresh = true;
             }
             model.alive = body.alive;
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
@@ -419,7 +420,11 @@ impl Solid {
         }
         for (block, dissipated) in self.blocks.iter_mut().zip(state.dissipated) {
             match &mut block.law {
-                BlockLaw::Edges(law) => law.dissipated = dissipated,
+                BlockLaw::Edges(law) => {
+                    law.dissipated = dissipated;
+                    // Edges that broke when others left are looked at in the next step; a second look finds nothing new.
+                    law.fresh = true;
+                }
                 BlockLaw::Standard(law) => law.dissipated = dissipated,
                 BlockLaw::Elastic { .. } => {}
             }
