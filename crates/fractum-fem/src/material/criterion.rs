@@ -180,7 +180,8 @@ mod tests {
             let q = criterion(kind).equivalent_stress(Sym3::new(-10.0, 0.0, 0.0, 0.0, 0.0, 0.0));
             assert!((q - 1.0).abs() < 1e-6, "{kind:?}: {q}");
         }
-        assert_eq!(criterion(Rankine).equivalent_stress(Sym3::new(-10.0, 0.0, 0.0, 0.0, 0.0, 0.0)), 0.0);
+        // The closed form of the principal values is exact to about 1e-8 of the norm.
+        assert!(criterion(Rankine).equivalent_stress(Sym3::new(-10.0, 0.0, 0.0, 0.0, 0.0, 0.0)) < 1e-6);
     }
 
     proptest! {
