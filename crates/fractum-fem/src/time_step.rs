@@ -4,7 +4,6 @@ use fractum_math::{CHUNK, Mat3, Vec3, sum_chunks};
 use nalgebra::{DMatrix, Matrix6, SMatrix};
 use rayon::prelude::*;
 
-use crate::body::{Formulation, Kinematics};
 use crate::cell::Geometry;
 use crate::kernel::Hooke;
 use crate::solid::Solid;
@@ -110,16 +109,6 @@ impl Solid {
         let Solid { slots, blocks, .. } = self;
         let force = |i: usize| slots.gather(i, |block| blocks[block].forces()) * -root[i];
         (0..q.len()).into_par_iter().map(force).collect()
-    }
-
-    /// Whether the strain of every body is linear in the displacements (then energies balance to round-off).
-    pub fn is_linear(&self) -> bool {
-        self.bodies.iter().all(|b| b.body.kinematics == Kinematics::Small && b.body.damage.is_none())
-    }
-
-    /// Whether some body is in the smoothed formulation.
-    pub fn is_smoothed(&self) -> bool {
-        self.bodies.iter().any(|b| b.body.formulation == Formulation::Smoothed)
     }
 }
 
