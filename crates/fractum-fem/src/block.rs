@@ -23,8 +23,16 @@ pub(crate) struct Cells {
     pub(crate) gradients: Vec<[f64; 3]>,
     /// Volume of each cell [m³].
     pub(crate) volume: Vec<f64>,
-    /// Every cell has four nodes: the kernel may use loops of fixed length.
-    pub(crate) four_nodes: bool,
+    /// Runs of cells with as many gradients each, for loops of a length known to the compiler.
+    pub(crate) runs: Vec<Run>,
+}
+
+/// Cells `begin..end` of a block, each with `gradients` gradients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run {
+    pub(crate) begin: usize,
+    pub(crate) end: usize,
+    pub(crate) gradients: usize,
 }
 
 /// Most nodes that the cells of a block may touch.

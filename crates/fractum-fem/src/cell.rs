@@ -3,7 +3,7 @@
 use fractum_math::{Ragged, Vec3};
 use rayon::prelude::*;
 
-use crate::block::{BLOCK_NODES, Cells};
+use crate::block::{BLOCK_NODES, Cells, Run};
 use crate::body::{Body, BodyEdges, Shape};
 use crate::element::measure_and_gradients;
 use crate::error::SolidError;
@@ -156,7 +156,7 @@ fn build_block(rows: &[Vec<u32>], fill: impl Fn(usize, &[u32], &mut [[f64; 3]]) 
     let mut nodes: Vec<u32> = rows.concat();
     nodes.sort_unstable();
     nodes.dedup();
-    let mut cells = Cells { nodes, starts: vec![0], four_nodes: rows.iter().all(|r| r.len() == 4), ..Cells::default() };
+    let mut cells = Cells { nodes, starts: vec![0], ..Cells::default() };
     for (cell, row) in rows.iter().enumerate() {
         for node in row {
             let local = cells.nodes.binary_search(node).expect("the block holds the nodes of its cells");
@@ -166,6 +166,11 @@ fn build_block(rows: &[Vec<u32>], fill: impl Fn(usize, &[u32], &mut [[f64; 3]]) 
         cells.gradients.resize(start + row.len() - 1, [0.0; 3]);
         cells.volume.push(fill(cell, row, &mut cells.gradients[start..]));
         cells.starts.push(cells.gradients.len() as u32);
+    }
+    let mut begin = 0;
+    for rows in rows.chunk_by(|a, b| a.len() == b.len()) {
+        cells.runs.push(Run { begin, end: begin + rows.len(), gradients: rows[0].len() - 1 });
+        begin += rows.len();
     }
     cells
 }

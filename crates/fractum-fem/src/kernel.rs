@@ -2,7 +2,7 @@
 
 use fractum_math::{Mat3, Sym3};
 
-use crate::block::{BLOCK_NODES, Cells, Scratch};
+use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
 use crate::lane::Lane;
 use crate::solid::BodyViscosity;
 
@@ -136,49 +136,80 @@ fn symmetric_columns(s: Sym3) -> [Lane; 3] {
 
 /// Forces of the cells of a block, small strains: -∫ Bᵀσ dV added to `scratch.force`.
 ///
-/// With four nodes per cell (`T4`) the loops have a fixed length.
+/// Cells of a block lie sorted by their number of nodes (`cell.rs`), so that nearly all of them pass through loops of a
+/// length that the compiler knows.
 #[inline(always)]
-fn small_strain_forces<const FMA: bool, const T4: bool, L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
-    let Scratch { displacement, force, .. } = scratch;
-    let (mut start, mut first) = (0usize, 0usize);
-    for cell in 0..cells.len() {
-        let count = if T4 { 3 } else { cells.starts[cell + 1] as usize - start };
-        let local = &cells.local[first..first + count + 1];
-        let gradients = &cells.gradients[start..start + count];
-        let [x, y, z] = gradient_columns::<FMA>(displacement, local, gradients);
-        let stress = law.scaled_stress(cell, small_strain(x, y, z), cells.volume[cell]);
-        add_cell_forces::<FMA>(force, local, gradients, symmetric_columns(stress));
-        start += count;
-        first += count + 1;
+fn small_strain_forces<const FMA: bool, L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
+    for &run in &cells.runs {
+        match run.gradients {
+            2 => run_forces::<FMA, 2, L>(cells, scratch, law, run),
+            3 => run_forces::<FMA, 3, L>(cells, scratch, law, run),
+            4 => run_forces::<FMA, 4, L>(cells, scratch, law, run),
+            5 => run_forces::<FMA, 5, L>(cells, scratch, law, run),
+            6 => run_forces::<FMA, 6, L>(cells, scratch, law, run),
+            7 => run_forces::<FMA, 7, L>(cells, scratch, law, run),
+            8 => run_forces::<FMA, 8, L>(cells, scratch, law, run),
+            _ => long_forces::<FMA, L>(cells, scratch, law, run),
+        }
     }
+}
+
+/// A run of cells of `N` gradients each.
+#[inline(always)]
+fn run_forces<const FMA: bool, const N: usize, L: CellLaw>(
+    cells: &Cells,
+    scratch: &mut Scratch,
+    law: &mut L,
+    Run { begin, end, .. }: Run,
+) {
+    let start = cells.starts[begin] as usize;
+    let gradients = cells.gradients[start..].chunks_exact(N);
+    let local = cells.local[start + begin..].chunks_exact(N + 1);
+    for (((cell, gradients), local), &volume) in (begin..end).zip(gradients).zip(local).zip(&cells.volume[begin..end]) {
+        one_cell::<FMA, L>(scratch, law, cell, local, gradients, volume);
+    }
+}
+
+/// A run of cells with many nodes: at the axes of structured meshes, and around the long edges of others.
+#[inline(always)]
+fn long_forces<const FMA: bool, L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L, run: Run) {
+    for cell in run.begin..run.end {
+        let (local, gradients) = (cells.local_nodes(cell), &cells.gradients[cells.range(cell)]);
+        one_cell::<FMA, L>(scratch, law, cell, local, gradients, cells.volume[cell]);
+    }
+}
+
+#[inline(always)]
+fn one_cell<const FMA: bool, L: CellLaw>(
+    scratch: &mut Scratch,
+    law: &mut L,
+    cell: usize,
+    local: &[u16],
+    gradients: &[[f64; 3]],
+    volume: f64,
+) {
+    let [x, y, z] = gradient_columns::<FMA>(&scratch.displacement, local, gradients);
+    let stress = law.scaled_stress(cell, small_strain(x, y, z), volume);
+    add_cell_forces::<FMA>(&mut scratch.force, local, gradients, symmetric_columns(stress));
 }
 
 /// The small-strain kernel in the widest instruction set of the machine.
 pub(crate) fn forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
-    let t4 = cells.four_nodes;
     #[cfg(target_arch = "x86_64")]
     if has_avx2() {
         // SAFETY: the instruction sets were found on this machine.
         #[allow(unsafe_code)]
         unsafe {
-            return if t4 {
-                forces_avx2::<true, L>(cells, scratch, law)
-            } else {
-                forces_avx2::<false, L>(cells, scratch, law)
-            };
+            return forces_avx2(cells, scratch, law);
         }
     }
-    if t4 {
-        small_strain_forces::<false, true, L>(cells, scratch, law);
-    } else {
-        small_strain_forces::<false, false, L>(cells, scratch, law);
-    }
+    small_strain_forces::<false, L>(cells, scratch, law);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn forces_avx2<const T4: bool, L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
-    small_strain_forces::<true, T4, L>(cells, scratch, law);
+fn forces_avx2<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
+    small_strain_forces::<true, L>(cells, scratch, law);
 }
 
 /// Whether kernels run in their AVX2 and FMA version on this machine (results differ in the last bits).
