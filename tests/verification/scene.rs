@@ -6,7 +6,8 @@ use fractum_fem::{Body, Criterion, DamageLaw, Formulation, Kinematics, LocalDamp
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Guard, Load, Loads, Motion, RigidPlane, Scene, SceneSettings, StepError, Support, Supports, TimeStepSettings,
+    Guard, Load, Loads, Motion, RigidPlane, Scene, SceneSettings, StepError, Support, Supports, Surface,
+    TimeStepSettings,
 };
 use fractum_tests::{jittered_box, noise};
 
@@ -31,7 +32,7 @@ fn fine_settings(end: f64) -> SceneSettings {
 fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, settings: SceneSettings) -> Scene {
     let supports = Supports::new(supports, &solid.reference).unwrap();
     let loads = Loads::new(loads, solid.reference.len());
-    let debris = Debris::new(&solid, 0.5, 0.1);
+    let debris = Debris::new(&solid, vec![Surface::default()]);
     Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
 }
 
@@ -295,8 +296,8 @@ fn a_block_dropped_on_a_plane_bounces_and_closes_its_balance() {
     let body = Body { kinematics: Kinematics::Corotational, ..body };
     let mut solid = Solid::new(nodes, vec![body]).unwrap();
     solid.velocity.fill(Vec3::new(0.3, 0.0, -1.0));
-    let debris = Debris::new(&solid, 0.5, 0.1);
-    let planes = vec![RigidPlane::new(Vec3::zeros(), Vec3::z(), 0.3, 0.1)];
+    let debris = Debris::new(&solid, vec![Surface::default()]);
+    let planes = vec![RigidPlane::new(Vec3::zeros(), Vec3::z(), Surface { friction: 0.3, ..Surface::default() })];
     let supports = Supports::default();
     let mut scene = Scene::new(solid, supports, Loads::default(), debris, planes, &surface, settings(8e-4));
     let mut stored = 0.0f64;

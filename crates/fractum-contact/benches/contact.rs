@@ -3,7 +3,7 @@
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use fractum_contact::close_pairs;
-use fractum_contact::law::{ContactMemory, Linear, PairMotion};
+use fractum_contact::law::{ContactMemory, Linear, PairMotion, Surface};
 use fractum_math::Vec3;
 
 fn main() {
@@ -25,8 +25,14 @@ fn search(bencher: Bencher, side: usize) {
 
 #[divan::bench]
 fn linear_law(bencher: Bencher) {
-    let law = Linear::between_spheres(30e9, 0.2, [0.01, 0.01], [0.01, 0.01], 0.5, 0.1);
-    let motion = PairMotion { normal: Vec3::x(), overlap: 1e-6, velocity: Vec3::new(-0.1, 0.2, 0.0), dt: 1e-7 };
+    let law = Linear::between_spheres(30e9, 0.2, [0.01, 0.01], [0.01, 0.01], Surface::default());
+    let motion = PairMotion {
+        normal: Vec3::x(),
+        overlap: 1e-6,
+        velocity: Vec3::new(-0.1, 0.2, 0.0),
+        spin: Vec3::zeros(),
+        dt: 1e-7,
+    };
     let mut memory = vec![ContactMemory::default(); 10_000];
     bencher
         .counter(ItemsCount::new(memory.len()))

@@ -109,11 +109,16 @@ impl EdgeCells {
         let softens = Arc::as_ref(&self.softens);
         let edge = &mut self.edges[cell];
         let (was_broken, was_intact) = (edge.broken, edge.damage == 0.0);
-        let q = softens.law.criterion.equivalent_stress(stress);
-        let growth = softens.load(edge, q, self.strength[cell], self.length[cell], self.dt);
-        self.threshold[cell] = edge.threshold();
         let closed = softens.closed_stress(strain);
         let opening = stress - closed;
+        // Below its history an edge only unloads: no eigenvalues.
+        let (q, growth) = if softens.law.criterion.surely_below(stress, edge.kappa) {
+            (0.0, 0.0)
+        } else {
+            let q = softens.law.criterion.equivalent_stress(stress);
+            (q, softens.load(edge, q, self.strength[cell], self.length[cell], self.dt))
+        };
+        self.threshold[cell] = edge.threshold();
         if growth > 0.0 {
             // The work of the step between the strains ε⁰ and ε¹ minus the change of the stored energy is exactly
             // ½ σ¹ : ε⁰ per damage. An edge that was intact has kept no strain: it is taken at its strength.

@@ -4,7 +4,7 @@ use fractum_math::{Mat3, Sym3};
 
 use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
 use crate::lane::Lane;
-use crate::solid::BodyViscosity;
+use crate::viscosity::BodyViscosity;
 
 /// Stress of a cell for its strain; owns the history of the cells of a block.
 pub(crate) trait CellLaw {

@@ -5,8 +5,9 @@ use fractum_math::{Sym3, Vec3};
 use crate::body::{Formulation, Kinematics};
 use crate::cell::Geometry;
 use crate::element::cut_modes;
+use crate::evaluate::{Block, BlockLaw};
 use crate::kernel;
-use crate::solid::{BlockLaw, BodyModel, Solid};
+use crate::solid::{BodyModel, Solid};
 
 impl Solid {
     /// Removes every element for which all edges of one cut are broken, and returns the energy that went with them.
@@ -180,7 +181,7 @@ impl Solid {
     }
 }
 
-impl crate::solid::Block {
+impl Block {
     /// Strain of one cell at these displacements.
     fn strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
         let h = self.cells.gradient(cell, displacement);

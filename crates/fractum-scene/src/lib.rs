@@ -18,6 +18,7 @@ mod step;
 pub use boundary::{Load, Loads, Motion, Support, Supports, TimeFunction};
 pub use clock::{Clock, TimeStepSettings};
 pub use error::{SceneError, StepError};
+pub use fractum_contact::law::Surface;
 pub use fragment::{Fragment, fragments};
 pub use ledger::{EnergyKind, Guard, Ledger};
 pub use probe::{CountKind, Probe};

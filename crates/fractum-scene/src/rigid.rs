@@ -1,6 +1,6 @@
 //! Rigid planes that nodes and particles rest on.
 
-use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion};
+use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion, Surface};
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 use rayon::prelude::*;
@@ -18,10 +18,8 @@ pub struct RigidPlane {
     pub point: Vec3,
     /// Unit normal, out of the rigid side.
     pub normal: Vec3,
-    /// Coulomb's coefficient.
-    pub friction: f64,
-    /// Damping ratio of its contacts.
-    pub damping_ratio: f64,
+    /// Friction and damping of its contacts, together with those of the other surface.
+    pub surface: Surface,
     candidates: Vec<Candidate>,
 }
 
@@ -33,6 +31,7 @@ pub(crate) struct Candidate {
     radius: f64,
     memory: ContactMemory,
     force: Vec3,
+    couple: Vec3,
     stored: f64,
     friction: f64,
     damping: f64,
@@ -48,8 +47,8 @@ pub(crate) struct ContactWork {
 
 impl RigidPlane {
     /// A plane through `point` with unit `normal`.
-    pub fn new(point: Vec3, normal: Vec3, friction: f64, damping_ratio: f64) -> Self {
-        RigidPlane { point, normal, friction, damping_ratio, candidates: Vec::new() }
+    pub fn new(point: Vec3, normal: Vec3, surface: Surface) -> Self {
+        RigidPlane { point, normal, surface, candidates: Vec::new() }
     }
 
     /// Sets the nodes that may touch: the surface of the solids.
@@ -65,13 +64,15 @@ impl RigidPlane {
             let i = node as usize;
             let (young_modulus, poisson_ratio) = debris.elasticity(node);
             let (radius, mass) = (debris.radius(node), solid.mass[i]);
-            let law = Linear::on_wall(young_modulus, poisson_ratio, radius, mass, self.friction, self.damping_ratio);
+            let surface = self.surface.against(debris.surface(node));
+            let law = Linear::on_wall(young_modulus, poisson_ratio, radius, mass, surface);
             let candidate = Candidate {
                 node,
                 law,
                 radius: 0.0,
                 memory: ContactMemory::default(),
                 force: Vec3::zeros(),
+                couple: Vec3::zeros(),
                 stored: 0.0,
                 friction: 0.0,
                 damping: 0.0,
@@ -114,10 +115,13 @@ impl RigidPlane {
                     c.radius = full;
                 }
                 let arm = -normal * height;
-                let velocity = solid.velocity[i] + debris.spin(c.node).cross(&arm);
-                let motion = PairMotion { normal, overlap: c.radius - height, velocity, dt };
-                let ContactForce { on_second, stored, friction, damping } = c.law.force(&motion, &mut c.memory);
-                (c.force, c.stored, c.friction, c.damping) = (on_second, stored, friction, damping);
+                let spin = debris.spin(c.node);
+                let velocity = solid.velocity[i] + spin.cross(&arm);
+                let motion = PairMotion { normal, overlap: c.radius - height, velocity, spin, dt };
+                let ContactForce { on_second, couple_on_second, stored, friction, damping } =
+                    c.law.force(&motion, &mut c.memory);
+                (c.force, c.couple) = (on_second, couple_on_second);
+                (c.stored, c.friction, c.damping) = (stored, friction, damping);
             });
         }
         let mut work = ContactWork::default();
@@ -125,7 +129,7 @@ impl RigidPlane {
             let i = c.node as usize;
             let arm = -normal * (solid.reference[i] + solid.displacement[i] - point).dot(&normal);
             solid.force[i] += c.force;
-            debris.add_torque(c.node, arm.cross(&c.force));
+            debris.add_torque(c.node, arm.cross(&c.force) + c.couple);
             work.stored += c.stored;
             work.friction += c.friction;
             work.damping += c.damping;

@@ -249,36 +249,39 @@ impl<'a> Recorder<'a> {
             |of: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { order.iter().map(|&n| of(n as usize)).collect() };
         let points = nodal(&|n| solid.reference[n].into());
         let displacement = nodal(&|n| solid.displacement[n].into());
-        let velocity = nodal(&|n| solid.velocity[n].into());
+        let velocity: Vec<[f32; 3]> =
+            order.iter().map(|&n| solid.velocity[n as usize].map(|v| v as f32).into()).collect();
         let held: Vec<u8> = order.iter().map(|&n| u8::from(attached[n as usize])).collect();
-        let (mut cells, mut stress, mut damage, mut bodies) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        // Seven digits are plenty for looking at stress, and halve what is compressed and written.
+        let (mut stress, mut first, mut damage): (Vec<[f32; 6]>, Vec<f32>, Vec<f32>) = Default::default();
+        let (mut cells, mut bodies) = (Vec::new(), Vec::new());
         for (body, (kind, nodes)) in self.grid.bodies.iter().enumerate() {
             let corners = kind.nodes();
             let mut kept = Vec::with_capacity(nodes.len());
             for (element, (s, d)) in solid.element_fields(body).into_iter().enumerate() {
                 if solid.alive(body)[element] {
                     kept.extend_from_slice(&nodes[corners * element..corners * (element + 1)]);
-                    stress.push(s.0);
-                    damage.push(d);
+                    first.push(s.principal_values()[0] as f32);
+                    stress.push(s.0.map(|s| s as f32));
+                    damage.push(d as f32);
                     bodies.push(body as i32);
                 }
             }
             cells.push((*kind, kept));
         }
-        let first: Vec<f64> = stress.iter().map(|s| fractum_math::Sym3(*s).principal_values()[0]).collect();
         let cells: Vec<CellBlock> = cells.iter().map(|(kind, nodes)| CellBlock { kind: *kind, nodes }).collect();
         let grid = UnstructuredGrid {
             points: &points,
             cells: &cells,
             point_data: &[
                 Field::vector("displacement", &displacement),
-                Field::vector("velocity", &velocity),
+                Field { name: "velocity", components: 3, values: Values::F32(velocity.as_flattened()) },
                 Field::flag("attached", &held),
             ],
             cell_data: &[
-                Field::tensor("stress", &stress),
-                Field::scalar("first_principal_stress", &first),
-                Field::scalar("damage", &damage),
+                Field { name: "stress", components: 6, values: Values::F32(stress.as_flattened()) },
+                Field { name: "first_principal_stress", components: 1, values: Values::F32(&first) },
+                Field { name: "damage", components: 1, values: Values::F32(&damage) },
                 Field::integer("body", &bodies),
             ],
             time: Some(scene.clock.time),

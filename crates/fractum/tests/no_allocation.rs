@@ -9,7 +9,7 @@ use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Guard, Load, Loads, Motion, RigidPlane, Scene, SceneSettings, Support, Supports, TimeStepSettings,
+    Guard, Load, Loads, Motion, RigidPlane, Scene, SceneSettings, Support, Supports, Surface, TimeStepSettings,
 };
 
 /// The allocator of the system, counting requests while it is told to.
@@ -97,13 +97,18 @@ fn pulled(nodes: Vec<Vec3>, body: Body, speed: f64, viscosity: Viscosity) -> Sce
 fn landing(nodes: Vec<Vec3>, body: Body) -> Scene {
     let mut solid = Solid::new(nodes, vec![body]).unwrap();
     solid.velocity.fill(Vec3::new(0.1, 0.0, -0.1));
-    scene(solid, Vec::new(), Vec::new(), vec![RigidPlane::new(Vec3::zeros(), Vec3::z(), 0.3, 0.05)])
+    scene(
+        solid,
+        Vec::new(),
+        Vec::new(),
+        vec![RigidPlane::new(Vec3::zeros(), Vec3::z(), Surface { friction: 0.3, ..Surface::default() })],
+    )
 }
 
 fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<RigidPlane>) -> Scene {
     let supports = Supports::new(supports, &solid.reference).unwrap();
     let loads = Loads::new(loads, solid.reference.len());
-    let debris = Debris::new(&solid, 0.5, 0.1);
+    let debris = Debris::new(&solid, vec![Surface::default()]);
     let surface: Vec<u32> = (0..).zip(&solid.reference).filter(|(_, p)| p.z < 1e-9).map(|(n, _)| n).collect();
     let settings = SceneSettings {
         time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end: 1.0 },

@@ -1,7 +1,13 @@
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Linear springs along and across the normal with viscous damping and Coulomb friction.
+use super::Surface;
+
+/// Linear springs along and across the normal with viscous damping, Coulomb friction, and friction against rolling and
+/// spinning.
+///
+/// The last is an elastic-plastic spring on the relative rotation: Ai, Chen, Rotter & Ooi 2011, Powder Technology 206,
+/// model C without viscous part, its stiffness k_t R² with the reduced radius R.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Linear {
     /// Normal stiffness k_n [N/m].
@@ -12,6 +18,10 @@ pub struct Linear {
     pub normal_damping: f64,
     /// Coulomb's coefficient μ ≥ 0.
     pub friction: f64,
+    /// Stiffness of the spring on the relative rotation [N m].
+    pub rolling_stiffness: f64,
+    /// Largest couple over the normal force, μ_r R [m]; 0 without rolling friction.
+    pub rolling_arm: f64,
 }
 
 /// Geometry and motion of a pair at one instant.
@@ -23,6 +33,8 @@ pub struct PairMotion {
     pub overlap: f64,
     /// Velocity of j relative to i at the contact point [m/s].
     pub velocity: Vec3,
+    /// Angular velocity of j relative to i [rad/s].
+    pub spin: Vec3,
     /// Time step over which the tangential spring is advanced [s].
     pub dt: f64,
 }
@@ -32,7 +44,9 @@ pub struct PairMotion {
 pub struct ContactForce {
     /// Force on j; i feels the opposite [N].
     pub on_second: Vec3,
-    /// Energy in both springs [J].
+    /// Couple on j beside the moment of the force; i feels the opposite [N m].
+    pub couple_on_second: Vec3,
+    /// Energy in all springs [J].
     pub stored: f64,
     /// Energy taken by friction in this step [J].
     pub friction: f64,
@@ -45,6 +59,8 @@ pub struct ContactForce {
 pub struct ContactMemory {
     /// Stretch of the tangential spring [m].
     pub slip: Vec3,
+    /// Rotation in the spring against rolling [rad].
+    pub roll: Vec3,
     /// Force of the normal damper at the last step [N].
     damper: f64,
 }
@@ -53,40 +69,35 @@ impl Linear {
     /// The law of two elastic spheres: k_n = E π min(r)²/(r_i + r_j), k_t = k_n/(2(1 + ν)), c_n = 2 ξ √(m k_n) with
     /// the reduced mass m.
     ///
-    /// - `young_modulus` [Pa], `poisson_ratio`, `radii` [m], `masses` [kg], `damping_ratio` ξ in 0..1
+    /// - `young_modulus` [Pa], `poisson_ratio`, `radii` [m], `masses` [kg]
     pub fn between_spheres(
         young_modulus: f64,
         poisson_ratio: f64,
         radii: [f64; 2],
         masses: [f64; 2],
-        friction: f64,
-        damping_ratio: f64,
+        surface: Surface,
     ) -> Self {
         let smaller = radii[0].min(radii[1]);
         let stiffness = young_modulus * std::f64::consts::PI * smaller * smaller / (radii[0] + radii[1]);
-        let mass = masses[0] * masses[1] / (masses[0] + masses[1]);
-        Linear::new(stiffness, poisson_ratio, mass, friction, damping_ratio)
+        let reduced = |[a, b]: [f64; 2]| a * b / (a + b);
+        Linear::new(stiffness, poisson_ratio, reduced(radii), reduced(masses), surface)
     }
 
     /// The law of a sphere on a rigid wall, that of a sphere on its mirror image: k_n = E π r/2.
-    pub fn on_wall(
-        young_modulus: f64,
-        poisson_ratio: f64,
-        radius: f64,
-        mass: f64,
-        friction: f64,
-        damping_ratio: f64,
-    ) -> Self {
+    pub fn on_wall(young_modulus: f64, poisson_ratio: f64, radius: f64, mass: f64, surface: Surface) -> Self {
         let stiffness = 0.5 * young_modulus * std::f64::consts::PI * radius;
-        Linear::new(stiffness, poisson_ratio, mass, friction, damping_ratio)
+        Linear::new(stiffness, poisson_ratio, radius, mass, surface)
     }
 
-    fn new(stiffness: f64, poisson_ratio: f64, mass: f64, friction: f64, damping_ratio: f64) -> Self {
+    fn new(stiffness: f64, poisson_ratio: f64, radius: f64, mass: f64, surface: Surface) -> Self {
+        let tangential_stiffness = stiffness / (2.0 * (1.0 + poisson_ratio));
         Linear {
             normal_stiffness: stiffness,
-            tangential_stiffness: stiffness / (2.0 * (1.0 + poisson_ratio)),
-            normal_damping: 2.0 * damping_ratio * (mass * stiffness).sqrt(),
-            friction,
+            tangential_stiffness,
+            normal_damping: 2.0 * surface.damping_ratio * (mass * stiffness).sqrt(),
+            friction: surface.friction,
+            rolling_stiffness: tangential_stiffness * radius * radius,
+            rolling_arm: surface.rolling_friction * radius,
         }
     }
 
@@ -99,7 +110,7 @@ impl Linear {
         let approach = -motion.velocity.dot(&n);
         let last = std::mem::take(&mut memory.damper);
         if motion.overlap <= 0.0 {
-            memory.slip = Vec3::zeros();
+            (memory.slip, memory.roll) = (Vec3::zeros(), Vec3::zeros());
             return ContactForce { damping: 0.5 * last * approach * motion.dt, ..ContactForce::default() };
         }
         let elastic = self.normal_stiffness * motion.overlap;
@@ -113,16 +124,43 @@ impl Linear {
         let flat_length = flat.norm();
         let before = if flat_length > 0.0 { flat * (length / flat_length) } else { Vec3::zeros() };
         let trial = before + (motion.velocity + n * approach) * motion.dt;
-        let (reach, limit) = (self.tangential_stiffness * trial.norm(), self.friction * normal_force);
-        memory.slip = if reach > limit { trial * (limit / reach) } else { trial };
-        let mean_force = (before + memory.slip) * (0.5 * self.tangential_stiffness);
-        ContactForce {
-            on_second: n * normal_force - memory.slip * self.tangential_stiffness,
+        let sliding = Slider { stiffness: self.tangential_stiffness, limit: self.friction * normal_force };
+        let (slip, slid) = sliding.advance(before, trial);
+        memory.slip = slip;
+
+        let mut force = ContactForce {
+            on_second: n * normal_force - slip * self.tangential_stiffness,
+            couple_on_second: Vec3::zeros(),
             stored: 0.5 * self.normal_stiffness * motion.overlap * motion.overlap
-                + 0.5 * self.tangential_stiffness * memory.slip.norm_squared(),
-            friction: mean_force.dot(&(trial - memory.slip)).max(0.0),
+                + 0.5 * self.tangential_stiffness * slip.norm_squared(),
+            friction: slid,
             damping: 0.5 * (last + damper) * approach * motion.dt,
+        };
+        if self.rolling_arm > 0.0 {
+            let rolling = Slider { stiffness: self.rolling_stiffness, limit: self.rolling_arm * normal_force };
+            let (roll, rolled) = rolling.advance(memory.roll, memory.roll + motion.spin * motion.dt);
+            memory.roll = roll;
+            force.couple_on_second = -roll * self.rolling_stiffness;
+            force.stored += 0.5 * self.rolling_stiffness * roll.norm_squared();
+            force.friction += rolled;
         }
+        force
+    }
+}
+
+/// A spring that slips at a limit.
+struct Slider {
+    stiffness: f64,
+    limit: f64,
+}
+
+impl Slider {
+    /// The stretch that is left of `trial`, and the energy that slipping took since the stretch was `before` [J].
+    fn advance(&self, before: Vec3, trial: Vec3) -> (Vec3, f64) {
+        let reach = self.stiffness * trial.norm();
+        let after = if reach > self.limit { trial * (self.limit / reach) } else { trial };
+        let mean_force = (before + after) * (0.5 * self.stiffness);
+        (after, mean_force.dot(&(trial - after)).max(0.0))
     }
 }
 
@@ -132,7 +170,14 @@ mod tests {
     use proptest::prelude::*;
 
     fn law() -> Linear {
-        Linear { normal_stiffness: 1e5, tangential_stiffness: 4e4, normal_damping: 3.0, friction: 0.4 }
+        Linear {
+            normal_stiffness: 1e5,
+            tangential_stiffness: 4e4,
+            normal_damping: 3.0,
+            friction: 0.4,
+            rolling_stiffness: 4.0,
+            rolling_arm: 1e-3,
+        }
     }
 
     proptest! {
@@ -141,17 +186,19 @@ mod tests {
             normal in prop::array::uniform3(-1f64..1.0),
             velocity in prop::array::uniform3(-5f64..5.0),
             slip in prop::array::uniform3(-1e-3f64..1e-3),
+            spin in prop::array::uniform3(-50f64..50.0),
             overlap in -1e-3f64..1e-3,
         ) {
             let normal = Vec3::from(normal);
             prop_assume!(normal.norm() > 0.1);
-            let motion = PairMotion { normal: normal.normalize(), overlap, velocity: velocity.into(), dt: 1e-5 };
-            let mut memory = ContactMemory { slip: Vec3::from(slip), damper: 0.0 };
+            let motion = PairMotion { normal: normal.normalize(), overlap, velocity: velocity.into(), spin: spin.into(), dt: 1e-5 };
+            let mut memory = ContactMemory { slip: Vec3::from(slip), roll: Vec3::from(spin), damper: 0.0 };
             let force = law().force(&motion, &mut memory);
             let along = force.on_second.dot(&motion.normal);
             let across = (force.on_second - motion.normal * along).norm();
             prop_assert!(along >= 0.0);
             prop_assert!(across <= law().friction * along * (1.0 + 1e-9) + 1e-9);
+            prop_assert!(force.couple_on_second.norm() <= law().rolling_arm * along * (1.0 + 1e-9) + 1e-12);
             prop_assert!(force.friction >= 0.0 && force.stored >= 0.0 && force.damping >= 0.0);
             if overlap <= 0.0 {
                 prop_assert_eq!(force, ContactForce::default());
@@ -163,11 +210,12 @@ mod tests {
     fn bounce_gives_back_what_damping_leaves() {
         // A mass on the normal spring: restitution exp(-π ξ/√(1 - ξ²)) of the linear oscillator, up to the clipped end.
         let (mass, xi): (f64, f64) = (0.2, 0.05);
-        let law = Linear::new(1e5, 0.2, mass, 0.0, xi);
+        let law = Linear::new(1e5, 0.2, 0.1, mass, Surface { friction: 0.0, rolling_friction: 0.0, damping_ratio: xi });
         let (mut x, mut v, dt) = (0.0, -1.0, 1e-7);
         let mut memory = ContactMemory::default();
         loop {
-            let motion = PairMotion { normal: Vec3::x(), overlap: -x, velocity: Vec3::x() * v, dt };
+            let motion =
+                PairMotion { normal: Vec3::x(), overlap: -x, velocity: Vec3::x() * v, spin: Vec3::zeros(), dt };
             v += law.force(&motion, &mut memory).on_second.x / mass * dt;
             x += v * dt;
             if x > 0.0 {
@@ -176,5 +224,29 @@ mod tests {
         }
         let expected = (-std::f64::consts::PI * xi / (1.0 - xi * xi).sqrt()).exp();
         assert!((v - expected).abs() < 0.01, "{v} against {expected}");
+    }
+
+    #[test]
+    fn rolling_friction_stops_a_rolling_sphere_after_the_distance_of_theory() {
+        // Rolling without sliding under the couple μ_r R m g: deceleration (5/7) μ_r g, path v²/(2 a).
+        let (mass, radius, g, mu_r): (f64, f64, f64, f64) = (0.1, 0.02, 9.81, 0.05);
+        let surface = Surface { friction: 0.8, rolling_friction: mu_r, damping_ratio: 0.0 };
+        let law = Linear::on_wall(1e6, 0.2, radius, mass, surface);
+        let overlap = mass * g / law.normal_stiffness;
+        let arm = -Vec3::z() * (radius - overlap);
+        let (mut x, mut v, mut spin, dt) = (0.0, 0.3, Vec3::y() * (0.3 / arm.norm()), 1e-6);
+        let (mut memory, mut friction, start) = (ContactMemory::default(), 0.0, 0.5 * 1.4 * mass * 0.3 * 0.3);
+        for _ in 0..1_200_000 {
+            let velocity = Vec3::x() * v + spin.cross(&arm);
+            let force = law.force(&PairMotion { normal: Vec3::z(), overlap, velocity, spin, dt }, &mut memory);
+            v += force.on_second.x / mass * dt;
+            spin += (arm.cross(&force.on_second) + force.couple_on_second) / (0.4 * mass * radius * radius) * dt;
+            x += v * dt;
+            friction += force.friction;
+        }
+        let expected = 0.3 * 0.3 / (2.0 * mu_r * g * 5.0 / 7.0);
+        assert!((x / expected - 1.0).abs() < 0.01, "{x} against {expected}");
+        assert!(v.abs() < 3e-3, "still rolls at {v}");
+        assert!((friction / start - 1.0).abs() < 0.01, "{friction} J of {start}");
     }
 }

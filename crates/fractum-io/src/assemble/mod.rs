@@ -105,7 +105,7 @@ impl Context<'_> {
                 return None;
             }
         };
-        let mut warnings = self.length_warnings(&solid, &parts);
+        let warnings = self.length_warnings(&solid, &parts);
         self.set_initial_velocity(&mut solid, &parts);
         let damping = self.case.damping;
         solid.set_viscosity(Viscosity {
@@ -128,8 +128,8 @@ impl Context<'_> {
         if !self.diagnostics.is_empty() {
             return None;
         }
-        let contact = parts.first().map(|part| self.case.materials[part.body.material].contact).unwrap_or_default();
-        let debris = Debris::new(&solid, contact.friction, contact.damping_ratio);
+        let surfaces = parts.iter().map(|part| self.case.materials[part.body.material].contact).collect();
+        let debris = Debris::new(&solid, surfaces);
         let mut surface: Vec<u32> = boundary.iter().flatten().copied().collect();
         surface.sort_unstable();
         surface.dedup();
@@ -142,13 +142,6 @@ impl Context<'_> {
             &surface,
             self.settings(),
         );
-        if parts.iter().skip(1).any(|part| self.case.materials[part.body.material].contact != contact) {
-            let place = self.whole_case();
-            warnings.push(Diagnostic::warning(
-                &place,
-                "the materials differ in friction or damping_ratio: contacts between discrete elements use those of the first body",
-            ));
-        }
         Some(Assembly {
             scene,
             probes,
@@ -190,7 +183,7 @@ impl Context<'_> {
         rigid
             .map(|rigid| {
                 let Shape::Plane { point, normal } = rigid.shape;
-                RigidPlane::new(point, normal, rigid.contact.friction, rigid.contact.damping_ratio)
+                RigidPlane::new(point, normal, rigid.contact)
             })
             .collect()
     }

@@ -284,6 +284,7 @@ static KEYS: &[KeyDoc] = &[
     key("materials.NAME.damage.rate_time", K::Quantity(D::TIME), "\"0 s\"", "Time constant of the damage-rate limiter, ≥ 0; 0 is off"),
     key("materials.NAME.contact", K::Table, "", "Contact of the discrete elements this material leaves behind"),
     key("materials.NAME.contact.friction", K::Quantity(D::NONE), "0.5", "Coulomb friction coefficient, ≥ 0"),
+    key("materials.NAME.contact.rolling_friction", K::Quantity(D::NONE), "0", "Coefficient of rolling friction, ≥ 0: couple over normal force and reduced radius"),
     key("materials.NAME.contact.damping_ratio", K::Quantity(D::NONE), "0.1", "Fraction of critical damping, 0 to 1"),
 
     key("bodies[]", K::Tables, "required", "Bodies, at least one"),
@@ -307,6 +308,7 @@ static KEYS: &[KeyDoc] = &[
     key("bodies[].normal", K::Direction, "", "Rigid plane, required there: normal out of the tool"),
     key("bodies[].contact", K::Table, "", "Rigid: contact with it"),
     key("bodies[].contact.friction", K::Quantity(D::NONE), "0.5", "Coulomb friction coefficient, ≥ 0"),
+    key("bodies[].contact.rolling_friction", K::Quantity(D::NONE), "0", "Coefficient of rolling friction, ≥ 0: couple over normal force and reduced radius"),
     key("bodies[].contact.damping_ratio", K::Quantity(D::NONE), "0.1", "Fraction of critical damping, 0 to 1"),
 
     key("supports[]", K::Tables, "", "Prescribed motion of mesh groups; one of fix, velocity, displacement per axis"),

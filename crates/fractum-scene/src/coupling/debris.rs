@@ -1,5 +1,5 @@
 use fractum_contact::close_pairs;
-use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion};
+use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion, Surface};
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 use rayon::prelude::*;
@@ -18,8 +18,10 @@ const NONE: u32 = u32::MAX;
 /// with rotation of its own.
 #[derive(Clone, Debug)]
 pub struct Debris {
-    friction: f64,
-    damping_ratio: f64,
+    /// Surface of each body.
+    surfaces: Vec<Surface>,
+    /// Body of each node.
+    body: Vec<u32>,
     /// All bodies are plane: particles are discs.
     planar: bool,
     /// Young's modulus and Poisson's ratio of the body of each node.
@@ -65,6 +67,8 @@ pub struct Pair {
     memory: ContactMemory,
     /// Force on the second particle [N].
     force: Vec3,
+    /// Couple on the second particle beside the moment of the force [N m].
+    couple: Vec3,
     stored: f64,
     friction: f64,
     damping: f64,
@@ -73,18 +77,22 @@ pub struct Pair {
 impl Debris {
     /// Debris of a solid without any particle yet.
     ///
-    /// - `friction` μ, `damping_ratio` of contacts between particles
-    pub fn new(solid: &Solid, friction: f64, damping_ratio: f64) -> Self {
+    /// - `surfaces`: of each body of the solid, in their order
+    pub fn new(solid: &Solid, surfaces: Vec<Surface>) -> Self {
         let bodies = 0..solid.body_count();
+        assert_eq!(surfaces.len(), bodies.len(), "one surface per body");
         let mut elasticity = vec![(0.0, 0.0); solid.reference.len()];
-        for body in bodies.clone().rev() {
-            let body = solid.body(body);
+        let mut body_of = vec![0; solid.reference.len()];
+        for index in bodies.clone().rev() {
+            let body = solid.body(index);
             let pair = (body.elastic.young_modulus, body.elastic.poisson_ratio);
-            body.elements.iter().flatten().for_each(|&node| elasticity[node as usize] = pair);
+            for &node in body.elements.iter().flatten() {
+                (elasticity[node as usize], body_of[node as usize]) = (pair, index as u32);
+            }
         }
         Debris {
-            friction,
-            damping_ratio,
+            surfaces,
+            body: body_of,
             planar: bodies.clone().all(|b| solid.body(b).shape == fractum_fem::Shape::T3),
             elasticity,
             radius: Vec::new(),
@@ -124,6 +132,11 @@ impl Debris {
     /// Pairs that touch at the last step.
     pub fn touching(&self) -> impl Iterator<Item = &Pair> {
         self.state.pairs.iter().filter(|p| p.stored > 0.0)
+    }
+
+    /// Surface of the body of a node.
+    pub(crate) fn surface(&self, node: u32) -> Surface {
+        self.surfaces[self.body[node as usize] as usize]
     }
 
     pub(crate) fn elasticity(&self, node: u32) -> (f64, f64) {
@@ -202,8 +215,7 @@ impl Debris {
             0.5 * (nu1 + nu2),
             [self.radius[i], self.radius[j]],
             [solid.mass[i], solid.mass[j]],
-            self.friction,
-            self.damping_ratio,
+            self.surface(nodes[0]).against(self.surface(nodes[1])),
         );
         Pair {
             nodes,
@@ -212,6 +224,7 @@ impl Debris {
             law,
             memory: ContactMemory::default(),
             force: Vec3::zeros(),
+            couple: Vec3::zeros(),
             stored: 0.0,
             friction: 0.0,
             damping: 0.0,
@@ -278,9 +291,11 @@ impl Debris {
                 let normal = if distance > 0.0 { apart / distance } else { Vec3::x() };
                 let (arm_i, arm_j) = arms(normal, distance, radius[i], radius[j]);
                 let velocity = solid.velocity[j] + spin(j).cross(&arm_j) - solid.velocity[i] - spin(i).cross(&arm_i);
-                let motion = PairMotion { normal, overlap: pair.closing - distance, velocity, dt };
-                let ContactForce { on_second, stored, friction, damping } = pair.law.force(&motion, &mut pair.memory);
-                pair.force = on_second;
+                let motion =
+                    PairMotion { normal, overlap: pair.closing - distance, velocity, spin: spin(j) - spin(i), dt };
+                let ContactForce { on_second, couple_on_second, stored, friction, damping } =
+                    pair.law.force(&motion, &mut pair.memory);
+                (pair.force, pair.couple) = (on_second, couple_on_second);
                 (pair.stored, pair.friction, pair.damping) = (stored, friction, damping);
             });
         }
@@ -293,8 +308,8 @@ impl Debris {
             let apart = solid.position(j) - solid.position(i);
             let distance = apart.norm();
             let (arm_i, arm_j) = arms(apart / distance, distance, radius[i], radius[j]);
-            torque[particle_of[i] as usize] -= arm_i.cross(&pair.force);
-            torque[particle_of[j] as usize] += arm_j.cross(&pair.force);
+            torque[particle_of[i] as usize] -= arm_i.cross(&pair.force) + pair.couple;
+            torque[particle_of[j] as usize] += arm_j.cross(&pair.force) + pair.couple;
             work.stored += pair.stored;
             work.friction += pair.friction;
             work.damping += pair.damping;
@@ -336,9 +351,11 @@ impl Debris {
             if apart > pair.closing + self.state.skin {
                 continue;
             }
-            // A turning sphere answers 1 + m r²/I = 3.5 times as fast to the tangential spring.
+            // A turning sphere answers 1 + m r²/I = 3.5 times as fast to the tangential spring, and 2.5 times to the
+            // one against rolling.
             let free = |n: usize| !self.state.attached[self.particle_of[n] as usize];
-            let turning = if free(i) || free(j) { 3.5 } else { 1.0 };
+            let rolling = if pair.law.rolling_arm > 0.0 { 2.5 } else { 0.0 };
+            let turning = if free(i) || free(j) { 3.5 + rolling } else { 1.0 };
             let stiffness = pair.law.normal_stiffness.max(turning * pair.law.tangential_stiffness);
             let coupling = stiffness / (solid.mass[i] * solid.mass[j]).sqrt();
             rows[self.particle_of[i] as usize] += stiffness / solid.mass[i] + coupling;
@@ -360,9 +377,9 @@ impl Debris {
         self.state = state;
     }
 
-    /// Damping ratio of the contacts.
+    /// Largest damping ratio of the contacts.
     pub(crate) fn damping_ratio(&self) -> f64 {
-        self.damping_ratio
+        self.surfaces.iter().map(|s| s.damping_ratio).fold(0.0, f64::max)
     }
 }
 

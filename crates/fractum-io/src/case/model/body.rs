@@ -2,9 +2,9 @@
 
 use fractum_math::Vec3;
 
-use super::Contact;
 use crate::case::choice::choice;
 use crate::case::{Field, Spanned};
+use fractum_scene::Surface;
 
 /// A body of the case.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +57,7 @@ pub struct RigidBody {
     /// Its shape.
     pub shape: Shape,
     /// Contact with it.
-    pub contact: Contact,
+    pub contact: Surface,
 }
 
 /// Shapes of rigid tools.

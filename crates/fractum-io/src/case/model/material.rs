@@ -1,5 +1,7 @@
 //! Materials: elasticity, damage, contact.
 
+use fractum_scene::Surface;
+
 use crate::case::Spanned;
 use crate::case::choice::choice;
 
@@ -17,7 +19,7 @@ pub struct Material {
     /// Damage, where the material has a `damage` table.
     pub damage: Option<Spanned<Damage>>,
     /// Contact of the discrete elements that this material leaves behind.
-    pub contact: Contact,
+    pub contact: Surface,
 }
 
 /// Softening damage.
@@ -120,19 +122,4 @@ pub enum Distribution {
         /// Half width [-], within 0..1.
         width: f64,
     },
-}
-
-/// Contact law of discrete elements and rigid tools.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact {
-    /// Coulomb friction coefficient [-], ≥ 0.
-    pub friction: f64,
-    /// Fraction of critical damping of a contact [-], 0..1.
-    pub damping_ratio: f64,
-}
-
-impl Default for Contact {
-    fn default() -> Self {
-        Self { friction: 0.5, damping_ratio: 0.1 }
-    }
 }

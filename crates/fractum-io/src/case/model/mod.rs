@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 pub use body::{Body, BodyKind, Formulation, Kinematics, Plane, RigidBody, Shape, SolidBody};
 pub use boundary::{Components, Load, LoadKind, Motion, Support};
-pub use material::{Contact, Criterion, Damage, Distribution, Material, Scatter, Softening};
+pub use material::{Criterion, Damage, Distribution, Material, Scatter, Softening};
 pub use probe::{CountKind, EnergyKind, Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
 
 use super::choice::choice;

@@ -1,8 +1,9 @@
 //! `[materials.NAME]`.
 
-use crate::case::model::{Contact, Criterion, Damage, Distribution, Material, Scatter, Softening};
+use crate::case::model::{Criterion, Damage, Distribution, Material, Scatter, Softening};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned};
+use fractum_scene::Surface;
 
 /// Reads all materials: each with its name, and itself where nothing is wrong with it.
 pub(super) fn read(root: &Table<'_>) -> Vec<(String, Option<Material>)> {
@@ -175,12 +176,13 @@ fn scatter(table: Table<'_>) -> Option<Scatter> {
 }
 
 /// The `contact` table of a material or tool.
-pub(super) fn contact(parent: &Table<'_>) -> Contact {
+pub(super) fn contact(parent: &Table<'_>) -> Surface {
     let table = parent.table_or_empty("contact");
-    let default = Contact::default();
+    let default = Surface::default();
     let friction = table.quantity("friction").not_negative().or(default.friction);
+    let rolling_friction = table.quantity("rolling_friction").not_negative().or(default.rolling_friction);
     let damping_ratio = table.quantity("damping_ratio").check(|ratio| (0.0..=1.0).contains(ratio), "from 0 to 1");
     let damping_ratio = damping_ratio.or(default.damping_ratio);
     table.finish("here");
-    Contact { friction, damping_ratio }
+    Surface { friction, rolling_friction, damping_ratio }
 }

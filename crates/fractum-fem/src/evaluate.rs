@@ -1,0 +1,144 @@
+//! Blocks of cells with the law they follow.
+
+use fractum_math::{Sym3, Vec3};
+
+use crate::block::{Cells, Scratch};
+use crate::body::Kinematics;
+use crate::damage::EdgeCells;
+use crate::kernel::{self, ElasticCells};
+use crate::lane::Lane;
+use crate::solid::BodyModel;
+use crate::standard::StandardCells;
+
+/// How the cells of a block answer to strain.
+#[derive(Clone, Debug)]
+pub(crate) enum BlockLaw {
+    Elastic { energy: Option<f64> },
+    Edges(EdgeCells),
+    Standard(StandardCells),
+}
+
+/// A block of cells of one body.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    pub(crate) body: usize,
+    pub(crate) cells: Cells,
+    /// The element or edge of the body that each cell stands for.
+    pub(crate) items: Vec<u32>,
+    pub(crate) law: BlockLaw,
+    pub(crate) scratch: Scratch,
+    /// Power of the viscous stress in the last step [W].
+    pub(crate) viscous_power: f64,
+    /// Viscous stress times volume of each cell at the last step; empty without viscosity.
+    pub(crate) viscous: Vec<Sym3>,
+}
+
+impl Block {
+    /// Forces of all cells of the block into its scratch.
+    pub(crate) fn evaluate(
+        &mut self,
+        model: &BodyModel,
+        displacement: &[Vec3],
+        velocity: &[Vec3],
+        dt: f64,
+        measure: bool,
+    ) {
+        let Block { cells, scratch, law, viscous_power, viscous, .. } = self;
+        scratch.load(&cells.nodes, displacement);
+        if model.viscosity.is_some() {
+            scratch.load_velocity(&cells.nodes, velocity);
+        }
+        let start = measure.then_some(0.0);
+        *viscous_power = match law {
+            BlockLaw::Elastic { energy } => {
+                let mut law = ElasticCells { hooke: model.hooke, energy: start };
+                let power = run(model, cells, scratch, &mut law, viscous);
+                *energy = law.energy;
+                power
+            }
+            BlockLaw::Edges(law) => {
+                (law.dt, law.energy) = (dt, start);
+                run(model, cells, scratch, law, viscous)
+            }
+            BlockLaw::Standard(law) => {
+                law.energy = start;
+                run(model, cells, scratch, law, viscous)
+            }
+        };
+    }
+
+    /// Elastic forces of all cells whatever their damage, for the stable step.
+    pub(crate) fn evaluate_elastic(&mut self, model: &BodyModel, displacement: &[Vec3]) {
+        self.scratch.load(&self.cells.nodes, displacement);
+        kernel::forces(&self.cells, &mut self.scratch, &mut ElasticCells { hooke: model.hooke, energy: None });
+    }
+
+    /// Effective stress of the elements of a standard body with damage.
+    pub(crate) fn effective_stress(&mut self, model: &BodyModel, displacement: &[Vec3]) {
+        let Block { cells, law: BlockLaw::Standard(law), .. } = self else { return };
+        for cell in 0..cells.len() {
+            let h = cells.gradient(cell, displacement);
+            let strain = match model.body.kinematics {
+                Kinematics::Small => Sym3::symmetric_part(&h),
+                Kinematics::Corotational => kernel::corotational_strain(&h).0,
+            };
+            law.mixed_energy[cell] = 0.5 * law.stress[cell].dot(strain);
+            law.stress[cell] = model.hooke.stress(strain);
+        }
+    }
+
+    /// Takes over the damage of the elements of a standard body, and books what it dissipates.
+    pub(crate) fn take_element_damage(&mut self, damage_of: impl Fn(u32) -> f64) {
+        let Block { cells, items, law: BlockLaw::Standard(law), .. } = self else { return };
+        for (cell, &element) in items.iter().enumerate() {
+            let damage = damage_of(element).max(law.damage[cell]);
+            law.dissipated += (damage - law.damage[cell]) * law.mixed_energy[cell] * cells.volume[cell];
+            law.damage[cell] = damage;
+        }
+    }
+
+    pub(crate) fn dissipated(&self) -> f64 {
+        match &self.law {
+            BlockLaw::Elastic { .. } => 0.0,
+            BlockLaw::Edges(law) => law.dissipated,
+            BlockLaw::Standard(law) => law.dissipated,
+        }
+    }
+
+    pub(crate) fn damage_of(&self, cell: usize) -> f64 {
+        match &self.law {
+            BlockLaw::Elastic { .. } => 0.0,
+            BlockLaw::Edges(law) => law.edges[cell].damage,
+            BlockLaw::Standard(law) => law.damage[cell],
+        }
+    }
+
+    /// Force sums of the block, one per local node.
+    pub(crate) fn forces(&self) -> &[Lane] {
+        self.scratch.force.as_slice()
+    }
+}
+
+/// Runs the cheapest kernel that the body allows; returns the viscous power [W].
+fn run<L: kernel::CellLaw>(
+    model: &BodyModel,
+    cells: &Cells,
+    scratch: &mut Scratch,
+    law: &mut L,
+    viscous: &mut [Sym3],
+) -> f64 {
+    let corotational = model.body.kinematics == Kinematics::Corotational;
+    if corotational || model.viscosity.is_some() {
+        return kernel::general_forces(
+            cells,
+            scratch,
+            law,
+            corotational,
+            model.viscosity.as_ref(),
+            &model.hooke,
+            viscous,
+        );
+    }
+    kernel::forces(cells, scratch, law);
+    0.0
+}
