@@ -1,7 +1,10 @@
 //! Contact search and contact laws.
 //!
-//! [`close_pairs`] finds the spheres that may touch; [`law`] says what a touching pair feels. Neither knows particles,
-//! nodes or facets as populations: they see positions, radii and relative velocities.
+//! [`close_pairs`] finds the spheres that may touch; [`SphereContacts`] carries their contacts through time, and
+//! [`GroundContacts`] those of spheres with facets and rigid shapes, found by the [`DoubleHierarchy`]. [`law`] says what
+//! a touching pair feels. None of them knows particles or nodes as populations: they see positions, radii and velocities.
+//!
+//! Left out: contact of facets with facets, and of spheres from behind with a surface without inside.
 //!
 //! ```
 //! use fractum_contact::close_pairs;
@@ -11,6 +14,21 @@
 //! ```
 
 mod broad_phase;
+mod error;
+mod frame;
+mod hierarchy;
 pub mod law;
+mod passes;
+mod shape;
+mod sphere_facet;
+mod sphere_sphere;
+pub mod surface;
 
 pub use broad_phase::close_pairs;
+pub use error::SurfaceError;
+pub use frame::Frame;
+pub use hierarchy::{DoubleHierarchy, Foot};
+pub use shape::Shape;
+pub use sphere_facet::{ContactWork, Ground, GroundContacts, Spheres, Touch};
+pub use sphere_sphere::SphereContacts;
+pub use surface::FacetMesh;

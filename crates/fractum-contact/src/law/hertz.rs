@@ -1,0 +1,183 @@
+use fractum_math::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::rolling::{Rolling, RollingMemory};
+use super::{ContactForce, ContactLaw, PairMotion, Surface};
+
+/// Elastic constants of a material in contact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ElasticMaterial {
+    /// Young's modulus E [Pa]; infinite for a rigid body.
+    pub young_modulus: f64,
+    /// Poisson's ratio ν.
+    pub poisson_ratio: f64,
+}
+
+impl ElasticMaterial {
+    /// A body that does not deform.
+    pub const RIGID: Self = ElasticMaterial { young_modulus: f64::INFINITY, poisson_ratio: 0.0 };
+
+    /// (1 - ν²)/E [1/Pa].
+    fn normal_compliance(&self) -> f64 {
+        (1.0 - self.poisson_ratio * self.poisson_ratio) / self.young_modulus
+    }
+
+    /// (2 - ν)/G [1/Pa].
+    fn shear_compliance(&self) -> f64 {
+        2.0 * (1.0 + self.poisson_ratio) * (2.0 - self.poisson_ratio) / self.young_modulus
+    }
+}
+
+/// What two materials in contact share, whatever the size of the bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MaterialPair {
+    /// Effective modulus E* = 1/((1 - ν₁²)/E₁ + (1 - ν₂²)/E₂) [Pa].
+    pub effective_modulus: f64,
+    /// Effective shear modulus G* = 1/((2 - ν₁)/G₁ + (2 - ν₂)/G₂) [Pa].
+    pub effective_shear_modulus: f64,
+    /// Friction and damping; a damping ratio ζ gives the restitution [`restitution_of_damping`](super::restitution_of_damping)
+    /// at every speed.
+    pub surface: Surface,
+}
+
+impl MaterialPair {
+    /// Two materials; `surface` is that of the pair, [`Surface::against`].
+    pub fn new(materials: [ElasticMaterial; 2], surface: Surface) -> Self {
+        let sum = |of: fn(&ElasticMaterial) -> f64| 1.0 / (of(&materials[0]) + of(&materials[1]));
+        MaterialPair {
+            effective_modulus: sum(ElasticMaterial::normal_compliance),
+            effective_shear_modulus: sum(ElasticMaterial::shear_compliance),
+            surface,
+        }
+    }
+}
+
+/// Hertz-Mindlin contact of two spheres, with friction and with damping that gives one restitution at every speed.
+///
+/// - normal: F_n = k_h δ^(3/2) + c_n dδ/dt, k_h = 4/3 E* √R*, c_n = √5 ζ √(m* k_h) δ^¼; never pulls
+/// - tangential: stiffness 8 G* √(R* δ) on the slip s, Coulomb's limit μ F_n, damper c_t = c_n √(k_t/(3/2 k_h √δ))
+///   while it sticks. Under growing load the force is kept and new slip meets the new stiffness; under falling load the
+///   force falls with the stiffness: no path gains energy (Thornton, Cummins and Cleary 2011).
+///
+/// Johnson, *Contact Mechanics* (1985), eqs (4.22), (7.43); Antypov and Elliott (2011) for the damping.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Hertz {
+    /// k_h [N/m^(3/2)].
+    pub normal: f64,
+    /// 8 G* √R* [N/m^(3/2)]: tangential stiffness over √δ.
+    pub tangential: f64,
+    /// √5 ζ √(m* k_h) [N s/m^(5/4)]: normal damping over δ^¼.
+    pub damping: f64,
+    /// Tangential over normal damping.
+    pub damping_share: f64,
+    /// Coulomb's coefficient μ.
+    pub friction: f64,
+    /// Friction against rolling.
+    pub rolling: Rolling,
+}
+
+/// What a Hertz contact remembers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HertzMemory {
+    /// Slip s of the tangential spring [m].
+    pub slip: Vec3,
+    /// Force of the tangential damper on i at the last step [N].
+    drag: Vec3,
+    /// √δ at the last step [m^½].
+    root: f64,
+    /// Force of the normal damper at the last step [N].
+    damper: f64,
+    rolling: RollingMemory,
+}
+
+impl Hertz {
+    /// The law of two bodies of effective radius R* = R₁R₂/(R₁ + R₂) [m] and effective mass m* = m₁m₂/(m₁ + m₂) [kg];
+    /// a flat or very heavy partner counts as infinite, so that the sphere's own value is left.
+    pub fn new(pair: &MaterialPair, effective_radius: f64, effective_mass: f64) -> Self {
+        let root = effective_radius.sqrt();
+        let normal = 4.0 / 3.0 * pair.effective_modulus * root;
+        let tangential = 8.0 * pair.effective_shear_modulus * root;
+        Hertz {
+            normal,
+            tangential,
+            damping: 5f64.sqrt() * pair.surface.damping_ratio * (effective_mass * normal).sqrt(),
+            damping_share: (tangential / (1.5 * normal)).sqrt(),
+            friction: pair.surface.friction,
+            rolling: Rolling { arm: pair.surface.rolling_friction * effective_radius },
+        }
+    }
+}
+
+impl ContactLaw for Hertz {
+    type Memory = HertzMemory;
+
+    fn force(&self, motion: &PairMotion, memory: &mut HertzMemory) -> ContactForce {
+        let n = motion.normal;
+        let approach = -motion.velocity.dot(&n);
+        let across = motion.velocity + n * approach;
+        let old = *memory;
+        let old_stiffness = self.tangential * old.root;
+        let old_spring = 0.5 * old_stiffness * old.slip.norm_squared();
+        if motion.overlap <= 0.0 {
+            *memory = HertzMemory::default();
+            return ContactForce {
+                damping: 0.5 * (old.damper * approach + old.drag.dot(&across)) * motion.dt,
+                friction: old_spring + old.rolling.stored(),
+                ..ContactForce::default()
+            };
+        }
+        let root = motion.overlap.sqrt();
+        let elastic = self.normal * motion.overlap * root;
+        let viscosity = self.damping * root.sqrt();
+        let damper = (viscosity * approach).max(-elastic);
+        let normal_force = elastic + damper;
+
+        // The spring lives in the tangent plane of the moment; turned there it keeps its length.
+        let height = old.slip.dot(&n);
+        let flat = old.slip - n * height;
+        let flat_square = flat.norm_squared();
+        let turned = if height == 0.0 || flat_square == 0.0 {
+            flat
+        } else {
+            flat * (1.0 + height * height / flat_square).sqrt()
+        };
+        let stiffness = self.tangential * root;
+        let kept = if root > old.root { turned * (old.root / root) } else { turned };
+        let trial = kept + across * motion.dt;
+        let limit = self.friction * normal_force;
+        let reach_square = stiffness * stiffness * trial.norm_squared();
+        let (slip, drag) = if reach_square > limit * limit {
+            (trial * (limit / reach_square.sqrt()), Vec3::zeros())
+        } else {
+            // The damper acts within what friction leaves.
+            let drag = across * (viscosity * self.damping_share);
+            let whole = trial * stiffness + drag;
+            let size = whole.norm();
+            (trial, if size > limit { whole * (limit / size) - trial * stiffness } else { drag })
+        };
+        *memory = HertzMemory { slip, drag, root, damper, rolling: old.rolling };
+
+        let spring = 0.5 * stiffness * slip.norm_squared();
+        let work = 0.5 * (turned * old_stiffness + slip * stiffness).dot(&across) * motion.dt;
+        let mut force = ContactForce {
+            on_second: n * normal_force - slip * stiffness - drag,
+            couple_on_second: Vec3::zeros(),
+            stored: 0.4 * elastic * motion.overlap + spring,
+            friction: work + old_spring - spring,
+            damping: 0.5 * ((old.damper + damper) * approach + (old.drag + drag).dot(&across)) * motion.dt,
+        };
+        if self.rolling.arm > 0.0 {
+            let normal_stiffness = 1.5 * self.normal * root;
+            let rolled = self.rolling.couple(motion, normal_force, normal_stiffness, &mut memory.rolling);
+            force.couple_on_second = rolled.on_second;
+            force.stored += rolled.stored;
+            force.friction += rolled.friction;
+        }
+        force
+    }
+
+    fn stiffness(&self, overlap: f64) -> (f64, f64) {
+        let root = overlap.max(0.0).sqrt();
+        (1.5 * self.normal * root, self.tangential * root)
+    }
+}

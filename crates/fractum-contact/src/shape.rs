@@ -1,0 +1,150 @@
+use fractum_math::Vec3;
+use serde::{Deserialize, Serialize};
+
+use crate::hierarchy::Foot;
+
+/// A rigid shape in its own axes, with its centre at the origin.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Shape {
+    /// The half space z < 0.
+    HalfSpace,
+    /// A box of these half sides [m].
+    Cuboid {
+        /// Half sides [m].
+        half: Vec3,
+    },
+    /// A cylinder along z.
+    Cylinder {
+        /// Radius [m].
+        radius: f64,
+        /// Half of its length [m].
+        half_length: f64,
+    },
+    /// A sphere.
+    Ball {
+        /// Radius [m].
+        radius: f64,
+    },
+}
+
+impl Shape {
+    /// Where a sphere touches the shape from outside or, with `hollow`, the walls of the container from inside.
+    ///
+    /// - `centre` [m] in the axes of the shape, `radius` [m]
+    ///
+    /// From outside there is one contact at most, since the shapes are convex; from inside, one with each wall.
+    pub fn feet(&self, hollow: bool, centre: &Vec3, radius: f64, feet: &mut Vec<Foot>) {
+        feet.clear();
+        let mut add = |feature: u32, normal: Vec3, distance: f64, curvature: f64| {
+            if distance < radius {
+                let offset = normal * distance;
+                feet.push(Foot {
+                    feature,
+                    facet: feature,
+                    offset,
+                    normal,
+                    distance,
+                    curvature,
+                    weight: 1.0,
+                    twin: None,
+                });
+            }
+        };
+        let out = centre.map(|c| if c < 0.0 { -1.0 } else { 1.0 });
+        let axis = |k: usize| Vec3::ith(k, 1.0);
+        let radial = Vec3::new(centre.x, centre.y, 0.0);
+        let rho = radial.norm();
+        let away = if rho > 0.0 { radial / rho } else { Vec3::x() };
+        match (*self, hollow) {
+            (Shape::HalfSpace, _) => add(0, -axis(2), centre.z, 0.0),
+            (Shape::Cuboid { half }, false) => {
+                let beyond = centre - centre.zip_map(&half, |c, h| c.clamp(-h, h));
+                let distance = beyond.norm();
+                if distance > 0.0 {
+                    add(0, -beyond / distance, distance, 0.0);
+                } else {
+                    let depth = |k: usize| half[k] - centre[k].abs();
+                    let k = (1..3).fold(0, |least, k| if depth(k) < depth(least) { k } else { least });
+                    add(0, axis(k) * -out[k], -depth(k), 0.0);
+                }
+            }
+            (Shape::Cuboid { half }, true) => {
+                for k in 0..3 {
+                    add(2 * k as u32, axis(k), half[k] - centre[k], 0.0);
+                    add(2 * k as u32 + 1, -axis(k), half[k] + centre[k], 0.0);
+                }
+            }
+            (Shape::Cylinder { radius: wide, half_length }, false) => {
+                let (side, cap) = (rho - wide, centre.z.abs() - half_length);
+                let up = axis(2) * out.z;
+                if side > 0.0 && cap > 0.0 {
+                    let distance = side.hypot(cap);
+                    add(0, -(away * side + up * cap) / distance, distance, 0.0);
+                } else if side > cap {
+                    add(0, -away, side, 0.5 / wide);
+                } else {
+                    add(0, -up, cap, 0.0);
+                }
+            }
+            (Shape::Cylinder { radius: wide, half_length }, true) => {
+                add(0, away, wide - rho, -0.5 / wide);
+                add(1, axis(2), half_length - centre.z, 0.0);
+                add(2, -axis(2), half_length + centre.z, 0.0);
+            }
+            (Shape::Ball { radius: wide }, hollow) => {
+                let from = centre.norm();
+                let outward = if from > 0.0 { centre / from } else { Vec3::z() };
+                if hollow {
+                    add(0, outward, wide - from, -1.0 / wide);
+                } else {
+                    add(0, -outward, from - wide, 1.0 / wide);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn every_wall_of_a_container_is_felt_in_its_corner() {
+        let mut feet = Vec::new();
+        let cube = Shape::Cuboid { half: Vec3::repeat(1.0) };
+        cube.feet(true, &Vec3::repeat(0.95), 0.1, &mut feet);
+        assert_eq!(feet.len(), 3);
+        let drum = Shape::Cylinder { radius: 1.0, half_length: 1.0 };
+        drum.feet(true, &Vec3::new(0.95, 0.0, -0.95), 0.1, &mut feet);
+        assert_eq!(feet.len(), 2);
+        assert!(feet.iter().all(|f| (f.distance - 0.05).abs() < 1e-12));
+    }
+
+    proptest! {
+        #[test]
+        fn the_distance_falls_along_the_normal_one_to_one(
+            x in prop::array::uniform3(-2f64..2.0), kind in 0usize..4, hollow in proptest::bool::ANY,
+        ) {
+            let shape = [
+                Shape::HalfSpace,
+                Shape::Cuboid { half: Vec3::new(1.0, 0.7, 0.5) },
+                Shape::Cylinder { radius: 0.8, half_length: 0.6 },
+                Shape::Ball { radius: 0.9 },
+            ][kind];
+            let (mut feet, mut moved) = (Vec::new(), Vec::new());
+            let x = Vec3::from(x);
+            shape.feet(hollow, &x, 10.0, &mut feet);
+            for foot in &feet {
+                prop_assert!((foot.normal.norm() - 1.0).abs() < 1e-12);
+                let step = 1e-7;
+                shape.feet(hollow, &(x + foot.normal * step), 10.0, &mut moved);
+                let same = moved.iter().find(|m| m.feature == foot.feature).unwrap();
+                // Not across the medial axis of a shape that holds the centre.
+                if (same.normal - foot.normal).norm() < 1e-3 {
+                    prop_assert!((foot.distance - same.distance - step).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}

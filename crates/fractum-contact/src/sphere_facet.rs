@@ -1,0 +1,490 @@
+//! Spheres on a ground of facets or a rigid shape, through time.
+
+use std::ops::Range;
+
+use fractum_math::Vec3;
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::frame::Frame;
+use crate::hierarchy::{DoubleHierarchy, Foot};
+use crate::law::{ContactLaw, PairMotion};
+use crate::shape::Shape;
+use crate::surface::FacetMesh;
+
+/// Spheres handled as one piece of parallel work.
+const BLOCK: usize = 256;
+/// Cosine of the angle between the normals of two steps beyond which a contact is a new one.
+const SAME_CONTACT: f64 = 0.5;
+
+/// A population of spheres; one entry per sphere in every array.
+#[derive(Clone, Copy, Debug)]
+pub struct Spheres<'a> {
+    /// Centres [m].
+    pub position: &'a [Vec3],
+    /// Velocities [m/s].
+    pub velocity: &'a [Vec3],
+    /// Angular velocities [rad/s].
+    pub spin: &'a [Vec3],
+    /// Radii [m].
+    pub radius: &'a [f64],
+}
+
+/// What spheres touch.
+#[derive(Clone, Copy, Debug)]
+pub enum Ground<'a> {
+    /// Facets of a rigid body; points in the axes of the body [m].
+    Rigid {
+        /// Facets.
+        surface: &'a FacetMesh,
+        /// Points in the axes of the body [m].
+        points: &'a [Vec3],
+        /// Where the body is.
+        frame: &'a Frame,
+    },
+    /// Facets of a body that deforms.
+    Deformable {
+        /// Facets.
+        surface: &'a FacetMesh,
+        /// Points [m].
+        points: &'a [Vec3],
+        /// Velocities of the points [m/s].
+        velocity: &'a [Vec3],
+    },
+    /// A rigid shape, or the container of that shape.
+    Shape {
+        /// Its shape.
+        shape: Shape,
+        /// Whether spheres are inside.
+        hollow: bool,
+        /// Where it is.
+        frame: &'a Frame,
+    },
+}
+
+/// A contact of a sphere with the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Touch<M> {
+    /// Sphere.
+    pub sphere: u32,
+    /// Feature of the surface.
+    pub feature: u32,
+    /// Connected part of the surface; the history of a contact belongs to the sphere and this part.
+    part: u32,
+    /// From the centre of the sphere to the contact [m].
+    pub offset: Vec3,
+    /// Overlap [m].
+    pub overlap: f64,
+    normal: Vec3,
+    weight: f64,
+    memory: M,
+    /// Force on the sphere [N]; the ground feels the opposite at the contact.
+    pub force: Vec3,
+    /// Moment on the sphere about its centre [N m].
+    pub moment: Vec3,
+    /// Couple on the sphere, part of `moment`; a rigid ground feels the opposite [N m].
+    pub couple: Vec3,
+    stored: f64,
+    friction: f64,
+    damping: f64,
+}
+
+/// Energies of contacts in one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactWork {
+    /// Energy in springs [J].
+    pub stored: f64,
+    /// Energy taken by friction in the step [J].
+    pub friction: f64,
+    /// Energy taken by dampers in the step [J].
+    pub damping: f64,
+}
+
+impl std::ops::AddAssign for ContactWork {
+    fn add_assign(&mut self, other: Self) {
+        self.stored += other.stored;
+        self.friction += other.friction;
+        self.damping += other.damping;
+    }
+}
+
+/// Contacts of a population of spheres with one ground, with their memories.
+///
+/// Contacts are found anew at every step; their memory follows them from facet to facet. Which facets may be near is
+/// looked up only when something has moved by the skin. What is found does not depend on when that was.
+#[derive(Clone, Debug)]
+pub struct GroundContacts<L: ContactLaw> {
+    skin: f64,
+    blocks: Vec<Block<L>>,
+    /// Centres at the last search, in the axes of the ground [m].
+    searched_at: Vec<Vec3>,
+    /// Points of a deformable ground at the last search [m].
+    points_at: Vec<Vec3>,
+    /// Tree of the facets of a rigid ground, which stays.
+    tree: Option<Bvh>,
+}
+
+/// Some spheres near the ground.
+#[derive(Clone, Debug)]
+struct Block<L: ContactLaw> {
+    spheres: Vec<u32>,
+    /// Start of the facets of each sphere, and one more.
+    starts: Vec<u32>,
+    facets: Vec<u32>,
+    touches: Vec<Touch<L::Memory>>,
+    before: Vec<Touch<L::Memory>>,
+    hierarchy: DoubleHierarchy,
+    feet: Vec<Foot>,
+    /// Contact of the last step that each foot continues.
+    origin: Vec<Option<usize>>,
+    /// Whether each contact of the last step goes on.
+    taken: Vec<bool>,
+    ended: ContactWork,
+}
+
+impl<L: ContactLaw> GroundContacts<L> {
+    /// No contacts yet.
+    ///
+    /// - `skin` [m] > 0: what may move before facets are looked up again; a fraction of the smallest radius
+    pub fn new(skin: f64) -> Self {
+        GroundContacts { skin, blocks: Vec::new(), searched_at: Vec::new(), points_at: Vec::new(), tree: None }
+    }
+
+    /// Looks up the facets near each sphere if the skin is used up; true if it did.
+    pub fn search(&mut self, ground: &Ground, spheres: &Spheres) -> bool {
+        let to_ground = |x: &Vec3| match ground {
+            Ground::Rigid { frame, .. } | Ground::Shape { frame, .. } => frame.to_body(x),
+            Ground::Deformable { .. } => *x,
+        };
+        let most = |moved: &mut dyn Iterator<Item = f64>| moved.fold(0.0, f64::max).sqrt();
+        if self.searched_at.len() == spheres.position.len() && !spheres.position.is_empty() {
+            let sphere = |(x, at): (&Vec3, &Vec3)| (to_ground(x) - at).norm_squared();
+            let mut used = most(&mut spheres.position.iter().zip(&self.searched_at).map(sphere));
+            if let Ground::Deformable { points, .. } = ground {
+                used += most(&mut points.iter().zip(&self.points_at).map(|(p, at)| (p - at).norm_squared()));
+            }
+            if used <= self.skin {
+                return false;
+            }
+        }
+        self.searched_at.clear();
+        self.searched_at.extend(spheres.position.iter().map(to_ground));
+        if let Ground::Deformable { points, .. } = ground {
+            self.points_at.clear();
+            self.points_at.extend_from_slice(points);
+        }
+        let touches = self.state();
+        self.find_near(ground, spheres.radius);
+        self.hand_out(touches);
+        true
+    }
+
+    fn find_near(&mut self, ground: &Ground, radii: &[f64]) {
+        let (centres, skin) = (&self.searched_at, self.skin);
+        let spheres: Vec<u32> = (0..centres.len() as u32).collect();
+        let near: Vec<Vec<(u32, Vec<u32>)>> = match ground {
+            Ground::Shape { shape, hollow, .. } => spheres
+                .par_chunks(BLOCK)
+                .map(|chunk| {
+                    let mut feet = Vec::new();
+                    let mut close = |i: u32| {
+                        shape.feet(*hollow, &centres[i as usize], radii[i as usize] + skin, &mut feet);
+                        !feet.is_empty()
+                    };
+                    chunk.iter().filter(|&&i| close(i)).map(|&i| (i, Vec::new())).collect()
+                })
+                .collect(),
+            Ground::Rigid { surface, points, .. } | Ground::Deformable { surface, points, .. } => {
+                let keep = matches!(ground, Ground::Rigid { .. });
+                let tree = self.tree.take().filter(|_| keep).unwrap_or_else(|| tree_of(surface, points));
+                let near_sphere = |i: u32| {
+                    let (x, reach) = (centres[i as usize], radii[i as usize] + skin);
+                    let half = Vector::new(reach, reach, reach);
+                    let around = Aabb::from_half_extents(Vector::new(x.x, x.y, x.z), half);
+                    let close = |&f: &u32| surface.closest(f, points, &x).1.norm_squared() < reach * reach;
+                    let mut facets: Vec<u32> = tree.intersect_aabb(&around).filter(close).collect();
+                    facets.sort_unstable();
+                    facets
+                };
+                let rows = spheres
+                    .par_chunks(BLOCK)
+                    .map(|chunk| {
+                        let rows = chunk.iter().map(|&i| (i, near_sphere(i)));
+                        rows.filter(|(_, facets)| !facets.is_empty()).collect()
+                    })
+                    .collect();
+                self.tree = Some(tree).filter(|_| keep);
+                rows
+            }
+        };
+        let mut near = near.into_iter().flatten().peekable();
+        self.blocks.clear();
+        while near.peek().is_some() {
+            let mut block = Block::empty();
+            for (sphere, facets) in near.by_ref().take(BLOCK) {
+                block.spheres.push(sphere);
+                block.facets.extend(facets);
+                block.starts.push(block.facets.len() as u32);
+            }
+            self.blocks.push(block);
+        }
+    }
+
+    /// Finds the contacts of the moment and their forces.
+    ///
+    /// - `law`: law of a sphere on this ground, where its mean curvature is the second argument [1/m]
+    /// - `dt` [s]: the step that led here
+    pub fn update(
+        &mut self,
+        ground: &Ground,
+        spheres: &Spheres,
+        law: impl Fn(u32, f64) -> L + Sync,
+        dt: f64,
+    ) -> ContactWork {
+        self.blocks.par_iter_mut().for_each(|block| block.update(ground, spheres, &law, dt));
+        let mut work = ContactWork::default();
+        for block in &self.blocks {
+            work += block.ended;
+            for touch in &block.touches {
+                work.stored += touch.stored;
+                work.friction += touch.friction;
+                work.damping += touch.damping;
+            }
+        }
+        work
+    }
+
+    /// Contacts of the last update, in the order of the spheres.
+    pub fn touches(&self) -> impl Iterator<Item = &Touch<L::Memory>> {
+        self.blocks.iter().flat_map(|block| &block.touches)
+    }
+
+    /// Adds forces and moments to the spheres.
+    pub fn add_to(&self, force: &mut [Vec3], moment: &mut [Vec3]) {
+        for touch in self.touches() {
+            force[touch.sphere as usize] += touch.force;
+            moment[touch.sphere as usize] += touch.moment;
+        }
+    }
+
+    /// Contacts for a checkpoint.
+    pub fn state(&self) -> Vec<Touch<L::Memory>> {
+        self.touches().copied().collect()
+    }
+
+    /// Puts saved contacts back; the next search looks up everything.
+    pub fn restore(&mut self, touches: Vec<Touch<L::Memory>>) {
+        self.searched_at.clear();
+        let mut block = Block::empty();
+        block.touches = touches;
+        self.blocks = vec![block];
+    }
+
+    /// Gives each block the contacts of its spheres; both ascend.
+    fn hand_out(&mut self, touches: Vec<Touch<L::Memory>>) {
+        let mut touches = touches.into_iter().peekable();
+        for block in &mut self.blocks {
+            for &sphere in &block.spheres {
+                while let Some(touch) = touches.next_if(|t| t.sphere <= sphere) {
+                    block.touches.extend(Some(touch).filter(|t| t.sphere == sphere));
+                }
+            }
+        }
+    }
+}
+
+fn tree_of(surface: &FacetMesh, points: &[Vec3]) -> Bvh {
+    let bounds = |facet: u32| {
+        let corner = |&c: &u32| points[c as usize];
+        let corners = surface.corners(facet);
+        let first = corner(&corners[0]);
+        let grow = |(low, high): (Vec3, Vec3), p: Vec3| (low.inf(&p), high.sup(&p));
+        let (low, high) = corners[1..].iter().map(corner).fold((first, first), grow);
+        Aabb::new(Vector::new(low.x, low.y, low.z), Vector::new(high.x, high.y, high.z))
+    };
+    let boxes: Vec<Aabb> = (0..surface.len() as u32).map(bounds).collect();
+    Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+}
+
+impl<L: ContactLaw> Block<L> {
+    fn empty() -> Self {
+        Block {
+            spheres: Vec::new(),
+            starts: vec![0],
+            facets: Vec::new(),
+            touches: Vec::new(),
+            before: Vec::new(),
+            hierarchy: DoubleHierarchy::default(),
+            feet: Vec::new(),
+            origin: Vec::new(),
+            taken: Vec::new(),
+            ended: ContactWork::default(),
+        }
+    }
+
+    fn update(&mut self, ground: &Ground, spheres: &Spheres, law: &(impl Fn(u32, f64) -> L + Sync), dt: f64) {
+        std::mem::swap(&mut self.touches, &mut self.before);
+        self.touches.clear();
+        self.ended = ContactWork::default();
+        let mut next_old = 0;
+        for k in 0..self.spheres.len() {
+            let sphere = self.spheres[k];
+            let (centre, radius) = (&spheres.position[sphere as usize], spheres.radius[sphere as usize]);
+            let first_old = next_old;
+            while self.before.get(next_old).is_some_and(|t| t.sphere == sphere) {
+                next_old += 1;
+            }
+            let old = first_old..next_old;
+            let facets = &self.facets[self.starts[k] as usize..self.starts[k + 1] as usize];
+            find_feet(ground, facets, centre, radius, &mut self.hierarchy, &mut self.feet);
+            if self.feet.is_empty() && old.is_empty() {
+                continue;
+            }
+            self.follow(ground, old.clone());
+            self.add_touches(ground, spheres, law, dt, sphere);
+            for touch in self.before[old.clone()].iter().zip(&self.taken).filter(|(_, taken)| !**taken).map(|(t, _)| t)
+            {
+                self.ended += ending(touch, law(sphere, 0.0));
+            }
+        }
+    }
+
+    /// Finds which contact of the last step each foot continues: the one on the same feature; or else the one on the
+    /// same part of the surface that points most nearly the same way and that nothing else continues; or else, on an
+    /// edge so shallow that both are one, the one beside it.
+    fn follow(&mut self, ground: &Ground, old: Range<usize>) {
+        let Block { feet, before, origin, taken, .. } = self;
+        let before = &before[old.clone()];
+        let part = |foot: &Foot| ground.part(foot.facet);
+        taken.clear();
+        taken.resize(before.len(), false);
+        origin.clear();
+        for foot in feet.iter() {
+            let same = before.iter().position(|t| t.feature == foot.feature);
+            if let Some(k) = same {
+                taken[k] = true;
+            }
+            origin.push(same);
+        }
+        for (foot, from) in feet.iter().zip(origin.iter_mut()).filter(|(_, from)| from.is_none()) {
+            let mut best = SAME_CONTACT;
+            for (k, touch) in before.iter().enumerate().filter(|(k, t)| !taken[*k] && t.part == part(foot)) {
+                let likeness = touch.normal.dot(&foot.normal);
+                if likeness > best {
+                    (best, *from) = (likeness, Some(k));
+                }
+            }
+            if let Some(k) = *from {
+                taken[k] = true;
+            }
+        }
+        for i in 0..feet.len() {
+            if let (None, Some(twin)) = (origin[i], feet[i].twin) {
+                origin[i] = origin[twin as usize];
+            }
+        }
+        for from in origin.iter_mut().flatten() {
+            *from += old.start;
+        }
+    }
+
+    /// Forces of the feet of one sphere.
+    fn add_touches(
+        &mut self,
+        ground: &Ground,
+        spheres: &Spheres,
+        law: &(impl Fn(u32, f64) -> L + Sync),
+        dt: f64,
+        sphere: u32,
+    ) {
+        let i = sphere as usize;
+        for (foot, origin) in self.feet.iter().zip(&self.origin) {
+            let mut memory = origin.map_or_else(Default::default, |k| self.before[k].memory);
+            let place = spheres.position[i] + foot.offset;
+            let (ground_velocity, ground_spin) = ground.motion_at(foot.feature, &place);
+            let velocity = ground_velocity - spheres.velocity[i] - spheres.spin[i].cross(&foot.offset);
+            let overlap = spheres.radius[i] - foot.distance;
+            let spin = ground_spin - spheres.spin[i];
+            let motion = PairMotion { normal: foot.normal, overlap, velocity, spin, dt };
+            let force = law(sphere, foot.curvature).force(&motion, &mut memory);
+            let moment = -foot.offset.cross(&force.on_second) - force.couple_on_second;
+            self.touches.push(Touch {
+                sphere,
+                feature: foot.feature,
+                part: ground.part(foot.facet),
+                offset: foot.offset,
+                overlap,
+                normal: foot.normal,
+                weight: foot.weight,
+                memory,
+                force: -force.on_second * foot.weight,
+                moment: moment * foot.weight,
+                couple: -force.couple_on_second * foot.weight,
+                stored: force.stored * foot.weight,
+                friction: force.friction * foot.weight,
+                damping: force.damping * foot.weight,
+            });
+        }
+    }
+}
+
+/// What is left of a contact that ended: its springs relax.
+fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L) -> ContactWork {
+    let mut memory = touch.memory;
+    let still = Vec3::zeros();
+    let motion = PairMotion { normal: touch.normal, overlap: 0.0, velocity: still, spin: still, dt: 0.0 };
+    let force = law.force(&motion, &mut memory);
+    ContactWork { stored: 0.0, friction: force.friction * touch.weight, damping: force.damping * touch.weight }
+}
+
+impl Ground<'_> {
+    fn part(&self, facet: u32) -> u32 {
+        match self {
+            Ground::Rigid { surface, .. } | Ground::Deformable { surface, .. } => surface.part(facet),
+            Ground::Shape { .. } => 0,
+        }
+    }
+
+    /// Velocity of the ground at a place on a feature [m/s] and its angular velocity [rad/s]; that of a facet that
+    /// deforms counts as zero.
+    fn motion_at(&self, feature: u32, place: &Vec3) -> (Vec3, Vec3) {
+        match self {
+            Ground::Rigid { frame, .. } | Ground::Shape { frame, .. } => (frame.velocity_at(place), frame.spin),
+            Ground::Deformable { surface, points, velocity } => {
+                (surface.interpolate(feature, place, points, velocity), Vec3::zeros())
+            }
+        }
+    }
+}
+
+/// Feet of a sphere, in space.
+fn find_feet(
+    ground: &Ground,
+    facets: &[u32],
+    centre: &Vec3,
+    radius: f64,
+    hierarchy: &mut DoubleHierarchy,
+    feet: &mut Vec<Foot>,
+) {
+    let frame = match ground {
+        Ground::Deformable { surface, points, .. } => {
+            hierarchy.feet(surface, points, facets, centre, radius, feet);
+            return;
+        }
+        Ground::Rigid { surface, points, frame } => {
+            hierarchy.feet(surface, points, facets, &frame.to_body(centre), radius, feet);
+            frame
+        }
+        Ground::Shape { shape, hollow, frame } => {
+            shape.feet(*hollow, &frame.to_body(centre), radius, feet);
+            frame
+        }
+    };
+    for foot in feet {
+        foot.offset = frame.to_space(&foot.offset);
+        foot.normal = frame.to_space(&foot.normal);
+    }
+}

@@ -1,0 +1,228 @@
+//! Spheres on spheres, through time.
+
+use fractum_math::Vec3;
+use rayon::prelude::*;
+
+use crate::broad_phase::close_pairs;
+use crate::law::{ContactLaw, PairMotion};
+use crate::sphere_facet::{ContactWork, Spheres};
+
+/// Pairs handled as one piece of parallel work.
+const BLOCK: usize = 1024;
+
+/// Contacts among the spheres of one population, with their memories.
+///
+/// The list of near pairs is renewed when a sphere has moved by half the skin. Forces are the same bits for any number
+/// of threads: each sphere sums its pairs in their order.
+#[derive(Clone, Debug)]
+pub struct SphereContacts<L: ContactLaw> {
+    skin: f64,
+    searched_at: Vec<Vec3>,
+    /// Near pairs, ascending.
+    pairs: Vec<[u32; 2]>,
+    laws: Vec<L>,
+    memories: Vec<L::Memory>,
+    /// Whether each pair touched at the last step.
+    touching: Vec<bool>,
+    /// Forces of the pairs, where more than one thread finds them.
+    loads: Vec<PairLoad>,
+    /// Pairs of each sphere, ascending: offsets and values.
+    starts: Vec<u32>,
+    pairs_of: Vec<u32>,
+}
+
+/// Force of a pair and its energies.
+#[derive(Clone, Copy, Debug, Default)]
+struct PairLoad {
+    /// Force on j [N].
+    force: Vec3,
+    /// Moments on i and on j [N m].
+    moments: [Vec3; 2],
+    work: ContactWork,
+}
+
+impl<L: ContactLaw> SphereContacts<L> {
+    /// No contacts yet.
+    ///
+    /// - `skin` [m] > 0: gap up to which a pair is near; a fraction of the smallest radius
+    pub fn new(skin: f64) -> Self {
+        SphereContacts {
+            skin,
+            searched_at: Vec::new(),
+            pairs: Vec::new(),
+            laws: Vec::new(),
+            memories: Vec::new(),
+            touching: Vec::new(),
+            loads: Vec::new(),
+            starts: Vec::new(),
+            pairs_of: Vec::new(),
+        }
+    }
+
+    /// Renews the list of near pairs if the skin is used up; true if it did.
+    ///
+    /// - `law`: law of two spheres; `None` if they never touch (bonded ones)
+    pub fn search(&mut self, spheres: &Spheres, law: impl Fn(u32, u32) -> Option<L> + Sync) -> bool {
+        let limit = 0.25 * self.skin * self.skin;
+        let moved = |(x, at): (&Vec3, &Vec3)| (x - at).norm_squared() > limit;
+        let known = self.searched_at.len() == spheres.position.len();
+        if known && !spheres.position.iter().zip(&self.searched_at).any(moved) {
+            return false;
+        }
+        self.searched_at.clear();
+        self.searched_at.extend_from_slice(spheres.position);
+        let near = close_pairs(spheres.position, spheres.radius, self.skin);
+        let found: Vec<([u32; 2], L)> =
+            near.into_par_iter().filter_map(|[i, j]| law(i, j).map(|law| ([i, j], law))).collect();
+        let old = std::mem::take(&mut self.pairs);
+        let (old_memories, old_touching) = (std::mem::take(&mut self.memories), std::mem::take(&mut self.touching));
+        let mut place = 0;
+        for (pair, _) in &found {
+            while old.get(place).is_some_and(|p| p < pair) {
+                place += 1;
+            }
+            let known = old.get(place) == Some(pair);
+            self.memories.push(if known { old_memories[place] } else { L::Memory::default() });
+            self.touching.push(known && old_touching[place]);
+        }
+        (self.pairs, self.laws) = found.into_iter().unzip();
+        self.index(spheres.position.len());
+        true
+    }
+
+    fn index(&mut self, spheres: usize) {
+        self.starts.clear();
+        self.starts.resize(spheres + 1, 0);
+        for &i in self.pairs.iter().flatten() {
+            self.starts[i as usize + 1] += 1;
+        }
+        for i in 0..spheres {
+            self.starts[i + 1] += self.starts[i];
+        }
+        let mut next = self.starts.clone();
+        self.pairs_of.clear();
+        self.pairs_of.resize(2 * self.pairs.len(), 0);
+        for (pair, ids) in self.pairs.iter().enumerate() {
+            for &i in ids {
+                self.pairs_of[next[i as usize] as usize] = pair as u32;
+                next[i as usize] += 1;
+            }
+        }
+        self.loads.clear();
+    }
+
+    /// Adds forces [N] and moments about the centres [N m] of all contacts.
+    ///
+    /// - `dt` [s]: the step that led here
+    pub fn add_forces(&mut self, spheres: &Spheres, force: &mut [Vec3], moment: &mut [Vec3], dt: f64) -> ContactWork {
+        if rayon::current_num_threads() == 1 || self.pairs.len() < 2 * BLOCK {
+            return self.add_one_by_one(spheres, force, moment, dt);
+        }
+        let SphereContacts { pairs, laws, memories, touching, loads, starts, pairs_of, .. } = self;
+        loads.resize(pairs.len(), PairLoad::default());
+        let chunks = pairs.par_chunks(BLOCK).zip(laws.par_chunks(BLOCK)).zip(memories.par_chunks_mut(BLOCK));
+        chunks.zip(touching.par_chunks_mut(BLOCK)).zip(loads.par_chunks_mut(BLOCK)).for_each(
+            |((((pairs, laws), memories), touching), loads)| {
+                for k in 0..pairs.len() {
+                    loads[k] = pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, dt)
+                        .unwrap_or_default();
+                }
+            },
+        );
+        let (loads, pairs) = (&*loads, &*pairs);
+        force.par_iter_mut().zip(moment.par_iter_mut()).enumerate().with_min_len(BLOCK).for_each(
+            |(i, (force, moment))| {
+                for &pair in &pairs_of[starts[i] as usize..starts[i + 1] as usize] {
+                    let (load, second) = (&loads[pair as usize], pairs[pair as usize][1] == i as u32);
+                    *force += if second { load.force } else { -load.force };
+                    *moment += load.moments[usize::from(second)];
+                }
+            },
+        );
+        let mut work = ContactWork::default();
+        loads.iter().for_each(|load| work += load.work);
+        work
+    }
+
+    fn add_one_by_one(&mut self, spheres: &Spheres, force: &mut [Vec3], moment: &mut [Vec3], dt: f64) -> ContactWork {
+        let SphereContacts { pairs, laws, memories, touching, .. } = self;
+        let mut work = ContactWork::default();
+        for k in 0..pairs.len() {
+            let load = pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, dt);
+            if let Some(load) = load {
+                let [i, j] = pairs[k].map(|id| id as usize);
+                force[i] -= load.force;
+                force[j] += load.force;
+                moment[i] += load.moments[0];
+                moment[j] += load.moments[1];
+                work += load.work;
+            }
+        }
+        work
+    }
+
+    /// Pairs that touched at the last step.
+    pub fn touching(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.pairs.iter().zip(&self.touching).filter(|(_, touching)| **touching).map(|(pair, _)| *pair)
+    }
+
+    /// Near pairs that overlap where the spheres are now, with their depths [m].
+    pub fn overlaps<'a>(&'a self, spheres: &'a Spheres) -> impl Iterator<Item = ([u32; 2], f64)> + 'a {
+        let depth = |[i, j]: [u32; 2]| {
+            let (i, j) = (i as usize, j as usize);
+            spheres.radius[i] + spheres.radius[j] - (spheres.position[j] - spheres.position[i]).norm()
+        };
+        self.pairs.iter().map(move |&pair| (pair, depth(pair))).filter(|(_, depth)| *depth > 0.0)
+    }
+
+    /// Contacts that remember something, for a checkpoint.
+    pub fn state(&self) -> Vec<([u32; 2], L::Memory)> {
+        let known = (0..self.pairs.len()).filter(|&k| self.touching[k]);
+        known.map(|k| (self.pairs[k], self.memories[k])).collect()
+    }
+
+    /// Puts saved contacts back; the next search renews the list of pairs.
+    pub fn restore(&mut self, state: Vec<([u32; 2], L::Memory)>) {
+        self.searched_at.clear();
+        self.touching = vec![true; state.len()];
+        (self.pairs, self.memories) = state.into_iter().unzip();
+    }
+}
+
+/// Force of a pair; `None` if it neither touches nor did so at the last step.
+#[inline]
+fn pair_load<L: ContactLaw>(
+    [i, j]: [u32; 2],
+    law: &L,
+    memory: &mut L::Memory,
+    touching: &mut bool,
+    spheres: &Spheres,
+    dt: f64,
+) -> Option<PairLoad> {
+    let (i, j) = (i as usize, j as usize);
+    let apart = spheres.position[j] - spheres.position[i];
+    let reach = spheres.radius[i] + spheres.radius[j];
+    let square = apart.norm_squared();
+    let touches = square < reach * reach;
+    if !touches && !*touching {
+        return None;
+    }
+    *touching = touches;
+    let distance = square.sqrt();
+    let normal = if distance > 0.0 { apart / distance } else { Vec3::x() };
+    // The contact divides the distance in the ratio of the radii.
+    let arm = distance / reach;
+    let (arm_i, arm_j) = (arm * spheres.radius[i], arm * spheres.radius[j]);
+    let turning = (spheres.spin[i] * arm_i + spheres.spin[j] * arm_j).cross(&normal);
+    let velocity = spheres.velocity[j] - spheres.velocity[i] - turning;
+    let spin = spheres.spin[j] - spheres.spin[i];
+    let motion = PairMotion { normal, overlap: reach - distance, velocity, spin, dt };
+    let force = law.force(&motion, memory);
+    let twist = normal.cross(&force.on_second);
+    let couple = force.couple_on_second;
+    Some(PairLoad {
+        force: force.on_second,
+        moments: [twist * -arm_i - couple, twist * -arm_j + couple],
+        work: ContactWork { stored: force.stored, friction: force.friction, damping: force.damping },
+    })
+}
