@@ -31,6 +31,12 @@ UNSTRUCTURED = {
     "tension-bar/gmsh-fine": ("tension-bar/bar.geo", {"h": 0.0025}, True),
     "patch/cube": ("patch/cube.geo", {}, False),
     "falling-block/block": ("falling-block/block.geo", {}, False),
+    "brazilian-plane/coarse": ("brazilian-plane/disc.geo", {"bulk": 0.006, "across": 4}, False),
+    "brazilian-plane/medium": ("brazilian-plane/disc.geo", {"bulk": 0.004, "across": 6}, False),
+    "brazilian-plane/fine": ("brazilian-plane/disc.geo", {"bulk": 0.0026, "across": 9}, False),
+    "cantilever-plane/depth-2": ("cantilever-plane/beam.geo", {"depth": 2}, False),
+    "cantilever-plane/depth-4": ("cantilever-plane/beam.geo", {"depth": 4}, False),
+    "cantilever-plane/depth-8": ("cantilever-plane/beam.geo", {"depth": 8}, False),
 }
 
 LARGE = {
@@ -86,13 +92,17 @@ def main():
     if not chosen:
         sys.exit(f"no mesh begins with {' or '.join(arguments.name)}; there are {', '.join(known)}")
     if arguments.table:
-        print(quality.HEADER)
+        for header, row, plane in (quality.HEADER, quality.row, False), (quality.PLANE_HEADER, quality.plane_row, True):
+            print(header)
+            for name in sorted(name for name in chosen if is_plane(name) == plane):
+                with_gmsh({}, lambda: print(row(name, HERE / f"{name}.msh")))
+        return
     for name in sorted(chosen):
-        path = HERE / f"{name}.msh"
-        if arguments.table:
-            with_gmsh({}, lambda: print(quality.row(name, path)))
-        else:
-            make(name, path)
+        make(name, HERE / f"{name}.msh")
+
+
+def is_plane(name):
+    return "-plane/" in name
 
 
 def make(name, path):

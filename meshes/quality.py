@@ -1,4 +1,4 @@
-"""Counts, sizes and shapes of the tetrahedra of the current gmsh model."""
+"""Counts, sizes and shapes of the tetrahedra, or of the triangles of a plane mesh, of a gmsh file."""
 
 import math
 
@@ -11,6 +11,41 @@ HEADER = (
     "| smallest / largest of an element: mean, worst 1 % [deg] | groups (facets) | file |\n"
     "|---|---|---|---|---|---|---|---|"
 )
+
+PLANE_HEADER = (
+    "| mesh | nodes | triangles | shortest / mean / longest edge [mm] | angles, all [deg] "
+    "| smallest / largest of an element: mean, worst 1 % [deg] | groups (lines) | file |\n"
+    "|---|---|---|---|---|---|---|---|"
+)
+
+
+def plane_row(name, path):
+    """One line of the table under PLANE_HEADER; raises if a triangle is inverted or a node belongs to none."""
+    gmsh.open(str(path))
+    tags, flat, _ = gmsh.model.mesh.getNodes()
+    points = {int(tag): tuple(flat[3 * n : 3 * n + 3]) for n, tag in enumerate(tags)}
+    _, nodes = gmsh.model.mesh.getElementsByType(2)
+    triangles = [tuple(int(node) for node in nodes[n : n + 3]) for n in range(0, len(nodes), 3)]
+
+    smallest, largest, edges = [], [], {}
+    for element in triangles:
+        corners = [points[node] for node in element]
+        if cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]))[2] <= 0:
+            raise ValueError(f"{path}: inverted element {element}")
+        angles = [corner_angle(corners[k], corners[k - 1], corners[k - 2]) for k in range(3)]
+        smallest.append(min(angles))
+        largest.append(max(angles))
+        for a, b in ((0, 1), (1, 2), (0, 2)):
+            edges[min(element[a], element[b]), max(element[a], element[b])] = math.dist(corners[a], corners[b])
+    if len(points) != len({node for element in triangles for node in element}):
+        raise ValueError(f"{path}: nodes that belong to no triangle")
+    return line(name, path, len(points), len(triangles), list(edges.values()), smallest, largest, groups(1))
+
+
+def corner_angle(at, one, two):
+    """Angle at a corner, in degrees."""
+    a, b = sub(one, at), sub(two, at)
+    return math.degrees(math.acos(max(-1.0, min(1.0, dot(a, b) / math.sqrt(dot(a, a) * dot(b, b))))))
 
 
 def row(name, path):
@@ -35,24 +70,28 @@ def row(name, path):
     if len(points) != len({node for element in tetrahedra for node in element}):
         raise ValueError(f"{path}: nodes that belong to no tetrahedron")
 
-    length = sorted(edges.values())
+    return line(name, path, len(points), len(tetrahedra), list(edges.values()), smallest, largest, groups(2))
+
+
+def line(name, path, nodes, elements, length, smallest, largest, groups):
+    length.sort()
     smallest.sort()
     largest.sort()
-    percent = len(tetrahedra) // 100
+    percent = elements // 100
     return (
-        f"| `{name}` | {len(points):,} | {len(tetrahedra):,} "
+        f"| `{name}` | {nodes:,} | {elements:,} "
         f"| {1e3 * length[0]:.2f} / {1e3 * sum(length) / len(length):.2f} / {1e3 * length[-1]:.2f} "
         f"| {smallest[0]:.1f} to {largest[-1]:.1f} "
         f"| {mean(smallest):.1f}, {smallest[percent]:.1f} / {mean(largest):.1f}, {largest[-1 - percent]:.1f} "
-        f"| {groups()} | {path.stat().st_size / 1024:,.0f} KiB |"
+        f"| {groups} | {path.stat().st_size / 1024:,.0f} KiB |"
     )
 
 
-def groups():
+def groups(facet_dimension):
     counts = []
-    for dimension, tag in gmsh.model.getPhysicalGroups(2):
+    for dimension, tag in gmsh.model.getPhysicalGroups(facet_dimension):
         facets = sum(
-            len(gmsh.model.mesh.getElementsByType(2, entity)[0])
+            len(gmsh.model.mesh.getElementsByType(facet_dimension, entity)[0])
             for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, tag)
         )
         counts.append(f"{gmsh.model.getPhysicalName(dimension, tag)} {facets}")

@@ -61,11 +61,7 @@ impl RigidPlane {
     /// Adds a node unless it is watched already.
     pub(crate) fn watch_node(&mut self, node: u32, solid: &Solid, debris: &Debris) {
         if let Err(place) = self.candidates.binary_search_by_key(&node, |c| c.node) {
-            let i = node as usize;
-            let (young_modulus, poisson_ratio) = debris.elasticity(node);
-            let (radius, mass) = (debris.radius(node), solid.mass[i]);
-            let surface = self.surface.against(debris.surface(node));
-            let law = Linear::on_wall(young_modulus, poisson_ratio, radius, mass, surface);
+            let law = debris.wall_law(node, solid.mass[node as usize], self.surface);
             let candidate = Candidate {
                 node,
                 law,

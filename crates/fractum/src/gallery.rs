@@ -112,10 +112,12 @@ fn extent(points: &[Vec3]) -> Vec3 {
     high - low
 }
 
-/// Flat bodies are seen from their broad side, others from the front, right and above with z up.
+/// Plane bodies are seen straight on, flat ones from their broad side, others from the front, right and above with z up.
 fn view(points: &[Vec3]) -> View {
     let size = extent(points);
-    let camera = if size.z < 0.75 * size.x.min(size.y) {
+    let camera = if size.z == 0.0 {
+        View { direction: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0], ..View::default() }
+    } else if size.z < 0.75 * size.x.min(size.y) {
         View { direction: [-0.35, -0.25, -1.0], up: [0.0, 1.0, 0.0], ..View::default() }
     } else {
         View::default()

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fractum_fem::{Formulation, Kinematics, Shape};
+use fractum_fem::{Formulation, Kinematics, Plane, Shape};
 use fractum_io::assemble::Assembly;
 use fractum_io::case::model::{BodyKind, Case, LoadKind, SolidBody};
 use fractum_io::number::quantity;
@@ -95,9 +95,12 @@ impl Plan {
             Formulation::Standard => "standard",
             Formulation::Smoothed => "smoothed",
         };
-        let shape = match body.shape {
-            Shape::T4 => "tetrahedra",
-            Shape::T3 => "triangles",
+        let shape = match (body.shape, body.plane) {
+            (Shape::T4, _) => "tetrahedra".to_owned(),
+            (Shape::T3, plane) => {
+                let plane = if plane == Plane::Stress { "plane stress" } else { "plane strain" };
+                format!("triangles in {plane}, {} thick", quantity(body.thickness, "m"))
+            }
         };
         let kinematics = match body.kinematics {
             Kinematics::Small => "small strains",
@@ -135,14 +138,15 @@ impl Plan {
             let nodes = mesh.group_nodes(&support.group.value).len();
             self.add("support", format!("{}: {axes} of {nodes} nodes", support.group.value));
         }
+        let thickness = plane_thickness(scene);
         for load in &case.loads {
             let text = match &load.kind {
                 LoadKind::Force { group, .. } => format!("force on {}", group.value),
                 LoadKind::Traction { group, .. } => {
-                    format!("traction on {} ({})", group.value, area_of(mesh, &group.value))
+                    format!("traction on {} ({})", group.value, area_of(mesh, &group.value, thickness))
                 }
                 LoadKind::Pressure { group, .. } => {
-                    format!("pressure on {} ({})", group.value, area_of(mesh, &group.value))
+                    format!("pressure on {} ({})", group.value, area_of(mesh, &group.value, thickness))
                 }
                 LoadKind::Gravity { .. } => "gravity on everything".to_owned(),
             };
@@ -234,9 +238,24 @@ fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
     }
 }
 
-fn area_of(mesh: &Mesh, group: &str) -> String {
+/// Thickness of the first plane body [m], 0 in space.
+fn plane_thickness(scene: &Scene) -> f64 {
+    let body = scene.solid.body(0);
+    if body.shape == Shape::T3 { body.thickness } else { 0.0 }
+}
+
+/// Area of the facets of a group; in the plane its lines times the thickness.
+fn area_of(mesh: &Mesh, group: &str, thickness: f64) -> String {
     let mut area = 0.0;
     for group in mesh.group(group) {
+        if thickness > 0.0 {
+            let lengths = group.lines.iter().map(|&line| {
+                let [a, b] = mesh.lines[line as usize].map(|n| mesh.nodes[n as usize]);
+                (b - a).norm()
+            });
+            area += thickness * lengths.sum::<f64>();
+            continue;
+        }
         for &triangle in &group.triangles {
             let [a, b, c] = mesh.triangles[triangle as usize].map(|n| mesh.nodes[n as usize]);
             area += 0.5 * (b - a).cross(&(c - a)).norm();

@@ -313,16 +313,21 @@ fn write_particles(scene: &Scene, path: &Path) -> Result<(), Failure> {
     let mass: Vec<f64> = state.nodes.iter().map(|&n| solid.mass[n as usize]).collect();
     let attached: Vec<u8> = state.attached.iter().map(|&a| u8::from(a)).collect();
     let spin: Vec<[f64; 3]> = state.spin.iter().map(|&s| s.into()).collect();
+    let thickness: Vec<f64> = state.nodes.iter().map(|&n| debris.thickness(n)).collect();
+    let mut point_data = vec![
+        Field::scalar("radius", &radius),
+        Field::scalar("mass", &mass),
+        Field::vector("velocity", &velocity),
+        Field { name: "spin", components: 3, values: Values::F64(spin.as_flattened()) },
+        Field::flag("attached", &attached),
+    ];
+    if thickness.iter().any(|&t| t > 0.0) {
+        point_data.push(Field::scalar("thickness", &thickness));
+    }
     let data = PolyData {
         points: &points,
         cells: PolyCells::Points,
-        point_data: &[
-            Field::scalar("radius", &radius),
-            Field::scalar("mass", &mass),
-            Field::vector("velocity", &velocity),
-            Field { name: "spin", components: 3, values: Values::F64(spin.as_flattened()) },
-            Field::flag("attached", &attached),
-        ],
+        point_data: &point_data,
         cell_data: &[],
         time: Some(scene.clock.time),
     };

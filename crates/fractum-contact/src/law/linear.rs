@@ -83,6 +83,34 @@ impl Linear {
         Linear::new(stiffness, poisson_ratio, reduced(radii), reduced(masses), surface)
     }
 
+    /// The law of two elastic discs in the plane: k_n = E 2 min(r) t/(r_i + r_j), the rest as between spheres.
+    ///
+    /// - `thickness` t [m], the smaller one of the two
+    pub fn between_discs(
+        young_modulus: f64,
+        poisson_ratio: f64,
+        radii: [f64; 2],
+        thickness: f64,
+        masses: [f64; 2],
+        surface: Surface,
+    ) -> Self {
+        let stiffness = young_modulus * 2.0 * radii[0].min(radii[1]) * thickness / (radii[0] + radii[1]);
+        let reduced = |[a, b]: [f64; 2]| a * b / (a + b);
+        Linear::new(stiffness, poisson_ratio, reduced(radii), reduced(masses), surface)
+    }
+
+    /// The law of a disc on a rigid wall, that of a disc on its mirror image: k_n = E t.
+    pub fn disc_on_wall(
+        young_modulus: f64,
+        poisson_ratio: f64,
+        radius: f64,
+        thickness: f64,
+        mass: f64,
+        surface: Surface,
+    ) -> Self {
+        Linear::new(young_modulus * thickness, poisson_ratio, radius, mass, surface)
+    }
+
     /// The law of a sphere on a rigid wall, that of a sphere on its mirror image: k_n = E π r/2.
     pub fn on_wall(young_modulus: f64, poisson_ratio: f64, radius: f64, mass: f64, surface: Surface) -> Self {
         let stiffness = 0.5 * young_modulus * std::f64::consts::PI * radius;

@@ -26,6 +26,8 @@ pub struct Debris {
     planar: bool,
     /// Young's modulus and Poisson's ratio of the body of each node.
     elasticity: Vec<(f64, f64)>,
+    /// Thickness of the body of each node [m]; 0 in space.
+    thickness: Vec<f64>,
     /// Radius at each node [m].
     radius: Vec<f64>,
     state: DebrisState,
@@ -82,12 +84,15 @@ impl Debris {
         let bodies = 0..solid.body_count();
         assert_eq!(surfaces.len(), bodies.len(), "one surface per body");
         let mut elasticity = vec![(0.0, 0.0); solid.reference.len()];
+        let mut thickness = vec![0.0; solid.reference.len()];
         let mut body_of = vec![0; solid.reference.len()];
         for index in bodies.clone().rev() {
             let body = solid.body(index);
             let pair = (body.elastic.young_modulus, body.elastic.poisson_ratio);
+            let own = if body.shape == fractum_fem::Shape::T3 { body.thickness } else { 0.0 };
             for &node in body.elements.iter().flatten() {
                 (elasticity[node as usize], body_of[node as usize]) = (pair, index as u32);
+                thickness[node as usize] = own;
             }
         }
         Debris {
@@ -95,6 +100,7 @@ impl Debris {
             body: body_of,
             planar: bodies.clone().all(|b| solid.body(b).shape == fractum_fem::Shape::T3),
             elasticity,
+            thickness,
             radius: Vec::new(),
             state: DebrisState::default(),
             particle_of: vec![NONE; solid.reference.len()],
@@ -129,6 +135,11 @@ impl Debris {
         self.radius[node as usize]
     }
 
+    /// Thickness of the disc at a node [m]; 0 for spheres.
+    pub fn thickness(&self, node: u32) -> f64 {
+        self.thickness[node as usize]
+    }
+
     /// Pairs that touch at the last step.
     pub fn touching(&self) -> impl Iterator<Item = &Pair> {
         self.state.pairs.iter().filter(|p| p.stored > 0.0)
@@ -139,8 +150,16 @@ impl Debris {
         self.surfaces[self.body[node as usize] as usize]
     }
 
-    pub(crate) fn elasticity(&self, node: u32) -> (f64, f64) {
-        self.elasticity[node as usize]
+    /// The law of a node on a rigid wall.
+    pub(crate) fn wall_law(&self, node: u32, mass: f64, wall: Surface) -> Linear {
+        let i = node as usize;
+        let ((e, nu), radius, thickness) = (self.elasticity[i], self.radius[i], self.thickness[i]);
+        let surface = wall.against(self.surface(node));
+        if thickness > 0.0 {
+            Linear::disc_on_wall(e, nu, radius, thickness, mass, surface)
+        } else {
+            Linear::on_wall(e, nu, radius, mass, surface)
+        }
     }
 
     /// Radius of the particle at a node, 0 without one [m].
@@ -210,13 +229,15 @@ impl Debris {
         let rest =
             if neighbours { (solid.reference[j] - solid.reference[i]).norm() } else { self.radius[i] + self.radius[j] };
         let ((e1, nu1), (e2, nu2)) = (self.elasticity[i], self.elasticity[j]);
-        let law = Linear::between_spheres(
-            2.0 * e1 * e2 / (e1 + e2),
-            0.5 * (nu1 + nu2),
-            [self.radius[i], self.radius[j]],
-            [solid.mass[i], solid.mass[j]],
-            self.surface(nodes[0]).against(self.surface(nodes[1])),
-        );
+        let (e, nu) = (2.0 * e1 * e2 / (e1 + e2), 0.5 * (nu1 + nu2));
+        let (radii, masses) = ([self.radius[i], self.radius[j]], [solid.mass[i], solid.mass[j]]);
+        let thickness = self.thickness[i].min(self.thickness[j]);
+        let surface = self.surface(nodes[0]).against(self.surface(nodes[1]));
+        let law = if thickness > 0.0 {
+            Linear::between_discs(e, nu, radii, thickness, masses, surface)
+        } else {
+            Linear::between_spheres(e, nu, radii, masses, surface)
+        };
         Pair {
             nodes,
             closing: rest.min(now),
