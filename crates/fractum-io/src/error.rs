@@ -51,6 +51,14 @@ pub enum ReadError {
 /// Why a file or folder could not be written, where, and what helps.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
+    /// Another run is writing there.
+    #[error("{}: another run is writing into this folder; wait for it, or choose another folder with -o", path.display())]
+    Busy {
+        /// The file that the other run holds.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
     /// No space left, or the user's quota is used up.
     #[error("{}: the disk is full; free some space or choose another folder with -o", path.display())]
     DiskFull {
@@ -115,6 +123,7 @@ impl WriteError {
         match source.kind() {
             Kind::StorageFull | Kind::QuotaExceeded | Kind::FileTooLarge => Self::DiskFull { path, source },
             Kind::PermissionDenied | Kind::ReadOnlyFilesystem => Self::PermissionDenied { path, source },
+            Kind::WouldBlock | Kind::ResourceBusy => Self::Busy { path, source },
             Kind::NotFound => Self::MissingFolder { path, source },
             Kind::IsADirectory | Kind::NotADirectory | Kind::AlreadyExists | Kind::DirectoryNotEmpty => {
                 Self::NameTaken { path, source }
@@ -126,7 +135,8 @@ impl WriteError {
     /// The file or folder concerned.
     pub fn path(&self) -> &Path {
         match self {
-            Self::DiskFull { path, .. }
+            Self::Busy { path, .. }
+            | Self::DiskFull { path, .. }
             | Self::PermissionDenied { path, .. }
             | Self::MissingFolder { path, .. }
             | Self::NameTaken { path, .. }

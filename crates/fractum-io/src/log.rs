@@ -1,7 +1,7 @@
 //! What a run tells while it goes: `run.log` for later, a progress line for now.
 
 use std::fmt;
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::{self, IsTerminal, Stderr, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -11,6 +11,8 @@ use crate::number::{quantity, significant};
 
 /// `run.log`: plain lines, appended as they come, under its final name from the start, so that it can be watched and
 /// tells what happened if the run was killed.
+///
+/// It stays locked as long as it is open: no second run writes into the same folder.
 #[derive(Debug)]
 pub struct RunLog {
     path: PathBuf,
@@ -23,7 +25,9 @@ impl RunLog {
     /// # Errors
     /// [`WriteError`].
     pub fn create(path: &Path) -> Result<Self, WriteError> {
-        Self::open(path, File::options().write(true).create(true).truncate(true))
+        let log = Self::resume(path)?;
+        log.file.set_len(0).map_err(|error| WriteError::new(path, error))?;
+        Ok(log)
     }
 
     /// Goes on with the log of a run that is resumed; starts one if there is none.
@@ -31,11 +35,13 @@ impl RunLog {
     /// # Errors
     /// [`WriteError`].
     pub fn resume(path: &Path) -> Result<Self, WriteError> {
-        Self::open(path, File::options().append(true).create(true))
-    }
-
-    fn open(path: &Path, options: &std::fs::OpenOptions) -> Result<Self, WriteError> {
-        let file = options.open(path).map_err(|error| WriteError::new(path, error))?;
+        let file = File::options().append(true).create(true).open(path).map_err(|e| WriteError::new(path, e))?;
+        match file.try_lock() {
+            // A file system without locks keeps nobody from running.
+            Ok(()) => {}
+            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
+            Err(error) => return Err(WriteError::new(path, error.into())),
+        }
         Ok(Self { path: path.to_path_buf(), file })
     }
 

@@ -66,6 +66,7 @@ impl Failure {
         match self {
             Failure::Input(_) | Failure::Unmet(_) => ExitCode::Input,
             Failure::Stopped { .. } => ExitCode::Stopped,
+            Failure::Write(WriteError::Busy { .. }) => ExitCode::Input,
             Failure::Checkpoint(CheckpointError::Write(_)) => ExitCode::Machine,
             Failure::Checkpoint(_) => ExitCode::Input,
             Failure::Write(_) | Failure::Output(_) | Failure::Threads(_) => ExitCode::Machine,

@@ -95,7 +95,7 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     let log_path = folder.join("run.log");
     let mut log = if resumed.is_some() { RunLog::resume(&log_path)? } else { RunLog::create(&log_path)? };
     if resumed.is_none() {
-        discard_checkpoints(&checkpoints)?;
+        discard_results(&folder)?;
     }
     log.line(format!("fractum {} on {threads} threads: {}", env!("CARGO_PKG_VERSION"), path.display()))?;
     log.line(&plan)?;
@@ -385,12 +385,25 @@ fn restore(folder: &Path, identity: &Identity, scene: &mut Scene) -> Result<Opti
     Ok(Some(loaded.state.record))
 }
 
-/// A run that starts anew leaves no state of an earlier one to resume from.
-fn discard_checkpoints(folder: &Path) -> Result<(), Failure> {
-    match std::fs::remove_dir_all(folder) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(WriteError::new(folder, error).into()),
-        _ => Ok(()),
+/// A run that starts anew leaves nothing of an earlier one that could be taken for its own: no state to resume from, no
+/// frames. Files of other kinds in these folders are the user's, and stay.
+fn discard_results(folder: &Path) -> Result<(), Failure> {
+    let checkpoints = folder.join("checkpoint");
+    match std::fs::remove_dir_all(&checkpoints) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            return Err(WriteError::new(&checkpoints, error).into());
+        }
+        _ => {}
     }
+    for frames in ["fields", "particles", "bonds"] {
+        let Ok(entries) = std::fs::read_dir(folder.join(frames)) else { continue };
+        for path in entries.flatten().map(|entry| entry.path()) {
+            if path.extension().is_some_and(|e| e == "vtu" || e == "vtp") {
+                std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Version of the program as far as the layout of its state goes.
