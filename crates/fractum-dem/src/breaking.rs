@@ -38,7 +38,7 @@ pub struct Breaking<'a> {
     pub batch: Batch,
     /// Largest load factor.
     pub limit: f64,
-    /// The body has lost its strength when the load is below this share of its peak.
+    /// The body has lost its strength when cracks have come to rest and the load is below this share of its peak.
     pub stop: f64,
     /// When equilibrium is reached.
     pub tolerance: Tolerance,
@@ -161,25 +161,26 @@ pub fn quasi_static(
         let energy = body.energy();
         watch.look(&body, &graph, if factor > 0.0 { 1.0 / factor } else { f64::INFINITY });
         let worst = watch.worst();
+        let held = factor * 2.0 * energy / what.displacement;
         // Where nothing is over at this load, the load rises to the next failure.
-        let failing = worst.filter(|w| factor > 0.0 && w.ratio * factor >= 1.0);
+        let failing = worst.filter(|_| !watch.over().is_empty());
+        let weak = failing.is_none() && held < what.stop * peak.load;
+        apart = !cracks.is_empty() && (weak || separated(&graph));
         let last = curve.last().copied();
         let before = factor;
-        if failing.is_none() {
+        if failing.is_none() && !apart {
             factor = worst.map_or(what.limit, |w| (1.0 / w.ratio).max(factor)).min(what.limit);
         }
         let (displacement, load) = (factor * what.displacement, factor * 2.0 * energy / what.displacement);
         if factor > before {
             // Between two breaks the load is proportional; at a break the supports stand still.
-            let start = before * 2.0 * energy / what.displacement;
-            work = last.map_or(0.0, |l| l.work) + 0.5 * (load + start) * (factor - before) * what.displacement;
+            work = last.map_or(0.0, |l| l.work) + 0.5 * (load + held) * (factor - before) * what.displacement;
         }
         curve.push(LoadPoint { displacement, load, elastic: factor * factor * energy, work, broken: graph.broken() });
         if load > peak.load {
             peak = Point { displacement, load, broken: graph.broken() };
             effort_to_peak = body.effort();
         }
-        apart = !cracks.is_empty() && (load < what.stop * peak.load || separated(&graph));
         let reached = failing.is_none() && worst.is_none_or(|w| w.ratio * what.limit < 1.0);
         if apart || reached {
             break;

@@ -12,6 +12,9 @@ use crate::{BeamSection, DemError, Tolerance};
 /// Solves after which the unbalanced forces are computed afresh, so that round-off does not add up.
 const REFRESH: usize = 32;
 
+/// The first equilibrium is found to this share of the tolerance.
+const FIRST: f64 = 0.01;
+
 /// A lattice held by supports, in equilibrium; its bonds break one after another.
 ///
 /// Breaking a bond changes the unbalanced forces of its two particles only, and the next solve starts from there.
@@ -34,13 +37,10 @@ impl StaticBody {
     ///
     /// # Errors
     /// Array lengths; [`DemError::NotConverged`].
-    pub fn new(
-        lattice: Lattice,
-        supports: Supports,
-        guess: &[Dof6],
-        tolerance: Tolerance,
-    ) -> Result<Self, DemError> {
-        let rest = lattice.solve(&supports, None, guess, tolerance)?;
+    pub fn new(lattice: Lattice, supports: Supports, guess: &[Dof6], tolerance: Tolerance) -> Result<Self, DemError> {
+        // The first equilibrium tells the first break, and is compared with theory.
+        let first = Tolerance { residual: FIRST * tolerance.residual, ..tolerance };
+        let rest = lattice.solve(&supports, None, guess, first)?;
         let x: Vec<Dof6> = rest.state.iter().map(|u| lattice.rescale(u, lattice.scale())).collect();
         let n = x.len();
         let mut body = StaticBody {

@@ -10,8 +10,8 @@ use fractum_io::atomic;
 use fractum_io::case::{Dimension, parse_quantity};
 use fractum_pack::{Domain, PackSpec, Packing, pack};
 
-use super::lab_break::{self, BreakArguments};
 use super::convergence::{Diagram, Series, svg};
+use super::lab_break::{self, BreakArguments};
 use super::shape::{Convention, ShapeArguments, pressure};
 
 /// Arguments of `fractum lab`.

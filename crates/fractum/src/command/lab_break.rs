@@ -63,9 +63,10 @@ pub(crate) struct BreakArguments {
     /// Largest nominal strain; a sample that holds says how close it came.
     #[arg(long)]
     limit: Option<f64>,
-    /// Load over its peak below which the sample has lost its strength.
-    #[arg(long, default_value_t = 0.02)]
-    stop: f64,
+    /// Load over its peak below which a sample whose cracks have come to rest has lost its strength; 0.02 in
+    /// tension, 0.9 elsewhere.
+    #[arg(long)]
+    stop: Option<f64>,
     /// Unbalanced forces over the applied ones at which an equilibrium is accepted.
     #[arg(long, default_value_t = 1e-3)]
     residual: f64,
@@ -174,27 +175,27 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
     let mut sample = Sample::new(packing, arguments.coordination, arguments.convention.into()).map_err(wrong)?;
     sample.set_micro(micro).map_err(|error| Failure::input(error.to_string()))?;
     let criterion = arguments.criterion(&sample)?;
-    let mut options = lab::FailureOptions::new(criterion);
+    let test: lab::Failure = arguments.test.into();
+    let mut options = lab::FailureOptions::new(test, criterion);
     options.batch = match arguments.batch {
         BatchArgument::One => Batch::One,
         BatchArgument::Site => Batch::PerSite,
     };
     options.limit = arguments.limit.unwrap_or(f64::INFINITY);
-    options.stop = arguments.stop;
+    options.stop = arguments.stop.unwrap_or(options.stop);
     options.tolerance.residual = arguments.residual;
-    let test: lab::Failure = arguments.test.into();
     let broken = lab::break_sample(&sample, test, &options).map_err(wrong)?;
     let seconds = started.elapsed().as_secs_f64();
     let folder = &arguments.output;
     atomic::create_folder(folder)?;
     let summary = summary(&sample, test, &criterion, &broken, seconds);
-    atomic::write(
-        &folder.join("summary.json"),
-        serde_json::to_string_pretty(&summary).unwrap_or_default().as_bytes(),
-    )?;
+    atomic::write(&folder.join("summary.json"), serde_json::to_string_pretty(&summary).unwrap_or_default().as_bytes())?;
     write(folder, &sample, &broken)?;
     show(&sample, test, &criterion, &broken);
-    say!("{seconds:.1} s; load.csv, cracks.csv, broken.vtp, particles.vtp, load.svg, picture.png, summary.json in {}", folder.display());
+    say!(
+        "{seconds:.1} s; load.csv, cracks.csv, broken.vtp, particles.vtp, load.svg, picture.png, summary.json in {}",
+        folder.display()
+    );
     Ok(())
 }
 
@@ -218,7 +219,11 @@ fn show(sample: &Sample, test: lab::Failure, criterion: &Criterion, broken: &lab
     }
     if let Some(g) = lab::geometry(sample, test, &outcome.cracks) {
         let angle = g.angle.map_or(String::new(), |a| format!("; angle {a:.1} degrees"));
-        say!("crack           began at {:.3} of the radius or half length ({:.3} for the first twenty){angle}", g.start, g.early);
+        say!(
+            "crack           began at {:.3} of the radius or half length ({:.3} for the first twenty){angle}",
+            g.start,
+            g.early
+        );
     }
 }
 
@@ -283,7 +288,8 @@ fn summary(
 fn write(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Failure> {
     let outcome = &broken.outcome;
     let stress = broken.stress_per_load;
-    let mut text = String::from("displacement,load,nominal stress [Pa],nominal strain,elastic [J],work [J],broken bonds\n");
+    let mut text =
+        String::from("displacement,load,nominal stress [Pa],nominal strain,elastic [J],work [J],broken bonds\n");
     for p in &outcome.curve {
         let strain = p.displacement * broken.strain_per_displacement;
         let (u, f, e, w, n) = (p.displacement, p.load, p.elastic, p.work, p.broken);

@@ -31,7 +31,7 @@ pub struct Diameter {
 }
 
 /// Horizontal stress along the loaded diameter (y) of a disc for a state and its load [N], in ten slices from the
-/// centre to the rim, each 0.3 R wide across the diameter.
+/// centre to the rim, each 0.2 R wide across the diameter.
 pub fn diameter(sample: &Sample, state: &[Dof6], load: f64) -> Vec<Diameter> {
     let Some((thickness, radius)) = sample.cylinder_extents() else { return Vec::new() };
     let position = &sample.packing.position;
@@ -46,7 +46,7 @@ pub fn diameter(sample: &Sample, state: &[Dof6], load: f64) -> Vec<Diameter> {
     let slice = |k: usize| {
         let inside = |x: &Vec3| {
             let d = (x - centre) / radius;
-            ((d.y.abs() * SLICES as f64) as usize) == k && d.z.abs() < 0.075
+            ((d.y.abs() * SLICES as f64) as usize) == k && d.z.abs() < 0.1
         };
         let set: Vec<usize> = (0..position.len()).filter(|&i| inside(&position[i])).collect();
         let measured = stress::mean_stress(&dyads, &volume, sample.fraction, set.iter().copied()).0[2] / pressure;

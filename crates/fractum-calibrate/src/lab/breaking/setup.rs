@@ -94,11 +94,8 @@ fn bending(sample: &Sample) -> Result<Setup, CalibrateError> {
     }
     let field = |x: &Vec3| {
         let d = x - centre;
-        let u = Vec3::new(
-            -d.x * d.y,
-            0.5 * (d.x * d.x + GUESS * (d.y * d.y - d.z * d.z)),
-            GUESS * d.y * d.z,
-        ) * curvature;
+        let u =
+            Vec3::new(-d.x * d.y, 0.5 * (d.x * d.x + GUESS * (d.y * d.y - d.z * d.z)), GUESS * d.y * d.z) * curvature;
         [u.x, u.y, u.z, -GUESS * curvature * -d.z, 0.0, curvature * d.x]
     };
     Ok(Setup {
@@ -118,9 +115,7 @@ fn torsion(sample: &Sample) -> Result<Setup, CalibrateError> {
     let ends = ends(sample, shape())?;
     let centre = middle(sample);
     let twist = STRAIN / radius;
-    let turn = |x: &Vec3, angle: f64| {
-        [0.0, -angle * (x.z - centre.z), angle * (x.y - centre.y), angle, 0.0, 0.0]
-    };
+    let turn = |x: &Vec3, angle: f64| [0.0, -angle * (x.z - centre.z), angle * (x.y - centre.y), angle, 0.0, 0.0];
     let mut supports = Supports::none(sample.packing.len());
     for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
         for &i in end {
