@@ -42,6 +42,16 @@ pub enum DemError {
         /// The value.
         value: f64,
     },
+    /// A strength, angle or fraction of a criterion that is impossible.
+    #[error("{what} {value}; expected {expected}")]
+    BadCriterion {
+        /// Which number.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// The valid range.
+        expected: &'static str,
+    },
     /// The static solve did not converge.
     #[error(
         "the lattice is not in equilibrium after {iterations} iterations: residual {residual:.2e} of the applied forces, asked {asked:.2e}; is a part held by nothing?"

@@ -3,13 +3,14 @@
 use fractum_math::Vec3;
 use rayon::prelude::*;
 
+use crate::conjugate::Iterate;
 use crate::{BeamSection, DemError};
 
 /// Displacement (x, y, z) [m] and rotation (x, y, z) of a particle; or the force [N] and moment [N m] conjugate to it.
 pub type Dof6 = [f64; 6];
 
 /// Number of particles handled as one block by the parallel loops; sums are combined in block order.
-const BLOCK: usize = 1024;
+pub(crate) const BLOCK: usize = 1024;
 
 /// Particles joined by linear Euler–Bernoulli beams, for small displacements about the reference state.
 ///
@@ -21,25 +22,28 @@ pub struct Lattice {
     position: Vec<Vec3>,
     offsets: Vec<u32>,
     ends: Vec<HalfBond>,
+    /// Where each bond stands in `ends`.
+    halves: Vec<[u32; 2]>,
     /// Length that turns rotations into displacements [m].
     scale: f64,
 }
 
 /// A bond as one of its particles sees it.
 #[derive(Clone, Copy, Debug)]
-struct HalfBond {
-    other: u32,
+pub(crate) struct HalfBond {
+    pub(crate) other: u32,
+    pub(crate) bond: u32,
     /// Unit vector towards the other particle.
-    axis: [f64; 3],
-    /// 1/length [1/m].
-    inverse: f64,
+    pub(crate) axis: [f64; 3],
+    /// 1/length [1/m]; zero for a broken bond, which takes all its stiffness away.
+    pub(crate) inverse: f64,
 }
 
 /// What holds the particles: a bit per fixed degree of freedom, and the value it is fixed to.
 #[derive(Clone, Debug)]
 pub struct Supports {
-    fixed: Vec<u8>,
-    value: Vec<Dof6>,
+    pub(crate) fixed: Vec<u8>,
+    pub(crate) value: Vec<Dof6>,
 }
 
 impl Supports {
@@ -116,17 +120,20 @@ impl Lattice {
             offsets[i + 1] += offsets[i];
         }
         let mut next = offsets.clone();
-        let mut ends = vec![HalfBond { other: 0, axis: [0.0; 3], inverse: 0.0 }; 2 * pairs.len()];
-        for &[first, second] in pairs {
+        let mut ends = vec![HalfBond { other: 0, bond: 0, axis: [0.0; 3], inverse: 0.0 }; 2 * pairs.len()];
+        let mut halves = Vec::with_capacity(pairs.len());
+        for (bond, &[first, second]) in pairs.iter().enumerate() {
             let d = position[second as usize] - position[first as usize];
             let length = d.norm();
-            for (own, other, sign) in [(first, second, 1.0), (second, first, -1.0)] {
+            halves.push([(first, second, 1.0), (second, first, -1.0)].map(|(own, other, sign)| {
                 let axis = (d * (sign / length)).into();
-                ends[next[own as usize] as usize] = HalfBond { other, axis, inverse: 1.0 / length };
+                let place = next[own as usize];
+                ends[place as usize] = HalfBond { other, bond: bond as u32, axis, inverse: 1.0 / length };
                 next[own as usize] += 1;
-            }
+                place
+            }));
         }
-        Ok(Lattice { section, position: position.to_vec(), offsets, ends, scale })
+        Ok(Lattice { section, position: position.to_vec(), offsets, ends, halves, scale })
     }
 
     /// Changes the section of all beams.
@@ -149,6 +156,11 @@ impl Lattice {
         &self.position
     }
 
+    /// Length that turns rotations into displacements [m].
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.position.len()
@@ -160,7 +172,7 @@ impl Lattice {
     }
 
     #[inline]
-    fn ends(&self, i: usize) -> &[HalfBond] {
+    pub(crate) fn ends(&self, i: usize) -> &[HalfBond] {
         &self.ends[self.offsets[i] as usize..self.offsets[i + 1] as usize]
     }
 
@@ -175,13 +187,13 @@ impl Lattice {
     }
 
     /// Multiplies the rotational part.
-    fn rescale(&self, v: &Dof6, factor: f64) -> Dof6 {
+    pub(crate) fn rescale(&self, v: &Dof6, factor: f64) -> Dof6 {
         [v[0], v[1], v[2], v[3] * factor, v[4] * factor, v[5] * factor]
     }
 
     /// Forces on particle `i` in scaled variables.
     #[inline]
-    fn row(&self, i: usize, x: &[Dof6], k: &Stiffness) -> Dof6 {
+    pub(crate) fn row(&self, i: usize, x: &[Dof6], k: &Stiffness) -> Dof6 {
         let own = &x[i];
         let mut f = [0.0; 6];
         for end in self.ends(i) {
@@ -212,7 +224,7 @@ impl Lattice {
         f
     }
 
-    fn stiffness(&self) -> Stiffness {
+    pub(crate) fn stiffness(&self) -> Stiffness {
         Stiffness {
             axial: self.section.axial(),
             bending: self.section.bending(),
@@ -222,7 +234,7 @@ impl Lattice {
     }
 
     /// K x with fixed rows set to zero, and x·K x.
-    fn apply(&self, x: &[Dof6], fixed: &[u8], out: &mut [Dof6]) -> f64 {
+    pub(crate) fn apply(&self, x: &[Dof6], fixed: &[u8], out: &mut [Dof6]) -> f64 {
         let k = self.stiffness();
         let partial: Vec<f64> = out
             .par_chunks_mut(BLOCK)
@@ -244,25 +256,43 @@ impl Lattice {
     }
 
     /// Diagonal of K in scaled variables.
-    fn diagonal(&self) -> Vec<Dof6> {
+    pub(crate) fn diagonal(&self) -> Vec<Dof6> {
         let k = self.stiffness();
-        (0..self.len())
-            .into_par_iter()
-            .map(|i| {
-                let mut d = [0.0; 6];
-                for end in self.ends(i) {
-                    let bend = k.bending * end.inverse;
-                    let transverse = 12.0 * bend * end.inverse * end.inverse;
-                    for a in 0..3 {
-                        let square = end.axis[a] * end.axis[a];
-                        d[a] += k.axial * end.inverse * square + transverse * (1.0 - square);
-                        d[a + 3] +=
-                            k.scale * k.scale * (4.0 * bend * (1.0 - square) + k.torsion * end.inverse * square);
-                    }
-                }
-                d
-            })
-            .collect()
+        (0..self.len()).into_par_iter().map(|i| self.diagonal_row(i, &k)).collect()
+    }
+
+    /// Diagonal of K at a particle, in scaled variables.
+    pub(crate) fn diagonal_row(&self, i: usize, k: &Stiffness) -> Dof6 {
+        let mut d = [0.0; 6];
+        for end in self.ends(i) {
+            let bend = k.bending * end.inverse;
+            let transverse = 12.0 * bend * end.inverse * end.inverse;
+            for a in 0..3 {
+                let square = end.axis[a] * end.axis[a];
+                d[a] += k.axial * end.inverse * square + transverse * (1.0 - square);
+                d[a + 3] += k.scale * k.scale * (4.0 * bend * (1.0 - square) + k.torsion * end.inverse * square);
+            }
+        }
+        d
+    }
+
+    /// Breaks a bond for ever: it has no stiffness any more.
+    pub fn break_bond(&mut self, bond: u32) {
+        for place in self.halves[bond as usize] {
+            self.ends[place as usize].inverse = 0.0;
+        }
+    }
+
+    /// The only bond that holds a particle and the particle at its other end; none where more bonds hold it.
+    pub(crate) fn last_bond(&self, i: usize) -> Option<(u32, usize)> {
+        let mut left = self.ends(i).iter().filter(|end| end.inverse > 0.0);
+        let last = left.next().filter(|_| left.next().is_none())?;
+        Some((last.bond, last.other as usize))
+    }
+
+    /// The ends of a bond, at its first and at its second particle.
+    pub(crate) fn bond(&self, bond: u32) -> [&HalfBond; 2] {
+        self.halves[bond as usize].map(|place| &self.ends[place as usize])
     }
 
     /// Solves K u = loads under supports by preconditioned conjugate gradients, from a first guess.
@@ -296,9 +326,6 @@ impl Lattice {
             (0..6).filter(|d| supports.fixed[i] >> d & 1 == 1).for_each(|d| x[i][d] = value[d]);
         }
         let load = |i: usize| loads.map_or([0.0; 6], |l| self.rescale(&l[i], back));
-        let inverse: Vec<Dof6> =
-            self.diagonal().iter().map(|d| d.map(|v| if v > 0.0 { 1.0 / v } else { 0.0 })).collect();
-
         // The reference force counts the reactions of the first guess, so that it does not vanish for pure supports.
         let mut r = vec![[0.0; 6]; n];
         self.apply(&x, &vec![0; n], &mut r);
@@ -312,55 +339,10 @@ impl Lattice {
             }
         }
         let target = tolerance.residual * tolerance.residual * reference;
-        let mut p = vec![[0.0; 6]; n];
-        let mut q = vec![[0.0; 6]; n];
-        let mut residual: f64 = r.iter().map(|v| dot(v, v)).sum();
-        let mut beta = 0.0;
-        let mut rz: f64 = (0..n).map(|i| weighted(&r[i], &inverse[i])).sum();
-        let mut iterations = 0;
-        while residual > target {
-            if iterations == tolerance.iterations || !residual.is_finite() {
-                let residual = (residual / reference).sqrt();
-                return Err(DemError::NotConverged { iterations, residual, asked: tolerance.residual });
-            }
-            iterations += 1;
-            p.par_chunks_mut(BLOCK).zip(r.par_chunks(BLOCK)).zip(inverse.par_chunks(BLOCK)).for_each(|((p, r), m)| {
-                for i in 0..p.len() {
-                    for d in 0..6 {
-                        p[i][d] = m[i][d] * r[i][d] + beta * p[i][d];
-                    }
-                }
-            });
-            let curvature = self.apply(&p, &supports.fixed, &mut q);
-            let step = rz / curvature;
-            if curvature <= 0.0 || !step.is_finite() {
-                let residual = (residual / reference).sqrt();
-                return Err(DemError::NotConverged { iterations, residual, asked: tolerance.residual });
-            }
-            let sums: Vec<(f64, f64)> = x
-                .par_chunks_mut(BLOCK)
-                .zip(r.par_chunks_mut(BLOCK))
-                .zip(p.par_chunks(BLOCK).zip(q.par_chunks(BLOCK)))
-                .zip(inverse.par_chunks(BLOCK))
-                .map(|(((x, r), (p, q)), m)| {
-                    let (mut plain, mut weight) = (0.0, 0.0);
-                    for i in 0..x.len() {
-                        for d in 0..6 {
-                            x[i][d] += step * p[i][d];
-                            r[i][d] -= step * q[i][d];
-                            let square = r[i][d] * r[i][d];
-                            plain += square;
-                            weight += square * m[i][d];
-                        }
-                    }
-                    (plain, weight)
-                })
-                .collect();
-            let before = rz;
-            (residual, rz) = sums.iter().fold((0.0, 0.0), |(a, b), s| (a + s.0, b + s.1));
-            beta = rz / before;
-        }
-        let mut force = q;
+        let mut iterate = Iterate::new(self, x, r);
+        let iterations = iterate.solve(self, &supports.fixed, target, reference, tolerance)?;
+        let mut x = iterate.x;
+        let mut force = iterate.r;
         let work = self.apply(&x, &vec![0; n], &mut force);
         x.iter_mut().for_each(|v| *v = self.rescale(v, back));
         force.iter_mut().for_each(|v| *v = self.rescale(v, self.scale));
@@ -393,25 +375,20 @@ impl Lattice {
 }
 
 /// Section constants and 1/length of the rotation scale.
-struct Stiffness {
-    axial: f64,
-    bending: f64,
-    torsion: f64,
-    scale: f64,
+pub(crate) struct Stiffness {
+    pub(crate) axial: f64,
+    pub(crate) bending: f64,
+    pub(crate) torsion: f64,
+    pub(crate) scale: f64,
 }
 
 #[inline]
-fn dot(a: &Dof6, b: &Dof6) -> f64 {
+pub(crate) fn dot(a: &Dof6, b: &Dof6) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
 }
 
 #[inline]
-fn weighted(a: &Dof6, m: &Dof6) -> f64 {
-    (0..6).map(|d| a[d] * a[d] * m[d]).sum()
-}
-
-#[inline]
-fn clear(f: &mut Dof6, fixed: u8) {
+pub(crate) fn clear(f: &mut Dof6, fixed: u8) {
     for (d, value) in f.iter_mut().enumerate() {
         if fixed >> d & 1 == 1 {
             *value = 0.0;

@@ -22,13 +22,24 @@
 //! ```
 
 mod bond;
+mod breaking;
+mod conjugate;
+pub mod criterion;
 mod error;
+mod graph;
 mod lattice;
 mod particles;
+mod static_body;
 pub mod strain;
 pub mod stress;
+mod watch;
 
 pub use bond::{BeamEnergy, BeamForces, BeamNetwork, BeamSection, BondedPair, cohesive_beam, cohesive_beam_energy};
+pub use breaking::{Batch, Breaking, Crack, LoadPoint, Outcome, Point, quasi_static};
+pub use criterion::Criterion;
 pub use error::DemError;
+pub use graph::{BondGraph, HalfEdge, Parts};
 pub use lattice::{Dof6, Equilibrium, Lattice, Supports, Tolerance};
 pub use particles::{Integrator, Particles};
+pub use static_body::StaticBody;
+pub use watch::{Bonded, Break, Site, Watch};

@@ -1,6 +1,8 @@
-//! The virtual laboratory: tests on bonded samples, each by one static solve, and vibrations by explicit steps.
+//! The virtual laboratory: elastic tests on bonded samples, each by one static solve; tests to failure; vibrations by
+//! explicit steps.
 
 mod bending;
+mod breaking;
 mod gauge;
 mod hydrostatic;
 mod shear;
@@ -8,6 +10,7 @@ mod tension;
 mod vibration;
 
 pub use bending::{Bending, Torsion, bending, torsion};
+pub use breaking::{Broken, Diameter, Failure, FailureOptions, Geometry, break_sample, diameter, geometry, hondros};
 pub use gauge::Gauge;
 pub use hydrostatic::{Hydrostatic, hydrostatic};
 pub use shear::{Shear, shear};

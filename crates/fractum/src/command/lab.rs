@@ -11,6 +11,7 @@ use fractum_io::case::{Dimension, parse_quantity};
 use fractum_pack::{Domain, PackSpec, Packing, pack};
 
 use super::convergence::{Diagram, Series, svg};
+use super::lab_break::{self, BreakArguments};
 use super::shape::{Convention, ShapeArguments, pressure};
 
 /// Arguments of `fractum lab`.
@@ -18,6 +19,8 @@ use super::shape::{Convention, ShapeArguments, pressure};
 pub(crate) enum LabCommand {
     /// One test on one sample.
     Test(Box<TestArguments>),
+    /// Load a sample until it is in two.
+    Break(Box<BreakArguments>),
     /// Tables 5 to 8 of Nguyen et al. (2019): the published micro-parameters on our own packings.
     Tables {
         /// Packings per row.
@@ -98,6 +101,7 @@ fn wrong(error: CalibrateError) -> Failure {
 pub(crate) fn run(command: &LabCommand) -> Result<ExitCode, Failure> {
     match command {
         LabCommand::Test(arguments) => test(arguments)?,
+        LabCommand::Break(arguments) => lab_break::run(arguments)?,
         LabCommand::Tables { seeds } => tables(*seeds).map_err(wrong)?,
         LabCommand::Convergence { seeds, largest, output } => convergence(*seeds, *largest, output)?,
     }

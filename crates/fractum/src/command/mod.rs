@@ -3,6 +3,7 @@
 mod calibrate;
 mod convergence;
 mod lab;
+mod lab_break;
 mod mesh;
 mod new;
 mod pack;

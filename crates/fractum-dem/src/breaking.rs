@@ -1,0 +1,402 @@
+//! Quasi-static breaking, event by event.
+
+use fractum_math::Vec3;
+use serde::Serialize;
+
+use crate::criterion::{Criterion, Mode};
+use crate::graph::BondGraph;
+use crate::watch::{Break, Site, Watch};
+use crate::{DemError, Dof6, Lattice, StaticBody, Supports, Tolerance};
+
+/// How many bonds break between two equilibria.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Batch {
+    /// What the site that is most overloaded releases.
+    One,
+    /// What every overloaded site releases.
+    #[default]
+    PerSite,
+}
+
+/// What is to be broken, and when to stop.
+#[derive(Clone, Debug)]
+pub struct Breaking<'a> {
+    /// When bonds break.
+    pub criterion: Criterion,
+    /// The bonds, in the order of the lattice.
+    pub pairs: &'a [[u32; 2]],
+    /// Particle radii [m].
+    pub radius: &'a [f64],
+    /// Volume fraction of the interior of the packing.
+    pub fraction: f64,
+    /// Volume of the body, that the facets of its bonds share [m³].
+    pub volume: f64,
+    /// Displacement (or rotation) of the supports that does work against the load, at load factor one.
+    pub displacement: f64,
+    /// How many bonds break between two equilibria.
+    pub batch: Batch,
+    /// Largest load factor.
+    pub limit: f64,
+    /// The body has lost its strength when cracks have come to rest and the load is below this share of its peak.
+    pub stop: f64,
+    /// When equilibrium is reached.
+    pub tolerance: Tolerance,
+}
+
+/// The load before bonds break, and what broke since the one before.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LoadPoint {
+    /// Displacement (or rotation) of the supports.
+    pub displacement: f64,
+    /// Force (or moment) that does work on it.
+    pub load: f64,
+    /// Elastic energy [J].
+    pub elastic: f64,
+    /// Work of the supports so far [J].
+    pub work: f64,
+    /// Bonds broken so far.
+    pub broken: usize,
+}
+
+/// A bond that broke.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Crack {
+    /// The bond.
+    pub bond: u32,
+    /// Its particles.
+    pub pair: [u32; 2],
+    /// Number of the equilibrium after which it broke.
+    pub event: usize,
+    /// Time [s] in dynamics, load factor at rest.
+    pub time: f64,
+    /// Load then.
+    pub load: f64,
+    /// Middle of the bond in the undeformed body [m].
+    pub position: Vec3,
+    /// Direction of the bond.
+    pub normal: Vec3,
+    /// Facet that the bond stands for: the facets of all bonds and their particles' centres fill the body [m²].
+    pub area: f64,
+    /// How it broke.
+    pub mode: Mode,
+    /// Its elastic energy when it broke [J].
+    pub energy: f64,
+}
+
+/// A point of the load curve that matters.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Point {
+    /// Displacement (or rotation) of the supports.
+    pub displacement: f64,
+    /// Force (or moment).
+    pub load: f64,
+    /// Bonds broken before.
+    pub broken: usize,
+}
+
+/// How a body broke.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The load when the first bond broke; none when nothing did.
+    pub first: Option<Point>,
+    /// The largest load.
+    pub peak: Point,
+    /// The load curve: a point before every breaking, and the last state.
+    pub curve: Vec<LoadPoint>,
+    /// What broke, in order.
+    pub cracks: Vec<Crack>,
+    /// Whether the body came apart or lost its strength; otherwise the largest load factor was reached.
+    pub separated: bool,
+    /// The site nearest to failure in the last state, with its ratio there.
+    pub closest: Option<Site>,
+    /// The bonds that are left.
+    pub graph: BondGraph,
+    /// Displacements [m] and rotations before the first bond broke, at load factor one.
+    pub first_state: Vec<Dof6>,
+    /// The same at the end, at load factor one.
+    pub last_state: Vec<Dof6>,
+    /// Equilibria found, and iterations for all of them.
+    pub effort: (usize, usize),
+    /// The same up to the peak.
+    pub effort_to_peak: (usize, usize),
+}
+
+/// Facet area of every bond: bonds and facets fill the body, V = Σ A l/3.
+pub(crate) fn facet_area(volume: f64, position: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
+    let length: f64 = pairs.iter().map(|p| (position[p[1] as usize] - position[p[0] as usize]).norm()).sum();
+    3.0 * volume / length
+}
+
+/// Loads a body until it comes apart: the supports move until the first site fails, bonds break, equilibrium is found
+/// again with the supports where they are; when no site fails any more, the supports move on to the next failure.
+///
+/// The solution is linear between two breaks, so that the load of the next failure is known and no step can miss it.
+///
+/// - `supports`, `guess`: displacements at load factor one
+/// - `separated`: whether the body has come apart; asked after every equilibrium past the first break
+///
+/// # Errors
+/// An impossible criterion; [`DemError::NotConverged`].
+pub fn quasi_static(
+    lattice: Lattice,
+    supports: Supports,
+    guess: &[Dof6],
+    what: &Breaking<'_>,
+    separated: impl Fn(&BondGraph) -> bool,
+) -> Result<Outcome, DemError> {
+    let mut graph = BondGraph::new(lattice.len(), what.pairs);
+    let mut watch = Watch::new(what.criterion, &graph, what.radius, what.fraction)?;
+    let area = facet_area(what.volume, lattice.position(), what.pairs);
+    let mut body = StaticBody::new(lattice, supports, guess, what.tolerance)?;
+    let first_state = body.state();
+    let (mut curve, mut cracks) = (Vec::<LoadPoint>::new(), Vec::new());
+    let (mut first, mut peak) = (None, Point { displacement: 0.0, load: 0.0, broken: 0 });
+    let (mut factor, mut work) = (0.0f64, 0.0);
+    let mut apart = false;
+    let mut effort_to_peak = (0, 0);
+    let mut breaks: Vec<Break> = Vec::new();
+    let mut sites: Vec<Site> = Vec::new();
+    for event in 1.. {
+        let energy = body.energy();
+        watch.look(&body, &graph, if factor > 0.0 { 1.0 / factor } else { f64::INFINITY });
+        let worst = watch.worst();
+        let held = factor * 2.0 * energy / what.displacement;
+        // Where nothing is over at this load, the load rises to the next failure.
+        let failing = worst.filter(|_| !watch.over().is_empty());
+        let weak = failing.is_none() && held < what.stop * peak.load;
+        apart = !cracks.is_empty() && (weak || separated(&graph));
+        let last = curve.last().copied();
+        let before = factor;
+        if failing.is_none() && !apart {
+            factor = worst.map_or(what.limit, |w| (1.0 / w.ratio).max(factor)).min(what.limit);
+        }
+        let (displacement, load) = (factor * what.displacement, factor * 2.0 * energy / what.displacement);
+        if factor > before {
+            // Between two breaks the load is proportional; at a break the supports stand still.
+            work = last.map_or(0.0, |l| l.work) + 0.5 * (load + held) * (factor - before) * what.displacement;
+        }
+        curve.push(LoadPoint { displacement, load, elastic: factor * factor * energy, work, broken: graph.broken() });
+        if load > peak.load {
+            peak = Point { displacement, load, broken: graph.broken() };
+            effort_to_peak = body.effort();
+        }
+        let reached = failing.is_none() && worst.is_none_or(|w| w.ratio * what.limit < 1.0);
+        if apart || reached {
+            break;
+        }
+        let Some(worst) = worst else { break };
+        first.get_or_insert(Point { displacement, load, broken: 0 });
+        sites.clear();
+        match (failing, what.batch) {
+            (Some(_), Batch::PerSite) => sites.extend_from_slice(watch.over()),
+            _ => sites.push(worst),
+        }
+        breaks.clear();
+        sites.iter().for_each(|site| watch.breaks(site, &body, &graph, &mut breaks));
+        for &Break { bond, mode } in &breaks {
+            let energy = factor * factor * body.bond_energy(bond);
+            if graph.break_bond(bond) {
+                let pair = what.pairs[bond as usize];
+                let [a, b] = pair.map(|i| body.lattice().position()[i as usize]);
+                let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
+                cracks.push(Crack { bond, pair, event, time: factor, load, position, normal, area, mode, energy });
+                body.break_bond(bond);
+                watch.bond_broken(bond, &graph);
+            }
+        }
+        body.solve()?;
+    }
+    let closest = watch.worst().map(|w| Site { ratio: w.ratio * factor, ..w });
+    let (last_state, effort) = (body.state(), body.effort());
+    Ok(Outcome {
+        first,
+        peak,
+        curve,
+        cracks,
+        separated: apart,
+        closest,
+        graph,
+        first_state,
+        last_state,
+        effort,
+        effort_to_peak,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::BeamSection;
+    use crate::criterion::{BeamRankine, Level, Principal};
+    use crate::watch::Bonded;
+    use fractum_math::Sym3;
+
+    /// A jittered cubic bar along x, bonded to nearest neighbours and along one diagonal.
+    fn bar(size: [usize; 3]) -> (Vec<Vec3>, Vec<[u32; 2]>) {
+        let id = |s: [usize; 3]| ((s[0] * size[1] + s[1]) * size[2] + s[2]) as u32;
+        let (mut position, mut pairs) = (Vec::new(), Vec::new());
+        for x in 0..size[0] {
+            for y in 0..size[1] {
+                for z in 0..size[2] {
+                    let jitter = |a: usize| 0.08 * ((id([x, y, z]) as usize * 3 + a) as f64 * 12.9898).sin();
+                    position.push(Vec3::new(x as f64 + jitter(0), y as f64 + jitter(1), z as f64 + jitter(2)));
+                    for step in [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1]] {
+                        let t = [x + step[0], y + step[1], z + step[2]];
+                        if (0..3).all(|a| t[a] < size[a]) {
+                            pairs.push([id([x, y, z]), id(t)]);
+                        }
+                    }
+                }
+            }
+        }
+        pairs.sort_unstable();
+        (position, pairs)
+    }
+
+    fn pull(size: [usize; 3], criterion: Criterion, limit: f64, residual: f64) -> Outcome {
+        let (position, pairs) = bar(size);
+        let n = position.len();
+        let face = size[1] * size[2];
+        let lattice = Lattice::new(&position, &pairs, BeamSection::new(1e9, 0.3).unwrap(), 0.5).unwrap();
+        let mut supports = Supports::none(n);
+        (0..face).for_each(|i| supports.set(i as u32, 0, 0.0));
+        (n - face..n).for_each(|i| supports.set(i as u32, 0, 1e-3));
+        let last = (size[0] - 1) as f64;
+        let guess: Vec<Dof6> = position.iter().map(|x| [1e-3 * x.x / last, 0.0, 0.0, 0.0, 0.0, 0.0]).collect();
+        let radius = vec![0.5; n];
+        let tolerance = Tolerance { residual, ..Tolerance::default() };
+        let what = Breaking {
+            criterion,
+            pairs: &pairs,
+            radius: &radius,
+            fraction: 0.52,
+            volume: n as f64,
+            displacement: 1e-3,
+            batch: Batch::PerSite,
+            limit,
+            stop: 1e-3,
+            tolerance,
+        };
+        let (low, high): (Vec<u32>, Vec<u32>) = ((0..face as u32).collect(), ((n - face) as u32..n as u32).collect());
+        quasi_static(lattice, supports, &guess, &what, |graph| graph.parts().separate(&low, &high)).unwrap()
+    }
+
+    fn principal(level: Level) -> Criterion {
+        Criterion::Principal(Principal { tensile_strength: 1e5, compressive_strength: None, level })
+    }
+
+    #[test]
+    fn a_chain_breaks_at_the_strength_of_its_beams() {
+        let position: Vec<Vec3> = (0..4).map(|i| Vec3::x() * f64::from(i)).collect();
+        let pairs = [[0, 1], [1, 2], [2, 3]];
+        let section = BeamSection::new(1e9, 0.3).unwrap();
+        let lattice = Lattice::new(&position, &pairs, section, 0.5).unwrap();
+        let mut supports = Supports::none(4);
+        (0..6).for_each(|d| supports.set(0, d, 0.0));
+        supports.set(3, 0, 1e-3);
+        let what = Breaking {
+            criterion: Criterion::BeamRankine(BeamRankine { strength: 2e5, moments: Default::default() }),
+            pairs: &pairs,
+            radius: &[0.5; 4],
+            fraction: 0.5,
+            volume: 3.0,
+            displacement: 1e-3,
+            batch: Batch::PerSite,
+            limit: f64::INFINITY,
+            stop: 1e-3,
+            tolerance: Tolerance { residual: 1e-9, ..Tolerance::default() },
+        };
+        let outcome = quasi_static(lattice, supports, &[[0.0; 6]; 4], &what, |g| g.parts().count > 1).unwrap();
+        let force = 2e5 * std::f64::consts::PI * 0.09;
+        assert!((outcome.peak.load / force - 1.0).abs() < 1e-8 && outcome.separated);
+        // All three beams bear the same to round-off: whether one or more of them go, the chain is apart at once.
+        assert_eq!(outcome.curve.len(), 2);
+        let energy: f64 = outcome.cracks[0].energy * 3.0;
+        let last = outcome.curve.last().unwrap();
+        assert!((last.work / energy - 1.0).abs() < 1e-6 && last.elastic < 1e-9 * energy);
+        assert_eq!(outcome.cracks[0].area, 3.0);
+    }
+
+    #[test]
+    fn a_bar_comes_apart_and_its_load_curve_does_the_work() {
+        for level in [Level::Own, Level::Neighbours, Level::Second] {
+            let outcome = pull([8, 4, 4], principal(level), f64::INFINITY, 1e-6);
+            assert!(outcome.separated && outcome.cracks.len() >= 16, "{level:?}: {}", outcome.cracks.len());
+            assert!(outcome.peak.load >= outcome.first.unwrap().load);
+            assert!(outcome.curve.windows(2).all(|w| w[1].displacement >= w[0].displacement));
+            let last = outcome.curve.last().unwrap();
+            let broken: f64 = outcome.cracks.iter().map(|c| c.energy).sum();
+            // Sudden equilibria release more than the broken bonds had.
+            assert!(last.work > broken && last.work.is_finite());
+        }
+    }
+
+    #[test]
+    fn a_bar_that_holds_says_how_close_it_came() {
+        let broken = pull([6, 3, 3], principal(Level::Neighbours), f64::INFINITY, 1e-6);
+        let first = broken.first.unwrap().displacement / 1e-3;
+        let held = pull([6, 3, 3], principal(Level::Neighbours), 0.8 * first, 1e-6);
+        assert!(held.first.is_none() && held.cracks.is_empty() && !held.separated);
+        assert!((held.closest.unwrap().ratio - 0.8).abs() < 1e-6);
+        assert!((held.peak.displacement / 1e-3 - 0.8 * first).abs() < 1e-9 * first);
+    }
+
+    #[test]
+    fn the_same_bits_on_any_number_of_threads() {
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let outcome = pool.install(|| pull([14, 10, 10], principal(Level::Neighbours), f64::INFINITY, 1e-3));
+            let bits: Vec<u64> = outcome.curve.iter().map(|p| p.load.to_bits()).collect();
+            (bits, outcome.cracks.iter().map(|c| c.bond).collect::<Vec<_>>())
+        };
+        let one = run(1);
+        assert_eq!(one, run(2));
+        assert_eq!(one, run(7));
+    }
+
+    #[test]
+    fn neighbourhoods_and_equilibria_follow_the_broken_bonds() {
+        let (position, pairs) = bar([7, 4, 4]);
+        let n = position.len();
+        let section = BeamSection::new(1e9, 0.3).unwrap();
+        let lattice = Lattice::new(&position, &pairs, section, 0.5).unwrap();
+        let mut supports = Supports::none(n);
+        (0..16).for_each(|i| supports.set(i, 0, 0.0));
+        (n as u32 - 16..n as u32).for_each(|i| supports.set(i, 0, 1e-3));
+        let tolerance = Tolerance { residual: 1e-10, ..Tolerance::default() };
+        let guess = vec![[0.0; 6]; n];
+        for level in [Level::Own, Level::Neighbours, Level::Second] {
+            let radius: Vec<f64> = (0..n).map(|i| 0.4 + 0.1 * (i as f64).sin().abs()).collect();
+            let mut graph = BondGraph::new(n, &pairs);
+            let mut body = StaticBody::new(lattice.clone(), supports.clone(), &guess, tolerance).unwrap();
+            let mut watch = Watch::new(principal(level), &graph, &radius, 0.6).unwrap();
+            for bond in (0..pairs.len() as u32).filter(|b| b % 5 == 2) {
+                graph.break_bond(bond);
+                body.break_bond(bond);
+                watch.bond_broken(bond, &graph);
+            }
+            body.solve().unwrap();
+            watch.look(&body, &graph, f64::INFINITY);
+            // From scratch, with the bonds that are left.
+            let left: Vec<[u32; 2]> = (0..pairs.len()).filter(|b| b % 5 != 2).map(|b| pairs[b]).collect();
+            let fresh = Lattice::new(&position, &left, section, 0.5).unwrap();
+            let body2 = StaticBody::new(fresh, supports.clone(), &guess, tolerance).unwrap();
+            let graph2 = BondGraph::new(n, &left);
+            let mut watch2 = Watch::new(principal(level), &graph2, &radius, 0.6).unwrap();
+            watch2.look(&body2, &graph2, f64::INFINITY);
+            assert!((body.energy() / body2.energy() - 1.0).abs() < 1e-8);
+            let size = watch2.stress().iter().map(|s| s.0[0].abs()).fold(0.0, f64::max);
+            for (a, b) in watch.stress().iter().zip(watch2.stress()) {
+                assert!((*a - *b).0.iter().all(|d| d.abs() < 1e-6 * size), "{a:?} {b:?}");
+            }
+            // The dyads of a bar under tension add up to its load times its length.
+            let mut dyads = vec![Sym3::ZERO; n];
+            body.dyads(&mut dyads);
+            let virial: f64 = dyads.iter().map(|d| d.0[0]).sum();
+            let reach = |i: u32| body.reaction(i)[0] * position[i as usize].x;
+            let held: f64 = (0..16).chain(n as u32 - 16..n as u32).map(reach).sum();
+            assert!((virial / held - 1.0).abs() < 1e-6, "{virial} {held}");
+        }
+    }
+}

@@ -1,0 +1,86 @@
+use serde::{Deserialize, Serialize};
+
+use super::{BondLoad, Mode};
+use crate::BeamSection;
+
+/// Largest principal stress in a cohesive beam against its strength (Jebahi et al. 2015, eqs. 4.1–4.3):
+/// σ = ½ (σ_n + √(σ_n² + 4 τ²)) with σ_n = N/S + M r/I and τ = r M_x/I₀.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BeamRankine {
+    /// Strength of the beams [Pa].
+    pub strength: f64,
+    /// Which bending moment counts.
+    #[serde(default)]
+    pub moments: EndMoments,
+}
+
+/// Which bending moment of a beam the criterion takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EndMoments {
+    /// M = ½ |M₁ + M₂|, as printed: it is blind to uniform bending, in which the moments on the two ends are opposite.
+    #[default]
+    Mean,
+    /// M = max(|M₁|, |M₂|): the largest in the beam.
+    Largest,
+}
+
+impl BeamRankine {
+    /// Stress of a beam over its strength; not negative.
+    #[inline]
+    pub fn ratio(&self, load: &BondLoad, section: &BeamSection) -> f64 {
+        let (normal, bending, shear) = self.stresses(load, section);
+        let sum = normal + bending;
+        (0.5 * (sum + (sum * sum + 4.0 * shear * shear).sqrt()) / self.strength).max(0.0)
+    }
+
+    /// What contributes most.
+    pub fn mode(&self, load: &BondLoad, section: &BeamSection) -> Mode {
+        let (normal, bending, shear) = self.stresses(load, section);
+        if normal >= bending && normal >= shear {
+            Mode::Tension
+        } else if bending >= shear {
+            Mode::Bending
+        } else {
+            Mode::Torsion
+        }
+    }
+
+    /// N/S, M r/I, and r M_x/I₀ [Pa].
+    #[inline]
+    fn stresses(&self, load: &BondLoad, section: &BeamSection) -> (f64, f64, f64) {
+        let r = section.radius;
+        let area = std::f64::consts::PI * r * r;
+        let [first, second] = load.bending;
+        let moment = match self.moments {
+            EndMoments::Mean => 0.5 * (first + second).norm(),
+            EndMoments::Largest => first.norm_squared().max(second.norm_squared()).sqrt(),
+        };
+        // I = S r²/4, I₀ = S r²/2.
+        (load.normal / area, 4.0 * moment / (area * r), 2.0 * load.torsion.abs() / (area * r))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fractum_math::Vec3;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn pure_loads_have_the_stresses_of_the_textbook() {
+        let section = BeamSection::new(1.0, 0.5).unwrap();
+        let beam = BeamRankine { strength: 1.0, moments: EndMoments::Largest };
+        let (s, i) = (PI * 0.25, PI * 0.5f64.powi(4) / 4.0);
+        let pull = BondLoad { normal: 3.0, ..BondLoad::default() };
+        assert!((beam.ratio(&pull, &section) - 3.0 / s).abs() < 1e-12);
+        assert_eq!(beam.ratio(&BondLoad { normal: -3.0, ..pull }, &section), 0.0);
+        let twist = BondLoad { torsion: -2.0, ..BondLoad::default() };
+        assert!((beam.ratio(&twist, &section) - 2.0 * 0.5 / (2.0 * i)).abs() < 1e-12);
+        // Uniform bending: opposite moments on the two ends.
+        let bend = BondLoad { bending: [Vec3::y() * 2.0, Vec3::y() * -2.0], ..BondLoad::default() };
+        assert!((beam.ratio(&bend, &section) - 2.0 * 0.5 / i).abs() < 1e-12);
+        assert_eq!(BeamRankine { moments: EndMoments::Mean, ..beam }.ratio(&bend, &section), 0.0);
+        assert_eq!([pull, bend, twist].map(|l| beam.mode(&l, &section)), [Mode::Tension, Mode::Bending, Mode::Torsion]);
+    }
+}

@@ -1,0 +1,40 @@
+use fractum_math::Sym3;
+use serde::{Deserialize, Serialize};
+
+use super::{Level, Mode, Release, StressCriterion};
+
+/// Drucker–Prager on the virial stress: (α I₁ + √J₂)/k with α = (f_c − f_t)/(√3 (f_c + f_t)) and
+/// k = 2 f_c f_t/(√3 (f_c + f_t)), which has both uniaxial strengths. The bond nearest to the first principal
+/// direction breaks.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DruckerPrager {
+    /// Tensile strength f_t [Pa].
+    pub tensile_strength: f64,
+    /// Uniaxial compressive strength f_c, a positive number [Pa].
+    pub compressive_strength: f64,
+    /// Over which particles stress is taken.
+    #[serde(default)]
+    pub level: Level,
+}
+
+impl StressCriterion for DruckerPrager {
+    #[inline]
+    fn bound(&self, stress: &Sym3) -> f64 {
+        self.ratio(stress)
+    }
+
+    #[inline]
+    fn ratio(&self, stress: &Sym3) -> f64 {
+        let (ft, fc) = (self.tensile_strength, self.compressive_strength);
+        let root = 3f64.sqrt();
+        let alpha_over_k = (fc - ft) / (2.0 * fc * ft);
+        let one_over_k = root * (fc + ft) / (2.0 * fc * ft);
+        (alpha_over_k * stress.trace() + one_over_k * stress.j2().sqrt()).max(0.0)
+    }
+
+    fn release(&self, stress: &Sym3) -> Release {
+        let (values, axes) = stress.eigen();
+        let mode = if values[0] + values[2] > 0.0 { Mode::Tension } else { Mode::Shear };
+        Release::Nearest([axes.column(0).into_owned(); 2], mode)
+    }
+}

@@ -1,0 +1,28 @@
+use fractum_math::Sym3;
+use serde::{Deserialize, Serialize};
+
+use super::{Mode, Release, StressCriterion};
+
+/// Mean virial stress of a particle against a strength; the particle loses all its bonds (Jebahi et al. 2015, eqs.
+/// 4.23–4.24, with the sphere's own volume).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Hydrostatic {
+    /// Strength [Pa].
+    pub strength: f64,
+}
+
+impl StressCriterion for Hydrostatic {
+    #[inline]
+    fn bound(&self, stress: &Sym3) -> f64 {
+        self.ratio(stress)
+    }
+
+    #[inline]
+    fn ratio(&self, stress: &Sym3) -> f64 {
+        (stress.trace() / (3.0 * self.strength)).max(0.0)
+    }
+
+    fn release(&self, _: &Sym3) -> Release {
+        Release::All(Mode::Tension)
+    }
+}

@@ -1,0 +1,261 @@
+//! When a bond breaks: criteria, each in its file, behind one interface.
+//!
+//! Every criterion is a *ratio* of what a bond or a particle bears to what it can bear, homogeneous of degree one: a
+//! load twice as large has twice the ratio, so that a linear solution tells the load of the first break. A criterion of
+//! stress looks at the virial stress of a particle and its neighbours, one of beams at the bond itself.
+
+mod beam_rankine;
+mod drucker_prager;
+mod hydrostatic;
+mod mohr_coulomb;
+mod principal;
+
+pub use beam_rankine::{BeamRankine, EndMoments};
+pub use drucker_prager::DruckerPrager;
+pub use hydrostatic::Hydrostatic;
+pub use mohr_coulomb::MohrCoulomb;
+pub use principal::Principal;
+
+use fractum_math::{Sym3, Vec3};
+use serde::{Deserialize, Serialize};
+
+use crate::DemError;
+
+/// What a bond bears.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BondLoad {
+    /// Axial force [N], positive in tension.
+    pub normal: f64,
+    /// Bending moments at the two ends, perpendicular to the bond, as they act on the particles' side [N m].
+    pub bending: [Vec3; 2],
+    /// Torsional moment [N m].
+    pub torsion: f64,
+}
+
+/// How a bond broke.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// Pulled apart.
+    Tension,
+    /// Crushed.
+    Compression,
+    /// Sheared off, under compression or by friction-like criteria.
+    Shear,
+    /// Bent.
+    Bending,
+    /// Twisted.
+    Torsion,
+}
+
+impl Mode {
+    /// All modes, in the order of their codes in result files.
+    pub const ALL: [Mode; 5] = [Mode::Tension, Mode::Compression, Mode::Shear, Mode::Bending, Mode::Torsion];
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Mode::Tension => "tension",
+            Mode::Compression => "compression",
+            Mode::Shear => "shear",
+            Mode::Bending => "bending",
+            Mode::Torsion => "torsion",
+        }
+    }
+}
+
+/// Over which particles the stress of a particle is taken. Particles count only while bonds lead to them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Level {
+    /// The particle alone.
+    Own,
+    /// The particle and those bonded to it.
+    #[default]
+    Neighbours,
+    /// Their partners too.
+    Second,
+}
+
+impl Level {
+    /// Level 0, 1 or 2.
+    pub fn from_number(level: u8) -> Option<Self> {
+        [Level::Own, Level::Neighbours, Level::Second].get(level as usize).copied()
+    }
+}
+
+/// Which bonds of an overloaded particle go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Release {
+    /// All of them.
+    All(Mode),
+    /// The one nearest to one of these directions (unit vectors; both senses).
+    Nearest([Vec3; 2], Mode),
+}
+
+/// A criterion on the stress of a particle. It sees one tensor, never the body.
+pub trait StressCriterion: Sync {
+    /// Largest value that [`StressCriterion::ratio`] can have for this stress, cheaply: without eigenvalues.
+    fn bound(&self, stress: &Sym3) -> f64;
+
+    /// Stress over strength: one where the particle fails, proportional to the stress.
+    fn ratio(&self, stress: &Sym3) -> f64;
+
+    /// What breaks.
+    fn release(&self, stress: &Sym3) -> Release;
+}
+
+/// When bonds break.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Criterion {
+    /// Largest principal stress in the beam itself.
+    BeamRankine(BeamRankine),
+    /// Mean stress of a particle; all its bonds go.
+    Hydrostatic(Hydrostatic),
+    /// Principal stress of a neighbourhood; one bond goes.
+    Principal(Principal),
+    /// Mohr–Coulomb with tension cut-off on the stress of a neighbourhood.
+    MohrCoulomb(MohrCoulomb),
+    /// Drucker–Prager on the stress of a neighbourhood.
+    DruckerPrager(DruckerPrager),
+}
+
+impl Criterion {
+    /// Refuses strengths that are not positive.
+    ///
+    /// # Errors
+    /// [`DemError::BadCriterion`].
+    pub fn check(&self) -> Result<(), DemError> {
+        let positive = |what, value: f64| {
+            let fine = value.is_finite() && value > 0.0;
+            if fine { Ok(()) } else { Err(DemError::BadCriterion { what, value, expected: "a positive number" }) }
+        };
+        match self {
+            Criterion::BeamRankine(c) => positive("strength of the beams", c.strength),
+            Criterion::Hydrostatic(c) => positive("hydrostatic strength", c.strength),
+            Criterion::Principal(c) => {
+                positive("tensile strength", c.tensile_strength)?;
+                c.compressive_strength.map_or(Ok(()), |s| positive("compressive strength", s))
+            }
+            Criterion::MohrCoulomb(c) => {
+                positive("tensile strength", c.tensile_strength)?;
+                positive("compressive strength", c.compressive_strength)?;
+                let fine = (0.0..std::f64::consts::FRAC_PI_2).contains(&c.friction_angle);
+                let (what, expected) = ("friction angle in radians", "0 to below pi/2");
+                if fine { Ok(()) } else { Err(DemError::BadCriterion { what, value: c.friction_angle, expected }) }
+            }
+            Criterion::DruckerPrager(c) => {
+                positive("tensile strength", c.tensile_strength)?;
+                positive("compressive strength", c.compressive_strength)
+            }
+        }
+    }
+
+    /// The same criterion with all its strengths multiplied.
+    pub fn scaled(self, factor: f64) -> Self {
+        match self {
+            Criterion::BeamRankine(c) => Criterion::BeamRankine(BeamRankine { strength: c.strength * factor, ..c }),
+            Criterion::Hydrostatic(c) => Criterion::Hydrostatic(Hydrostatic { strength: c.strength * factor }),
+            Criterion::Principal(c) => Criterion::Principal(Principal {
+                tensile_strength: c.tensile_strength * factor,
+                compressive_strength: c.compressive_strength.map(|s| s * factor),
+                ..c
+            }),
+            Criterion::MohrCoulomb(c) => Criterion::MohrCoulomb(MohrCoulomb {
+                tensile_strength: c.tensile_strength * factor,
+                compressive_strength: c.compressive_strength * factor,
+                ..c
+            }),
+            Criterion::DruckerPrager(c) => Criterion::DruckerPrager(DruckerPrager {
+                tensile_strength: c.tensile_strength * factor,
+                compressive_strength: c.compressive_strength * factor,
+                ..c
+            }),
+        }
+    }
+
+    /// Over which particles stress is taken; none for a criterion of beams.
+    pub fn level(&self) -> Option<Level> {
+        match self {
+            Criterion::BeamRankine(_) => None,
+            Criterion::Hydrostatic(_) => Some(Level::Own),
+            Criterion::Principal(c) => Some(c.level),
+            Criterion::MohrCoulomb(c) => Some(c.level),
+            Criterion::DruckerPrager(c) => Some(c.level),
+        }
+    }
+}
+
+/// Upper bound of the first principal value, from invariants.
+#[inline]
+fn first_bound(stress: &Sym3) -> f64 {
+    stress.trace() / 3.0 + 2.0 * (stress.j2() / 3.0).sqrt()
+}
+
+/// Lower bound of the last principal value, from invariants.
+#[inline]
+fn last_bound(stress: &Sym3) -> f64 {
+    stress.trace() / 3.0 - 2.0 * (stress.j2() / 3.0).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn criteria() -> Vec<Box<dyn StressCriterion>> {
+        let level = Level::Neighbours;
+        vec![
+            Box::new(Hydrostatic { strength: 2.0 }),
+            Box::new(Principal { tensile_strength: 2.0, compressive_strength: None, level }),
+            Box::new(Principal { tensile_strength: 2.0, compressive_strength: Some(15.0), level }),
+            Box::new(MohrCoulomb { tensile_strength: 2.0, compressive_strength: 15.0, friction_angle: 0.6, level }),
+            Box::new(DruckerPrager { tensile_strength: 2.0, compressive_strength: 15.0, level }),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn bounds_hold_and_ratios_grow_with_the_stress(c in prop::array::uniform6(-9.0f64..9.0), factor in 0.1f64..7.0) {
+            let stress = Sym3(c);
+            for criterion in criteria() {
+                let ratio = criterion.ratio(&stress);
+                prop_assert!(ratio >= 0.0);
+                prop_assert!(criterion.bound(&stress) >= ratio * (1.0 - 1e-9) - 1e-9);
+                prop_assert!((criterion.ratio(&(stress * factor)) - factor * ratio).abs() < 1e-6 * (1.0 + factor * ratio));
+            }
+        }
+
+        #[test]
+        fn ratios_do_not_depend_on_the_axes(c in prop::array::uniform6(-9.0f64..9.0), r in prop::array::uniform3(-3.0f64..3.0)) {
+            let q = fractum_math::Rotation::from_scaled_axis(Vec3::from(r)).to_rotation_matrix().into_inner();
+            let turned = Sym3::symmetric_part(&(q * Sym3(c).to_matrix() * q.transpose()));
+            for criterion in criteria() {
+                prop_assert!((criterion.ratio(&turned) - criterion.ratio(&Sym3(c))).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn uniaxial_strengths_are_the_given_ones() {
+        let along = |s: f64| Sym3::new(s, 0.0, 0.0, 0.0, 0.0, 0.0);
+        for criterion in &criteria()[1..] {
+            assert!((criterion.ratio(&along(2.0)) - 1.0).abs() < 1e-9);
+        }
+        for criterion in &criteria()[2..] {
+            assert!((criterion.ratio(&along(-15.0)) - 1.0).abs() < 1e-9);
+        }
+        assert!(criteria()[1].ratio(&along(-15.0)) < 1e-12);
+        assert!((criteria()[0].ratio(&Sym3::isotropic(2.0)) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn strengths_that_are_none_are_refused() {
+        let level = Level::Own;
+        let bad = Criterion::Principal(Principal { tensile_strength: -1.0, compressive_strength: None, level });
+        assert!(matches!(bad.check(), Err(DemError::BadCriterion { .. })));
+        let steep = MohrCoulomb { tensile_strength: 1.0, compressive_strength: 9.0, friction_angle: 2.0, level };
+        assert!(Criterion::MohrCoulomb(steep).check().is_err());
+        assert!(Criterion::Hydrostatic(Hydrostatic { strength: f64::NAN }).check().is_err());
+    }
+}

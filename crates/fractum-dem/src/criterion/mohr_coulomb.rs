@@ -1,0 +1,76 @@
+use fractum_math::{Sym3, Vec3};
+use serde::{Deserialize, Serialize};
+
+use super::{Level, Mode, Release, StressCriterion, first_bound, last_bound};
+
+/// Mohr–Coulomb with tension cut-off on the virial stress: max(σ₁/f_t, (N σ₁ − σ₃)/f_c) with
+/// N = (1 + sin φ)/(1 − sin φ), tension positive.
+///
+/// In tension the bond nearest to the first principal direction breaks; in shear the one nearest to a normal of the two
+/// planes on which shear slips, at 45° − φ/2 from the first principal direction towards the third.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MohrCoulomb {
+    /// Tensile strength f_t [Pa].
+    pub tensile_strength: f64,
+    /// Uniaxial compressive strength f_c, a positive number [Pa].
+    pub compressive_strength: f64,
+    /// Friction angle φ [rad].
+    pub friction_angle: f64,
+    /// Over which particles stress is taken.
+    #[serde(default)]
+    pub level: Level,
+}
+
+impl MohrCoulomb {
+    #[inline]
+    fn shear(&self, first: f64, last: f64) -> f64 {
+        let sine = self.friction_angle.sin();
+        ((1.0 + sine) / (1.0 - sine) * first - last) / self.compressive_strength
+    }
+}
+
+impl StressCriterion for MohrCoulomb {
+    #[inline]
+    fn bound(&self, stress: &Sym3) -> f64 {
+        let (first, last) = (first_bound(stress), last_bound(stress));
+        (first / self.tensile_strength).max(self.shear(first, last)).max(0.0)
+    }
+
+    #[inline]
+    fn ratio(&self, stress: &Sym3) -> f64 {
+        let [first, _, last] = stress.principal_values();
+        (first / self.tensile_strength).max(self.shear(first, last)).max(0.0)
+    }
+
+    fn release(&self, stress: &Sym3) -> Release {
+        let ([first, _, last], axes) = stress.eigen();
+        let (along, across): (Vec3, Vec3) = (axes.column(0).into_owned(), axes.column(2).into_owned());
+        if first / self.tensile_strength >= self.shear(first, last) {
+            return Release::Nearest([along; 2], Mode::Tension);
+        }
+        let angle = std::f64::consts::FRAC_PI_4 - 0.5 * self.friction_angle;
+        let normal = |sign: f64| along * angle.cos() + across * (sign * angle.sin());
+        Release::Nearest([normal(1.0), normal(-1.0)], Mode::Shear)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slip_planes_make_the_angle_of_coulomb_with_the_compression() {
+        let friction_angle = 0.6;
+        let criterion =
+            MohrCoulomb { tensile_strength: 1.0, compressive_strength: 10.0, friction_angle, level: Level::Neighbours };
+        let Release::Nearest(normals, Mode::Shear) = criterion.release(&Sym3::new(0.0, 0.1, -20.0, 0.0, 0.0, 0.0))
+        else {
+            panic!("compression does not slip");
+        };
+        // The normal of the slip plane lies at 45° + φ/2 from the compression.
+        for n in normals {
+            let angle = n.z.abs().acos();
+            assert!((angle - std::f64::consts::FRAC_PI_4 - 0.5 * friction_angle).abs() < 1e-9, "{angle}");
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! A bonded body at rest while its bonds break, each equilibrium found from the last.
+
+use fractum_math::{Sym3, Vec3};
+use rayon::prelude::*;
+
+use crate::conjugate::Iterate;
+use crate::criterion::BondLoad;
+use crate::lattice::{BLOCK, Dof6, HalfBond, Lattice, Stiffness, Supports, clear, dot};
+use crate::watch::Bonded;
+use crate::{BeamSection, DemError, Tolerance};
+
+/// Solves after which the unbalanced forces are computed afresh, so that round-off does not add up.
+const REFRESH: usize = 32;
+
+/// The first equilibrium is found to this share of the tolerance.
+const FIRST: f64 = 0.01;
+
+/// A lattice held by supports, in equilibrium; its bonds break one after another.
+///
+/// Breaking a bond changes the unbalanced forces of its two particles only, and the next solve starts from there.
+#[derive(Clone, Debug)]
+pub struct StaticBody {
+    lattice: Lattice,
+    supports: Supports,
+    iterate: Iterate,
+    tolerance: Tolerance,
+    /// Square of the support reactions at the first equilibrium: what unbalanced forces are compared with.
+    reference: f64,
+    solves: usize,
+    iterations: usize,
+}
+
+impl StaticBody {
+    /// Brings a lattice to equilibrium under its supports.
+    ///
+    /// - `guess`: displacements and rotations to start from
+    ///
+    /// # Errors
+    /// Array lengths; [`DemError::NotConverged`].
+    pub fn new(lattice: Lattice, supports: Supports, guess: &[Dof6], tolerance: Tolerance) -> Result<Self, DemError> {
+        // The first equilibrium tells the first break, and is compared with theory.
+        let first = Tolerance { residual: FIRST * tolerance.residual, ..tolerance };
+        let rest = lattice.solve(&supports, None, guess, first)?;
+        let x: Vec<Dof6> = rest.state.iter().map(|u| lattice.rescale(u, lattice.scale())).collect();
+        let n = x.len();
+        let mut body = StaticBody {
+            iterate: Iterate::new(&lattice, x, vec![[0.0; 6]; n]),
+            lattice,
+            supports,
+            tolerance,
+            reference: 0.0,
+            solves: 1,
+            iterations: rest.iterations,
+        };
+        let k = body.lattice.stiffness();
+        for i in 0..n {
+            let force = body.lattice.row(i, &body.iterate.x, &k);
+            let held = |d: &usize| body.supports.fixed[i] >> d & 1 == 1;
+            body.reference += (0..6).filter(held).map(|d| force[d] * force[d]).sum::<f64>();
+        }
+        body.refresh();
+        Ok(body)
+    }
+
+    /// Computes the unbalanced forces afresh.
+    fn refresh(&mut self) {
+        let Iterate { x, r, .. } = &mut self.iterate;
+        self.lattice.apply(x, &self.supports.fixed, r);
+        r.iter_mut().for_each(|r| *r = r.map(|v| -v));
+    }
+
+    /// Breaks a bond; equilibrium is lost until [`StaticBody::solve`].
+    ///
+    /// A particle that hangs on one last bond and that nothing holds bears no load, nor does its bond: it is taken out,
+    /// and so on along its chain. That is exact, and spares the solver the softest motions of a cracked body.
+    pub fn break_bond(&mut self, bond: u32) {
+        let ends = self.lattice.bond(bond).map(|end| end.other as usize);
+        self.loosen(bond);
+        for mut i in ends {
+            while self.supports.fixed[i] == 0
+                && let Some((last, next)) = self.lattice.last_bond(i)
+            {
+                self.loosen(last);
+                i = next;
+            }
+        }
+    }
+
+    /// Takes the stiffness of a bond away, with what that changes at its two particles.
+    fn loosen(&mut self, bond: u32) {
+        let ends = self.lattice.bond(bond).map(|end| end.other as usize);
+        self.lattice.break_bond(bond);
+        let k = self.lattice.stiffness();
+        for i in ends {
+            let mut force = self.lattice.row(i, &self.iterate.x, &k);
+            clear(&mut force, self.supports.fixed[i]);
+            self.iterate.r[i] = force.map(|v| -v);
+            // Recomputed and not subtracted, so that a particle without bonds has exactly none.
+            self.iterate.inverse[i] = self.lattice.diagonal_row(i, &k).map(|v| if v > 0.0 { 1.0 / v } else { 0.0 });
+        }
+    }
+
+    /// Finds the equilibrium again. Returns the number of iterations.
+    ///
+    /// # Errors
+    /// [`DemError::NotConverged`].
+    pub fn solve(&mut self) -> Result<usize, DemError> {
+        self.solves += 1;
+        if self.solves.is_multiple_of(REFRESH) {
+            self.refresh();
+        }
+        let target = self.tolerance.residual.powi(2) * self.reference;
+        let fixed = &self.supports.fixed;
+        let iterations = self.iterate.solve(&self.lattice, fixed, target, self.reference, self.tolerance)?;
+        self.iterations += iterations;
+        Ok(iterations)
+    }
+
+    /// Elastic energy ½ u·K u [J].
+    pub fn energy(&self) -> f64 {
+        let Iterate { x, r, .. } = &self.iterate;
+        let k = self.lattice.stiffness();
+        // Free forces are −r; those of supports are computed where there are supports.
+        let work = |i: usize| {
+            let mut force = r[i].map(|v| -v);
+            if self.supports.fixed[i] != 0 {
+                let row = self.lattice.row(i, x, &k);
+                (0..6).filter(|d| self.supports.fixed[i] >> d & 1 == 1).for_each(|d| force[d] = row[d]);
+            }
+            dot(&force, &x[i])
+        };
+        0.5 * (0..x.len()).map(work).sum::<f64>()
+    }
+
+    /// Displacements [m] and rotations.
+    pub fn state(&self) -> Vec<Dof6> {
+        self.iterate.x.iter().map(|u| self.lattice.rescale(u, 1.0 / self.lattice.scale())).collect()
+    }
+
+    /// Force [N] and moment [N m] that a support exerts on a particle.
+    pub fn reaction(&self, particle: u32) -> Dof6 {
+        let row = self.lattice.row(particle as usize, &self.iterate.x, &self.lattice.stiffness());
+        self.lattice.rescale(&row, self.lattice.scale())
+    }
+
+    /// The lattice with the bonds that hold.
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
+    /// Equilibria found, and iterations for all of them.
+    pub fn effort(&self) -> (usize, usize) {
+        (self.solves, self.iterations)
+    }
+
+    /// Elastic energy of a bond [J].
+    pub fn bond_energy(&self, bond: u32) -> f64 {
+        let [own, end] = self.lattice.bond(bond);
+        let (a, b) = (&self.iterate.x[end.other as usize], &self.iterate.x[own.other as usize]);
+        let k = self.lattice.stiffness();
+        let strained = Strained::of(own, a, b, &k);
+        let load = strained.load(own, &k);
+        let [first, second] = strained.turn;
+        0.5 * (load.normal * strained.stretch
+            + load.bending[0].dot(&first)
+            + load.bending[1].dot(&second)
+            + load.torsion * strained.twist)
+    }
+}
+
+/// How a bond is deformed.
+struct Strained {
+    /// Change of length [m].
+    stretch: f64,
+    /// Bending rotations of the ends against the chord.
+    turn: [Vec3; 2],
+    /// Relative rotation about the axis.
+    twist: f64,
+}
+
+impl Strained {
+    /// From the scaled states of the particle that owns `end` and of the other.
+    fn of(end: &HalfBond, own: &Dof6, other: &Dof6, k: &Stiffness) -> Self {
+        let n = Vec3::from(end.axis);
+        let du = Vec3::new(other[0] - own[0], other[1] - own[1], other[2] - own[2]);
+        let turn = |s: &Dof6| Vec3::new(s[3], s[4], s[5]) * k.scale;
+        let (a, b) = (turn(own), turn(other));
+        let chord = n.cross(&du) * end.inverse;
+        let across = |t: Vec3| t - n * t.dot(&n) - chord;
+        Strained { stretch: du.dot(&n), turn: [across(a), across(b)], twist: (b - a).dot(&n) }
+    }
+
+    fn load(&self, end: &HalfBond, k: &Stiffness) -> BondLoad {
+        let bend = 2.0 * k.bending * end.inverse;
+        let [a, b] = self.turn;
+        BondLoad {
+            normal: k.axial * end.inverse * self.stretch,
+            bending: [(a * 2.0 + b) * bend, (a + b * 2.0) * bend],
+            torsion: k.torsion * end.inverse * self.twist,
+        }
+    }
+}
+
+impl Bonded for StaticBody {
+    fn dyads(&self, out: &mut [Sym3]) {
+        let k = self.lattice.stiffness();
+        let x = &self.iterate.x;
+        out.par_chunks_mut(BLOCK).enumerate().for_each(|(block, out)| {
+            for (slot, out) in out.iter_mut().enumerate() {
+                let i = block * BLOCK + slot;
+                let own = &x[i];
+                let mut sum = [0.0; 6];
+                for end in self.lattice.ends(i).iter().filter(|end| end.inverse > 0.0) {
+                    let other = &x[end.other as usize];
+                    let n = end.axis;
+                    let du = [other[0] - own[0], other[1] - own[1], other[2] - own[2]];
+                    let s = [own[3] + other[3], own[4] + other[4], own[5] + other[5]].map(|v| v * k.scale);
+                    // l times the force on i, as in `Lattice::bond_forces`.
+                    let bend = 6.0 * k.bending * end.inverse;
+                    let transverse = 2.0 * bend * end.inverse;
+                    let along = (k.axial - transverse) * (du[0] * n[0] + du[1] * n[1] + du[2] * n[2]);
+                    let force = [
+                        along * n[0] + transverse * du[0] - bend * (s[1] * n[2] - s[2] * n[1]),
+                        along * n[1] + transverse * du[1] - bend * (s[2] * n[0] - s[0] * n[2]),
+                        along * n[2] + transverse * du[2] - bend * (s[0] * n[1] - s[1] * n[0]),
+                    ];
+                    for (sum, [a, b]) in sum.iter_mut().zip([[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]]) {
+                        *sum += n[a] * force[b] + n[b] * force[a];
+                    }
+                }
+                *out = Sym3(sum) * 0.25;
+            }
+        });
+    }
+
+    fn load(&self, bond: u32) -> BondLoad {
+        let [own, end] = self.lattice.bond(bond);
+        let (a, b) = (&self.iterate.x[end.other as usize], &self.iterate.x[own.other as usize]);
+        let k = self.lattice.stiffness();
+        Strained::of(own, a, b, &k).load(own, &k)
+    }
+
+    fn axis(&self, bond: u32) -> Vec3 {
+        Vec3::from(self.lattice.bond(bond)[0].axis)
+    }
+
+    fn section(&self) -> BeamSection {
+        self.lattice.section()
+    }
+}

@@ -1,0 +1,419 @@
+//! `fractum lab break`: a sample loaded until it is in two.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use fractum::{Failure, say};
+use fractum_calibrate::{Micro, Sample, lab, published};
+use fractum_dem::criterion::{
+    BeamRankine, Criterion, DruckerPrager, EndMoments, Hydrostatic, Level, Mode, MohrCoulomb, Principal,
+};
+use fractum_dem::{Batch, Dof6};
+use fractum_io::picture::{ColourMap, Paint, Picture, Spheres, View};
+use fractum_io::plot::{Axis, Chart, Mark, Series, Style};
+use fractum_io::vtk::{Field, PolyCells, PolyData};
+use fractum_io::{Compression, atomic};
+
+use super::shape::{Convention, ShapeArguments, pressure};
+
+/// Arguments of `fractum lab break`.
+#[derive(Args)]
+pub(crate) struct BreakArguments {
+    /// What is done to the sample.
+    #[arg(value_enum)]
+    test: Test,
+    #[command(flatten)]
+    shape: ShapeArguments,
+    /// Coordination of the bonds.
+    #[arg(long, default_value_t = 10.0)]
+    coordination: f64,
+    /// How the coordination is counted.
+    #[arg(long, value_enum, default_value = "interior")]
+    convention: Convention,
+    /// Beam radius over the mean particle radius.
+    #[arg(long, default_value_t = 0.348)]
+    radius_ratio: f64,
+    /// Young's modulus of the beams, such as "678 GPa".
+    #[arg(long, default_value = "678 GPa")]
+    beam_young: String,
+    /// When bonds break.
+    #[arg(long, value_enum, default_value = "principal")]
+    criterion: Kind,
+    /// Strength of the criterion, in tension, such as "60 MPa"; by default the one that gives the material 50 MPa
+    /// by eq. (22) of Nguyen et al. (2019).
+    #[arg(long)]
+    strength: Option<String>,
+    /// Strength of the criterion in compression, such as "600 MPa"; ten times --strength where a criterion needs one.
+    #[arg(long)]
+    compressive: Option<String>,
+    /// Friction angle of mohr-coulomb, in degrees.
+    #[arg(long, default_value_t = 35.0)]
+    friction_angle: f64,
+    /// Neighbours that the stress is taken over: 0 none, 1 those bonded to the particle, 2 theirs too.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(0..=2))]
+    level: u8,
+    /// Bending moment that the beam criterion takes.
+    #[arg(long, value_enum, default_value = "mean")]
+    moments: Moments,
+    /// What breaks between two equilibria: for every overloaded particle, or one bond only.
+    #[arg(long, value_enum, default_value = "site")]
+    batch: BatchArgument,
+    /// Largest nominal strain; a sample that holds says how close it came.
+    #[arg(long)]
+    limit: Option<f64>,
+    /// Load over its peak below which a sample whose cracks have come to rest has lost its strength; 0.02 in
+    /// tension, 0.9 elsewhere.
+    #[arg(long)]
+    stop: Option<f64>,
+    /// Unbalanced forces over the applied ones at which an equilibrium is accepted.
+    #[arg(long, default_value_t = 1e-3)]
+    residual: f64,
+    /// Folder for the results.
+    #[arg(short, long, default_value = "results/lab/break")]
+    output: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Test {
+    /// A box or cylinder pulled along x.
+    Tension,
+    /// A box or cylinder pressed along x.
+    Compression,
+    /// A box along x bent by rotations of its ends about z.
+    Bending,
+    /// A cylinder twisted.
+    Torsion,
+    /// A disc (short cylinder) pressed across its diameter by two arcs of 24 degrees.
+    Brazilian,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Kind {
+    /// Largest principal stress in the beam.
+    Beam,
+    /// Mean stress of the particle, which loses all its bonds.
+    Hydrostatic,
+    /// Largest principal stress of the neighbourhood.
+    Principal,
+    /// Mohr-Coulomb with tension cut-off.
+    MohrCoulomb,
+    /// Drucker-Prager.
+    DruckerPrager,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Moments {
+    Mean,
+    Largest,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum BatchArgument {
+    One,
+    Site,
+}
+
+impl From<Test> for lab::Failure {
+    fn from(test: Test) -> Self {
+        match test {
+            Test::Tension => lab::Failure::Tension,
+            Test::Compression => lab::Failure::Compression,
+            Test::Bending => lab::Failure::Bending,
+            Test::Torsion => lab::Failure::Torsion,
+            Test::Brazilian => lab::Failure::Brazilian,
+        }
+    }
+}
+
+/// Tensile strength of the material that the default strength of the criterion stands for [Pa].
+const DEFAULT_STRENGTH: f64 = 50e6;
+
+impl BreakArguments {
+    fn criterion(&self, sample: &Sample) -> Result<Criterion, Failure> {
+        let tensile_strength = match &self.strength {
+            Some(text) => pressure(text)?,
+            None => DEFAULT_STRENGTH / published::strength_ratio(self.radius_ratio, sample.network.coordination_all),
+        };
+        let given = self.compressive.as_deref().map(pressure).transpose()?;
+        let compressive_strength = given.unwrap_or(10.0 * tensile_strength);
+        let level = Level::from_number(self.level).unwrap_or_default();
+        Ok(match self.criterion {
+            Kind::Beam => {
+                let moments = match self.moments {
+                    Moments::Mean => EndMoments::Mean,
+                    Moments::Largest => EndMoments::Largest,
+                };
+                Criterion::BeamRankine(BeamRankine { strength: tensile_strength, moments })
+            }
+            Kind::Hydrostatic => Criterion::Hydrostatic(Hydrostatic { strength: tensile_strength }),
+            Kind::Principal => {
+                // Pressed samples need a strength in compression; elsewhere it is there when asked for.
+                let pressed = matches!(self.test, Test::Compression).then_some(compressive_strength);
+                Criterion::Principal(Principal { tensile_strength, compressive_strength: given.or(pressed), level })
+            }
+            Kind::MohrCoulomb => Criterion::MohrCoulomb(MohrCoulomb {
+                tensile_strength,
+                compressive_strength,
+                friction_angle: self.friction_angle.to_radians(),
+                level,
+            }),
+            Kind::DruckerPrager => {
+                Criterion::DruckerPrager(DruckerPrager { tensile_strength, compressive_strength, level })
+            }
+        })
+    }
+}
+
+/// Breaks a sample, reports and writes.
+pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
+    let wrong = |error: fractum_calibrate::CalibrateError| Failure::input(error.to_string());
+    let micro = Micro { radius_ratio: arguments.radius_ratio, young_modulus: pressure(&arguments.beam_young)? };
+    let packing = arguments.shape.packing()?;
+    let started = Instant::now();
+    let mut sample = Sample::new(packing, arguments.coordination, arguments.convention.into()).map_err(wrong)?;
+    sample.set_micro(micro).map_err(|error| Failure::input(error.to_string()))?;
+    let criterion = arguments.criterion(&sample)?;
+    let test: lab::Failure = arguments.test.into();
+    let mut options = lab::FailureOptions::new(test, criterion);
+    options.batch = match arguments.batch {
+        BatchArgument::One => Batch::One,
+        BatchArgument::Site => Batch::PerSite,
+    };
+    options.limit = arguments.limit.unwrap_or(f64::INFINITY);
+    options.stop = arguments.stop.unwrap_or(options.stop);
+    options.tolerance.residual = arguments.residual;
+    let broken = lab::break_sample(&sample, test, &options).map_err(wrong)?;
+    let seconds = started.elapsed().as_secs_f64();
+    let folder = &arguments.output;
+    atomic::create_folder(folder)?;
+    let summary = summary(&sample, test, &criterion, &broken, seconds);
+    atomic::write(&folder.join("summary.json"), serde_json::to_string_pretty(&summary).unwrap_or_default().as_bytes())?;
+    write(folder, &sample, &broken)?;
+    show(&sample, test, &criterion, &broken);
+    say!(
+        "{seconds:.1} s; load.csv, cracks.csv, broken.vtp, particles.vtp, load.svg, picture.png, summary.json in {}",
+        folder.display()
+    );
+    Ok(())
+}
+
+/// What the terminal shows.
+fn show(sample: &Sample, test: lab::Failure, criterion: &Criterion, broken: &lab::Broken) {
+    let outcome = &broken.outcome;
+    match (broken.first_break, outcome.closest) {
+        (Some(first), _) => {
+            say!("first break     {:.4e} Pa nominal stress", first);
+            say!("load peak       {:.4e} Pa after {} broken bonds", broken.strength, outcome.peak.broken);
+            say!("broken bonds    {} of {}", outcome.cracks.len(), sample.network.pairs.len());
+        }
+        (None, Some(site)) => say!(
+            "nothing broke up to {:.4e} Pa: the largest ratio is {:.4}, at {} {}",
+            broken.strength,
+            site.ratio,
+            if criterion.level().is_some() { "particle" } else { "bond" },
+            site.index
+        ),
+        (None, None) => say!("nothing bears anything"),
+    }
+    if let Some(g) = lab::geometry(sample, test, &outcome.cracks) {
+        let angle = g.angle.map_or(String::new(), |a| format!("; angle {a:.1} degrees"));
+        say!(
+            "crack           began at {:.3} of the radius or half length ({:.3} for the first twenty){angle}",
+            g.start,
+            g.early
+        );
+    }
+}
+
+fn summary(
+    sample: &Sample,
+    test: lab::Failure,
+    criterion: &Criterion,
+    broken: &lab::Broken,
+    seconds: f64,
+) -> serde_json::Value {
+    let outcome = &broken.outcome;
+    let parts = outcome.graph.parts();
+    let mut sizes = vec![0usize; parts.count];
+    parts.of.iter().for_each(|&p| sizes[p as usize] += 1);
+    sizes.sort_unstable_by(|a, b| b.cmp(a));
+    sizes.truncate(10);
+    let mut modes = serde_json::Map::new();
+    for mode in Mode::ALL {
+        let count = outcome.cracks.iter().filter(|c| c.mode == mode).count();
+        modes.insert(mode.word().into(), count.into());
+    }
+    let last = outcome.curve.last();
+    let diameter = (test == lab::Failure::Brazilian).then(|| {
+        // A state at load factor one has the load of the first break over its factor.
+        let factor = outcome.cracks.first().map_or(f64::NAN, |c| c.time);
+        let load = outcome.first.map_or(f64::NAN, |p| p.load) / factor;
+        lab::diameter(sample, &outcome.first_state, load)
+    });
+    serde_json::json!({
+        "test": test,
+        "criterion": criterion,
+        "particles": sample.packing.len(),
+        "seed": sample.packing.seed,
+        "bonds": sample.network.pairs.len(),
+        "coordination": { "all": sample.network.coordination_all, "interior": sample.network.coordination_interior },
+        "volume_fraction": sample.fraction,
+        "first_break": broken.first_break,
+        "strength": broken.strength,
+        "first": outcome.first,
+        "peak": outcome.peak,
+        "peak_strain": outcome.peak.displacement * broken.strain_per_displacement,
+        "separated": outcome.separated,
+        "closest": outcome.closest,
+        "broken_bonds": outcome.cracks.len(),
+        "modes": modes,
+        "crack_area": outcome.cracks.iter().map(|c| c.area).sum::<f64>(),
+        "crack": lab::geometry(sample, test, &outcome.cracks),
+        "fragments": { "count": parts.count, "largest": sizes },
+        "energy": {
+            "external": last.map(|l| l.work),
+            "elastic": last.map(|l| l.elastic),
+            "broken_bonds": outcome.cracks.iter().map(|c| c.energy).sum::<f64>(),
+        },
+        "diameter": diameter,
+        "equilibria": outcome.effort.0,
+        "iterations": outcome.effort.1,
+        "iterations_to_peak": outcome.effort_to_peak.1,
+        "seconds": seconds,
+    })
+}
+
+fn write(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Failure> {
+    let outcome = &broken.outcome;
+    let stress = broken.stress_per_load;
+    let mut text =
+        String::from("displacement,load,nominal stress [Pa],nominal strain,elastic [J],work [J],broken bonds\n");
+    for p in &outcome.curve {
+        let strain = p.displacement * broken.strain_per_displacement;
+        let (u, f, e, w, n) = (p.displacement, p.load, p.elastic, p.work, p.broken);
+        // Writing into a string has no way to fail.
+        let _ = writeln!(text, "{u:e},{f:e},{:e},{strain:e},{e:e},{w:e},{n}", f * stress);
+    }
+    atomic::write(&folder.join("load.csv"), text.as_bytes())?;
+    let mut text = String::from(
+        "bond,first,second,event,load factor,nominal stress [Pa],x [m],y [m],z [m],nx,ny,nz,area [m^2],mode,energy [J]\n",
+    );
+    for c in &outcome.cracks {
+        let ([i, j], x, n) = (c.pair, c.position, c.normal);
+        let _ = writeln!(
+            text,
+            "{},{i},{j},{},{:e},{:e},{:e},{:e},{:e},{:.6},{:.6},{:.6},{:e},{},{:e}",
+            c.bond,
+            c.event,
+            c.time,
+            c.load * stress,
+            x.x,
+            x.y,
+            x.z,
+            n.x,
+            n.y,
+            n.z,
+            c.area,
+            c.mode.word(),
+            c.energy
+        );
+    }
+    atomic::write(&folder.join("cracks.csv"), text.as_bytes())?;
+    let axis = |label: &str, unit: &str| Axis::new(label, unit);
+    let chart = Chart {
+        title: "Nominal stress against nominal strain".into(),
+        x: axis("nominal strain", "-"),
+        y: axis("nominal stress", "Pa"),
+        series: vec![Series::new(
+            "load",
+            outcome.curve.iter().map(|p| p.displacement * broken.strain_per_displacement).collect(),
+            outcome.curve.iter().map(|p| p.load * stress).collect(),
+            Style::Line,
+        )],
+        levels: Vec::new(),
+        marks: vec![Mark {
+            label: "peak".into(),
+            x: outcome.peak.displacement * broken.strain_per_displacement,
+            y: broken.strength,
+        }],
+    };
+    atomic::write(&folder.join("load.svg"), chart.to_svg().as_bytes())?;
+    fields(folder, sample, broken)
+}
+
+/// Files for ParaView, and the picture.
+fn fields(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Failure> {
+    let outcome = &broken.outcome;
+    let trouble = |error: fractum_io::vtk::VtkError| Failure::Output(error.into());
+    let points: Vec<[f64; 3]> = sample.packing.position.iter().map(|x| (*x).into()).collect();
+    let lines: Vec<[u32; 2]> = outcome.cracks.iter().map(|c| c.pair).collect();
+    let code = |mode: Mode| Mode::ALL.iter().position(|&m| m == mode).unwrap_or_default() as i32;
+    let modes: Vec<i32> = outcome.cracks.iter().map(|c| code(c.mode)).collect();
+    let events: Vec<i32> = outcome.cracks.iter().map(|c| c.event as i32).collect();
+    let column = |f: &dyn Fn(&fractum_dem::Crack) -> f64| outcome.cracks.iter().map(f).collect::<Vec<f64>>();
+    let (area, load, energy) = (column(&|c| c.area), column(&|c| c.load), column(&|c| c.energy));
+    PolyData {
+        points: &points,
+        cells: PolyCells::Lines(&lines),
+        point_data: &[],
+        cell_data: &[
+            Field::integer("mode", &modes),
+            Field::integer("event", &events),
+            Field::scalar("area", &area),
+            Field::scalar("load", &load),
+            Field::scalar("energy", &energy),
+        ],
+        time: None,
+    }
+    .write(&folder.join("broken.vtp"), Compression::default())
+    .map_err(trouble)?;
+    let parts = outcome.graph.parts();
+    let fragment: Vec<i32> = parts.of.iter().map(|&p| p as i32).collect();
+    let mut lost = vec![0.0; points.len()];
+    lines.iter().flatten().for_each(|&i| lost[i as usize] += 1.0);
+    let displacement = |state: &[Dof6]| state.iter().map(|u| [u[0], u[1], u[2]]).collect::<Vec<[f64; 3]>>();
+    let (first, last) = (displacement(&outcome.first_state), displacement(&outcome.last_state));
+    PolyData {
+        points: &points,
+        cells: PolyCells::Points,
+        point_data: &[
+            Field::scalar("radius", &sample.packing.radius),
+            Field::integer("fragment", &fragment),
+            Field::scalar("broken_bonds", &lost),
+            Field::vector("displacement_per_load_factor", &last),
+            Field::vector("displacement_per_load_factor_unbroken", &first),
+        ],
+        cell_data: &[],
+        time: None,
+    }
+    .write(&folder.join("particles.vtp"), Compression::default())
+    .map_err(trouble)?;
+    picture(&folder.join("picture.png"), sample, &points, &lost)
+}
+
+/// The sample cut open along its middle plane, coloured by the bonds that particles lost.
+fn picture(path: &Path, sample: &Sample, points: &[[f64; 3]], lost: &[f64]) -> Result<(), Failure> {
+    let (lower, upper) = sample.packing.domain.bounds();
+    let size = upper - lower;
+    // Look along the shortest side; x is the axis of cylinders, y the loaded direction.
+    let (direction, up) = if size.x < size.y.min(size.z) {
+        ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+    } else {
+        ([0.0, 0.0, -1.0], [0.0, 1.0, 0.0])
+    };
+    let half = |x: &[f64; 3]| {
+        let middle = (lower + upper) * 0.5;
+        (x[0] - middle.x) * direction[0] + (x[2] - middle.z) * direction[2] >= 0.0 || size.x > 3.0 * size.y
+    };
+    let kept: Vec<usize> = (0..points.len()).filter(|&i| half(&points[i])).collect();
+    let centres: Vec<[f64; 3]> = kept.iter().map(|&i| points[i]).collect();
+    let radii: Vec<f64> = kept.iter().map(|&i| sample.packing.radius[i]).collect();
+    let values: Vec<f64> = kept.iter().map(|&i| lost[i]).collect();
+    let spheres = Spheres { centres: &centres, radii: &radii, paint: Paint::Nodes(&values) };
+    let picture = Picture { spheres: &[spheres], map: ColourMap::Damage, range: (0.0, 5.0), ..Picture::default() };
+    let view = View { direction, up, ..View::default() };
+    let png = picture.render(&view).and_then(|image| image.to_png());
+    Ok(atomic::write(path, &png.map_err(|error| Failure::input(error.to_string()))?)?)
+}
