@@ -194,6 +194,43 @@ fn contact_of_debris_never_delivers_energy() {
 }
 
 #[test]
+fn a_free_body_keeps_its_momentum_while_it_breaks_and_its_debris_rubs() {
+    let (nodes, body) = jittered_box(CELLS, SIZE);
+    let body = Body { kinematics: Kinematics::Corotational, ..weak(&nodes, body.smoothed()) };
+    let mut solid = Solid::new(nodes, vec![body]).unwrap();
+    for i in 0..solid.velocity.len() {
+        // Sheared apart across the weak plane, pressed together, and turning.
+        let side = (solid.reference[i].x - 0.5 * SIZE.x).signum();
+        let turn = Vec3::new(20.0, 0.0, 30.0).cross(&solid.reference[i]);
+        solid.velocity[i] = Vec3::new(-0.3, 1.5, 0.5) * side + turn;
+    }
+    let mut scene = scene(solid, Vec::new(), Vec::new(), fine_settings(1.5e-3));
+    let of = |s: &Scene| -> (Vec3, Vec3) {
+        let (solid, half) = (&s.solid, 0.5 * s.clock.dt_before);
+        let mut sums = (Vec3::zeros(), s.debris.spin_momentum(solid));
+        for i in 0..solid.mass.len() {
+            let momentum = solid.velocity[i] * solid.mass[i];
+            sums.0 += momentum;
+            sums.1 += (solid.position(i) - solid.velocity[i] * half).cross(&momentum);
+        }
+        sums
+    };
+    scene.step(true).unwrap();
+    let (p, l) = of(&scene);
+    let (mut rubbed, mut held) = (0.0f64, false);
+    while !scene.is_finished() {
+        scene.step(true).unwrap();
+        rubbed = rubbed.max(scene.ledger().contact);
+        held |= scene.debris.touching().next().is_some() && scene.debris.state().attached.iter().any(|&a| a);
+    }
+    assert!(rubbed > 0.0 && held && scene.ledger().friction > 0.0, "debris on elements rubbed");
+    let (p_end, l_end) = of(&scene);
+    let (drift, turn) = ((p_end - p).norm() / l.norm(), (l_end - l).norm() / l.norm());
+    assert!(drift < 1e-11 && turn < 1e-10, "{drift:e} {turn:e}");
+    assert!(scene.ledger().residual_max_relative < 1e-3, "{:?}", scene.ledger());
+}
+
+#[test]
 fn the_same_bits_for_any_number_of_threads() {
     let state = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -122,6 +122,7 @@ impl Scene {
             work.friction += own.friction;
             work.damping += own.damping;
         }
+        self.debris.pass_on_torques(&mut self.solid);
         work
     }
 

@@ -5,6 +5,7 @@ use fractum_math::Vec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::holder::Holders;
 use super::radius::largest_radii;
 use crate::rigid::ContactWork;
 
@@ -14,8 +15,8 @@ const NONE: u32 = u32::MAX;
 /// Discrete elements at the nodes of removed elements, and their contacts.
 ///
 /// A particle sits on its node and shares its mass and translation: forces of its contacts act on the node in the same
-/// step. As long as an element holds the node it does not turn; after that it is a free sphere (a disc in the plane)
-/// with rotation of its own.
+/// step. As long as an element holds the node the particle turns with it and hands it its torques; after that it is a free
+/// sphere (a disc in the plane) with rotation of its own.
 #[derive(Clone, Debug)]
 pub struct Debris {
     /// Surface of each body.
@@ -34,6 +35,9 @@ pub struct Debris {
     /// Particle of each node, or [`NONE`].
     particle_of: Vec<u32>,
     torque: Vec<Vec3>,
+    holders: Holders,
+    /// Angular velocity of each particle as contact sees it: its own, or that of its holder [rad/s].
+    turning: Vec<Vec3>,
 }
 
 /// What changes in the debris during a run.
@@ -43,10 +47,8 @@ pub struct DebrisState {
     pub nodes: Vec<u32>,
     /// Whether some element still holds the particle.
     pub attached: Vec<bool>,
-    /// Angular velocity at the half step [rad/s].
+    /// Angular velocity of free particles at the half step, zero of attached ones [rad/s].
     pub spin: Vec<Vec3>,
-    /// Elements that still hold each node of the solid; empty before the first particle.
-    live_elements: Vec<u16>,
     /// Pairs that may touch, ascending.
     pairs: Vec<Pair>,
     /// Positions at the last search [m].
@@ -105,6 +107,8 @@ impl Debris {
             state: DebrisState::default(),
             particle_of: vec![NONE; solid.reference.len()],
             torque: Vec::new(),
+            holders: Holders::default(),
+            turning: Vec::new(),
         }
     }
 
@@ -171,11 +175,11 @@ impl Debris {
     pub(crate) fn spin(&self, node: u32) -> Vec3 {
         match self.particle_of[node as usize] {
             NONE => Vec3::zeros(),
-            particle => self.state.spin[particle as usize],
+            particle => self.turning[particle as usize],
         }
     }
 
-    /// Adds a torque on the particle at a node [N m]; a node that an element holds does not turn.
+    /// Adds a torque on the particle at a node [N m].
     pub(crate) fn add_torque(&mut self, node: u32, torque: Vec3) {
         let particle = self.particle_of[node as usize];
         if particle != NONE {
@@ -194,24 +198,23 @@ impl Debris {
     /// element to contact.
     pub(crate) fn release(&mut self, solid: &Solid, removed: &[(usize, u32)]) {
         self.prepare(solid);
-        if self.state.live_elements.is_empty() {
-            self.state.live_elements = live_elements(solid, removed);
+        if self.holders.is_empty() {
+            self.holders = Holders::new(solid);
         }
         for &(body, element) in removed {
             let corners = solid.body(body).shape.node_count();
             for &node in &solid.body(body).elements[element as usize][..corners] {
-                self.state.live_elements[node as usize] -= 1;
                 if self.particle_of[node as usize] == NONE {
                     self.particle_of[node as usize] = self.state.nodes.len() as u32;
                     self.state.nodes.push(node);
                     self.state.attached.push(true);
                     self.state.spin.push(Vec3::zeros());
                     self.torque.push(Vec3::zeros());
+                    self.turning.push(Vec3::zeros());
                 }
+                let particle = self.particle_of[node as usize] as usize;
+                self.state.attached[particle] = self.holders.is_held(solid, node);
             }
-        }
-        for (attached, &node) in self.state.attached.iter_mut().zip(&self.state.nodes) {
-            *attached = self.state.live_elements[node as usize] > 0;
         }
         for edge in solid.edges_without_elements(removed) {
             if let Err(place) = self.state.pairs.binary_search_by_key(&edge, |p| p.nodes) {
@@ -298,12 +301,13 @@ impl Debris {
 
     /// Adds the contact forces of all pairs to the nodes.
     pub(crate) fn add_forces(&mut self, solid: &mut Solid, dt: f64) -> ContactWork {
-        let Debris { state, particle_of, radius, torque, .. } = self;
-        let DebrisState { pairs, spin, .. } = state;
+        self.update_turning(solid);
+        let Debris { state, particle_of, radius, torque, turning, .. } = self;
+        let DebrisState { pairs, .. } = state;
         torque.fill(Vec3::zeros());
         {
             let solid = &*solid;
-            let spin = |node: usize| spin[particle_of[node] as usize];
+            let spin = |node: usize| turning[particle_of[node] as usize];
             pairs.par_iter_mut().with_min_len(512).for_each(|pair| {
                 let [i, j] = pair.nodes.map(|n| n as usize);
                 let apart = solid.position(j) - solid.position(i);
@@ -336,6 +340,29 @@ impl Debris {
             work.damping += pair.damping;
         }
         work
+    }
+
+    fn update_turning(&mut self, solid: &Solid) {
+        for (particle, turning) in self.turning.iter_mut().enumerate() {
+            *turning = if self.state.attached[particle] {
+                let holder = self.holders.of(solid, self.state.nodes[particle]);
+                holder.map_or_else(Vec3::zeros, |holder| holder.spin(solid))
+            } else {
+                self.state.spin[particle]
+            };
+        }
+    }
+
+    /// Hands the torques of all contacts on attached particles to the elements that hold them.
+    pub(crate) fn pass_on_torques(&self, solid: &mut Solid) {
+        for (particle, &torque) in self.torque.iter().enumerate() {
+            if self.state.attached[particle]
+                && torque != Vec3::zeros()
+                && let Some(holder) = self.holders.of(solid, self.state.nodes[particle])
+            {
+                holder.add_torque(solid, torque);
+            }
+        }
     }
 
     /// Turns the free particles; returns their rotational energy at tⁿ, measured as that of the nodes [J].
@@ -373,10 +400,10 @@ impl Debris {
                 continue;
             }
             // A turning sphere answers 1 + m r²/I = 3.5 times as fast to the tangential spring, and 2.5 times to the
-            // one against rolling.
+            // one against rolling; a particle on an element 1.25 times if all nodes of the element weigh the same.
             let free = |n: usize| !self.state.attached[self.particle_of[n] as usize];
             let rolling = if pair.law.rolling_arm > 0.0 { 2.5 } else { 0.0 };
-            let turning = if free(i) || free(j) { 3.5 + rolling } else { 1.0 };
+            let turning = if free(i) || free(j) { 3.5 + rolling } else { 2.0 };
             let stiffness = pair.law.normal_stiffness.max(turning * pair.law.tangential_stiffness);
             let coupling = stiffness / (solid.mass[i] * solid.mass[j]).sqrt();
             rows[self.particle_of[i] as usize] += stiffness / solid.mass[i] + coupling;
@@ -389,12 +416,14 @@ impl Debris {
     pub(crate) fn restore(&mut self, solid: &Solid, state: DebrisState) {
         if !state.nodes.is_empty() {
             self.prepare(solid);
+            self.holders = Holders::new(solid);
         }
         self.particle_of.fill(NONE);
         for (particle, &node) in (0..).zip(&state.nodes) {
             self.particle_of[node as usize] = particle;
         }
         self.torque = vec![Vec3::zeros(); state.nodes.len()];
+        self.turning = self.torque.clone();
         self.state = state;
     }
 
@@ -425,19 +454,4 @@ impl Pair {
 fn arms(normal: Vec3, distance: f64, radius_i: f64, radius_j: f64) -> (Vec3, Vec3) {
     let share = radius_i / (radius_i + radius_j);
     (normal * (share * distance), normal * ((share - 1.0) * distance))
-}
-
-/// Elements that hold each node, those in `removed` still counted.
-fn live_elements(solid: &Solid, removed: &[(usize, u32)]) -> Vec<u16> {
-    let mut count = vec![0u16; solid.reference.len()];
-    for body in 0..solid.body_count() {
-        let corners = solid.body(body).shape.node_count();
-        let alive = solid.alive(body);
-        for (element, nodes) in solid.body(body).elements.iter().enumerate() {
-            if alive[element] || removed.contains(&(body, element as u32)) {
-                nodes[..corners].iter().for_each(|&n| count[n as usize] = count[n as usize].saturating_add(1));
-            }
-        }
-    }
-    count
 }

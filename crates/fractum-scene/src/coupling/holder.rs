@@ -1,0 +1,95 @@
+//! Elements that hold attached particles against turning.
+
+use fractum_fem::Solid;
+use fractum_math::{Mat3, Ragged, Vec3};
+
+/// The element that turns with each attached particle.
+///
+/// A node has no rotation of its own, but contact off its centre asks for one. An attached particle turns with a live element
+/// of its node, ω = J⁻¹ Σ r × v over the nodes of the element with J = Σ (r² I - r rᵀ) about their mean, and passes torques on by
+/// the transpose: forces (J⁻¹ M) × r on the same nodes, whose sum is zero and whose moment is M. So contact conserves angular
+/// momentum, and its power on the nodes is the power that the contact law sees.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Holders {
+    /// Numbers of the elements of each node: those of the first body, then the next; empty before the first particle.
+    elements_of_node: Ragged,
+    /// Number of the first element of each body, and of all.
+    first: Vec<u32>,
+}
+
+/// Nodes of an element and the geometry of its rotation.
+pub(crate) struct Holder {
+    nodes: [u32; 4],
+    corners: usize,
+    middle: Vec3,
+    inverse_inertia: Mat3,
+}
+
+impl Holders {
+    /// Finds the elements around all nodes.
+    pub(crate) fn new(solid: &Solid) -> Self {
+        let mut first = vec![0];
+        for body in 0..solid.body_count() {
+            first.push(first[body] + solid.body(body).elements.len() as u32);
+        }
+        let rows = (0..solid.body_count()).flat_map(|body| {
+            let corners = solid.body(body).shape.node_count();
+            solid.body(body).elements.iter().map(move |e| &e[..corners])
+        });
+        Holders { elements_of_node: Ragged::inverse(solid.reference.len(), rows), first }
+    }
+
+    /// Whether nothing has been looked up yet.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.first.is_empty()
+    }
+
+    /// Whether a live element holds the node.
+    pub(crate) fn is_held(&self, solid: &Solid, node: u32) -> bool {
+        self.elements_of_node.row(node as usize).iter().any(|&e| self.is_alive(solid, e))
+    }
+
+    /// The first live element of a node; none where it has no volume left to turn with.
+    pub(crate) fn of(&self, solid: &Solid, node: u32) -> Option<Holder> {
+        let row = self.elements_of_node.row(node as usize);
+        let element = row.iter().copied().find(|&e| self.is_alive(solid, e))?;
+        let (body, element) = self.place(element);
+        let corners = solid.body(body).shape.node_count();
+        let nodes = solid.body(body).elements[element];
+        let live = &nodes[..corners];
+        let middle = live.iter().map(|&n| solid.position(n as usize)).sum::<Vec3>() / corners as f64;
+        let mut inertia = Mat3::zeros();
+        for &n in live {
+            let r = solid.position(n as usize) - middle;
+            inertia += Mat3::identity() * r.norm_squared() - r * r.transpose();
+        }
+        Some(Holder { nodes, corners, middle, inverse_inertia: inertia.try_inverse()? })
+    }
+
+    fn place(&self, element: u32) -> (usize, usize) {
+        let body = self.first.partition_point(|&f| f <= element) - 1;
+        (body, (element - self.first[body]) as usize)
+    }
+
+    fn is_alive(&self, solid: &Solid, element: u32) -> bool {
+        let (body, element) = self.place(element);
+        solid.alive(body)[element]
+    }
+}
+
+impl Holder {
+    /// Angular velocity of the element [rad/s].
+    pub(crate) fn spin(&self, solid: &Solid) -> Vec3 {
+        let momentum = |&n: &u32| (solid.position(n as usize) - self.middle).cross(&solid.velocity[n as usize]);
+        self.inverse_inertia * self.nodes[..self.corners].iter().map(momentum).sum::<Vec3>()
+    }
+
+    /// Adds forces of no sum and of moment `torque` [N m] to the nodes.
+    pub(crate) fn add_torque(&self, solid: &mut Solid, torque: Vec3) {
+        let turn = self.inverse_inertia * torque;
+        for &n in &self.nodes[..self.corners] {
+            let arm = solid.position(n as usize) - self.middle;
+            solid.force[n as usize] += turn.cross(&arm);
+        }
+    }
+}
