@@ -79,6 +79,23 @@ const COORDINATIONS: [f64; 4] = [10.0, 8.5, 7.5, 6.5];
 /// Thinnest beams chosen of our own accord, in mean radii: thinner ones make the lattice ill-conditioned.
 const THINNEST: f64 = 0.2;
 
+/// The coordination that suits a Poisson's ratio: the usual ten, or the highest below it at which beams are not thin.
+///
+/// # Errors
+/// A ratio out of reach at every coordination.
+pub fn suitable_coordination(poisson_ratio: f64, convention: Convention) -> Result<f64, CalibrateError> {
+    let law = laws::stored(convention)?;
+    let propose = |c: f64| law.micro(1.0, poisson_ratio, c);
+    let works = |c: &&f64| propose(**c).is_ok_and(|m| m.radius_ratio >= THINNEST);
+    match COORDINATIONS.iter().find(works) {
+        Some(&coordination) => Ok(coordination),
+        None => {
+            let lowest = COORDINATIONS[COORDINATIONS.len() - 1];
+            propose(lowest).map(|_| lowest)
+        }
+    }
+}
+
 /// Calibrates by direct inversion on packings of its own, and checks the result on a further packing.
 ///
 /// # Errors
@@ -89,18 +106,7 @@ pub fn calibrate(request: &Request) -> Result<Calibration, CalibrateError> {
     let propose = |c: f64| law.micro(request.young_modulus, request.poisson_ratio, c);
     let coordination = match request.coordination {
         Some(coordination) => coordination,
-        None => {
-            let works = |c: &&f64| propose(**c).is_ok_and(|m| m.radius_ratio >= THINNEST);
-            match COORDINATIONS.iter().find(works) {
-                Some(&coordination) => coordination,
-                None => {
-                    let lowest = COORDINATIONS[COORDINATIONS.len() - 1];
-                    let micro = propose(lowest)?;
-                    debug_assert!(micro.radius_ratio < THINNEST);
-                    lowest
-                }
-            }
-        }
+        None => suitable_coordination(request.poisson_ratio, request.convention)?,
     };
     let proposed = propose(coordination).ok();
     let start = proposed.map_or(0.4, |m| m.radius_ratio);

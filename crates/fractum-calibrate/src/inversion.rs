@@ -9,7 +9,7 @@ use crate::{CalibrateError, Micro, Sample, lab};
 pub struct Inverted {
     /// The micro-parameters.
     pub micro: Micro,
-    /// E along each axis tested (x only on a cylinder) with these parameters [Pa].
+    /// E, mean over the axes tested (the long ones of a box, x of a cylinder) [Pa].
     pub young_modulus: f64,
     /// ν, mean over the axes.
     pub poisson_ratio: f64,
@@ -21,11 +21,14 @@ pub struct Inverted {
 
 /// Beam radii searched, in mean radii.
 pub const RADIUS_RATIOS: [f64; 2] = [0.05, 1.2];
+/// Axes above this share of the longest one are tested.
+const LONG: f64 = 0.75;
 /// Difference of ν at which the search stops.
 const CLOSE: f64 = 1e-4;
 
 /// Finds the beam radius and modulus that give a sample Young's modulus and Poisson's ratio, by a safeguarded secant
-/// search on ν(ln r_m) with warm-started solves. On a box, the result is for the mean over the three axes.
+/// search on ν(ln r_m) with warm-started solves. On a box, the result is for the mean over the axes along which it is
+/// long: a short one shows the layers at its faces rather than the material.
 ///
 /// - `start`: beam radius over the mean radius to begin with
 ///
@@ -38,21 +41,21 @@ pub fn invert(
     start: f64,
 ) -> Result<Inverted, CalibrateError> {
     check_material(young_modulus, poisson_ratio)?;
-    let axes = if sample.box_extents().is_some() { 3 } else { 1 };
+    let axes = tested_axes(sample);
     let tolerance = Tolerance::default();
     let mut warm: Vec<Option<Equilibrium>> = vec![None; 3];
     let mut solves = 0;
-    let mut test = |sample: &mut Sample, log: f64, axes: usize| -> Result<(f64, f64, f64), CalibrateError> {
+    let mut test = |sample: &mut Sample, log: f64, axes: &[usize]| -> Result<(f64, f64, f64), CalibrateError> {
         sample.set_micro(Micro { radius_ratio: log.exp(), young_modulus: 1.0 })?;
         let (mut young, mut poisson) = (Vec::new(), 0.0);
-        for axis in 0..axes {
+        for &axis in axes {
             let (tension, rest) = lab::tension(sample, axis, warm[axis].as_ref(), tolerance)?;
             warm[axis] = Some(rest);
             young.push(tension.young_modulus);
-            poisson += tension.poisson_ratio / axes as f64;
+            poisson += tension.poisson_ratio / axes.len() as f64;
             solves += 1;
         }
-        let mean = young.iter().sum::<f64>() / axes as f64;
+        let mean = young.iter().sum::<f64>() / axes.len() as f64;
         let (low, high) = young.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &y| (l.min(y), h.max(y)));
         Ok((mean, poisson, (high - low) / mean))
     };
@@ -64,7 +67,7 @@ pub fn invert(
     let mut last: Option<(f64, f64)> = None;
     let mut slope: f64 = -0.1;
     for _ in 0..30 {
-        let (young, poisson, anisotropy) = test(sample, log, axes)?;
+        let (young, poisson, anisotropy) = test(sample, log, &axes)?;
         let miss = poisson - poisson_ratio;
         if miss.abs() < CLOSE {
             let micro = Micro { radius_ratio: log.exp(), young_modulus: young_modulus / young };
@@ -86,7 +89,7 @@ pub fn invert(
         if next == log {
             // At an end of the range with the target beyond it.
             let other = if log == thin { thick } else { thin };
-            let (_, beyond, _) = test(sample, other, 1)?;
+            let (_, beyond, _) = test(sample, other, &axes[..1])?;
             let (highest, lowest) = (poisson.max(beyond), poisson.min(beyond));
             let (coordination, convention) = (coordination_of(sample), sample.convention);
             let [thin, thick] = RADIUS_RATIOS;
@@ -115,6 +118,12 @@ pub fn invert(
         lowest: nu,
         highest: nu,
     })
+}
+
+/// Axes of a box along which it is about as long as it gets, x of a cylinder.
+fn tested_axes(sample: &Sample) -> Vec<usize> {
+    let Some(extents) = sample.box_extents() else { return vec![0] };
+    (0..3).filter(|&axis| extents[axis] > LONG * extents.max()).collect()
 }
 
 fn coordination_of(sample: &Sample) -> f64 {

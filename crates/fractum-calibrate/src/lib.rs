@@ -24,8 +24,8 @@ mod prepare;
 pub mod published;
 mod sample;
 
-pub use calibrate::{Calibration, Request, calibrate};
+pub use calibrate::{Calibration, Request, calibrate, suitable_coordination};
 pub use error::CalibrateError;
 pub use inversion::{Inverted, RADIUS_RATIOS, invert};
-pub use prepare::{BondedBody, BondedMaterial, prepare};
+pub use prepare::{Beams, BondedBody, BondedMaterial, prepare};
 pub use sample::{Micro, Sample};

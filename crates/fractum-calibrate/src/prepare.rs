@@ -1,9 +1,10 @@
 //! A bonded body ready to move, from a shape and a material.
 
-use fractum_dem::{BeamNetwork, Particles};
+use fractum_dem::Particles;
 use fractum_pack::{Convention, Packing};
+use serde::{Deserialize, Serialize};
 
-use crate::{CalibrateError, Micro, Request, Sample, calibrate, invert};
+use crate::{CalibrateError, Inverted, Micro, Request, Sample, calibrate, invert};
 
 /// What a bonded body is made of.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +20,32 @@ pub struct BondedMaterial {
     /// How it is counted.
     pub convention: Convention,
     /// Beams, when they are known; found by calibration otherwise.
-    pub micro: Option<Micro>,
+    pub beams: Option<Beams>,
+}
+
+/// Beams, and what they are known to give.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Beams {
+    /// The micro-parameters.
+    pub micro: Micro,
+    /// Young's modulus [Pa] and Poisson's ratio in tension tests, mean over the axes, where they were calibrated.
+    pub reached: Option<(f64, f64)>,
+    /// Relative spread of Young's modulus over the axes; 0 for a single one.
+    pub anisotropy: f64,
+    /// Whether the tests were made on the very packing; else on a box of the same kind.
+    pub own_packing: bool,
+}
+
+impl Beams {
+    /// Beams of which nothing else is known.
+    pub fn given(micro: Micro) -> Self {
+        Beams { micro, reached: None, anisotropy: 0.0, own_packing: false }
+    }
+
+    fn calibrated(found: &Inverted, own_packing: bool) -> Self {
+        let Inverted { micro, young_modulus, poisson_ratio, anisotropy, .. } = *found;
+        Beams { micro, reached: Some((young_modulus, poisson_ratio)), anisotropy, own_packing }
+    }
 }
 
 /// A bonded body at rest.
@@ -29,10 +55,8 @@ pub struct BondedBody {
     pub sample: Sample,
     /// Particles at rest, with the mass of the continuum.
     pub particles: Particles,
-    /// Bonds for explicit dynamics.
-    pub bonds: BeamNetwork,
     /// The beams used.
-    pub micro: Micro,
+    pub beams: Beams,
 }
 
 /// Bonds a packing, calibrates the beams and gives the particles their mass.
@@ -50,22 +74,23 @@ pub fn prepare(packing: Packing, material: &BondedMaterial) -> Result<BondedBody
     }
     let mut sample = Sample::new(packing, material.coordination, material.convention)?;
     let has_faces = sample.box_extents().is_some() || sample.cylinder_extents().is_some();
-    let micro = match material.micro {
-        Some(micro) => micro,
+    let beams = match material.beams {
+        Some(beams) => beams,
         None if has_faces => {
             let law = crate::laws::stored(material.convention)?.micro(young, poisson, material.coordination);
-            invert(&mut sample, young, poisson, law.map_or(0.4, |m| m.radius_ratio))?.micro
+            let found = invert(&mut sample, young, poisson, law.map_or(0.4, |m| m.radius_ratio))?;
+            Beams::calibrated(&found, true)
         }
         None => {
             let (coordination, convention) = (Some(material.coordination), material.convention);
-            calibrate(&Request { coordination, convention, ..Request::new(young, poisson) })?.micro
+            let found = calibrate(&Request { coordination, convention, ..Request::new(young, poisson) })?;
+            Beams::calibrated(&found.inverted[0], false)
         }
     };
-    sample.set_micro(micro)?;
+    sample.set_micro(beams.micro)?;
     let mass = material.density * sample.measured_volume();
     let particles = Particles::at_rest(sample.packing.position.clone(), sample.packing.radius.clone(), mass)?;
-    let bonds = BeamNetwork::new(&particles.position, &sample.network.pairs, sample.lattice.section())?;
-    Ok(BondedBody { sample, particles, bonds, micro })
+    Ok(BondedBody { sample, particles, beams })
 }
 
 #[cfg(test)]
@@ -82,7 +107,7 @@ mod tests {
             density: 2500.0,
             coordination: 9.0,
             convention,
-            micro: None,
+            beams: None,
         }
     }
 
@@ -95,15 +120,16 @@ mod tests {
         let mean =
             (0..3).map(|a| crate::lab::tension(&body.sample, a, None, Tolerance::default()).unwrap().0.young_modulus);
         assert!((mean.sum::<f64>() / 3.0 / 72e9 - 1.0).abs() < 1e-3);
-        assert!(body.bonds.stable_step(&body.particles, 0.7) > 0.0);
+        let (young, poisson) = body.beams.reached.unwrap();
+        assert!((young / 72e9 - 1.0).abs() < 1e-9 && (poisson - 0.23).abs() < 1e-3 && body.beams.own_packing);
     }
 
     #[test]
     fn given_beams_are_used_as_they_are_and_a_bad_density_is_refused() {
         let packing = pack(&PackSpec::new(Domain::sphere(1e-3), 300, 1)).unwrap();
         let micro = Micro { radius_ratio: 0.4, young_modulus: 1e9 };
-        let body = prepare(packing.clone(), &BondedMaterial { micro: Some(micro), ..glass() }).unwrap();
-        assert_eq!(body.micro, micro);
+        let body = prepare(packing.clone(), &BondedMaterial { beams: Some(Beams::given(micro)), ..glass() }).unwrap();
+        assert_eq!(body.beams, Beams::given(micro));
         let wrong = prepare(packing, &BondedMaterial { density: 0.0, ..glass() });
         assert!(matches!(wrong, Err(CalibrateError::Material { .. })));
     }

@@ -7,7 +7,7 @@ use crate::DemError;
 pub(crate) const BLOCK: usize = 1024;
 
 /// Discrete elements: spheres that move and turn. One entry per particle in every array.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Particles {
     /// Centre [m].
     pub position: Vec<Vec3>,
@@ -154,7 +154,7 @@ impl Particles {
 
 /// An acceleration without its held components.
 #[inline]
-fn free(a: Vec3, held: u8) -> Vec3 {
+pub(crate) fn free(a: Vec3, held: u8) -> Vec3 {
     if held & 7 == 0 {
         return a;
     }
@@ -163,7 +163,7 @@ fn free(a: Vec3, held: u8) -> Vec3 {
 
 /// exp(θ) q, renormalised.
 #[inline]
-fn turned(q: &Rotation, theta: Vec3) -> Rotation {
+pub(crate) fn turned(q: &Rotation, theta: Vec3) -> Rotation {
     let square = theta.norm_squared();
     // cos(θ/2) and sin(θ/2)/θ; the series are exact to round-off below 0.2 rad.
     let (c, s) = if square < 0.04 {

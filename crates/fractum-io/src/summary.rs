@@ -127,10 +127,19 @@ pub struct Energy {
     /// Recoverable strain energy.
     #[serde(with = "number")]
     pub elastic: f64,
+    /// Part of `elastic` in tension and compression of bonds.
+    #[serde(with = "number", default)]
+    pub bond_tension: f64,
+    /// Part of `elastic` in bending of bonds.
+    #[serde(with = "number", default)]
+    pub bond_bending: f64,
+    /// Part of `elastic` in torsion of bonds.
+    #[serde(with = "number", default)]
+    pub bond_torsion: f64,
     /// Dissipated by damage.
     #[serde(with = "number")]
     pub damage: f64,
-    /// Strain energy that left with removed elements.
+    /// Strain energy that left with removed elements and broken bonds.
     #[serde(with = "number")]
     pub removed: f64,
     /// Stored in contacts.

@@ -25,6 +25,9 @@ pub enum SceneError {
     /// The solid cannot be built.
     #[error(transparent)]
     Solid(#[from] fractum_fem::SolidError),
+    /// A bonded body cannot be built.
+    #[error(transparent)]
+    Bonded(#[from] fractum_dem::DemError),
 }
 
 /// Why a run stopped itself.
@@ -33,7 +36,7 @@ pub enum StepError {
     /// A displacement or an energy is not a number any more.
     #[error(
         "step {step}, t = {time:.6e} s: the solution is not finite near {culprit}; \u{394}t = {dt:.3e} s, stable limit {limit:.3e} s - lower \
-         solver.safety or check the material of that element"
+         solver.safety or check the material there"
     )]
     NotFinite {
         /// Step number.
@@ -49,7 +52,7 @@ pub enum StepError {
     },
     /// The step is above the stable limit.
     #[error(
-        "step {step}, t = {time:.6e} s: unstable: the elements hold {ratio:.1} times the energy put in; fastest near {culprit}; \u{394}t = {dt:.3e} s, \
+        "step {step}, t = {time:.6e} s: unstable: elements and bonds hold {ratio:.1} times the energy put in; fastest near {culprit}; \u{394}t = {dt:.3e} s, \
          stable limit {limit:.3e} s - lower solver.safety"
     )]
     Unstable {

@@ -1,16 +1,18 @@
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 
-/// A connected piece of a solid, or a single discrete element that nothing holds any more.
+/// A connected piece of a solid or of a bonded body, or a single discrete element that nothing holds any more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fragment {
-    /// Nodes in the piece.
+    /// Nodes in the piece; particles in that of a bonded body.
     pub nodes: Vec<u32>,
     /// Elements that are still there.
     pub elements: usize,
+    /// Bonds that still hold.
+    pub bonds: usize,
     /// Mass [kg].
     pub mass: f64,
-    /// Volume of its elements [m³]; 0 for a single discrete element.
+    /// Volume of its elements, or of the continuum that its particles stand for [m³]; 0 for a single discrete element.
     pub volume: f64,
     /// Centre of mass [m].
     pub centroid: Vec3,
@@ -81,5 +83,5 @@ fn piece(solid: &Solid, nodes: Vec<u32>, elements: usize, volume: f64) -> Fragme
         high = high.sup(&position);
     }
     let extent = (high - low).max();
-    Fragment { nodes, elements, mass, volume, centroid: centroid / mass, velocity: velocity / mass, extent }
+    Fragment { nodes, elements, bonds: 0, mass, volume, centroid: centroid / mass, velocity: velocity / mass, extent }
 }

@@ -9,11 +9,17 @@ pub struct Ledger {
     pub external: f64,
     /// Kinetic energy, rotation of particles included.
     pub kinetic: f64,
-    /// Energy stored in the elements.
+    /// Energy stored in elements and bonds.
     pub elastic: f64,
+    /// Part of `elastic` that tension and compression of bonds hold.
+    pub bond_tension: f64,
+    /// Part of `elastic` that bending of bonds holds.
+    pub bond_bending: f64,
+    /// Part of `elastic` that torsion of bonds holds.
+    pub bond_torsion: f64,
     /// Energy dissipated by damage.
     pub damage: f64,
-    /// Energy that went with removed elements.
+    /// Energy that went with removed elements and broken bonds.
     pub removed: f64,
     /// Energy taken by damping of every kind.
     pub damping: f64,
@@ -45,6 +51,9 @@ pub enum EnergyKind {
     External,
     Kinetic,
     Elastic,
+    BondTension,
+    BondBending,
+    BondTorsion,
     Damage,
     Removed,
     Damping,
@@ -83,6 +92,9 @@ impl Ledger {
             EnergyKind::External => self.external,
             EnergyKind::Kinetic => self.kinetic,
             EnergyKind::Elastic => self.elastic,
+            EnergyKind::BondTension => self.bond_tension,
+            EnergyKind::BondBending => self.bond_bending,
+            EnergyKind::BondTorsion => self.bond_torsion,
             EnergyKind::Damage => self.damage,
             EnergyKind::Removed => self.removed,
             EnergyKind::Damping => self.damping,

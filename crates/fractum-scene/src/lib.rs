@@ -1,9 +1,10 @@
 //! One simulation: its state, the step that advances it, and the coupling of solids with the discrete elements that
-//! they turn into.
+//! they turn into. Bonded bodies, with particles of their own, stand beside the solids.
 //!
 //! [`Scene`] holds everything; [`Scene::step`] reads like the equations. What changes during a run is a
 //! [`SceneState`], one value that can be saved and put back bit for bit.
 
+mod bonded;
 mod boundary;
 mod clock;
 pub mod coupling;
@@ -15,6 +16,7 @@ mod rigid;
 mod scene;
 mod step;
 
+pub use bonded::{Bonded, BondedBody, BondedPart, BondedState, ParticleLoad, ParticleProbe, ParticleSupport};
 pub use boundary::{Load, Loads, Motion, Support, Supports, TimeFunction};
 pub use clock::{Clock, TimeStepSettings};
 pub use error::{SceneError, StepError};

@@ -1,5 +1,6 @@
 use fractum_math::Vec3;
 
+use crate::bonded::ParticleProbe;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 
@@ -13,6 +14,8 @@ pub enum CountKind {
     Particles,
     Fragments,
     Contacts,
+    Bonds,
+    BrokenBonds,
 }
 
 /// A number that a scene yields at every instant.
@@ -54,6 +57,8 @@ pub enum Probe {
     Momentum(Vec3),
     /// Angular momentum about the origin along a direction [kg m²/s].
     AngularMomentum(Vec3),
+    /// Something about particles of bonded bodies.
+    Particles(ParticleProbe),
     /// Area of crack, Σ V d/l over the damaged edges [m²].
     CrackArea,
 }
@@ -90,13 +95,16 @@ impl Probe {
                 sum / volume
             }
             Probe::Momentum(direction) => {
-                (0..solid.mass.len()).map(|i| solid.mass[i] * solid.velocity[i].dot(direction)).sum()
+                let nodes = (0..solid.mass.len()).map(|i| solid.mass[i] * solid.velocity[i].dot(direction));
+                nodes.sum::<f64>() + scene.bonded.momentum().dot(direction)
             }
             Probe::AngularMomentum(direction) => {
                 let nodes = (0..solid.mass.len())
                     .map(|i| solid.mass[i] * solid.position(i).cross(&solid.velocity[i]).dot(direction));
-                nodes.sum::<f64>() + scene.debris.spin_momentum(solid).dot(direction)
+                let spins = scene.debris.spin_momentum(solid) + scene.bonded.angular_momentum();
+                nodes.sum::<f64>() + spins.dot(direction)
             }
+            Probe::Particles(probe) => probe.value(&scene.bonded, scene.clock.dt_before),
             Probe::CrackArea => solid.crack_area(),
         }
     }

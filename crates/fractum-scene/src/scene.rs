@@ -1,10 +1,11 @@
 use fractum_fem::{LocalDamping, Solid, SolidState, StableStep};
 use serde::{Deserialize, Serialize};
 
+use crate::bonded::{Bonded, BondedState};
 use crate::boundary::{Loads, Supports};
 use crate::clock::{Clock, TimeStepSettings};
 use crate::coupling::{Debris, DebrisState};
-use crate::fragment::fragments;
+use crate::fragment::{Fragment, fragments};
 use crate::ledger::{Books, Guard, Ledger};
 use crate::probe::CountKind;
 use crate::rigid::{Candidate, RigidPlane};
@@ -20,6 +21,8 @@ pub struct Scene {
     pub solid: Solid,
     /// Discrete elements that came from them, with their contacts.
     pub debris: Debris,
+    /// Bonded bodies, with particles of their own.
+    pub bonded: Bonded,
     /// Rigid planes.
     pub planes: Vec<RigidPlane>,
     /// Time and step.
@@ -55,6 +58,7 @@ pub struct SceneState {
     clock: Clock,
     solid: SolidState,
     debris: DebrisState,
+    bonded: Option<BondedState>,
     planes: Vec<Vec<Candidate>>,
     ledger: Ledger,
     books: Books,
@@ -75,6 +79,8 @@ pub struct Counts {
     pub broken_edges: usize,
     pub particles: usize,
     pub contacts: usize,
+    pub bonds: usize,
+    pub broken_bonds: usize,
 }
 
 impl Scene {
@@ -90,7 +96,11 @@ impl Scene {
         surface: &[u32],
         settings: SceneSettings,
     ) -> Self {
-        let stable = if settings.time_step.element_bound { solid.stable_step_bound() } else { solid.stable_step() };
+        let stable = if settings.time_step.element_bound || solid.reference.is_empty() {
+            solid.stable_step_bound()
+        } else {
+            solid.stable_step()
+        };
         if !planes.is_empty() {
             debris.prepare(&solid);
             planes.iter_mut().for_each(|plane| plane.watch(surface, &solid, &debris));
@@ -98,6 +108,7 @@ impl Scene {
         let mut scene = Scene {
             solid,
             debris,
+            bonded: Bonded::default(),
             planes,
             clock: Clock::new(0.0),
             supports,
@@ -115,15 +126,22 @@ impl Scene {
         scene
     }
 
-    /// Largest stable step of the solid by itself, and what governs it.
-    pub fn stable_step(&self) -> StableStep {
-        self.stable
+    /// The same scene with bonded bodies, before its first step.
+    pub fn with_bonded(mut self, bonded: Bonded) -> Self {
+        self.bonded = bonded;
+        self.clock = Clock::new(self.next_dt(0.0));
+        self
+    }
+
+    /// Largest stable step of the solid by itself, and what governs it; none where bonded bodies ask for a smaller one.
+    pub fn governing_element(&self) -> Option<StableStep> {
+        (self.stable.frequency >= self.bonded.frequency()).then_some(self.stable)
     }
 
     /// Largest stable step with contacts and damping [s].
     pub fn stable_dt(&self) -> f64 {
-        let square = self.stable.frequency * self.stable.frequency + self.contact_frequency_square;
-        let frequency = square.sqrt();
+        let frequency = self.stable.frequency.max(self.bonded.frequency());
+        let frequency = (frequency * frequency + self.contact_frequency_square).sqrt();
         let contact = if self.contact_frequency_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
         let damping = self.settings.damping;
         let xi = 0.5 * self.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
@@ -184,7 +202,9 @@ impl Scene {
             removed_elements: fracture.removed_elements,
             damaged_edges: fracture.damaged_edges,
             broken_edges: fracture.broken_edges,
-            particles: self.debris.len(),
+            particles: self.debris.len() + self.bonded.particles.len(),
+            bonds: self.bonded.bond_counts().0,
+            broken_bonds: self.bonded.bond_counts().1,
             contacts: self.debris.touching().count() + self.planes.iter().map(RigidPlane::touching).sum::<usize>(),
         }
     }
@@ -198,8 +218,20 @@ impl Scene {
             CountKind::DamagedEdges => counts.damaged_edges,
             CountKind::Particles => counts.particles,
             CountKind::Contacts => counts.contacts,
-            CountKind::Fragments => fragments(&self.solid).iter().filter(|f| f.elements > 0).count(),
+            CountKind::Bonds => counts.bonds,
+            CountKind::BrokenBonds => counts.broken_bonds,
+            CountKind::Fragments => self.fragments().iter().filter(|f| f.elements + f.bonds > 0).count(),
         }
+    }
+
+    /// Connected pieces of solids and bonded bodies, heaviest first.
+    pub fn fragments(&self) -> Vec<Fragment> {
+        let mut pieces = fragments(&self.solid);
+        if !self.bonded.is_empty() {
+            pieces.extend(self.bonded.fragments());
+            pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass));
+        }
+        pieces
     }
 
     /// Everything that changes, for a checkpoint.
@@ -208,6 +240,7 @@ impl Scene {
             clock: self.clock,
             solid: self.solid.state(),
             debris: self.debris.state().clone(),
+            bonded: (!self.bonded.is_empty()).then(|| self.bonded.state()),
             planes: self.planes.iter().map(RigidPlane::state).collect(),
             ledger: self.ledger,
             books: self.books,
@@ -223,6 +256,9 @@ impl Scene {
         self.clock = state.clock;
         self.solid.restore(state.solid);
         self.debris.restore(&self.solid, state.debris);
+        if let Some(bonded) = state.bonded {
+            self.bonded.restore(bonded);
+        }
         for (plane, candidates) in self.planes.iter_mut().zip(state.planes) {
             plane.restore(candidates);
         }

@@ -1,5 +1,6 @@
 use fractum_math::Vec3;
 
+use crate::bonded::BondedWork;
 use crate::error::StepError;
 use crate::rigid::ContactWork;
 use crate::scene::Scene;
@@ -25,6 +26,8 @@ pub struct StepReport {
 pub enum Phase {
     /// Internal forces, damage included.
     Solid,
+    /// Forces of the bonds, and the loads on their particles.
+    Bonds,
     /// Contact of particles and rigid planes, search included.
     Contact,
     /// Loads, supports and the motion of the nodes.
@@ -57,9 +60,13 @@ impl Scene {
         let elapsed = if self.clock.step == 0 { 0.0 } else { dt_before };
         self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
         passed(Phase::Solid);
+        let bonded_load = self.add_bond_forces(time, dt_before, measure);
+        if !self.bonded.is_empty() {
+            passed(Phase::Bonds);
+        }
         let contact = self.add_contact_forces(elapsed);
         passed(Phase::Contact);
-        let load_before = self.loads.add_forces(&mut self.solid, time, dt_before);
+        let load_before = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
         if self.clock.step == 0 {
             self.start_half_a_step_early(dt_before);
         }
@@ -68,6 +75,7 @@ impl Scene {
         let damping = self.settings.damping;
         let motion = self.solid.kick_and_drift(dt_before, dt_after, damping, self.supports.held(), measure);
         let support = self.supports.impose(&mut self.solid, time, dt_before, dt_after);
+        let bonded = self.move_bonded(time, dt_before, dt_after, measure);
         let turning = self.debris.turn(&self.solid, dt_before, dt_kick);
         let load_after = 0.5 * dt_after * self.loads.power(&self.solid);
 
@@ -75,16 +83,16 @@ impl Scene {
         books.friction += contact.friction;
         books.damping += contact.damping;
         if self.clock.step > 0 {
-            books.external += support.before + load_before;
-            books.damping += motion.damped_before;
+            books.external += support.before + bonded.external_before + load_before;
+            books.damping += motion.damped_before + bonded.damped_before;
         }
         if measure {
-            self.ledger.kinetic = motion.kinetic + support.kinetic + turning;
+            self.ledger.kinetic = motion.kinetic + support.kinetic + turning + bonded.kinetic;
             self.ledger.contact = contact.stored;
             self.close_balance()?;
         }
-        self.books.external += support.after + load_after;
-        self.books.damping += motion.damped_after;
+        self.books.external += support.after + bonded.external_after + load_after;
+        self.books.damping += motion.damped_after + bonded.damped_after;
 
         passed(Phase::Motion);
         let report = self.release_cut_elements();
@@ -100,7 +108,8 @@ impl Scene {
 
     /// The velocities given at t = 0 become those of the half step before it, so that the balance starts exact.
     fn start_half_a_step_early(&mut self, dt: f64) {
-        let Scene { solid, supports, .. } = self;
+        let Scene { solid, supports, bonded, .. } = self;
+        bonded.particles.start_half_a_step_early(dt);
         for i in 0..solid.mass.len() {
             let half_kick = solid.force[i] * (0.5 * dt / solid.mass[i]);
             let held = supports.held().get(i).copied().unwrap_or(0);
@@ -108,6 +117,22 @@ impl Scene {
                 solid.velocity[i][axis] -= half_kick[axis];
             }
         }
+    }
+
+    /// Forces of the bonds and of the loads on their particles; the work of these in the half step before [J].
+    fn add_bond_forces(&mut self, time: f64, dt_before: f64, measure: bool) -> f64 {
+        if self.bonded.is_empty() {
+            return 0.0;
+        }
+        self.bonded.update_bond_forces(measure);
+        self.bonded.add_loads(time, dt_before)
+    }
+
+    fn move_bonded(&mut self, time: f64, dt_before: f64, dt_after: f64, measure: bool) -> BondedWork {
+        if self.bonded.is_empty() {
+            return BondedWork::default();
+        }
+        self.bonded.advance(time, dt_before, dt_after, self.settings.damping, measure)
     }
 
     fn add_contact_forces(&mut self, dt: f64) -> ContactWork {
@@ -158,11 +183,14 @@ impl Scene {
 
     /// Completes the ledger of tⁿ and holds it against the guard.
     fn close_balance(&mut self) -> Result<(), StepError> {
-        let Scene { ledger, solid, books, .. } = self;
-        ledger.elastic = solid.elastic_energy();
-        ledger.damage = solid.dissipated_energy();
+        let Scene { ledger, solid, bonded, books, .. } = self;
+        let bonds = bonded.energy();
+        (ledger.bond_tension, ledger.bond_bending, ledger.bond_torsion) = (bonds.tension, bonds.bending, bonds.torsion);
+        ledger.elastic = solid.elastic_energy() + bonds.total();
+        // The sum over no block at all is -0.
+        ledger.damage = solid.dissipated_energy() + 0.0;
         ledger.external = books.external;
-        ledger.removed = books.removed;
+        ledger.removed = books.removed + bonded.released_energy();
         ledger.friction = books.friction;
         ledger.damping = books.damping + solid.viscous_dissipation();
         if self.clock.step == 0 {
@@ -186,7 +214,7 @@ impl Scene {
         Ok(())
     }
 
-    /// The element with the largest kinetic energy, or with a value that is not a number.
+    /// The element or bonded particle with the largest kinetic energy, or with a value that is not a number.
     fn culprit(&self) -> String {
         let solid = &self.solid;
         let energy = |node: u32| {
@@ -208,7 +236,12 @@ impl Scene {
                 }
             }
         }
-        let (_, body, element) = worst;
+        let (largest, body, element) = worst;
+        if let Some((energy, particle)) = self.bonded.fastest()
+            && energy > largest
+        {
+            return particle;
+        }
         let nodes = &solid.body(body).elements[element];
         let centre: Vec3 = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / 4.0;
         format!(

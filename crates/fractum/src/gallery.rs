@@ -14,6 +14,9 @@ use crate::report::PictureNote;
 /// The largest displacement in a picture, as a fraction of the size of the body.
 const SHOWN_DISPLACEMENT: f64 = 0.04;
 
+/// What a picture shows but does not colour.
+const GREY: [u8; 3] = [150, 150, 150];
+
 /// What is seen from outside: facets with the damage and stress of their elements.
 struct Skin {
     points: Vec<[f64; 3]>,
@@ -25,10 +28,15 @@ struct Skin {
 /// Draws the scene into the folder `pictures` of the results; a picture that cannot be drawn is left out.
 pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
     let solid = &scene.solid;
-    let size = extent(&solid.reference).norm();
+    let bonded = &scene.bonded;
+    let all: Vec<Vec3> = solid.reference.iter().chain(bonded.reference()).copied().collect();
+    let size = extent(&all).norm();
     let attached = scene.attached_nodes();
     let largest =
         (0..attached.len()).filter(|&n| attached[n]).map(|n| solid.displacement[n].norm()).fold(0.0, f64::max);
+    let moved: Vec<Vec3> =
+        bonded.particles.position.iter().zip(bonded.reference()).map(|(x, start)| x - start).collect();
+    let largest = moved.iter().map(|u| u.norm()).fold(largest, f64::max);
     // Small displacements are magnified, large ones shown as they are.
     let scale = if largest > 0.0 { (SHOWN_DISPLACEMENT * size / largest).max(1.0) } else { 1.0 };
     let shown = |n: usize| -> [f64; 3] { (solid.reference[n] + solid.displacement[n] * scale).into() };
@@ -36,18 +44,21 @@ pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
     let debris = scene.debris.state();
     let centres: Vec<[f64; 3]> = debris.nodes.iter().map(|&n| shown(n as usize)).collect();
     let radii: Vec<f64> = debris.nodes.iter().map(|&n| scene.debris.radius(n)).collect();
-    let view = view(&solid.reference);
+    let balls: Vec<[f64; 3]> =
+        bonded.reference().iter().zip(&moved).map(|(start, u)| (start + u * scale).into()).collect();
+    let view = view(&all);
     let time = quantity(scene.clock.time, "s");
     let magnified = if scale > 1.0 { format!(", displacements x {scale:.0}") } else { String::new() };
     let mut notes = Vec::new();
-    let mut add = |file: &str, title: &str, label: &str, unit: &str, values: &[f64], damage: bool| {
-        let range = if damage { (0.0, 1.0) } else { range(values) };
-        let surface =
-            Surface { points: &skin.points, triangles: &skin.facets, paint: Paint::Facets(values), mesh_lines: true };
+    let mut add = |file: &str, title: &str, label: &str, unit: &str, values: &[f64], inner: &[f64], damage: bool| {
+        let shown: Vec<f64> = values.iter().chain(inner).copied().collect();
+        let range = if damage { (0.0, 1.0) } else { range(&shown) };
+        let paint = if values.is_empty() { Paint::Plain(GREY) } else { Paint::Facets(values) };
+        let surface = Surface { points: &skin.points, triangles: &skin.facets, paint, mesh_lines: true };
         let spheres = Spheres { centres: &centres, radii: &radii, paint: Paint::Plain([200, 120, 40]) };
         let picture = Picture {
             surfaces: &[surface],
-            spheres: &[spheres],
+            spheres: &[spheres, Spheres { centres: &balls, radii: &bonded.particles.radius, paint: inside(inner) }],
             map: if damage { ColourMap::Damage } else { ColourMap::Viridis },
             range,
             clip: None,
@@ -65,10 +76,21 @@ pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
         }
     };
     if skin.damage.iter().any(|&d| d > 0.0) {
-        add("damage.png", "Damage and discrete elements", "damage", "1", &skin.damage, true);
+        add("damage.png", "Damage and discrete elements", "damage", "1", &skin.damage, &[], true);
     }
-    add("stress.png", "First principal stress", "first principal stress", "Pa", &skin.stress, false);
+    if !skin.stress.is_empty() {
+        add("stress.png", "First principal stress", "first principal stress", "Pa", &skin.stress, &[], false);
+    }
+    if !moved.is_empty() {
+        let length: Vec<f64> = moved.iter().map(|u| u.norm()).collect();
+        add("particles.png", "Displacement of bonded particles", "displacement", "m", &[], &length, false);
+    }
     notes
+}
+
+/// Spheres in the colour of their values, or plain without.
+fn inside(values: &[f64]) -> Paint<'_> {
+    if values.is_empty() { Paint::Plain(GREY) } else { Paint::Nodes(values) }
 }
 
 fn skin(scene: &Scene, shown: &dyn Fn(usize) -> [f64; 3]) -> Skin {

@@ -3,33 +3,54 @@
 use std::fs;
 use std::path::Path;
 
-use fractum_io::assemble::{Assembly, assemble};
+use fractum_io::assemble::{Assembly, assemble, check_groups};
+use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics, read_case};
 use fractum_mesh::{Mesh, read_msh};
 
+use crate::bonded::{BondedReport, prepare_bodies};
+use crate::cache::Cache;
 use crate::error::Failure;
 
 /// A case with its mesh and the scene made of both.
 pub struct Input {
     /// The case.
     pub case: Case,
-    /// The mesh, in metres.
+    /// The mesh, in metres; empty where the case has none.
     pub mesh: Mesh,
-    /// Hash of the mesh file.
+    /// Hash of the mesh file; 0 where the case has none.
     pub mesh_hash: u128,
     /// The scene at t = 0.
     pub assembly: Assembly,
+    /// What became of the bonded bodies.
+    pub bonded: Vec<BondedReport>,
+    /// What took how long to make ready.
+    pub timings: Vec<String>,
 }
 
-/// Reads a case and its mesh and builds the scene.
+/// Reads a case and its mesh, makes its bonded bodies and builds the scene.
 ///
 /// - `overrides`: pairs from `--set name=value`
+/// - `cache`: where packings and beams are kept
 ///
 /// # Errors
 /// [`Failure::Input`] with everything that is wrong.
-pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<Input, Failure> {
+pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Result<Input, Failure> {
     let case = read_case(path, overrides)?;
-    let file = &case.mesh.file;
+    let (mesh, mesh_hash) = match &case.mesh {
+        Some(source) => read_mesh(source)?,
+        None => (Mesh::default(), 0),
+    };
+    check_groups(&case, &mesh)?;
+    let made = prepare_bodies(&case, &mesh, cache)?;
+    let mut assembly = assemble(&case, &mesh, made.prepared)?;
+    assembly.warnings.extend(made.warnings);
+    Ok(Input { case, mesh, mesh_hash, assembly, bonded: made.reports, timings: made.timings })
+}
+
+/// The mesh in metres, and the hash of its file.
+fn read_mesh(source: &MeshSource) -> Result<(Mesh, u128), Failure> {
+    let file = &source.file;
     let fail = |found: String, remedy: &str| {
         Failure::Input(Diagnostics(vec![Diagnostic::error(&file.place, found).remedy(remedy)]))
     };
@@ -41,10 +62,8 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<Input, Failur
         fail(format!("= \"{}\": cannot read the mesh: {error}", file.value.display()), remedy)
     })?;
     let mut mesh = read_msh(&bytes).map_err(|error| fail(format!(": {}: {error}", file.value.display()), ""))?;
-    if case.mesh.unit != 1.0 {
-        mesh.nodes.iter_mut().for_each(|node| *node *= case.mesh.unit);
+    if source.unit != 1.0 {
+        mesh.nodes.iter_mut().for_each(|node| *node *= source.unit);
     }
-    let mesh_hash = xxhash_rust::xxh3::xxh3_128(&bytes);
-    let assembly = assemble(&case, &mesh)?;
-    Ok(Input { case, mesh, mesh_hash, assembly })
+    Ok((mesh, xxhash_rust::xxh3::xxh3_128(&bytes)))
 }

@@ -4,15 +4,21 @@ use std::fmt;
 
 use fractum_fem::{Formulation, Kinematics, Plane, Shape};
 use fractum_io::assemble::Assembly;
-use fractum_io::case::model::{BodyKind, Case, LoadKind, SolidBody};
+use fractum_io::case::model::{BodyKind, Case, LoadKind, Material, MeshSource, SolidBody};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
 use fractum_scene::Scene;
+
+use crate::bonded::{BondedReport, Origin};
 
 /// Nanoseconds per element and step on one core of a common machine: standard, smoothed, smoothed with damage.
 const COST: [f64; 3] = [20.0, 45.0, 50.0];
 /// Bytes per element: standard, smoothed, smoothed with damage.
 const MEMORY: [f64; 3] = [250.0, 450.0, 550.0];
+
+/// The same for a bond with its share of particles.
+const COST_OF_BOND: f64 = 60.0;
+const MEMORY_OF_BOND: f64 = 400.0;
 
 /// The plan of a run, as text.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,14 +38,16 @@ impl fmt::Display for Plan {
 
 impl Plan {
     /// The plan of a case on its mesh.
-    pub fn new(case: &Case, mesh: &Mesh, assembly: &Assembly) -> Self {
+    pub fn new(case: &Case, mesh: &Mesh, assembly: &Assembly, bonded: &[BondedReport]) -> Self {
         let mut plan = Plan { lines: Vec::new() };
         let scene = &assembly.scene;
         if !case.title.is_empty() {
             plan.add("case", &case.title);
         }
-        plan.describe_mesh(case, mesh);
-        plan.describe_bodies(case, scene);
+        if let Some(source) = &case.mesh {
+            plan.describe_mesh(source, mesh);
+        }
+        plan.describe_bodies(case, scene, bonded);
         plan.describe_conditions(case, mesh, scene);
         plan.describe_physics(case, scene);
         plan.describe_time(case, scene);
@@ -51,14 +59,14 @@ impl Plan {
         self.lines.push((topic.to_owned(), text.into()));
     }
 
-    fn describe_mesh(&mut self, case: &Case, mesh: &Mesh) {
+    fn describe_mesh(&mut self, source: &MeshSource, mesh: &Mesh) {
         let (low, high) = mesh.bounding_box();
         let size = high - low;
         self.add(
             "mesh",
             format!(
                 "{}: {} nodes, {} tetrahedra, {} triangles, {} x {} x {}",
-                case.mesh.file.value.display(),
+                source.file.value.display(),
                 mesh.nodes.len(),
                 mesh.tetrahedra.len(),
                 mesh.triangles.len(),
@@ -72,13 +80,18 @@ impl Plan {
         }
     }
 
-    fn describe_bodies(&mut self, case: &Case, scene: &Scene) {
-        let mut index = 0;
+    fn describe_bodies(&mut self, case: &Case, scene: &Scene, bonded: &[BondedReport]) {
+        let (mut index, mut reports) = (0, bonded.iter());
         for body in &case.bodies {
             match &body.kind {
                 BodyKind::Solid(solid) => {
                     self.describe_solid(case, scene, &body.name.value, solid, index);
                     index += 1;
+                }
+                BodyKind::Bonded(body) => {
+                    if let Some(report) = reports.next() {
+                        self.describe_bonded(&case.materials[body.material], report);
+                    }
                 }
                 BodyKind::Rigid(rigid) => {
                     let text = format!("{}: rigid plane, friction {}", body.name.value, rigid.contact.friction);
@@ -86,6 +99,55 @@ impl Plan {
                 }
             }
         }
+    }
+
+    fn describe_bonded(&mut self, material: &Material, report: &BondedReport) {
+        let from = |origin, made: &str| match origin {
+            Origin::Made => made.to_owned(),
+            Origin::Cached => "from the cache".to_owned(),
+            Origin::Given => "as given".to_owned(),
+        };
+        self.add(
+            "body",
+            format!(
+                "{}: {} bonded particles of mean radius {}, {}, mass {}; packing {}",
+                report.name,
+                report.particles,
+                quantity(report.mean_radius, "m"),
+                material.name.value,
+                quantity(report.mass, "kg"),
+                from(report.packing, "made now")
+            ),
+        );
+        self.add(
+            "",
+            format!(
+                "{} bonds, coordination {:.2} off the walls, {:.2} of all (asked: {})",
+                report.bonds, report.coordination_interior, report.coordination_all, report.convention
+            ),
+        );
+        let beams = &report.beams;
+        let micro = beams.micro;
+        let reached = match beams.reached {
+            Some((young, poisson)) => format!(
+                ": E = {} and Poisson's ratio {poisson:.4}, E along the axes within {:.2} %, {}",
+                quantity(young, "Pa"),
+                100.0 * beams.anisotropy,
+                if beams.own_packing { "on this packing" } else { "on a box of the same kind" }
+            ),
+            None => ", not calibrated".to_owned(),
+        };
+        self.add(
+            "",
+            format!(
+                "beams {}: radius {:.4} mean radii, modulus {}{reached}",
+                from(report.beams_from, "calibrated now"),
+                micro.radius_ratio,
+                quantity(micro.young_modulus, "Pa"),
+            ),
+        );
+        let sets: Vec<String> = report.walls.iter().map(|(wall, n)| format!("{}.{wall} {n}", report.name)).collect();
+        self.add("", format!("sets of particles: {} {}, {}", report.name, report.particles, sets.join(", ")));
     }
 
     fn describe_solid(&mut self, case: &Case, scene: &Scene, name: &str, solid: &SolidBody, index: usize) {
@@ -134,9 +196,19 @@ impl Plan {
 
     fn describe_conditions(&mut self, case: &Case, mesh: &Mesh, scene: &Scene) {
         for support in &case.supports {
-            let axes: String = (0..3).filter(|&a| support.motion[a].is_some()).map(|a| ['x', 'y', 'z'][a]).collect();
-            let nodes = mesh.group_nodes(&support.group.value).len();
-            self.add("support", format!("{}: {axes} of {nodes} nodes", support.group.value));
+            let letters = |on: &dyn Fn(usize) -> bool| -> String {
+                (0..3).filter(|&a| on(a)).map(|a| ['x', 'y', 'z'][a]).collect()
+            };
+            let axes = letters(&|a| support.motion[a].is_some());
+            let turning = support.fix_rotation.as_ref().map_or(0, |bits| bits.value);
+            let what = if case.particle_group(&support.group.value).is_some() {
+                let held = letters(&|a| turning >> a & 1 == 1);
+                let held = if turning > 0 { format!(", no turning about {held}") } else { String::new() };
+                format!("{axes} of its particles{held}")
+            } else {
+                format!("{axes} of {} nodes", mesh.group_nodes(&support.group.value).len())
+            };
+            self.add("support", format!("{}: {what}", support.group.value));
         }
         let thickness = plane_thickness(scene);
         for load in &case.loads {
@@ -152,7 +224,7 @@ impl Plan {
             };
             self.add("load", text);
         }
-        if scene.supports().count() == 0 && case.loads.is_empty() {
+        if scene.supports().count() == 0 && scene.bonded.held_count() == 0 && case.loads.is_empty() {
             self.add("load", "none: only initial velocities move this scene");
         }
     }
@@ -165,6 +237,7 @@ impl Plan {
         let damage = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).damage.is_some());
         choose(damage, "damage and removal of elements", "no body can be damaged");
         choose(damage, "discrete elements (from the first removal)", "nothing turns into them");
+        choose(!scene.bonded.is_empty(), "cohesive beams", "no bonded body");
         choose(!scene.planes.is_empty(), "contact with rigid planes", "no rigid body");
         let damping = case.damping;
         choose(damping.local > 0.0 || damping.mass > 0.0, "damping on the nodes", "not asked for");
@@ -177,16 +250,20 @@ impl Plan {
     }
 
     fn describe_time(&mut self, case: &Case, scene: &Scene) {
-        let stable = scene.stable_step();
-        let (body, element) = stable.governing;
+        let governing = match scene.governing_element() {
+            Some(stable) => {
+                let (body, element) = stable.governing;
+                format!("element {element} of {}", scene.solid.body(body).name)
+            }
+            None => "the bonds".to_owned(),
+        };
         self.add(
             "time step",
             format!(
-                "{} ({} of the stable {}), governed by element {element} of {}",
+                "{} ({} of the stable {}), governed by {governing}",
                 quantity(scene.clock.dt_after, "s"),
                 case.solver.step.as_ref().map_or_else(|| format!("{}", case.solver.safety), |_| "fixed; ".to_owned()),
-                quantity(scene.stable_dt(), "s"),
-                scene.solid.body(body).name
+                quantity(scene.stable_dt(), "s")
             ),
         );
         let steps = (case.solver.end / scene.clock.dt_after).ceil();
@@ -207,6 +284,10 @@ impl Plan {
             bytes += MEMORY[kind] * body.elements.len() as f64;
             elements += body.elements.len();
         }
+        let bonds = scene.counts().bonds as f64;
+        nanoseconds += COST_OF_BOND * bonds;
+        bytes += MEMORY_OF_BOND * bonds;
+        let output = 60.0 * elements as f64 + 60.0 * scene.bonded.particles.len() as f64 + 20.0 * bonds;
         let steps = case.solver.end / scene.clock.dt_after;
         let frames = (case.solver.end / case.output.fields_every).ceil() + 1.0;
         let rows = (case.solver.end / case.output.history_every).ceil();
@@ -216,7 +297,7 @@ impl Plan {
             format!(
                 "memory {}, {frames} frames of about {} each, {rows} rows of history",
                 megabytes(bytes),
-                megabytes(60.0 * elements as f64)
+                megabytes(output)
             ),
         );
         self.add(

@@ -10,9 +10,10 @@ use fractum_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
+use crate::record_bonded as bonds;
 
 /// Columns of the history before the probes: name and unit.
-pub(crate) const LEDGER_COLUMNS: [(&str, &str); 13] = [
+const LEDGER_COLUMNS: [(&str, &str); 13] = [
     ("time", "s"),
     ("dt", "s"),
     ("external", "J"),
@@ -27,6 +28,16 @@ pub(crate) const LEDGER_COLUMNS: [(&str, &str); 13] = [
     ("removed_elements", "1"),
     ("particles", "1"),
 ];
+
+/// Further columns where there are bonded bodies.
+const BOND_COLUMNS: [(&str, &str); 4] =
+    [("bond_tension", "J"), ("bond_bending", "J"), ("bond_torsion", "J"), ("broken_bonds", "1")];
+
+/// How many columns of a history, which these names begin, belong to the ledger and not to probes.
+pub(crate) fn ledger_columns(names: &[&str]) -> usize {
+    let known = LEDGER_COLUMNS.iter().chain(&BOND_COLUMNS);
+    names.iter().zip(known).take_while(|(name, (column, _))| *name == column).count()
+}
 
 /// Where recording stands; part of every checkpoint.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -92,8 +103,10 @@ impl<'a> Recorder<'a> {
         folder: &Path,
         resumed: Option<RecordState>,
     ) -> Result<Self, Failure> {
+        let bonds: &[(&str, &str)] = if scene.bonded.is_empty() { &[] } else { &BOND_COLUMNS };
         let columns: Vec<Column> = LEDGER_COLUMNS
             .iter()
+            .chain(bonds)
             .map(|(name, unit)| Column::new(*name, *unit))
             .chain(
                 case.probes
@@ -159,6 +172,9 @@ impl<'a> Recorder<'a> {
         let mut row = vec![time, dt];
         row.extend(energies);
         row.extend([ledger.residual(), counts.removed_elements as f64, counts.particles as f64]);
+        if !scene.bonded.is_empty() {
+            row.extend([ledger.bond_tension, ledger.bond_bending, ledger.bond_torsion, counts.broken_bonds as f64]);
+        }
         self.state.times.push(time);
         self.state.energies.push(energies);
         for index in 0..self.case.probes.len() {
@@ -223,14 +239,26 @@ impl<'a> Recorder<'a> {
     /// Writes the fields of the present instant, and its particles.
     pub(crate) fn frame(&mut self, scene: &Scene) -> Result<(), Failure> {
         let time = scene.clock.time;
-        let name = format!("fields/solid-{:05}.vtu", self.state.frames);
-        self.write_solid(scene, &self.folder.join(&name))?;
-        self.add_to_collection(time, 0, "solid", name);
+        if !scene.solid.reference.is_empty() {
+            let name = format!("fields/solid-{:05}.vtu", self.state.frames);
+            self.write_solid(scene, &self.folder.join(&name))?;
+            self.add_to_collection(time, 0, "solid", name);
+        }
         if !scene.debris.is_empty() {
             fractum_io::atomic::create_folder(&self.folder.join("particles"))?;
             let name = format!("particles/particles-{:05}.vtp", self.state.frames);
             write_particles(scene, &self.folder.join(&name))?;
             self.add_to_collection(time, 1, "particles", name);
+        }
+        if !scene.bonded.is_empty() {
+            fractum_io::atomic::create_folder(&self.folder.join("particles"))?;
+            fractum_io::atomic::create_folder(&self.folder.join("bonds"))?;
+            let name = format!("particles/bonded-{:05}.vtp", self.state.frames);
+            bonds::write_particles(scene, &self.folder.join(&name))?;
+            self.add_to_collection(time, 2, "bonded particles", name);
+            let name = format!("bonds/bonds-{:05}.vtp", self.state.frames);
+            bonds::write_bonds(scene, &self.folder.join(&name))?;
+            self.add_to_collection(time, 3, "bonds", name);
         }
         self.collection.write(&self.folder.join("fields.pvd"))?;
         self.state.frames = next_index(time, self.case.output.fields_every);

@@ -82,7 +82,7 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
                 .map(String::from)
                 .into(),
         }),
-        cracks: ["removed_elements", "particles"].map(String::from).into(),
+        cracks: ["removed_elements", "particles", "broken_bonds"].map(String::from).into(),
         fragments,
         pictures,
         plan: notes.plan,
@@ -107,7 +107,8 @@ fn figure(folder: &Path, note: &PictureNote) -> Option<Figure> {
 
 /// The load curve (first force against first displacement), then the probes over time, one chart per unit.
 fn curves(history: &Table) -> Vec<Curve> {
-    let probes = &history.columns[crate::record::LEDGER_COLUMNS.len().min(history.columns.len())..];
+    let names: Vec<&str> = history.columns.iter().map(|c| c.name.as_str()).collect();
+    let probes = &history.columns[crate::record::ledger_columns(&names)..];
     let of_unit = |unit: &str| probes.iter().find(|c| c.unit == unit).map(|c| c.name.clone());
     let mut curves = Vec::new();
     if let (Some(load), Some(displacement)) = (of_unit("N"), of_unit("m")) {

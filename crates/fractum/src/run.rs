@@ -11,9 +11,10 @@ use fractum_io::fragments::{self, Fragment};
 use fractum_io::log::{Progress, RunLog, Snapshot};
 use fractum_io::summary::{self, Status, Summary, hash_text};
 use fractum_io::{Compression, WriteError};
-use fractum_scene::{Phase, Scene, SceneState, StepError};
+use fractum_scene::{CountKind, Phase, Scene, SceneState, StepError};
 use serde::{Deserialize, Serialize};
 
+use crate::cache::Cache;
 use crate::error::Failure;
 use crate::input::{Input, load};
 use crate::plan::Plan;
@@ -34,6 +35,8 @@ pub struct Options {
     pub resume: bool,
     /// No plan and no progress line.
     pub quiet: bool,
+    /// Where packings and beams of bonded bodies are kept.
+    pub cache: Cache,
 }
 
 /// A run that ended by itself or was interrupted.
@@ -76,8 +79,8 @@ pub fn run(path: &Path, options: &Options) -> Result<Outcome, Failure> {
 
 fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome, Failure> {
     let started = Instant::now();
-    let Input { case, mesh, mesh_hash, assembly } = load(path, &options.overrides)?;
-    let plan = Plan::new(&case, &mesh, &assembly);
+    let Input { case, mesh, mesh_hash, assembly, bonded, timings } = load(path, &options.overrides, &options.cache)?;
+    let plan = Plan::new(&case, &mesh, &assembly, &bonded);
     let folder = options.output.clone().unwrap_or_else(|| default_folder(path));
     let identity = Identity { program: program(), case_hash: case.hash(), mesh_hash };
     let mut scene = assembly.scene;
@@ -99,6 +102,7 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     }
     log.line(format!("fractum {} on {threads} threads: {}", env!("CARGO_PKG_VERSION"), path.display()))?;
     log.line(&plan)?;
+    timings.iter().try_for_each(|timing| log.line(timing))?;
     let mut progress = Progress::on_stderr(options.quiet);
     if !options.quiet {
         tell!("{plan}");
@@ -135,7 +139,7 @@ enum End {
 }
 
 /// Names of the phases in `summary.json`, and of the output beside them.
-const PHASES: [&str; 5] = ["solid", "contact", "motion", "transition", "output"];
+const PHASES: [&str; 6] = ["solid", "bonds", "contact", "motion", "transition", "output"];
 
 struct Run<'a> {
     case: &'a Case,
@@ -198,9 +202,10 @@ impl Run<'_> {
             let now = Instant::now();
             let place = match phase {
                 Phase::Solid => 0,
-                Phase::Contact => 1,
-                Phase::Motion => 2,
-                Phase::Transition => 3,
+                Phase::Bonds => 1,
+                Phase::Contact => 2,
+                Phase::Motion => 3,
+                Phase::Transition => 4,
             };
             phases[place] += now - last;
             last = now;
@@ -255,7 +260,7 @@ impl Run<'_> {
             dissipated: ledger.damage + ledger.removed + ledger.friction + ledger.damping,
             balance_error: ledger.relative_residual(),
             broken_edges: counts.broken_edges as u64,
-            broken_bonds: 0,
+            broken_bonds: counts.broken_bonds as u64,
             particles: counts.particles as u64,
         }
     }
@@ -289,7 +294,7 @@ impl Run<'_> {
         self.progress.finish(&self.snapshot(&scene), self.started.elapsed());
         let pieces = fragments_of(&scene);
         fragments::write(&self.folder.join("fragments.csv"), &pieces)?;
-        let mut summary = self.summary(&scene, status, threads, &pieces);
+        let mut summary = self.summary(&scene, status, threads);
         summary.state_hash = hash_text(state_hash);
         summary.time = summary::Time { steps: clock.step, dt: clock.dt_before, dt_min: clock.dt_min, end: clock.time };
         summary.expect = self.case.expect.iter().map(|e| expectation(e, &summary)).collect();
@@ -313,7 +318,7 @@ impl Run<'_> {
         }
     }
 
-    fn summary(&self, scene: &Scene, status: Status, threads: usize, pieces: &[Fragment]) -> Summary {
+    fn summary(&self, scene: &Scene, status: Status, threads: usize) -> Summary {
         let ledger = scene.ledger();
         let counts = scene.counts();
         let record = self.recorder.state();
@@ -351,6 +356,9 @@ impl Run<'_> {
                 external: ledger.external,
                 kinetic: ledger.kinetic,
                 elastic: ledger.elastic,
+                bond_tension: ledger.bond_tension,
+                bond_bending: ledger.bond_bending,
+                bond_torsion: ledger.bond_torsion,
                 damage: ledger.damage,
                 removed: ledger.removed,
                 contact: ledger.contact,
@@ -364,10 +372,10 @@ impl Run<'_> {
                 elements: counts.elements as u64,
                 removed_elements: counts.removed_elements as u64,
                 particles: counts.particles as u64,
-                bonds: 0,
-                broken_bonds: 0,
+                bonds: counts.bonds as u64,
+                broken_bonds: counts.broken_bonds as u64,
                 broken_edges: counts.broken_edges as u64,
-                fragments: pieces.iter().filter(|p| p.elements > 0).count() as u64,
+                fragments: scene.count(CountKind::Fragments) as u64,
             },
             wall: summary::Wall { total: self.started.elapsed().as_secs_f64(), phases },
             ..Summary::default()
@@ -434,7 +442,8 @@ fn status_text(status: Status) -> &'static str {
 }
 
 fn fragments_of(scene: &Scene) -> Vec<Fragment> {
-    fractum_scene::fragments(&scene.solid)
+    scene
+        .fragments()
         .into_iter()
         .zip(1..)
         .map(|(piece, id)| Fragment {

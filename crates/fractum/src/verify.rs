@@ -7,6 +7,7 @@ use std::time::Instant;
 use fractum_io::case::read_case;
 use fractum_io::summary::{Verified, write_verify};
 
+use crate::cache::Cache;
 use crate::error::Failure;
 use crate::run::{Options, run};
 use crate::{say, tell};
@@ -24,6 +25,8 @@ pub struct Selection {
     pub output: PathBuf,
     /// Threads per case; all cores if none is given.
     pub threads: Option<usize>,
+    /// Where packings and beams of bonded bodies are kept.
+    pub cache: Cache,
 }
 
 /// Runs the selected cases that expect something, prints the table and writes `verify.json`; the lines of the table.
@@ -67,6 +70,7 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
             output: Some(selection.output.join(&name)),
             threads: selection.threads,
             quiet: true,
+            cache: selection.cache.clone(),
             ..Options::default()
         };
         let started = Instant::now();

@@ -4,12 +4,14 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use fractum_dem::{BeamSection, Particles};
 use fractum_fem::{Body, Criterion, DamageLaw, Elastic, Kinematics, Shape, Softening, Solid, Viscosity};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Guard, Load, Loads, Motion, RigidPlane, Scene, SceneSettings, Support, Supports, Surface, TimeStepSettings,
+    Bonded, BondedPart, Guard, Load, Loads, Motion, ParticleLoad, ParticleSupport, RigidPlane, Scene, SceneSettings,
+    Support, Supports, Surface, TimeStepSettings,
 };
 
 /// The allocator of the system, counting requests while it is told to.
@@ -119,6 +121,31 @@ fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<Rig
     Scene::new(solid, supports, loads, debris, planes, &surface, settings)
 }
 
+/// A jittered lattice of bonded particles, held at one end and pulled at the other, under gravity.
+fn bonded_bar() -> Scene {
+    const SIDES: [usize; 3] = [30, 10, 10];
+    let site =
+        |i: usize| Vec3::new((i % SIDES[0]) as f64, (i / SIDES[0] % SIDES[1]) as f64, (i / SIDES[0] / SIDES[1]) as f64);
+    let count = SIDES.iter().product::<usize>();
+    let position: Vec<Vec3> = (0..count).map(|i| site(i) + Vec3::repeat(0.1 * (i as f64 * 1.7).sin())).collect();
+    let near = |i: usize, j: usize| (site(i) - site(j)).norm_squared() == 1.0;
+    let steps = [1, SIDES[0], SIDES[0] * SIDES[1]];
+    let ahead = |i: usize| steps.map(|step| i + step).into_iter().filter(move |&j| j < count && near(i, j));
+    let pairs = (0..count).flat_map(|i| ahead(i).map(move |j| [i as u32, j as u32])).collect();
+    let particles = Particles::at_rest(position.clone(), vec![0.5; count], count as f64).unwrap();
+    let section = BeamSection::new(1e3, 0.3).unwrap();
+    let part = BondedPart { name: "bar".into(), particles, pairs, section, density: 1.0 };
+    let mut bonded = Bonded::new(vec![part]).unwrap();
+    let end = |x: f64| (0..count as u32).filter(|&i| site(i as usize).x == x).collect::<Vec<u32>>();
+    let support = |name: &str, particles, motion| ParticleSupport { name: name.into(), particles, axis: 0, motion };
+    let pull = Motion::Velocity(Arc::new(|_, _| 1e-3));
+    let supports = vec![support("low", end(0.0), Motion::Fixed), support("high", end(29.0), pull)];
+    bonded.set_supports(supports, &[(0, 0b111)]).unwrap();
+    let force = ParticleLoad::Force { particles: vec![(150, 1.0)], axis: 1, value: Arc::new(|t, _| t) };
+    bonded.set_loads(vec![force, ParticleLoad::Gravity { axis: 2, value: Arc::new(|_, _| -1e-3) }]);
+    scene(Solid::new(Vec::new(), Vec::new()).unwrap(), Vec::new(), Vec::new(), Vec::new()).with_bonded(bonded)
+}
+
 /// Requests for memory in 100 steps, after 50 that warm up; the queues of the threads grow in these.
 fn requests(scene: &mut Scene) -> usize {
     let mut advance = |steps: usize| (0..steps).all(|_| scene.step(false).unwrap().removed == 0);
@@ -160,6 +187,10 @@ fn a_warm_step_allocates_nothing() {
         let mut scene = pulled(nodes.clone(), armed(plain.clone()), 0.5, calm);
         assert_eq!(requests(&mut scene), 0, "standard with growing damage");
         assert!(scene.counts().damaged_edges > 0);
+
+        let mut scene = bonded_bar();
+        assert_eq!(requests(&mut scene), 0, "bonded particles");
+        assert!(scene.counts().bonds > 7000);
 
         let mut scene = landing(nodes, armed(smoothed));
         assert_eq!(requests(&mut scene), 0, "on a rigid plane");

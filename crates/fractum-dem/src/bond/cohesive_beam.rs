@@ -30,6 +30,17 @@ impl BeamEnergy {
     }
 }
 
+impl std::ops::Add for BeamEnergy {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        BeamEnergy {
+            tension: self.tension + other.tension,
+            bending: self.bending + other.bending,
+            torsion: self.torsion + other.torsion,
+        }
+    }
+}
+
 /// The two particles of a bond.
 #[derive(Clone, Copy, Debug)]
 pub struct BondedPair {

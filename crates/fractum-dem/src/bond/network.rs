@@ -1,3 +1,5 @@
+use std::ops::Add;
+
 use fractum_math::{Rotation, Vec3};
 use nalgebra::Matrix6;
 use rayon::prelude::*;
@@ -178,18 +180,21 @@ impl BeamNetwork {
         cohesive_beam(&self.pair(bond, particles), &self.section)
     }
 
+    /// Elastic energy of a bond, live or not, by parts [J].
+    pub fn energy_of(&self, bond: usize, particles: &Particles) -> BeamEnergy {
+        cohesive_beam_energy(&self.pair(bond, particles), &self.section)
+    }
+
     /// Elastic energy of all live bonds, by parts [J].
     pub fn energy(&self, particles: &Particles) -> BeamEnergy {
         let chunk = |bonds: std::ops::Range<usize>| {
-            bonds.filter(|&b| self.live[b]).fold(BeamEnergy::default(), |sum, b| {
-                plus(sum, cohesive_beam_energy(&self.pair(b, particles), &self.section))
-            })
+            bonds.filter(|&b| self.live[b]).fold(BeamEnergy::default(), |sum, b| sum + self.energy_of(b, particles))
         };
         let parts: Vec<BeamEnergy> = (0..self.len().div_ceil(BLOCK))
             .into_par_iter()
             .map(|c| chunk(c * BLOCK..((c + 1) * BLOCK).min(self.len())))
             .collect();
-        parts.into_iter().fold(BeamEnergy::default(), plus)
+        parts.into_iter().fold(BeamEnergy::default(), BeamEnergy::add)
     }
 
     /// A time step that is certainly stable, 2/ω with a bound on ω from the assembled stiffness, times `safety`
@@ -218,10 +223,6 @@ impl BeamNetwork {
         let largest = omega2.into_iter().fold(0.0, f64::max);
         if largest > 0.0 { safety * 2.0 / largest.sqrt() } else { f64::INFINITY }
     }
-}
-
-fn plus(a: BeamEnergy, b: BeamEnergy) -> BeamEnergy {
-    BeamEnergy { tension: a.tension + b.tension, bending: a.bending + b.bending, torsion: a.torsion + b.torsion }
 }
 
 /// Adds a beam's stiffness at one end, with `n` from that end to the other.

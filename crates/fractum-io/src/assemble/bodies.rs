@@ -64,9 +64,14 @@ impl<'a> Context<'a> {
             };
             parts.push(Part { body: solid, name: &body.name.value, place, shape, elements });
         }
-        if parts.is_empty() && self.diagnostics.is_empty() {
+        let bonded = case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Bonded(_)));
+        if parts.is_empty() && !bonded && self.diagnostics.is_empty() {
             let place = self.whole_case();
-            self.error(&place, "no body of kind \"solid\"", "at least one; only rigid tools have nothing to compute");
+            self.error(
+                &place,
+                "no body of kind \"solid\" or \"bonded\"",
+                "at least one; only rigid tools have nothing to compute",
+            );
         }
         for part in &parts {
             self.check_dimension(part);

@@ -17,16 +17,17 @@ impl Context<'_> {
         let case = self.case;
         let mut supports = Vec::new();
         for support in &case.supports {
+            if self.names_particles(&support.group) {
+                continue;
+            }
+            if let Some(axes) = &support.fix_rotation {
+                self.error(&axes.place, ": nodes have no rotation", "a set of particles; remove the key");
+            }
             let nodes = self.group_nodes(&support.group, numbering);
             let name = support.name.as_ref().unwrap_or(&support.group);
             for (axis, motion) in support.motion.iter().enumerate() {
                 let Some(motion) = motion else { continue };
-                let motion = match &motion.value {
-                    model::Motion::Fixed => Motion::Fixed,
-                    model::Motion::Velocity(v) => Motion::Velocity(function(v)),
-                    model::Motion::Displacement(u) => Motion::Displacement(function(u)),
-                };
-                supports.push(Support::new(&name.value, nodes.clone(), axis, motion));
+                supports.push(Support::new(&name.value, nodes.clone(), axis, motion_of(&motion.value)));
             }
         }
         supports
@@ -42,6 +43,8 @@ impl Context<'_> {
         let mut loads = Vec::new();
         for load in &case.loads {
             match &load.kind {
+                LoadKind::Force { group, .. } | LoadKind::Traction { group, .. } | LoadKind::Pressure { group, .. }
+                    if self.names_particles(group) => {}
                 LoadKind::Force { group, force } => {
                     let nodes = self.force_shares(group, numbering, &surface);
                     push_nodal(&mut loads, &nodes, force);
@@ -109,6 +112,15 @@ impl Context<'_> {
             }
         }
         facets
+    }
+}
+
+/// How a support moves, as the scene takes it.
+pub(super) fn motion_of(motion: &model::Motion) -> Motion {
+    match motion {
+        model::Motion::Fixed => Motion::Fixed,
+        model::Motion::Velocity(v) => Motion::Velocity(function(v)),
+        model::Motion::Displacement(u) => Motion::Displacement(function(u)),
     }
 }
 

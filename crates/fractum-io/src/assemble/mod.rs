@@ -2,8 +2,11 @@
 //! reported with its place in the case file.
 
 mod bodies;
+mod bonded;
 mod conditions;
 mod probes;
+
+pub use bonded::PreparedBody;
 
 use std::sync::Arc;
 
@@ -12,6 +15,8 @@ use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{Guard, Loads, Probe, RigidPlane, Scene, SceneError, SceneSettings, Supports, TimeStepSettings};
+
+use bonded::ParticleSets;
 
 use crate::case::model::{BodyKind, Case, GroupUse, Shape, Support, TimeStep};
 use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction, nearest};
@@ -38,18 +43,32 @@ pub struct Assembly {
 struct Context<'a> {
     case: &'a Case,
     mesh: &'a Mesh,
+    /// Sets of particles of the bonded bodies.
+    particle_sets: Vec<ParticleSets>,
     diagnostics: Vec<Diagnostic>,
 }
 
-/// Builds the scene of a case on its mesh (coordinates already in metres).
+/// Holds the groups that a case names against its mesh.
+///
+/// # Errors
+/// Groups that are missing or empty.
+pub fn check_groups(case: &Case, mesh: &Mesh) -> Result<(), Diagnostics> {
+    let mut context = Context { case, mesh, particle_sets: Vec::new(), diagnostics: Vec::new() };
+    context.check_groups();
+    if context.diagnostics.is_empty() { Ok(()) } else { Err(Diagnostics(context.diagnostics)) }
+}
+
+/// Builds the scene of a case on its mesh (coordinates already in metres; an empty one where the case has none).
+///
+/// - `prepared`: the bonded bodies in the order of the case
 ///
 /// # Errors
 /// Everything that does not fit: groups that are missing or of the wrong kind, overlapping bodies, contradictory
 /// supports, elements too large for their fracture energy.
-pub fn assemble(case: &Case, mesh: &Mesh) -> Result<Assembly, Diagnostics> {
-    let mut context = Context { case, mesh, diagnostics: Vec::new() };
+pub fn assemble(case: &Case, mesh: &Mesh, prepared: Vec<PreparedBody>) -> Result<Assembly, Diagnostics> {
+    let mut context = Context { case, mesh, particle_sets: Vec::new(), diagnostics: Vec::new() };
     context.check_groups();
-    let assembly = context.build();
+    let assembly = context.build(prepared);
     match assembly {
         Some(mut assembly) if context.diagnostics.is_empty() => {
             assembly.warnings.extend(context.case.warnings().iter().cloned());
@@ -80,8 +99,11 @@ impl Context<'_> {
                 continue;
             }
             let list = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-            let mut diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value))
-                .expected(format!("a physical group of {}; groups there: {list}", self.case.mesh.file.value.display()));
+            let mut diagnostic =
+                Diagnostic::error(&group.place, format!("= \"{}\"", group.value)).expected(match &self.case.mesh {
+                    Some(mesh) => format!("a physical group of {}; groups there: {list}", mesh.file.value.display()),
+                    None => "a set of particles of a bonded body, BODY or BODY.SET; the case has no mesh".to_owned(),
+                });
             if let Some(near) = nearest(&group.value, names.iter().copied()) {
                 diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
             }
@@ -89,10 +111,11 @@ impl Context<'_> {
         }
     }
 
-    fn build(&mut self) -> Option<Assembly> {
+    fn build(&mut self, prepared: Vec<PreparedBody>) -> Option<Assembly> {
         if !self.diagnostics.is_empty() {
             return None;
         }
+        let mut bonded = self.bonded(prepared)?;
         let parts = self.solid_parts()?;
         let numbering = self.number_nodes(&parts)?;
         let bodies = self.solid_bodies(&parts, &numbering)?;
@@ -124,7 +147,8 @@ impl Context<'_> {
                 return None;
             }
         };
-        let probes = self.probes(&parts, &numbering, &supports);
+        self.condition_particles(&mut bonded);
+        let probes = self.probes(&parts, &numbering, &supports, &bonded);
         if !self.diagnostics.is_empty() {
             return None;
         }
@@ -141,7 +165,8 @@ impl Context<'_> {
             self.planes(),
             &surface,
             self.settings(),
-        );
+        )
+        .with_bonded(bonded);
         Some(Assembly {
             scene,
             probes,
@@ -178,7 +203,7 @@ impl Context<'_> {
     fn planes(&self) -> Vec<RigidPlane> {
         let rigid = self.case.bodies.iter().filter_map(|body| match &body.kind {
             BodyKind::Rigid(rigid) => Some(rigid),
-            BodyKind::Solid(_) => None,
+            BodyKind::Solid(_) | BodyKind::Bonded(_) => None,
         });
         rigid
             .map(|rigid| {
@@ -211,6 +236,7 @@ fn function(function: &TimeFunction) -> fractum_scene::TimeFunction {
 fn use_in_words(group_use: GroupUse) -> &'static str {
     match group_use {
         GroupUse::Body => "elements of a body",
+        GroupUse::Filled => "a volume to fill with particles",
         GroupUse::Support | GroupUse::ProbeNodes => "nodes of a solid body",
         GroupUse::Force => "nodes or facets of a solid body",
         GroupUse::Facets => "facets on the surface of a solid body",

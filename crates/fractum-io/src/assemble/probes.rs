@@ -1,6 +1,6 @@
 //! Probes on the groups of the mesh.
 
-use fractum_scene::{CountKind, EnergyKind, Probe, Supports};
+use fractum_scene::{Bonded, CountKind, EnergyKind, Probe, Supports};
 
 use super::Context;
 use super::bodies::{Numbering, Part};
@@ -9,9 +9,19 @@ use crate::case::model::{self, GroupUse, ProbeKind};
 
 impl Context<'_> {
     /// The measured probes of the case; none for expressions.
-    pub(super) fn probes(&mut self, parts: &[Part], numbering: &Numbering, supports: &Supports) -> Vec<Option<Probe>> {
+    pub(super) fn probes(
+        &mut self,
+        parts: &[Part],
+        numbering: &Numbering,
+        supports: &Supports,
+        bonded: &Bonded,
+    ) -> Vec<Option<Probe>> {
         let case = self.case;
-        case.probes.iter().map(|probe| self.probe(&probe.kind, parts, numbering, supports)).collect()
+        let mut measured = |kind| match self.particle_probe(kind, bonded) {
+            Some(probe) => Some(probe),
+            None => self.probe(kind, parts, numbering, supports),
+        };
+        case.probes.iter().map(|probe| measured(&probe.kind)).collect()
     }
 
     fn probe(&mut self, kind: &ProbeKind, parts: &[Part], numbering: &Numbering, supports: &Supports) -> Option<Probe> {
@@ -33,6 +43,11 @@ impl Context<'_> {
             }
             ProbeKind::Velocity { group, along } => {
                 Probe::Velocity { nodes: self.group_nodes(group, numbering), direction: *along }
+            }
+            ProbeKind::Rotation { group, .. } => {
+                let found = format!("= \"{}\"", group.value);
+                self.error(&group.place, found, "a set of particles of a bonded body");
+                return None;
             }
             ProbeKind::Stress { group, component } => {
                 let wanted: Vec<&fractum_mesh::Group> = self.mesh.group(&group.value);
@@ -58,6 +73,9 @@ impl Context<'_> {
                 model::EnergyKind::External => EnergyKind::External,
                 model::EnergyKind::Kinetic => EnergyKind::Kinetic,
                 model::EnergyKind::Elastic => EnergyKind::Elastic,
+                model::EnergyKind::BondTension => EnergyKind::BondTension,
+                model::EnergyKind::BondBending => EnergyKind::BondBending,
+                model::EnergyKind::BondTorsion => EnergyKind::BondTorsion,
                 model::EnergyKind::Damage => EnergyKind::Damage,
                 model::EnergyKind::Removed => EnergyKind::Removed,
                 model::EnergyKind::Contact => EnergyKind::Contact,
@@ -73,6 +91,8 @@ impl Context<'_> {
                 model::CountKind::Particles => CountKind::Particles,
                 model::CountKind::Fragments => CountKind::Fragments,
                 model::CountKind::Contacts => CountKind::Contacts,
+                model::CountKind::Bonds => CountKind::Bonds,
+                model::CountKind::BrokenBonds => CountKind::BrokenBonds,
             }),
             ProbeKind::Momentum { along } => Probe::Momentum(*along),
             ProbeKind::AngularMomentum { along } => Probe::AngularMomentum(*along),

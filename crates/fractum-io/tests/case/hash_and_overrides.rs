@@ -11,7 +11,7 @@ fn overrides_set_parameters_and_keys() {
     assert_eq!(good(&text, &[("E0", "30 GPa")]).materials[0].young_modulus, 30e9);
     assert_eq!(good(&text, &[("parameters.E0", "3e10")]).materials[0].young_modulus, 30e9);
     assert_eq!(good(&text, &[("solver.end", "5 ms")]).solver.end, 5e-3);
-    assert_eq!(good(&text, &[("mesh.file", "fine.msh")]).mesh.file.value, folder().join("fine.msh"));
+    assert_eq!(good(&text, &[("mesh.file", "fine.msh")]).mesh.unwrap().file.value, folder().join("fine.msh"));
     let standard = good(&text, &[("bodies[1].formulation", "standard")]);
     assert!(matches!(&standard.bodies[1].kind, BodyKind::Solid(solid) if solid.formulation == Formulation::Standard));
     let without_strength = text.replace("compressive_strength = \"30 MPa\"", "");

@@ -70,6 +70,8 @@ fn documented_defaults_are_the_defaults() {
     let samples = [
         (text.as_str(), "concrete", "bodies[0]", "loads[3].pressure"),
         (text.as_str(), "mortar", "bodies[2]", "supports[1].displacement.y"),
+        (text.as_str(), "mortar", "bodies[3]", ""),
+        (text.as_str(), "mortar", "bodies[5]", ""),
         (SMALL, "steel", "bodies[0]", ""),
     ];
     let mut untried = Vec::new();

@@ -13,6 +13,98 @@ fn mistakes(text: &str) -> Vec<String> {
     errors.0.iter().map(|error| error.to_string().replacen(&file, "", 1)).collect()
 }
 
+/// A case without a mesh.
+const BONDED: &str = r#"fractum = 1
+[materials.glass]
+density = 2500
+young_modulus = 72e9
+poisson_ratio = 0.23
+[[bodies]]
+name = "bar"
+kind = "bonded"
+material = "glass"
+shape = "box"
+size = [3, 1, 1]
+[solver]
+end = 1e-3
+"#;
+
+#[test]
+fn each_mistake_about_a_bonded_body_has_one_clear_message() {
+    assert_eq!(parse(BONDED, &[]).unwrap().mesh, None);
+    let beams = "poisson_ratio = 0.23\nbonds = { coordination = 8, convention = \"all\", radius_ratio = 0.4, young_modulus = 1e9 }";
+    let cases: &[(&str, &str, &str)] = &[
+        (
+            "fractum = 1",
+            "fractum = 1\n[mesh]\nfile = \"bar.msh\"",
+            "2:2: mesh has no effect where no body is made of a mesh group; remove it",
+        ),
+        (
+            "shape = \"box\"",
+            "shape = \"bx\"",
+            "10:9: bodies[0].shape = \"bx\"; expected \"box\", \"cylinder\", \"sphere\", \"group\" or \"stl\"; did you mean \
+             \"box\"?",
+        ),
+        (
+            "size = [3, 1, 1]",
+            "",
+            "6:3: bodies[0].size is missing; expected three numbers, each a length such as \"10 mm\"",
+        ),
+        ("size = [3, 1, 1]", "size = [3, 0, 1]", "11:8: bodies[0].size = [3, 0, 1]; expected three lengths above 0"),
+        (
+            "size = [3, 1, 1]",
+            "size = [3, 1, 1]\nradius = 1",
+            "12:1: bodies[0].radius has no effect on the shape \"box\"; remove it",
+        ),
+        (
+            "size = [3, 1, 1]",
+            "size = [3, 1, 1]\ndispersion = 1.2",
+            "12:14: bodies[0].dispersion = 1.2; expected from 0 to 1 (0.25 is usual; packings below 0.15 tend to order)",
+        ),
+        (
+            "size = [3, 1, 1]",
+            "size = [3, 1, 1]\nparticles = 3",
+            "12:13: bodies[0].particles = 3; expected 20 to 20 million",
+        ),
+        (
+            "size = [3, 1, 1]",
+            "size = [3, 1, 1]\nparticles = 300\nparticle_radius = 0.1",
+            "12:1: bodies[0].particles has no effect beside particle_radius, from which the number follows; remove it",
+        ),
+        (
+            "size = [3, 1, 1]",
+            "size = [3, 1, 1]\nformulation = \"smoothed\"",
+            "12:1: bodies[0].formulation has no effect on a bonded body; remove it",
+        ),
+        (
+            "shape = \"box\"\nsize = [3, 1, 1]",
+            "packing = \"no.fpk\"",
+            "10:11: bodies[0].packing = \"no.fpk\" cannot be opened: No such file or directory (os error 2); paths are taken \
+             from the folder of the case file",
+        ),
+        (
+            "shape = \"box\"\nsize = [3, 1, 1]",
+            "packing = \"old.fpk\"\nseed = 3",
+            "11:1: bodies[0].seed has no effect beside a packing made before; remove it",
+        ),
+        (
+            "poisson_ratio = 0.23",
+            "poisson_ratio = 0.23\nbonds = { coordination = 8 }",
+            "6:9: materials.glass.bonds.convention is missing; expected \"interior\" or \"all\"",
+        ),
+    ];
+    for (from, to, message) in cases {
+        let found = mistakes(&BONDED.replacen(from, to, 1));
+        assert!(found.iter().any(|found| found == message), "{to}:\n{message}\n{found:#?}");
+    }
+    let twice = BONDED.replacen("poisson_ratio = 0.23", beams, 1).replacen("size", "coordination = 7\nsize", 1);
+    let found = mistakes(&twice);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert!(
+        found[0].ends_with("coordination has no effect beside the bonds of its material, which have one; remove it")
+    );
+}
+
 #[test]
 fn each_mistake_has_one_clear_message() {
     let cases: &[(&str, &str, &str)] = &[
@@ -57,12 +149,13 @@ fn each_mistake_has_one_clear_message() {
         (
             "kind = \"solid\"",
             "kind = \"sold\"",
-            "10:8: bodies[0].kind = \"sold\"; expected \"solid\" or \"rigid\"; did you mean \"solid\"?",
+            "10:8: bodies[0].kind = \"sold\"; expected \"solid\", \"bonded\" or \"rigid\"; did you mean \"solid\"?",
         ),
         (
             "kind = \"solid\"",
-            "kind = \"bonded\"",
-            "10:8: bodies[0].kind = \"bonded\" is not available in this version; expected \"solid\" or \"rigid\"",
+            "kind = \"particles\"",
+            "10:8: bodies[0].kind = \"particles\" is not available in this version; expected \"solid\", \"bonded\" or \
+             \"rigid\"",
         ),
         (
             "material = \"steel\"",

@@ -1,6 +1,9 @@
 //! A case with every key, read into SI.
 
-use fractum_io::case::model::{BodyKind, Bound, Criterion, Formulation, LoadKind, Motion, ProbeKind, Softening};
+use fractum_io::case::model::{
+    BodyKind, BondedShape, Bound, Convention, Criterion, Formulation, LoadKind, Motion, PackingSource, ParticleSize,
+    ProbeKind, Softening,
+};
 use fractum_io::case::{Severity, Spanned, TimeFunction, read_case};
 use fractum_math::Vec3;
 
@@ -11,8 +14,9 @@ fn a_case_with_every_key_is_read_into_si() {
     let case = read_case(&folder().join("every_key.toml"), &[]).unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!(case.warnings(), []);
     assert_eq!(case.title, "Every key");
-    assert_eq!(case.mesh.file.value, folder().join("meshes/block.msh"));
-    assert_eq!(case.mesh.unit, 1e-3);
+    let mesh = case.mesh.as_ref().unwrap();
+    assert_eq!(mesh.file.value, folder().join("meshes/block.msh"));
+    assert_eq!(mesh.unit, 1e-3);
     assert_eq!(case.parameters["E1"], 42e9);
 
     let [concrete, mortar] = &case.materials[..] else { panic!() };
@@ -43,12 +47,29 @@ fn a_case_with_every_key_is_read_into_si() {
         Some(Motion::Velocity(f) | Motion::Displacement(f)) => f.value(t, Vec3::zeros()),
         other => panic!("{other:?}"),
     };
-    let [bottom, top, side] = &case.supports[..] else { panic!() };
+    let [bottom, top, side, brick] = &case.supports[..] else { panic!() };
     assert_eq!(bottom.motion[0].as_ref().unwrap().value, Motion::Fixed);
     assert_eq!((value(&bottom.motion[1], 0.1e-3), value(&bottom.motion[1], 1.0)), (-0.5e-3, -1e-3));
     assert!((value(&top.motion[0], 1e-3) - 1e-3 / std::f64::consts::E).abs() < 1e-18);
     assert_eq!((value(&top.motion[1], 0.5e-3), value(&top.motion[2], 0.5e-3)), (0.25e-3, 0.5));
     assert_eq!((value(&side.motion[0], 2e-3), value(&side.motion[2], 1.0)), (2e-3, 0.0));
+
+    assert_eq!(brick.fix_rotation.as_ref().unwrap().value, 0b111);
+
+    let BodyKind::Bonded(brick) = &case.bodies[3].kind else { panic!() };
+    let PackingSource::Shape { shape, size, dispersion, seed } = &brick.packing else { panic!() };
+    let (point, edges) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.01, 0.02, 0.01));
+    assert_eq!(shape.value, BondedShape::Box { point, size: edges });
+    assert_eq!((size.value, *dispersion, *seed), (ParticleSize::Count(500), 0.2, 3));
+    assert_eq!((brick.coordination.as_ref().unwrap().value, brick.convention), (8.0, Convention::Interior));
+    assert_eq!(concrete.bonds.as_ref().unwrap().value.young_modulus, 300e9);
+    let BodyKind::Bonded(rod) = &case.bodies[4].kind else { panic!() };
+    assert_eq!((rod.coordination.as_ref().unwrap().value, rod.convention), (7.5, Convention::All));
+    let BodyKind::Bonded(old) = &case.bodies[6].kind else { panic!() };
+    assert!(matches!(&old.packing, PackingSource::File(file) if file.bytes.starts_with(b"stands")));
+    assert_eq!(case.particle_group("rod.x+"), Some((4, Some("x+"))));
+    assert_eq!(case.particle_group("rod"), Some((4, None)));
+    assert_eq!(case.particle_group("block.x+"), None);
 
     let LoadKind::Pressure { pressure, .. } = &case.loads[2].kind else { panic!() };
     assert!((pressure.value(3e-6, Vec3::zeros()) / 100e6 - 1.0).abs() < 1e-12);
@@ -60,11 +81,11 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!((case.output.history_every, case.output.checkpoint_every), (2e-6, 300.0));
 
     let units: Vec<_> = case.probes.iter().map(|probe| probe.unit.as_str()).collect();
-    let expected = ["N", "m", "m/s", "Pa", "J", "1", "kg m/s", "kg m^2/s", "m^2", "Pa", "J/m^2", "N"];
+    let expected = ["N", "m", "m/s", "1", "Pa", "J", "1", "kg m/s", "kg m^2/s", "m^2", "Pa", "J/m^2", "N"];
     assert_eq!(units, expected, "N/m is J/m^2");
-    let ProbeKind::Expression(strength) = &case.probes[9].kind else { panic!() };
+    let ProbeKind::Expression(strength) = &case.probes[10].kind else { panic!() };
     assert!((strength.value(&[314.159_265_358_979_3]) / 1e4 - 1.0).abs() < 1e-12);
-    assert!(case.probes[9].is_scalar() && case.probes[11].is_scalar() && !case.probes[0].is_scalar());
+    assert!(case.probes[10].is_scalar() && case.probes[12].is_scalar() && !case.probes[0].is_scalar());
 
     assert_eq!(case.expect[0].bound, Bound::Near { value: 1e4, tolerance: 500.0, relative: Some(0.05) });
     assert_eq!(case.expect[2].bound, Bound::Between { above: Some(1e-4), below: Some(2e-3) });

@@ -144,7 +144,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Check { case, set } => check(&case, &set),
         Command::New { template, output } => new::new(template.as_deref(), output),
         Command::Verify { names, quick, cases, output, threads } => {
-            let selection = fractum::verify::Selection { cases, names, quick, output, threads };
+            let selection = fractum::verify::Selection { cases, names, quick, output, threads, cache: cache() };
             fractum::verify::verify(&selection).and_then(|lines| match lines.iter().filter(|l| !l.pass).count() {
                 0 => Ok(ExitCode::Done),
                 failed => Err(Failure::Unmet(format!("{failed} of {} references are not met", lines.len()))),
@@ -185,9 +185,27 @@ fn report(failure: &Failure, json: bool) {
     }
 }
 
+/// The cache of packings and beams: the folder named by `FRACTUM_CACHE` (none if that is empty), else `fractum` among
+/// the caches of the user.
+fn cache() -> fractum::Cache {
+    let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    if std::env::var_os("FRACTUM_CACHE").is_some() {
+        return fractum::Cache::new(folder("FRACTUM_CACHE"));
+    }
+    let caches = folder("XDG_CACHE_HOME").or_else(|| folder("LOCALAPPDATA"));
+    let caches = caches.or_else(|| folder("HOME").map(|home| home.join(".cache")));
+    fractum::Cache::new(caches.map(|caches| caches.join("fractum")))
+}
+
 fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
-    let options =
-        Options { output: run.output, threads: run.threads, overrides: run.set, resume: run.resume, quiet: run.quiet };
+    let options = Options {
+        output: run.output,
+        threads: run.threads,
+        overrides: run.set,
+        resume: run.resume,
+        quiet: run.quiet,
+        cache: cache(),
+    };
     let Outcome { summary, folder } = fractum::run::run(&run.case, &options)?;
     if summary.status == Status::Interrupted {
         tell!(
@@ -217,8 +235,8 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
 }
 
 fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, Failure> {
-    let input = fractum::load(case, set)?;
-    say!("{}", fractum::plan::Plan::new(&input.case, &input.mesh, &input.assembly));
+    let input = fractum::load(case, set, &cache())?;
+    say!("{}", fractum::plan::Plan::new(&input.case, &input.mesh, &input.assembly, &input.bonded));
     for warning in &input.assembly.warnings {
         say!("{warning}");
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use fractum::Failure;
 use fractum_io::case::{Dimension, parse_quantity};
-use fractum_mesh::{read_msh, topology};
+use fractum_mesh::read_msh;
 use fractum_pack::{ClosedSurface, Domain, PackSize, PackSpec, Packing, pack, read_stl};
 
 /// The shape to fill and the particles to fill it with.
@@ -128,24 +128,10 @@ impl ShapeArguments {
 fn group_surface(file: &Path, group: Option<&str>) -> Result<ClosedSurface, Failure> {
     let wrong = |what: String| Failure::input(format!("{}: {what}", file.display()));
     let mesh = read_msh(&read(file)?).map_err(|error| wrong(error.to_string()))?;
-    let (mut tetrahedra, mut triangles) = (Vec::new(), Vec::new());
-    match group {
-        None => tetrahedra.clone_from(&mesh.tetrahedra),
-        Some(name) => {
-            let groups = mesh.group(name);
-            if groups.is_empty() {
-                return Err(wrong(format!("no group \"{name}\"; groups here: {}", mesh.group_names().join(", "))));
-            }
-            for part in groups {
-                tetrahedra.extend(part.tetrahedra.iter().map(|&e| mesh.tetrahedra[e as usize]));
-                triangles.extend(part.triangles.iter().map(|&e| mesh.triangles[e as usize]));
-            }
-        }
+    if let Some(name) = group.filter(|name| mesh.group(name).is_empty()) {
+        return Err(wrong(format!("no group \"{name}\"; groups here: {}", mesh.group_names().join(", "))));
     }
-    if !tetrahedra.is_empty() {
-        triangles = topology::boundary_of_tetrahedra(&tetrahedra).iter().map(|f| f.nodes).collect();
-    }
-    ClosedSurface::new(&mesh.nodes, &triangles).map_err(|error| wrong(error.to_string()))
+    fractum::bonded::group_surface(&mesh, group).map_err(|error| wrong(error.to_string()))
 }
 
 /// Reads a file.

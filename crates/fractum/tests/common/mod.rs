@@ -118,6 +118,7 @@ impl Workplace {
     pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_fractum"));
         command.args(arguments).current_dir(self.folder.path()).stdin(Stdio::null());
+        command.env("FRACTUM_CACHE", self.path("cache"));
         command
     }
 

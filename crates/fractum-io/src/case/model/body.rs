@@ -1,7 +1,8 @@
-//! Bodies: meshed solids and rigid tools.
+//! Bodies: meshed solids, bonded particles and rigid tools.
 
 use fractum_math::Vec3;
 
+use super::BondedBody;
 use crate::case::choice::choice;
 use crate::case::{Field, Spanned};
 use fractum_scene::Surface;
@@ -21,6 +22,8 @@ pub struct Body {
 pub enum BodyKind {
     /// Finite elements of a mesh group.
     Solid(SolidBody),
+    /// Particles joined by beams.
+    Bonded(BondedBody),
     /// A rigid tool.
     Rigid(RigidBody),
 }

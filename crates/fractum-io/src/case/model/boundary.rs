@@ -7,9 +7,11 @@ use crate::case::{Spanned, TimeFunction};
 pub struct Support {
     /// Name, where given.
     pub name: Option<Spanned<String>>,
-    /// Mesh group of its nodes.
+    /// Mesh group of its nodes, or set of particles.
     pub group: Spanned<String>,
-    /// Motion along x, y, z; `None` leaves the axis free. At least one is prescribed.
+    /// Bit a is set where the particles of a bonded body do not turn about axis a.
+    pub fix_rotation: Option<Spanned<u8>>,
+    /// Motion along x, y, z; `None` leaves the axis free. At least one is prescribed, or a rotation.
     pub motion: [Option<Spanned<Motion>>; 3],
 }
 

@@ -2,6 +2,7 @@
 
 use fractum_scene::Surface;
 
+use super::Bonds;
 use crate::case::Spanned;
 use crate::case::choice::choice;
 
@@ -18,6 +19,8 @@ pub struct Material {
     pub poisson_ratio: f64,
     /// Damage, where the material has a `damage` table.
     pub damage: Option<Spanned<Damage>>,
+    /// Beams of bonded bodies, where the material has a `bonds` table; found by calibration otherwise.
+    pub bonds: Option<Spanned<Bonds>>,
     /// Contact of the discrete elements that this material leaves behind.
     pub contact: Surface,
 }

@@ -1,6 +1,7 @@
 //! The typed case: plain data in SI units, checked as far as the file alone allows.
 
 mod body;
+mod bonded;
 mod boundary;
 mod material;
 mod probe;
@@ -9,6 +10,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 pub use body::{Body, BodyKind, Formulation, Kinematics, Plane, RigidBody, Shape, SolidBody};
+pub use bonded::{BondedBody, BondedShape, Bonds, Convention, FileContent, PackingSource, ParticleSize};
 pub use boundary::{Components, Load, LoadKind, Motion, Support};
 pub use material::{Criterion, Damage, Distribution, Material, Scatter, Softening};
 pub use probe::{CountKind, EnergyKind, Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
@@ -26,8 +28,8 @@ pub struct Case {
     pub title: String,
     /// Values of `[parameters]` in SI, after overrides.
     pub parameters: BTreeMap<String, f64>,
-    /// The mesh.
-    pub mesh: MeshSource,
+    /// The mesh, where a body needs one.
+    pub mesh: Option<MeshSource>,
     /// Materials, in the order of the file.
     pub materials: Vec<Material>,
     /// Bodies, in the order of the file; at least one.
@@ -208,6 +210,9 @@ pub const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
     ("counts.contacts", Dimension::NONE),
     ("counts.bonds", Dimension::NONE),
     ("counts.broken_bonds", Dimension::NONE),
+    ("energy.bond_tension", Dimension::ENERGY),
+    ("energy.bond_bending", Dimension::ENERGY),
+    ("energy.bond_torsion", Dimension::ENERGY),
     ("counts.fragments", Dimension::NONE),
     ("time.steps", Dimension::NONE),
     ("time.dt", Dimension::TIME),
@@ -220,6 +225,8 @@ pub const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
 pub enum GroupUse {
     /// Elements of a body.
     Body,
+    /// The volume that particles fill.
+    Filled,
     /// Nodes of a support.
     Support,
     /// Nodes or facets that share a force.
@@ -238,10 +245,30 @@ impl Case {
         &self.warnings
     }
 
-    /// Every mesh group the case names, with its use, in the order of bodies, supports, loads, probes.
+    /// Splits the name of a set of particles, `BODY` or `BODY.SET`, into the index of its bonded body and the set.
+    pub fn particle_group<'g>(&self, group: &'g str) -> Option<(usize, Option<&'g str>)> {
+        let bonded = |name: &str| {
+            let of = |body: &Body| body.name.value == name && matches!(body.kind, BodyKind::Bonded(_));
+            self.bodies.iter().position(of)
+        };
+        let whole = bonded(group).map(|body| (body, None));
+        whole.or_else(|| {
+            let (name, set) = group.split_once('.')?;
+            bonded(name).map(|body| (body, Some(set)))
+        })
+    }
+
+    /// Every mesh group the case names, with its use, in the order of bodies, supports, loads, probes. Names of
+    /// bonded bodies are not among them.
     pub fn groups_used(&self) -> Vec<(&Spanned<String>, GroupUse)> {
         let bodies = self.bodies.iter().filter_map(|body| match &body.kind {
             BodyKind::Solid(solid) => Some((&solid.group, GroupUse::Body)),
+            BodyKind::Bonded(bonded) => match &bonded.packing {
+                PackingSource::Shape { shape: Spanned { value: BondedShape::Group(group), .. }, .. } => {
+                    Some((group, GroupUse::Filled))
+                }
+                _ => None,
+            },
             BodyKind::Rigid(_) => None,
         });
         let supports = self.supports.iter().map(|support| (&support.group, GroupUse::Support));
@@ -253,10 +280,13 @@ impl Case {
         let probes = self.probes.iter().filter_map(|probe| match &probe.kind {
             ProbeKind::Reaction { group, .. }
             | ProbeKind::Displacement { group, .. }
-            | ProbeKind::Velocity { group, .. } => Some((group, GroupUse::ProbeNodes)),
+            | ProbeKind::Velocity { group, .. }
+            | ProbeKind::Rotation { group, .. } => Some((group, GroupUse::ProbeNodes)),
             ProbeKind::Stress { group, .. } => Some((group, GroupUse::ProbeElements)),
             _ => None,
         });
-        bodies.chain(supports).chain(loads).chain(probes).collect()
+        let of_mesh = |group: &&Spanned<String>| self.particle_group(&group.value).is_none();
+        let named = supports.chain(loads).chain(probes).filter(|(group, _)| of_mesh(group));
+        bodies.chain(named).collect()
     }
 }

@@ -48,6 +48,13 @@ pub enum ProbeKind {
         /// Unit vector.
         along: Vec3,
     },
+    /// Rotation of a set of particles as a whole about an axis through its centre, for small angles [rad].
+    Rotation {
+        /// Set of particles.
+        group: Spanned<String>,
+        /// Unit vector.
+        along: Vec3,
+    },
     /// Volume mean of a stress component over the elements of a group [Pa].
     Stress {
         /// Mesh group of elements.
@@ -155,6 +162,12 @@ pub enum EnergyKind {
     Kinetic,
     /// Elastic.
     Elastic,
+    /// Elastic, in tension and compression of bonds.
+    BondTension,
+    /// Elastic, in bending of bonds.
+    BondBending,
+    /// Elastic, in torsion of bonds.
+    BondTorsion,
     /// Dissipated by damage.
     Damage,
     /// Lost with removed elements.
@@ -173,6 +186,7 @@ pub enum EnergyKind {
 
 choice!(EnergyKind {
     "external" => External, "kinetic" => Kinetic, "elastic" => Elastic, "damage" => Damage, "removed" => Removed,
+    "bond_tension" => BondTension, "bond_bending" => BondBending, "bond_torsion" => BondTorsion,
     "contact" => Contact, "friction" => Friction, "damping" => Damping, "absorbed" => Absorbed, "residual" => Residual,
 });
 
@@ -191,9 +205,14 @@ pub enum CountKind {
     Fragments,
     /// Touching pairs.
     Contacts,
+    /// Bonds at the start.
+    Bonds,
+    /// Bonds that broke.
+    BrokenBonds,
 }
 
 choice!(CountKind {
     "removed_elements" => RemovedElements, "broken_edges" => BrokenEdges, "damaged_edges" => DamagedEdges,
     "particles" => Particles, "fragments" => Fragments, "contacts" => Contacts,
+    "bonds" => Bonds, "broken_bonds" => BrokenBonds,
 });

@@ -1,5 +1,6 @@
 //! `[[bodies]]`.
 
+use super::bonded::bonded;
 use super::materials;
 use super::vectors::{components, condition, direction, field, point};
 use crate::case::model::{Body, BodyKind, Formulation, Kinematics, Material, Plane, RigidBody, Shape, SolidBody};
@@ -9,7 +10,7 @@ use crate::case::{Diagnostic, nearest};
 use fractum_math::Vec3;
 
 /// Kinds of bodies that later versions are to have.
-const PLANNED: [&str; 2] = ["bonded", "particles"];
+const PLANNED: [&str; 1] = ["particles"];
 
 /// Reads all bodies against the materials read before; nothing where one of them is wrong.
 pub(super) fn read(root: &Table<'_>, materials: &[(String, Option<Material>)]) -> Option<Vec<Body>> {
@@ -60,6 +61,7 @@ fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [
     #[derive(Clone, Copy)]
     enum Kind {
         Solid,
+        Bonded,
         Rigid,
     }
     let name = table.text("name").spanned().required();
@@ -67,16 +69,22 @@ fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [
         let planned = matches!(&node.value, Value::Text(kind) if PLANNED.contains(&kind.as_str()));
         if planned {
             let note = Diagnostic::error(&node.place, format!("{} is not available in this version", node.found()));
-            table.reader.note(note.expected("\"solid\" or \"rigid\""));
+            table.reader.note(note.expected("\"solid\", \"bonded\" or \"rigid\""));
         }
         planned
     });
     if planned {
         return None;
     }
-    let kind = table.one_of("kind", &[("solid", Kind::Solid), ("rigid", Kind::Rigid)]).required();
+    let kinds = [("solid", Kind::Solid), ("bonded", Kind::Bonded), ("rigid", Kind::Rigid)];
+    let kind = table.one_of("kind", &kinds).required();
     let (kind, why) = match kind {
         Some(Kind::Solid) => (solid(&table, materials, used).map(BodyKind::Solid), "on a solid body"),
+        Some(Kind::Bonded) => {
+            let material = material_of(&table, materials, used);
+            let here = material.and_then(|index| materials[index].1.as_ref());
+            (bonded(&table, material, here).map(BodyKind::Bonded), "on a bonded body")
+        }
         Some(Kind::Rigid) => (rigid(&table).map(BodyKind::Rigid), "on a rigid body"),
         None => return None, // which keys belong here is not known
     };
@@ -86,22 +94,7 @@ fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [
 
 fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut [bool]) -> Option<SolidBody> {
     let group = table.text("group").spanned().required();
-    let material = table.text("material").spanned().required().and_then(|name| {
-        let found = materials.iter().position(|(known, _)| *known == name.value);
-        if found.is_none() {
-            let known = materials.iter().map(|(name, _)| name.as_str());
-            let note = Diagnostic::error(&name.place, format!("= \"{}\" is not a material of this case", name.value));
-            table.reader.note(match nearest(&name.value, known.clone()) {
-                Some(near) => note.remedy(format!("did you mean \"{near}\"?")),
-                None if materials.is_empty() => note.remedy("it has no [materials.NAME]"),
-                None => note.remedy(format!("materials here: {}", known.collect::<Vec<_>>().join(", "))),
-            });
-        }
-        found
-    });
-    if let Some(used) = material.and_then(|index| used.get_mut(index)) {
-        *used = true;
-    }
+    let material = material_of(table, materials, used);
     let material_here = material.and_then(|index| materials[index].1.as_ref());
     // A material that is wrong itself says nothing about damage.
     let may_damage = material_here.map(|material| material.damage.is_some());
@@ -138,6 +131,27 @@ fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut
         damage_where: damage_where?,
         strength_factor: strength_factor?,
     })
+}
+
+/// The material that a body names, which counts as used from now on.
+fn material_of(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut [bool]) -> Option<usize> {
+    let material = table.text("material").spanned().required().and_then(|name| {
+        let found = materials.iter().position(|(known, _)| *known == name.value);
+        if found.is_none() {
+            let known = materials.iter().map(|(name, _)| name.as_str());
+            let note = Diagnostic::error(&name.place, format!("= \"{}\" is not a material of this case", name.value));
+            table.reader.note(match nearest(&name.value, known.clone()) {
+                Some(near) => note.remedy(format!("did you mean \"{near}\"?")),
+                None if materials.is_empty() => note.remedy("it has no [materials.NAME]"),
+                None => note.remedy(format!("materials here: {}", known.collect::<Vec<_>>().join(", "))),
+            });
+        }
+        found
+    });
+    if let Some(used) = material.and_then(|index| used.get_mut(index)) {
+        *used = true;
+    }
+    material
 }
 
 /// `Some(None)` where the key is absent, nothing where its value is wrong.

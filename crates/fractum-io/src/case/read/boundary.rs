@@ -54,11 +54,20 @@ fn support(table: Table<'_>) -> Option<Support> {
     let mut motion: [Option<Spanned<Motion>>; 3] = [None, None, None];
     let mut complete = true;
     if table.has("fix") {
-        match fixed_axes(&table) {
+        match fixed_axes(&table, "fix") {
             Some(fixed) => motion = fixed,
             None => complete = false,
         }
     }
+    let fix_rotation = if table.has("fix_rotation") {
+        let axes = fixed_axes(&table, "fix_rotation");
+        complete &= axes.is_some();
+        let bits =
+            |fixed: &[Option<Spanned<Motion>>; 3]| (0..3).fold(0, |bits, a| bits | u8::from(fixed[a].is_some()) << a);
+        axes.map(|axes| Spanned::new(bits(&axes), table.place_of("fix_rotation")))
+    } else {
+        None
+    };
     type Wrap = fn(TimeFunction) -> Motion;
     for (key, wrap) in [("velocity", Motion::Velocity as Wrap), ("displacement", Motion::Displacement as Wrap)] {
         if !table.has(key) {
@@ -84,21 +93,21 @@ fn support(table: Table<'_>) -> Option<Support> {
             }
         }
     }
-    if complete && motion.iter().all(Option::is_none) {
+    if complete && motion.iter().all(Option::is_none) && fix_rotation.is_none() {
         let note = Diagnostic::error(&table.place, "prescribes no motion");
         table.reader.note(note.expected("one of fix, velocity, displacement"));
         complete = false;
     }
     table.finish("here");
-    Some(Support { name, group: group?, motion: complete.then_some(motion)? })
+    Some(Support { name, group: group?, fix_rotation, motion: complete.then_some(motion)? })
 }
 
-fn fixed_axes(table: &Table<'_>) -> Option<[Option<Spanned<Motion>>; 3]> {
+fn fixed_axes(table: &Table<'_>, key: &'static str) -> Option<[Option<Spanned<Motion>>; 3]> {
     let expected = "each of x, y, z at most once, such as \"xy\"";
     let once = |axes: &String| {
         axes.chars().all(|c| "xyz".contains(c)) && AXES.iter().all(|axis| axes.matches(axis).count() <= 1)
     };
-    let axes = table.text("fix").check(once, expected).spanned().given()?;
+    let axes = table.text(key).check(once, expected).spanned().given()?;
     let fixed = |axis: &str| axes.value.contains(axis).then(|| Spanned::new(Motion::Fixed, axes.place.clone()));
     Some(AXES.map(fixed))
 }

@@ -25,6 +25,10 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         let place = table.place.clone();
         damage(table).map(|damage| Spanned::new(damage, place))
     });
+    let bonds = table.table("bonds").map(|table| {
+        let place = table.place.clone();
+        super::bonded::bonds(table).map(|bonds| Spanned::new(bonds, place))
+    });
     let contact = contact(&table);
     table.finish("here");
     Some(Material {
@@ -33,6 +37,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         young_modulus: young_modulus?,
         poisson_ratio: poisson_ratio?,
         damage: damage.map_or(Some(None), |damage| damage.map(Some))?,
+        bonds: bonds.map_or(Some(None), |bonds| bonds.map(Some))?,
         contact,
     })
 }

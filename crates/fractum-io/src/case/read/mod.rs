@@ -1,6 +1,7 @@
 //! From the tree of values to the [`Case`].
 
 mod bodies;
+mod bonded;
 mod boundary;
 mod expect;
 mod materials;
@@ -17,7 +18,7 @@ use std::path::Path;
 
 use super::expression::parse_unit;
 use super::keys::remove_unknown;
-use super::model::{Case, CaseSource, MeshSource};
+use super::model::{Body, BodyKind, BondedShape, Case, CaseSource, MeshSource, PackingSource};
 use super::reader::{Reader, Table};
 use super::tree::{self, Node, Value};
 use super::unit::Dimension;
@@ -121,9 +122,9 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
     let version = version.required();
     let title = table.text("title").or(String::new());
     let parameters = parameters::read(&table);
-    let mesh = mesh(&table);
     let materials = materials::read(&table);
     let bodies = bodies::read(&table, &materials);
+    let mesh = mesh(&table, bodies.as_deref());
     let supports = boundary::supports(&table);
     let loads = boundary::loads(&table);
     let damping = solver::damping(&table);
@@ -155,13 +156,31 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
     })
 }
 
-fn mesh(root: &Table<'_>) -> Option<MeshSource> {
+/// The mesh, which must be there where a body is made of it, and has no effect where none is.
+fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>> {
+    let meshed = |body: &Body| match &body.kind {
+        BodyKind::Solid(_) => true,
+        BodyKind::Bonded(bonded) => matches!(
+            &bonded.packing,
+            PackingSource::Shape { shape, .. } if matches!(shape.value, BondedShape::Group(_))
+        ),
+        BodyKind::Rigid(_) => false,
+    };
+    let bonded = |body: &Body| matches!(body.kind, BodyKind::Bonded(_));
+    if bodies.is_none() && root.has("bodies") && !root.has("mesh") {
+        return Some(None); // whether it is needed is not known
+    }
+    let needed = bodies.is_none_or(|bodies| bodies.iter().any(meshed) || !bodies.iter().any(bonded));
+    if !needed {
+        root.refuse("mesh", "where no body is made of a mesh group");
+        return Some(None);
+    }
     let table = root.table_or_empty("mesh");
     let file = table.text("file").spanned().required();
     let unit = unit(&table, "unit", Dimension::LENGTH).unwrap_or(1.0);
     table.finish("here");
     let Spanned { value, place } = file?;
-    Some(MeshSource { file: Spanned::new(table_path(root.reader, &value), place), unit })
+    Some(Some(MeshSource { file: Spanned::new(table_path(root.reader, &value), place), unit }))
 }
 
 fn table_path(reader: &Reader, file: &str) -> std::path::PathBuf {

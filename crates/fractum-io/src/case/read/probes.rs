@@ -49,10 +49,11 @@ fn probe(table: Table<'_>, earlier: &[ReadProbe], names: &[String]) -> ReadProbe
     let name = table.text("name").spanned().required().filter(|name| good_name(&table, name, earlier));
     let own_name = names.get(earlier.len()).cloned().unwrap_or_default();
     let mut read = ReadProbe { name: own_name, dimension: None, scalar: false, probe: None };
-    const KINDS: [&str; 10] = [
+    const KINDS: [&str; 11] = [
         "reaction",
         "displacement",
         "velocity",
+        "rotation",
         "stress",
         "energy",
         "count",
@@ -120,6 +121,7 @@ fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimensio
         "velocity" => {
             group_along().map(|(group, along)| (ProbeKind::Velocity { group, along }, Dimension::VELOCITY))?
         }
+        "rotation" => group_along().map(|(group, along)| (ProbeKind::Rotation { group, along }, Dimension::NONE))?,
         "stress" => {
             let inner = table.table(key)?;
             let group = inner.text("group").spanned().required();

@@ -89,20 +89,23 @@ pub(super) fn field<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading
 
 /// Takes a condition on x, y, z.
 pub(super) fn condition<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Field> {
-    table.read(name, |node| {
-        let expected = "a condition such as \"abs(y) < 8 cm\"";
-        if !matches!(node.value, Value::Text(_)) {
-            table.reader.note(Diagnostic::error(&node.place, node.found()).expected(expected));
-            return None;
-        }
-        let (field, kind) = position_expression(table.reader, node, Dimension::NONE)?;
-        if kind != Type::Truth {
-            let found = format!("{}, which is {}", node.found(), kind.phrase());
-            table.reader.note(Diagnostic::error(&node.place, found).expected(expected));
-            return None;
-        }
-        Some(field)
-    })
+    table.read(name, |node| condition_of(table.reader, node))
+}
+
+/// A condition on x, y, z.
+pub(super) fn condition_of(reader: &Reader, node: &Node) -> Option<Field> {
+    let expected = "a condition such as \"abs(y) < 8 cm\"";
+    if !matches!(node.value, Value::Text(_)) {
+        reader.note(Diagnostic::error(&node.place, node.found()).expected(expected));
+        return None;
+    }
+    let (field, kind) = position_expression(reader, node, Dimension::NONE)?;
+    if kind != Type::Truth {
+        let found = format!("{}, which is {}", node.found(), kind.phrase());
+        reader.note(Diagnostic::error(&node.place, found).expected(expected));
+        return None;
+    }
+    Some(field)
 }
 
 fn position_expression(reader: &Reader, node: &Node, dimension: Dimension) -> Option<(Field, Type)> {

@@ -1,0 +1,207 @@
+//! Bonded bodies, and the supports, loads and probes on their particles.
+
+use fractum_dem::{BeamSection, Particles};
+use fractum_math::Vec3;
+use fractum_scene::{Bonded, BondedPart, ParticleLoad, ParticleProbe, ParticleSupport, Probe};
+
+use super::conditions::motion_of;
+use super::{Context, function};
+use crate::case::model::{self, BodyKind, LoadKind, ProbeKind};
+use crate::case::{Diagnostic, Spanned, nearest};
+
+/// The particles and bonds of a bonded body, made outside: packed or read, bonded and calibrated.
+#[derive(Clone, Debug)]
+pub struct PreparedBody {
+    /// Particles at rest.
+    pub particles: Particles,
+    /// The particles of each bond.
+    pub pairs: Vec<[u32; 2]>,
+    /// The beam of its bonds.
+    pub section: BeamSection,
+    /// Sets of particles that touch the walls of the shape, by name.
+    pub walls: Vec<(String, Vec<u32>)>,
+}
+
+/// The sets of particles of a bonded body, in the numbering of the scene.
+pub(super) struct ParticleSets {
+    /// Index into `Case::bodies`.
+    body: usize,
+    /// Names and particles, ascending; the first is the whole body.
+    sets: Vec<(String, Vec<u32>)>,
+}
+
+impl Context<'_> {
+    /// Joins the bonded bodies, and keeps the names of their sets.
+    pub(super) fn bonded(&mut self, prepared: Vec<PreparedBody>) -> Option<Bonded> {
+        let case = self.case;
+        let bodies = case.bodies.iter().enumerate().filter_map(|(index, body)| match &body.kind {
+            BodyKind::Bonded(bonded) => Some((index, body, bonded)),
+            _ => None,
+        });
+        let (mut parts, mut start) = (Vec::new(), 0u32);
+        for ((index, body, bonded), mut made) in bodies.zip(prepared) {
+            let count = made.particles.len() as u32;
+            set_initial_velocity(&mut made.particles, bonded);
+            let mut sets = vec![(String::new(), (start..start + count).collect::<Vec<u32>>())];
+            sets.extend(made.walls.into_iter().map(|(name, set)| (name, set.iter().map(|i| i + start).collect())));
+            for (name, condition) in &bonded.groups {
+                if sets.iter().any(|(known, _)| *known == name.value) {
+                    self.error(&name.place, "is the name of a wall of the body", "another name");
+                    continue;
+                }
+                let inside = |i: &u32| condition.holds_at(made.particles.position[*i as usize]);
+                let set: Vec<u32> = (0..count).filter(inside).map(|i| i + start).collect();
+                if set.is_empty() {
+                    self.error(&name.place, "holds for no particle", "a condition that the centre of one fulfils");
+                }
+                sets.push((name.value.clone(), set));
+            }
+            self.particle_sets.push(ParticleSets { body: index, sets });
+            parts.push(BondedPart {
+                name: body.name.value.clone(),
+                particles: made.particles,
+                pairs: made.pairs,
+                section: made.section,
+                density: case.materials[bonded.material].density,
+            });
+            start += count;
+        }
+        match Bonded::new(parts) {
+            Ok(bonded) => Some(bonded),
+            Err(error) => {
+                let place = self.whole_case();
+                self.error(&place, format!(": {error}"), "");
+                None
+            }
+        }
+    }
+
+    /// Whether a name is that of a bonded body or of one of its sets.
+    pub(super) fn names_particles(&self, group: &Spanned<String>) -> bool {
+        self.case.particle_group(&group.value).is_some()
+    }
+
+    /// The particles that a name of the case means; an error if the body has no such set.
+    fn particles(&mut self, group: &Spanned<String>) -> Vec<u32> {
+        let Some((body, set)) = self.case.particle_group(&group.value) else { return Vec::new() };
+        let Some(own) = self.particle_sets.iter().find(|sets| sets.body == body) else { return Vec::new() };
+        let wanted = set.unwrap_or_default();
+        if let Some((_, particles)) = own.sets.iter().find(|(name, _)| name == wanted) {
+            return particles.clone();
+        }
+        let name = &self.case.bodies[body].name.value;
+        let known: Vec<&str> = own.sets[1..].iter().map(|(name, _)| name.as_str()).collect();
+        let list: Vec<String> = known.iter().map(|set| format!("{name}.{set}")).collect();
+        let mut diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value))
+            .expected(format!("a set of particles of \"{name}\": {name}, {}", list.join(", ")));
+        if let Some(near) = nearest(wanted, known.iter().copied()) {
+            diagnostic = diagnostic.remedy(format!("did you mean \"{name}.{near}\"?"));
+        }
+        self.diagnostics.push(diagnostic);
+        Vec::new()
+    }
+
+    /// Supports and loads on particles.
+    pub(super) fn condition_particles(&mut self, bonded: &mut Bonded) {
+        let case = self.case;
+        let (mut sets, mut turning) = (Vec::new(), Vec::new());
+        for support in case.supports.iter().filter(|s| case.particle_group(&s.group.value).is_some()) {
+            let particles = self.particles(&support.group);
+            let name = &support.name.as_ref().unwrap_or(&support.group).value;
+            for (axis, motion) in support.motion.iter().enumerate() {
+                let Some(motion) = motion else { continue };
+                let motion = motion_of(&motion.value);
+                sets.push(ParticleSupport { name: name.clone(), particles: particles.clone(), axis, motion });
+            }
+            if let Some(axes) = &support.fix_rotation {
+                turning.extend(particles.iter().map(|&i| (i, axes.value)));
+            }
+        }
+        if let Err(error) = bonded.set_supports(sets, &turning) {
+            let place = self.place_of_support(&error);
+            self.error(&place, format!(": {error}"), "");
+        }
+        let mut loads = Vec::new();
+        for load in &case.loads {
+            match &load.kind {
+                LoadKind::Force { group, force } if self.names_particles(group) => {
+                    let particles = self.particles(group);
+                    let area = |i: u32| bonded.particles.radius[i as usize].powi(2);
+                    let total: f64 = particles.iter().map(|&i| area(i)).sum();
+                    let shares: Vec<(u32, f64)> = particles.iter().map(|&i| (i, area(i) / total)).collect();
+                    for (axis, value) in force.iter().enumerate() {
+                        if let Some(value) = value {
+                            let particles = shares.clone();
+                            loads.push(ParticleLoad::Force { particles, axis, value: function(value) });
+                        }
+                    }
+                }
+                LoadKind::Traction { group, .. } | LoadKind::Pressure { group, .. } if self.names_particles(group) => {
+                    let diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value));
+                    let diagnostic = diagnostic.expected("a mesh group of facets; particles have none");
+                    self.diagnostics.push(diagnostic.remedy("use force, which is shared over the set"));
+                }
+                LoadKind::Gravity { acceleration } => {
+                    for (axis, value) in acceleration.iter().enumerate() {
+                        if let Some(value) = value {
+                            loads.push(ParticleLoad::Gravity { axis, value: function(value) });
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        bonded.set_loads(loads);
+    }
+
+    /// A probe of particles; none where it names a mesh group, or measures something else.
+    pub(super) fn particle_probe(&mut self, kind: &ProbeKind, bonded: &Bonded) -> Option<Probe> {
+        let group = match kind {
+            ProbeKind::Reaction { group, .. }
+            | ProbeKind::Displacement { group, .. }
+            | ProbeKind::Velocity { group, .. }
+            | ProbeKind::Rotation { group, .. } => group,
+            _ => return None,
+        };
+        if !self.names_particles(group) {
+            return None;
+        }
+        let particles = self.particles(group);
+        Some(Probe::Particles(match kind {
+            ProbeKind::Reaction { along, .. } => {
+                let places = bonded.support_places(&particles);
+                let along_held = places.iter().any(|&(_, _, axis)| along[axis as usize] != 0.0);
+                if !particles.is_empty() && !along_held {
+                    let found = format!("= \"{}\": nothing holds it along the direction of the probe", group.value);
+                    self.error(&group.place, found, "a set that a support prescribes");
+                }
+                ParticleProbe::Reaction { places, direction: *along }
+            }
+            ProbeKind::Displacement { along, .. } => ParticleProbe::Displacement { particles, direction: *along },
+            ProbeKind::Velocity { along, .. } => ParticleProbe::Velocity { particles, direction: *along },
+            ProbeKind::Rotation { along, .. } => ParticleProbe::Rotation { particles, axis: *along },
+            _ => return None,
+        }))
+    }
+}
+
+/// Gives particles the velocity of the field at their centres, and its rate of rotation, half the curl.
+fn set_initial_velocity(particles: &mut Particles, body: &model::BondedBody) {
+    let field = &body.initial_velocity;
+    if field.iter().all(Option::is_none) {
+        return;
+    }
+    let velocity = |x: Vec3| Vec3::from_fn(|axis, _| field[axis].as_ref().map_or(0.0, |f| f.value(0.0, x)));
+    for i in 0..particles.len() {
+        let (x, h) = (particles.position[i], particles.radius[i]);
+        particles.velocity[i] = velocity(x);
+        // Central differences over the particle itself: what it would see of the motion.
+        let slope = |axis: usize| {
+            let mut step = Vec3::zeros();
+            step[axis] = h;
+            (velocity(x + step) - velocity(x - step)) / (2.0 * h)
+        };
+        let [dx, dy, dz] = [slope(0), slope(1), slope(2)];
+        particles.spin[i] = Vec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x) * 0.5;
+    }
+}

@@ -1,0 +1,123 @@
+//! Bonded bodies: particles that fill a shape, joined by beams.
+
+use fractum_math::Vec3;
+
+use crate::case::choice::choice;
+use crate::case::{Field, Spanned};
+
+/// Particles joined by cohesive beams that are made to stand for one material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BondedBody {
+    /// Index into `Case::materials`.
+    pub material: usize,
+    /// Where its particles come from.
+    pub packing: PackingSource,
+    /// Coordination of its bonds; `None` = chosen to suit Poisson's ratio. That of the material's `bonds`, where it has
+    /// them.
+    pub coordination: Option<Spanned<f64>>,
+    /// How the coordination is counted.
+    pub convention: Convention,
+    /// Sets of its particles by name, each with a condition on the position.
+    pub groups: Vec<(Spanned<String>, Field)>,
+    /// Initial velocity [m/s] along x, y, z; `None` = at rest.
+    pub initial_velocity: [Option<Field>; 3],
+}
+
+/// Where the particles of a bonded body come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PackingSource {
+    /// A packing made before.
+    File(FileContent),
+    /// A shape to fill.
+    Shape {
+        /// The shape, with its place.
+        shape: Spanned<BondedShape>,
+        /// How many particles, or how large.
+        size: Spanned<ParticleSize>,
+        /// κ = (R_max − R_min)/R_mean of the radii, 0 to 1.
+        dispersion: f64,
+        /// Seed of the packing.
+        seed: u64,
+    },
+}
+
+/// A file that the case names, with what is in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileContent {
+    /// Its name as written.
+    pub name: Spanned<String>,
+    /// Its contents.
+    pub bytes: Vec<u8>,
+}
+
+/// Shapes that particles can fill.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BondedShape {
+    /// A box with faces normal to the axes.
+    Box {
+        /// Lower corner [m].
+        point: Vec3,
+        /// Edges [m], > 0.
+        size: Vec3,
+    },
+    /// A circular cylinder along x.
+    Cylinder {
+        /// Centre of its face at the lower x [m].
+        point: Vec3,
+        /// Length [m], > 0.
+        length: f64,
+        /// Radius [m], > 0.
+        radius: f64,
+    },
+    /// A sphere.
+    Sphere {
+        /// Centre [m].
+        point: Vec3,
+        /// Radius [m], > 0.
+        radius: f64,
+    },
+    /// A mesh group: tetrahedra, or triangles that enclose a volume.
+    Group(Spanned<String>),
+    /// The closed surface of an STL file.
+    Stl {
+        /// The file.
+        file: FileContent,
+        /// Length of its unit [m].
+        unit: f64,
+    },
+}
+
+/// How the particle size is chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ParticleSize {
+    /// By the number of particles.
+    Count(u64),
+    /// By their mean radius [m], > 0.
+    Radius(f64),
+}
+
+/// Which particles a coordination counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Convention {
+    /// 2 × bonds / particles.
+    All,
+    /// Mean over the particles that touch no wall.
+    Interior,
+}
+
+choice!(Convention { "interior" => Interior, "all" => All });
+
+/// Beams of a material, as `fractum calibrate` writes them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bonds {
+    /// Coordination they hold for.
+    pub coordination: f64,
+    /// How it is counted.
+    pub convention: Convention,
+    /// Beam radius over mean particle radius [-], > 0.
+    pub radius_ratio: f64,
+    /// Young's modulus of the beams [Pa], > 0.
+    pub young_modulus: f64,
+    /// Strength of the virial criterion [Pa], > 0.
+    pub strength: Option<f64>,
+}

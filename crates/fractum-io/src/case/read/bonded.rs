@@ -1,0 +1,195 @@
+//! `[[bodies]]` of the kind `bonded`, and the beams of a material.
+
+use super::vectors::{components, condition_of, field, point};
+use super::{read_file, table_path, unit};
+use crate::case::model::{
+    BondedBody, BondedShape, Bonds, Convention, FileContent, Material, PackingSource, ParticleSize,
+};
+use crate::case::reader::Table;
+use crate::case::unit::Dimension;
+use crate::case::{Diagnostic, Field, Spanned};
+use fractum_math::Vec3;
+
+/// Particles where nothing is said.
+const PARTICLES: u64 = 10_000;
+/// κ where nothing is said.
+const DISPERSION: f64 = 0.25;
+
+/// Kinds of shapes.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Box,
+    Cylinder,
+    Sphere,
+    Group,
+    Stl,
+}
+
+/// Names of the shapes that particles can fill.
+pub(super) const SHAPES: [&str; 5] = ["box", "cylinder", "sphere", "group", "stl"];
+
+/// Reads a bonded body of the material at `material`, which is nothing where it is wrong.
+pub(super) fn bonded(table: &Table<'_>, material: Option<usize>, here: Option<&Material>) -> Option<BondedBody> {
+    let packing = packing(table);
+    let beams = here.and_then(|material| material.bonds.as_ref());
+    let (coordination, convention) = match beams {
+        Some(beams) => {
+            table.refuse("coordination", "beside the bonds of its material, which have one");
+            table.refuse("convention", "beside the bonds of its material, which have one");
+            (Some(Spanned::new(beams.value.coordination, beams.place.clone())), beams.value.convention)
+        }
+        None => {
+            let coordination = table.quantity("coordination").between(2.0, 40.0).spanned().given();
+            (coordination, table.choice("convention").or(Convention::Interior))
+        }
+    };
+    let groups = groups(table);
+    let initial_velocity = match table.has("initial_velocity") {
+        true => components(table, "initial_velocity", |table, axis| field(table, axis).given())?,
+        false => [None, None, None],
+    };
+    Some(BondedBody {
+        material: material?,
+        packing: packing?,
+        coordination,
+        convention,
+        groups: groups?,
+        initial_velocity,
+    })
+}
+
+fn packing(table: &Table<'_>) -> Option<PackingSource> {
+    if table.has("packing") {
+        for key in
+            ["shape", "point", "size", "length", "radius", "group", "file", "unit", "particles", "particle_radius"]
+        {
+            table.refuse(key, "beside a packing made before");
+        }
+        table.refuse("dispersion", "beside a packing made before");
+        table.refuse("seed", "beside a packing made before");
+        return file(table, "packing").map(PackingSource::File);
+    }
+    let kinds =
+        [Kind::Box, Kind::Cylinder, Kind::Sphere, Kind::Group, Kind::Stl].into_iter().zip(SHAPES).map(|(k, n)| (n, k));
+    let kinds: Vec<(&'static str, Kind)> = kinds.collect();
+    let kind = table.one_of("shape", &kinds).spanned().required();
+    let shape = match &kind {
+        Some(kind) => shape(table, kind.value).map(|shape| Spanned::new(shape, kind.place.clone())),
+        None => {
+            for key in ["point", "size", "length", "radius", "group", "file", "unit"] {
+                table.node(key);
+            }
+            None
+        }
+    };
+    let size = size(table);
+    let dispersion = table.quantity("dispersion").check(|kappa| (0.0..=1.0).contains(kappa), DISPERSION_RANGE);
+    let dispersion = dispersion.or_if_absent(DISPERSION);
+    let seed = table.integer("seed").or_if_absent(1);
+    Some(PackingSource::Shape { shape: shape?, size: size?, dispersion: dispersion?, seed: seed? })
+}
+
+const DISPERSION_RANGE: &str = "from 0 to 1 (0.25 is usual; packings below 0.15 tend to order)";
+
+fn shape(table: &Table<'_>, kind: Kind) -> Option<BondedShape> {
+    let name = SHAPES[kind as usize];
+    let takes: &[&str] = match kind {
+        Kind::Box => &["point", "size"],
+        Kind::Cylinder => &["point", "length", "radius"],
+        Kind::Sphere => &["point", "radius"],
+        Kind::Group => &["group"],
+        Kind::Stl => &["file", "unit"],
+    };
+    for key in ["point", "size", "length", "radius", "group", "file", "unit"] {
+        if !takes.contains(&key) {
+            table.refuse(key, &format!("on the shape \"{name}\""));
+        }
+    }
+    let place = || point(table, "point").or_if_absent(Vec3::zeros());
+    let length = |key: &'static str| table.quantity(key).positive().required();
+    Some(match kind {
+        Kind::Box => {
+            let size = point(table, "size").check(|size| size.min() > 0.0, "three lengths above 0").required();
+            BondedShape::Box { point: place()?, size: size? }
+        }
+        Kind::Cylinder => {
+            let (length, radius) = (length("length"), length("radius"));
+            BondedShape::Cylinder { point: place()?, length: length?, radius: radius? }
+        }
+        Kind::Sphere => {
+            let radius = length("radius");
+            BondedShape::Sphere { point: place()?, radius: radius? }
+        }
+        Kind::Group => BondedShape::Group(table.text("group").spanned().required()?),
+        Kind::Stl => {
+            let file = file(table, "file");
+            let given = unit(table, "unit", Dimension::LENGTH);
+            if table.has("unit") && given.is_none() {
+                return None;
+            }
+            BondedShape::Stl { file: file?, unit: given.unwrap_or(1.0) }
+        }
+    })
+}
+
+fn size(table: &Table<'_>) -> Option<Spanned<ParticleSize>> {
+    if table.has("particle_radius") {
+        table.refuse("particles", "beside particle_radius, from which the number follows");
+        let radius = table.quantity("particle_radius").positive().spanned().required()?;
+        return Some(radius.map(ParticleSize::Radius));
+    }
+    let count = table.integer("particles").check(|count| (20..=20_000_000).contains(count), "20 to 20 million");
+    count
+        .spanned()
+        .or_if_absent(Spanned::new(PARTICLES, table.place_of("particles")))
+        .map(|n| n.map(ParticleSize::Count))
+}
+
+/// Takes the file that a key names, with its contents; they belong to the identity of the case.
+fn file(table: &Table<'_>, key: &'static str) -> Option<FileContent> {
+    let name = table.text(key).spanned().required()?;
+    match read_file(&table_path(table.reader, &name.value)) {
+        Ok(bytes) => {
+            table.reader.tables.borrow_mut().push((name.value.clone(), bytes.clone()));
+            Some(FileContent { name, bytes })
+        }
+        Err(error) => {
+            let note = Diagnostic::error(&name.place, format!("= \"{}\" {error}", name.value));
+            table.reader.note(note.remedy("paths are taken from the folder of the case file"));
+            None
+        }
+    }
+}
+
+/// Named sets of particles.
+fn groups(table: &Table<'_>) -> Option<Vec<(Spanned<String>, Field)>> {
+    let Some(groups) = table.table("groups") else { return Some(Vec::new()) };
+    let mut complete = true;
+    let mut found = Vec::new();
+    for entry in groups.entries() {
+        let name = Spanned::new(entry.name.clone(), entry.key_place.clone());
+        match condition_of(groups.reader, &entry.node) {
+            Some(field) => found.push((name, field)),
+            None => complete = false,
+        }
+    }
+    groups.finish("here");
+    complete.then_some(found)
+}
+
+/// The `bonds` table of a material.
+pub(super) fn bonds(table: Table<'_>) -> Option<Bonds> {
+    let coordination = table.quantity("coordination").between(2.0, 40.0).required();
+    let convention = table.choice("convention").required();
+    let radius_ratio = table.quantity("radius_ratio").between(0.0, 2.0).required();
+    let young_modulus = table.quantity("young_modulus").positive().required();
+    let strength = table.quantity("strength").positive().given();
+    table.finish("here");
+    Some(Bonds {
+        coordination: coordination?,
+        convention: convention?,
+        radius_ratio: radius_ratio?,
+        young_modulus: young_modulus?,
+        strength,
+    })
+}

@@ -1,0 +1,312 @@
+//! Bonded bodies of a case made ready: packed or read, bonded, calibrated.
+
+use std::time::Instant;
+
+use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Micro, prepare, suitable_coordination};
+use fractum_io::assemble::PreparedBody;
+use fractum_io::case::model::{self, BodyKind, BondedBody, BondedShape, Case, PackingSource, ParticleSize};
+use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
+use fractum_mesh::{Mesh, topology};
+use fractum_pack::{
+    Certificate, ClosedSurface, Convention, Domain, PackError, PackSize, PackSpec, Packing, pack, read_stl,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::cache::{Cache, key};
+
+/// Contacts per particle at which compaction stops.
+const CONTACTS: f64 = 6.2;
+
+/// Where something came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// Made now.
+    Made,
+    /// Made in an earlier run and kept.
+    Cached,
+    /// Given by the user.
+    Given,
+}
+
+/// What became of a bonded body.
+#[derive(Clone, Debug)]
+pub struct BondedReport {
+    /// Name of the body.
+    pub name: String,
+    /// Where its packing came from.
+    pub packing: Origin,
+    /// Where its beams came from.
+    pub beams_from: Origin,
+    /// Particles.
+    pub particles: usize,
+    /// Their mean radius [m].
+    pub mean_radius: f64,
+    /// Mass of all [kg].
+    pub mass: f64,
+    /// Bonds.
+    pub bonds: usize,
+    /// 2 × bonds / particles.
+    pub coordination_all: f64,
+    /// Mean bonds of the particles that touch no wall.
+    pub coordination_interior: f64,
+    /// The convention that was asked.
+    pub convention: Convention,
+    /// The beams.
+    pub beams: Beams,
+    /// Names and sizes of the wall sets.
+    pub walls: Vec<(String, usize)>,
+}
+
+/// All bonded bodies of a case.
+#[derive(Default)]
+pub struct BondedBodies {
+    /// What the scene is built from, in the order of the case.
+    pub prepared: Vec<PreparedBody>,
+    /// What the plan says of them.
+    pub reports: Vec<BondedReport>,
+    /// Doubts that do not keep them from running.
+    pub warnings: Vec<Diagnostic>,
+    /// What took how long, for the log.
+    pub timings: Vec<String>,
+}
+
+/// Makes the bonded bodies of a case ready.
+///
+/// # Errors
+/// Everything that cannot be packed, bonded or calibrated, with its place.
+pub fn prepare_bodies(case: &Case, mesh: &Mesh, cache: &Cache) -> Result<BondedBodies, Diagnostics> {
+    let mut all = BondedBodies::default();
+    let mut errors = Vec::new();
+    for body in &case.bodies {
+        let BodyKind::Bonded(bonded) = &body.kind else { continue };
+        let maker = Maker { case, mesh, cache, name: &body.name, bonded };
+        if let Err(error) = maker.make(&mut all) {
+            errors.push(*error);
+        }
+    }
+    if errors.is_empty() { Ok(all) } else { Err(Diagnostics(errors)) }
+}
+
+/// What decides a packing.
+#[derive(Serialize)]
+struct PackingKey {
+    domain: fractum_pack::DomainData,
+    count: Option<u64>,
+    radius: Option<f64>,
+    dispersion: f64,
+    seed: u64,
+    contacts: f64,
+}
+
+/// What decides the beams.
+#[derive(Serialize)]
+struct BeamsKey {
+    packing: u128,
+    coordination: f64,
+    convention: Convention,
+    young_modulus: f64,
+    poisson_ratio: f64,
+}
+
+/// Beams as they are kept: with a checksum, so that a damaged entry is not believed.
+#[derive(Serialize, Deserialize)]
+struct KeptBeams {
+    beams: Beams,
+    checksum: u128,
+}
+
+struct Maker<'a> {
+    case: &'a Case,
+    mesh: &'a Mesh,
+    cache: &'a Cache,
+    name: &'a Spanned<String>,
+    bonded: &'a BondedBody,
+}
+
+impl Maker<'_> {
+    fn make(&self, all: &mut BondedBodies) -> Result<(), Box<Diagnostic>> {
+        let start = Instant::now();
+        let (packing, packing_from) = self.packing()?;
+        let packed = Instant::now();
+        if let Err(error) = Certificate::of(&packing).check() {
+            let warning = Diagnostic::warning(&self.name.place, format!(": {error}"));
+            all.warnings.push(warning.remedy("fractum pack shows the whole certificate"));
+        }
+        let material = &self.case.materials[self.bonded.material];
+        let convention = convention(self.bonded.convention);
+        let coordination = match &self.bonded.coordination {
+            Some(coordination) => coordination.value,
+            None => suitable_coordination(material.poisson_ratio, convention).map_err(|e| self.wrong(&e))?,
+        };
+        let beams_key = key(&BeamsKey {
+            packing: xxhash_rust::xxh3::xxh3_128(&packing.to_bytes()),
+            coordination,
+            convention,
+            young_modulus: material.young_modulus,
+            poisson_ratio: material.poisson_ratio,
+        });
+        let given = material.bonds.as_ref().map(|bonds| {
+            let (radius_ratio, young_modulus) = (bonds.value.radius_ratio, bonds.value.young_modulus);
+            Beams::given(Micro { radius_ratio, young_modulus })
+        });
+        let (beams, beams_from) = match given {
+            Some(beams) => (Some(beams), Origin::Given),
+            None => match self.cache.find("beams", beams_key, kept_beams) {
+                Some(beams) => (Some(beams), Origin::Cached),
+                None => (None, Origin::Made),
+            },
+        };
+        let made = prepare(
+            packing,
+            &BondedMaterial {
+                young_modulus: material.young_modulus,
+                poisson_ratio: material.poisson_ratio,
+                density: material.density,
+                coordination,
+                convention,
+                beams,
+            },
+        )
+        .map_err(|error| self.wrong(&error))?;
+        if beams_from == Origin::Made {
+            self.cache.keep("beams", beams_key, &beams_bytes(made.beams));
+        }
+        let done = Instant::now();
+        all.timings.push(format!(
+            "{}: packing {:.2} s, bonds and beams {:.2} s",
+            self.name.value,
+            (packed - start).as_secs_f64(),
+            (done - packed).as_secs_f64()
+        ));
+        let (sample, network) = (&made.sample, &made.sample.network);
+        all.reports.push(BondedReport {
+            name: self.name.value.clone(),
+            packing: packing_from,
+            beams_from,
+            particles: sample.packing.len(),
+            mean_radius: sample.mean_radius,
+            mass: made.particles.mass.iter().sum(),
+            bonds: network.pairs.len(),
+            coordination_all: network.coordination_all,
+            coordination_interior: network.coordination_interior,
+            convention,
+            beams: made.beams,
+            walls: sample.packing.walls.iter().map(|(name, set)| (name.clone(), set.len())).collect(),
+        });
+        all.prepared.push(PreparedBody {
+            section: sample.lattice.section(),
+            particles: made.particles,
+            pairs: made.sample.network.pairs,
+            walls: made.sample.packing.walls,
+        });
+        Ok(())
+    }
+
+    /// Reads the packing, finds it among the kept ones, or makes it.
+    fn packing(&self) -> Result<(Packing, Origin), Box<Diagnostic>> {
+        let (shape, size, dispersion, seed) = match &self.bonded.packing {
+            PackingSource::File(file) => {
+                let read = Packing::from_bytes(&file.bytes);
+                let found = |error| self.refuse(&file.name.place, format!("= \"{}\": {error}", file.name.value));
+                return read.map(|packing| (packing, Origin::Given)).map_err(found);
+            }
+            PackingSource::Shape { shape, size, dispersion, seed } => (shape, size, *dispersion, *seed),
+        };
+        let domain = self.domain(&shape.value).map_err(|(place, error)| self.refuse(&place, format!(": {error}")))?;
+        let (count, radius) = match size.value {
+            ParticleSize::Count(count) => (Some(count), None),
+            ParticleSize::Radius(radius) => (None, Some(radius)),
+        };
+        let packing_key =
+            key(&PackingKey { domain: domain.data(), count, radius, dispersion, seed, contacts: CONTACTS });
+        if let Some(packing) = self.cache.find("fpk", packing_key, |bytes| Packing::from_bytes(bytes).ok()) {
+            return Ok((packing, Origin::Cached));
+        }
+        let size_of = match size.value {
+            ParticleSize::Count(count) => PackSize::Count(count as usize),
+            ParticleSize::Radius(radius) => PackSize::MeanRadius(radius),
+        };
+        let spec = PackSpec { domain, size: size_of, dispersion, seed, coordination: CONTACTS };
+        let packing = pack(&spec).map_err(|error| {
+            let place = match error {
+                PackError::TooSmall { .. } | PackError::Count(_) => &size.place,
+                _ => &shape.place,
+            };
+            self.refuse(place, format!(": {error}"))
+        })?;
+        self.cache.keep("fpk", packing_key, &packing.to_bytes());
+        Ok((packing, Origin::Made))
+    }
+
+    fn domain(&self, shape: &BondedShape) -> Result<Domain, (Place, PackError)> {
+        Ok(match shape {
+            BondedShape::Box { point, size } => Domain::Box { lower: *point, upper: point + size },
+            BondedShape::Cylinder { point, length, radius } => {
+                Domain::Cylinder { start: *point, length: *length, radius: *radius }
+            }
+            BondedShape::Sphere { point, radius } => Domain::Sphere { centre: *point, radius: *radius },
+            BondedShape::Group(group) => {
+                let surface = group_surface(self.mesh, Some(&group.value));
+                Domain::Surface(surface.map_err(|error| (group.place.clone(), error))?)
+            }
+            BondedShape::Stl { file, unit } => {
+                let surface = read_stl(&file.bytes, *unit);
+                Domain::Surface(surface.map_err(|error| (file.name.place.clone(), error))?)
+            }
+        })
+    }
+
+    fn refuse(&self, place: &Place, found: String) -> Box<Diagnostic> {
+        Box::new(Diagnostic::error(place, found))
+    }
+
+    /// Where in the case the reason for an error stands.
+    fn wrong(&self, error: &CalibrateError) -> Box<Diagnostic> {
+        let material = &self.case.materials[self.bonded.material].name.place;
+        let coordination = self.bonded.coordination.as_ref().map(|c| &c.place);
+        let place = match error {
+            CalibrateError::Material { .. } => material,
+            CalibrateError::PoissonRange { .. } => coordination.unwrap_or(material),
+            CalibrateError::Pack(PackError::Coordination { .. }) => coordination.unwrap_or(&self.name.place),
+            _ => &self.name.place,
+        };
+        self.refuse(place, format!(": {error}"))
+    }
+}
+
+fn convention(convention: model::Convention) -> Convention {
+    match convention {
+        model::Convention::All => Convention::All,
+        model::Convention::Interior => Convention::Interior,
+    }
+}
+
+fn beams_bytes(beams: Beams) -> Vec<u8> {
+    postcard::to_stdvec(&KeptBeams { beams, checksum: key(&beams) }).unwrap_or_default()
+}
+
+fn kept_beams(bytes: &[u8]) -> Option<Beams> {
+    let kept: KeptBeams = postcard::from_bytes(bytes).ok()?;
+    (kept.checksum == key(&kept.beams)).then_some(kept.beams)
+}
+
+/// The closed surface of a mesh group, its tetrahedra or triangles; of all tetrahedra without a name.
+///
+/// # Errors
+/// [`PackError::OpenSurface`] and [`PackError::BadSurface`].
+pub fn group_surface(mesh: &Mesh, group: Option<&str>) -> Result<ClosedSurface, PackError> {
+    let (mut tetrahedra, mut triangles) = (Vec::new(), Vec::new());
+    match group {
+        None => tetrahedra.clone_from(&mesh.tetrahedra),
+        Some(name) => {
+            for part in mesh.group(name) {
+                tetrahedra.extend(part.tetrahedra.iter().map(|&e| mesh.tetrahedra[e as usize]));
+                triangles.extend(part.triangles.iter().map(|&e| mesh.triangles[e as usize]));
+            }
+        }
+    }
+    if !tetrahedra.is_empty() {
+        triangles = topology::boundary_of_tetrahedra(&tetrahedra).iter().map(|f| f.nodes).collect();
+    }
+    ClosedSurface::new(&mesh.nodes, &triangles)
+}

@@ -1,0 +1,199 @@
+//! A case with a bonded body, as its user meets it: no mesh, everything from a material and a shape.
+
+mod common;
+
+use std::fs;
+
+use common::{Workplace, files_below};
+use fractum_pack::{Domain, PackSpec, pack};
+use serde_json::Value;
+
+const BAR: &str = r#"fractum = 1
+title = "A bonded bar, pulled"
+
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "72 GPa"
+poisson_ratio = 0.23
+
+[[bodies]]
+name = "bar"
+kind = "bonded"
+material = "glass"
+shape = "box"
+point = ["1 mm", "0 mm", "0 mm"]
+size = ["3 mm", "1 mm", "1 mm"]
+particles = 1500
+coordination = 8
+initial_velocity = { y = "1 mm/s*(x - 1 mm)/3 mm" }
+[bodies.groups]
+middle = "abs(x - 2.5 mm) < 0.3 mm"
+
+[[supports]]
+group = "bar.x-"
+fix = "xyz"
+fix_rotation = "xyz"
+[[supports]]
+group = "bar.x+"
+velocity = { x = { smooth_ramp = [["0 s", "0 m/s"], ["1 us", "10 mm/s"]] } }
+
+[[loads]]
+group = "bar.middle"
+force = { z = "1 mN" }
+[[loads]]
+gravity = { z = "-9.81 m/s^2" }
+
+[damping]
+mass = "1000 1/s"
+
+[solver]
+end = "3 us"
+
+[[probes]]
+name = "pull"
+reaction = { group = "bar.x+", along = "x" }
+[[probes]]
+name = "stretch"
+displacement = { group = "bar.x+", along = "x" }
+[[probes]]
+name = "turn"
+rotation = { group = "bar.middle", along = "z" }
+[[probes]]
+name = "bending"
+energy = "bond_bending"
+
+[output]
+fields = { every = "1 us" }
+history = { every = "20 ns" }
+checkpoint = { every = "1 ms" }
+"#;
+
+fn summary(place: &Workplace, folder: &str) -> Value {
+    serde_json::from_str(&fs::read_to_string(place.path(folder).join("summary.json")).unwrap()).unwrap()
+}
+
+fn run(place: &Workplace, folder: &str, threads: &str) -> Value {
+    let ended = place.fractum(&["run", "case.toml", "-o", folder, "--threads", threads]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    summary(place, folder)
+}
+
+fn log(place: &Workplace, folder: &str) -> String {
+    fs::read_to_string(place.path(folder).join("run.log")).unwrap()
+}
+
+#[test]
+fn a_bonded_body_runs_from_its_material_alone() {
+    let place = Workplace::new(BAR);
+    let summary = run(&place, "one", "1");
+    let counts = &summary["counts"];
+    assert_eq!((counts["particles"].as_u64(), counts["nodes"].as_u64()), (Some(1500), Some(0)));
+    assert!(counts["bonds"].as_u64().unwrap() > 4500, "{counts}");
+    assert_eq!((counts["broken_bonds"].as_u64(), counts["fragments"].as_u64()), (Some(0), Some(1)));
+    let energy = |name: &str| summary["energy"][name].as_f64().unwrap();
+    assert!(energy("residual_max_relative") < 1e-5, "{}", summary["energy"]);
+    let bonds = energy("bond_tension") + energy("bond_bending") + energy("bond_torsion");
+    assert!(bonds > 0.0 && (bonds / energy("elastic") - 1.0).abs() < 1e-12);
+    assert!(energy("damping") > 0.0);
+    // Long waves: the mean stress of the bar is near E times its mean strain.
+    let value = |name: &str| summary["probes"][name]["final"].as_f64().unwrap();
+    let strain = value("stretch") / 3e-3;
+    assert!((value("pull") / (72e9 * 1e-6 * strain) - 1.0).abs() < 0.3, "{}", value("pull"));
+    for folder in ["particles", "bonds"] {
+        assert_eq!(files_below(&place.path("one").join(folder), ".vtp").len(), 4, "{folder}");
+    }
+    assert!(place.path("one/report.html").is_file() && place.path("one/pictures/particles.png").is_file());
+    assert!(files_below(&place.path("one").join("fields"), ".vtu").is_empty());
+
+    let first = log(&place, "one");
+    assert!(first.contains("packing made now") && first.contains("beams calibrated now"), "{first}");
+    for threads in ["2", "7"] {
+        let other = run(&place, threads, threads);
+        assert_eq!(other["state_hash"], summary["state_hash"], "{threads} threads");
+        assert_eq!(other["probes"], summary["probes"], "{threads} threads");
+    }
+    let second = log(&place, "2");
+    assert!(second.contains("packing from the cache") && second.contains("beams from the cache"), "{second}");
+
+    // From the last checkpoint to the end again.
+    let resumed = place.fractum(&["run", "case.toml", "-o", "2", "--threads", "1", "--resume", "--quiet"]);
+    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+    let resumed = self::summary(&place, "2");
+    assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&summary["state_hash"], &summary["energy"]));
+    let rows = |folder: &str| fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
+    assert!(rows("one") == rows("2"));
+
+    // What is damaged in the cache is made again.
+    let kept = files_below(&place.path("cache"), "");
+    assert_eq!(kept.len(), 2, "{kept:?}");
+    for file in kept {
+        let bytes = fs::read(&file).unwrap();
+        fs::write(&file, &bytes[..bytes.len() / 2]).unwrap();
+    }
+    let again = run(&place, "again", "2");
+    assert_eq!(again["state_hash"], summary["state_hash"]);
+    assert!(log(&place, "again").contains("packing made now"));
+}
+
+#[test]
+fn beams_and_packings_made_before_are_used_as_they_are() {
+    let beams = r#"poisson_ratio = 0.23
+[materials.glass.bonds]
+coordination = 9
+convention = "all"
+radius_ratio = 0.4
+young_modulus = "500 GPa"
+"#;
+    let shape = &BAR[BAR.find("shape = ").unwrap()..BAR.find("initial_velocity").unwrap()];
+    let case = BAR.replace("poisson_ratio = 0.23\n", beams).replace(shape, "packing = \"old.fpk\"\n");
+    let place = Workplace::new(&case.replace("middle = \"abs(x - 2.5 mm) < 0.3 mm\"", "middle = \"x > 0.5 mm\""));
+    let packing = pack(&PackSpec::new(Domain::cylinder(1e-3, 0.4e-3), 300, 5)).unwrap();
+    fs::write(place.path("old.fpk"), packing.to_bytes()).unwrap();
+    let checked = place.fractum(&["check", "case.toml"]);
+    assert_eq!(checked.code, Some(0), "{}", checked.stderr);
+    for words in ["300 bonded particles", "packing as given", "beams as given: radius 0.4000", "9.00 of all"] {
+        assert!(checked.stdout.contains(words), "{words}: {}", checked.stdout);
+    }
+    let mut bytes = packing.to_bytes();
+    bytes[200] ^= 1;
+    fs::write(place.path("old.fpk"), bytes).unwrap();
+    let damaged = place.fractum(&["check", "case.toml"]);
+    assert_eq!(damaged.code, Some(1));
+    assert!(damaged.stderr.contains("bodies[0].packing = \"old.fpk\": packing file: it is cut short or damaged"));
+    assert!(damaged.stderr.contains("fractum pack"), "{}", damaged.stderr);
+}
+
+#[test]
+fn what_cannot_be_packed_bonded_or_calibrated_is_refused_with_a_remedy() {
+    let small = BAR.replace("particles = 1500", "particles = 300");
+    let cases = [
+        // what is replaced, by what, key, words
+        ("particles = 300", "particles = 40", "bodies[0].particles", "ask for more and smaller particles"),
+        ("coordination = 8", "coordination = 35", "bodies[0].coordination", "is out of reach: this packing gives"),
+        ("poisson_ratio = 0.23", "poisson_ratio = 0.48", "bodies[0].coordination", "lower coordinations reach higher"),
+        (
+            "group = \"bar.x+\", along = \"x\"",
+            "group = \"bar.x*\", along = \"x\"",
+            "probes[0].reaction.group",
+            "bar.x+",
+        ),
+        ("group = \"bar.x-\"", "group = \"bra.x-\"", "supports[0].group", "the case has no mesh"),
+        ("force = { z", "traction = { z", "loads[0].group", "use force"),
+    ];
+    for (from, to, key, words) in cases {
+        let case = small.replace(from, to).replace("traction = { z = \"1 mN\"", "traction = { z = \"1 Pa\"");
+        let place = Workplace::new(&case);
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{to}: {}", ended.stderr);
+        assert!(ended.stderr.contains(key) && ended.stderr.contains(words), "{to}: {}", ended.stderr);
+        assert!(ended.stderr.starts_with("case.toml:"), "{to}: {}", ended.stderr);
+    }
+    let shape = &small[small.find("shape = ").unwrap()..small.find("particles").unwrap()];
+    let place = Workplace::new(&small.replace(shape, "shape = \"stl\"\nfile = \"open.stl\"\n"));
+    let open = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+    fs::write(place.path("open.stl"), open).unwrap();
+    let ended = place.fractum(&["check", "case.toml"]);
+    assert_eq!(ended.code, Some(1));
+    assert!(ended.stderr.contains("bodies[0].file: the surface is not closed: 3 edges"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("repair it in the mesher"), "{}", ended.stderr);
+}
