@@ -25,7 +25,7 @@ point = ["1 mm", "0 mm", "0 mm"]
 size = ["3 mm", "1 mm", "1 mm"]
 particles = 1500
 coordination = 8
-initial_velocity = { y = "1 mm/s*(x - 1 mm)/3 mm" }
+initial_velocity = { y = "0.01 mm/s*(x - 1 mm)/3 mm" }
 [bodies.groups]
 middle = "abs(x - 2.5 mm) < 0.3 mm"
 
@@ -35,11 +35,11 @@ fix = "xyz"
 fix_rotation = "xyz"
 [[supports]]
 group = "bar.x+"
-velocity = { x = { smooth_ramp = [["0 s", "0 m/s"], ["1 us", "10 mm/s"]] } }
+velocity = { x = { smooth_ramp = [["0 s", "0 m/s"], ["1 us", "0.1 mm/s"]] } }
 
 [[loads]]
 group = "bar.middle"
-force = { z = "1 mN" }
+force = { z = "0.01 mN" }
 [[loads]]
 gravity = { z = "-9.81 m/s^2" }
 
@@ -181,7 +181,7 @@ fn what_cannot_be_packed_bonded_or_calibrated_is_refused_with_a_remedy() {
         ("force = { z", "traction = { z", "loads[0].group", "use force"),
     ];
     for (from, to, key, words) in cases {
-        let case = small.replace(from, to).replace("traction = { z = \"1 mN\"", "traction = { z = \"1 Pa\"");
+        let case = small.replace(from, to).replace("traction = { z = \"0.01 mN\"", "traction = { z = \"1 Pa\"");
         let place = Workplace::new(&case);
         let ended = place.fractum(&["check", "case.toml"]);
         assert_eq!(ended.code, Some(1), "{to}: {}", ended.stderr);

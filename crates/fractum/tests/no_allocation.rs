@@ -110,7 +110,7 @@ fn landing(nodes: Vec<Vec3>, body: Body) -> Scene {
 fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<RigidPlane>) -> Scene {
     let supports = Supports::new(supports, &solid.reference).unwrap();
     let loads = Loads::new(loads, solid.reference.len());
-    let debris = Debris::new(&solid, vec![Surface::default()]);
+    let debris = Debris::new(&solid, vec![Surface::default(); solid.body_count()]);
     let surface: Vec<u32> = (0..).zip(&solid.reference).filter(|(_, p)| p.z < 1e-9).map(|(n, _)| n).collect();
     let settings = SceneSettings {
         time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end: 1.0 },

@@ -23,7 +23,7 @@ fn overrides_set_parameters_and_keys() {
         ("E", "1", "--set: E is not a parameter of this case; did you mean E0?"),
         ("solver.ende", "1", "--set: solver.ende is not a key; did you mean end?"),
         ("solver.end", "1 mm", "--set: solver.end = 1 mm, which is a length; expected a time such as \"0.2 ms\""),
-        ("bodies[9].damage", "false", "--set: bodies[9].damage cannot be set; the case has 3 of these"),
+        ("bodies[9].damage", "false", "--set: bodies[9].damage cannot be set; the case has 7 of these"),
         ("parameters.new", "1", "parameters here: size, E0, E1, nu"),
         ("nu", "0.6", "= \"nu\"; expected between -1 and 0.5"),
     ] {
@@ -42,7 +42,9 @@ fn the_hash_follows_the_content() {
     let elsewhere = tempfile::tempdir().unwrap();
     let path = elsewhere.path().join("moved.toml");
     std::fs::write(&path, &text).unwrap();
-    std::fs::copy(folder().join("motion.csv"), elsewhere.path().join("motion.csv")).unwrap();
+    for file in ["motion.csv", "part.stl", "old.fpk"] {
+        std::fs::copy(folder().join(file), elsewhere.path().join(file)).unwrap();
+    }
     assert_eq!(read_case(&path, &[]).unwrap().hash(), case.hash(), "the path plays no part");
     std::fs::write(elsewhere.path().join("motion.csv"), "0 0\n1 2\n").unwrap();
     assert_ne!(read_case(&path, &[]).unwrap().hash(), case.hash(), "the tables do");

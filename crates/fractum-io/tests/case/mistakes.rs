@@ -48,7 +48,7 @@ fn each_mistake_about_a_bonded_body_has_one_clear_message() {
         (
             "size = [3, 1, 1]",
             "",
-            "6:3: bodies[0].size is missing; expected three numbers, each a length such as \"10 mm\"",
+            "6:1: bodies[0].size is missing; expected three numbers, each a length such as \"12 mm\"",
         ),
         ("size = [3, 1, 1]", "size = [3, 0, 1]", "11:8: bodies[0].size = [3, 0, 1]; expected three lengths above 0"),
         (
@@ -266,7 +266,7 @@ fn each_mistake_has_one_clear_message() {
             "end = 1e-3",
             "end = 1e-3\n[[probes]]\nname = \"a\"\nenergy = \"kinetc\"",
             "17:10: probes[0].energy = \"kinetc\"; expected \"external\", \"kinetic\", \"elastic\", \"damage\", \
-             \"removed\", \
+             \"removed\", \"bond_tension\", \"bond_bending\", \"bond_torsion\", \
              \"contact\", \"friction\", \"damping\", \"absorbed\" or \"residual\"; did you mean \"kinetic\"?",
         ),
         (

@@ -134,7 +134,7 @@ impl Bonded {
         Ok(all)
     }
 
-    /// Sets what holds and moves particles.
+    /// Sets what holds and moves particles, which have their initial velocities and spins by now.
     ///
     /// - `turning`: particles and the axes (bits) about which they do not turn
     ///
@@ -143,7 +143,9 @@ impl Bonded {
     pub fn set_supports(&mut self, sets: Vec<ParticleSupport>, turning: &[(u32, u8)]) -> Result<(), SceneError> {
         self.holds = Holds::new(sets, &self.reference, &mut self.particles.held)?;
         for &(particle, axes) in turning {
-            self.particles.held[particle as usize] |= axes << 3;
+            let i = particle as usize;
+            self.particles.held[i] |= axes << 3;
+            (0..3).filter(|axis| axes >> axis & 1 == 1).for_each(|axis| self.particles.spin[i][axis] = 0.0);
         }
         Ok(())
     }

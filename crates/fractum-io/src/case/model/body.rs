@@ -18,7 +18,6 @@ pub struct Body {
 
 /// Kinds of bodies.
 #[derive(Debug, Clone, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "a case has a handful of bodies")]
 pub enum BodyKind {
     /// Finite elements of a mesh group.
     Solid(SolidBody),
