@@ -135,7 +135,8 @@ impl Scene {
 
     /// Largest stable step of the solid by itself, and what governs it; none where bonded bodies ask for a smaller one.
     pub fn governing_element(&self) -> Option<StableStep> {
-        (self.stable.frequency >= self.bonded.frequency()).then_some(self.stable)
+        let governs = self.stable.frequency >= self.bonded.frequency() && self.solid.body_count() > 0;
+        governs.then_some(self.stable)
     }
 
     /// Largest stable step with contacts and damping [s].

@@ -321,8 +321,8 @@ fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
 
 /// Thickness of the first plane body [m], 0 in space.
 fn plane_thickness(scene: &Scene) -> f64 {
-    let body = scene.solid.body(0);
-    if body.shape == Shape::T3 { body.thickness } else { 0.0 }
+    let mut bodies = (0..scene.solid.body_count()).map(|index| scene.solid.body(index));
+    bodies.find(|body| body.shape == Shape::T3).map_or(0.0, |body| body.thickness)
 }
 
 /// Area of the facets of a group; in the plane its lines times the thickness.
