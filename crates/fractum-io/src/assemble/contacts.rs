@@ -103,7 +103,7 @@ impl Context<'_> {
                 OverlapWith::Solid(body) => format!("solid {body}"),
             };
             let found = format!(
-                ": {} overlap at the start, deepest {} and {other}, by {:.4e} m",
+                "{} contacts overlap at the start, deepest {} and {other}, by {:.4e} m",
                 deep.count(),
                 name(worst.particle),
                 worst.depth
