@@ -16,6 +16,7 @@
 //! ```
 
 mod certificate;
+mod cloud;
 mod cooker;
 mod domain;
 mod error;
@@ -29,6 +30,7 @@ mod stl;
 mod surface;
 
 pub use certificate::{Certificate, interior_fraction};
+pub use cloud::cloud;
 pub use cooker::{PackSize, PackSpec, pack};
 pub use domain::{Domain, DomainData};
 pub use error::PackError;

@@ -59,6 +59,27 @@ pub enum Probe {
     AngularMomentum(Vec3),
     /// Something about particles of bonded bodies.
     Particles(ParticleProbe),
+    /// Force of a rigid body on what it touches along a direction [N].
+    ToolForce {
+        /// Rigid body.
+        tool: usize,
+        /// Unit direction.
+        direction: Vec3,
+    },
+    /// Way of the reference point of a rigid body along a direction, at the instant of the last step [m].
+    ToolDisplacement {
+        /// Rigid body.
+        tool: usize,
+        /// Unit direction.
+        direction: Vec3,
+    },
+    /// Velocity of the reference point of a rigid body along a direction [m/s].
+    ToolVelocity {
+        /// Rigid body.
+        tool: usize,
+        /// Unit direction.
+        direction: Vec3,
+    },
     /// Area of crack, Σ V d/l over the damaged edges [m²].
     CrackArea,
 }
@@ -96,7 +117,8 @@ impl Probe {
             }
             Probe::Momentum(direction) => {
                 let nodes = (0..solid.mass.len()).map(|i| solid.mass[i] * solid.velocity[i].dot(direction));
-                nodes.sum::<f64>() + scene.bonded.momentum().dot(direction)
+                let tools: Vec3 = scene.contacts.tools().iter().map(|tool| tool.momentum()).sum();
+                nodes.sum::<f64>() + (scene.bonded.momentum() + tools).dot(direction)
             }
             Probe::AngularMomentum(direction) => {
                 let nodes = (0..solid.mass.len())
@@ -105,6 +127,12 @@ impl Probe {
                 nodes.sum::<f64>() + spins.dot(direction)
             }
             Probe::Particles(probe) => probe.value(&scene.bonded, scene.clock.dt_before),
+            Probe::ToolForce { tool, direction } => -scene.contacts.tools()[*tool].contact_force().dot(direction),
+            Probe::ToolDisplacement { tool, direction } => {
+                let tool = &scene.contacts.tools()[*tool];
+                (tool.displacement() - tool.frame.velocity * scene.clock.dt_before).dot(direction)
+            }
+            Probe::ToolVelocity { tool, direction } => scene.contacts.tools()[*tool].frame.velocity.dot(direction),
             Probe::CrackArea => solid.crack_area(),
         }
     }

@@ -1,5 +1,6 @@
 //! Rigid planes that nodes and particles rest on.
 
+use fractum_contact::ContactWork;
 use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion, Surface};
 use fractum_fem::Solid;
 use fractum_math::Vec3;
@@ -35,14 +36,6 @@ pub(crate) struct Candidate {
     stored: f64,
     friction: f64,
     damping: f64,
-}
-
-/// Energies of all contacts of one kind in one step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct ContactWork {
-    pub(crate) stored: f64,
-    pub(crate) friction: f64,
-    pub(crate) damping: f64,
 }
 
 impl RigidPlane {

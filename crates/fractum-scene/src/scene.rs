@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use crate::bonded::{Bonded, BondedState};
 use crate::boundary::{Loads, Supports};
 use crate::clock::{Clock, TimeStepSettings};
+use crate::contacts::{Contacts, ContactsState};
 use crate::coupling::{Debris, DebrisState};
 use crate::fragment::{Fragment, fragments};
 use crate::ledger::{Books, Guard, Ledger};
@@ -23,6 +24,8 @@ pub struct Scene {
     pub debris: Debris,
     /// Bonded bodies, with particles of their own.
     pub bonded: Bonded,
+    /// Contacts of particles with nodes of their own, and the rigid bodies that they meet.
+    pub contacts: Contacts,
     /// Rigid planes.
     pub planes: Vec<RigidPlane>,
     /// Time and step.
@@ -59,6 +62,7 @@ pub struct SceneState {
     solid: SolidState,
     debris: DebrisState,
     bonded: Option<BondedState>,
+    contacts: Option<ContactsState>,
     planes: Vec<Vec<Candidate>>,
     ledger: Ledger,
     books: Books,
@@ -109,6 +113,7 @@ impl Scene {
             solid,
             debris,
             bonded: Bonded::default(),
+            contacts: Contacts::default(),
             planes,
             clock: Clock::new(0.0),
             supports,
@@ -133,16 +138,30 @@ impl Scene {
         self
     }
 
-    /// Largest stable step of the solid by itself, and what governs it; none where bonded bodies ask for a smaller one.
+    /// The same scene with contacts of its particles, before its first step.
+    pub fn with_contacts(mut self, contacts: Contacts) -> Self {
+        self.contacts = contacts;
+        self.clock = Clock::new(self.next_dt(0.0));
+        self
+    }
+
+    /// Largest stable step of the solid by itself, and what governs it; none where bonds or contacts ask for a
+    /// smaller one.
     pub fn governing_element(&self) -> Option<StableStep> {
-        let governs = self.stable.frequency >= self.bonded.frequency() && self.solid.body_count() > 0;
-        governs.then_some(self.stable)
+        let others = self.bonded.frequency().max(self.contacts.frequency_square().sqrt());
+        (self.stable.frequency >= others && self.solid.body_count() > 0).then_some(self.stable)
+    }
+
+    /// Whether the contacts of particles ask for a smaller step than elements and bonds.
+    pub fn contacts_govern(&self) -> bool {
+        self.contacts.frequency_square().sqrt() > self.stable.frequency.max(self.bonded.frequency())
     }
 
     /// Largest stable step with contacts and damping [s].
     pub fn stable_dt(&self) -> f64 {
         let frequency = self.stable.frequency.max(self.bonded.frequency());
-        let frequency = (frequency * frequency + self.contact_frequency_square).sqrt();
+        let contacts = self.contact_frequency_square + self.contacts.frequency_square();
+        let frequency = (frequency * frequency + contacts).sqrt();
         let contact = if self.contact_frequency_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
         let damping = self.settings.damping;
         let xi = 0.5 * self.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
@@ -206,7 +225,9 @@ impl Scene {
             particles: self.debris.len() + self.bonded.particles.len(),
             bonds: self.bonded.bond_counts().0,
             broken_bonds: self.bonded.bond_counts().1,
-            contacts: self.debris.touching().count() + self.planes.iter().map(RigidPlane::touching).sum::<usize>(),
+            contacts: self.debris.touching().count()
+                + self.planes.iter().map(RigidPlane::touching).sum::<usize>()
+                + self.contacts.touching(),
         }
     }
 
@@ -242,6 +263,7 @@ impl Scene {
             solid: self.solid.state(),
             debris: self.debris.state().clone(),
             bonded: (!self.bonded.is_empty()).then(|| self.bonded.state()),
+            contacts: (!self.contacts.is_empty()).then(|| self.contacts.state()),
             planes: self.planes.iter().map(RigidPlane::state).collect(),
             ledger: self.ledger,
             books: self.books,
@@ -259,6 +281,9 @@ impl Scene {
         self.debris.restore(&self.solid, state.debris);
         if let Some(bonded) = state.bonded {
             self.bonded.restore(bonded);
+        }
+        if let Some(contacts) = state.contacts {
+            self.contacts.restore(contacts);
         }
         for (plane, candidates) in self.planes.iter_mut().zip(state.planes) {
             plane.restore(candidates);

@@ -1,8 +1,8 @@
+use fractum_contact::ContactWork;
 use fractum_math::Vec3;
 
 use crate::bonded::BondedWork;
 use crate::error::StepError;
-use crate::rigid::ContactWork;
 use crate::scene::Scene;
 
 /// Elastic energy over all energy put in, above which a run is unstable: a mode of the highest frequency at 0.95 of the
@@ -76,6 +76,7 @@ impl Scene {
         let motion = self.solid.kick_and_drift(dt_before, dt_after, damping, self.supports.held(), measure);
         let support = self.supports.impose(&mut self.solid, time, dt_before, dt_after);
         let bonded = self.move_bonded(time, dt_before, dt_after, measure);
+        let tools = self.contacts.move_tools(time, dt_before, dt_after);
         let turning = self.debris.turn(&self.solid, dt_before, dt_kick);
         let load_after = 0.5 * dt_after * self.loads.power(&self.solid);
 
@@ -83,15 +84,15 @@ impl Scene {
         books.friction += contact.friction;
         books.damping += contact.damping;
         if self.clock.step > 0 {
-            books.external += support.before + bonded.external_before + load_before;
+            books.external += support.before + bonded.external_before + tools.external_before + load_before;
             books.damping += motion.damped_before + bonded.damped_before;
         }
         if measure {
-            self.ledger.kinetic = motion.kinetic + support.kinetic + turning + bonded.kinetic;
+            self.ledger.kinetic = motion.kinetic + support.kinetic + turning + bonded.kinetic + tools.kinetic;
             self.ledger.contact = contact.stored;
             self.close_balance()?;
         }
-        self.books.external += support.after + bonded.external_after + load_after;
+        self.books.external += support.after + bonded.external_after + tools.external_after + load_after;
         self.books.damping += motion.damped_after + bonded.damped_after;
 
         passed(Phase::Motion);
@@ -108,8 +109,9 @@ impl Scene {
 
     /// The velocities given at t = 0 become those of the half step before it, so that the balance starts exact.
     fn start_half_a_step_early(&mut self, dt: f64) {
-        let Scene { solid, supports, bonded, .. } = self;
+        let Scene { solid, supports, bonded, contacts, .. } = self;
         bonded.particles.start_half_a_step_early(dt);
+        contacts.start_half_a_step_early(dt);
         for i in 0..solid.mass.len() {
             let half_kick = solid.force[i] * (0.5 * dt / solid.mass[i]);
             let held = supports.held().get(i).copied().unwrap_or(0);
@@ -137,15 +139,15 @@ impl Scene {
 
     fn add_contact_forces(&mut self, dt: f64) -> ContactWork {
         let mut work = ContactWork::default();
+        if !self.contacts.is_empty() {
+            work += self.contacts.add_forces(&mut self.solid, &mut self.bonded.particles, dt);
+        }
         if self.debris.is_empty() && self.planes.is_empty() {
             return work;
         }
-        work = self.debris.add_forces(&mut self.solid, dt);
+        work += self.debris.add_forces(&mut self.solid, dt);
         for plane in &mut self.planes {
-            let own = plane.add_forces(&mut self.solid, &mut self.debris, dt);
-            work.stored += own.stored;
-            work.friction += own.friction;
-            work.damping += own.damping;
+            work += plane.add_forces(&mut self.solid, &mut self.debris, dt);
         }
         self.debris.pass_on_torques(&mut self.solid);
         work

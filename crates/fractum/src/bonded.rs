@@ -57,7 +57,7 @@ pub struct BondedReport {
     pub walls: Vec<(String, usize)>,
 }
 
-/// All bonded bodies of a case.
+/// All bodies of particles of a case.
 #[derive(Default)]
 pub struct BondedBodies {
     /// What the scene is built from, in the order of the case.
@@ -70,7 +70,7 @@ pub struct BondedBodies {
     pub timings: Vec<String>,
 }
 
-/// Makes the bonded bodies of a case ready.
+/// Makes the bodies of particles of a case ready.
 ///
 /// # Errors
 /// Everything that cannot be packed, bonded or calibrated, with its place.
@@ -78,7 +78,17 @@ pub fn prepare_bodies(case: &Case, mesh: &Mesh, cache: &Cache) -> Result<BondedB
     let mut all = BondedBodies::default();
     let mut errors = Vec::new();
     for body in &case.bodies {
-        let BodyKind::Bonded(bonded) = &body.kind else { continue };
+        let bonded = match &body.kind {
+            BodyKind::Bonded(bonded) => bonded,
+            BodyKind::Particles(loose) => {
+                match crate::loose::prepare(loose, &case.materials[loose.material]) {
+                    Ok(prepared) => all.prepared.push(prepared),
+                    Err(error) => errors.push(*error),
+                }
+                continue;
+            }
+            _ => continue,
+        };
         let maker = Maker { case, mesh, cache, name: &body.name, bonded };
         if let Err(error) = maker.make(&mut all) {
             errors.push(*error);

@@ -43,7 +43,7 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
     };
     check_groups(&case, &mesh)?;
     let made = prepare_bodies(&case, &mesh, cache)?;
-    let mut assembly = assemble(&case, &mesh, made.prepared)?;
+    let mut assembly = assemble(&case, &mesh, made.prepared, crate::loose::facets(&case)?)?;
     assembly.warnings.extend(made.warnings);
     Ok(Input { case, mesh, mesh_hash, assembly, bonded: made.reports, timings: made.timings })
 }

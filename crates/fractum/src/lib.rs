@@ -12,6 +12,7 @@ mod cache;
 mod error;
 mod gallery;
 mod input;
+mod loose;
 pub mod plan;
 mod record;
 mod record_bonded;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use fractum_fem::{Formulation, Kinematics, Plane, Shape};
 use fractum_io::assemble::Assembly;
-use fractum_io::case::model::{BodyKind, Case, LoadKind, Material, MeshSource, SolidBody};
+use fractum_io::case::model::{BodyKind, Case, LoadKind, Material, MeshSource, RigidBody, RigidShape, SolidBody};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
 use fractum_scene::Scene;
@@ -93,12 +93,51 @@ impl Plan {
                         self.describe_bonded(&case.materials[body.material], report);
                     }
                 }
-                BodyKind::Rigid(rigid) => {
-                    let text = format!("{}: rigid plane, friction {}", body.name.value, rigid.contact.friction);
-                    self.add("body", text);
+                BodyKind::Particles(loose) => {
+                    let found = scene.bonded.bodies().iter().find(|part| part.name == body.name.value);
+                    if let Some(part) = found {
+                        let all = &scene.bonded.particles;
+                        let (radius, mass) = (&all.radius[part.range.clone()], &all.mass[part.range.clone()]);
+                        let of =
+                            |best: fn(f64, f64) -> f64| quantity(radius.iter().copied().fold(radius[0], best), "m");
+                        let text = format!(
+                            "{}: {} loose particles of radius {} to {}, {}, mass {}",
+                            part.name,
+                            radius.len(),
+                            of(f64::min),
+                            of(f64::max),
+                            case.materials[loose.material].name.value,
+                            quantity(mass.iter().sum(), "kg")
+                        );
+                        self.add("body", text);
+                    }
                 }
+                BodyKind::Rigid(rigid) => self.describe_rigid(case, scene, &body.name.value, rigid),
             }
         }
+    }
+
+    fn describe_rigid(&mut self, case: &Case, scene: &Scene, name: &str, rigid: &RigidBody) {
+        let shape = match &rigid.shape {
+            RigidShape::Plane { .. } => "plane".to_owned(),
+            RigidShape::Box { .. } => "box".to_owned(),
+            RigidShape::Cylinder { .. } => "cylinder".to_owned(),
+            RigidShape::Sphere { .. } => "sphere".to_owned(),
+            RigidShape::Group { .. } | RigidShape::Stl { .. } => {
+                let tool = scene.contacts.tools().iter().find(|tool| tool.name == name);
+                let facets = tool.map_or(0, |tool| tool.facets());
+                format!("mesh of {facets} facets")
+            }
+        };
+        let inside = if rigid.inside { ", around its particles" } else { "" };
+        let motion = match (&rigid.mass, rigid.velocity.iter().chain(&rigid.spin).any(Option::is_some)) {
+            (Some(mass), _) => format!("free, mass {}", quantity(*mass, "kg")),
+            (None, true) => "driven".to_owned(),
+            (None, false) => "at rest".to_owned(),
+        };
+        let made = rigid.material.map_or("rigid", |material| case.materials[material].name.value.as_str());
+        let friction = rigid.contact.friction;
+        self.add("body", format!("{name}: {made} {shape}{inside}, {motion}, friction {friction}"));
     }
 
     fn describe_bonded(&mut self, material: &Material, report: &BondedReport) {
@@ -237,8 +276,9 @@ impl Plan {
         let damage = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).damage.is_some());
         choose(damage, "damage and removal of elements", "no body can be damaged");
         choose(damage, "discrete elements (from the first removal)", "nothing turns into them");
-        choose(!scene.bonded.is_empty(), "cohesive beams", "no bonded body");
-        choose(!scene.planes.is_empty(), "contact with rigid planes", "no rigid body");
+        choose(scene.bonded.bond_counts().0 > 0, "cohesive beams", "no bonded body");
+        choose(!scene.planes.is_empty(), "contact with rigid planes", "no rigid plane");
+        choose(!scene.contacts.is_empty(), "contact of particles by Hertz' law", "no particles at the start");
         let damping = case.damping;
         choose(damping.local > 0.0 || damping.mass > 0.0, "damping on the nodes", "not asked for");
         let viscous = damping.stiffness > 0.0 || damping.bulk_linear > 0.0 || damping.bulk_quadratic > 0.0;
@@ -255,6 +295,7 @@ impl Plan {
                 let (body, element) = stable.governing;
                 format!("element {element} of {}", scene.solid.body(body).name)
             }
+            None if scene.contacts_govern() => "the contacts (Rayleigh's time)".to_owned(),
             None => "the bonds".to_owned(),
         };
         self.add(

@@ -64,12 +64,13 @@ impl<'a> Context<'a> {
             };
             parts.push(Part { body: solid, name: &body.name.value, place, shape, elements });
         }
-        let bonded = case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Bonded(_)));
+        let particles = |kind: &BodyKind| matches!(kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
+        let bonded = case.bodies.iter().any(|body| particles(&body.kind));
         if parts.is_empty() && !bonded && self.diagnostics.is_empty() {
             let place = self.whole_case();
             self.error(
                 &place,
-                "no body of kind \"solid\" or \"bonded\"",
+                "no body of kind \"solid\", \"bonded\" or \"particles\"",
                 "at least one; only rigid tools have nothing to compute",
             );
         }

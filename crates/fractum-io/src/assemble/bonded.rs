@@ -6,10 +6,10 @@ use fractum_scene::{Bonded, BondedPart, ParticleLoad, ParticleProbe, ParticleSup
 
 use super::conditions::motion_of;
 use super::{Context, function};
-use crate::case::model::{self, BodyKind, LoadKind, ProbeKind};
-use crate::case::{Diagnostic, Spanned, nearest};
+use crate::case::model::{BodyKind, LoadKind, ProbeKind};
+use crate::case::{Diagnostic, Field, Spanned, nearest};
 
-/// The particles and bonds of a bonded body, made outside: packed or read, bonded and calibrated.
+/// The particles of a bonded or loose body, made outside: packed or read, bonded and calibrated.
 #[derive(Clone, Debug)]
 pub struct PreparedBody {
     /// Particles at rest.
@@ -35,16 +35,17 @@ impl Context<'_> {
     pub(super) fn bonded(&mut self, prepared: Vec<PreparedBody>) -> Option<Bonded> {
         let case = self.case;
         let bodies = case.bodies.iter().enumerate().filter_map(|(index, body)| match &body.kind {
-            BodyKind::Bonded(bonded) => Some((index, body, bonded)),
+            BodyKind::Bonded(own) => Some((index, body, own.material, &own.groups, &own.initial_velocity)),
+            BodyKind::Particles(own) => Some((index, body, own.material, &own.groups, &own.initial_velocity)),
             _ => None,
         });
         let (mut parts, mut start) = (Vec::new(), 0u32);
-        for ((index, body, bonded), mut made) in bodies.zip(prepared) {
+        for ((index, body, material, groups, initial_velocity), mut made) in bodies.zip(prepared) {
             let count = made.particles.len() as u32;
-            set_initial_velocity(&mut made.particles, bonded);
+            set_initial_velocity(&mut made.particles, initial_velocity);
             let mut sets = vec![(String::new(), (start..start + count).collect::<Vec<u32>>())];
             sets.extend(made.walls.into_iter().map(|(name, set)| (name, set.iter().map(|i| i + start).collect())));
-            for (name, condition) in &bonded.groups {
+            for (name, condition) in groups {
                 if sets.iter().any(|(known, _)| *known == name.value) {
                     self.error(&name.place, "is the name of a wall of the body", "another name");
                     continue;
@@ -62,7 +63,7 @@ impl Context<'_> {
                 particles: made.particles,
                 pairs: made.pairs,
                 section: made.section,
-                density: case.materials[bonded.material].density,
+                density: case.materials[material].density,
             });
             start += count;
         }
@@ -186,8 +187,7 @@ impl Context<'_> {
 }
 
 /// Gives particles the velocity of the field at their centres, and its rate of rotation, half the curl.
-fn set_initial_velocity(particles: &mut Particles, body: &model::BondedBody) {
-    let field = &body.initial_velocity;
+fn set_initial_velocity(particles: &mut Particles, field: &[Option<Field>; 3]) {
     if field.iter().all(Option::is_none) {
         return;
     }

@@ -4,9 +4,11 @@
 mod bodies;
 mod bonded;
 mod conditions;
+mod contacts;
 mod probes;
 
 pub use bonded::PreparedBody;
+pub use contacts::PreparedFacets;
 
 use std::sync::Arc;
 
@@ -18,7 +20,7 @@ use fractum_scene::{Guard, Loads, Probe, RigidPlane, Scene, SceneError, SceneSet
 
 use bonded::ParticleSets;
 
-use crate::case::model::{BodyKind, Case, GroupUse, Shape, Support, TimeStep};
+use crate::case::model::{Body, BodyKind, Case, GroupUse, RigidShape, Support, TimeStep};
 use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction, nearest};
 
 /// A scene with what is needed to speak of it in the user's terms.
@@ -60,15 +62,20 @@ pub fn check_groups(case: &Case, mesh: &Mesh) -> Result<(), Diagnostics> {
 
 /// Builds the scene of a case on its mesh (coordinates already in metres; an empty one where the case has none).
 ///
-/// - `prepared`: the bonded bodies in the order of the case
+/// - `prepared`: the bodies of particles in the order of the case; `facets`: those of the rigid bodies from STL files
 ///
 /// # Errors
 /// Everything that does not fit: groups that are missing or of the wrong kind, overlapping bodies, contradictory
 /// supports, elements too large for their fracture energy.
-pub fn assemble(case: &Case, mesh: &Mesh, prepared: Vec<PreparedBody>) -> Result<Assembly, Diagnostics> {
+pub fn assemble(
+    case: &Case,
+    mesh: &Mesh,
+    prepared: Vec<PreparedBody>,
+    facets: Vec<PreparedFacets>,
+) -> Result<Assembly, Diagnostics> {
     let mut context = Context { case, mesh, particle_sets: Vec::new(), diagnostics: Vec::new() };
     context.check_groups();
-    let assembly = context.build(prepared);
+    let assembly = context.build(prepared, facets);
     match assembly {
         Some(mut assembly) if context.diagnostics.is_empty() => {
             assembly.warnings.extend(context.case.warnings().iter().cloned());
@@ -111,7 +118,7 @@ impl Context<'_> {
         }
     }
 
-    fn build(&mut self, prepared: Vec<PreparedBody>) -> Option<Assembly> {
+    fn build(&mut self, prepared: Vec<PreparedBody>, facets: Vec<PreparedFacets>) -> Option<Assembly> {
         if !self.diagnostics.is_empty() {
             return None;
         }
@@ -128,7 +135,7 @@ impl Context<'_> {
                 return None;
             }
         };
-        let warnings = self.length_warnings(&solid, &parts);
+        let mut warnings = self.length_warnings(&solid, &parts);
         self.set_initial_velocity(&mut solid, &parts);
         let damping = self.case.damping;
         solid.set_viscosity(Viscosity {
@@ -137,6 +144,7 @@ impl Context<'_> {
             bulk_quadratic: damping.bulk_quadratic,
         });
         let boundary = self.boundary(&parts, &numbering);
+        let boundary_of_parts = self.facets_of_parts(&parts, &numbering);
         let supports = self.supports(&numbering);
         let loads = self.loads(&parts, &numbering, &boundary);
         let supports = match Supports::new(supports, &solid.reference) {
@@ -167,6 +175,7 @@ impl Context<'_> {
             self.settings(),
         )
         .with_bonded(bonded);
+        let scene = self.with_contacts(scene, &parts, &boundary_of_parts, facets, &mut warnings)?;
         Some(Assembly {
             scene,
             probes,
@@ -200,17 +209,16 @@ impl Context<'_> {
         }
     }
 
+    /// Rigid planes, as nodes of solids and their discrete elements feel them.
     fn planes(&self) -> Vec<RigidPlane> {
-        let rigid = self.case.bodies.iter().filter_map(|body| match &body.kind {
-            BodyKind::Rigid(rigid) => Some(rigid),
-            BodyKind::Solid(_) | BodyKind::Bonded(_) => None,
-        });
-        rigid
-            .map(|rigid| {
-                let Shape::Plane { point, normal } = rigid.shape;
-                RigidPlane::new(point, normal, rigid.contact)
-            })
-            .collect()
+        let plane = |body: &Body| match &body.kind {
+            BodyKind::Rigid(rigid) => match rigid.shape {
+                RigidShape::Plane { point, normal } => Some(RigidPlane::new(point, normal, rigid.contact)),
+                _ => None,
+            },
+            _ => None,
+        };
+        self.case.bodies.iter().filter_map(plane).collect()
     }
 
     /// Nodes of a group that belong to solid bodies, in the scene's numbering, ascending.
@@ -237,6 +245,7 @@ fn use_in_words(group_use: GroupUse) -> &'static str {
     match group_use {
         GroupUse::Body => "elements of a body",
         GroupUse::Filled => "a volume to fill with particles",
+        GroupUse::Tool => "facets of a rigid body",
         GroupUse::Support | GroupUse::ProbeNodes => "nodes of a solid body",
         GroupUse::Force => "nodes or facets of a solid body",
         GroupUse::Facets => "facets on the surface of a solid body",

@@ -72,6 +72,8 @@ fn documented_defaults_are_the_defaults() {
         (text.as_str(), "mortar", "bodies[2]", "supports[1].displacement.y"),
         (text.as_str(), "mortar", "bodies[3]", ""),
         (text.as_str(), "mortar", "bodies[5]", ""),
+        (text.as_str(), "mortar", "bodies[7]", ""),
+        (text.as_str(), "mortar", "bodies[8]", ""),
         (SMALL, "steel", "bodies[0]", ""),
     ];
     let mut untried = Vec::new();
@@ -101,7 +103,7 @@ fn documented_defaults_are_the_defaults() {
     // In these, absent is `None` in the model: no function at all, or left to the number of dimensions.
     let optional = |path: &&&str| path.starts_with("loads[].") || path.starts_with("bodies[].");
     assert_eq!(untried.iter().filter(|path| !optional(path)).count(), 0, "{untried:?}");
-    assert_eq!(untried.len(), 9 + 3 + 1 + 2, "{untried:?}");
+    assert_eq!(untried.len(), 9 + 3 + 1 + 2 + 3, "{untried:?}");
 }
 
 /// The document without the key at `path`; nothing where the path leads nowhere.

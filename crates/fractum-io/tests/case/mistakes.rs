@@ -149,13 +149,8 @@ fn each_mistake_has_one_clear_message() {
         (
             "kind = \"solid\"",
             "kind = \"sold\"",
-            "10:8: bodies[0].kind = \"sold\"; expected \"solid\", \"bonded\" or \"rigid\"; did you mean \"solid\"?",
-        ),
-        (
-            "kind = \"solid\"",
-            "kind = \"particles\"",
-            "10:8: bodies[0].kind = \"particles\" is not available in this version; expected \"solid\", \"bonded\" or \
-             \"rigid\"",
+            "10:8: bodies[0].kind = \"sold\"; expected \"solid\", \"bonded\", \"particles\" or \
+             \"rigid\"; did you mean \"solid\"?",
         ),
         (
             "material = \"steel\"",
@@ -291,6 +286,11 @@ fn each_mistake_has_one_clear_message() {
             "kind = \"rigid\"\nshape = \"plane\"\nnormal = [0, 0, 0]",
             "12:10: bodies[0].normal = [0, 0, 0]; \
              expected an axis such as \"x\" or \"-y\", or three numbers that are not all zero",
+        ),
+        (
+            "kind = \"solid\"\ngroup = \"bar\"\nmaterial = \"steel\"",
+            "kind = \"particles\"\nmaterial = \"steel\"",
+            "8:1: bodies[0] has neither shape nor file; expected a shape to fill with particles, or a file of x, y, z, radius",
         ),
     ];
     for (old, new, expected) in cases {

@@ -1,5 +1,5 @@
-use fractum_contact::close_pairs;
 use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion, Surface};
+use fractum_contact::{ContactWork, close_pairs};
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 use rayon::prelude::*;
@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use super::holder::Holders;
 use super::radius::largest_radii;
-use crate::rigid::ContactWork;
 
 /// No particle at this node.
 const NONE: u32 = u32::MAX;

@@ -1,11 +1,8 @@
-//! Bodies: meshed solids, bonded particles and rigid tools.
+//! Bodies: meshed solids, bonded and loose particles, rigid bodies.
 
-use fractum_math::Vec3;
-
-use super::BondedBody;
+use super::{BondedBody, LooseBody, RigidBody};
 use crate::case::choice::choice;
 use crate::case::{Field, Spanned};
-use fractum_scene::Surface;
 
 /// A body of the case.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +20,9 @@ pub enum BodyKind {
     Solid(SolidBody),
     /// Particles joined by beams.
     Bonded(BondedBody),
-    /// A rigid tool.
+    /// Loose particles.
+    Particles(LooseBody),
+    /// A rigid body.
     Rigid(RigidBody),
 }
 
@@ -51,27 +50,6 @@ pub struct SolidBody {
     pub damage_where: Option<Spanned<Field>>,
     /// Factor on the tensile strength [-]; must be checked to be > 0 where it is used. `None` = 1.
     pub strength_factor: Option<Spanned<Field>>,
-}
-
-/// A rigid tool at rest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RigidBody {
-    /// Its shape.
-    pub shape: Shape,
-    /// Contact with it.
-    pub contact: Surface,
-}
-
-/// Shapes of rigid tools.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
-    /// The half space behind a plane.
-    Plane {
-        /// A point on the plane [m].
-        point: Vec3,
-        /// Unit normal out of the tool.
-        normal: Vec3,
-    },
 }
 
 /// Element formulation.

@@ -3,17 +3,21 @@
 mod body;
 mod bonded;
 mod boundary;
+mod loose;
 mod material;
 mod probe;
+mod rigid;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-pub use body::{Body, BodyKind, Formulation, Kinematics, Plane, RigidBody, Shape, SolidBody};
+pub use body::{Body, BodyKind, Formulation, Kinematics, Plane, SolidBody};
 pub use bonded::{BondedBody, BondedShape, Bonds, Convention, FileContent, PackingSource, ParticleSize};
 pub use boundary::{Components, Load, LoadKind, Motion, Support};
+pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Criterion, Damage, Distribution, Material, Scatter, Softening};
 pub use probe::{CountKind, EnergyKind, Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
+pub use rigid::{RigidBody, RigidShape};
 
 use super::choice::choice;
 use super::{Diagnostic, Dimension, Spanned};
@@ -227,6 +231,8 @@ pub enum GroupUse {
     Body,
     /// The volume that particles fill.
     Filled,
+    /// Facets of a rigid body.
+    Tool,
     /// Nodes of a support.
     Support,
     /// Nodes or facets that share a force.
@@ -245,10 +251,11 @@ impl Case {
         &self.warnings
     }
 
-    /// Splits the name of a set of particles, `BODY` or `BODY.SET`, into the index of its bonded body and the set.
+    /// Splits the name of a set of particles, `BODY` or `BODY.SET`, into the index of its body and the set.
     pub fn particle_group<'g>(&self, group: &'g str) -> Option<(usize, Option<&'g str>)> {
         let bonded = |name: &str| {
-            let of = |body: &Body| body.name.value == name && matches!(body.kind, BodyKind::Bonded(_));
+            let particles = |kind: &BodyKind| matches!(kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
+            let of = |body: &Body| body.name.value == name && particles(&body.kind);
             self.bodies.iter().position(of)
         };
         let whole = bonded(group).map(|body| (body, None));
@@ -258,8 +265,14 @@ impl Case {
         })
     }
 
+    /// Number among the rigid bodies of the one with this name.
+    pub fn tool(&self, name: &str) -> Option<usize> {
+        let mut rigid = self.bodies.iter().filter(|body| matches!(body.kind, BodyKind::Rigid(_)));
+        rigid.position(|body| body.name.value == name)
+    }
+
     /// Every mesh group the case names, with its use, in the order of bodies, supports, loads, probes. Names of
-    /// bonded bodies are not among them.
+    /// bodies of particles and of rigid bodies are not among them.
     pub fn groups_used(&self) -> Vec<(&Spanned<String>, GroupUse)> {
         let bodies = self.bodies.iter().filter_map(|body| match &body.kind {
             BodyKind::Solid(solid) => Some((&solid.group, GroupUse::Body)),
@@ -269,7 +282,8 @@ impl Case {
                 }
                 _ => None,
             },
-            BodyKind::Rigid(_) => None,
+            BodyKind::Rigid(RigidBody { shape: RigidShape::Group { group, .. }, .. }) => Some((group, GroupUse::Tool)),
+            BodyKind::Rigid(_) | BodyKind::Particles(_) => None,
         });
         let supports = self.supports.iter().map(|support| (&support.group, GroupUse::Support));
         let loads = self.loads.iter().filter_map(|load| match &load.kind {
@@ -285,7 +299,8 @@ impl Case {
             ProbeKind::Stress { group, .. } => Some((group, GroupUse::ProbeElements)),
             _ => None,
         });
-        let of_mesh = |group: &&Spanned<String>| self.particle_group(&group.value).is_none();
+        let of_mesh =
+            |group: &&Spanned<String>| self.particle_group(&group.value).is_none() && self.tool(&group.value).is_none();
         let named = supports.chain(loads).chain(probes).filter(|(group, _)| of_mesh(group));
         bodies.chain(named).collect()
     }

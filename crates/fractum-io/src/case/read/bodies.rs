@@ -1,16 +1,12 @@
 //! `[[bodies]]`.
 
 use super::bonded::bonded;
-use super::materials;
-use super::vectors::{components, condition, direction, field, point};
-use crate::case::model::{Body, BodyKind, Formulation, Kinematics, Material, Plane, RigidBody, Shape, SolidBody};
+use super::loose::loose;
+use super::rigid::rigid;
+use super::vectors::{components, condition, field};
+use crate::case::model::{Body, BodyKind, Formulation, Kinematics, Material, Plane, SolidBody};
 use crate::case::reader::Table;
-use crate::case::tree::Value;
 use crate::case::{Diagnostic, nearest};
-use fractum_math::Vec3;
-
-/// Kinds of bodies that later versions are to have.
-const PLANNED: [&str; 1] = ["particles"];
 
 /// Reads all bodies against the materials read before; nothing where one of them is wrong.
 pub(super) fn read(root: &Table<'_>, materials: &[(String, Option<Material>)]) -> Option<Vec<Body>> {
@@ -62,21 +58,12 @@ fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [
     enum Kind {
         Solid,
         Bonded,
+        Particles,
         Rigid,
     }
     let name = table.text("name").spanned().required();
-    let planned = table.peek("kind").is_some_and(|node| {
-        let planned = matches!(&node.value, Value::Text(kind) if PLANNED.contains(&kind.as_str()));
-        if planned {
-            let note = Diagnostic::error(&node.place, format!("{} is not available in this version", node.found()));
-            table.reader.note(note.expected("\"solid\", \"bonded\" or \"rigid\""));
-        }
-        planned
-    });
-    if planned {
-        return None;
-    }
-    let kinds = [("solid", Kind::Solid), ("bonded", Kind::Bonded), ("rigid", Kind::Rigid)];
+    let kinds =
+        [("solid", Kind::Solid), ("bonded", Kind::Bonded), ("particles", Kind::Particles), ("rigid", Kind::Rigid)];
     let kind = table.one_of("kind", &kinds).required();
     let (kind, why) = match kind {
         Some(Kind::Solid) => (solid(&table, materials, used).map(BodyKind::Solid), "on a solid body"),
@@ -85,7 +72,14 @@ fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [
             let here = material.and_then(|index| materials[index].1.as_ref());
             (bonded(&table, material, here).map(BodyKind::Bonded), "on a bonded body")
         }
-        Some(Kind::Rigid) => (rigid(&table).map(BodyKind::Rigid), "on a rigid body"),
+        Some(Kind::Particles) => {
+            let material = material_of(&table, materials, used);
+            (loose(&table, material).map(BodyKind::Particles), "on loose particles")
+        }
+        Some(Kind::Rigid) => {
+            let material = table.has("material").then(|| material_of(&table, materials, used));
+            (rigid(&table, material).map(BodyKind::Rigid), "on a rigid body")
+        }
         None => return None, // which keys belong here is not known
     };
     table.finish(why);
@@ -161,13 +155,4 @@ fn optional<T>(
     read: impl FnOnce(&'static str) -> Option<T>,
 ) -> Option<Option<T>> {
     if table.has(name) { read(name).map(Some) } else { Some(None) }
-}
-
-fn rigid(table: &Table<'_>) -> Option<RigidBody> {
-    let shape = table.one_of("shape", &[("plane", ())]).required();
-    let point = point(table, "point").or(Vec3::zeros());
-    let normal = direction(table, "normal").required();
-    let contact = materials::contact(table);
-    shape?;
-    Some(RigidBody { shape: Shape::Plane { point, normal: normal? }, contact })
 }

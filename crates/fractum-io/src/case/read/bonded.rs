@@ -89,7 +89,7 @@ fn packing(table: &Table<'_>) -> Option<PackingSource> {
     Some(PackingSource::Shape { shape: shape?, size: size?, dispersion: dispersion?, seed: seed? })
 }
 
-const DISPERSION_RANGE: &str = "from 0 to 1 (0.25 is usual; packings below 0.15 tend to order)";
+pub(super) const DISPERSION_RANGE: &str = "from 0 to 1 (0.25 is usual; packings below 0.15 tend to order)";
 
 fn shape(table: &Table<'_>, kind: Kind) -> Option<BondedShape> {
     let name = SHAPES[kind as usize];
@@ -146,7 +146,7 @@ fn size(table: &Table<'_>) -> Option<Spanned<ParticleSize>> {
 }
 
 /// Takes the file that a key names, with its contents; they belong to the identity of the case.
-fn file(table: &Table<'_>, key: &'static str) -> Option<FileContent> {
+pub(super) fn file(table: &Table<'_>, key: &'static str) -> Option<FileContent> {
     let name = table.text(key).spanned().required()?;
     match read_file(&table_path(table.reader, &name.value)) {
         Ok(bytes) => {
@@ -162,7 +162,7 @@ fn file(table: &Table<'_>, key: &'static str) -> Option<FileContent> {
 }
 
 /// Named sets of particles.
-fn groups(table: &Table<'_>) -> Option<Vec<(Spanned<String>, Field)>> {
+pub(super) fn groups(table: &Table<'_>) -> Option<Vec<(Spanned<String>, Field)>> {
     let Some(groups) = table.table("groups") else { return Some(Vec::new()) };
     let mut complete = true;
     let mut found = Vec::new();

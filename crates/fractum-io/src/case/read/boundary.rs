@@ -102,7 +102,7 @@ fn support(table: Table<'_>) -> Option<Support> {
     Some(Support { name, group: group?, fix_rotation, motion: complete.then_some(motion)? })
 }
 
-fn fixed_axes(table: &Table<'_>, key: &'static str) -> Option<[Option<Spanned<Motion>>; 3]> {
+pub(super) fn fixed_axes(table: &Table<'_>, key: &'static str) -> Option<[Option<Spanned<Motion>>; 3]> {
     let expected = "each of x, y, z at most once, such as \"xy\"";
     let once = |axes: &String| {
         axes.chars().all(|c| "xyz".contains(c)) && AXES.iter().all(|axis| axes.matches(axis).count() <= 1)

@@ -3,7 +3,7 @@
 use crate::case::model::{Criterion, Damage, Distribution, Material, Scatter, Softening};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned};
-use fractum_scene::Surface;
+use fractum_scene::{Surface, damping_of_restitution};
 
 /// Reads all materials: each with its name, and itself where nothing is wrong with it.
 pub(super) fn read(root: &Table<'_>) -> Vec<(String, Option<Material>)> {
@@ -186,8 +186,14 @@ pub(super) fn contact(parent: &Table<'_>) -> Surface {
     let default = Surface::default();
     let friction = table.quantity("friction").not_negative().or(default.friction);
     let rolling_friction = table.quantity("rolling_friction").not_negative().or(default.rolling_friction);
-    let damping_ratio = table.quantity("damping_ratio").check(|ratio| (0.0..=1.0).contains(ratio), "from 0 to 1");
-    let damping_ratio = damping_ratio.or(default.damping_ratio);
+    let damping_ratio = if table.has("restitution") {
+        table.refuse("damping_ratio", "beside restitution, from which it follows");
+        let restitution = table.quantity("restitution").check(|e| *e > 0.0 && *e <= 1.0, "above 0, at most 1");
+        restitution.map(damping_of_restitution).or(default.damping_ratio)
+    } else {
+        let ratio = table.quantity("damping_ratio").check(|ratio| (0.0..=1.0).contains(ratio), "from 0 to 1");
+        ratio.or(default.damping_ratio)
+    };
     table.finish("here");
     Surface { friction, rolling_friction, damping_ratio }
 }

@@ -4,9 +4,11 @@ mod bodies;
 mod bonded;
 mod boundary;
 mod expect;
+mod loose;
 mod materials;
 mod parameters;
 mod probes;
+mod rigid;
 mod solver;
 mod table_file;
 mod time_functions;
@@ -18,7 +20,7 @@ use std::path::Path;
 
 use super::expression::parse_unit;
 use super::keys::remove_unknown;
-use super::model::{Body, BodyKind, BondedShape, Case, CaseSource, MeshSource, PackingSource};
+use super::model::{Body, BodyKind, BondedShape, Case, CaseSource, MeshSource, PackingSource, RigidShape};
 use super::reader::{Reader, Table};
 use super::tree::{self, Node, Value};
 use super::unit::Dimension;
@@ -164,9 +166,10 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
             &bonded.packing,
             PackingSource::Shape { shape, .. } if matches!(shape.value, BondedShape::Group(_))
         ),
-        BodyKind::Rigid(_) => false,
+        BodyKind::Rigid(rigid) => matches!(rigid.shape, RigidShape::Group { .. }),
+        BodyKind::Particles(_) => false,
     };
-    let bonded = |body: &Body| matches!(body.kind, BodyKind::Bonded(_));
+    let bonded = |body: &Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
     if bodies.is_none() && root.has("bodies") && !root.has("mesh") {
         return Some(None); // whether it is needed is not known
     }

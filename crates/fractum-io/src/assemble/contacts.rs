@@ -1,0 +1,264 @@
+//! Rigid bodies, the surfaces of solids, and what particles feel of both.
+
+use fractum_fem as fem;
+use fractum_math::{Mat3, Rotation, Vec3};
+use fractum_mesh::topology;
+use fractum_scene::{
+    ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, OverlapWith, Probe, Scene,
+    Shape, SolidGround, Tool,
+};
+
+use super::bodies::{Numbering, Part};
+use super::{Context, function};
+use crate::case::model::{Body, BodyKind, LoadKind, ProbeKind, RigidBody, RigidShape};
+use crate::case::{Diagnostic, Spanned};
+
+/// Depth of an overlap over the radius of the particle at the start that is reported.
+const DEEP: f64 = 1e-6;
+
+/// Triangles of a rigid body, read outside.
+#[derive(Clone, Debug)]
+pub struct PreparedFacets {
+    /// Points [m].
+    pub points: Vec<Vec3>,
+    /// Corners of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Context<'_> {
+    /// Outward facets of each solid body, in scene nodes; none of plane bodies.
+    pub(super) fn facets_of_parts(&self, parts: &[Part], numbering: &Numbering) -> Vec<Vec<[u32; 3]>> {
+        let scene = |n: u32| numbering.scene_node[n as usize];
+        let of = |part: &Part| match part.shape {
+            fem::Shape::T3 => Vec::new(),
+            fem::Shape::T4 => {
+                let facets = topology::boundary_of_tetrahedra(&self.element_nodes(part));
+                facets.iter().map(|f| f.nodes.map(scene)).collect()
+            }
+        };
+        parts.iter().map(of).collect()
+    }
+
+    /// The scene with the contacts of its particles.
+    pub(super) fn with_contacts(
+        &mut self,
+        scene: Scene,
+        parts: &[Part],
+        facets: &[Vec<[u32; 3]>],
+        rigid_facets: Vec<PreparedFacets>,
+        warnings: &mut Vec<Diagnostic>,
+    ) -> Option<Scene> {
+        let case = self.case;
+        let materials: Vec<ContactMaterial> = case
+            .bodies
+            .iter()
+            .filter_map(|body| match &body.kind {
+                BodyKind::Bonded(own) => Some(own.material),
+                BodyKind::Particles(own) => Some(own.material),
+                _ => None,
+            })
+            .map(|material| {
+                let material = &case.materials[material];
+                let elastic = elastic(material.young_modulus, material.poisson_ratio);
+                ContactMaterial { elastic, density: material.density, surface: material.contact }
+            })
+            .collect();
+        let tools = self.tools(rigid_facets);
+        if materials.is_empty() {
+            self.refuse_tools(&tools);
+            return self.diagnostics.is_empty().then_some(scene);
+        }
+        let mut solids = Vec::new();
+        for (index, (part, facets)) in parts.iter().zip(facets).enumerate().filter(|(_, (_, f))| !f.is_empty()) {
+            let surface = case.materials[part.body.material].contact;
+            match SolidGround::new(&scene.solid, index, surface, facets) {
+                Ok(ground) => solids.push(ground),
+                Err(error) => self.error(&part.place, format!(": particles cannot touch it: {error}"), ""),
+            }
+        }
+        if !self.diagnostics.is_empty() {
+            return None;
+        }
+        let mut gravity = Vec::new();
+        for load in &case.loads {
+            if let LoadKind::Gravity { acceleration } = &load.kind {
+                let axes = acceleration.iter().enumerate();
+                gravity.extend(axes.filter_map(|(axis, value)| value.as_ref().map(|value| (axis, function(value)))));
+            }
+        }
+        let mut contacts = Contacts::new(&scene.bonded, materials, tools, solids, gravity);
+        let (mut solid, mut particles) = (scene.solid.clone(), scene.bonded.particles.clone());
+        let overlaps = contacts.overlaps(&mut solid, &mut particles);
+        let deep = overlaps.iter().filter(|o| o.depth > DEEP * particles.radius[o.particle as usize]);
+        if let Some(worst) = deep.clone().next() {
+            let name = |particle: u32| {
+                let body = scene.bonded.bodies().iter().find(|b| b.range.contains(&(particle as usize)));
+                body.map_or_else(String::new, |b| {
+                    format!("particle {} of {}", particle as usize - b.range.start, b.name)
+                })
+            };
+            let other = match &worst.other {
+                OverlapWith::Particle(other) => name(*other),
+                OverlapWith::Tool(tool) => format!("rigid body {tool}"),
+                OverlapWith::Solid(body) => format!("solid {body}"),
+            };
+            let found = format!(
+                "{} contacts overlap at the start, deepest {} and {other}, by {:.4e} m",
+                deep.count(),
+                name(worst.particle),
+                worst.depth
+            );
+            let place = self.whole_case();
+            let warning = Diagnostic::warning(&place, found);
+            warnings.push(warning.remedy("they push apart at once; move one of them, or make the cloud looser"));
+        }
+        Some(scene.with_contacts(contacts))
+    }
+
+    /// Rigid bodies other than planes act on particles only.
+    fn refuse_tools(&mut self, tools: &[Tool]) {
+        for tool in tools {
+            let body = self.case.bodies.iter().find(|body| body.name.value == tool.name);
+            let Some(Body { name, kind: BodyKind::Rigid(rigid), .. }) = body else { continue };
+            let still = rigid.velocity.iter().chain(&rigid.spin).all(Option::is_none) && rigid.mass.is_none();
+            if !matches!(rigid.shape, RigidShape::Plane { .. }) || !still {
+                self.error(
+                    &name.place,
+                    "meets no particles: only planes at rest touch solids in this version",
+                    "a body of kind \"particles\" or \"bonded\", or a plane at rest",
+                );
+            }
+        }
+    }
+
+    fn tools(&mut self, facets: Vec<PreparedFacets>) -> Vec<Tool> {
+        let (case, mut facets) = (self.case, facets.into_iter());
+        let mut tools = Vec::new();
+        for body in &case.bodies {
+            if let BodyKind::Rigid(rigid) = &body.kind
+                && let Some((form, frame)) = self.form(rigid, &mut facets)
+            {
+                let elastic = rigid.material.map_or(ElasticMaterial::RIGID, |material| {
+                    elastic(case.materials[material].young_modulus, case.materials[material].poisson_ratio)
+                });
+                let mut tool = Tool::new(&body.name.value, form, frame, elastic, rigid.contact);
+                drive(&mut tool, rigid);
+                tools.push(tool);
+            }
+        }
+        tools
+    }
+
+    fn form(&mut self, rigid: &RigidBody, facets: &mut impl Iterator<Item = PreparedFacets>) -> Option<(Form, Frame)> {
+        let shape = |shape| Form::Shape { shape, hollow: rigid.inside };
+        let along_z = |axis: &Vec3| Rotation::rotation_between(&Vec3::z(), axis);
+        let half_turn = || Rotation::from_scaled_axis(Vec3::x() * std::f64::consts::PI);
+        let turned = |at: Vec3, axis: &Vec3| {
+            let rotation = along_z(axis).unwrap_or_else(half_turn);
+            Frame { rotation, ..Frame::at(at) }
+        };
+        Some(match &rigid.shape {
+            RigidShape::Plane { point, normal } => (shape(Shape::HalfSpace), turned(*point, normal)),
+            RigidShape::Box { point, size } => {
+                (shape(Shape::Cuboid { half: size * 0.5 }), Frame::at(point + size * 0.5))
+            }
+            RigidShape::Cylinder { point, axis, length, radius } => {
+                let cylinder = Shape::Cylinder { radius: *radius, half_length: 0.5 * length };
+                (shape(cylinder), turned(point + axis * (0.5 * length), axis))
+            }
+            RigidShape::Sphere { point, radius } => (shape(Shape::Ball { radius: *radius }), Frame::at(*point)),
+            RigidShape::Group { group, point } => (self.group_facets_of_tool(group, point)?, Frame::at(*point)),
+            RigidShape::Stl { file, point, .. } => {
+                let PreparedFacets { mut points, triangles } = facets.next()?;
+                points.iter_mut().for_each(|p| *p -= point);
+                match FacetMesh::new(&points, &triangles) {
+                    Ok(mesh) => (Form::Mesh { mesh, points }, Frame::at(*point)),
+                    Err(error) => {
+                        self.error(&file.name.place, format!("= \"{}\": {error}", file.name.value), "");
+                        return None;
+                    }
+                }
+            }
+        })
+    }
+
+    /// Triangles of a mesh group, or the surface of its tetrahedra.
+    fn group_facets_of_tool(&mut self, group: &Spanned<String>, point: &Vec3) -> Option<Form> {
+        let (mut tetrahedra, mut facets) = (Vec::new(), Vec::new());
+        for part in self.mesh.group(&group.value) {
+            tetrahedra.extend(part.tetrahedra.iter().map(|&e| self.mesh.tetrahedra[e as usize]));
+            facets.extend(part.triangles.iter().map(|&e| self.mesh.triangles[e as usize]));
+        }
+        if !tetrahedra.is_empty() {
+            facets = topology::boundary_of_tetrahedra(&tetrahedra).iter().map(|f| f.nodes).collect();
+        }
+        let mut used: Vec<u32> = facets.iter().flatten().copied().collect();
+        used.sort_unstable();
+        used.dedup();
+        let points: Vec<Vec3> = used.iter().map(|&n| self.mesh.nodes[n as usize] - point).collect();
+        let place = |n: u32| used.binary_search(&n).map_or(u32::MAX, |place| place as u32);
+        let facets: Vec<[u32; 3]> = facets.iter().map(|f| f.map(place)).collect();
+        match FacetMesh::new(&points, &facets) {
+            Ok(mesh) => Some(Form::Mesh { mesh, points }),
+            Err(error) => {
+                self.error(&group.place, format!("= \"{}\": {error}", group.value), "triangles, or tetrahedra");
+                None
+            }
+        }
+    }
+
+    /// A probe of a rigid body; none where it names something else.
+    pub(super) fn tool_probe(&mut self, kind: &ProbeKind) -> Option<Probe> {
+        let (ProbeKind::Reaction { group, along }
+        | ProbeKind::Displacement { group, along }
+        | ProbeKind::Velocity { group, along }) = kind
+        else {
+            return None;
+        };
+        let (tool, direction) = (self.case.tool(&group.value)?, *along);
+        Some(match kind {
+            ProbeKind::Reaction { .. } => Probe::ToolForce { tool, direction },
+            ProbeKind::Displacement { .. } => Probe::ToolDisplacement { tool, direction },
+            _ => Probe::ToolVelocity { tool, direction },
+        })
+    }
+}
+
+fn elastic(young_modulus: f64, poisson_ratio: f64) -> ElasticMaterial {
+    ElasticMaterial { young_modulus, poisson_ratio }
+}
+
+/// Sets how a rigid body moves.
+fn drive(tool: &mut Tool, rigid: &RigidBody) {
+    for axis in 0..3 {
+        tool.along[axis] = match (&rigid.velocity[axis], rigid.free[axis], &rigid.force[axis]) {
+            (Some(velocity), ..) => Drive::Velocity(function(velocity)),
+            (None, true, Some(force)) => Drive::Force(function(force)),
+            (None, true, None) => Drive::Free,
+            _ => Drive::Fixed,
+        };
+        tool.about[axis] = match &rigid.spin[axis] {
+            Some(spin) => Drive::Velocity(function(spin)),
+            None if rigid.free_rotation => Drive::Free,
+            None => Drive::Fixed,
+        };
+    }
+    tool.inertia = rigid.mass.map(|mass| Inertia { mass, tensor: inertia_tensor(&rigid.shape, mass) });
+}
+
+/// Moments of inertia of a shape of uniform density about its centre, in its axes [kg m²].
+fn inertia_tensor(shape: &RigidShape, mass: f64) -> Mat3 {
+    match shape {
+        RigidShape::Box { size, .. } => {
+            let s = size.component_mul(size);
+            Mat3::from_diagonal(&(Vec3::new(s.y + s.z, s.z + s.x, s.x + s.y) * (mass / 12.0)))
+        }
+        RigidShape::Cylinder { length, radius, .. } => {
+            let across = mass * (3.0 * radius * radius + length * length) / 12.0;
+            Mat3::from_diagonal(&Vec3::new(across, across, 0.5 * mass * radius * radius))
+        }
+        RigidShape::Sphere { radius, .. } => Mat3::identity() * (0.4 * mass * radius * radius),
+        // These do not turn freely.
+        RigidShape::Plane { .. } | RigidShape::Group { .. } | RigidShape::Stl { .. } => Mat3::identity() * mass,
+    }
+}

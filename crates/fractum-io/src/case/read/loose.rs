@@ -1,0 +1,79 @@
+//! `[[bodies]]` of the kind `particles`.
+
+use super::bonded::{DISPERSION_RANGE, file, groups};
+use super::unit;
+use super::vectors::{components, direction, field, point};
+use crate::case::model::{LooseBody, LooseSource, Region};
+use crate::case::reader::Table;
+use crate::case::unit::Dimension;
+use crate::case::{Diagnostic, Spanned};
+use fractum_math::Vec3;
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Box,
+    Cylinder,
+    Sphere,
+}
+
+/// Reads loose particles of the material at `material`, which is nothing where it is wrong.
+pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseBody> {
+    let source = if table.has("file") { from_table(table) } else { cloud(table) };
+    let groups = groups(table);
+    let initial_velocity = match table.has("initial_velocity") {
+        true => components(table, "initial_velocity", |table, axis| field(table, axis).given())?,
+        false => [None, None, None],
+    };
+    Some(LooseBody { material: material?, source: source?, groups: groups?, initial_velocity })
+}
+
+fn from_table(table: &Table<'_>) -> Option<LooseSource> {
+    for key in
+        ["shape", "point", "size", "axis", "length", "radius", "particles", "particle_radius", "dispersion", "seed"]
+    {
+        table.refuse(key, "beside a file of particles");
+    }
+    let given = unit(table, "unit", Dimension::LENGTH);
+    if table.has("unit") && given.is_none() {
+        return None;
+    }
+    Some(LooseSource::Table { file: file(table, "file")?, unit: given.unwrap_or(1.0) })
+}
+
+fn cloud(table: &Table<'_>) -> Option<LooseSource> {
+    if !table.has("shape") {
+        let note = Diagnostic::error(&table.place, "has neither shape nor file");
+        table.reader.note(note.expected("a shape to fill with particles, or a file of x, y, z, radius"));
+        return None;
+    }
+    let kinds = [("box", Kind::Box), ("cylinder", Kind::Cylinder), ("sphere", Kind::Sphere)];
+    let kind = table.one_of("shape", &kinds).spanned().required();
+    let radius = table.quantity("particle_radius").positive().required();
+    let count = table.integer("particles").check(|count| (1..=20_000_000).contains(count), "1 to 20 million");
+    let count = if table.has("particles") { Some(count.spanned().given()?) } else { None };
+    let dispersion = table.quantity("dispersion").check(|kappa| (0.0..=1.0).contains(kappa), DISPERSION_RANGE);
+    let dispersion = dispersion.or_if_absent(0.0);
+    let seed = table.integer("seed").or_if_absent(1);
+    let Spanned { value: kind, place } = kind?;
+    let start = point(table, "point").or_if_absent(Vec3::zeros());
+    let length = |key: &'static str| table.quantity(key).positive().required();
+    let region = match kind {
+        Kind::Box => {
+            let size = point(table, "size").check(|size| size.min() > 0.0, "three lengths above 0").required();
+            Region::Box { point: start?, size: size? }
+        }
+        Kind::Cylinder => {
+            let axis = direction(table, "axis").or_if_absent(Vec3::x());
+            let (long, wide) = (length("length"), length("radius"));
+            Region::Cylinder { point: start?, axis: axis?, length: long?, radius: wide? }
+        }
+        Kind::Sphere => Region::Sphere { point: start?, radius: length("radius")? },
+    };
+    Some(LooseSource::Cloud {
+        region: Spanned::new(region, place),
+        radius: radius?,
+        dispersion: dispersion?,
+        count,
+        seed: seed?,
+    })
+}

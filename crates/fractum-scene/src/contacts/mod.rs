@@ -1,0 +1,304 @@
+//! Contacts of particles that have nodes of their own - loose and bonded ones - with each other, with rigid bodies and
+//! with the facets of solids.
+
+mod solid_ground;
+mod tool;
+
+use fractum_contact::law::{ElasticMaterial, Hertz, HertzMemory, MaterialPair, Surface};
+use fractum_contact::{ContactWork, GroundContacts, SphereContacts, Spheres, Touch};
+use fractum_dem::Particles;
+use fractum_fem::Solid;
+use fractum_math::Vec3;
+use serde::{Deserialize, Serialize};
+
+pub use solid_ground::SolidGround;
+pub(crate) use tool::ToolWork;
+pub use tool::{Drive, Form, Inertia, Tool};
+
+use crate::bonded::Bonded;
+use crate::boundary::TimeFunction;
+use tool::ToolState;
+
+/// Skin of the searches over the smallest radius.
+const SKIN: f64 = 0.2;
+/// Part of Rayleigh's time, in which a surface wave crosses a sphere, that is a stable step.
+const RAYLEIGH_SHARE: f64 = 0.25;
+
+/// How the particles of a body touch others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactMaterial {
+    /// Elastic constants.
+    pub elastic: ElasticMaterial,
+    /// Density of a particle [kg/m³].
+    pub density: f64,
+    /// Friction and damping.
+    pub surface: Surface,
+}
+
+/// Contacts of all particles with nodes of their own, by Hertz' law, and the rigid bodies among them.
+#[derive(Clone, Debug, Default)]
+pub struct Contacts {
+    /// Material of each body of particles.
+    materials: Vec<ContactMaterial>,
+    /// Whether the particles of each body are bonded; those do not touch each other.
+    bonded: Vec<bool>,
+    /// Body of each particle.
+    body: Vec<u16>,
+    /// Pairs of materials, body by body.
+    pairs: Vec<MaterialPair>,
+    among: Option<SphereContacts<Hertz>>,
+    tools: Vec<Tool>,
+    /// Contacts with each tool, and its material with that of each body.
+    on_tools: Vec<(GroundContacts<Hertz>, Vec<MaterialPair>)>,
+    solids: Vec<SolidGround>,
+    /// Accelerations of everything, by axis.
+    gravity: Vec<(usize, TimeFunctionOf)>,
+    rayleigh_frequency: f64,
+    /// Largest squared frequency that contacts have given to nodes of solids so far [1/s²].
+    node_frequency_square: f64,
+}
+
+/// A function of time that can be shown.
+#[derive(Clone)]
+struct TimeFunctionOf(TimeFunction);
+
+impl std::fmt::Debug for TimeFunctionOf {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("f(t)")
+    }
+}
+
+/// What changes in the contacts during a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ContactsState {
+    among: Vec<([u32; 2], HertzMemory)>,
+    tools: Vec<(ToolState, Vec<Touch<HertzMemory>>)>,
+    solids: Vec<Vec<Touch<HertzMemory>>>,
+    node_frequency_square: f64,
+}
+
+/// Two things that overlap before anything has moved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overlap {
+    /// A particle of the scene.
+    pub particle: u32,
+    /// What it is in.
+    pub other: OverlapWith,
+    /// How deep [m].
+    pub depth: f64,
+}
+
+/// What a particle overlaps with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OverlapWith {
+    /// Another particle of the scene.
+    Particle(u32),
+    /// A rigid body, by name.
+    Tool(String),
+    /// A solid body, by name.
+    Solid(String),
+}
+
+impl Contacts {
+    /// Contacts of the particles of `bonded`.
+    ///
+    /// - `materials`: of each of its bodies; `solids`: surfaces that particles may touch
+    /// - `gravity`: accelerations [m/s²] of everything, with their axes
+    pub fn new(
+        bonded: &Bonded,
+        materials: Vec<ContactMaterial>,
+        tools: Vec<Tool>,
+        solids: Vec<SolidGround>,
+        gravity: Vec<(usize, TimeFunction)>,
+    ) -> Self {
+        let mut body = vec![0u16; bonded.particles.len()];
+        for (index, part) in (0..).zip(bonded.bodies()) {
+            body[part.range.clone()].fill(index);
+        }
+        let pair = |a: &ContactMaterial, b: &ContactMaterial| {
+            MaterialPair::new([a.elastic, b.elastic], a.surface.against(b.surface))
+        };
+        let smallest = bonded.particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
+        let skin = SKIN * smallest;
+        let on_tool = |tool: &Tool| {
+            let with =
+                |m: &ContactMaterial| MaterialPair::new([m.elastic, tool.elastic], m.surface.against(tool.surface));
+            (GroundContacts::new(skin), materials.iter().map(with).collect())
+        };
+        let rayleigh = (0..body.len()).map(|i| {
+            let ContactMaterial { elastic, density, .. } = materials[body[i] as usize];
+            let nu = elastic.poisson_ratio;
+            let shear = elastic.young_modulus / (2.0 * (1.0 + nu));
+            let time = std::f64::consts::PI * bonded.particles.radius[i] * (density / shear).sqrt();
+            2.0 / (RAYLEIGH_SHARE * time / (0.1631 * nu + 0.8766))
+        });
+        let is_bonded: Vec<bool> = bonded.bodies().iter().map(|body| !body.bonds.is_empty()).collect();
+        let meets = is_bonded.iter().any(|b| !b) || !tools.is_empty() || !solids.is_empty() || is_bonded.len() > 1;
+        let rayleigh_frequency = if meets { rayleigh.fold(0.0, f64::max) } else { 0.0 };
+        let alone = is_bonded.len() == 1 && is_bonded[0];
+        Contacts {
+            pairs: materials.iter().flat_map(|a| materials.iter().map(move |b| pair(a, b))).collect(),
+            on_tools: tools.iter().map(on_tool).collect(),
+            among: (!alone && !body.is_empty()).then(|| SphereContacts::new(skin)),
+            solids: solids.into_iter().map(|solid| solid.prepared(skin, &materials)).collect(),
+            gravity: gravity.into_iter().map(|(axis, value)| (axis, TimeFunctionOf(value))).collect(),
+            bonded: is_bonded,
+            materials,
+            body,
+            tools,
+            rayleigh_frequency,
+            node_frequency_square: 0.0,
+        }
+    }
+
+    /// Whether nothing can touch: no particles.
+    pub fn is_empty(&self) -> bool {
+        self.body.is_empty() && self.tools.is_empty()
+    }
+
+    /// Rigid bodies.
+    pub fn tools(&self) -> &[Tool] {
+        &self.tools
+    }
+
+    /// Squared frequency that contacts ask of the step [1/s²].
+    pub(crate) fn frequency_square(&self) -> f64 {
+        self.rayleigh_frequency * self.rayleigh_frequency + self.node_frequency_square
+    }
+
+    /// Contacts at the last step.
+    pub(crate) fn touching(&self) -> usize {
+        let ground = |contacts: &GroundContacts<Hertz>| contacts.touches().count();
+        self.among.as_ref().map_or(0, |among| among.touching().count())
+            + self.on_tools.iter().map(|(contacts, _)| ground(contacts)).sum::<usize>()
+            + self.solids.iter().map(|solid| ground(solid.contacts())).sum::<usize>()
+    }
+
+    /// Adds the forces of the moment to particles, rigid bodies and the nodes of solids.
+    ///
+    /// - `dt` [s]: the step that led here
+    pub(crate) fn add_forces(&mut self, solid: &mut Solid, particles: &mut Particles, dt: f64) -> ContactWork {
+        let mut work = ContactWork::default();
+        let Particles { position, velocity, spin, radius, mass, force, moment, .. } = particles;
+        let spheres = Spheres { position, velocity, spin, radius };
+        let Contacts { materials, bonded, body, pairs, among, tools, on_tools, solids, .. } = self;
+        let body = &*body;
+        if let Some(among) = among {
+            let law = |i: u32, j: u32| {
+                let (i, j) = (i as usize, j as usize);
+                let (a, b) = (body[i] as usize, body[j] as usize);
+                let reduced = |of: &[f64]| of[i] * of[j] / (of[i] + of[j]);
+                let pair = &pairs[a * materials.len() + b];
+                (a != b || !bonded[a]).then(|| Hertz::new(pair, reduced(radius), reduced(mass)))
+            };
+            among.search(&spheres, law);
+            work += among.add_forces(&spheres, force, moment, dt);
+        }
+        for (tool, (contacts, pairs)) in tools.iter_mut().zip(on_tools) {
+            let heavy = tool.mass();
+            let law = |i: u32, curvature: f64| {
+                let i = i as usize;
+                let moved = if heavy.is_finite() { mass[i] * heavy / (mass[i] + heavy) } else { mass[i] };
+                Hertz::new(&pairs[body[i] as usize], 1.0 / (1.0 / radius[i] + curvature), moved)
+            };
+            let ground = tool.ground();
+            contacts.search(&ground, &spheres);
+            work += contacts.update(&ground, &spheres, law, dt);
+            contacts.add_to(force, moment);
+            tool.clear_forces();
+            for touch in contacts.touches() {
+                let place = position[touch.sphere as usize] + touch.offset;
+                tool.push(&-touch.force, &-touch.couple, &place);
+            }
+        }
+        for ground in solids {
+            let law = |pair: &MaterialPair, i: u32| Hertz::new(pair, radius[i as usize], mass[i as usize]);
+            work += ground.add_forces(solid, &spheres, body, law, dt);
+            ground.contacts().add_to(force, moment);
+            self.node_frequency_square = self.node_frequency_square.max(ground.frequency_square());
+        }
+        work
+    }
+
+    /// Accelerations at a time [m/s²].
+    fn gravity(&self, time: f64) -> Vec3 {
+        let mut sum = Vec3::zeros();
+        for (axis, value) in &self.gravity {
+            sum[*axis] += (value.0)(time, &Vec3::zeros());
+        }
+        sum
+    }
+
+    pub(crate) fn start_half_a_step_early(&mut self, dt: f64) {
+        let gravity = self.gravity(0.0);
+        self.tools.iter_mut().for_each(|tool| tool.start_half_a_step_early(dt, &gravity));
+    }
+
+    /// Advances the rigid bodies with the forces of tⁿ.
+    pub(crate) fn move_tools(&mut self, time: f64, dt_before: f64, dt_after: f64) -> ToolWork {
+        let mut work = ToolWork::default();
+        let gravity = if self.tools.is_empty() { Vec3::zeros() } else { self.gravity(time) };
+        for tool in &mut self.tools {
+            work += tool.advance(time, dt_before, dt_after, &gravity);
+        }
+        work
+    }
+
+    /// What overlaps as it stands, deepest first.
+    pub fn overlaps(&mut self, solid: &mut Solid, particles: &mut Particles) -> Vec<Overlap> {
+        let mut still = self.clone();
+        let kept = (particles.force.clone(), particles.moment.clone(), solid.force.clone());
+        still.add_forces(solid, particles, 0.0);
+        (particles.force, particles.moment, solid.force) = kept;
+        let mut found = Vec::new();
+        let Particles { position, velocity, spin, radius, .. } = &*particles;
+        let spheres = Spheres { position, velocity, spin, radius };
+        if let Some(among) = &still.among {
+            let pairs = among.overlaps(&spheres);
+            found.extend(pairs.map(|([i, j], depth)| Overlap { particle: i, other: OverlapWith::Particle(j), depth }));
+        }
+        let deepest = |contacts: &GroundContacts<Hertz>, other: OverlapWith| -> Vec<Overlap> {
+            let of = |t: &Touch<HertzMemory>| Overlap { particle: t.sphere, other: other.clone(), depth: t.overlap };
+            contacts.touches().map(of).collect()
+        };
+        for (tool, (contacts, _)) in still.tools.iter().zip(&still.on_tools) {
+            found.extend(deepest(contacts, OverlapWith::Tool(tool.name.clone())));
+        }
+        for ground in &still.solids {
+            let name = solid.body(ground.body()).name.clone();
+            found.extend(deepest(ground.contacts(), OverlapWith::Solid(name)));
+        }
+        found.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.particle.cmp(&b.particle)));
+        found
+    }
+
+    /// Everything that changes, for a checkpoint.
+    pub(crate) fn state(&self) -> ContactsState {
+        ContactsState {
+            among: self.among.as_ref().map_or_else(Vec::new, SphereContacts::state),
+            tools: self
+                .tools
+                .iter()
+                .zip(&self.on_tools)
+                .map(|(t, (contacts, _))| (t.state(), contacts.state()))
+                .collect(),
+            solids: self.solids.iter().map(|solid| solid.contacts().state()).collect(),
+            node_frequency_square: self.node_frequency_square,
+        }
+    }
+
+    /// Puts a saved state back.
+    pub(crate) fn restore(&mut self, state: ContactsState) {
+        if let Some(among) = &mut self.among {
+            among.restore(state.among);
+        }
+        for ((tool, (contacts, _)), (own, touches)) in self.tools.iter_mut().zip(&mut self.on_tools).zip(state.tools) {
+            tool.restore(own);
+            contacts.restore(touches);
+        }
+        for (solid, touches) in self.solids.iter_mut().zip(state.solids) {
+            solid.restore(touches);
+        }
+        self.node_frequency_square = state.node_frequency_square;
+    }
+}

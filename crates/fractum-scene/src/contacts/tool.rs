@@ -1,0 +1,277 @@
+//! Rigid bodies that particles meet: where they are, what drives them.
+
+use fractum_contact::law::{ElasticMaterial, Surface};
+use fractum_contact::{FacetMesh, Frame, Ground, Shape};
+use fractum_math::{Mat3, Rotation, Vec3};
+use serde::{Deserialize, Serialize};
+
+use crate::boundary::TimeFunction;
+
+/// What a rigid body looks like, in its own axes.
+#[derive(Clone, Debug)]
+pub enum Form {
+    /// A shape, or the container of that shape.
+    Shape {
+        /// The shape.
+        shape: Shape,
+        /// Whether particles are inside.
+        hollow: bool,
+    },
+    /// Facets.
+    Mesh {
+        /// The facets.
+        mesh: FacetMesh,
+        /// Their points [m].
+        points: Vec<Vec3>,
+    },
+}
+
+/// How a rigid body moves along or about one axis of space.
+#[derive(Clone)]
+pub enum Drive {
+    /// At a velocity [m/s] or [rad/s] over time, whatever the forces.
+    Velocity(TimeFunction),
+    /// Freely, under contacts, gravity and a force [N] over time; for translations only.
+    Force(TimeFunction),
+    /// Freely, under contacts and gravity.
+    Free,
+    /// Not at all.
+    Fixed,
+}
+
+/// Mass of a rigid body that moves freely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertia {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Moments of inertia about the reference point, in the axes of the body [kg m²].
+    pub tensor: Mat3,
+}
+
+/// A rigid body.
+#[derive(Clone)]
+pub struct Tool {
+    /// The user's name for it.
+    pub name: String,
+    /// What it looks like.
+    pub form: Form,
+    /// Its elastic constants in contact; [`ElasticMaterial::RIGID`] leaves those of the particles alone.
+    pub elastic: ElasticMaterial,
+    /// Friction and damping.
+    pub surface: Surface,
+    /// Where it is, with its velocities at the half step before tⁿ.
+    pub frame: Frame,
+    /// Motion along x, y, z.
+    pub along: [Drive; 3],
+    /// Motion about x, y, z: all of them free, or none.
+    pub about: [Drive; 3],
+    /// Mass, where some axis is free.
+    pub inertia: Option<Inertia>,
+    start: Vec3,
+    /// Angular momentum at the half step [kg m²/s].
+    angular_momentum: Vec3,
+    force: Vec3,
+    moment: Vec3,
+}
+
+impl std::fmt::Debug for Tool {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Tool({} at {:?})", self.name, self.frame.origin.as_slice())
+    }
+}
+
+/// What changes in a rigid body during a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct ToolState {
+    frame: Frame,
+    angular_momentum: Vec3,
+    force: Vec3,
+    moment: Vec3,
+}
+
+/// Energies of the rigid bodies in one step [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ToolWork {
+    pub(crate) kinetic: f64,
+    pub(crate) external_before: f64,
+    pub(crate) external_after: f64,
+}
+
+impl std::ops::AddAssign for ToolWork {
+    fn add_assign(&mut self, other: Self) {
+        self.kinetic += other.kinetic;
+        self.external_before += other.external_before;
+        self.external_after += other.external_after;
+    }
+}
+
+impl Tool {
+    /// A rigid body at rest whose axes are fixed; its reference point is the origin of `frame`.
+    pub fn new(name: &str, form: Form, frame: Frame, elastic: ElasticMaterial, surface: Surface) -> Self {
+        Tool {
+            name: name.to_owned(),
+            form,
+            elastic,
+            surface,
+            start: frame.origin,
+            frame,
+            along: [Drive::Fixed, Drive::Fixed, Drive::Fixed],
+            about: [Drive::Fixed, Drive::Fixed, Drive::Fixed],
+            inertia: None,
+            angular_momentum: Vec3::zeros(),
+            force: Vec3::zeros(),
+            moment: Vec3::zeros(),
+        }
+    }
+
+    /// As contacts see it.
+    pub(super) fn ground(&self) -> Ground<'_> {
+        match &self.form {
+            Form::Shape { shape, hollow } => Ground::Shape { shape: *shape, hollow: *hollow, frame: &self.frame },
+            Form::Mesh { mesh, points } => Ground::Rigid { surface: mesh, points, frame: &self.frame },
+        }
+    }
+
+    /// Number of its facets; none of a shape.
+    pub fn facets(&self) -> usize {
+        match &self.form {
+            Form::Shape { .. } => 0,
+            Form::Mesh { mesh, .. } => mesh.len(),
+        }
+    }
+
+    /// Mass that contacts move: infinite where no axis is free.
+    pub(super) fn mass(&self) -> f64 {
+        self.inertia.map_or(f64::INFINITY, |inertia| inertia.mass)
+    }
+
+    /// Force of the contacts on it at the last step [N].
+    pub fn contact_force(&self) -> Vec3 {
+        self.force
+    }
+
+    /// Moment of the contacts on it about its reference point at the last step [N m].
+    pub fn contact_moment(&self) -> Vec3 {
+        self.moment
+    }
+
+    /// Way of its reference point since the start [m].
+    pub fn displacement(&self) -> Vec3 {
+        self.frame.origin - self.start
+    }
+
+    /// Linear momentum at the half step; none without mass [kg m/s].
+    pub(crate) fn momentum(&self) -> Vec3 {
+        self.inertia.map_or_else(Vec3::zeros, |inertia| self.frame.velocity * inertia.mass)
+    }
+
+    pub(super) fn clear_forces(&mut self) {
+        (self.force, self.moment) = (Vec3::zeros(), Vec3::zeros());
+    }
+
+    /// Takes the force and couple of a contact at a place in space.
+    pub(super) fn push(&mut self, force: &Vec3, couple: &Vec3, place: &Vec3) {
+        self.force += force;
+        self.moment += (place - self.frame.origin).cross(force) + couple;
+    }
+
+    fn turns_freely(&self) -> bool {
+        matches!(self.about[0], Drive::Free)
+    }
+
+    /// Force from outside on a free axis: load and weight [N].
+    fn applied(&self, axis: usize, time: f64, gravity: &Vec3) -> f64 {
+        let weight = self.inertia.map_or(0.0, |inertia| inertia.mass * gravity[axis]);
+        match &self.along[axis] {
+            Drive::Force(force) => force(time, &self.start) + weight,
+            _ => weight,
+        }
+    }
+
+    /// The velocities given at t = 0 become those of half a step before it.
+    pub(super) fn start_half_a_step_early(&mut self, dt: f64, gravity: &Vec3) {
+        for axis in 0..3 {
+            let velocity = match (&self.along[axis], self.inertia) {
+                (Drive::Force(_) | Drive::Free, Some(inertia)) => {
+                    let pull = self.applied(axis, 0.0, gravity) + self.force[axis];
+                    self.frame.velocity[axis] - 0.5 * dt * pull / inertia.mass
+                }
+                (Drive::Velocity(velocity), _) => velocity(0.0, &self.start),
+                _ => 0.0,
+            };
+            self.frame.velocity[axis] = velocity;
+            if let Drive::Velocity(spin) = &self.about[axis] {
+                self.frame.spin[axis] = spin(0.0, &self.start);
+            }
+        }
+        if let (true, Some(inertia)) = (self.turns_freely(), self.inertia) {
+            self.angular_momentum = inertia_in_space(&inertia, &self.frame.rotation) * self.frame.spin;
+            self.angular_momentum -= self.moment * (0.5 * dt);
+        }
+    }
+
+    /// Advances velocities and place with the forces of tⁿ.
+    pub(super) fn advance(&mut self, time: f64, dt_before: f64, dt_after: f64, gravity: &Vec3) -> ToolWork {
+        let mut work = ToolWork::default();
+        let dt_kick = 0.5 * (dt_before + dt_after);
+        for axis in 0..3 {
+            let before = self.frame.velocity[axis];
+            // What comes from outside: a load, or the drive that balances the contacts.
+            let (after, outside) = match (&self.along[axis], self.inertia) {
+                (Drive::Force(_) | Drive::Free, Some(inertia)) => {
+                    let outside = self.applied(axis, time, gravity);
+                    let change = (self.force[axis] + outside) / inertia.mass;
+                    work.kinetic += 0.5 * inertia.mass * before * (before + dt_before * change);
+                    (before + dt_kick * change, outside)
+                }
+                (Drive::Velocity(velocity), _) => (velocity(time + 0.5 * dt_after, &self.start), -self.force[axis]),
+                _ => (0.0, 0.0),
+            };
+            self.frame.velocity[axis] = after;
+            work.external_before += 0.5 * outside * before * dt_before;
+            work.external_after += 0.5 * outside * after * dt_after;
+        }
+        self.turn(time, dt_before, dt_after, &mut work);
+        self.frame.origin += self.frame.velocity * dt_after;
+        if self.frame.spin != Vec3::zeros() {
+            self.frame.rotation = Rotation::from_scaled_axis(self.frame.spin * dt_after) * self.frame.rotation;
+        }
+        work
+    }
+
+    fn turn(&mut self, time: f64, dt_before: f64, dt_after: f64, work: &mut ToolWork) {
+        if let (true, Some(inertia)) = (self.turns_freely(), self.inertia) {
+            let before = self.frame.spin;
+            work.kinetic += 0.5 * before.dot(&(self.angular_momentum + self.moment * dt_before));
+            self.angular_momentum += self.moment * (0.5 * (dt_before + dt_after));
+            let in_space = inertia_in_space(&inertia, &self.frame.rotation);
+            self.frame.spin = in_space.try_inverse().map_or(before, |inverse| inverse * self.angular_momentum);
+            return;
+        }
+        for axis in 0..3 {
+            let before = self.frame.spin[axis];
+            let after = match &self.about[axis] {
+                Drive::Velocity(spin) => spin(time + 0.5 * dt_after, &self.start),
+                _ => 0.0,
+            };
+            self.frame.spin[axis] = after;
+            work.external_before -= 0.5 * self.moment[axis] * before * dt_before;
+            work.external_after -= 0.5 * self.moment[axis] * after * dt_after;
+        }
+    }
+
+    pub(super) fn state(&self) -> ToolState {
+        let Tool { frame, angular_momentum, force, moment, .. } = self;
+        ToolState { frame: *frame, angular_momentum: *angular_momentum, force: *force, moment: *moment }
+    }
+
+    pub(super) fn restore(&mut self, state: ToolState) {
+        let ToolState { frame, angular_momentum, force, moment } = state;
+        (self.frame, self.angular_momentum, self.force, self.moment) = (frame, angular_momentum, force, moment);
+    }
+}
+
+fn inertia_in_space(inertia: &Inertia, rotation: &Rotation) -> Mat3 {
+    let turn = rotation.to_rotation_matrix();
+    turn.matrix() * inertia.tensor * turn.matrix().transpose()
+}

@@ -1,0 +1,173 @@
+//! Loose particles and rigid bodies, as their user meets them.
+
+mod common;
+
+use std::fs;
+
+use common::{Workplace, files_below};
+use serde_json::Value;
+
+/// Beads fall on a floor within walls; a free plate presses on them, and a driven paddle stirs.
+const HEAP: &str = r#"fractum = 1
+title = "A small heap"
+
+[materials.soft]
+density = "2500 kg/m^3"
+young_modulus = "1 MPa"
+poisson_ratio = 0.25
+contact = { friction = 0.4, rolling_friction = 0.05, restitution = 0.6 }
+
+[[bodies]]
+name = "beads"
+kind = "particles"
+material = "soft"
+shape = "box"
+point = ["-10 mm", "-10 mm", "7 mm"]
+size = ["20 mm", "20 mm", "25 mm"]
+particle_radius = "2 mm"
+dispersion = 0.3
+
+[[bodies]]
+name = "more"
+kind = "particles"
+material = "soft"
+file = "more.csv"
+unit = "mm"
+initial_velocity = { z = "-0.1 m/s" }
+
+[[bodies]]
+name = "floor"
+kind = "rigid"
+shape = "plane"
+normal = "z"
+
+[[bodies]]
+name = "walls"
+kind = "rigid"
+shape = "box"
+inside = true
+point = ["-10 mm", "-10 mm", "-10 mm"]
+size = ["20 mm", "20 mm", "100 mm"]
+
+[[bodies]]
+name = "plate"
+kind = "rigid"
+shape = "box"
+material = "soft"
+point = ["-9 mm", "-9 mm", "38 mm"]
+size = ["18 mm", "18 mm", "2 mm"]
+free = "z"
+mass = "5 g"
+force = { z = "-0.02 N" }
+
+[[bodies]]
+name = "paddle"
+kind = "rigid"
+shape = "stl"
+file = "paddle.stl"
+unit = "mm"
+spin = { z = { smooth_ramp = [["0 s", "0 rad/s"], ["20 ms", "10 rad/s"]] } }
+
+[[loads]]
+gravity = { z = "-9.81 m/s^2" }
+
+[solver]
+end = "0.1 s"
+safety = 0.4
+
+[[probes]]
+name = "floor_force"
+reaction = { group = "floor", along = "z" }
+[[probes]]
+name = "plate_fall"
+displacement = { group = "plate", along = "-z" }
+[[probes]]
+name = "swirl"
+angular_momentum = { along = "z" }
+[[probes]]
+name = "touching"
+count = "contacts"
+
+[output]
+history = { every = "1 ms" }
+fields = { every = "50 ms" }
+checkpoint = { every = "20 ms" }
+"#;
+
+/// A thin upright wedge about the axis, closed.
+fn paddle() -> String {
+    let corners =
+        [[-6.0, -0.7, -1.0], [6.0, -0.7, -1.0], [0.0, 0.7, -1.0], [-6.0, -0.7, 6.0], [6.0, -0.7, 6.0], [0.0, 0.7, 6.0]];
+    let facets = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]];
+    let mut text = String::from("solid paddle\n");
+    for facet in facets {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for corner in facet {
+            let [x, y, z]: [f64; 3] = corners[corner];
+            text += &format!("vertex {x} {y} {z}\n");
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid paddle\n"
+}
+
+fn place(case: &str) -> Workplace {
+    let place = Workplace::new(case);
+    fs::write(place.path("more.csv"), "x, y, z, r\n0, 0, 35, 1.5\n5 5 35 1.5 # a corner\n").unwrap();
+    fs::write(place.path("paddle.stl"), paddle()).unwrap();
+    place
+}
+
+fn run(place: &Workplace, folder: &str, threads: &str) -> Value {
+    let ended = place.fractum(&["run", "case.toml", "-o", folder, "--threads", threads]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    summary(place, folder)
+}
+
+fn summary(place: &Workplace, folder: &str) -> Value {
+    serde_json::from_str(&fs::read_to_string(place.path(folder).join("summary.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn a_heap_runs_with_the_same_bits_on_any_threads_and_after_a_checkpoint() {
+    let place = place(HEAP);
+    let one = run(&place, "one", "1");
+    let value = |name: &str| one["probes"][name]["final"].as_f64().unwrap();
+    assert!(one["counts"]["particles"].as_u64().unwrap() > 25, "{}", one["counts"]);
+    assert!(value("touching") > 10.0 && value("floor_force") > 0.0, "{}", one["probes"]);
+    assert!(value("plate_fall") > 5e-3, "the plate fell by {}", value("plate_fall"));
+    assert!(value("swirl") > 0.0, "the paddle turns them by {}", value("swirl"));
+    let energy = |name: &str| one["energy"][name].as_f64().unwrap();
+    assert!(energy("friction") > 0.0 && energy("damping") > 0.0);
+    assert!(energy("residual_max_relative") < 5e-3, "{}", one["energy"]);
+    assert_eq!(files_below(&place.path("one").join("particles"), ".vtp").len(), 3);
+    let two = run(&place, "two", "2");
+    assert_eq!((&two["state_hash"], &two["probes"]), (&one["state_hash"], &one["probes"]));
+    let resumed = place.fractum(&["run", "case.toml", "-o", "two", "--threads", "1", "--resume", "--quiet"]);
+    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+    let resumed = summary(&place, "two");
+    assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
+}
+
+#[test]
+fn wrong_particles_and_bodies_are_explained() {
+    for (old, new, words) in [
+        ("file = \"more.csv\"", "file = \"paddle.stl\"", "expected rows of x, y, z, radius"),
+        ("particle_radius = \"2 mm\"", "particle_radius = \"2 m\"", "has room in the region"),
+        ("particle_radius = \"2 mm\"", "particle_radius = \"2 mm\"\nparticles = 100000", "there is room for"),
+        ("file = \"paddle.stl\"", "file = \"more.csv\"", "bodies[5].file"),
+    ] {
+        assert!(HEAP.contains(old), "{old}");
+        let place = place(&HEAP.replacen(old, new, 1));
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{new}: {}", ended.stderr);
+        assert!(ended.stderr.contains(words), "{new}: {}", ended.stderr);
+    }
+    // Two beads in one place: said, with the pair and the depth.
+    let place = place(HEAP);
+    fs::write(place.path("more.csv"), "0 0 35 1.5\n0 1 35 1.5\n").unwrap();
+    let ended = place.fractum(&["check", "case.toml"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let said = format!("{}{}", ended.stdout, ended.stderr);
+    assert!(said.contains("particle 0 of more and particle 1 of more, by 2.0000e-3 m"), "{said}");
+}
