@@ -186,7 +186,8 @@ pub fn break_in_motion(
 /// The kinetic energy that velocity Verlet conserves exactly in a linear body, with those half a step before and after:
 /// ½ Σ m v⁻·v⁺ = ½ Σ m (v² − (Δt a/2)²), the same for the rotation.
 fn conserved_kinetic(particles: &Particles, dt: f64) -> f64 {
-    let square = |force: &Vec3, held: u8| (0..3).filter(|d| held >> d & 1 == 0).map(|d| force[d] * force[d]).sum::<f64>();
+    let square =
+        |force: &Vec3, held: u8| (0..3).filter(|d| held >> d & 1 == 0).map(|d| force[d] * force[d]).sum::<f64>();
     let excess = |i: usize| {
         let (held, force, moment) = (particles.held[i], &particles.force[i], &particles.moment[i]);
         square(force, held) / particles.mass[i] + square(moment, held >> 3) / particles.inertia[i]
