@@ -5,7 +5,8 @@ use fractum_pack::{Convention, Domain, PackSpec, pack};
 use serde::Serialize;
 
 use crate::inversion::check_material;
-use crate::{CalibrateError, Inverted, Micro, Sample, invert, lab, laws, published};
+use crate::strength::{self, Strength, StrengthCriterion};
+use crate::{CalibrateError, Inverted, Micro, Sample, invert, lab, laws};
 
 /// What to calibrate.
 #[derive(Clone, Debug, Serialize)]
@@ -14,8 +15,8 @@ pub struct Request {
     pub young_modulus: f64,
     /// Poisson's ratio.
     pub poisson_ratio: f64,
-    /// Tensile strength [Pa], when fracture is wanted.
-    pub tensile_strength: Option<f64>,
+    /// Tensile strength [Pa] and the criterion that shall give it, when fracture is wanted.
+    pub tensile_strength: Option<(f64, StrengthCriterion)>,
     /// Coordination; chosen when absent.
     pub coordination: Option<f64>,
     /// How the coordination is counted.
@@ -70,8 +71,8 @@ pub struct Calibration {
     pub check_poisson_ratio: f64,
     /// Seed of that packing.
     pub check_seed: u64,
-    /// Strength of the virial criterion for the asked tensile strength [Pa] (eq. 22 of Nguyen et al. 2019).
-    pub beam_strength: Option<f64>,
+    /// Strength of the criterion for the asked tensile strength.
+    pub strength: Option<Strength>,
 }
 
 /// Coordinations tried in turn when none is asked: the usual ten, then lower ones for higher Poisson's ratios.
@@ -143,8 +144,10 @@ pub fn calibrate(request: &Request) -> Result<Calibration, CalibrateError> {
     let check = test_axes(&sample)?;
     let average = |f: fn(&(f64, f64)) -> f64| check.iter().map(f).sum::<f64>() / 3.0;
     let [highest, lowest] = law.poisson_range(coordination);
-    // The published strength law counts bonds over all particles.
-    let strength = |s: f64| s / published::strength_ratio(micro.radius_ratio, sample.network.coordination_all);
+    let strength = match request.tensile_strength {
+        Some((asked, criterion)) => Some(strength::calibrate(&[&own, &sample], asked, criterion)?),
+        None => None,
+    };
     Ok(Calibration {
         request: request.clone(),
         coordination,
@@ -157,7 +160,7 @@ pub fn calibrate(request: &Request) -> Result<Calibration, CalibrateError> {
         check_young_modulus: average(|c| c.0),
         check_poisson_ratio: average(|c| c.1),
         check_seed,
-        beam_strength: request.tensile_strength.map(strength),
+        strength,
     })
 }
 

@@ -23,9 +23,11 @@ pub mod laws;
 mod prepare;
 pub mod published;
 mod sample;
+pub mod strength;
 
 pub use calibrate::{Calibration, Request, calibrate, suitable_coordination};
 pub use error::CalibrateError;
 pub use inversion::{Inverted, RADIUS_RATIOS, invert};
 pub use prepare::{Beams, BondedBody, BondedMaterial, prepare};
 pub use sample::{Micro, Sample};
+pub use strength::{Strength, StrengthCriterion};

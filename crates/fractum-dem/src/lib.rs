@@ -26,6 +26,7 @@ mod breaking;
 mod conjugate;
 pub mod criterion;
 mod error;
+mod fracture;
 mod graph;
 mod lattice;
 mod leapfrog;
@@ -39,6 +40,7 @@ pub use bond::{BeamEnergy, BeamForces, BeamNetwork, BeamSection, BondedPair, coh
 pub use breaking::{Batch, Breaking, Crack, LoadPoint, Outcome, Point, quasi_static};
 pub use criterion::Criterion;
 pub use error::DemError;
+pub use fracture::{CrackFaces, FaceWork, Fracture};
 pub use graph::{BondGraph, HalfEdge, Parts};
 pub use lattice::{Dof6, Equilibrium, Lattice, Supports, Tolerance};
 pub use leapfrog::{Leap, LeapWork, ParticleDamping};

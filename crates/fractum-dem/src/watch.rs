@@ -161,6 +161,28 @@ impl Watch {
         }
     }
 
+    /// Whether any site can have a ratio of at least `limit`: a cheap answer for bodies far from failure. The stress of a
+    /// neighbourhood is a mean of its members' own, and bounds are convex, so that no neighbourhood exceeds the largest
+    /// bound of a particle alone.
+    pub fn may_fail(&mut self, body: &impl Bonded, limit: f64) -> bool {
+        match self.criterion {
+            Criterion::BeamRankine(_) => true,
+            Criterion::Hydrostatic(c) => self.own_bound_reaches(&c, body, limit),
+            Criterion::Principal(c) => self.own_bound_reaches(&c, body, limit),
+            Criterion::MohrCoulomb(c) => self.own_bound_reaches(&c, body, limit),
+            Criterion::DruckerPrager(c) => self.own_bound_reaches(&c, body, limit),
+        }
+    }
+
+    fn own_bound_reaches(&mut self, criterion: &impl StressCriterion, body: &impl Bonded, limit: f64) -> bool {
+        body.dyads(&mut self.dyads);
+        let fraction = self.fraction;
+        let reaches = |(dyads, volume): (&[Sym3], &[f64])| {
+            dyads.iter().zip(volume).any(|(dyad, volume)| criterion.bound(&(*dyad * (fraction / volume))) >= limit)
+        };
+        self.dyads.par_chunks(BLOCK).zip(self.volume.par_chunks(BLOCK)).any(reaches)
+    }
+
     /// Looks at every site: finds the one nearest to failure, and those with a ratio of at least `limit`.
     pub fn look(&mut self, body: &impl Bonded, graph: &BondGraph, limit: f64) {
         if let Criterion::BeamRankine(beam) = self.criterion {

@@ -10,7 +10,10 @@ mod tension;
 mod vibration;
 
 pub use bending::{Bending, Torsion, bending, torsion};
-pub use breaking::{Broken, Diameter, Failure, FailureOptions, Geometry, break_sample, diameter, geometry, hondros};
+pub use breaking::{
+    Broken, BrokenInMotion, Diameter, Failure, FailureOptions, Geometry, MotionEnergy, MotionOptions, break_in_motion,
+    break_sample, diameter, geometry, hondros,
+};
 pub use gauge::Gauge;
 pub use hydrostatic::{Hydrostatic, hydrostatic};
 pub use shear::{Shear, shear};

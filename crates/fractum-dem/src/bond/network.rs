@@ -1,6 +1,6 @@
 use std::ops::Add;
 
-use fractum_math::{Rotation, Vec3};
+use fractum_math::{Rotation, Sym3, Vec3};
 use nalgebra::Matrix6;
 use rayon::prelude::*;
 
@@ -42,6 +42,8 @@ struct Block {
     partners: Vec<u32>,
     /// Sums of forces and moments: own particles, then partners.
     sums: Vec<[f64; 6]>,
+    /// Sums of the dyads of forces and arms, where they are wanted.
+    dyads: Vec<[f64; 6]>,
     /// Sums that other blocks hold for particles of this one: (block, slot, own particle).
     incoming: Vec<(u32, u32, u32)>,
 }
@@ -145,9 +147,34 @@ impl BeamNetwork {
 
     /// Adds the forces and moments of all live bonds to the particles'.
     pub fn add_forces(&mut self, particles: &mut Particles) {
+        self.add_forces_of::<false>(particles);
+    }
+
+    /// [`BeamNetwork::add_forces`], which also keeps what [`BeamNetwork::dyads`] tells of these forces.
+    pub fn add_forces_and_dyads(&mut self, particles: &mut Particles) {
+        self.add_forces_of::<true>(particles);
+    }
+
+    /// Half the sums of sym(r_ij ⊗ f_ij) over the bonds of each particle [N m], as at the last
+    /// [`BeamNetwork::add_forces_and_dyads`]; zero before it.
+    pub fn dyads(&self, out: &mut [Sym3]) {
+        let blocks = &self.blocks;
+        out.par_chunks_mut(BLOCK).zip(blocks).for_each(|(out, block)| {
+            out.fill(Sym3::ZERO);
+            // Components of Voigt order xx yy zz xy yz zx; the sums hold them so.
+            out.iter_mut().zip(&block.dyads).for_each(|(out, sum)| *out = Sym3(*sum));
+            for &(from, slot, own) in &block.incoming {
+                if let Some(sum) = blocks[from as usize].dyads.get(slot as usize) {
+                    out[own as usize] += Sym3(*sum);
+                }
+            }
+        });
+    }
+
+    fn add_forces_of<const DYADS: bool>(&mut self, particles: &mut Particles) {
         let section = self.section;
         let Particles { position, orientation, force, moment, .. } = particles;
-        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds(position, orientation, &section));
+        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<DYADS>(position, orientation, &section));
         let blocks = &self.blocks;
         let owned = force.par_chunks_mut(BLOCK).zip(moment.par_chunks_mut(BLOCK));
         owned.zip(blocks).for_each(|((force, moment), block)| {
@@ -173,6 +200,11 @@ impl BeamNetwork {
             axis: self.axis[bond],
             length: self.length[bond],
         }
+    }
+
+    /// Distance of the particles of a bond when it was made [m].
+    pub fn length(&self, bond: usize) -> f64 {
+        self.length[bond]
     }
 
     /// Force of a live bond on its second particle and the moments on both; see [`cohesive_beam`].
@@ -278,13 +310,17 @@ impl Block {
             })
             .collect();
         let sums = vec![[0.0; 6]; count + partners.len()];
-        Block { start, count, groups, partners, sums, incoming: Vec::new() }
+        Block { start, count, groups, partners, sums, dyads: Vec::new(), incoming: Vec::new() }
     }
 
-    fn sum_bonds(&mut self, position: &[Vec3], orientation: &[Rotation], section: &BeamSection) {
+    fn sum_bonds<const DYADS: bool>(&mut self, position: &[Vec3], orientation: &[Rotation], section: &BeamSection) {
         debug_assert!(self.start + self.count <= position.len());
-        let Block { groups, sums, .. } = self;
+        let Block { groups, sums, dyads, .. } = self;
         sums.fill([0.0; 6]);
+        if DYADS {
+            dyads.clear();
+            dyads.resize(sums.len(), [0.0; 6]);
+        }
         for group in groups {
             let (mut gap, mut turns) = ([[0.0; WIDTH]; 3], [[[0.0; WIDTH]; 4]; 2]);
             for k in 0..WIDTH {
@@ -302,8 +338,9 @@ impl Block {
             // nalgebra stores a quaternion as i, j, k, w.
             let turn = |t: [[f64; WIDTH]; 4]| (Lanes(t[3]), [Lanes(t[0]), Lanes(t[1]), Lanes(t[2])]);
             let axis: Vector<WIDTH> = group.axis.map(Lanes);
+            let arm = gap.map(Lanes);
             let (force, first, second) =
-                beam(gap.map(Lanes), turns.map(turn), axis, Lanes(group.inverse), Lanes(group.live), section);
+                beam(arm, turns.map(turn), axis, Lanes(group.inverse), Lanes(group.live), section);
             for k in 0..WIDTH {
                 let (i, j) = (group.slots[0][k] as usize, group.slots[1][k] as usize);
                 let own = &mut sums[i];
@@ -315,6 +352,18 @@ impl Block {
                 for a in 0..3 {
                     other[a] += force[a].0[k];
                     other[a + 3] += second[a].0[k];
+                }
+            }
+            if DYADS {
+                // ½ sym(r ⊗ f) is the same at both ends; the force on the first particle is the opposite of `force`.
+                let quarter = Lanes::splat(-0.25);
+                let part = |a: usize, b: usize| (arm[a] * force[b] + arm[b] * force[a]) * quarter;
+                let dyad = [part(0, 0), part(1, 1), part(2, 2), part(0, 1), part(1, 2), part(2, 0)];
+                for k in 0..WIDTH {
+                    for end in 0..2 {
+                        let sum = &mut dyads[group.slots[end][k] as usize];
+                        (0..6).for_each(|c| sum[c] += dyad[c].0[k]);
+                    }
                 }
             }
         }

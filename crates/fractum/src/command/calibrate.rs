@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use clap::Args;
-use fractum::{ExitCode, Failure};
-use fractum_calibrate::{Calibration, Request, calibrate, laws};
+use clap::{Args, ValueEnum};
+use fractum::{ExitCode, Failure, say};
+use fractum_calibrate::{Calibration, Request, StrengthCriterion, calibrate, laws};
 use fractum_io::atomic;
 use fractum_io::case::{Dimension, parse_quantity};
 
@@ -23,9 +23,12 @@ pub(crate) struct CalibrateArguments {
     /// Density, written into material.toml.
     #[arg(long)]
     density: Option<String>,
-    /// Tensile strength, such as "50 MPa".
+    /// Tensile strength, such as "50 MPa": the strength of the criterion is found by breaking two packings.
     #[arg(long)]
     strength: Option<String>,
+    /// Criterion whose strength is found.
+    #[arg(long, value_enum, default_value = "principal", requires = "strength")]
+    criterion: CriterionArgument,
     /// Coordination of the bonds; chosen to suit Poisson's ratio if not given.
     #[arg(long)]
     coordination: Option<f64>,
@@ -49,6 +52,13 @@ pub(crate) struct CalibrateArguments {
     refit: bool,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+enum CriterionArgument {
+    Principal,
+    Beam,
+    Hydrostatic,
+}
+
 /// Calibrates, checks, reports and writes.
 pub(crate) fn run(arguments: &CalibrateArguments) -> Result<ExitCode, Failure> {
     let wrong = |error: fractum_calibrate::CalibrateError| Failure::input(error.to_string());
@@ -63,7 +73,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<ExitCode, Failure> {
         atomic::write(&folder.join("database.csv"), laws::write_database(&points).as_bytes())?;
         for law in &laws {
             let ([nu, nu_max], [e, e_max]) = (law.poisson_residual, law.young_residual);
-            println!(
+            say!(
                 "{:8} {} tests: nu rms {nu:.5} max {nu_max:.5}, E rms {:.2} % max {:.2} %",
                 law.convention,
                 law.tests,
@@ -71,12 +81,18 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<ExitCode, Failure> {
                 100.0 * e_max
             );
         }
-        println!("{} tests in {:.0} s; laws in {}", points.len(), started.elapsed().as_secs_f64(), folder.display());
+        say!("{} tests in {:.0} s; laws in {}", points.len(), started.elapsed().as_secs_f64(), folder.display());
         return Ok(ExitCode::Done);
     }
     let mut request =
         Request::new(pressure(arguments.young.as_deref().unwrap_or_default())?, arguments.poisson.unwrap_or(f64::NAN));
-    request.tensile_strength = arguments.strength.as_deref().map(pressure).transpose()?;
+    let criterion = match arguments.criterion {
+        CriterionArgument::Principal => StrengthCriterion::Principal,
+        CriterionArgument::Beam => StrengthCriterion::Beam,
+        CriterionArgument::Hydrostatic => StrengthCriterion::Hydrostatic,
+    };
+    let strength = arguments.strength.as_deref().map(pressure).transpose()?;
+    request.tensile_strength = strength.map(|strength| (strength, criterion));
     request.coordination = arguments.coordination;
     request.convention = arguments.convention.into();
     request.particles = arguments.particles;
@@ -98,25 +114,29 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<ExitCode, Failure> {
         serde_json::to_string_pretty(&json).unwrap_or_default().as_bytes(),
     )?;
     atomic::write(&folder.join("material.toml"), material(&result, density).as_bytes())?;
-    println!("material.toml and calibration.json in {}", folder.display());
+    say!("material.toml and calibration.json in {}", folder.display());
     Ok(ExitCode::Done)
 }
 
 fn show(c: &Calibration, seconds: f64) {
     let (e, nu) = (c.request.young_modulus, c.request.poisson_ratio);
-    println!(
+    say!(
         "coordination         {} ({}), reachable Poisson's ratio {:.3} to {:.3}",
-        c.coordination, c.request.convention, c.poisson_range[0], c.poisson_range[1]
+        c.coordination,
+        c.request.convention,
+        c.poisson_range[0],
+        c.poisson_range[1]
     );
-    println!(
+    say!(
         "beams                radius {:.5} mean radii, E_m {:.4e} Pa, Poisson's ratio 0.3",
-        c.micro.radius_ratio, c.micro.young_modulus
+        c.micro.radius_ratio,
+        c.micro.young_modulus
     );
     if let Some(law) = c.law {
-        println!("stored law says      radius {:.5}, E_m {:.4e} Pa", law.radius_ratio, law.young_modulus);
+        say!("stored law says      radius {:.5}, E_m {:.4e} Pa", law.radius_ratio, law.young_modulus);
     }
     if let Some([r, y]) = c.scatter {
-        println!(
+        say!(
             "scatter              {:.2} % in radius, {:.2} % in E_m over {} packings",
             100.0 * r,
             100.0 * y,
@@ -125,13 +145,13 @@ fn show(c: &Calibration, seconds: f64) {
     }
     let percent = |found: f64, asked: f64| 100.0 * (found / asked - 1.0);
     for (axis, (young, poisson)) in ["x", "y", "z"].iter().zip(c.own_check) {
-        println!(
+        say!(
             "tension along {axis}      E {young:.4e} Pa ({:+.2} %), nu {poisson:.4} ({:+.2} %)",
             percent(young, e),
             percent(poisson, nu)
         );
     }
-    println!(
+    say!(
         "another packing      E {:.4e} Pa ({:+.2} %), nu {:.4} ({:+.2} %), seed {}, mean over the axes",
         c.check_young_modulus,
         percent(c.check_young_modulus, e),
@@ -139,10 +159,19 @@ fn show(c: &Calibration, seconds: f64) {
         percent(c.check_poisson_ratio, nu),
         c.check_seed
     );
-    if let Some(strength) = c.beam_strength {
-        println!("strength criterion   {strength:.4e} Pa (virial, Nguyen et al. 2019, eq. 22)");
+    if let Some(s) = &c.strength {
+        let [[low, high], [first_low, first_high]] = s.range;
+        say!(
+            "{:?} criterion  {:.4e} Pa for the load peak ({low:.4e} to {high:.4e} on the two packings)",
+            s.criterion,
+            s.peak
+        );
+        say!("                     {:.4e} Pa for the first break ({first_low:.4e} to {first_high:.4e})", s.first_break);
+        if let Some(law) = s.law {
+            say!("                     {law:.4e} Pa by eq. (22) of Nguyen et al. (2019)");
+        }
     }
-    println!("{seconds:.1} s");
+    say!("{seconds:.1} s");
 }
 
 /// The material as a part of a case file.
@@ -160,8 +189,9 @@ fn material(c: &Calibration, density: Option<f64>) -> String {
         "[materials.calibrated.bonds]\ncoordination = {}\nconvention = \"{}\"\nradius_ratio = {}\nyoung_modulus = \"{:e} Pa\"\n",
         c.coordination, c.request.convention, c.micro.radius_ratio, c.micro.young_modulus
     );
-    if let Some(strength) = c.beam_strength {
-        text += &format!("strength = \"{strength:e} Pa\"\n");
+    if let Some(strength) = &c.strength {
+        let what = format!("{:?}", strength.criterion).to_lowercase();
+        text += &format!("# criterion {what}, for the load peak in tension\nstrength = \"{:e} Pa\"\n", strength.peak);
     }
     text
 }

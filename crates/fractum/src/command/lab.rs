@@ -12,6 +12,7 @@ use fractum_pack::{Domain, PackSpec, Packing, pack};
 
 use super::convergence::{Diagram, Series, svg};
 use super::lab_break::{self, BreakArguments};
+use super::lab_strength::{self, StrengthArguments};
 use super::shape::{Convention, ShapeArguments, pressure};
 
 /// Arguments of `fractum lab`.
@@ -21,6 +22,8 @@ pub(crate) enum LabCommand {
     Test(Box<TestArguments>),
     /// Load a sample until it is in two.
     Break(Box<BreakArguments>),
+    /// Published strengths on our own packings.
+    Strength(StrengthArguments),
     /// Tables 5 to 8 of Nguyen et al. (2019): the published micro-parameters on our own packings.
     Tables {
         /// Packings per row.
@@ -102,6 +105,7 @@ pub(crate) fn run(command: &LabCommand) -> Result<ExitCode, Failure> {
     match command {
         LabCommand::Test(arguments) => test(arguments)?,
         LabCommand::Break(arguments) => lab_break::run(arguments)?,
+        LabCommand::Strength(arguments) => lab_strength::run(arguments)?,
         LabCommand::Tables { seeds } => tables(*seeds).map_err(wrong)?,
         LabCommand::Convergence { seeds, largest, output } => convergence(*seeds, *largest, output)?,
     }
@@ -194,7 +198,7 @@ fn tables(seeds: u64) -> Result<(), CalibrateError> {
 }
 
 /// Mean, and standard deviation over the mean.
-fn spread(values: &[f64]) -> (f64, f64) {
+pub(super) fn spread(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let square: f64 = values.iter().map(|v| (v / mean - 1.0).powi(2)).sum();

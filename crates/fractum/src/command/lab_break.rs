@@ -10,7 +10,8 @@ use fractum_calibrate::{Micro, Sample, lab, published};
 use fractum_dem::criterion::{
     BeamRankine, Criterion, DruckerPrager, EndMoments, Hydrostatic, Level, Mode, MohrCoulomb, Principal,
 };
-use fractum_dem::{Batch, Dof6};
+use fractum_dem::{Batch, CrackFaces, Dof6, LoadPoint};
+use fractum_io::case::{Dimension, parse_quantity};
 use fractum_io::picture::{ColourMap, Paint, Picture, Spheres, View};
 use fractum_io::plot::{Axis, Chart, Mark, Series, Style};
 use fractum_io::vtk::{Field, PolyCells, PolyData};
@@ -70,6 +71,19 @@ pub(crate) struct BreakArguments {
     /// Unbalanced forces over the applied ones at which an equilibrium is accepted.
     #[arg(long, default_value_t = 1e-3)]
     residual: f64,
+    /// Break the sample in motion too, by explicit steps with the supports at constant speed: the time in which the load
+    /// would rise from zero to the first break, in times that a wave takes along the sample; 80 is slow.
+    #[arg(long)]
+    transits: Option<f64>,
+    /// Density of the continuum, for motion.
+    #[arg(long, default_value = "2500 kg/m^3")]
+    density: String,
+    /// Friction of crack faces, in motion.
+    #[arg(long, default_value_t = 0.5)]
+    friction: f64,
+    /// Time step over the largest stable one, in motion. The balance closes with its square.
+    #[arg(long, default_value_t = 0.2)]
+    safety: f64,
     /// Folder for the results.
     #[arg(short, long, default_value = "results/lab/break")]
     output: PathBuf,
@@ -188,7 +202,24 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
     let seconds = started.elapsed().as_secs_f64();
     let folder = &arguments.output;
     atomic::create_folder(folder)?;
-    let summary = summary(&sample, test, &criterion, &broken, seconds);
+    let mut summary = summary(&sample, test, &criterion, &broken, seconds);
+    if let Some(transits) = arguments.transits {
+        let density = parse_quantity(&arguments.density, Dimension::DENSITY).map_err(Failure::input)?;
+        let faces = CrackFaces { friction: arguments.friction, damping_ratio: 0.0 };
+        let motion = lab::MotionOptions { density, transits, start: 0.9, faces, safety: arguments.safety };
+        let started = Instant::now();
+        let moved = lab::break_in_motion(&sample, test, &options, &motion).map_err(wrong)?;
+        say!(
+            "in motion       first break {:.4e} Pa, load peak {:.4e} Pa, balance to {:.1e}; {} steps, {:.1} s",
+            moved.first_break.unwrap_or(f64::NAN),
+            moved.strength,
+            moved.energy.residual_max_relative,
+            moved.steps,
+            started.elapsed().as_secs_f64()
+        );
+        summary["motion"] = serde_json::to_value(&moved).unwrap_or_default();
+        atomic::write(&folder.join("motion.csv"), load_curve(&moved.curve, &broken).as_bytes())?;
+    }
     atomic::write(&folder.join("summary.json"), serde_json::to_string_pretty(&summary).unwrap_or_default().as_bytes())?;
     write(folder, &sample, &broken)?;
     show(&sample, test, &criterion, &broken);
@@ -285,18 +316,23 @@ fn summary(
     })
 }
 
-fn write(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Failure> {
-    let outcome = &broken.outcome;
-    let stress = broken.stress_per_load;
+/// A load curve as CSV.
+fn load_curve(curve: &[LoadPoint], broken: &lab::Broken) -> String {
     let mut text =
         String::from("displacement,load,nominal stress [Pa],nominal strain,elastic [J],work [J],broken bonds\n");
-    for p in &outcome.curve {
+    for p in curve {
         let strain = p.displacement * broken.strain_per_displacement;
         let (u, f, e, w, n) = (p.displacement, p.load, p.elastic, p.work, p.broken);
         // Writing into a string has no way to fail.
-        let _ = writeln!(text, "{u:e},{f:e},{:e},{strain:e},{e:e},{w:e},{n}", f * stress);
+        let _ = writeln!(text, "{u:e},{f:e},{:e},{strain:e},{e:e},{w:e},{n}", f * broken.stress_per_load);
     }
-    atomic::write(&folder.join("load.csv"), text.as_bytes())?;
+    text
+}
+
+fn write(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Failure> {
+    let outcome = &broken.outcome;
+    let stress = broken.stress_per_load;
+    atomic::write(&folder.join("load.csv"), load_curve(&outcome.curve, broken).as_bytes())?;
     let mut text = String::from(
         "bond,first,second,event,load factor,nominal stress [Pa],x [m],y [m],z [m],nx,ny,nz,area [m^2],mode,energy [J]\n",
     );

@@ -4,6 +4,7 @@ mod calibrate;
 mod convergence;
 mod lab;
 mod lab_break;
+mod lab_strength;
 mod mesh;
 mod new;
 mod pack;

@@ -2,14 +2,17 @@
 
 mod brazilian;
 mod geometry;
+mod motion;
 mod setup;
 
 pub use brazilian::{Diameter, diameter, hondros};
 pub use geometry::{Geometry, geometry};
+pub use motion::{BrokenInMotion, MotionEnergy, MotionOptions, break_in_motion};
 
 use fractum_dem::{Batch, Breaking, Criterion, Outcome, Point, Tolerance, quasi_static};
 use serde::Serialize;
 
+use super::STRAIN;
 use crate::{CalibrateError, Sample};
 use setup::Setup;
 
@@ -149,6 +152,21 @@ mod tests {
         assert!((40e6..62e6).contains(&result.strength), "{}", result.strength);
         let found = geometry(&sample, Failure::Brazilian, &result.outcome.cracks).unwrap();
         assert!(found.early < 0.4 && found.angle.unwrap() < 20.0, "{found:?}");
+    }
+
+    #[test]
+    fn a_cube_in_motion_breaks_at_the_load_of_the_cube_at_rest_and_keeps_its_energy() {
+        let (sample, rest) = broken(Domain::cuboid(2e-3, 2e-3, 2e-3), 500, Failure::Tension, None);
+        let level = Level::Neighbours;
+        let criterion =
+            Criterion::Principal(Principal { tensile_strength: 60.06e6, compressive_strength: None, level });
+        let options = FailureOptions::new(Failure::Tension, criterion);
+        let faces = fractum_dem::CrackFaces::default();
+        let motion = MotionOptions { density: 2500.0, transits: 40.0, start: 0.9, faces, safety: 0.2 };
+        let moved = break_in_motion(&sample, Failure::Tension, &options, &motion).unwrap();
+        assert!((moved.first_break.unwrap() / rest.first_break.unwrap() - 1.0).abs() < 0.01, "{moved:?}");
+        assert!((moved.strength / rest.strength - 1.0).abs() < 0.02, "{} {}", moved.strength, rest.strength);
+        assert!(moved.separated && moved.energy.residual_max_relative < 1e-3, "{:?}", moved.energy);
     }
 
     #[test]

@@ -1,0 +1,105 @@
+//! The strength of a criterion that gives a body its tensile strength.
+
+use fractum_dem::Criterion;
+use fractum_dem::criterion::{BeamRankine, EndMoments, Hydrostatic, Level, Principal};
+use serde::Serialize;
+
+use crate::{CalibrateError, Sample, lab, published};
+
+/// Criteria whose one strength can be calibrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StrengthCriterion {
+    /// Largest principal virial stress of a particle and its neighbours.
+    Principal,
+    /// Largest principal stress in the beams.
+    Beam,
+    /// Mean virial stress of a particle.
+    Hydrostatic,
+}
+
+impl StrengthCriterion {
+    /// The criterion with a strength [Pa].
+    pub fn with(self, strength: f64) -> Criterion {
+        match self {
+            StrengthCriterion::Principal => Criterion::Principal(Principal {
+                tensile_strength: strength,
+                compressive_strength: None,
+                level: Level::Neighbours,
+            }),
+            StrengthCriterion::Beam => Criterion::BeamRankine(BeamRankine { strength, moments: EndMoments::default() }),
+            StrengthCriterion::Hydrostatic => Criterion::Hydrostatic(Hydrostatic { strength }),
+        }
+    }
+}
+
+/// Strengths of a criterion [Pa], by what shall happen at the asked tensile strength.
+#[derive(Clone, Debug, Serialize)]
+pub struct Strength {
+    /// The criterion.
+    pub criterion: StrengthCriterion,
+    /// The load peak: mean over the packings. A tension test shows this strength.
+    pub peak: f64,
+    /// The first break: mean over the packings.
+    pub first_break: f64,
+    /// Smallest and largest of both over the packings.
+    pub range: [[f64; 2]; 2],
+    /// By eq. (22) of Nguyen et al. (2019), for the principal criterion.
+    pub law: Option<f64>,
+}
+
+/// Finds the strength on samples whose beams are set, by tension along x.
+///
+/// Every criterion is proportional to the load, so that one test with any strength tells all: with the strength s a sample
+/// whose load peaks at σ needs s f/σ to peak at f.
+///
+/// # Errors
+/// A tensile strength that is none; another shape than a box; a solve that does not converge.
+pub fn calibrate(samples: &[&Sample], asked: f64, criterion: StrengthCriterion) -> Result<Strength, CalibrateError> {
+    if !(asked.is_finite() && asked > 0.0) {
+        let expected = "a positive number of pascals";
+        return Err(CalibrateError::Material { what: "tensile strength", value: asked, expected });
+    }
+    let test = lab::Failure::Tension;
+    // Strength is asked, not the whole fall of the load.
+    let options = lab::FailureOptions { stop: 0.9, ..lab::FailureOptions::new(test, criterion.with(asked)) };
+    let (mut first, mut peak) = (Vec::new(), Vec::new());
+    for sample in samples {
+        let broken = lab::break_sample(sample, test, &options)?;
+        first.push(asked * asked / broken.first_break.unwrap_or(f64::NAN));
+        peak.push(asked * asked / broken.strength);
+    }
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let range = |v: &[f64]| v.iter().fold([f64::INFINITY, 0.0f64], |[l, h], &x| [l.min(x), h.max(x)]);
+    let law = samples.first().filter(|_| criterion == StrengthCriterion::Principal).map(|sample| {
+        // The published law counts bonds over all particles.
+        let ratio = sample.lattice.section().radius / sample.mean_radius;
+        asked / published::strength_ratio(ratio, sample.network.coordination_all)
+    });
+    Ok(Strength { criterion, peak: mean(&peak), first_break: mean(&first), range: [range(&peak), range(&first)], law })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Micro;
+    use fractum_pack::{Convention, Domain, PackSpec, pack};
+
+    #[test]
+    fn a_sample_has_the_strength_it_was_calibrated_to() {
+        let packing = pack(&PackSpec::new(Domain::cuboid(1e-3, 1e-3, 1e-3), 500, 1)).unwrap();
+        let mut sample = Sample::new(packing, 9.0, Convention::Interior).unwrap();
+        sample.set_micro(Micro { radius_ratio: 0.4, young_modulus: 600e9 }).unwrap();
+        for criterion in [StrengthCriterion::Principal, StrengthCriterion::Beam, StrengthCriterion::Hydrostatic] {
+            let found = calibrate(&[&sample], 50e6, criterion).unwrap();
+            assert!(found.peak <= found.first_break);
+            let broken = |strength| {
+                let options = lab::FailureOptions::new(lab::Failure::Tension, criterion.with(strength));
+                lab::break_sample(&sample, lab::Failure::Tension, &options).unwrap()
+            };
+            assert!((broken(found.peak).strength / 50e6 - 1.0).abs() < 1e-3, "{criterion:?}");
+            assert!((broken(found.first_break).first_break.unwrap() / 50e6 - 1.0).abs() < 1e-6);
+        }
+        assert!(matches!(calibrate(&[&sample], 0.0, StrengthCriterion::Beam), Err(CalibrateError::Material { .. })));
+    }
+}

@@ -1,0 +1,388 @@
+//! Bonds that break in motion, and the contact of what they held.
+
+use fractum_contact::law::{ContactMemory, Linear, PairMotion};
+use fractum_math::{Sym3, Vec3};
+
+use crate::breaking::{Crack, facet_area};
+use crate::criterion::{BondLoad, Criterion};
+use crate::graph::BondGraph;
+use crate::watch::{Bonded, Break, Site, Watch};
+use crate::{BeamNetwork, BeamSection, DemError, Particles};
+
+/// The faces of a crack against one another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrackFaces {
+    /// Coulomb's coefficient μ ≥ 0.
+    pub friction: f64,
+    /// Damping of the closing motion over the critical one, ξ ≥ 0.
+    pub damping_ratio: f64,
+}
+
+impl Default for CrackFaces {
+    fn default() -> Self {
+        CrackFaces { friction: 0.5, damping_ratio: 0.0 }
+    }
+}
+
+/// Energies of crack faces in one step [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FaceWork {
+    /// In the springs of faces that touch.
+    pub stored: f64,
+    /// Taken by friction in the step.
+    pub friction: f64,
+    /// Taken by damping in the step.
+    pub damping: f64,
+}
+
+/// A criterion in the company of a moving network: breaks bonds, keeps the list of them, and lets their particles touch.
+///
+/// Two particles that were bonded close again at the length of their bond, or, where it was shorter when it broke, at
+/// that length, which grows back as they part: faces give no force when they come to be and bring no energy. A closed
+/// face is as stiff as the bond was, along and across, so that the stable step of the unbroken body holds.
+#[derive(Clone, Debug)]
+pub struct Fracture {
+    graph: BondGraph,
+    watch: Watch,
+    reference: Vec<Vec3>,
+    area: f64,
+    faces: CrackFaces,
+    pairs: Vec<Face>,
+    cracks: Vec<Crack>,
+    released: f64,
+    sites: Vec<Site>,
+    breaks: Vec<Break>,
+}
+
+/// Two particles whose bond is broken.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    pair: [u32; 2],
+    /// Length of the bond without load [m].
+    rest: f64,
+    /// Distance at which they touch [m].
+    closing: f64,
+    law: Linear,
+    memory: ContactMemory,
+}
+
+/// A network and its particles as a criterion sees them.
+struct Moving<'a> {
+    bonds: &'a BeamNetwork,
+    particles: &'a Particles,
+}
+
+impl Bonded for Moving<'_> {
+    fn dyads(&self, out: &mut [Sym3]) {
+        self.bonds.dyads(out);
+    }
+
+    fn load(&self, bond: u32) -> BondLoad {
+        let forces = self.bonds.forces_of(bond as usize, self.particles);
+        let n = self.axis(bond);
+        let [first, second] = forces.moment;
+        let across = |m: Vec3| m - n * m.dot(&n);
+        BondLoad { normal: -forces.force.dot(&n), bending: [across(first), across(second)], torsion: first.dot(&n) }
+    }
+
+    fn axis(&self, bond: u32) -> Vec3 {
+        let [i, j] = self.bonds.pairs()[bond as usize].map(|i| i as usize);
+        (self.particles.position[j] - self.particles.position[i]).normalize()
+    }
+
+    fn section(&self) -> BeamSection {
+        self.bonds.section()
+    }
+}
+
+impl Fracture {
+    /// Watches a network that has not moved yet.
+    ///
+    /// - `fraction`: volume fraction of the interior of the packing
+    /// - `volume`: of the body [m³]
+    ///
+    /// # Errors
+    /// An impossible criterion.
+    pub fn new(
+        bonds: &BeamNetwork,
+        particles: &Particles,
+        criterion: Criterion,
+        faces: CrackFaces,
+        fraction: f64,
+        volume: f64,
+    ) -> Result<Self, DemError> {
+        let graph = BondGraph::new(particles.len(), bonds.pairs());
+        let watch = Watch::new(criterion, &graph, &particles.radius, fraction)?;
+        let area = facet_area(volume, &particles.position, bonds.pairs());
+        Ok(Fracture {
+            graph,
+            watch,
+            reference: particles.position.clone(),
+            area,
+            faces,
+            pairs: Vec::new(),
+            cracks: Vec::new(),
+            released: 0.0,
+            sites: Vec::new(),
+            breaks: Vec::new(),
+        })
+    }
+
+    /// The bonds that hold.
+    pub fn graph(&self) -> &BondGraph {
+        &self.graph
+    }
+
+    /// What broke so far, in order.
+    pub fn cracks(&self) -> &[Crack] {
+        &self.cracks
+    }
+
+    /// Elastic energy that bonds held when they broke [J].
+    pub fn released(&self) -> f64 {
+        self.released
+    }
+
+    /// The site that is nearest to failure; none where nothing bears anything.
+    ///
+    /// The forces must be those that [`BeamNetwork::add_forces_and_dyads`] found at these positions.
+    pub fn closest(&mut self, bonds: &BeamNetwork, particles: &Particles) -> Option<Site> {
+        self.watch.look(&Moving { bonds, particles }, &self.graph, f64::INFINITY);
+        self.watch.worst()
+    }
+
+    /// Breaks what fails: for every overloaded site what it releases. Returns the number of bonds.
+    ///
+    /// The forces must be those that [`BeamNetwork::add_forces_and_dyads`] found at these positions. They stay as they
+    /// are: a broken bond acts to the end of the step in which it failed, which costs the balance half a step of its
+    /// power; taken away at once it would cost the square of its force, whatever the motion.
+    ///
+    /// - `time` [s] and `load` for the list of cracks
+    pub fn break_overloaded(
+        &mut self,
+        bonds: &mut BeamNetwork,
+        particles: &Particles,
+        time: f64,
+        event: usize,
+        load: f64,
+    ) -> usize {
+        let Fracture { graph, watch, sites, breaks, .. } = self;
+        if !watch.may_fail(&Moving { bonds, particles }, 1.0) {
+            return 0;
+        }
+        watch.look(&Moving { bonds, particles }, graph, 1.0);
+        if watch.over().is_empty() {
+            return 0;
+        }
+        sites.clear();
+        sites.extend_from_slice(watch.over());
+        breaks.clear();
+        for site in sites.iter() {
+            watch.breaks(site, &Moving { bonds, particles }, graph, breaks);
+        }
+        let before = self.cracks.len();
+        for k in 0..self.breaks.len() {
+            let Break { bond, mode } = self.breaks[k];
+            if !self.graph.break_bond(bond) {
+                continue;
+            }
+            let energy = bonds.energy_of(bond as usize, particles).total();
+            let pair = bonds.pairs()[bond as usize];
+            let [i, j] = pair.map(|i| i as usize);
+            self.pairs.push(self.face(bonds, particles, bond));
+            bonds.break_bond(bond as usize);
+            self.watch.bond_broken(bond, &self.graph);
+            self.released += energy;
+            let (a, b) = (self.reference[i], self.reference[j]);
+            let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
+            self.cracks.push(Crack { bond, pair, event, time, load, position, normal, area: self.area, mode, energy });
+        }
+        self.cracks.len() - before
+    }
+
+    fn face(&self, bonds: &BeamNetwork, particles: &Particles, bond: u32) -> Face {
+        let pair = bonds.pairs()[bond as usize];
+        let [i, j] = pair.map(|i| i as usize);
+        let rest = bonds.length(bond as usize);
+        let section = bonds.section();
+        let normal_stiffness = section.axial() / rest;
+        let reduced = particles.mass[i] * particles.mass[j] / (particles.mass[i] + particles.mass[j]);
+        let law = Linear {
+            normal_stiffness,
+            tangential_stiffness: 12.0 * section.bending() / rest.powi(3),
+            normal_damping: 2.0 * self.faces.damping_ratio * (reduced * normal_stiffness).sqrt(),
+            friction: self.faces.friction,
+            rolling_stiffness: 0.0,
+            rolling_arm: 0.0,
+        };
+        let distance = (particles.position[j] - particles.position[i]).norm();
+        Face { pair, rest, closing: rest.min(distance), law, memory: ContactMemory::default() }
+    }
+
+    /// Adds the forces of crack faces that touch; one call per step.
+    ///
+    /// - `dt` [s]: the step that led here
+    pub fn add_contact_forces(&mut self, particles: &mut Particles, dt: f64) -> FaceWork {
+        let mut work = FaceWork::default();
+        let Particles { position, velocity, spin, force, moment, .. } = particles;
+        for face in &mut self.pairs {
+            let [i, j] = face.pair.map(|i| i as usize);
+            let apart = position[j] - position[i];
+            let distance = apart.norm();
+            let overlap = face.closing - distance;
+            face.closing = face.closing.max(distance.min(face.rest));
+            // Far apart and long so: nothing to forget either.
+            if overlap < -face.rest {
+                continue;
+            }
+            let normal = apart / distance;
+            let arm = 0.5 * distance;
+            let turning = (spin[i] + spin[j]).cross(&normal) * arm;
+            let motion = PairMotion {
+                normal,
+                overlap,
+                velocity: velocity[j] - velocity[i] - turning,
+                spin: spin[j] - spin[i],
+                dt,
+            };
+            // A face that opens loses what its tangential spring held: the law with nothing to press it.
+            let slip = face.memory.slip;
+            if overlap <= 0.0 && slip != Vec3::zeros() {
+                let across = motion.velocity - normal * motion.velocity.dot(&normal);
+                work.friction += 0.5 * face.law.tangential_stiffness * slip.dot(&(slip + across * dt));
+            }
+            let found = face.law.force(&motion, &mut face.memory);
+            let twist = normal.cross(&found.on_second) * -arm;
+            force[i] -= found.on_second;
+            force[j] += found.on_second;
+            moment[i] += twist;
+            moment[j] += twist;
+            work.stored += found.stored;
+            work.friction += found.friction;
+            work.damping += found.damping;
+        }
+        work
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Integrator;
+    use crate::criterion::{BeamRankine, Level, Principal};
+
+    fn pair(length: f64) -> (Particles, BeamNetwork) {
+        let position = vec![Vec3::zeros(), Vec3::x()];
+        let bonds = BeamNetwork::new(&position, &[[0, 1]], BeamSection::new(1e4, 0.3).unwrap()).unwrap();
+        let mut particles = Particles::at_rest(position, vec![0.45; 2], 2.0).unwrap();
+        particles.position[1] *= length;
+        (particles, bonds)
+    }
+
+    fn beam(strength: f64) -> Criterion {
+        Criterion::BeamRankine(BeamRankine { strength, moments: Default::default() })
+    }
+
+    /// Total energy of a pair that is stretched, breaks at once or not, and moves freely; largest drift, and the
+    /// largest force after the break on the first step.
+    fn swing(length: f64, closing_speed: f64, strength: f64) -> (f64, f64, Fracture) {
+        let (mut particles, mut bonds) = pair(1.0);
+        let faces = CrackFaces { friction: 0.5, damping_ratio: 0.0 };
+        let mut fracture = Fracture::new(&bonds, &particles, beam(strength), faces, 0.6, 1.0).unwrap();
+        particles.position[1] = Vec3::x() * length;
+        particles.velocity[1].x = -closing_speed;
+        particles.spin[0] = Vec3::new(0.0, 0.0, 0.01);
+        // Fine enough that the kink of the force where faces meet does not show.
+        let dt = 0.02 * bonds.stable_step(&particles, 0.7);
+        bonds.add_forces_and_dyads(&mut particles);
+        fracture.break_overloaded(&mut bonds, &particles, 0.0, 0, 0.0);
+        // What is left of the force once the bond is gone.
+        particles.clear_forces();
+        bonds.add_forces_and_dyads(&mut particles);
+        fracture.add_contact_forces(&mut particles, 0.0);
+        let jump = if fracture.cracks().is_empty() { 0.0 } else { particles.force[1].norm() };
+        let energy = |p: &Particles, b: &BeamNetwork| p.kinetic_energy() + b.energy(p).total();
+        let start = energy(&particles, &bonds) + fracture.released();
+        let (mut drift, mut lost) = (0.0f64, 0.0);
+        for step in 1..20_000 {
+            particles.kick_and_drift(dt, Integrator::VelocityVerlet);
+            particles.clear_forces();
+            bonds.add_forces_and_dyads(&mut particles);
+            let work = fracture.add_contact_forces(&mut particles, dt);
+            particles.kick(dt, Integrator::VelocityVerlet);
+            fracture.break_overloaded(&mut bonds, &particles, dt * f64::from(step), 0, 0.0);
+            lost += work.friction + work.damping;
+            let now = energy(&particles, &bonds) + fracture.released() + work.stored + lost;
+            drift = drift.max((now - start).abs() / start);
+        }
+        (drift, jump, fracture)
+    }
+
+    #[test]
+    fn a_bond_that_breaks_leaves_no_force_behind_and_its_energy_is_booked() {
+        // Stretched by 1 %: stress 1e4 * 0.01 = 100.
+        let (drift, jump, fracture) = swing(1.01, 0.0, 50.0);
+        assert_eq!((fracture.cracks().len(), jump), (1, 0.0));
+        let expected = 0.5 * 1e4 * std::f64::consts::PI * 0.09 * 1e-4;
+        assert!((fracture.released() / expected - 1.0).abs() < 1e-9);
+        assert!(drift < 1e-9, "{drift}");
+    }
+
+    #[test]
+    fn crack_faces_that_close_again_press_and_give_back_no_more_than_they_took() {
+        for (length, speed) in [(1.01, 0.2), (1.001, 0.5), (0.995, 0.3)] {
+            // The last is broken while it is pressed together and sheared: by its rotation, with next to no strength.
+            let (drift, jump, fracture) = swing(length, speed, 1e-6);
+            assert_eq!((fracture.cracks().len(), jump), (1, 0.0));
+            assert!(drift < 2e-4, "{length}: {drift}");
+        }
+    }
+
+    #[test]
+    fn moving_and_resting_bodies_bear_the_same() {
+        // A stretched, bent and twisted pair seen by the network and by theory of small rotations.
+        let (mut particles, bonds) = pair(1.0);
+        particles.position[1] = Vec3::new(1.0 + 1e-6, 2e-6, 0.0);
+        particles.orientation[1] = fractum_math::Rotation::from_scaled_axis(Vec3::new(3e-6, 0.0, 5e-6));
+        let load = Moving { bonds: &bonds, particles: &particles }.load(0);
+        let section = bonds.section();
+        let chord = 2e-6;
+        let (first, second) = (-chord, 5e-6 - chord);
+        let ei = section.bending();
+        assert!((load.normal / (section.axial() * 1e-6) - 1.0).abs() < 1e-5);
+        assert!((load.bending[0].z.abs() / (ei * (4.0 * first + 2.0 * second)).abs() - 1.0).abs() < 1e-4);
+        assert!((load.bending[1].z.abs() / (ei * (2.0 * first + 4.0 * second)).abs() - 1.0).abs() < 1e-4);
+        assert!(
+            (load.bending[0].z * load.bending[1].z).signum()
+                == ((4.0 * first + 2.0 * second) * (2.0 * first + 4.0 * second)).signum()
+        );
+        assert!((load.torsion.abs() / (section.torsion() * 3e-6) - 1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn no_neighbourhood_exceeds_the_bound_of_its_particles() {
+        let position: Vec<Vec3> =
+            (0..60).map(|i| Vec3::new((i % 5) as f64, (i / 5 % 4) as f64, (i / 20) as f64)).collect();
+        let apart = |i: usize, j: usize| (position[i] - position[j]).norm();
+        let pairs: Vec<[u32; 2]> = (0..60)
+            .flat_map(|i| (i + 1..60).map(move |j| (i, j)))
+            .filter(|&(i, j)| apart(i, j) < 1.5)
+            .map(|(i, j)| [i as u32, j as u32])
+            .collect();
+        let mut bonds = BeamNetwork::new(&position, &pairs, BeamSection::new(1e4, 0.3).unwrap()).unwrap();
+        let mut particles = Particles::at_rest(position.clone(), vec![0.5; 60], 1.0).unwrap();
+        particles.position.iter_mut().enumerate().for_each(|(i, x)| x.x *= 1.0 + 1e-3 * (i as f64).sin());
+        for level in [Level::Own, Level::Neighbours, Level::Second] {
+            let principal = Principal { tensile_strength: 1.0, compressive_strength: Some(3.0), level };
+            let criterion = Criterion::Principal(principal);
+            let faces = CrackFaces::default();
+            let mut fracture = Fracture::new(&bonds, &particles, criterion, faces, 0.6, 60.0).unwrap();
+            particles.clear_forces();
+            bonds.add_forces_and_dyads(&mut particles);
+            let worst = fracture.closest(&bonds, &particles).unwrap().ratio;
+            let body = Moving { bonds: &bonds, particles: &particles };
+            assert!(fracture.watch.may_fail(&body, worst));
+            assert!(!fracture.watch.may_fail(&body, 100.0 * worst));
+        }
+    }
+}
