@@ -6,6 +6,7 @@ use fractum_math::{Sym3, Vec3};
 use crate::breaking::{Crack, facet_area};
 use crate::criterion::{BondLoad, Criterion};
 use crate::graph::BondGraph;
+use crate::particles::free;
 use crate::watch::{Bonded, Break, Site, Watch};
 use crate::{BeamNetwork, BeamSection, DemError, Particles};
 
@@ -33,6 +34,8 @@ pub struct FaceWork {
     pub friction: f64,
     /// Taken by damping in the step.
     pub damping: f64,
+    /// Taken or given by the finite step where faces meet or part within it; of second order in the step.
+    pub kinks: f64,
 }
 
 /// A criterion in the company of a moving network: breaks bonds, keeps the list of them, and lets their particles touch.
@@ -62,6 +65,8 @@ struct Face {
     rest: f64,
     /// Distance at which they touch [m].
     closing: f64,
+    /// Distance at the last step [m].
+    last: f64,
     law: Linear,
     memory: ContactMemory,
 }
@@ -154,14 +159,16 @@ impl Fracture {
     /// Breaks what fails: for every overloaded site what it releases. Returns the number of bonds.
     ///
     /// The forces must be those that [`BeamNetwork::add_forces_and_dyads`] found at these positions. They stay as they
-    /// are: a broken bond acts to the end of the step in which it failed, which costs the balance half a step of its
-    /// power; taken away at once it would cost the square of its force, whatever the motion.
+    /// are, and velocity Verlet uses them for the half step that follows: a bond acts to its end, and its energy is booked
+    /// as of then. Taken away at once, it would cost the balance the square of its force, whatever the motion.
     ///
+    /// - `dt` [s]: the step that follows; velocities are those of this moment
     /// - `time` [s] and `load` for the list of cracks
     pub fn break_overloaded(
         &mut self,
         bonds: &mut BeamNetwork,
         particles: &Particles,
+        dt: f64,
         time: f64,
         event: usize,
         load: f64,
@@ -186,7 +193,7 @@ impl Fracture {
             if !self.graph.break_bond(bond) {
                 continue;
             }
-            let energy = bonds.energy_of(bond as usize, particles).total();
+            let energy = bonds.energy_of(bond as usize, particles).total() - half_step_work(bonds, particles, bond, dt);
             let pair = bonds.pairs()[bond as usize];
             let [i, j] = pair.map(|i| i as usize);
             self.pairs.push(self.face(bonds, particles, bond));
@@ -216,7 +223,7 @@ impl Fracture {
             rolling_arm: 0.0,
         };
         let distance = (particles.position[j] - particles.position[i]).norm();
-        Face { pair, rest, closing: rest.min(distance), law, memory: ContactMemory::default() }
+        Face { pair, rest, closing: rest.min(distance), last: distance, law, memory: ContactMemory::default() }
     }
 
     /// Adds the forces of crack faces that touch; one call per step.
@@ -230,6 +237,13 @@ impl Fracture {
             let apart = position[j] - position[i];
             let distance = apart.norm();
             let overlap = face.closing - distance;
+            // The trapezoid of the forces over the step against the change of the spring: not the same across the kink.
+            let (before, after) = ((face.closing - face.last).max(0.0), overlap.max(0.0));
+            if (before > 0.0) != (after > 0.0) {
+                let given = 0.5 * (before + after) * (distance - face.last);
+                work.kinks += face.law.normal_stiffness * (0.5 * (before * before - after * after) - given);
+            }
+            face.last = distance;
             face.closing = face.closing.max(distance.min(face.rest));
             // Far apart and long so: nothing to forget either.
             if overlap < -face.rest {
@@ -265,6 +279,20 @@ impl Fracture {
     }
 }
 
+/// Work of a bond on its particles in the half step that follows [J].
+fn half_step_work(bonds: &BeamNetwork, particles: &Particles, bond: u32, dt: f64) -> f64 {
+    let [i, j] = bonds.pairs()[bond as usize].map(|i| i as usize);
+    let forces = bonds.forces_of(bond as usize, particles);
+    let ahead = |i: usize| {
+        let held = particles.held[i];
+        let half = 0.5 * dt;
+        let velocity = particles.velocity[i] + free(particles.force[i], held) * (half / particles.mass[i]);
+        (velocity, particles.spin[i] + free(particles.moment[i], held >> 3) * (half / particles.inertia[i]))
+    };
+    let ((vi, wi), (vj, wj)) = (ahead(i), ahead(j));
+    0.5 * dt * (forces.force.dot(&(vj - vi)) + forces.moment[0].dot(&wi) + forces.moment[1].dot(&wj))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -295,7 +323,7 @@ mod tests {
         // Fine enough that the kink of the force where faces meet does not show.
         let dt = 0.02 * bonds.stable_step(&particles, 0.7);
         bonds.add_forces_and_dyads(&mut particles);
-        fracture.break_overloaded(&mut bonds, &particles, 0.0, 0, 0.0);
+        fracture.break_overloaded(&mut bonds, &particles, 0.0, 0.0, 0, 0.0);
         // What is left of the force once the bond is gone.
         particles.clear_forces();
         bonds.add_forces_and_dyads(&mut particles);
@@ -310,7 +338,7 @@ mod tests {
             bonds.add_forces_and_dyads(&mut particles);
             let work = fracture.add_contact_forces(&mut particles, dt);
             particles.kick(dt, Integrator::VelocityVerlet);
-            fracture.break_overloaded(&mut bonds, &particles, dt * f64::from(step), 0, 0.0);
+            fracture.break_overloaded(&mut bonds, &particles, dt, dt * f64::from(step), 0, 0.0);
             lost += work.friction + work.damping;
             let now = energy(&particles, &bonds) + fracture.released() + work.stored + lost;
             drift = drift.max((now - start).abs() / start);

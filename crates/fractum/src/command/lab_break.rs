@@ -81,8 +81,8 @@ pub(crate) struct BreakArguments {
     /// Friction of crack faces, in motion.
     #[arg(long, default_value_t = 0.5)]
     friction: f64,
-    /// Time step over the largest stable one, in motion. The balance closes with its square.
-    #[arg(long, default_value_t = 0.2)]
+    /// Time step over the largest stable one, in motion.
+    #[arg(long, default_value_t = 0.5)]
     safety: f64,
     /// Folder for the results.
     #[arg(short, long, default_value = "results/lab/break")]

@@ -162,11 +162,11 @@ mod tests {
             Criterion::Principal(Principal { tensile_strength: 60.06e6, compressive_strength: None, level });
         let options = FailureOptions::new(Failure::Tension, criterion);
         let faces = fractum_dem::CrackFaces::default();
-        let motion = MotionOptions { density: 2500.0, transits: 40.0, start: 0.9, faces, safety: 0.2 };
+        let motion = MotionOptions { density: 2500.0, transits: 40.0, start: 0.9, faces, safety: 0.5 };
         let moved = break_in_motion(&sample, Failure::Tension, &options, &motion).unwrap();
         assert!((moved.first_break.unwrap() / rest.first_break.unwrap() - 1.0).abs() < 0.01, "{moved:?}");
         assert!((moved.strength / rest.strength - 1.0).abs() < 0.02, "{} {}", moved.strength, rest.strength);
-        assert!(moved.separated && moved.energy.residual_max_relative < 1e-3, "{:?}", moved.energy);
+        assert!(moved.broken > 100 && moved.energy.residual_max_relative < 1e-3, "{:?}", moved.energy);
     }
 
     #[test]

@@ -60,6 +60,8 @@ pub struct MotionEnergy {
     pub contact: f64,
     /// Taken by friction and damping of crack faces.
     pub friction: f64,
+    /// Taken by the finite step where crack faces meet or part within it.
+    pub kinks: f64,
     /// Largest difference of both sides over the external work.
     pub residual_max_relative: f64,
 }
@@ -135,6 +137,7 @@ pub fn break_in_motion(
         let after = push(&particles);
         energy.external += 0.5 * (before + after) * rate * dt;
         energy.friction += faces.friction + faces.damping;
+        energy.kinks += faces.kinks;
         energy.contact = faces.stored;
         particles.kick(dt, Integrator::VelocityVerlet);
         let kinetic = if (steps + 1) % EVERY == 0 { conserved_kinetic(&particles, dt) } else { 0.0 };
@@ -145,7 +148,7 @@ pub fn break_in_motion(
         if load > peak.load {
             peak = Point { displacement: factor * displacement, load, broken };
         }
-        if fracture.break_overloaded(&mut bonds, &particles, steps as f64 * dt, steps, load) > 0 {
+        if fracture.break_overloaded(&mut bonds, &particles, dt, steps as f64 * dt, steps, load) > 0 {
             first_break.get_or_insert(load * stress_per_load);
             last_broken = steps;
         }
@@ -153,7 +156,8 @@ pub fn break_in_motion(
             energy.kinetic = kinetic;
             energy.elastic = bonds.energy(&particles).total();
             energy.broken_bonds = fracture.released();
-            let sum = energy.kinetic + energy.elastic + energy.broken_bonds + energy.contact + energy.friction;
+            let sum =
+                energy.kinetic + energy.elastic + energy.broken_bonds + energy.contact + energy.friction + energy.kinks;
             let residual = ((energy.external - sum) / energy.external).abs();
             energy.residual_max_relative = energy.residual_max_relative.max(residual);
             let point = LoadPoint {
