@@ -7,7 +7,8 @@ use fractum_math::{Mat3, Ragged, Sym3, Vec3};
 
 use crate::body::{Formulation, Kinematics};
 use crate::damage::EdgeDamage;
-use crate::solid::{Block, BlockLaw, BodyModel, Solid};
+use crate::evaluate::{Block, BlockLaw};
+use crate::solid::{BodyModel, Solid};
 
 /// Damage of every cell, block by block; empty rows for blocks without damage.
 #[derive(Clone, Debug, Default, PartialEq)]

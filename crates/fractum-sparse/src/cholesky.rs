@@ -22,6 +22,12 @@ pub enum SparseError {
         /// Component of the pivot.
         component: usize,
     },
+    /// Conjugate gradients do not converge.
+    #[error("{iterations} iterations of conjugate gradients did not solve the system")]
+    Stalled {
+        /// Iterations done.
+        iterations: usize,
+    },
     /// The factor does not fit into the index type or the memory.
     #[error("the factor is too large: {entries} entries")]
     TooLarge {

@@ -13,6 +13,7 @@ mod error;
 mod gallery;
 mod input;
 pub mod plan;
+mod quasi_static;
 mod record;
 mod record_bonded;
 pub mod report;

@@ -105,6 +105,8 @@ pub struct StaticSolver {
     start_stress: Vec<Sym3>,
     slope_stress: Vec<Sym3>,
     q: Vec<f64>,
+    /// Reactions and loads of the last equilibrium; empty before the first.
+    outer: [Vec<Vec3>; 2],
     iterations: usize,
 }
 
@@ -145,6 +147,7 @@ impl StaticSolver {
             start_stress: Vec::new(),
             slope_stress: Vec::new(),
             q: Vec::new(),
+            outer: [Vec::new(), Vec::new()],
             iterations: 0,
         })
     }
@@ -188,7 +191,7 @@ impl StaticSolver {
                     } else if 2 * iterations > ITERATIONS[0] {
                         self.growth = (0.7 * self.growth).max(GROWTH[1]);
                     }
-                    return scene.accept_equilibrium(&self.start, time);
+                    return scene.accept_equilibrium(&self.start, time, &mut self.outer);
                 }
                 None => {
                     self.growth *= 0.5;
@@ -323,9 +326,13 @@ impl Scene {
     }
 
     /// Takes over displacements in equilibrium at `time`: history, reactions, ledger, removal.
-    fn accept_equilibrium(&mut self, displacement: &[Vec3], time: f64) -> Result<StepReport, StepError> {
+    fn accept_equilibrium(
+        &mut self,
+        displacement: &[Vec3],
+        time: f64,
+        outer: &mut [Vec<Vec3>; 2],
+    ) -> Result<StepReport, StepError> {
         let before = std::mem::replace(&mut self.solid.displacement, displacement.to_vec());
-        let (reaction_before, load_before) = std::mem::take(&mut self.outer_before);
         self.solid.update_internal_forces(0.0, true);
         let inner = self.solid.force.clone();
         self.loads.add_forces(&mut self.solid, time, 0.0);
@@ -335,17 +342,16 @@ impl Scene {
         for i in 0..displacement.len() {
             let moved = displacement[i] - before[i];
             let mean = |now: &[Vec3], then: &[Vec3]| (now[i] + then.get(i).copied().unwrap_or_default()) * 0.5;
-            external += moved.dot(&(mean(&load, &load_before) + mean(&reaction, &reaction_before)));
+            external += moved.dot(&(mean(&reaction, &outer[0]) + mean(&load, &outer[1])));
         }
+        *outer = [reaction, load];
         self.books.external += external;
         self.clock.dt_before = time - self.clock.time;
         self.clock.dt_after = self.clock.dt_before;
         self.clock.time = time;
         self.clock.step += 1;
         self.book_equilibrium()?;
-        let report = self.release_cut_elements();
-        self.outer_before = (reaction, load);
-        Ok(report)
+        Ok(self.release_cut_elements())
     }
 
     /// The error of a system without solution.
