@@ -17,6 +17,8 @@ pub struct CellDamage(Vec<Vec<f64>>);
 /// One cell: nodes, and a stiffness that is isotropic with the constants λ V (1 - d) and μ V (1 - d).
 #[derive(Clone, Copy, Debug)]
 pub struct SecantCell<'a> {
+    /// Number of its first pair of nodes, counting those of all cells, n² each.
+    pub first_pair: usize,
     /// Nodes.
     pub nodes: &'a [u32],
     /// Gradients of their shape functions over the cell [1/m], as many as nodes.
@@ -34,6 +36,8 @@ pub struct DamagePoint {
     pub body: usize,
     /// Largest equivalent stress so far [Pa].
     pub kappa: f64,
+    /// Equivalent stress over which softening takes place, E G_f/(l f_t) [Pa].
+    pub softening: f64,
     /// Whether it is broken.
     pub broken: bool,
     /// Damage so far.
@@ -75,10 +79,14 @@ impl Solid {
     /// Calls `work` for every cell that is still there.
     pub fn for_each_cell(&self, damage: &CellDamage, mut work: impl FnMut(SecantCell<'_>)) {
         let (mut nodes, mut gradients) = (Vec::new(), Vec::new());
+        let mut next_pair = 0;
         for (index, block) in self.blocks.iter().enumerate() {
             let hooke = &self.bodies[block.body].hooke;
             let cells = &block.cells;
             for cell in 0..cells.len() {
+                let count = cells.local_nodes(cell).len();
+                let first_pair = next_pair;
+                next_pair += count * count;
                 let left = damage.0[index].get(cell).map_or(1.0, |d| 1.0 - d) * cells.volume[cell];
                 if left <= 0.0 {
                     continue;
@@ -94,6 +102,7 @@ impl Solid {
                     gradients.push(*g);
                 }
                 work(SecantCell {
+                    first_pair,
                     nodes: &nodes,
                     gradients: &gradients,
                     lambda: hooke.lambda * left,
@@ -130,9 +139,12 @@ impl Solid {
     /// The edges that may be damaged, in the order of [`Solid::effective_stresses`].
     pub fn damage_points(&self) -> Vec<DamagePoint> {
         let mut points = Vec::new();
-        self.for_each_point(|body, edge, _, _| {
+        self.for_each_point(|body, edge, strength, length| {
+            let model = &self.bodies[body].body;
+            let energy = model.damage.as_ref().map_or(0.0, |zone| zone.law.fracture_energy);
+            let softening = model.elastic.young_modulus * energy / (length * strength);
             let EdgeDamage { kappa, broken, damage, .. } = *edge;
-            points.push(DamagePoint { body, kappa, broken, damage });
+            points.push(DamagePoint { body, kappa, softening, broken, damage });
         });
         points
     }
@@ -182,13 +194,19 @@ impl Solid {
         }
     }
 
-    /// Equivalent stress of each of these effective stresses by the criterion of its body [Pa]; where it surely stays
-    /// below `threshold` times κ, zero.
-    pub fn equivalent_stresses(&self, points: &[DamagePoint], stresses: &[Sym3], threshold: f64, q: &mut Vec<f64>) {
+    /// Equivalent stress of each of these effective stresses by the criterion of its body [Pa]; zero where it surely
+    /// stays below `threshold`.
+    pub fn equivalent_stresses(
+        &self,
+        points: &[DamagePoint],
+        stresses: &[Sym3],
+        threshold: impl Fn(&DamagePoint) -> f64,
+        q: &mut Vec<f64>,
+    ) {
         q.clear();
         q.extend(points.iter().zip(stresses).map(|(point, &stress)| {
             let criterion = self.criterion(point.body);
-            if criterion.surely_below(stress, threshold * point.kappa) { 0.0 } else { criterion.equivalent_stress(stress) }
+            if criterion.surely_below(stress, threshold(point)) { 0.0 } else { criterion.equivalent_stress(stress) }
         }));
     }
 
@@ -224,6 +242,43 @@ impl Solid {
                     after.element_damage(&edges.of_element[e as usize]).max(block.damage_of(cell))
                 };
                 *trial = block.items.iter().enumerate().map(of).collect();
+            }
+        }
+    }
+
+    /// Lets every edge see the equivalent stress `q`, as the solid goes straight from the displacements `before` to
+    /// `after`.
+    ///
+    /// What damage takes on the way is booked; [`Solid::update_internal_forces`] at `after` then finds nothing new.
+    pub fn raise_history(&mut self, q: &[f64], before: &[Vec3], after: &[Vec3]) {
+        let Solid { blocks, bodies, .. } = self;
+        let mut next = 0;
+        for block in blocks {
+            let hooke = bodies[block.body].hooke;
+            let BlockLaw::Edges(law) = &mut block.law else { continue };
+            for cell in 0..law.edges.len() {
+                let seen = q[next];
+                next += 1;
+                if seen <= law.edges[cell].kappa {
+                    continue;
+                }
+                let strain = |field: &[Vec3]| Sym3::symmetric_part(&block.cells.gradient(cell, field));
+                let edge = &mut law.edges[cell];
+                let was_broken = edge.broken;
+                let growth = law.softens.load(edge, seen, law.strength[cell], law.length[cell], 0.0);
+                let work = 0.5 * hooke.stress(strain(after)).dot(strain(before));
+                law.dissipated += work * growth * block.cells.volume[cell];
+                law.threshold[cell] = edge.threshold();
+                law.fresh |= edge.broken && !was_broken;
+            }
+        }
+        for standard in bodies.iter_mut().filter_map(|model| model.standard.as_mut()) {
+            for edge in 0..standard.edges.len() {
+                let state = &mut standard.edges[edge];
+                let was_broken = state.broken;
+                standard.softens.load(state, q[next], standard.strength[edge], standard.length[edge], 0.0);
+                standard.fresh |= state.broken && !was_broken;
+                next += 1;
             }
         }
     }

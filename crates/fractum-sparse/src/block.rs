@@ -51,11 +51,11 @@ impl Pattern {
         self.starts[node]..self.starts[node + 1]
     }
 
-    /// Place of a block among all blocks.
+    /// Place of a block among all blocks, for [`BlockMatrix::add_at`].
     ///
     /// # Panics
     /// If the nodes are not coupled.
-    fn place(&self, i: usize, j: usize) -> usize {
+    pub fn place(&self, i: usize, j: usize) -> usize {
         let within = self.row(i).binary_search(&(j as u32)).expect("nodes of one clique are coupled");
         self.starts[i] + within
     }
@@ -90,7 +90,11 @@ impl<const B: usize> BlockMatrix<B> {
     /// # Panics
     /// If the nodes are not coupled.
     pub fn add(&mut self, i: usize, j: usize, block: [[f64; B]; B]) {
-        let place = self.pattern.place(i, j);
+        self.add_at(self.pattern.place(i, j), block);
+    }
+
+    /// Adds a block at a place of the pattern.
+    pub fn add_at(&mut self, place: usize, block: [[f64; B]; B]) {
         for (row, add) in self.values[place].iter_mut().zip(block) {
             for (value, add) in row.iter_mut().zip(add) {
                 *value += add;

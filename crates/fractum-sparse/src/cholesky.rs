@@ -62,7 +62,8 @@ impl Factor {
             return Err(SparseError::TooLarge { entries });
         }
         let order = nested_dissection(pattern, places);
-        let forward: Vec<u32> = order.iter().flat_map(|&n| (0..block as u32).map(move |a| n * block as u32 + a)).collect();
+        let forward: Vec<u32> =
+            order.iter().flat_map(|&n| (0..block as u32).map(move |a| n * block as u32 + a)).collect();
         let mut inverse = vec![0u32; size];
         for (new, &old) in (0..).zip(&forward) {
             inverse[old as usize] = new;

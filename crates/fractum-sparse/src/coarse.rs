@@ -128,16 +128,8 @@ impl<const B: usize> Coarse<B> {
 
 /// Translations, then rotations about z, x, y; held components do not move.
 fn rigid_motions<const B: usize>(x: [f64; 3], held: u8) -> [[f64; B]; MODES] {
-    let full = [
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [-x[1], x[0], 0.0],
-        [0.0, 0.0, 1.0],
-        [0.0, -x[2], x[1]],
-        [x[2], 0.0, -x[0]],
-    ];
+    let full =
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-x[1], x[0], 0.0], [0.0, 0.0, 1.0], [0.0, -x[2], x[1]], [x[2], 0.0, -x[0]]];
     let used = if B == 3 { MODES } else { 3 };
-    std::array::from_fn(|m| {
-        std::array::from_fn(|c| if m < used && held >> c & 1 == 0 { full[m][c] } else { 0.0 })
-    })
+    std::array::from_fn(|m| std::array::from_fn(|c| if m < used && held >> c & 1 == 0 { full[m][c] } else { 0.0 }))
 }

@@ -98,7 +98,10 @@ impl<const B: usize> Incomplete<B> {
             for c in 0..B {
                 pivot[c][c] += shift * diagonal[c][c];
             }
-            inverse.push(inverse_of_root(&pivot, &diagonal).map_err(|component| SparseError::Indefinite { node: i, component })?);
+            inverse.push(
+                inverse_of_root(&pivot, &diagonal)
+                    .map_err(|component| SparseError::Indefinite { node: i, component })?,
+            );
         }
         let single = |m: [[f64; B]; B]| m.map(|row| row.map(|v| v as f32));
         Ok(Incomplete {

@@ -28,8 +28,10 @@ impl Context<'_> {
             let found = format!(" = \"static\" with {found} in body \"{}\"", solid.body(body).name);
             self.error(&place, found, "small strains, open cracks and damage without delay; or kind = \"explicit\"");
         }
-        if self.case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Rigid(_))) {
-            self.error(&place, " = \"static\" with a rigid body", "supports in its place, or kind = \"explicit\"");
+        if let Some(body) = self.case.bodies.iter().find(|body| !matches!(body.kind, BodyKind::Solid(_))) {
+            let found = format!(" = \"static\" with body \"{}\"", body.name.value);
+            self.error(&place, found, "solid bodies only; or kind = \"explicit\"");
+            return None;
         }
         if let Err(error) = check_supports(solid, supports.held()) {
             let remedy = if supports.count() == 0 { "at least one [[supports]]" } else { "" };

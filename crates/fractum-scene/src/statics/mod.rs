@@ -5,6 +5,7 @@
 //! whatever the load does meanwhile: t may go back. With the damage of the last iterate K is linear, so that
 //! u = a + (t - tⁿ) b from two right-hand sides, and t follows from the most strained edge alone.
 
+mod mixing;
 mod path;
 mod support_check;
 mod system;
@@ -19,6 +20,7 @@ pub use system::LinearWork;
 use crate::error::StepError;
 use crate::scene::Scene;
 use crate::step::StepReport;
+use mixing::Mixer;
 use system::System;
 
 /// How the load parameter proceeds.
@@ -60,12 +62,16 @@ pub struct StaticSettings {
     pub linear: LinearSolver,
 }
 
-/// Growth of the largest equivalent stress per step of a path: at first, at least and at most.
-const GROWTH: [f64; 3] = [0.1, 1e-3, 0.4];
-/// Iterations after which a step is cut, and below which the next one may be larger.
-const ITERATIONS: [usize; 2] = [40, 12];
+/// How far the most strained edge goes down its softening curve per step of a path: at first, at least and at most.
+const GROWTH: [f64; 3] = [0.05, 0.01, 0.25];
+/// The step that finds the onset of damage goes no further than this.
+const ONSET: f64 = 1e-8;
+/// Accelerated iterations before a step is cut, and below which the next one may be larger.
+const ITERATIONS: [usize; 2] = [16, 10];
+/// Iterations in which damage only grows.
+const MONOTONE_ITERATIONS: usize = 400;
 /// Part of a step of the load parameter below which it is not cut any more.
-const SMALLEST_PART: f64 = 1e-6;
+const SMALLEST_PART: f64 = 1.0 / 64.0;
 
 enum Dimension {
     Plane(System<2>),
@@ -105,6 +111,10 @@ pub struct StaticSolver {
     start_stress: Vec<Sym3>,
     slope_stress: Vec<Sym3>,
     q: Vec<f64>,
+    /// Equivalent stresses over κ, at least 1: those that the damage of the trial comes from, and those that it brings.
+    loading: Vec<f64>,
+    image: Vec<f64>,
+    mixer: Mixer,
     /// Reactions and loads of the last equilibrium; empty before the first.
     outer: [Vec<Vec3>; 2],
     iterations: usize,
@@ -147,6 +157,9 @@ impl StaticSolver {
             start_stress: Vec::new(),
             slope_stress: Vec::new(),
             q: Vec::new(),
+            loading: Vec::new(),
+            image: Vec::new(),
+            mixer: Mixer::default(),
             outer: [Vec::new(), Vec::new()],
             iterations: 0,
         })
@@ -181,46 +194,54 @@ impl StaticSolver {
     pub fn step(&mut self, scene: &mut Scene) -> Result<StepReport, StepError> {
         let points = scene.solid.damage_points();
         self.damage = scene.solid.cell_damage();
+        let intact = points.iter().all(|point| point.damage == 0.0);
+        let mut monotone = false;
         loop {
             let longest = (self.settings.end - scene.clock.time).min(self.settings.step * self.part);
-            match self.iterate(scene, &points, longest)? {
-                Some((time, iterations)) => {
-                    if iterations <= ITERATIONS[1] {
-                        self.growth = (1.4 * self.growth).min(GROWTH[2]);
-                        self.part = (2.0 * self.part).min(1.0);
-                    } else if 2 * iterations > ITERATIONS[0] {
-                        self.growth = (0.7 * self.growth).max(GROWTH[1]);
-                    }
-                    return scene.accept_equilibrium(&self.start, time, &mut self.outer);
+            let growth = if intact { ONSET } else { self.growth };
+            let found = self.iterate(scene, &points, longest, growth, monotone)?;
+            if let Some((time, iterations)) = found {
+                if !monotone && iterations <= ITERATIONS[1] {
+                    self.growth = (1.4 * self.growth).min(GROWTH[2]);
+                    self.part = (2.0 * self.part).min(1.0);
                 }
-                None => {
-                    self.growth *= 0.5;
-                    self.part *= 0.5;
-                    let exhausted = match self.settings.control {
-                        Control::Path => self.growth < GROWTH[1],
-                        Control::Time => self.part < SMALLEST_PART,
-                    };
-                    if exhausted {
-                        let (step, time) = (scene.clock.step, scene.clock.time);
-                        return Err(StepError::NoEquilibrium { step, time });
-                    }
-                }
+                scene.solid.raise_history(&self.q, &scene.solid.displacement.clone(), &self.start);
+                return scene.accept_equilibrium(&self.start, time, &mut self.outer);
             }
+            let smallest = match self.settings.control {
+                Control::Path => self.growth <= GROWTH[1] || intact,
+                Control::Time => self.part <= SMALLEST_PART,
+            };
+            if smallest && monotone {
+                let (step, time) = (scene.clock.step, scene.clock.time);
+                return Err(StepError::NoEquilibrium { step, time });
+            }
+            monotone = smallest;
+            self.growth = (0.5 * self.growth).max(GROWTH[1]);
+            self.part = (0.5 * self.part).max(SMALLEST_PART);
         }
     }
 
-    /// Iterates to equilibrium from the present state; the new load parameter with the displacements in `self.start`, or
-    /// nothing if the step is too large.
+    /// Iterates to equilibrium from the present state; the new load parameter, with the displacements in `self.start` and
+    /// the equivalent stresses that the edges have seen in `self.q`, or nothing if the iteration does not get there.
+    ///
+    /// - `monotone`: damage only grows from iterate to iterate. As no edge passes `growth` this always ends, with edges
+    ///   that may have seen a little more than they bear in the end
     fn iterate(
         &mut self,
         scene: &mut Scene,
         points: &[DamagePoint],
         longest: f64,
+        growth: f64,
+        monotone: bool,
     ) -> Result<Option<(f64, usize)>, StepError> {
         let present = scene.clock.time;
         let mut tau = longest;
         self.trial.clone_from(&self.damage);
-        for iteration in 1..=ITERATIONS[0] {
+        self.mixer.reset();
+        self.loading.clear();
+        self.loading.resize(points.len(), 1.0);
+        for iteration in 1..=if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] } {
             self.iterations += 1;
             if !(self.elastic && self.prepared) {
                 self.system.prepare(scene, &self.trial).map_err(|e| scene.come_apart(e))?;
@@ -243,7 +264,7 @@ impl StaticSolver {
                             points,
                             &self.start_stress,
                             &self.slope_stress,
-                            self.growth,
+                            growth,
                             longest,
                         );
                         let Some(tau) = found else { return Ok(None) };
@@ -257,12 +278,29 @@ impl StaticSolver {
             for (a, &b) in self.start_stress.iter_mut().zip(&self.slope_stress) {
                 *a += b * tau;
             }
-            scene.solid.equivalent_stresses(points, &self.start_stress, 1.0, &mut self.q);
+            scene.solid.equivalent_stresses(points, &self.start_stress, |point| point.kappa, &mut self.q);
+            if monotone {
+                for ((q, ratio), point) in self.q.iter_mut().zip(&self.loading).zip(points) {
+                    *q = q.max(ratio * point.kappa);
+                }
+            }
             scene.solid.trial_damage(&self.q, &mut self.trial);
             let exact = scene.boundary_at(present, present + tau);
             if scene.unbalance(&self.trial, &self.start, &exact.force, &mut self.right) <= self.settings.tolerance {
                 return Ok(Some((present + tau, iteration)));
             }
+            self.image.clear();
+            self.image.extend(points.iter().zip(&self.q).map(|(point, q)| (q / point.kappa).max(1.0)));
+            if monotone {
+                self.loading.copy_from_slice(&self.image);
+                continue;
+            }
+            self.mixer.next(&mut self.loading, &self.image);
+            self.loading.iter_mut().for_each(|ratio| *ratio = ratio.max(1.0));
+            for ((q, ratio), point) in self.q.iter_mut().zip(&self.loading).zip(points) {
+                *q = ratio * point.kappa;
+            }
+            scene.solid.trial_damage(&self.q, &mut self.trial);
         }
         Ok(None)
     }

@@ -37,6 +37,8 @@ enum Method<const B: usize> {
 /// Linear system of the free unknowns, B per node.
 pub(super) struct System<const B: usize> {
     matrix: BlockMatrix<B>,
+    /// Place of the block of every pair of nodes of every cell.
+    pairs: Vec<u32>,
     held: Vec<u8>,
     places: Vec<[f64; 3]>,
     method: Method<B>,
@@ -56,7 +58,15 @@ impl<const B: usize> System<B> {
         tolerance: f64,
     ) -> Result<Self, SparseError> {
         let nodes = solid.reference.len();
-        let pattern = Arc::new(Pattern::from_cliques(nodes, &solid.cell_nodes()));
+        let cells = solid.cell_nodes();
+        let pattern = Arc::new(Pattern::from_cliques(nodes, &cells));
+        if pattern.blocks() > u32::MAX as usize {
+            return Err(SparseError::TooLarge { entries: pattern.blocks() });
+        }
+        let place = |(&i, &j): (&u32, &u32)| pattern.place(i as usize, j as usize) as u32;
+        let pairs =
+            cells.rows().flat_map(|row| row.iter().flat_map(move |i| row.iter().map(move |j| (i, j)))).map(place);
+        let pairs = pairs.collect();
         let places: Vec<[f64; 3]> = solid.reference.iter().map(|&p| p.into()).collect();
         let unknowns = nodes * B;
         let direct = match choice {
@@ -66,15 +76,13 @@ impl<const B: usize> System<B> {
                 unknowns <= DIRECT[usize::from(B == 2)] || reuse >= REUSE && unknowns <= DIRECT_IF_REUSED
             }
         };
-        let method = if direct {
-            Method::Direct(Box::new(Factor::new(&pattern, &places, B)?))
-        } else {
-            Method::Iterative(None)
-        };
+        let method =
+            if direct { Method::Direct(Box::new(Factor::new(&pattern, &places, B)?)) } else { Method::Iterative(None) };
         let held = if held.is_empty() { vec![0; nodes] } else { held.to_vec() };
         let zero = vec![[0.0; B]; nodes];
         Ok(System {
             matrix: BlockMatrix::zeros(pattern),
+            pairs,
             held,
             places,
             method,
@@ -88,10 +96,11 @@ impl<const B: usize> System<B> {
     /// Takes over the stiffness of a solid at this damage.
     pub(super) fn prepare(&mut self, solid: &Solid, damage: &CellDamage) -> Result<(), SparseError> {
         self.matrix.clear();
-        let matrix = &mut self.matrix;
+        let (matrix, pairs) = (&mut self.matrix, &self.pairs);
         solid.for_each_cell(damage, |cell| {
-            for (&i, gi) in cell.nodes.iter().zip(cell.gradients) {
-                for (&j, gj) in cell.nodes.iter().zip(cell.gradients) {
+            let mut place = pairs[cell.first_pair..].iter();
+            for gi in cell.gradients {
+                for (gj, &place) in cell.gradients.iter().zip(&mut place) {
                     let dot: f64 = (0..B).map(|a| gi[a] * gj[a]).sum();
                     let block = std::array::from_fn(|a| {
                         std::array::from_fn(|b| {
@@ -99,7 +108,7 @@ impl<const B: usize> System<B> {
                             cell.lambda * gi[a] * gj[b] + cell.mu * (gi[b] * gj[a] + diagonal)
                         })
                     });
-                    matrix.add(i as usize, j as usize, block);
+                    matrix.add_at(place as usize, block);
                 }
             }
         });

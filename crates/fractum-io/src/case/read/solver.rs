@@ -1,7 +1,9 @@
 //! `[damping]`, `[solver]` and `[output]`.
 
 use super::probes::ReadProbe;
-use crate::case::model::{Control, Damping, Output, LinearSolver, Solver, SolverKind, StaticOptions, StopWhen, TimeStep};
+use crate::case::model::{
+    Control, Damping, LinearSolver, Output, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
+};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, nearest};
 
@@ -74,7 +76,7 @@ fn statics(table: &Table<'_>) -> StaticOptions {
     StaticOptions {
         control: table.choice::<Control>("control").given(),
         linear_solver: table.choice("linear_solver").or(LinearSolver::Auto),
-        tolerance: table.quantity("tolerance").positive().or(1e-5),
+        tolerance: table.quantity("tolerance").positive().or(1e-4),
         most_steps: table.integer("max_steps").check(|&steps| steps > 0, "at least 1").or(10_000),
     }
 }
