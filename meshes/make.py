@@ -15,6 +15,7 @@ from pathlib import Path
 
 import gmsh
 
+import beams
 import boxes
 import quality
 
@@ -34,6 +35,9 @@ UNSTRUCTURED = {
     "brazilian-plane/coarse": ("brazilian-plane/disc.geo", {"bulk": 0.006, "across": 4}, False),
     "brazilian-plane/medium": ("brazilian-plane/disc.geo", {"bulk": 0.004, "across": 6}, False),
     "brazilian-plane/fine": ("brazilian-plane/disc.geo", {"bulk": 0.0026, "across": 9}, False),
+    "double-notched-plane/coarse": ("double-notched-plane/beam.geo", {"h": 0.0097}, False),
+    "double-notched-plane/medium": ("double-notched-plane/beam.geo", {"h": 0.0074}, False),
+    "double-notched-plane/fine": ("double-notched-plane/beam.geo", {"h": 0.0039}, False),
     "cantilever-plane/depth-2": ("cantilever-plane/beam.geo", {"depth": 2}, False),
     "cantilever-plane/depth-4": ("cantilever-plane/beam.geo", {"depth": 4}, False),
     "cantilever-plane/depth-8": ("cantilever-plane/beam.geo", {"depth": 8}, False),
@@ -80,6 +84,18 @@ STRUCTURED = {
 }
 
 
+# name: arguments of beams.notched_beam
+NOTCHED = {
+    "notched-beam-plane/straight-10": {"h": 0.01, "lattice": "squares"},
+    "notched-beam-plane/straight-5": {"h": 0.005, "lattice": "squares"},
+    "notched-beam-plane/jittered-10": {"h": 0.01, "lattice": "squares", "jitter": 0.2},
+    "notched-beam-plane/jittered-5": {"h": 0.005, "lattice": "squares", "jitter": 0.2},
+    "notched-beam-plane/tilt-10": {"h": 0.01, "tilt": 10},
+    "notched-beam-plane/tilt-20": {"h": 0.01, "tilt": 20},
+    "notched-beam-plane/tilt-30": {"h": 0.01, "tilt": 30},
+}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("name", nargs="*")
@@ -87,7 +103,7 @@ def main():
     parser.add_argument("--table", action="store_true")
     arguments = parser.parse_args()
 
-    known = [*LARGE] if arguments.large else [*UNSTRUCTURED, *STRUCTURED]
+    known = [*LARGE] if arguments.large else [*UNSTRUCTURED, *STRUCTURED, *NOTCHED]
     chosen = [name for name in known if not arguments.name or name.startswith(tuple(arguments.name))]
     if not chosen:
         sys.exit(f"no mesh begins with {' or '.join(arguments.name)}; there are {', '.join(known)}")
@@ -111,6 +127,8 @@ def make(name, path):
     path.parent.mkdir(exist_ok=True)
     if name in STRUCTURED:
         with_gmsh({}, lambda: boxes.box(path, **STRUCTURED[name]))
+    elif name in NOTCHED:
+        with_gmsh({}, lambda: beams.notched_beam(path, **NOTCHED[name]))
     else:
         geometry, parameters, binary = (UNSTRUCTURED | LARGE)[name]
         with_gmsh(parameters, lambda: unstructured(path, geometry, binary))

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What each crate may name of the others. A new crate or arrow is entered here on purpose, or not at all.
-const ARROWS: [(&str, &[&str]); 10] = [
+const ARROWS: [(&str, &[&str]); 11] = [
     ("fractum-math", &[]),
     ("fractum-mesh", &["math"]),
     ("fractum-contact", &["math", "mesh"]),
@@ -13,14 +13,22 @@ const ARROWS: [(&str, &[&str]); 10] = [
     ("fractum-pack", &["math", "dem"]),
     ("fractum-calibrate", &["math", "dem", "pack"]),
     ("fractum-fem", &["math", "mesh"]),
-    ("fractum-scene", &["math", "mesh", "contact", "dem", "fem"]),
+    ("fractum-sparse", &["math"]),
+    ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse"]),
     ("fractum-io", &["math", "mesh", "fem", "dem", "scene"]),
     ("fractum", &["math", "mesh", "fem", "dem", "pack", "calibrate", "scene", "io"]),
 ];
 
 /// Crates whose kernels take numbers: no files, no printing, no wall clock, nothing of the case format.
-const BELOW_IO: [&str; 6] =
-    ["fractum-math", "fractum-mesh", "fractum-contact", "fractum-dem", "fractum-fem", "fractum-scene"];
+const BELOW_IO: [&str; 7] = [
+    "fractum-math",
+    "fractum-mesh",
+    "fractum-contact",
+    "fractum-dem",
+    "fractum-fem",
+    "fractum-sparse",
+    "fractum-scene",
+];
 
 fn crates() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates")

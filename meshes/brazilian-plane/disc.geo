@@ -27,6 +27,9 @@ Physical Surface("disc") = {1};
 Physical Curve("top") = {1};
 Physical Curve("bottom") = {3};
 Physical Curve("side") = {2, 4};
+// One end of the bottom strip, for static runs: held along x it keeps the disc from drifting sideways.
+pin() = PointsOf{ Curve{3}; };
+Physical Point("pin") = {pin(0)};
 
 // `strip` on the strips, growing with the distance from them to `bulk`.
 Field[1] = Distance;

@@ -132,6 +132,33 @@ impl Supports {
         places.iter().map(|&(s, e, a)| self.sets[s as usize].reaction[e as usize] * direction[a as usize]).sum()
     }
 
+    /// Writes the displacements prescribed at `time` into `displacement`; those of supports with a velocity go on from
+    /// the present values at `present`.
+    pub(crate) fn prescribe(&self, displacement: &mut [Vec3], reference: &[Vec3], present: f64, time: f64) {
+        for set in &self.sets {
+            for &node in &set.nodes {
+                let (value, place) = (&mut displacement[node as usize][set.axis], &reference[node as usize]);
+                match &set.motion {
+                    Motion::Fixed => *value = 0.0,
+                    Motion::Displacement(u) => *value = u(time, place),
+                    Motion::Velocity(v) => *value += integral(|t| v(t, place), present, time),
+                }
+            }
+        }
+    }
+
+    /// Takes the reactions from the sum of all other forces; a vector per node.
+    pub(crate) fn take_reactions(&mut self, force: &[Vec3]) -> Vec<Vec3> {
+        let mut reactions = vec![Vec3::zeros(); force.len()];
+        for Support { nodes, axis, reaction, .. } in &mut self.sets {
+            for (&node, reaction) in nodes.iter().zip(reaction) {
+                *reaction = -force[node as usize][*axis];
+                reactions[node as usize][*axis] = *reaction;
+            }
+        }
+        reactions
+    }
+
     /// Keeps the velocities before the kick.
     pub(crate) fn remember(&mut self, solid: &Solid) {
         for set in &mut self.sets {
@@ -170,6 +197,18 @@ impl Supports {
         }
         work
     }
+}
+
+/// Integral of a velocity by Gauss' rule of two points on 16 parts [m].
+fn integral(velocity: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    const PARTS: usize = 16;
+    let width = (to - from) / PARTS as f64;
+    let offset = 0.5 / 3f64.sqrt();
+    let part = |k: usize| {
+        let middle = from + (k as f64 + 0.5) * width;
+        0.5 * width * (velocity(middle - offset * width) + velocity(middle + offset * width))
+    };
+    if width == 0.0 { 0.0 } else { (0..PARTS).map(part).sum() }
 }
 
 /// Forces from outside.

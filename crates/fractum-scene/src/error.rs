@@ -22,6 +22,22 @@ pub enum SceneError {
         /// Position of the node [m].
         z: f64,
     },
+    /// A body can move without resistance.
+    #[error(
+        "body {body} (centre {x:.4e}, {y:.4e}, {z:.4e} m) can {motion}: nothing holds it; a static solution needs supports against every rigid motion"
+    )]
+    FreeBody {
+        /// Name of the body.
+        body: String,
+        /// The motion, in words.
+        motion: &'static str,
+        /// Centre of the piece [m].
+        x: f64,
+        /// Centre of the piece [m].
+        y: f64,
+        /// Centre of the piece [m].
+        z: f64,
+    },
     /// The solid cannot be built.
     #[error(transparent)]
     Solid(#[from] fractum_fem::SolidError),
@@ -49,6 +65,44 @@ pub enum StepError {
         limit: f64,
         /// Body and element with the largest velocity.
         culprit: String,
+    },
+    /// No equilibrium was found however small the step.
+    #[error(
+        "step {step}, t = {time:.6e} s: no equilibrium found; the solid may have no static answer here - use control = \"path\", end the run before \
+         with solver.stop_when, or run it with kind = \"explicit\""
+    )]
+    NoEquilibrium {
+        /// Step number.
+        step: u64,
+        /// Load parameter [s].
+        time: f64,
+    },
+    /// A piece is held by nothing any more.
+    #[error(
+        "step {step}, t = {time:.6e} s: the stiffness is singular near ({x:.4e}, {y:.4e}, {z:.4e}) m: a piece has come loose; end the run before with \
+         solver.stop_when, or run it with kind = \"explicit\""
+    )]
+    ComeApart {
+        /// Step number.
+        step: u64,
+        /// Load parameter [s].
+        time: f64,
+        /// Position of the node [m].
+        x: f64,
+        /// Position of the node [m].
+        y: f64,
+        /// Position of the node [m].
+        z: f64,
+    },
+    /// A linear system was not solved.
+    #[error("step {step}, t = {time:.6e} s: {reason} - choose the other solver.linear_solver")]
+    NoSolution {
+        /// Step number.
+        step: u64,
+        /// Load parameter [s].
+        time: f64,
+        /// Why, in words.
+        reason: String,
     },
     /// The step is above the stable limit.
     #[error(

@@ -15,6 +15,7 @@ mod ledger;
 mod probe;
 mod rigid;
 mod scene;
+pub mod statics;
 mod step;
 
 pub use bonded::{Bonded, BondedBody, BondedPart, BondedState, ParticleLoad, ParticleProbe, ParticleSupport};

@@ -154,7 +154,7 @@ impl Scene {
     }
 
     /// Elements that a crack has cut through leave; their nodes get discrete elements.
-    fn release_cut_elements(&mut self) -> StepReport {
+    pub(crate) fn release_cut_elements(&mut self) -> StepReport {
         self.removed.clear();
         let energy = self.solid.remove_cut_elements(&mut self.removed);
         let mut report = StepReport { removed: self.removed.len(), particles_born: 0 };
@@ -214,6 +214,21 @@ impl Scene {
             return Err(StepError::Unbalanced { step, time, relative, allowed, dt, limit, culprit: self.culprit() });
         }
         Ok(())
+    }
+
+    /// The ledger of a state of equilibrium.
+    pub(crate) fn book_equilibrium(&mut self) -> Result<(), StepError> {
+        let Scene { ledger, solid, books, .. } = self;
+        ledger.elastic = solid.elastic_energy();
+        ledger.damage = solid.dissipated_energy();
+        ledger.external = books.external;
+        ledger.removed = books.removed;
+        ledger.update_maxima();
+        if ledger.residual().is_finite() {
+            return Ok(());
+        }
+        let (step, time, dt, limit) = (self.clock.step, self.clock.time, self.clock.dt_before, f64::INFINITY);
+        Err(StepError::NotFinite { step, time, dt, limit, culprit: self.culprit() })
     }
 
     /// The element or bonded particle with the largest kinetic energy, or with a value that is not a number.

@@ -14,6 +14,7 @@ mod gallery;
 mod input;
 mod loose;
 pub mod plan;
+mod quasi_static;
 mod record;
 mod record_bonded;
 pub mod report;

@@ -8,6 +8,7 @@ use fractum_io::case::model::{BodyKind, Case, LoadKind, Material, MeshSource, Ri
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
 use fractum_scene::Scene;
+use fractum_scene::statics::{Control, StaticSettings};
 
 use crate::bonded::{BondedReport, Origin};
 
@@ -50,8 +51,13 @@ impl Plan {
         plan.describe_bodies(case, scene, bonded);
         plan.describe_conditions(case, mesh, scene);
         plan.describe_physics(case, scene);
-        plan.describe_time(case, scene);
-        plan.describe_size(case, scene);
+        match &assembly.statics {
+            Some(settings) => plan.describe_statics(scene, settings),
+            None => {
+                plan.describe_time(case, scene);
+                plan.describe_size(case, scene);
+            }
+        }
         plan
     }
 
@@ -309,6 +315,16 @@ impl Plan {
         );
         let steps = (case.solver.end / scene.clock.dt_after).ceil();
         self.add("steps", format!("{steps} to t = {}", quantity(case.solver.end, "s")));
+    }
+
+    fn describe_statics(&mut self, scene: &Scene, settings: &StaticSettings) {
+        let plane = scene.solid.body(0).shape == Shape::T3;
+        let unknowns = scene.solid.reference.len() * if plane { 2 } else { 3 } - scene.supports().count();
+        let control = match settings.control {
+            Control::Time => "by steps of the load parameter",
+            Control::Path => "along the path of equilibrium, by steps of damage",
+        };
+        self.add("equilibrium", format!("{unknowns} unknowns, {control}, to t = {}", quantity(settings.end, "s")));
     }
 
     fn describe_size(&mut self, case: &Case, scene: &Scene) {

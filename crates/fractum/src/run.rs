@@ -51,6 +51,11 @@ pub struct Outcome {
 /// Set by Ctrl-C and SIGTERM: the run saves its state after the present step and ends.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
+/// Whether runs are asked to end.
+pub(crate) fn is_interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
 /// Asks all runs of this process to save their state and end.
 pub fn interrupt() {
     INTERRUPTED.store(true, Ordering::Relaxed);
@@ -86,6 +91,9 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     let mut scene = assembly.scene;
 
     let checkpoints = folder.join("checkpoint");
+    if options.resume && assembly.statics.is_some() {
+        return Err(Failure::input("static runs keep no checkpoints; run without --resume"));
+    }
     let resumed = if options.resume { restore(&checkpoints, &identity, &mut scene)? } else { None };
     if options.resume && resumed.is_none() {
         return Err(Failure::input(format!(
@@ -127,28 +135,33 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
         warnings: assembly.warnings.iter().map(ToString::to_string).collect(),
         phases: [Duration::ZERO; PHASES.len()],
     };
-    let end = run.advance(&mut scene);
+    // The one place where the kind of solver decides.
+    let end = match &assembly.statics {
+        Some(settings) => run.equilibrate(&mut scene, *settings),
+        None => run.advance(&mut scene),
+    };
     run.conclude(scene, threads, end, &plan)
 }
 
 /// Why the loop over the steps ended.
-enum End {
+pub(crate) enum End {
     Finished,
     Interrupted,
     Failed(StepError),
 }
 
 /// Names of the phases in `summary.json`, and of the output beside them.
-const PHASES: [&str; 6] = ["solid", "bonds", "contact", "motion", "transition", "output"];
+pub(crate) const PHASES: [&str; 6] = ["solid", "bonds", "contact", "motion", "transition", "output"];
 
-struct Run<'a> {
-    case: &'a Case,
+/// A run under way.
+pub(crate) struct Run<'a> {
+    pub(crate) case: &'a Case,
     folder: &'a Path,
     identity: Identity,
-    recorder: Recorder<'a>,
-    progress: Progress<std::io::Stderr>,
-    log: RunLog,
-    started: Instant,
+    pub(crate) recorder: Recorder<'a>,
+    pub(crate) progress: Progress<std::io::Stderr>,
+    pub(crate) log: RunLog,
+    pub(crate) started: Instant,
     saved: Instant,
     warned: bool,
     warnings: Vec<String>,
@@ -159,7 +172,7 @@ impl Run<'_> {
     fn advance(&mut self, scene: &mut Scene) -> Result<End, Failure> {
         let every = Duration::from_secs_f64(self.case.output.checkpoint_every);
         while !scene.is_finished() {
-            if INTERRUPTED.load(Ordering::Relaxed) {
+            if is_interrupted() {
                 self.save(scene)?;
                 return Ok(End::Interrupted);
             }
@@ -188,7 +201,7 @@ impl Run<'_> {
         Ok(End::Finished)
     }
 
-    fn timed<T>(&mut self, phase: usize, what: impl FnOnce(&mut Self) -> T) -> T {
+    pub(crate) fn timed<T>(&mut self, phase: usize, what: impl FnOnce(&mut Self) -> T) -> T {
         let start = Instant::now();
         let result = what(self);
         self.phases[phase] += start.elapsed();
@@ -214,7 +227,7 @@ impl Run<'_> {
     }
 
     /// The early end that the case asks for.
-    fn falls_below(&self) -> bool {
+    pub(crate) fn falls_below(&self) -> bool {
         let Some(stop) = &self.case.solver.stop_when else { return false };
         let record = self.recorder.state();
         let (values, time) = (&record.series[stop.probe], record.times.last().copied().unwrap_or(0.0));
@@ -222,7 +235,7 @@ impl Run<'_> {
         largest > 0.0 && time >= stop.after && values.last().is_some_and(|&v| v < stop.below * largest)
     }
 
-    fn warn_of_balance(&mut self, scene: &Scene) -> Result<(), Failure> {
+    pub(crate) fn warn_of_balance(&mut self, scene: &Scene) -> Result<(), Failure> {
         let relative = scene.ledger().relative_residual();
         if self.warned || relative <= self.case.solver.balance_warning {
             return Ok(());
@@ -247,7 +260,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn snapshot(&self, scene: &Scene) -> Snapshot {
+    pub(crate) fn snapshot(&self, scene: &Scene) -> Snapshot {
         let ledger = scene.ledger();
         let counts = scene.counts();
         Snapshot {
@@ -284,7 +297,7 @@ impl Run<'_> {
         if !matches!(end, End::Interrupted) {
             self.timed(PHASES.len() - 1, |run| run.recorder.frame(&scene))?;
         }
-        if matches!(end, End::Finished) {
+        if matches!(end, End::Finished) && self.case.solver.statics.is_none() {
             // The forces and energies of the last instant: one more step, of which nothing else is kept.
             let (time, dt) = (clock.time, clock.dt_after);
             if self.step(&mut scene, true).is_ok() {

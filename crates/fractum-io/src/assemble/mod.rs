@@ -6,6 +6,7 @@ mod bonded;
 mod conditions;
 mod contacts;
 mod probes;
+mod statics;
 
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
@@ -16,6 +17,7 @@ use fractum_fem::{LocalDamping, Solid, Viscosity};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_scene::coupling::Debris;
+use fractum_scene::statics::StaticSettings;
 use fractum_scene::{Guard, Loads, Probe, RigidPlane, Scene, SceneError, SceneSettings, Supports, TimeStepSettings};
 
 use bonded::ParticleSets;
@@ -27,6 +29,8 @@ use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction, nearest
 pub struct Assembly {
     /// The simulation at t = 0.
     pub scene: Scene,
+    /// Settings of the quasi-static solver, where the case asks for it.
+    pub statics: Option<StaticSettings>,
     /// The probes of the case that are measured, in the order of `Case::probes`; none for expressions.
     pub probes: Vec<Option<Probe>>,
     /// Nodes of the mesh in the scene's numbering, or `u32::MAX` for nodes of no solid body.
@@ -155,6 +159,7 @@ impl Context<'_> {
                 return None;
             }
         };
+        let statics = self.statics(&solid, &supports);
         self.condition_particles(&mut bonded);
         let probes = self.probes(&parts, &numbering, &supports, &bonded);
         if !self.diagnostics.is_empty() {
@@ -178,6 +183,7 @@ impl Context<'_> {
         let scene = self.with_contacts(scene, &parts, &boundary_of_parts, facets, &mut warnings)?;
         Some(Assembly {
             scene,
+            statics,
             probes,
             file_order: numbering.file_order(),
             scene_node: numbering.scene_node,
@@ -199,7 +205,8 @@ impl Context<'_> {
         SceneSettings {
             time_step: TimeStepSettings {
                 safety: solver.safety,
-                element_bound: solver.time_step == TimeStep::Element,
+                // Without motion the step is of no use: its bound is cheap.
+                element_bound: solver.time_step == TimeStep::Element || solver.statics.is_some(),
                 fixed: solver.step.as_ref().map(|step| step.value),
                 end: solver.end,
             },

@@ -389,11 +389,15 @@ static KEYS: &[KeyDoc] = &[
     key("damping.bulk_quadratic", K::Quantity(D::NONE), "0", "Quadratic bulk viscosity, ≥ 0; for shocks"),
 
     key("solver", K::Table, "required", "Time and its steps"),
-    key("solver.kind", K::Choice(solver_kinds), "\"explicit\"", "Kind of solver"),
+    key("solver.kind", K::Choice(names::<SolverKind>), "\"explicit\"", "Kind of solver: motion over time, or equilibrium under a load that grows slowly"),
     key("solver.end", K::Quantity(D::TIME), "required", "End of the run, > 0"),
     key("solver.safety", K::Quantity(D::NONE), "0.8", "Factor on the stable time step, > 0 and at most 2; above 1 is unstable"),
     key("solver.time_step", K::Choice(names::<TimeStep>), "\"power-iteration\"", "How the stable step is found: for the whole mesh, or rigorously by its worst element"),
-    key("solver.step", K::Quantity(D::TIME), "", "Fixed time step, > 0, instead of safety times the stable one"),
+    key("solver.step", K::Quantity(D::TIME), "", "Explicit: fixed time step, > 0, instead of safety times the stable one; static: largest step, by default the whole run where nothing may break, else 1/50 of it"),
+    key("solver.control", K::Choice(names::<Control>), "\"path\" where something may break, else \"time\"", "Static only: steps of time, or of damage, along the path of equilibrium through snap-back"),
+    key("solver.linear_solver", K::Choice(names::<LinearSolver>), "\"auto\"", "Static only: Cholesky factorisation, conjugate gradients, or by size and reuse"),
+    key("solver.tolerance", K::Quantity(D::NONE), "1e-4", "Static only: unbalanced force over the internal forces at which a step is accepted, > 0"),
+    key("solver.max_steps", K::Integer, "10000", "Static only: steps after which the run ends in any case"),
     key("solver.stop_when", K::Table, "", "Ends the run once a probe has fallen below a fraction of its largest value so far"),
     key("solver.stop_when.probe", K::Text, "required", "Name of the probe"),
     key("solver.stop_when.below", K::Quantity(D::NONE), "required", "Fraction of the largest value so far, within 0 and 1"),
@@ -477,10 +481,6 @@ fn body_kinds() -> Vec<&'static str> {
 
 fn shapes() -> Vec<&'static str> {
     vec!["plane", "box", "cylinder", "sphere", "group", "stl"]
-}
-
-fn solver_kinds() -> Vec<&'static str> {
-    names::<SolverKind>()
 }
 
 fn pulses() -> Vec<&'static str> {

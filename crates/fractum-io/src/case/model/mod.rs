@@ -107,6 +107,8 @@ pub struct Solver {
     pub time_step: TimeStep,
     /// Fixed time step [s], > 0; `None` = from the stable one.
     pub step: Option<Spanned<f64>>,
+    /// Options of a static run; `None` with the explicit solver.
+    pub statics: Option<StaticOptions>,
     /// Early end.
     pub stop_when: Option<StopWhen>,
     /// Energy imbalance over external work at which to warn [-].
@@ -120,9 +122,48 @@ pub struct Solver {
 pub enum SolverKind {
     /// Explicit central differences.
     Explicit,
+    /// Quasi-static equilibrium.
+    Static,
 }
 
-choice!(SolverKind { "explicit" => Explicit });
+choice!(SolverKind { "explicit" => Explicit, "static" => Static });
+
+/// What concerns a static run only.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StaticOptions {
+    /// How the load parameter proceeds; `None` = along the path where something may break, else by time.
+    pub control: Option<Control>,
+    /// How linear systems are solved.
+    pub linear_solver: LinearSolver,
+    /// Unbalanced force over internal forces at which a step is accepted [-], > 0.
+    pub tolerance: f64,
+    /// Steps after which the run ends in any case, ≥ 1.
+    pub most_steps: u64,
+}
+
+/// How the load parameter of a static run proceeds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Control {
+    /// By steps of time.
+    Time,
+    /// By steps of damage, through snap-back.
+    Path,
+}
+
+choice!(Control { "time" => Time, "path" => Path });
+
+/// How linear systems of a static run are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LinearSolver {
+    /// By size and reuse.
+    Auto,
+    /// Sparse Cholesky factorisation.
+    Direct,
+    /// Conjugate gradients.
+    Iterative,
+}
+
+choice!(LinearSolver { "auto" => Auto, "direct" => Direct, "iterative" => Iterative });
 
 /// How the stable time step is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,9 +1,10 @@
 //! `[damping]`, `[solver]` and `[output]`.
 
 use super::probes::ReadProbe;
-use crate::case::model::{Damping, Output, Solver, SolverKind, StopWhen, TimeStep};
+use crate::case::model::{
+    Control, Damping, LinearSolver, Output, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
+};
 use crate::case::reader::Table;
-use crate::case::tree::Value;
 use crate::case::{Diagnostic, nearest};
 
 pub(super) fn damping(root: &Table<'_>) -> Damping {
@@ -24,12 +25,22 @@ const RISKY_SAFETY: f64 = 0.95;
 
 pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe]) -> Option<Solver> {
     let table = root.table_or_empty("solver");
-    let kind = solver_kind(&table);
+    let kind = table.choice("kind").or_if_absent(SolverKind::Explicit);
     let end = table.quantity("end").positive().required();
+    let statics = (kind == Some(SolverKind::Static)).then(|| statics(&table));
+    if statics.is_none() && kind.is_some() {
+        for key in ["control", "linear_solver", "tolerance", "max_steps"] {
+            table.refuse(key, "with kind = \"explicit\"");
+        }
+    }
     let step = table.quantity("step").positive();
     let step =
         step.check(|step| end.is_none_or(|end| *step <= end), "no more than the end of the run").spanned().given();
-    if step.is_some() {
+    if statics.is_some() {
+        for key in ["safety", "time_step", "balance_stop"] {
+            table.refuse(key, "with kind = \"static\"");
+        }
+    } else if step.is_some() {
         table.refuse("safety", "beside a fixed step");
     }
     let safety =
@@ -54,22 +65,20 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe]) -> Option<Solver> {
         safety,
         time_step,
         step,
+        statics,
         stop_when: stop_when?,
         balance_warning,
         balance_stop,
     })
 }
 
-fn solver_kind(table: &Table<'_>) -> Option<SolverKind> {
-    if let Some(node) = table.peek("kind")
-        && matches!(&node.value, Value::Text(kind) if kind == "static")
-    {
-        table.node("kind");
-        let note = Diagnostic::error(&node.place, format!("{} is not available in this version", node.found()));
-        table.reader.note(note.expected("\"explicit\""));
-        return None;
+fn statics(table: &Table<'_>) -> StaticOptions {
+    StaticOptions {
+        control: table.choice::<Control>("control").given(),
+        linear_solver: table.choice("linear_solver").or(LinearSolver::Auto),
+        tolerance: table.quantity("tolerance").positive().or(1e-4),
+        most_steps: table.integer("max_steps").check(|&steps| steps > 0, "at least 1").or(10_000),
     }
-    table.choice("kind").or_if_absent(SolverKind::Explicit)
 }
 
 fn stop_when(solver: &Table<'_>, probes: &[ReadProbe]) -> Option<StopWhen> {

@@ -1,0 +1,295 @@
+//! What an implicit solver needs of a solid: the secant stiffness of its cells, and the damage that a trial would bring.
+//!
+//! The cells and laws are those of the explicit kernel. A trial leaves the history of the edges alone; it advances when
+//! [`Solid::update_internal_forces`] sees the displacements that were found.
+
+use fractum_math::{Mat3, Ragged, Sym3, Vec3};
+
+use crate::body::{Formulation, Kinematics};
+use crate::damage::EdgeDamage;
+use crate::evaluate::{Block, BlockLaw};
+use crate::solid::{BodyModel, Solid};
+
+/// Damage of every cell, block by block; empty rows for blocks without damage.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CellDamage(Vec<Vec<f64>>);
+
+/// One cell: nodes, and a stiffness that is isotropic with the constants λ V (1 - d) and μ V (1 - d).
+#[derive(Clone, Copy, Debug)]
+pub struct SecantCell<'a> {
+    /// Number of its first pair of nodes, counting those of all cells, n² each.
+    pub first_pair: usize,
+    /// Nodes.
+    pub nodes: &'a [u32],
+    /// Gradients of their shape functions over the cell [1/m], as many as nodes.
+    pub gradients: &'a [[f64; 3]],
+    /// λ V (1 - d) [N m].
+    pub lambda: f64,
+    /// μ V (1 - d) [N m].
+    pub mu: f64,
+}
+
+/// An edge that may be damaged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DamagePoint {
+    /// Body it belongs to.
+    pub body: usize,
+    /// Largest equivalent stress so far [Pa].
+    pub kappa: f64,
+    /// Equivalent stress over which softening takes place, E G_f/(l f_t) [Pa].
+    pub softening: f64,
+    /// Whether it is broken.
+    pub broken: bool,
+    /// Damage so far.
+    pub damage: f64,
+}
+
+/// Why a solid cannot be treated by secant stiffness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotSecant {
+    /// A body turns with its elements.
+    Corotational,
+    /// Cracks close.
+    Unilateral,
+    /// Damage takes time.
+    Rate,
+}
+
+impl Solid {
+    /// What of a body keeps it from being treated by secant stiffness, with the index of the body.
+    pub fn not_secant(&self) -> Option<(usize, NotSecant)> {
+        let of = |model: &BodyModel| {
+            let law = model.body.damage.as_ref().map(|zone| &zone.law);
+            match law {
+                _ if model.body.kinematics == Kinematics::Corotational => Some(NotSecant::Corotational),
+                Some(law) if law.unilateral => Some(NotSecant::Unilateral),
+                Some(law) if law.rate_time > 0.0 => Some(NotSecant::Rate),
+                _ => None,
+            }
+        };
+        self.bodies.iter().enumerate().find_map(|(index, model)| Some((index, of(model)?)))
+    }
+
+    /// Nodes of every cell, in the order of [`Solid::for_each_cell`].
+    pub fn cell_nodes(&self) -> Ragged {
+        let nodes = |block: &Block, cell| block.cells.global_nodes(cell).map(|n| n as u32).collect::<Vec<u32>>();
+        Ragged::from_rows(self.blocks.iter().flat_map(|b| (0..b.cells.len()).map(move |cell| nodes(b, cell))))
+    }
+
+    /// Calls `work` for every cell that is still there.
+    pub fn for_each_cell(&self, damage: &CellDamage, mut work: impl FnMut(SecantCell<'_>)) {
+        let (mut nodes, mut gradients) = (Vec::new(), Vec::new());
+        let mut next_pair = 0;
+        for (index, block) in self.blocks.iter().enumerate() {
+            let hooke = &self.bodies[block.body].hooke;
+            let cells = &block.cells;
+            for cell in 0..cells.len() {
+                let count = cells.local_nodes(cell).len();
+                let first_pair = next_pair;
+                next_pair += count * count;
+                let left = damage.0[index].get(cell).map_or(1.0, |d| 1.0 - d) * cells.volume[cell];
+                if left <= 0.0 {
+                    continue;
+                }
+                nodes.clear();
+                nodes.extend(cells.global_nodes(cell).map(|n| n as u32));
+                gradients.clear();
+                gradients.push([0.0; 3]);
+                for g in &cells.gradients[cells.range(cell)] {
+                    for (base, g) in gradients[0].iter_mut().zip(g) {
+                        *base -= g;
+                    }
+                    gradients.push(*g);
+                }
+                work(SecantCell {
+                    first_pair,
+                    nodes: &nodes,
+                    gradients: &gradients,
+                    lambda: hooke.lambda * left,
+                    mu: hooke.mu * left,
+                });
+            }
+        }
+    }
+
+    /// Forces that hold the displacement `field` against the secant stiffness, K u [N].
+    pub fn secant_force(&self, damage: &CellDamage, field: &[Vec3], force: &mut [Vec3]) {
+        force.fill(Vec3::zeros());
+        self.for_each_cell(damage, |cell| {
+            let mut h = Mat3::zeros();
+            for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
+                h += field[node as usize] * Vec3::from(*g).transpose();
+            }
+            let stress = (h + h.transpose()) * cell.mu + Mat3::identity() * (cell.lambda * h.trace());
+            for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
+                force[node as usize] += stress * Vec3::from(*g);
+            }
+        });
+    }
+
+    /// Damage of the cells as it stands.
+    pub fn cell_damage(&self) -> CellDamage {
+        let of = |block: &Block| match &block.law {
+            BlockLaw::Elastic { .. } => Vec::new(),
+            _ => (0..block.cells.len()).map(|cell| block.damage_of(cell)).collect(),
+        };
+        CellDamage(self.blocks.iter().map(of).collect())
+    }
+
+    /// The edges that may be damaged, in the order of [`Solid::effective_stresses`].
+    pub fn damage_points(&self) -> Vec<DamagePoint> {
+        let mut points = Vec::new();
+        self.for_each_point(|body, edge, strength, length| {
+            let model = &self.bodies[body].body;
+            let energy = model.damage.as_ref().map_or(0.0, |zone| zone.law.fracture_energy);
+            let softening = model.elastic.young_modulus * energy / (length * strength);
+            let EdgeDamage { kappa, broken, damage, .. } = *edge;
+            points.push(DamagePoint { body, kappa, softening, broken, damage });
+        });
+        points
+    }
+
+    /// Visits (body, edge, strength, length) of every edge that may be damaged.
+    fn for_each_point(&self, mut work: impl FnMut(usize, &EdgeDamage, f64, f64)) {
+        for block in &self.blocks {
+            if let BlockLaw::Edges(law) = &block.law {
+                for cell in 0..law.edges.len() {
+                    work(block.body, &law.edges[cell], law.strength[cell], law.length[cell]);
+                }
+            }
+        }
+        for (body, model) in self.bodies.iter().enumerate() {
+            if let Some(standard) = &model.standard {
+                for edge in 0..standard.edges.len() {
+                    work(body, &standard.edges[edge], standard.strength[edge], standard.length[edge]);
+                }
+            }
+        }
+    }
+
+    /// Effective stress of every edge that may be damaged under a displacement field [Pa]; linear in it.
+    pub fn effective_stresses(&self, field: &[Vec3], stresses: &mut Vec<Sym3>) {
+        stresses.clear();
+        let stress = |block: &Block, cell: usize| {
+            let strain = Sym3::symmetric_part(&block.cells.gradient(cell, field));
+            self.bodies[block.body].hooke.stress(strain)
+        };
+        for block in self.blocks.iter().filter(|b| matches!(b.law, BlockLaw::Edges(_))) {
+            stresses.extend((0..block.cells.len()).map(|cell| stress(block, cell)));
+        }
+        for model in &self.bodies {
+            let Some(standard) = &model.standard else { continue };
+            let element = |e: u32| {
+                let (block, cell) = model.location[e as usize];
+                stress(&self.blocks[block as usize], cell as usize)
+            };
+            for edge in 0..standard.edges.len() {
+                let (mut sum, mut count) = (Sym3::ZERO, 0);
+                for &e in standard.elements_of_edge.row(edge).iter().filter(|&&e| model.alive[e as usize]) {
+                    sum += element(e);
+                    count += 1;
+                }
+                stresses.push(sum * (1.0 / f64::from(count.max(1))));
+            }
+        }
+    }
+
+    /// Equivalent stress of each of these effective stresses by the criterion of its body [Pa]; zero where it surely
+    /// stays below `threshold`.
+    pub fn equivalent_stresses(
+        &self,
+        points: &[DamagePoint],
+        stresses: &[Sym3],
+        threshold: impl Fn(&DamagePoint) -> f64,
+        q: &mut Vec<f64>,
+    ) {
+        q.clear();
+        q.extend(points.iter().zip(stresses).map(|(point, &stress)| {
+            let criterion = self.criterion(point.body);
+            if criterion.surely_below(stress, threshold(point)) { 0.0 } else { criterion.equivalent_stress(stress) }
+        }));
+    }
+
+    fn criterion(&self, body: usize) -> &crate::material::Criterion {
+        let zone = self.bodies[body].body.damage.as_ref();
+        &zone.expect("a damage point belongs to a body with damage").law.criterion
+    }
+
+    /// Damage of the cells once every edge has seen its equivalent stress `q`.
+    pub fn trial_damage(&self, q: &[f64], trial: &mut CellDamage) {
+        let mut next = 0;
+        trial.0.resize(self.blocks.len(), Vec::new());
+        for (block, trial) in self.blocks.iter().zip(&mut trial.0) {
+            let BlockLaw::Edges(law) = &block.law else { continue };
+            trial.clear();
+            for cell in 0..law.edges.len() {
+                let mut edge = law.edges[cell];
+                law.softens.load(&mut edge, q[next], law.strength[cell], law.length[cell], 0.0);
+                trial.push(edge.damage);
+                next += 1;
+            }
+        }
+        for (body, model) in self.bodies.iter().enumerate() {
+            let Some(standard) = &model.standard else { continue };
+            let mut after = standard.clone();
+            for (edge, state) in after.edges.iter_mut().enumerate() {
+                standard.softens.load(state, q[next], standard.strength[edge], standard.length[edge], 0.0);
+                next += 1;
+            }
+            let edges = model.edges.as_ref().expect("a body with damage has edges");
+            for (block, trial) in self.blocks.iter().zip(&mut trial.0).filter(|(b, _)| b.body == body) {
+                let of = |(cell, &e): (usize, &u32)| {
+                    after.element_damage(&edges.of_element[e as usize]).max(block.damage_of(cell))
+                };
+                *trial = block.items.iter().enumerate().map(of).collect();
+            }
+        }
+    }
+
+    /// Lets every edge see the equivalent stress `q`, as the solid goes straight from the displacements `before` to
+    /// `after`.
+    ///
+    /// What damage takes on the way is booked; [`Solid::update_internal_forces`] at `after` then finds nothing new.
+    pub fn raise_history(&mut self, q: &[f64], before: &[Vec3], after: &[Vec3]) {
+        let Solid { blocks, bodies, .. } = self;
+        let mut next = 0;
+        for block in blocks {
+            let hooke = bodies[block.body].hooke;
+            let BlockLaw::Edges(law) = &mut block.law else { continue };
+            for cell in 0..law.edges.len() {
+                let seen = q[next];
+                next += 1;
+                if seen <= law.edges[cell].kappa {
+                    continue;
+                }
+                let strain = |field: &[Vec3]| Sym3::symmetric_part(&block.cells.gradient(cell, field));
+                let edge = &mut law.edges[cell];
+                let was_broken = edge.broken;
+                let growth = law.softens.load(edge, seen, law.strength[cell], law.length[cell], 0.0);
+                let work = 0.5 * hooke.stress(strain(after)).dot(strain(before));
+                law.dissipated += work * growth * block.cells.volume[cell];
+                law.threshold[cell] = edge.threshold();
+                law.fresh |= edge.broken && !was_broken;
+            }
+        }
+        for standard in bodies.iter_mut().filter_map(|model| model.standard.as_mut()) {
+            for edge in 0..standard.edges.len() {
+                let state = &mut standard.edges[edge];
+                let was_broken = state.broken;
+                standard.softens.load(state, q[next], standard.strength[edge], standard.length[edge], 0.0);
+                standard.fresh |= state.broken && !was_broken;
+                next += 1;
+            }
+        }
+    }
+
+    /// Whether some body may be damaged.
+    pub fn has_damage(&self) -> bool {
+        self.bodies.iter().any(|model| model.body.damage.is_some())
+    }
+
+    /// Whether every body has plain elements: its cells couple the nodes of an element only.
+    pub fn is_standard(&self) -> bool {
+        self.bodies.iter().all(|model| model.body.formulation == Formulation::Standard)
+    }
+}

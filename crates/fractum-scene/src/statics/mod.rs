@@ -1,0 +1,408 @@
+//! Quasi-static equilibrium: secant stiffness, damage by iteration, and a path that follows snap-back.
+//!
+//! Each step finds displacements u, damage d and load parameter t with K(d) u = f(t) and u = p(t) at the supports.
+//! Under path control the step is the one in which the most strained edge goes a given way down its softening curve,
+//! whatever the load does meanwhile: t may go back. With the damage of the last iterate K is linear, so that
+//! u = a + (t - tⁿ) b from two right-hand sides, and t follows from the most strained edge alone.
+
+mod mixing;
+mod path;
+mod support_check;
+mod system;
+
+use fractum_fem::{CellDamage, DamagePoint, Shape};
+use fractum_math::{Sym3, Vec3};
+use fractum_sparse::SparseError;
+
+pub use support_check::check_supports;
+pub use system::LinearWork;
+
+use crate::error::StepError;
+use crate::scene::Scene;
+use crate::step::StepReport;
+use mixing::Mixer;
+use system::System;
+
+/// How the load parameter proceeds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// In steps of the load parameter.
+    Time,
+    /// In steps of damage, through snap-back.
+    Path,
+}
+
+/// How linear systems are solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinearSolver {
+    /// By size and reuse.
+    Auto,
+    /// Sparse Cholesky factorisation.
+    Direct,
+    /// Conjugate gradients.
+    Iterative,
+}
+
+/// Settings of the quasi-static solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StaticSettings {
+    /// How the load parameter proceeds.
+    pub control: Control,
+    /// Largest step of the load parameter [s].
+    pub step: f64,
+    /// End of the load parameter [s].
+    pub end: f64,
+    /// Steps after which the run ends in any case.
+    pub most_steps: u64,
+    /// Unbalanced force over the internal forces at which a step is accepted.
+    pub tolerance: f64,
+    /// Relative residual of iterative linear solutions.
+    pub linear_tolerance: f64,
+    /// How linear systems are solved.
+    pub linear: LinearSolver,
+}
+
+/// How far the most strained edge goes down its softening curve per step of a path: at first, at least and at most.
+const GROWTH: [f64; 3] = [0.05, 0.01, 0.25];
+/// The step that finds the onset of damage goes no further than this.
+const ONSET: f64 = 1e-8;
+/// Accelerated iterations before a step is cut, and below which the next one may be larger.
+const ITERATIONS: [usize; 2] = [16, 10];
+/// Iterations in which damage only grows.
+const MONOTONE_ITERATIONS: usize = 400;
+/// Part of a step of the load parameter below which it is not cut any more.
+const SMALLEST_PART: f64 = 1.0 / 64.0;
+
+enum Dimension {
+    Plane(System<2>),
+    Space(System<3>),
+}
+
+impl Dimension {
+    fn prepare(&mut self, scene: &Scene, damage: &CellDamage) -> Result<(), SparseError> {
+        match self {
+            Dimension::Plane(system) => system.prepare(&scene.solid, damage),
+            Dimension::Space(system) => system.prepare(&scene.solid, damage),
+        }
+    }
+
+    fn solve(&mut self, right: &[Vec3], solution: &mut [Vec3]) -> Result<(), SparseError> {
+        match self {
+            Dimension::Plane(system) => system.solve(right, solution),
+            Dimension::Space(system) => system.solve(right, solution),
+        }
+    }
+}
+
+/// The quasi-static solver of a scene.
+pub struct StaticSolver {
+    settings: StaticSettings,
+    system: Dimension,
+    /// The matrix is that of an undamaged solid and stays so.
+    elastic: bool,
+    prepared: bool,
+    growth: f64,
+    part: f64,
+    damage: CellDamage,
+    trial: CellDamage,
+    start: Vec<Vec3>,
+    slope: Vec<Vec3>,
+    right: Vec<Vec3>,
+    start_stress: Vec<Sym3>,
+    slope_stress: Vec<Sym3>,
+    q: Vec<f64>,
+    /// Equivalent stresses over κ, at least 1: those that the damage of the trial comes from, and those that it brings.
+    loading: Vec<f64>,
+    image: Vec<f64>,
+    mixer: Mixer,
+    /// Reactions and loads of the last equilibrium; empty before the first.
+    outer: [Vec<Vec3>; 2],
+    iterations: usize,
+}
+
+/// Displacements and forces prescribed at one value of the load parameter.
+struct Boundary {
+    displacement: Vec<Vec3>,
+    force: Vec<Vec3>,
+}
+
+impl StaticSolver {
+    /// Prepares the solution of a scene.
+    ///
+    /// # Errors
+    /// [`SparseError::TooLarge`] if the factor does not fit.
+    pub fn new(scene: &Scene, settings: StaticSettings) -> Result<Self, SparseError> {
+        let solid = &scene.solid;
+        let elastic = !solid.has_damage();
+        let reuse = if elastic { (settings.end / settings.step).ceil() as usize } else { 2 };
+        let (held, linear, tolerance) = (scene.supports().held(), settings.linear, settings.linear_tolerance);
+        let system = if solid.body(0).shape == Shape::T3 {
+            Dimension::Plane(System::new(solid, held, linear, reuse, tolerance)?)
+        } else {
+            Dimension::Space(System::new(solid, held, linear, reuse, tolerance)?)
+        };
+        let zero = vec![Vec3::zeros(); solid.reference.len()];
+        Ok(StaticSolver {
+            settings,
+            system,
+            elastic,
+            prepared: false,
+            growth: GROWTH[0],
+            part: 1.0,
+            damage: solid.cell_damage(),
+            trial: solid.cell_damage(),
+            start: zero.clone(),
+            slope: zero.clone(),
+            right: zero,
+            start_stress: Vec::new(),
+            slope_stress: Vec::new(),
+            q: Vec::new(),
+            loading: Vec::new(),
+            image: Vec::new(),
+            mixer: Mixer::default(),
+            outer: [Vec::new(), Vec::new()],
+            iterations: 0,
+        })
+    }
+
+    /// Work of the linear solver, and equilibrium iterations.
+    pub fn work(&self) -> (LinearWork, usize) {
+        let linear = match &self.system {
+            Dimension::Plane(system) => system.work,
+            Dimension::Space(system) => system.work,
+        };
+        (linear, self.iterations)
+    }
+
+    /// Entries of the Cholesky factor; none with an iterative solver.
+    pub fn factor_entries(&self) -> Option<usize> {
+        match &self.system {
+            Dimension::Plane(system) => system.factor_entries(),
+            Dimension::Space(system) => system.factor_entries(),
+        }
+    }
+
+    /// Whether the run is over.
+    pub fn is_finished(&self, scene: &Scene) -> bool {
+        scene.clock.time >= self.settings.end * (1.0 - 1e-12) || scene.clock.step >= self.settings.most_steps
+    }
+
+    /// Finds the next state of equilibrium.
+    ///
+    /// # Errors
+    /// [`StepError`] if there is none, or none that the iteration finds.
+    pub fn step(&mut self, scene: &mut Scene) -> Result<StepReport, StepError> {
+        let points = scene.solid.damage_points();
+        self.damage = scene.solid.cell_damage();
+        let intact = points.iter().all(|point| point.damage == 0.0);
+        let mut monotone = false;
+        loop {
+            let longest = (self.settings.end - scene.clock.time).min(self.settings.step * self.part);
+            let growth = if intact { ONSET } else { self.growth };
+            let found = self.iterate(scene, &points, longest, growth, monotone)?;
+            if let Some((time, iterations)) = found {
+                if !monotone && iterations <= ITERATIONS[1] {
+                    self.growth = (1.4 * self.growth).min(GROWTH[2]);
+                    self.part = (2.0 * self.part).min(1.0);
+                }
+                scene.solid.raise_history(&self.q, &scene.solid.displacement.clone(), &self.start);
+                return scene.accept_equilibrium(&self.start, time, &mut self.outer);
+            }
+            let smallest = match self.settings.control {
+                Control::Path => self.growth <= GROWTH[1] || intact,
+                Control::Time => self.part <= SMALLEST_PART,
+            };
+            if smallest && monotone {
+                let (step, time) = (scene.clock.step, scene.clock.time);
+                return Err(StepError::NoEquilibrium { step, time });
+            }
+            monotone = smallest;
+            self.growth = (0.5 * self.growth).max(GROWTH[1]);
+            self.part = (0.5 * self.part).max(SMALLEST_PART);
+        }
+    }
+
+    /// Iterates to equilibrium from the present state; the new load parameter, with the displacements in `self.start` and
+    /// the equivalent stresses that the edges have seen in `self.q`, or nothing if the iteration does not get there.
+    ///
+    /// - `monotone`: damage only grows from iterate to iterate. As no edge passes `growth` this always ends, with edges
+    ///   that may have seen a little more than they bear in the end
+    fn iterate(
+        &mut self,
+        scene: &mut Scene,
+        points: &[DamagePoint],
+        longest: f64,
+        growth: f64,
+        monotone: bool,
+    ) -> Result<Option<(f64, usize)>, StepError> {
+        let present = scene.clock.time;
+        let mut tau = longest;
+        self.trial.clone_from(&self.damage);
+        self.mixer.reset();
+        self.loading.clear();
+        self.loading.resize(points.len(), 1.0);
+        for iteration in 1..=if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] } {
+            self.iterations += 1;
+            if !(self.elastic && self.prepared) {
+                self.system.prepare(scene, &self.trial).map_err(|e| scene.come_apart(e))?;
+                self.prepared = true;
+            }
+            let ahead = if tau.abs() > 1e-9 * self.settings.end { tau } else { longest };
+            let here = scene.boundary_at(present, present);
+            let there = scene.boundary_at(present, present + ahead);
+            self.respond(scene, &here, &there, ahead)?;
+            if points.is_empty() {
+                tau = longest;
+            } else {
+                scene.solid.effective_stresses(&self.start, &mut self.start_stress);
+                scene.solid.effective_stresses(&self.slope, &mut self.slope_stress);
+                tau = match self.settings.control {
+                    Control::Time => longest,
+                    Control::Path => {
+                        let found = path::largest_step(
+                            &scene.solid,
+                            points,
+                            &self.start_stress,
+                            &self.slope_stress,
+                            growth,
+                            longest,
+                        );
+                        let Some(tau) = found else { return Ok(None) };
+                        tau
+                    }
+                };
+            }
+            for (u, b) in self.start.iter_mut().zip(&self.slope) {
+                *u += b * tau;
+            }
+            for (a, &b) in self.start_stress.iter_mut().zip(&self.slope_stress) {
+                *a += b * tau;
+            }
+            scene.solid.equivalent_stresses(points, &self.start_stress, |point| point.kappa, &mut self.q);
+            if monotone {
+                for ((q, ratio), point) in self.q.iter_mut().zip(&self.loading).zip(points) {
+                    *q = q.max(ratio * point.kappa);
+                }
+            }
+            scene.solid.trial_damage(&self.q, &mut self.trial);
+            let exact = scene.boundary_at(present, present + tau);
+            if scene.unbalance(&self.trial, &self.start, &exact.force, &mut self.right) <= self.settings.tolerance {
+                return Ok(Some((present + tau, iteration)));
+            }
+            self.image.clear();
+            self.image.extend(points.iter().zip(&self.q).map(|(point, q)| (q / point.kappa).max(1.0)));
+            if monotone {
+                self.loading.copy_from_slice(&self.image);
+                continue;
+            }
+            self.mixer.next(&mut self.loading, &self.image);
+            self.loading.iter_mut().for_each(|ratio| *ratio = ratio.max(1.0));
+            for ((q, ratio), point) in self.q.iter_mut().zip(&self.loading).zip(points) {
+                *q = ratio * point.kappa;
+            }
+            scene.solid.trial_damage(&self.q, &mut self.trial);
+        }
+        Ok(None)
+    }
+
+    /// Displacements at the present load parameter and their slope, for the damage of the trial.
+    fn respond(&mut self, scene: &Scene, here: &Boundary, there: &Boundary, ahead: f64) -> Result<(), StepError> {
+        let solid = &scene.solid;
+        let mut field = here.displacement.clone();
+        solid.secant_force(&self.trial, &field, &mut self.right);
+        for (right, force) in self.right.iter_mut().zip(&here.force) {
+            *right = force - *right;
+        }
+        self.system.solve(&self.right, &mut self.start).map_err(|e| scene.come_apart(e))?;
+        for (u, p) in self.start.iter_mut().zip(&field) {
+            *u += p;
+        }
+        let held = scene.supports().held();
+        for (i, p) in field.iter_mut().enumerate() {
+            let bits = held.get(i).copied().unwrap_or(0);
+            let change = (there.displacement[i] - here.displacement[i]) / ahead;
+            *p = Vec3::from_fn(|a, _| if bits & (1 << a) == 0 { 0.0 } else { change[a] });
+        }
+        solid.secant_force(&self.trial, &field, &mut self.right);
+        for (i, right) in self.right.iter_mut().enumerate() {
+            *right = (there.force[i] - here.force[i]) / ahead - *right;
+        }
+        self.system.solve(&self.right, &mut self.slope).map_err(|e| scene.come_apart(e))?;
+        for (u, p) in self.slope.iter_mut().zip(&field) {
+            *u += p;
+        }
+        Ok(())
+    }
+}
+
+impl Scene {
+    /// Forces from outside and prescribed displacements at `time`, the free displacements as they are at `present`.
+    fn boundary_at(&mut self, present: f64, time: f64) -> Boundary {
+        let Scene { solid, supports, loads, .. } = self;
+        let mut displacement = solid.displacement.clone();
+        supports.prescribe(&mut displacement, &solid.reference, present, time);
+        solid.force.fill(Vec3::zeros());
+        loads.add_forces(solid, time, 0.0);
+        Boundary { displacement, force: solid.force.clone() }
+    }
+
+    /// Unbalanced force on the free unknowns over the internal forces.
+    fn unbalance(&self, damage: &CellDamage, field: &[Vec3], load: &[Vec3], force: &mut [Vec3]) -> f64 {
+        self.solid.secant_force(damage, field, force);
+        let held = self.supports.held();
+        let (mut missing, mut scale) = (0.0, 0.0);
+        for (i, (inner, outer)) in force.iter().zip(load).enumerate() {
+            let bits = held.get(i).copied().unwrap_or(0);
+            for axis in 0..3 {
+                scale += inner[axis] * inner[axis] + outer[axis] * outer[axis];
+                if bits & (1 << axis) == 0 {
+                    missing += (outer[axis] - inner[axis]).powi(2);
+                }
+            }
+        }
+        if scale > 0.0 { (missing / scale).sqrt() } else { 0.0 }
+    }
+
+    /// Takes over displacements in equilibrium at `time`: history, reactions, ledger, removal.
+    fn accept_equilibrium(
+        &mut self,
+        displacement: &[Vec3],
+        time: f64,
+        outer: &mut [Vec<Vec3>; 2],
+    ) -> Result<StepReport, StepError> {
+        let before = std::mem::replace(&mut self.solid.displacement, displacement.to_vec());
+        self.solid.update_internal_forces(0.0, true);
+        let inner = self.solid.force.clone();
+        self.loads.add_forces(&mut self.solid, time, 0.0);
+        let load: Vec<Vec3> = self.solid.force.iter().zip(&inner).map(|(f, i)| f - i).collect();
+        let reaction = self.supports.take_reactions(&self.solid.force);
+        let mut external = 0.0;
+        for i in 0..displacement.len() {
+            let moved = displacement[i] - before[i];
+            let mean = |now: &[Vec3], then: &[Vec3]| (now[i] + then.get(i).copied().unwrap_or_default()) * 0.5;
+            external += moved.dot(&(mean(&reaction, &outer[0]) + mean(&load, &outer[1])));
+        }
+        *outer = [reaction, load];
+        self.books.external += external;
+        self.clock.dt_before = time - self.clock.time;
+        self.clock.dt_after = self.clock.dt_before;
+        self.clock.time = time;
+        self.clock.step += 1;
+        self.book_equilibrium()?;
+        Ok(self.release_cut_elements())
+    }
+
+    /// The error of a system without solution.
+    fn come_apart(&self, error: SparseError) -> StepError {
+        let (step, time) = (self.clock.step, self.clock.time);
+        match error {
+            SparseError::Indefinite { node, .. } => {
+                let p = self.solid.reference[node];
+                StepError::ComeApart { step, time, x: p.x, y: p.y, z: p.z }
+            }
+            SparseError::Stalled { .. } | SparseError::TooLarge { .. } => {
+                StepError::NoSolution { step, time, reason: error.to_string() }
+            }
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! How far to go along a solution that is linear in the load parameter, a + τ b.
+
+use fractum_fem::{DamagePoint, Solid};
+use fractum_math::Sym3;
+
+/// What an edge may see in a step: κ and a part of the larger of κ and the scale of its softening [Pa].
+fn limit(point: &DamagePoint, growth: f64) -> f64 {
+    point.kappa + growth * point.kappa.max(point.softening)
+}
+
+/// The largest τ ≤ `longest` at which no edge that is not broken yet sees more than `growth` lets it; none if every τ
+/// does.
+///
+/// The equivalent stresses are convex in τ, and so is their maximum over the edges: Newton's method from the right
+/// comes down to the upper root without passing it.
+pub(super) fn largest_step(
+    solid: &Solid,
+    points: &[DamagePoint],
+    start: &[Sym3],
+    slope: &[Sym3],
+    growth: f64,
+    longest: f64,
+) -> Option<f64> {
+    let mut stresses = Vec::with_capacity(points.len());
+    let mut q = Vec::with_capacity(points.len());
+    let mut worst = |tau: f64| -> (f64, usize) {
+        stresses.clear();
+        stresses.extend(start.iter().zip(slope).map(|(&a, &b)| a + b * tau));
+        solid.equivalent_stresses(points, &stresses, |point| limit(point, growth), &mut q);
+        let ratio = |i: usize| if points[i].broken { 0.0 } else { q[i] / limit(&points[i], growth) };
+        (0..points.len()).map(|i| (ratio(i), i)).fold((0.0, usize::MAX), |a, b| if b.0 > a.0 { b } else { a })
+    };
+    let mut tau = longest;
+    for _ in 0..200 {
+        let (ratio, edge) = worst(tau);
+        if ratio <= 1.0 + 1e-12 {
+            return Some(tau);
+        }
+        // Slope of the worst edge alone, by a difference towards where the root must lie.
+        let h = 1e-6 * (tau.abs() + 1e-3 * longest.abs());
+        let one = |tau: f64| {
+            let mut q = Vec::with_capacity(1);
+            solid.equivalent_stresses(&points[edge..=edge], &[start[edge] + slope[edge] * tau], |_| 0.0, &mut q);
+            q[0] / limit(&points[edge], growth)
+        };
+        let rise = (ratio - one(tau - h)) / h;
+        if rise.is_nan() || rise <= 0.0 {
+            return None;
+        }
+        tau -= (ratio - 1.0) / rise;
+    }
+    None
+}

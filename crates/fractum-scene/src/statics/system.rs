@@ -1,0 +1,169 @@
+//! The secant stiffness as a matrix, and its solution.
+
+use std::sync::Arc;
+
+use fractum_fem::{CellDamage, Solid};
+use fractum_math::Vec3;
+use fractum_sparse::{BlockMatrix, Factor, Motions, Pattern, Preconditioner, SparseError, conjugate_gradients};
+
+use super::LinearSolver;
+
+/// Unknowns up to which one factorisation is cheaper than an iteration, in space and in the plane.
+const DIRECT: [usize; 2] = [25_000, 300_000];
+/// Solutions with one matrix from which a factorisation pays on larger ones, and the unknowns up to which it fits.
+const REUSE: usize = 7;
+const DIRECT_IF_REUSED: usize = 250_000;
+/// Nodes in a cluster of the coarse space.
+const CLUSTER: usize = 64;
+/// Iterations after which the linear solver gives up.
+const MOST_ITERATIONS: usize = 5000;
+
+/// Work of the linear solver so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LinearWork {
+    /// Factorisations, complete or incomplete.
+    pub factorisations: usize,
+    /// Solutions.
+    pub solutions: usize,
+    /// Iterations of conjugate gradients.
+    pub iterations: usize,
+}
+
+enum Method<const B: usize> {
+    Direct(Box<Factor>),
+    Iterative(Option<Preconditioner<B>>),
+}
+
+/// Linear system of the free unknowns, B per node.
+pub(super) struct System<const B: usize> {
+    matrix: BlockMatrix<B>,
+    /// Place of the block of every pair of nodes of every cell.
+    pairs: Vec<u32>,
+    held: Vec<u8>,
+    places: Vec<[f64; 3]>,
+    method: Method<B>,
+    tolerance: f64,
+    right: Vec<[f64; B]>,
+    solution: Vec<[f64; B]>,
+    pub(super) work: LinearWork,
+}
+
+impl<const B: usize> System<B> {
+    /// - `reuse`: solutions that are expected with one matrix
+    pub(super) fn new(
+        solid: &Solid,
+        held: &[u8],
+        choice: LinearSolver,
+        reuse: usize,
+        tolerance: f64,
+    ) -> Result<Self, SparseError> {
+        let nodes = solid.reference.len();
+        let cells = solid.cell_nodes();
+        let pattern = Arc::new(Pattern::from_cliques(nodes, &cells));
+        if pattern.blocks() > u32::MAX as usize {
+            return Err(SparseError::TooLarge { entries: pattern.blocks() });
+        }
+        let place = |(&i, &j): (&u32, &u32)| pattern.place(i as usize, j as usize) as u32;
+        let pairs =
+            cells.rows().flat_map(|row| row.iter().flat_map(move |i| row.iter().map(move |j| (i, j)))).map(place);
+        let pairs = pairs.collect();
+        let places: Vec<[f64; 3]> = solid.reference.iter().map(|&p| p.into()).collect();
+        let unknowns = nodes * B;
+        let direct = match choice {
+            LinearSolver::Direct => true,
+            LinearSolver::Iterative => false,
+            LinearSolver::Auto => {
+                unknowns <= DIRECT[usize::from(B == 2)] || reuse >= REUSE && unknowns <= DIRECT_IF_REUSED
+            }
+        };
+        let method =
+            if direct { Method::Direct(Box::new(Factor::new(&pattern, &places, B)?)) } else { Method::Iterative(None) };
+        let held = if held.is_empty() { vec![0; nodes] } else { held.to_vec() };
+        let zero = vec![[0.0; B]; nodes];
+        Ok(System {
+            matrix: BlockMatrix::zeros(pattern),
+            pairs,
+            held,
+            places,
+            method,
+            tolerance,
+            right: zero.clone(),
+            solution: zero,
+            work: LinearWork::default(),
+        })
+    }
+
+    /// Takes over the stiffness of a solid at this damage.
+    pub(super) fn prepare(&mut self, solid: &Solid, damage: &CellDamage) -> Result<(), SparseError> {
+        self.matrix.clear();
+        let (matrix, pairs) = (&mut self.matrix, &self.pairs);
+        solid.for_each_cell(damage, |cell| {
+            let mut place = pairs[cell.first_pair..].iter();
+            for gi in cell.gradients {
+                for (gj, &place) in cell.gradients.iter().zip(&mut place) {
+                    let dot: f64 = (0..B).map(|a| gi[a] * gj[a]).sum();
+                    let block = std::array::from_fn(|a| {
+                        std::array::from_fn(|b| {
+                            let diagonal = if a == b { dot } else { 0.0 };
+                            cell.lambda * gi[a] * gj[b] + cell.mu * (gi[b] * gj[a] + diagonal)
+                        })
+                    });
+                    matrix.add_at(place as usize, block);
+                }
+            }
+        });
+        let spare = matrix.largest_diagonal();
+        matrix.hold(&self.held, spare);
+        self.work.factorisations += 1;
+        match &mut self.method {
+            Method::Direct(factor) => factor.refactor(&self.matrix),
+            Method::Iterative(preconditioner) => {
+                let motions = Motions { places: &self.places, held: &self.held, cluster: CLUSTER };
+                *preconditioner = Some(Preconditioner::new(&self.matrix, Some(motions))?);
+                Ok(())
+            }
+        }
+    }
+
+    /// Solves for the free unknowns; the held ones stay zero.
+    pub(super) fn solve(&mut self, right: &[Vec3], solution: &mut [Vec3]) -> Result<(), SparseError> {
+        for (i, (to, from)) in self.right.iter_mut().zip(right).enumerate() {
+            *to = std::array::from_fn(|a| if self.held[i] >> a & 1 == 1 { 0.0 } else { from[a] });
+        }
+        self.work.solutions += 1;
+        match &mut self.method {
+            Method::Direct(factor) => {
+                self.solution.copy_from_slice(&self.right);
+                factor.solve(&mut self.solution);
+            }
+            Method::Iterative(preconditioner) => {
+                let preconditioner = preconditioner.as_mut().expect("the matrix was prepared");
+                self.solution.fill([0.0; B]);
+                let done = conjugate_gradients(
+                    &self.matrix,
+                    &self.right,
+                    &mut self.solution,
+                    preconditioner,
+                    self.tolerance,
+                    MOST_ITERATIONS,
+                );
+                self.work.iterations += done.iterations;
+                if done.residual.is_nan() || done.residual > self.tolerance.max(1e-6) {
+                    return Err(SparseError::Stalled { iterations: done.iterations });
+                }
+            }
+        }
+        for (to, from) in solution.iter_mut().zip(&self.solution) {
+            *to = Vec3::from_fn(|a, _| if a < B { from[a] } else { 0.0 });
+        }
+        Ok(())
+    }
+
+    /// Whether the system is factored, and the entries of the factor.
+    pub(super) fn factor_entries(&self) -> Option<usize> {
+        match &self.method {
+            Method::Direct(factor) => Some(factor.entries()),
+            Method::Iterative(_) => None,
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Quasi-static equilibrium: patch test, both linear solvers, snap-back of a bar, free bodies.
+
+use std::sync::Arc;
+
+use fractum_fem::{
+    Body, Criterion, DamageLaw, DamageZone, Elastic, Formulation, LocalDamping, Plane, Region, Shape, Softening, Solid,
+};
+use fractum_math::{Mat3, Sym3, Vec3};
+use fractum_mesh::generate::{Jitter, structured_rectangle};
+use fractum_scene::coupling::Debris;
+use fractum_scene::statics::{Control, LinearSolver, StaticSettings, StaticSolver, check_supports};
+use fractum_scene::{
+    Guard, Load, Loads, Motion, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeStepSettings,
+};
+use fractum_tests::{CONCRETE, jittered_box};
+
+const FORMULATIONS: [Formulation; 2] = [Formulation::Standard, Formulation::Smoothed];
+
+fn settings(control: Control, linear: LinearSolver) -> StaticSettings {
+    StaticSettings { control, step: 0.1, end: 1.0, most_steps: 2000, tolerance: 1e-6, linear_tolerance: 1e-13, linear }
+}
+
+fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>) -> Scene {
+    let supports = Supports::new(supports, &solid.reference).unwrap();
+    let loads = Loads::new(loads, solid.reference.len());
+    let debris = Debris::new(&solid, vec![Surface::default(); solid.body_count()]);
+    let settings = SceneSettings {
+        time_step: TimeStepSettings { safety: 0.8, element_bound: true, fixed: None, end: 1.0 },
+        damping: LocalDamping::default(),
+        stiffness_time: 0.0,
+        guard: Guard { warning: 1e-3, stop: 1e-2 },
+    };
+    Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
+}
+
+fn nodes_where(solid: &Solid, keep: impl Fn(&Vec3) -> bool) -> Vec<u32> {
+    (0..solid.reference.len() as u32).filter(|&n| keep(&solid.reference[n as usize])).collect()
+}
+
+#[test]
+fn affine_motion_of_the_surface_moves_the_inside_affinely() {
+    let slope = Mat3::new(1.0, 0.3, -0.2, 0.5, -0.7, 0.4, 0.1, 0.6, 0.9) * 1e-4;
+    for formulation in FORMULATIONS {
+        for linear in [LinearSolver::Direct, LinearSolver::Iterative] {
+            let (nodes, body) = jittered_box([4, 3, 5], Vec3::new(1.0, 0.8, 1.2));
+            let solid = Solid::new(nodes, vec![Body { formulation, ..body }]).unwrap();
+            let outside = |p: &Vec3| (0..3).any(|a| p[a] < 1e-9 || p[a] > [1.0, 0.8, 1.2][a] - 1e-9);
+            let surface = nodes_where(&solid, outside);
+            let support = |axis: usize| {
+                let motion: Arc<dyn Fn(f64, &Vec3) -> f64 + Send + Sync> =
+                    Arc::new(move |t, x: &Vec3| t * (slope * x)[axis]);
+                Support::new(&format!("surface {axis}"), surface.clone(), axis, Motion::Displacement(motion))
+            };
+            let mut scene = scene(solid, (0..3).map(support).collect(), Vec::new());
+            let mut solver = StaticSolver::new(&scene, settings(Control::Time, linear)).unwrap();
+            while !solver.is_finished(&scene) {
+                solver.step(&mut scene).unwrap();
+            }
+            for i in 0..scene.solid.reference.len() {
+                let error = (scene.solid.displacement[i] - slope * scene.solid.reference[i]).norm();
+                assert!(error < 1e-12 * slope.norm(), "{formulation:?} {linear:?}: {error:e}");
+            }
+            assert!(scene.ledger().relative_residual() < 1e-12);
+        }
+    }
+}
+
+fn soft() -> DamageLaw {
+    DamageLaw {
+        criterion: Criterion::rankine(),
+        tensile_strength: 3e6,
+        fracture_energy: 60.0,
+        softening: Softening::Exponential,
+        residual: 0.02,
+        unilateral: false,
+        rate_time: 0.0,
+    }
+}
+
+/// A plane bar that can be damaged in its middle only, long enough to snap back.
+fn bar(formulation: Formulation) -> Solid {
+    let mesh = structured_rectangle([40, 4], [1.0, 0.1], Some(Jitter { fraction: 0.1, seed: 2 }));
+    let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
+    let elastic = Elastic { poisson_ratio: 0.0, ..CONCRETE };
+    let body = Body::new("bar", Shape::T3, elements, elastic);
+    let body = Body { formulation, plane: Plane::Stress, thickness: 0.1, ..body };
+    let near = |p: &Vec3| (p.x - 0.5).abs() < 0.03;
+    let region = Region::Edges(body.edge_midpoints(&mesh.nodes).iter().map(near).collect());
+    let zone = DamageZone { law: soft(), region, strength_factor: Vec::new(), reduce_strength_to_fit: false };
+    Solid::new(mesh.nodes, vec![Body { damage: Some(zone), ..body }]).unwrap()
+}
+
+#[test]
+fn path_follows_the_snap_back_of_a_bar_and_closes_its_balance() {
+    for formulation in FORMULATIONS {
+        let solid = bar(formulation);
+        let (left, right) = (nodes_where(&solid, |p| p.x < 1e-9), nodes_where(&solid, |p| p.x > 1.0 - 1e-9));
+        let corner = nodes_where(&solid, |p| p.x < 1e-9 && p.y < 1e-9);
+        let supports = vec![
+            Support::new("left", left, 0, Motion::Fixed),
+            Support::new("corner", corner, 1, Motion::Fixed),
+            Support::new("right", right.clone(), 0, Motion::Displacement(Arc::new(|t, _| 4e-4 * t))),
+        ];
+        let mut scene = scene(solid, supports, Vec::new());
+        let mut solver = StaticSolver::new(&scene, settings(Control::Path, LinearSolver::Direct)).unwrap();
+        let places = scene.supports().places(&right);
+        let (mut peak, mut back, mut last, mut now) = (0.0f64, false, 0.0, 0.0);
+        while !solver.is_finished(&scene) && now >= 0.1 * peak {
+            solver.step(&mut scene).unwrap();
+            now = scene.supports().reaction(&places, &Vec3::x());
+            peak = peak.max(now);
+            back |= scene.clock.time < last;
+            last = scene.clock.time;
+        }
+        assert!(back, "{formulation:?}: the end of the bar goes back");
+        assert!(now < 0.1 * peak, "{formulation:?}: {now} of {peak} left");
+        let strength = soft().tensile_strength * 0.01;
+        assert!((peak / strength - 1.0).abs() < 0.03, "{formulation:?}: {peak} of {strength} N");
+        let residual = scene.ledger().residual_max_relative;
+        assert!(residual < 1e-4, "{formulation:?}: {residual:e}");
+    }
+}
+
+#[test]
+fn a_body_that_nothing_holds_is_named_with_its_motion() {
+    let (nodes, body) = jittered_box([2, 2, 2], Vec3::new(1.0, 1.0, 1.0));
+    let solid = Solid::new(nodes, vec![Body { name: "brick".into(), ..body }]).unwrap();
+    let bottom = nodes_where(&solid, |p| p.z < 1e-9);
+    let held = |axes: &[usize]| {
+        let sets = axes.iter().map(|&a| Support::new(&format!("{a}"), bottom.clone(), a, Motion::Fixed)).collect();
+        Supports::new(sets, &solid.reference).unwrap()
+    };
+    let motion = |axes: &[usize]| match check_supports(&solid, held(axes).held()) {
+        Err(SceneError::FreeBody { body, motion, .. }) => format!("{body}: {motion}"),
+        other => format!("{other:?}"),
+    };
+    assert_eq!(motion(&[0, 1, 2]), "Ok(())");
+    assert_eq!(motion(&[0, 2]), "brick: move along y");
+    assert_eq!(motion(&[2]).split(':').next(), Some("brick"));
+    assert!(motion(&[]).starts_with("brick: "));
+}
+
+#[test]
+fn a_pressed_block_has_the_stress_of_its_load() {
+    let (nodes, body) = jittered_box([3, 3, 3], Vec3::new(1.0, 1.0, 1.0));
+    let solid = Solid::new(nodes, vec![body]).unwrap();
+    let at = |axis: usize| nodes_where(&solid, |p| p[axis] < 1e-9);
+    let supports = (0..3).map(|a| Support::new(&format!("{a}"), at(a), a, Motion::Fixed)).collect();
+    let top = nodes_where(&solid, |p| p.z > 1.0 - 1e-9);
+    // Equal forces are no uniform traction on a jittered mesh, but their sum is.
+    let share = 1.0 / top.len() as f64;
+    let load =
+        Load::Nodal { nodes: top.iter().map(|&n| (n, share)).collect(), axis: 2, value: Arc::new(|t, _| -1e6 * t) };
+    let mut scene = scene(solid, supports, vec![load]);
+    let mut solver = StaticSolver::new(&scene, settings(Control::Time, LinearSolver::Iterative)).unwrap();
+    while !solver.is_finished(&scene) {
+        solver.step(&mut scene).unwrap();
+    }
+    let fields = scene.solid.element_fields(0);
+    let mean = (0..fields.len() as u32).map(|e| fields[e as usize].0 * scene.solid.element_volume(0, e));
+    let mean = mean.fold(Sym3::ZERO, |a, b| a + b);
+    assert!((mean.0[2] + 1e6).abs() < 1.0, "{mean:?}");
+}
