@@ -10,7 +10,8 @@ use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::{Control, LinearSolver, StaticSettings, StaticSolver, check_supports};
 use fractum_scene::{
-    Guard, Load, Loads, Motion, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeStepSettings,
+    Guard, Load, Loads, Motion, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeFunction,
+    TimeStepSettings,
 };
 use fractum_tests::{CONCRETE, jittered_box};
 
@@ -47,8 +48,7 @@ fn affine_motion_of_the_surface_moves_the_inside_affinely() {
             let outside = |p: &Vec3| (0..3).any(|a| p[a] < 1e-9 || p[a] > [1.0, 0.8, 1.2][a] - 1e-9);
             let surface = nodes_where(&solid, outside);
             let support = |axis: usize| {
-                let motion: Arc<dyn Fn(f64, &Vec3) -> f64 + Send + Sync> =
-                    Arc::new(move |t, x: &Vec3| t * (slope * x)[axis]);
+                let motion: TimeFunction = Arc::new(move |t, x: &Vec3| t * (slope * x)[axis]);
                 Support::new(&format!("surface {axis}"), surface.clone(), axis, Motion::Displacement(motion))
             };
             let mut scene = scene(solid, (0..3).map(support).collect(), Vec::new());

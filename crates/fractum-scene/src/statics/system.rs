@@ -31,7 +31,7 @@ pub struct LinearWork {
 
 enum Method<const B: usize> {
     Direct(Box<Factor>),
-    Iterative(Option<Preconditioner<B>>),
+    Iterative(Option<Box<Preconditioner<B>>>),
 }
 
 /// Linear system of the free unknowns, B per node.
@@ -119,7 +119,7 @@ impl<const B: usize> System<B> {
             Method::Direct(factor) => factor.refactor(&self.matrix),
             Method::Iterative(preconditioner) => {
                 let motions = Motions { places: &self.places, held: &self.held, cluster: CLUSTER };
-                *preconditioner = Some(Preconditioner::new(&self.matrix, Some(motions))?);
+                *preconditioner = Some(Box::new(Preconditioner::new(&self.matrix, Some(motions))?));
                 Ok(())
             }
         }
