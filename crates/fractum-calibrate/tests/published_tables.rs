@@ -100,9 +100,10 @@ fn a_silica_cylinder_pulls_bends_and_twists_like_table_2_5() {
     let found = invert(&mut sample, young, poisson, 0.68).unwrap();
     let calibrated = differences(&sample);
     println!("calibrated beams: tension, bending, torsion {calibrated:.4?} {:?}", found.micro);
-    // The book prints 1.20, 4.16 and 6.13 % for a cylinder whose size it does not give. On ours the loose layer at the
-    // wall weighs more in torsion, which feels the fourth power of the radius: 9 % remain there.
-    for (difference, allowed) in calibrated.iter().zip([0.0120, 0.0416, 0.10]) {
+    // The book prints 1.20, 4.16 and 6.13 % for a cylinder whose size it does not give. Tension and bending meet that. In
+    // torsion the soft layer at the wall weighs with the fourth power of the radius: 13 particles across miss the book's
+    // value by 2 %, and the limit here is what this program reaches.
+    for (difference, allowed) in calibrated.iter().zip([0.0120, 0.0416, 0.085]) {
         assert!(difference.abs() <= allowed, "{difference} against {allowed}");
     }
 }
@@ -116,9 +117,10 @@ fn a_silica_cylinder_vibrates_like_table_2_6() {
     let impact = lab::impact(&sample, density, young).unwrap();
     let speed = impact.wave_speed / impact.theory - 1.0;
     println!("wave speed {speed:+.4}");
-    // The book prints 0.38, 6.63, 0.50 and 0.40 %; torsion stays 3 % slow here as in the static test.
-    assert!(speed.abs() <= 0.006, "wave speed {speed}");
-    for (mode, allowed) in [(lab::Mode::Tension, 0.0038), (lab::Mode::Bending, 0.0663), (lab::Mode::Torsion, 0.035)] {
+    // The book prints 0.38, 6.63, 0.50 and 0.40 %. Torsion misses its 0.50 %: the rod is soft there as in the static test, and
+    // the limit is that of this program.
+    assert!(speed.abs() <= 0.0040, "wave speed {speed}");
+    for (mode, allowed) in [(lab::Mode::Tension, 0.0038), (lab::Mode::Bending, 0.0663), (lab::Mode::Torsion, 0.025)] {
         let v = lab::vibration(&sample, mode, density, young, poisson).unwrap();
         let difference = v.period / v.theory - 1.0;
         println!("{mode:?} {difference:+.4} in {} steps", v.steps);
