@@ -285,7 +285,7 @@ impl Plan {
         choose(scene.bonded.bond_counts().0 > 0, "cohesive beams", "no bonded body");
         let touched = !scene.grounds.is_empty() && scene.solid.body_count() > 0;
         choose(touched, "contact of solids with rigid bodies", "no rigid body, or no solid");
-        choose(!scene.contacts.is_empty(), "contact of particles by Hertz' law", "no particles at the start");
+        choose(!scene.bonded.particles.is_empty(), "contact of particles by Hertz' law", "no particles at the start");
         let damping = case.damping;
         choose(damping.local > 0.0 || damping.mass > 0.0, "damping on the nodes", "not asked for");
         let viscous = damping.stiffness > 0.0 || damping.bulk_linear > 0.0 || damping.bulk_quadratic > 0.0;
