@@ -6,7 +6,7 @@ use fractum_fem::{Body, Criterion, DamageLaw, Formulation, Kinematics, LocalDamp
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Guard, Load, Loads, Motion, RigidPlane, Scene, SceneSettings, StepError, Support, Supports, Surface,
+    Guard, Load, Loads, Motion, RigidGround, Scene, SceneSettings, StepError, Support, Supports, Surface,
     TimeStepSettings,
 };
 use fractum_tests::{jittered_box, noise};
@@ -334,7 +334,7 @@ fn a_block_dropped_on_a_plane_bounces_and_closes_its_balance() {
     let mut solid = Solid::new(nodes, vec![body]).unwrap();
     solid.velocity.fill(Vec3::new(0.3, 0.0, -1.0));
     let debris = Debris::new(&solid, vec![Surface::default()]);
-    let planes = vec![RigidPlane::new(Vec3::zeros(), Vec3::z(), Surface { friction: 0.3, ..Surface::default() })];
+    let planes = vec![RigidGround::plane(Vec3::zeros(), Vec3::z(), Surface { friction: 0.3, ..Surface::default() })];
     let supports = Supports::default();
     let mut scene = Scene::new(solid, supports, Loads::default(), debris, planes, &surface, settings(8e-4));
     let mut stored = 0.0f64;

@@ -28,7 +28,7 @@ pub use broad_phase::close_pairs;
 pub use error::SurfaceError;
 pub use frame::Frame;
 pub use hierarchy::{DoubleHierarchy, Foot};
-pub use shape::Shape;
+pub use shape::{Outside, Shape};
 pub use sphere_facet::{ContactWork, Ground, GroundContacts, Spheres, Touch};
 pub use sphere_sphere::SphereContacts;
 pub use surface::FacetMesh;

@@ -35,73 +35,95 @@ impl Shape {
     /// From outside there is one contact at most, since the shapes are convex; from inside, one with each wall.
     pub fn feet(&self, hollow: bool, centre: &Vec3, radius: f64, feet: &mut Vec<Foot>) {
         feet.clear();
+        if !hollow {
+            let Outside { normal, distance, curvature } = self.outside(centre);
+            if distance < radius {
+                feet.push(foot(0, normal, distance, curvature));
+            }
+            return;
+        }
         let mut add = |feature: u32, normal: Vec3, distance: f64, curvature: f64| {
             if distance < radius {
-                let offset = normal * distance;
-                feet.push(Foot {
-                    feature,
-                    facet: feature,
-                    offset,
-                    normal,
-                    distance,
-                    curvature,
-                    weight: 1.0,
-                    twin: None,
-                });
+                feet.push(foot(feature, normal, distance, curvature));
             }
         };
-        let out = centre.map(|c| if c < 0.0 { -1.0 } else { 1.0 });
         let axis = |k: usize| Vec3::ith(k, 1.0);
-        let radial = Vec3::new(centre.x, centre.y, 0.0);
-        let rho = radial.norm();
-        let away = if rho > 0.0 { radial / rho } else { Vec3::x() };
-        match (*self, hollow) {
-            (Shape::HalfSpace, _) => add(0, -axis(2), centre.z, 0.0),
-            (Shape::Cuboid { half }, false) => {
-                let beyond = centre - centre.zip_map(&half, |c, h| c.clamp(-h, h));
-                let distance = beyond.norm();
-                if distance > 0.0 {
-                    add(0, -beyond / distance, distance, 0.0);
-                } else {
-                    let depth = |k: usize| half[k] - centre[k].abs();
-                    let k = (1..3).fold(0, |least, k| if depth(k) < depth(least) { k } else { least });
-                    add(0, axis(k) * -out[k], -depth(k), 0.0);
-                }
-            }
-            (Shape::Cuboid { half }, true) => {
+        match *self {
+            Shape::HalfSpace => add(0, -axis(2), centre.z, 0.0),
+            Shape::Cuboid { half } => {
                 for k in 0..3 {
                     add(2 * k as u32, axis(k), half[k] - centre[k], 0.0);
                     add(2 * k as u32 + 1, -axis(k), half[k] + centre[k], 0.0);
                 }
             }
-            (Shape::Cylinder { radius: wide, half_length }, false) => {
-                let (side, cap) = (rho - wide, centre.z.abs() - half_length);
-                let up = axis(2) * out.z;
-                if side > 0.0 && cap > 0.0 {
-                    let distance = side.hypot(cap);
-                    add(0, -(away * side + up * cap) / distance, distance, 0.0);
-                } else if side > cap {
-                    add(0, -away, side, 0.5 / wide);
-                } else {
-                    add(0, -up, cap, 0.0);
-                }
-            }
-            (Shape::Cylinder { radius: wide, half_length }, true) => {
+            Shape::Cylinder { radius: wide, half_length } => {
+                let (away, rho) = direction(Vec3::new(centre.x, centre.y, 0.0), Vec3::x());
                 add(0, away, wide - rho, -0.5 / wide);
                 add(1, axis(2), half_length - centre.z, 0.0);
                 add(2, -axis(2), half_length + centre.z, 0.0);
             }
-            (Shape::Ball { radius: wide }, hollow) => {
-                let from = centre.norm();
-                let outward = if from > 0.0 { centre / from } else { Vec3::z() };
-                if hollow {
-                    add(0, outward, wide - from, -1.0 / wide);
-                } else {
-                    add(0, -outward, from - wide, 1.0 / wide);
-                }
+            Shape::Ball { radius: wide } => {
+                let (away, from) = direction(*centre, Vec3::z());
+                add(0, away, wide - from, -1.0 / wide);
             }
         }
     }
+
+    /// The surface nearest to a point that is, or should be, outside.
+    pub fn outside(&self, centre: &Vec3) -> Outside {
+        let found = |normal: Vec3, distance: f64, curvature: f64| Outside { normal, distance, curvature };
+        let axis = |k: usize| Vec3::ith(k, if centre[k] < 0.0 { -1.0 } else { 1.0 });
+        match *self {
+            Shape::HalfSpace => found(-Vec3::z(), centre.z, 0.0),
+            Shape::Cuboid { half } => {
+                let beyond = centre - centre.zip_map(&half, |c, h| c.clamp(-h, h));
+                let distance = beyond.norm();
+                if distance > 0.0 {
+                    return found(-beyond / distance, distance, 0.0);
+                }
+                let depth = |k: usize| half[k] - centre[k].abs();
+                let k = (1..3).fold(0, |least, k| if depth(k) < depth(least) { k } else { least });
+                found(-axis(k), -depth(k), 0.0)
+            }
+            Shape::Cylinder { radius: wide, half_length } => {
+                let (away, rho) = direction(Vec3::new(centre.x, centre.y, 0.0), Vec3::x());
+                let (side, cap) = (rho - wide, centre.z.abs() - half_length);
+                if side > 0.0 && cap > 0.0 {
+                    let distance = side.hypot(cap);
+                    found(-(away * side + axis(2) * cap) / distance, distance, 0.0)
+                } else if side > cap {
+                    found(-away, side, 0.5 / wide)
+                } else {
+                    found(-axis(2), cap, 0.0)
+                }
+            }
+            Shape::Ball { radius: wide } => {
+                let (away, from) = direction(*centre, Vec3::z());
+                found(-away, from - wide, 1.0 / wide)
+            }
+        }
+    }
+}
+
+/// The surface of a shape nearest to a point outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outside {
+    /// Unit vector from the point into the shape.
+    pub normal: Vec3,
+    /// Distance of the surface along it [m]; negative within the shape.
+    pub distance: f64,
+    /// Mean curvature there [1/m].
+    pub curvature: f64,
+}
+
+fn foot(feature: u32, normal: Vec3, distance: f64, curvature: f64) -> Foot {
+    Foot { feature, facet: feature, offset: normal * distance, normal, distance, curvature, weight: 1.0, twin: None }
+}
+
+/// Unit vector and length; `otherwise` where there is no length.
+fn direction(vector: Vec3, otherwise: Vec3) -> (Vec3, f64) {
+    let length = vector.norm();
+    (if length > 0.0 { vector / length } else { otherwise }, length)
 }
 
 #[cfg(test)]

@@ -159,8 +159,11 @@ impl<L: ContactLaw> GroundContacts<L> {
             Ground::Rigid { frame, .. } | Ground::Shape { frame, .. } => frame.to_body(x),
             Ground::Deformable { .. } => *x,
         };
+        if spheres.position.is_empty() {
+            return false;
+        }
         let most = |moved: &mut dyn Iterator<Item = f64>| moved.fold(0.0, f64::max).sqrt();
-        if self.searched_at.len() == spheres.position.len() && !spheres.position.is_empty() {
+        if self.searched_at.len() == spheres.position.len() {
             let sphere = |(x, at): (&Vec3, &Vec3)| (to_ground(x) - at).norm_squared();
             let mut used = most(&mut spheres.position.iter().zip(&self.searched_at).map(sphere));
             if let Ground::Deformable { points, .. } = ground {

@@ -28,6 +28,6 @@ pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fragment::{Fragment, fragments};
 pub use ledger::{EnergyKind, Guard, Ledger};
 pub use probe::{CountKind, Probe};
-pub use rigid::RigidPlane;
+pub use rigid::RigidGround;
 pub use scene::{Counts, Scene, SceneSettings, SceneState};
 pub use step::{Phase, StepReport};

@@ -1,30 +1,32 @@
-//! Rigid planes that nodes and particles rest on.
+//! Rigid shapes that the nodes and discrete elements of solids touch.
 
-use fractum_contact::ContactWork;
 use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion, Surface};
+use fractum_contact::{ContactWork, Frame, Outside, Shape};
 use fractum_fem::Solid;
-use fractum_math::Vec3;
+use fractum_math::{Rotation, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::contacts::Tool;
 use crate::coupling::Debris;
 
-/// A fixed rigid half space; solids stay on the side that its normal points to.
+/// A rigid shape, seen from outside; solids stay out of it.
 ///
 /// It feels the nodes on the surface of the solids at the start (as points) and every particle (as a sphere). A node
 /// that turns into a particle while it lies nearer than its radius keeps touching as a point until it has left.
 #[derive(Clone, Debug)]
-pub struct RigidPlane {
-    /// A point of the plane [m].
-    pub point: Vec3,
-    /// Unit normal, out of the rigid side.
-    pub normal: Vec3,
+pub struct RigidGround {
+    shape: Shape,
+    /// Where it is if it belongs to no rigid body of the scene.
+    frame: Frame,
+    /// The rigid body that it is the shape of, which moves it.
+    tool: Option<usize>,
     /// Friction and damping of its contacts, together with those of the other surface.
-    pub surface: Surface,
+    surface: Surface,
     candidates: Vec<Candidate>,
 }
 
-/// A node that may touch a plane.
+/// A node that may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Candidate {
     node: u32,
@@ -33,15 +35,25 @@ pub(crate) struct Candidate {
     memory: ContactMemory,
     force: Vec3,
     couple: Vec3,
+    /// From the node to the contact [m].
+    arm: Vec3,
     stored: f64,
     friction: f64,
     damping: f64,
 }
 
-impl RigidPlane {
-    /// A plane through `point` with unit `normal`.
-    pub fn new(point: Vec3, normal: Vec3, surface: Surface) -> Self {
-        RigidPlane { point, normal, surface, candidates: Vec::new() }
+impl RigidGround {
+    /// A fixed half space behind the plane through `point` with unit `normal`.
+    pub fn plane(point: Vec3, normal: Vec3, surface: Surface) -> Self {
+        let half_turn = || Rotation::from_scaled_axis(Vec3::x() * std::f64::consts::PI);
+        let rotation = Rotation::rotation_between(&Vec3::z(), &normal).unwrap_or_else(half_turn);
+        let frame = Frame { rotation, ..Frame::at(point) };
+        RigidGround { shape: Shape::HalfSpace, frame, tool: None, surface, candidates: Vec::new() }
+    }
+
+    /// The shape of a rigid body of the scene, by its number there.
+    pub fn of_tool(tool: usize, shape: Shape, surface: Surface) -> Self {
+        RigidGround { shape, frame: Frame::at_rest(), tool: Some(tool), surface, candidates: Vec::new() }
     }
 
     /// Sets the nodes that may touch: the surface of the solids.
@@ -62,6 +74,7 @@ impl RigidPlane {
                 memory: ContactMemory::default(),
                 force: Vec3::zeros(),
                 couple: Vec3::zeros(),
+                arm: Vec3::zeros(),
                 stored: 0.0,
                 friction: 0.0,
                 damping: 0.0,
@@ -90,23 +103,36 @@ impl RigidPlane {
         self.candidates.iter().map(of).fold(0.0, f64::max)
     }
 
-    /// Adds the contact forces to the nodes, and the torques to free particles.
-    pub(crate) fn add_forces(&mut self, solid: &mut Solid, debris: &mut Debris, dt: f64) -> ContactWork {
-        let RigidPlane { point, normal, candidates, .. } = self;
-        let (point, normal) = (*point, *normal);
+    /// Adds the contact forces to the nodes, the torques to free particles, and the opposite to the rigid body.
+    pub(crate) fn add_forces(
+        &mut self,
+        tools: &mut [Tool],
+        solid: &mut Solid,
+        debris: &mut Debris,
+        dt: f64,
+    ) -> ContactWork {
+        let RigidGround { shape, frame, tool, candidates, .. } = self;
+        let mut tool = tool.and_then(|index| tools.get_mut(index));
+        if let Some(tool) = &tool {
+            *frame = tool.frame;
+        }
+        let (shape, frame) = (*shape, *frame);
         {
             let (solid, debris) = (&*solid, &*debris);
             candidates.par_iter_mut().with_min_len(1024).for_each(|c| {
                 let i = c.node as usize;
-                let height = (solid.reference[i] + solid.displacement[i] - point).dot(&normal);
+                let place = solid.position(i);
+                let Outside { normal, distance, .. } = shape.outside(&frame.to_body(&place));
+                let normal = -frame.to_space(&normal);
                 let full = debris.radius_if_particle(c.node);
-                if c.radius == 0.0 && full > 0.0 && height > full {
+                if c.radius == 0.0 && full > 0.0 && distance > full {
                     c.radius = full;
                 }
-                let arm = -normal * height;
+                c.arm = -normal * distance;
                 let spin = debris.spin(c.node);
-                let velocity = solid.velocity[i] + spin.cross(&arm);
-                let motion = PairMotion { normal, overlap: c.radius - height, velocity, spin, dt };
+                let velocity = solid.velocity[i] + spin.cross(&c.arm) - frame.velocity_at(&(place + c.arm));
+                let spin = spin - frame.spin;
+                let motion = PairMotion { normal, overlap: c.radius - distance, velocity, spin, dt };
                 let ContactForce { on_second, couple_on_second, stored, friction, damping } =
                     c.law.force(&motion, &mut c.memory);
                 (c.force, c.couple) = (on_second, couple_on_second);
@@ -116,9 +142,11 @@ impl RigidPlane {
         let mut work = ContactWork::default();
         for c in candidates.iter().filter(|c| c.stored > 0.0 || c.damping != 0.0) {
             let i = c.node as usize;
-            let arm = -normal * (solid.reference[i] + solid.displacement[i] - point).dot(&normal);
             solid.force[i] += c.force;
-            debris.add_torque(c.node, arm.cross(&c.force) + c.couple);
+            debris.add_torque(c.node, c.arm.cross(&c.force) + c.couple);
+            if let Some(tool) = &mut tool {
+                tool.push(&-c.force, &-c.couple, &(solid.position(i) + c.arm));
+            }
             work.stored += c.stored;
             work.friction += c.friction;
             work.damping += c.damping;

@@ -9,7 +9,7 @@ use crate::coupling::{Debris, DebrisState};
 use crate::fragment::{Fragment, fragments};
 use crate::ledger::{Books, Guard, Ledger};
 use crate::probe::CountKind;
-use crate::rigid::{Candidate, RigidPlane};
+use crate::rigid::{Candidate, RigidGround};
 
 /// How much faster than it is a wall contact counts in the stable step: the whole weight of a body may come on few of
 /// them, and half a period of contact wants some twenty steps for the energy balance.
@@ -26,8 +26,8 @@ pub struct Scene {
     pub bonded: Bonded,
     /// Contacts of particles with nodes of their own, and the rigid bodies that they meet.
     pub contacts: Contacts,
-    /// Rigid planes.
-    pub planes: Vec<RigidPlane>,
+    /// Rigid shapes that nodes of solids and debris touch.
+    pub grounds: Vec<RigidGround>,
     /// Time and step.
     pub clock: Clock,
     pub(crate) supports: Supports,
@@ -63,7 +63,7 @@ pub struct SceneState {
     debris: DebrisState,
     bonded: Option<BondedState>,
     contacts: Option<ContactsState>,
-    planes: Vec<Vec<Candidate>>,
+    grounds: Vec<Vec<Candidate>>,
     ledger: Ledger,
     books: Books,
     frequency: f64,
@@ -90,13 +90,13 @@ pub struct Counts {
 impl Scene {
     /// Sets up a scene at t = 0 and finds its time step.
     ///
-    /// - `surface`: nodes on the surface of the solids, which rigid planes feel
+    /// - `surface`: nodes on the surface of the solids, which rigid bodies feel
     pub fn new(
         mut solid: Solid,
         supports: Supports,
         loads: Loads,
         mut debris: Debris,
-        mut planes: Vec<RigidPlane>,
+        mut grounds: Vec<RigidGround>,
         surface: &[u32],
         settings: SceneSettings,
     ) -> Self {
@@ -105,16 +105,16 @@ impl Scene {
         } else {
             solid.stable_step()
         };
-        if !planes.is_empty() {
+        if !grounds.is_empty() {
             debris.prepare(&solid);
-            planes.iter_mut().for_each(|plane| plane.watch(surface, &solid, &debris));
+            grounds.iter_mut().for_each(|ground| ground.watch(surface, &solid, &debris));
         }
         let mut scene = Scene {
             solid,
             debris,
             bonded: Bonded::default(),
             contacts: Contacts::default(),
-            planes,
+            grounds,
             clock: Clock::new(0.0),
             supports,
             loads,
@@ -178,8 +178,8 @@ impl Scene {
     }
 
     pub(crate) fn update_contact_frequency(&mut self) {
-        let Scene { solid, debris, planes, .. } = self;
-        let walls: f64 = planes.iter().map(|plane| plane.frequency_square(solid)).sum();
+        let Scene { solid, debris, grounds, .. } = self;
+        let walls: f64 = grounds.iter().map(|ground| ground.frequency_square(solid)).sum();
         self.contact_frequency_square = RESOLUTION * RESOLUTION * walls + debris.frequency_square(solid);
     }
 
@@ -226,7 +226,7 @@ impl Scene {
             bonds: self.bonded.bond_counts().0,
             broken_bonds: self.bonded.bond_counts().1,
             contacts: self.debris.touching().count()
-                + self.planes.iter().map(RigidPlane::touching).sum::<usize>()
+                + self.grounds.iter().map(RigidGround::touching).sum::<usize>()
                 + self.contacts.touching(),
         }
     }
@@ -264,7 +264,7 @@ impl Scene {
             debris: self.debris.state().clone(),
             bonded: (!self.bonded.is_empty()).then(|| self.bonded.state()),
             contacts: (!self.contacts.is_empty()).then(|| self.contacts.state()),
-            planes: self.planes.iter().map(RigidPlane::state).collect(),
+            grounds: self.grounds.iter().map(RigidGround::state).collect(),
             ledger: self.ledger,
             books: self.books,
             frequency: self.stable.frequency,
@@ -285,8 +285,8 @@ impl Scene {
         if let Some(contacts) = state.contacts {
             self.contacts.restore(contacts);
         }
-        for (plane, candidates) in self.planes.iter_mut().zip(state.planes) {
-            plane.restore(candidates);
+        for (ground, candidates) in self.grounds.iter_mut().zip(state.grounds) {
+            ground.restore(candidates);
         }
         self.ledger = state.ledger;
         self.books = state.books;

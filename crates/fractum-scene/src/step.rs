@@ -28,7 +28,7 @@ pub enum Phase {
     Solid,
     /// Forces of the bonds, and the loads on their particles.
     Bonds,
-    /// Contact of particles and rigid planes, search included.
+    /// Contact of particles and rigid bodies, search included.
     Contact,
     /// Loads, supports and the motion of the nodes.
     Motion,
@@ -142,12 +142,12 @@ impl Scene {
         if !self.contacts.is_empty() {
             work += self.contacts.add_forces(&mut self.solid, &mut self.bonded.particles, dt);
         }
-        if self.debris.is_empty() && self.planes.is_empty() {
+        if self.debris.is_empty() && self.grounds.is_empty() {
             return work;
         }
         work += self.debris.add_forces(&mut self.solid, dt);
-        for plane in &mut self.planes {
-            work += plane.add_forces(&mut self.solid, &mut self.debris, dt);
+        for ground in &mut self.grounds {
+            work += ground.add_forces(self.contacts.tools_mut(), &mut self.solid, &mut self.debris, dt);
         }
         self.debris.pass_on_torques(&mut self.solid);
         work
@@ -163,9 +163,9 @@ impl Scene {
             let before = self.debris.len();
             self.debris.release(&self.solid, &self.removed);
             report.particles_born = self.debris.len() - before;
-            for plane in &mut self.planes {
+            for ground in &mut self.grounds {
                 for &node in &self.debris.state().nodes[before..] {
-                    plane.watch_node(node, &self.solid, &self.debris);
+                    ground.watch_node(node, &self.solid, &self.debris);
                 }
             }
             self.removed_since_check += report.removed;

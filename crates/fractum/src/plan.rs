@@ -283,8 +283,9 @@ impl Plan {
         choose(damage, "damage and removal of elements", "no body can be damaged");
         choose(damage, "discrete elements (from the first removal)", "nothing turns into them");
         choose(scene.bonded.bond_counts().0 > 0, "cohesive beams", "no bonded body");
-        choose(!scene.planes.is_empty(), "contact with rigid planes", "no rigid plane");
-        choose(!scene.contacts.is_empty(), "contact of particles by Hertz' law", "no particles at the start");
+        let touched = !scene.grounds.is_empty() && scene.solid.body_count() > 0;
+        choose(touched, "contact of solids with rigid bodies", "no rigid body, or no solid");
+        choose(!scene.bonded.particles.is_empty(), "contact of particles by Hertz' law", "no particles at the start");
         let damping = case.damping;
         choose(damping.local > 0.0 || damping.mass > 0.0, "damping on the nodes", "not asked for");
         let viscous = damping.stiffness > 0.0 || damping.bulk_linear > 0.0 || damping.bulk_quadratic > 0.0;

@@ -10,7 +10,7 @@ use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Bonded, BondedPart, Guard, Load, Loads, Motion, ParticleLoad, ParticleSupport, RigidPlane, Scene, SceneSettings,
+    Bonded, BondedPart, Guard, Load, Loads, Motion, ParticleLoad, ParticleSupport, RigidGround, Scene, SceneSettings,
     Support, Supports, Surface, TimeStepSettings,
 };
 
@@ -103,11 +103,11 @@ fn landing(nodes: Vec<Vec3>, body: Body) -> Scene {
         solid,
         Vec::new(),
         Vec::new(),
-        vec![RigidPlane::new(Vec3::zeros(), Vec3::z(), Surface { friction: 0.3, ..Surface::default() })],
+        vec![RigidGround::plane(Vec3::zeros(), Vec3::z(), Surface { friction: 0.3, ..Surface::default() })],
     )
 }
 
-fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<RigidPlane>) -> Scene {
+fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<RigidGround>) -> Scene {
     let supports = Supports::new(supports, &solid.reference).unwrap();
     let loads = Loads::new(loads, solid.reference.len());
     let debris = Debris::new(&solid, vec![Surface::default(); solid.body_count()]);

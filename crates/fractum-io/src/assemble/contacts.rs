@@ -4,8 +4,8 @@ use fractum_fem as fem;
 use fractum_math::{Mat3, Rotation, Vec3};
 use fractum_mesh::topology;
 use fractum_scene::{
-    ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, OverlapWith, Probe, Scene,
-    Shape, SolidGround, Tool,
+    ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, OverlapWith, Probe,
+    RigidGround, Scene, Shape, SolidGround, Tool,
 };
 
 use super::bodies::{Numbering, Part};
@@ -45,7 +45,7 @@ impl Context<'_> {
         scene: Scene,
         parts: &[Part],
         facets: &[Vec<[u32; 3]>],
-        rigid_facets: Vec<PreparedFacets>,
+        tools: Vec<Tool>,
         warnings: &mut Vec<Diagnostic>,
     ) -> Option<Scene> {
         let case = self.case;
@@ -63,13 +63,15 @@ impl Context<'_> {
                 ContactMaterial { elastic, density: material.density, surface: material.contact }
             })
             .collect();
-        let tools = self.tools(rigid_facets);
         if materials.is_empty() {
-            self.refuse_tools(&tools);
-            return self.diagnostics.is_empty().then_some(scene);
+            self.refuse_facets(&tools);
+            if tools.is_empty() {
+                return Some(scene);
+            }
         }
         let mut solids = Vec::new();
-        for (index, (part, facets)) in parts.iter().zip(facets).enumerate().filter(|(_, (_, f))| !f.is_empty()) {
+        let meeting = if materials.is_empty() { &[] } else { facets };
+        for (index, (part, facets)) in parts.iter().zip(meeting).enumerate().filter(|(_, (_, f))| !f.is_empty()) {
             let surface = case.materials[part.body.material].contact;
             match SolidGround::new(&scene.solid, index, surface, facets) {
                 Ok(ground) => solids.push(ground),
@@ -115,23 +117,28 @@ impl Context<'_> {
         Some(scene.with_contacts(contacts))
     }
 
-    /// Rigid bodies other than planes act on particles only.
-    fn refuse_tools(&mut self, tools: &[Tool]) {
-        for tool in tools {
+    /// Facets of rigid bodies and containers act on particles only.
+    fn refuse_facets(&mut self, tools: &[Tool]) {
+        for tool in tools.iter().filter(|tool| touches_solids(tool).is_none()) {
             let body = self.case.bodies.iter().find(|body| body.name.value == tool.name);
-            let Some(Body { name, kind: BodyKind::Rigid(rigid), .. }) = body else { continue };
-            let still = rigid.velocity.iter().chain(&rigid.spin).all(Option::is_none) && rigid.mass.is_none();
-            if !matches!(rigid.shape, RigidShape::Plane { .. }) || !still {
+            if let Some(Body { name, .. }) = body {
                 self.error(
                     &name.place,
-                    "meets no particles: only planes at rest touch solids in this version",
-                    "a body of kind \"particles\" or \"bonded\", or a plane at rest",
+                    "meets no particles; solids feel planes, boxes, cylinders and spheres from outside only",
+                    "one of these shapes, or a body of kind \"particles\" or \"bonded\"",
                 );
             }
         }
     }
 
-    fn tools(&mut self, facets: Vec<PreparedFacets>) -> Vec<Tool> {
+    /// Shapes of rigid bodies, as nodes of solids and their discrete elements feel them.
+    pub(super) fn grounds(&self, tools: &[Tool]) -> Vec<RigidGround> {
+        let shape = |(index, tool)| Some(RigidGround::of_tool(index, touches_solids(tool)?, tool.surface));
+        tools.iter().enumerate().filter_map(shape).collect()
+    }
+
+    /// The rigid bodies of the case.
+    pub(super) fn tools(&mut self, facets: Vec<PreparedFacets>) -> Vec<Tool> {
         let (case, mut facets) = (self.case, facets.into_iter());
         let mut tools = Vec::new();
         for body in &case.bodies {
@@ -224,6 +231,14 @@ impl Context<'_> {
     }
 }
 
+/// The shape that solids feel of a rigid body.
+fn touches_solids(tool: &Tool) -> Option<Shape> {
+    match tool.form {
+        Form::Shape { shape, hollow: false } => Some(shape),
+        _ => None,
+    }
+}
+
 fn elastic(young_modulus: f64, poisson_ratio: f64) -> ElasticMaterial {
     ElasticMaterial { young_modulus, poisson_ratio }
 }
@@ -243,6 +258,9 @@ fn drive(tool: &mut Tool, rigid: &RigidBody) {
             None => Drive::Fixed,
         };
     }
+    let start = tool.frame.origin;
+    tool.frame.velocity =
+        Vec3::from_fn(|axis, _| rigid.initial_velocity[axis].as_ref().map_or(0.0, |field| field.value(0.0, start)));
     tool.inertia = rigid.mass.map(|mass| Inertia { mass, tensor: inertia_tensor(&rigid.shape, mass) });
 }
 

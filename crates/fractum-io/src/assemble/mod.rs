@@ -18,11 +18,11 @@ use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::StaticSettings;
-use fractum_scene::{Guard, Loads, Probe, RigidPlane, Scene, SceneError, SceneSettings, Supports, TimeStepSettings};
+use fractum_scene::{Guard, Loads, Probe, Scene, SceneError, SceneSettings, Supports, TimeStepSettings};
 
 use bonded::ParticleSets;
 
-use crate::case::model::{Body, BodyKind, Case, GroupUse, RigidShape, Support, TimeStep};
+use crate::case::model::{Case, GroupUse, Support, TimeStep};
 use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction, nearest};
 
 /// A scene with what is needed to speak of it in the user's terms.
@@ -170,17 +170,18 @@ impl Context<'_> {
         let mut surface: Vec<u32> = boundary.iter().flatten().copied().collect();
         surface.sort_unstable();
         surface.dedup();
+        let tools = self.tools(facets);
         let scene = Scene::new(
             solid,
             supports,
             Loads::new(loads, numbering.positions.len()),
             debris,
-            self.planes(),
+            self.grounds(&tools),
             &surface,
             self.settings(),
         )
         .with_bonded(bonded);
-        let scene = self.with_contacts(scene, &parts, &boundary_of_parts, facets, &mut warnings)?;
+        let scene = self.with_contacts(scene, &parts, &boundary_of_parts, tools, &mut warnings)?;
         Some(Assembly {
             scene,
             statics,
@@ -214,18 +215,6 @@ impl Context<'_> {
             stiffness_time: self.case.damping.stiffness,
             guard: Guard { warning: solver.balance_warning, stop: solver.balance_stop },
         }
-    }
-
-    /// Rigid planes, as nodes of solids and their discrete elements feel them.
-    fn planes(&self) -> Vec<RigidPlane> {
-        let plane = |body: &Body| match &body.kind {
-            BodyKind::Rigid(rigid) => match rigid.shape {
-                RigidShape::Plane { point, normal } => Some(RigidPlane::new(point, normal, rigid.contact)),
-                _ => None,
-            },
-            _ => None,
-        };
-        self.case.bodies.iter().filter_map(plane).collect()
     }
 
     /// Nodes of a group that belong to solid bodies, in the scene's numbering, ascending.

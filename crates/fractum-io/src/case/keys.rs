@@ -303,7 +303,7 @@ static KEYS: &[KeyDoc] = &[
     key("bodies[].kinematics", K::Choice(names::<Kinematics>), "\"small\"", "Solid: small rotations, or a frame that turns with each element"),
     key("bodies[].plane", K::Choice(names::<Plane>), "\"strain\"", "Solid in 2D only: plane strain or plane stress"),
     key("bodies[].thickness", K::Quantity(D::LENGTH), "\"1 m\"", "Solid in 2D only: thickness, > 0"),
-    key("bodies[].initial_velocity", K::Table, "", "All but rigid: velocity at the start, by components"),
+    key("bodies[].initial_velocity", K::Table, "", "Velocity at the start, by components; of a rigid body along its free axes"),
     key("bodies[].initial_velocity.x", K::Field(D::VELOCITY), "0", "Component along x"),
     key("bodies[].initial_velocity.y", K::Field(D::VELOCITY), "0", "Component along y"),
     key("bodies[].initial_velocity.z", K::Field(D::VELOCITY), "0", "Component along z"),

@@ -161,6 +161,10 @@ impl Contacts {
         &self.tools
     }
 
+    pub(crate) fn tools_mut(&mut self) -> &mut [Tool] {
+        &mut self.tools
+    }
+
     /// Squared frequency that contacts ask of the step [1/s²].
     pub(crate) fn frequency_square(&self) -> f64 {
         self.rayleigh_frequency * self.rayleigh_frequency + self.node_frequency_square

@@ -170,7 +170,7 @@ impl Tool {
     }
 
     /// Takes the force and couple of a contact at a place in space.
-    pub(super) fn push(&mut self, force: &Vec3, couple: &Vec3, place: &Vec3) {
+    pub(crate) fn push(&mut self, force: &Vec3, couple: &Vec3, place: &Vec3) {
         self.force += force;
         self.moment += (place - self.frame.origin).cross(force) + couple;
     }

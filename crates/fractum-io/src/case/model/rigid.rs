@@ -4,7 +4,7 @@ use fractum_math::Vec3;
 use fractum_scene::Surface;
 
 use super::{Components, FileContent};
-use crate::case::Spanned;
+use crate::case::{Field, Spanned};
 
 /// A rigid body.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +29,8 @@ pub struct RigidBody {
     pub mass: Option<f64>,
     /// Force on it [N] along its free axes.
     pub force: Components,
+    /// Velocity [m/s] at the start along its free axes; `None` = at rest.
+    pub initial_velocity: [Option<Field>; 3],
 }
 
 /// Shapes of rigid bodies.

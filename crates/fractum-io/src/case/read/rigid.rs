@@ -3,7 +3,7 @@
 use super::bonded::file;
 use super::boundary::fixed_axes;
 use super::time_functions::time_function;
-use super::vectors::{AXES, components, direction, point};
+use super::vectors::{AXES, components, direction, field, point};
 use super::{materials, unit};
 use crate::case::Diagnostic;
 use crate::case::model::{Components, RigidBody, RigidShape};
@@ -57,7 +57,11 @@ pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>) -> Optio
         Some(None)
     };
     let shape = shape(table, kind?);
-    let (velocity, spin, force, free) = (velocity?, spin?, force?, free?);
+    let initial_velocity = match table.has("initial_velocity") {
+        true => components(table, "initial_velocity", |table, axis| field(table, axis).given()),
+        false => Some([None, None, None]),
+    };
+    let (velocity, spin, force, free, initial_velocity) = (velocity?, spin?, force?, free?, initial_velocity?);
     let mut fits = true;
     for axis in 0..3 {
         let mut clash = |found: String, expected: &str| {
@@ -69,6 +73,9 @@ pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>) -> Optio
         }
         if !free[axis] && force[axis].is_some() {
             clash(format!("has a force along {}, which is held", AXES[axis]), "a force along a free axis");
+        }
+        if !free[axis] && initial_velocity[axis].is_some() {
+            clash(format!("has an initial velocity along {}, which is held", AXES[axis]), "one along a free axis");
         }
     }
     if free_rotation && spin.iter().any(Option::is_some) {
@@ -82,7 +89,19 @@ pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>) -> Optio
         None => None,
     };
     let (shape, mass) = (shape?, mass?);
-    fits.then_some(RigidBody { shape, inside, material, contact, velocity, spin, free, free_rotation, mass, force })
+    fits.then_some(RigidBody {
+        shape,
+        inside,
+        material,
+        contact,
+        velocity,
+        spin,
+        free,
+        free_rotation,
+        mass,
+        force,
+        initial_velocity,
+    })
 }
 
 fn shape(table: &Table<'_>, kind: Kind) -> Option<RigidShape> {
