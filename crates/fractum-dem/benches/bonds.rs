@@ -3,7 +3,8 @@
 //! The body is a jittered cubic lattice in Morton-like order with about five bonds per particle (coordination 10),
 //! as a packing gives it.
 
-use fractum_dem::{BeamNetwork, BeamSection, Dof6, Integrator, Lattice, Particles};
+use fractum_dem::criterion::{Criterion, Level, Principal};
+use fractum_dem::{BeamNetwork, BeamSection, CrackFaces, Dof6, Fracture, Integrator, Lattice, Particles};
 use fractum_math::Vec3;
 
 fn main() {
@@ -69,4 +70,32 @@ fn static_product(bencher: divan::Bencher, side: usize) {
     let Ok(lattice) = lattice else { return };
     let state: Vec<Dof6> = (0..position.len()).map(|i| std::array::from_fn(|d| ((6 * i + d) as f64).sin())).collect();
     bencher.counter(divan::counter::ItemsCount::new(pairs.len())).bench_local(|| lattice.internal(&state));
+}
+
+/// A body far from failure: its bonds, and a criterion that watches them.
+fn watched(side: usize) -> Option<(BeamNetwork, Particles, Fracture)> {
+    let (position, pairs) = body(side);
+    let n = position.len();
+    let bonds = BeamNetwork::new(&position, &pairs, BeamSection::new(1e9, 0.3).ok()?).ok()?;
+    let mut particles = Particles::at_rest(position, vec![0.5; n], n as f64).ok()?;
+    let principal = Principal { tensile_strength: 1e12, compressive_strength: None, level: Level::Neighbours };
+    let faces = CrackFaces::default();
+    let fracture = Fracture::new(&bonds, &particles, Criterion::Principal(principal), faces, 0.52, n as f64).ok()?;
+    particles.position.iter_mut().enumerate().for_each(|(i, x)| x.x += 1e-4 * (i as f64).sin());
+    Some((bonds, particles, fracture))
+}
+
+#[divan::bench(args = [22, 47], sample_count = 20)]
+fn forces_alone(bencher: divan::Bencher, side: usize) {
+    let Some((mut bonds, mut particles, _)) = watched(side) else { return };
+    bencher.bench_local(|| bonds.add_forces(&mut particles));
+}
+
+#[divan::bench(args = [22, 47], sample_count = 20)]
+fn forces_and_criterion(bencher: divan::Bencher, side: usize) {
+    let Some((mut bonds, mut particles, mut fracture)) = watched(side) else { return };
+    bencher.bench_local(|| {
+        bonds.add_forces_and_dyads(&mut particles);
+        fracture.break_overloaded(&mut bonds, &particles, 1e-6, 0.0, 0, 0.0)
+    });
 }
