@@ -12,9 +12,16 @@ fn the_sample_holds_every_key_of_the_list() {
     let mut found = BTreeSet::new();
     paths(&toml::from_str(&every_key()).unwrap(), "", &mut found);
     let missing: Vec<_> = keys().iter().map(|key| key.path).filter(|path| !found.contains(*path)).collect();
-    assert_eq!(missing, ["solver.step"], "a fixed step excludes the safety factor");
+    // A fixed step excludes the safety factor, and a solver the keys of the other.
+    let statics = ["solver.control", "solver.linear_solver", "solver.tolerance", "solver.max_steps"];
+    assert_eq!(missing, [&["solver.step"], &statics[..]].concat());
     good(&SMALL.replace("end = 1e-3", "end = 1e-3\nstep = 1e-6"), &[]);
+    good(&SMALL.replace("end = 1e-3", STATIC), &[]);
 }
+
+/// A static solver with all of its keys, in place of the end of a run.
+const STATIC: &str = "end = 1e-3\nkind = \"static\"\ncontrol = \"path\"\nlinear_solver = \"direct\"\n\
+                      tolerance = 1e-5\nmax_steps = 100";
 
 /// Paths of the keys in a document, as in the list of keys.
 fn paths(value: &toml::Value, path: &str, found: &mut BTreeSet<String>) {
@@ -67,7 +74,9 @@ fn documented_defaults_are_the_defaults() {
         plain(a) == plain(b)
     };
     // Where a key may stand in the two samples.
+    let at_rest = SMALL.replace("end = 1e-3", STATIC);
     let samples = [
+        (at_rest.as_str(), "steel", "bodies[0]", ""),
         (text.as_str(), "concrete", "bodies[0]", "loads[3].pressure"),
         (text.as_str(), "mortar", "bodies[2]", "supports[1].displacement.y"),
         (text.as_str(), "mortar", "bodies[3]", ""),
