@@ -26,7 +26,10 @@ impl RunLog {
     /// [`WriteError`].
     pub fn create(path: &Path) -> Result<Self, WriteError> {
         let log = Self::resume(path)?;
-        log.file.set_len(0).map_err(|error| WriteError::new(path, error))?;
+        // Only once it is locked: the log of another run stays as it is.
+        if log.file.metadata().is_ok_and(|file| file.len() > 0) {
+            log.file.set_len(0).map_err(|error| WriteError::new(path, error))?;
+        }
         Ok(log)
     }
 

@@ -106,8 +106,8 @@ mod tests {
 
     #[test]
     fn iteration_and_factorisation_agree() {
-        let (k, places, held) = net(40);
-        let b: Vec<[f64; 2]> = (0..1600)
+        let (k, places, held) = net(60);
+        let b: Vec<[f64; 2]> = (0..3600)
             .map(|i| if held[i] == 3 { [0.0; 2] } else { [(i as f64 * 0.7).sin(), (i as f64 * 1.3).cos()] })
             .collect();
         let mut factor = Factor::new(k.pattern(), &places, 2).unwrap();
@@ -126,7 +126,7 @@ mod tests {
             done.iterations
         };
         let alone = solve(None);
-        let with_motions = solve(Some(Motions { places: &places, held: &held, cluster: 40 }));
+        let with_motions = solve(Some(Motions { places: &places, held: &held, cluster: 15 }));
         assert!(with_motions < alone, "{with_motions} against {alone} iterations");
     }
 
