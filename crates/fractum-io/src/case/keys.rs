@@ -287,7 +287,7 @@ static KEYS: &[KeyDoc] = &[
     key("materials.NAME.bonds.convention", K::Choice(names::<Convention>), "required", "Which particles the coordination counts"),
     key("materials.NAME.bonds.radius_ratio", K::Quantity(D::NONE), "required", "Beam radius over mean particle radius, within 0 and 2"),
     key("materials.NAME.bonds.young_modulus", K::Quantity(D::PRESSURE), "required", "Young's modulus of the beams, > 0"),
-    key("materials.NAME.bonds.strength", K::Quantity(D::PRESSURE), "", "Strength of the virial criterion, > 0; kept for later use, bonds do not break in this version"),
+    key("materials.NAME.bonds.strength", K::Quantity(D::PRESSURE), "", "Strength of the virial criterion, > 0; kept for later use: bonds of a case do not break in this version, those of `fractum lab break` do"),
     key("materials.NAME.contact", K::Table, "", "Contact of particles of this material, and of the discrete elements it leaves behind"),
     key("materials.NAME.contact.friction", K::Quantity(D::NONE), "0.5", "Coulomb friction coefficient, ≥ 0"),
     key("materials.NAME.contact.rolling_friction", K::Quantity(D::NONE), "0", "Coefficient of rolling friction, ≥ 0: couple over normal force and reduced radius"),
