@@ -259,12 +259,6 @@ impl Fracture {
                 spin: spin[j] - spin[i],
                 dt,
             };
-            // A face that opens loses what its tangential spring held: the law with nothing to press it.
-            let slip = face.memory.slip;
-            if overlap <= 0.0 && slip != Vec3::zeros() {
-                let across = motion.velocity - normal * motion.velocity.dot(&normal);
-                work.friction += 0.5 * face.law.tangential_stiffness * slip.dot(&(slip + across * dt));
-            }
             let found = face.law.force(&motion, &mut face.memory);
             let twist = normal.cross(&found.on_second) * -arm;
             force[i] -= found.on_second;

@@ -140,7 +140,7 @@ impl RigidGround {
             });
         }
         let mut work = ContactWork::default();
-        for c in candidates.iter().filter(|c| c.stored > 0.0 || c.damping != 0.0) {
+        for c in candidates.iter().filter(|c| c.stored > 0.0 || c.damping != 0.0 || c.friction != 0.0) {
             let i = c.node as usize;
             solid.force[i] += c.force;
             debris.add_torque(c.node, c.arm.cross(&c.force) + c.couple);

@@ -46,6 +46,8 @@ pub struct Outcome {
     pub summary: Summary,
     /// Results folder.
     pub folder: PathBuf,
+    /// Whether an interrupted run left a state to go on from.
+    pub resumable: bool,
 }
 
 /// Set by Ctrl-C and SIGTERM: the run saves its state after the present step and ends.
@@ -327,7 +329,10 @@ impl Run<'_> {
                 self.log.line(&error)?;
                 Err(Failure::Stopped { error, folder: self.folder.display().to_string() })
             }
-            _ => Ok(Outcome { summary, folder: self.folder.to_owned() }),
+            _ => {
+                let resumable = self.case.solver.statics.is_none();
+                Ok(Outcome { summary, folder: self.folder.to_owned(), resumable })
+            }
         }
     }
 

@@ -138,8 +138,18 @@ impl Linear {
         let approach = -motion.velocity.dot(&n);
         let last = std::mem::take(&mut memory.damper);
         if motion.overlap <= 0.0 {
+            // What the springs held is lost: they slip with nothing to press them.
+            let across = motion.velocity + n * approach;
+            let sliding = Slider { stiffness: self.tangential_stiffness, limit: 0.0 };
+            let rolling = Slider { stiffness: self.rolling_stiffness, limit: 0.0 };
+            let (_, slid) = sliding.advance(memory.slip, memory.slip + across * motion.dt);
+            let (_, rolled) = rolling.advance(memory.roll, memory.roll + motion.spin * motion.dt);
             (memory.slip, memory.roll) = (Vec3::zeros(), Vec3::zeros());
-            return ContactForce { damping: 0.5 * last * approach * motion.dt, ..ContactForce::default() };
+            return ContactForce {
+                friction: slid + rolled,
+                damping: 0.5 * last * approach * motion.dt,
+                ..ContactForce::default()
+            };
         }
         let elastic = self.normal_stiffness * motion.overlap;
         let damper = (self.normal_damping * approach).max(-elastic);
@@ -229,9 +239,20 @@ mod tests {
             prop_assert!(force.couple_on_second.norm() <= law().rolling_arm * along * (1.0 + 1e-9) + 1e-12);
             prop_assert!(force.friction >= 0.0 && force.stored >= 0.0 && force.damping >= 0.0);
             if overlap <= 0.0 {
-                prop_assert_eq!(force, ContactForce::default());
+                prop_assert_eq!(force, ContactForce { friction: force.friction, ..ContactForce::default() });
             }
         }
+    }
+
+    #[test]
+    fn what_springs_hold_when_a_contact_opens_is_booked_as_friction() {
+        let (slip, roll) = (Vec3::new(0.0, 1e-4, 0.0), Vec3::new(0.0, 0.0, 1e-5));
+        let mut memory = ContactMemory { slip, roll, damper: 0.0 };
+        let still = Vec3::zeros();
+        let motion = PairMotion { normal: Vec3::x(), overlap: -1e-6, velocity: still, spin: still, dt: 1e-5 };
+        let held = 0.5 * 4e4 * slip.norm_squared() + 0.5 * 4.0 * roll.norm_squared();
+        assert!((law().force(&motion, &mut memory).friction / held - 1.0).abs() < 1e-12);
+        assert_eq!(law().force(&motion, &mut memory).friction, 0.0);
     }
 
     #[test]

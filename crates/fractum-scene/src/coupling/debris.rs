@@ -325,7 +325,7 @@ impl Debris {
         }
         // In the order of the pairs: contacts are few beside elements, and the sum has one order.
         let mut work = ContactWork::default();
-        for pair in pairs.iter().filter(|p| p.stored > 0.0 || p.damping != 0.0) {
+        for pair in pairs.iter().filter(|p| p.stored > 0.0 || p.damping != 0.0 || p.friction != 0.0) {
             let [i, j] = pair.nodes.map(|n| n as usize);
             solid.force[i] -= pair.force;
             solid.force[j] += pair.force;

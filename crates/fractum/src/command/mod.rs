@@ -207,13 +207,14 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
         quiet: run.quiet,
         cache: cache(),
     };
-    let Outcome { summary, folder } = fractum::run::run(&run.case, &options)?;
+    let Outcome { summary, folder, resumable } = fractum::run::run(&run.case, &options)?;
     if summary.status == Status::Interrupted {
-        tell!(
-            "interrupted; state saved, go on with: fractum run {} -o {} --resume",
-            run.case.display(),
-            folder.display()
-        );
+        let results = folder.display();
+        if resumable {
+            tell!("interrupted; state saved, go on with: fractum run {} -o {results} --resume", run.case.display());
+        } else {
+            tell!("interrupted; a static run keeps no state to go on from; what it reached is in {results}");
+        }
         return Ok(ExitCode::Interrupted);
     }
     if !run.quiet {
