@@ -34,10 +34,13 @@ impl Cache {
     }
 }
 
+/// Raised whenever packings or beams come out differently for the same numbers: older entries are then made anew.
+const METHOD: u32 = 2;
+
 /// Key of an entry: everything that decides what it holds, and the program that makes it.
 pub(crate) fn key(what: &impl serde::Serialize) -> u128 {
     // Serialising plain numbers and strings into memory has no way to fail.
-    let bytes = postcard::to_stdvec(&(env!("CARGO_PKG_VERSION"), what)).unwrap_or_default();
+    let bytes = postcard::to_stdvec(&(env!("CARGO_PKG_VERSION"), METHOD, what)).unwrap_or_default();
     xxhash_rust::xxh3::xxh3_128(&bytes)
 }
 
