@@ -6,19 +6,16 @@ use fractum_fem::{Body, Criterion, DamageLaw, Formulation, Kinematics, LocalDamp
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Guard, Load, Loads, Motion, RigidGround, Scene, SceneSettings, StepError, Support, Supports, Surface,
-    TimeStepSettings,
+    Load, Loads, Motion, RigidGround, Scene, SceneSettings, StepError, Support, Supports, Surface, TimeStepSettings,
 };
 use fractum_tests::{jittered_box, noise};
-
-const GUARD: Guard = Guard { warning: 1e-3, stop: 1e-2 };
 
 fn settings(end: f64) -> SceneSettings {
     SceneSettings {
         time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end },
         damping: LocalDamping::default(),
         stiffness_time: 0.0,
-        guard: GUARD,
+        balance_stop: 1e-2,
     }
 }
 

@@ -10,8 +10,7 @@ use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::{Control, LinearSolver, StaticSettings, StaticSolver, check_supports};
 use fractum_scene::{
-    Guard, Load, Loads, Motion, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeFunction,
-    TimeStepSettings,
+    Load, Loads, Motion, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeFunction, TimeStepSettings,
 };
 use fractum_tests::{CONCRETE, jittered_box};
 
@@ -29,7 +28,7 @@ fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>) -> Scene {
         time_step: TimeStepSettings { safety: 0.8, element_bound: true, fixed: None, end: 1.0 },
         damping: LocalDamping::default(),
         stiffness_time: 0.0,
-        guard: Guard { warning: 1e-3, stop: 1e-2 },
+        balance_stop: 1e-2,
     };
     Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
 }

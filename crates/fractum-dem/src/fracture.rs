@@ -1,6 +1,6 @@
 //! Bonds that break in motion, and the contact of what they held.
 
-use fractum_contact::law::{ContactMemory, Linear, PairMotion};
+use fractum_contact::law::{ContactMemory, Linear, PairMotion, Rolling};
 use fractum_math::{Sym3, Vec3};
 
 use crate::breaking::{Crack, facet_area};
@@ -219,8 +219,7 @@ impl Fracture {
             tangential_stiffness: 12.0 * section.bending() / rest.powi(3),
             normal_damping: 2.0 * self.faces.damping_ratio * (reduced * normal_stiffness).sqrt(),
             friction: self.faces.friction,
-            rolling_stiffness: 0.0,
-            rolling_arm: 0.0,
+            rolling: Rolling::default(),
         };
         let distance = (particles.position[j] - particles.position[i]).norm();
         Face { pair, rest, closing: rest.min(distance), last: distance, law, memory: ContactMemory::default() }

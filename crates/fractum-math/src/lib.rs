@@ -1,7 +1,7 @@
 //! The small algebra that every kernel of fractum shares.
 //!
 //! Vectors and matrices are nalgebra's; this crate adds what the mechanics needs on top: symmetric tensors in Voigt
-//! order xx yy zz xy yz zx with their principal values, ragged tables, and parallel sums whose result does not depend
+//! order xx yy zz xy yz zx with their principal values, ragged tables, connected parts, and parallel sums whose result does not depend
 //! on the number of threads.
 //!
 //! ```
@@ -11,10 +11,12 @@
 //! assert_eq!(stress * Vec3::x(), Vec3::new(3.0, 0.0, 0.0));
 //! ```
 
+mod connected;
 mod ragged;
 mod reduce;
 mod sym3;
 
+pub use connected::connected;
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};
 pub use sym3::Sym3;

@@ -1,5 +1,5 @@
 use fractum_fem::Solid;
-use fractum_math::Vec3;
+use fractum_math::{Vec3, connected};
 
 /// A connected piece of a solid or of a bonded body, or a single discrete element that nothing holds any more.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,41 +24,19 @@ pub struct Fragment {
 
 /// Pieces connected by elements, heaviest first.
 pub fn fragments(solid: &Solid) -> Vec<Fragment> {
-    let mut root: Vec<u32> = (0..solid.reference.len() as u32).collect();
-    fn find(root: &mut [u32], mut node: u32) -> u32 {
-        while root[node as usize] != node {
-            root[node as usize] = root[root[node as usize] as usize];
-            node = root[node as usize];
-        }
-        node
-    }
-    let mut elements = vec![0usize; root.len()];
-    let mut volume = vec![0.0; root.len()];
+    let part = parts(solid);
+    let mut elements = vec![0usize; part.len()];
+    let mut volume = vec![0.0; part.len()];
     for body in 0..solid.body_count() {
-        let corners = solid.body(body).shape.node_count();
         let alive = solid.alive(body);
-        for (nodes, _) in solid.body(body).elements.iter().zip(alive).filter(|(_, alive)| **alive) {
-            let first = find(&mut root, nodes[0]);
-            for &node in &nodes[1..corners] {
-                let other = find(&mut root, node);
-                let (low, high) = (first.min(other), first.max(other));
-                root[high as usize] = low;
-                let _ = find(&mut root, node);
-            }
-        }
-    }
-    for body in 0..solid.body_count() {
-        let model = solid.body(body);
-        let alive = solid.alive(body);
-        for (index, nodes) in model.elements.iter().enumerate().filter(|(e, _)| alive[*e]) {
-            let place = find(&mut root, nodes[0]) as usize;
+        for (index, nodes) in solid.body(body).elements.iter().enumerate().filter(|(e, _)| alive[*e]) {
+            let place = part[nodes[0] as usize] as usize;
             elements[place] += 1;
             volume[place] += solid.element_volume(body, index as u32);
         }
     }
-    let mut members: Vec<Vec<u32>> = vec![Vec::new(); root.len()];
-    for node in 0..root.len() as u32 {
-        let place = find(&mut root, node);
+    let mut members: Vec<Vec<u32>> = vec![Vec::new(); part.len()];
+    for (node, &place) in (0..).zip(&part) {
         members[place as usize].push(node);
     }
     let mut pieces: Vec<Fragment> = members
@@ -69,6 +47,16 @@ pub fn fragments(solid: &Solid) -> Vec<Fragment> {
         .collect();
     pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass).then(a.nodes[0].cmp(&b.nodes[0])));
     pieces
+}
+
+/// The smallest node that live elements connect each node to.
+pub(crate) fn parts(solid: &Solid) -> Vec<u32> {
+    let links = (0..solid.body_count()).flat_map(|body| {
+        let corners = solid.body(body).shape.node_count();
+        let alive = solid.body(body).elements.iter().zip(solid.alive(body)).filter(|(_, alive)| **alive);
+        alive.flat_map(move |(nodes, _)| nodes[1..corners].iter().map(|&node| [nodes[0], node]))
+    });
+    connected(solid.reference.len(), links)
 }
 
 fn piece(solid: &Solid, nodes: Vec<u32>, elements: usize, volume: f64) -> Fragment {

@@ -63,15 +63,6 @@ pub enum EnergyKind {
     Residual,
 }
 
-/// When the balance warns and when it stops the run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Guard {
-    /// Relative residual that is reported, 1e-3.
-    pub warning: f64,
-    /// Relative residual that stops the run, 1e-2.
-    pub stop: f64,
-}
-
 impl Ledger {
     /// What is missing: initial + external work - everything accounted for [J].
     pub fn residual(&self) -> f64 {

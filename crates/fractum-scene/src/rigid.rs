@@ -131,7 +131,8 @@ impl RigidGround {
                 c.arm = -normal * distance;
                 let spin = debris.spin(c.node);
                 let velocity = solid.velocity[i] + spin.cross(&c.arm) - frame.velocity_at(&(place + c.arm));
-                let spin = spin - frame.spin;
+                // A node without a particle is a point: it neither rolls nor feels a couple.
+                let spin = if full > 0.0 { spin - frame.spin } else { Vec3::zeros() };
                 let motion = PairMotion { normal, overlap: c.radius - distance, velocity, spin, dt };
                 let ContactForce { on_second, couple_on_second, stored, friction, damping } =
                     c.law.force(&motion, &mut c.memory);

@@ -7,7 +7,7 @@ use crate::clock::{Clock, TimeStepSettings};
 use crate::contacts::{Contacts, ContactsState};
 use crate::coupling::{Debris, DebrisState};
 use crate::fragment::{Fragment, fragments};
-use crate::ledger::{Books, Guard, Ledger};
+use crate::ledger::{Books, Ledger};
 use crate::probe::CountKind;
 use crate::rigid::{Candidate, RigidGround};
 
@@ -51,8 +51,8 @@ pub struct SceneSettings {
     pub damping: LocalDamping,
     /// Stiffness-proportional damping time β [s], for its share in the stable step.
     pub stiffness_time: f64,
-    /// When the balance warns and stops.
-    pub guard: Guard,
+    /// Relative residual of the energy balance that stops the run.
+    pub balance_stop: f64,
 }
 
 /// Everything that changes during a run.

@@ -209,7 +209,7 @@ impl Scene {
         if ratio > UNSTABLE_RATIO {
             return Err(StepError::Unstable { step, time, ratio, dt, limit, culprit: self.culprit() });
         }
-        let allowed = self.settings.guard.stop;
+        let allowed = self.settings.balance_stop;
         if relative > allowed {
             return Err(StepError::Unbalanced { step, time, relative, allowed, dt, limit, culprit: self.culprit() });
         }

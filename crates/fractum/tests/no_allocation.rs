@@ -10,8 +10,8 @@ use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Bonded, BondedPart, Guard, Load, Loads, Motion, ParticleLoad, ParticleSupport, RigidGround, Scene, SceneSettings,
-    Support, Supports, Surface, TimeStepSettings,
+    Bonded, BondedPart, Load, Loads, Motion, ParticleLoad, ParticleSupport, RigidGround, Scene, SceneSettings, Support,
+    Supports, Surface, TimeStepSettings,
 };
 
 /// The allocator of the system, counting requests while it is told to.
@@ -116,7 +116,7 @@ fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<Rig
         time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end: 1.0 },
         damping: Default::default(),
         stiffness_time: 0.0,
-        guard: Guard { warning: 1e-3, stop: 1e-2 },
+        balance_stop: 1e-2,
     };
     Scene::new(solid, supports, loads, debris, planes, &surface, settings)
 }

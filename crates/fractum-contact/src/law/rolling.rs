@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use super::PairMotion;
 
-/// Friction of a Hertz contact against rolling: an elastic-plastic spring between the rotations of both bodies.
+/// Friction against rolling: an elastic-plastic spring between the rotations of both bodies.
 ///
 /// The couple on j is -k_r θ, with the relative rolling angle θ since the spring was last at rest and
 /// k_r = 9/4 k_n (μ_r R*)², limited to μ_r R* F_n; beyond that it rolls on at constant moment. Twisting about the
@@ -42,6 +42,11 @@ impl RollingMemory {
 }
 
 impl Rolling {
+    /// Squared frequency of a sphere of `radius` [m] on this spring over k_n/m: k_r m/I.
+    pub fn frequency_factor(&self, radius: f64) -> f64 {
+        2.25 * 2.5 * (self.arm / radius).powi(2)
+    }
+
     /// Couple of a contact with the given normal force [N] and stiffness [N/m], both above 0; its memory advances with
     /// the call.
     pub(super) fn couple(

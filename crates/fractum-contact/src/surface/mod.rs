@@ -3,7 +3,7 @@
 mod closest;
 mod weights;
 
-use fractum_math::{Ragged, Vec3};
+use fractum_math::{Ragged, Vec3, connected};
 
 use crate::SurfaceError;
 pub(crate) use closest::closest_on_segment;
@@ -84,7 +84,7 @@ impl FacetMesh {
             edges.push(same[0].0);
             edge_facets.push([same[0].1, same[same.len() - 1].1]);
         }
-        let (part, parts) = connected(facets.len(), &edge_facets);
+        let (part, parts) = numbered_parts(facets.len(), &edge_facets);
         Ok(FacetMesh {
             triangles: facets.iter().all(|f| f.as_ref().len() == 3),
             facets: Ragged::from_rows(facets),
@@ -220,29 +220,14 @@ fn check_facet(points: &[Vec3], facet: usize, corners: &[u32]) -> Result<(), Sur
 }
 
 /// Part of each facet, numbered by their first facets, and the number of parts.
-fn connected(facets: usize, edge_facets: &[[u32; 2]]) -> (Vec<u32>, u32) {
-    let mut root: Vec<u32> = (0..facets as u32).collect();
-    fn find(root: &mut [u32], mut facet: u32) -> u32 {
-        while root[facet as usize] != facet {
-            root[facet as usize] = root[root[facet as usize] as usize];
-            facet = root[facet as usize];
-        }
-        facet
-    }
-    for &[a, b] in edge_facets {
-        let (a, b) = (find(&mut root, a), find(&mut root, b));
-        root[a.max(b) as usize] = a.min(b);
-    }
+fn numbered_parts(facets: usize, edge_facets: &[[u32; 2]]) -> (Vec<u32>, u32) {
+    let mut part = connected(facets, edge_facets.iter().copied());
     let mut parts = 0;
-    let mut part = vec![0; facets];
-    for facet in 0..facets as u32 {
-        let first = find(&mut root, facet);
-        if first == facet {
-            part[facet as usize] = parts;
-            parts += 1;
-        } else {
-            part[facet as usize] = part[first as usize];
-        }
+    for facet in 0..facets {
+        let first = part[facet] as usize;
+        // The first facet of a part has its number by the time the others ask for it.
+        part[facet] = if first == facet { parts } else { part[first] };
+        parts += u32::from(first == facet);
     }
     (part, parts)
 }

@@ -18,7 +18,7 @@ use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::StaticSettings;
-use fractum_scene::{Guard, Loads, Probe, Scene, SceneError, SceneSettings, Supports, TimeStepSettings};
+use fractum_scene::{Loads, Probe, Scene, SceneError, SceneSettings, Supports, TimeStepSettings};
 
 use bonded::ParticleSets;
 
@@ -213,7 +213,7 @@ impl Context<'_> {
             },
             damping: LocalDamping { local: self.case.damping.local, mass_rate: self.case.damping.mass },
             stiffness_time: self.case.damping.stiffness,
-            guard: Guard { warning: solver.balance_warning, stop: solver.balance_stop },
+            balance_stop: solver.balance_stop,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Pieces of bonded bodies: particles that live bonds hold together.
 
-use fractum_math::Vec3;
+use fractum_math::{Vec3, connected};
 
 use super::Bonded;
 use crate::fragment::Fragment;
@@ -8,30 +8,16 @@ use crate::fragment::Fragment;
 impl Bonded {
     /// Pieces connected by live bonds, in the order of their first particles.
     pub fn fragments(&self) -> Vec<Fragment> {
-        let mut root: Vec<u32> = (0..self.particles.len() as u32).collect();
-        fn find(root: &mut [u32], mut i: u32) -> u32 {
-            while root[i as usize] != i {
-                root[i as usize] = root[root[i as usize] as usize];
-                i = root[i as usize];
-            }
-            i
-        }
-        let mut bonds = vec![0usize; root.len()];
-        for body in &self.bodies {
-            for bond in (0..body.bonds.len()).filter(|&bond| body.bonds.is_live(bond)) {
-                let [a, b] = body.bonds.pairs()[bond].map(|i| find(&mut root, i));
-                root[a.max(b) as usize] = a.min(b);
-            }
-        }
-        for body in &self.bodies {
-            for bond in (0..body.bonds.len()).filter(|&bond| body.bonds.is_live(bond)) {
-                bonds[find(&mut root, body.bonds.pairs()[bond][0]) as usize] += 1;
-            }
-        }
-        let mut members: Vec<Vec<u32>> = vec![Vec::new(); root.len()];
-        for i in 0..root.len() as u32 {
-            let place = find(&mut root, i);
-            members[place as usize].push(i);
+        let live = self.bodies.iter().flat_map(|body| {
+            let live = (0..body.bonds.len()).filter(|&bond| body.bonds.is_live(bond));
+            live.map(|bond| body.bonds.pairs()[bond])
+        });
+        let part = connected(self.particles.len(), live.clone());
+        let mut bonds = vec![0usize; part.len()];
+        live.for_each(|[first, _]| bonds[part[first as usize] as usize] += 1);
+        let mut members: Vec<Vec<u32>> = vec![Vec::new(); part.len()];
+        for (particle, &place) in (0..).zip(&part) {
+            members[place as usize].push(particle);
         }
         let whole = members.into_iter().enumerate().filter(|(_, own)| !own.is_empty());
         whole.map(|(place, own)| self.piece(own, bonds[place])).collect()

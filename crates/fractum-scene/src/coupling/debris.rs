@@ -398,12 +398,13 @@ impl Debris {
             if apart > pair.closing + self.state.skin {
                 continue;
             }
-            // A turning sphere answers 1 + m r²/I = 3.5 times as fast to the tangential spring, and 2.5 times to the
-            // one against rolling; a particle on an element 1.25 times if all nodes of the element weigh the same.
+            // A turning sphere answers 1 + m r²/I = 3.5 times as fast to the tangential spring; a particle on an element
+            // 1.25 times if all nodes of the element weigh the same.
             let free = |n: usize| !self.state.attached[self.particle_of[n] as usize];
-            let rolling = if pair.law.rolling_arm > 0.0 { 2.5 } else { 0.0 };
-            let turning = if free(i) || free(j) { 3.5 + rolling } else { 2.0 };
-            let stiffness = pair.law.normal_stiffness.max(turning * pair.law.tangential_stiffness);
+            let turning = if free(i) || free(j) { 3.5 } else { 2.0 };
+            let rolling = pair.law.rolling.frequency_factor(self.radius[i].min(self.radius[j]));
+            let (k_n, k_t) = (pair.law.normal_stiffness, pair.law.tangential_stiffness);
+            let stiffness = k_n.max(turning * k_t + rolling * k_n);
             let coupling = stiffness / (solid.mass[i] * solid.mass[j]).sqrt();
             rows[self.particle_of[i] as usize] += stiffness / solid.mass[i] + coupling;
             rows[self.particle_of[j] as usize] += stiffness / solid.mass[j] + coupling;

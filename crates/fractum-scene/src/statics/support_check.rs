@@ -5,6 +5,7 @@ use fractum_math::Vec3;
 use nalgebra::{Matrix6, Vector6};
 
 use crate::error::SceneError;
+use crate::fragment::parts;
 
 /// Fails if some connected piece of the solid can move as a rigid body.
 ///
@@ -62,29 +63,20 @@ pub fn check_supports(solid: &Solid, held: &[u8]) -> Result<(), SceneError> {
 
 /// Connected pieces: the body of their first element, and their nodes.
 fn pieces(solid: &Solid) -> Vec<(usize, Vec<u32>)> {
-    let mut root: Vec<u32> = (0..solid.reference.len() as u32).collect();
-    fn find(root: &mut [u32], mut node: u32) -> u32 {
-        while root[node as usize] != node {
-            root[node as usize] = root[root[node as usize] as usize];
-            node = root[node as usize];
-        }
-        node
-    }
-    let mut body_of = vec![usize::MAX; root.len()];
+    let part = parts(solid);
+    let mut body_of = vec![usize::MAX; part.len()];
     for body in 0..solid.body_count() {
         let model = solid.body(body);
         let corners = model.shape.node_count();
         for (element, _) in model.elements.iter().zip(solid.alive(body)).filter(|(_, alive)| **alive) {
             for &node in &element[..corners] {
                 body_of[node as usize] = body_of[node as usize].min(body);
-                let (a, b) = (find(&mut root, element[0]), find(&mut root, node));
-                root[a.max(b) as usize] = a.min(b);
             }
         }
     }
-    let mut members: Vec<(usize, Vec<u32>)> = vec![(usize::MAX, Vec::new()); root.len()];
-    for node in (0..root.len() as u32).filter(|&n| body_of[n as usize] != usize::MAX) {
-        let (body, nodes) = &mut members[find(&mut root, node) as usize];
+    let mut members: Vec<(usize, Vec<u32>)> = vec![(usize::MAX, Vec::new()); part.len()];
+    for (node, place) in (0..).zip(part).filter(|&(n, _)| body_of[n as usize] != usize::MAX) {
+        let (body, nodes) = &mut members[place as usize];
         *body = (*body).min(body_of[node as usize]);
         nodes.push(node);
     }
