@@ -2,9 +2,10 @@
 
 use fractum_dem::Criterion;
 use fractum_dem::criterion::{BeamRankine, EndMoments, Hydrostatic, Level, Principal};
+use fractum_pack::{Convention, Domain, PackSpec, pack};
 use serde::Serialize;
 
-use crate::{CalibrateError, Sample, lab, published};
+use crate::{CalibrateError, Micro, Sample, lab, published};
 
 /// Criteria whose one strength can be calibrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -56,16 +57,9 @@ pub struct Strength {
 /// # Errors
 /// A tensile strength that is none; another shape than a box; a solve that does not converge.
 pub fn calibrate(samples: &[&Sample], asked: f64, criterion: StrengthCriterion) -> Result<Strength, CalibrateError> {
-    if !(asked.is_finite() && asked > 0.0) {
-        let expected = "a positive number of pascals";
-        return Err(CalibrateError::Material { what: "tensile strength", value: asked, expected });
-    }
-    let test = lab::Failure::Tension;
-    // Strength is asked, not the whole fall of the load.
-    let options = lab::FailureOptions { stop: 0.9, ..lab::FailureOptions::new(test, criterion.with(asked)) };
     let (mut first, mut peak) = (Vec::new(), Vec::new());
     for sample in samples {
-        let broken = lab::break_sample(sample, test, &options)?;
+        let broken = pull(sample, asked, criterion.with(asked))?;
         first.push(asked * asked / broken.first_break.unwrap_or(f64::NAN));
         peak.push(asked * asked / broken.strength);
     }
@@ -77,6 +71,52 @@ pub fn calibrate(samples: &[&Sample], asked: f64, criterion: StrengthCriterion) 
         asked / published::strength_ratio(ratio, sample.network.coordination_all)
     });
     Ok(Strength { criterion, peak: mean(&peak), first_break: mean(&first), range: [range(&peak), range(&first)], law })
+}
+
+/// A tension test to the load peak.
+fn pull(sample: &Sample, asked: f64, criterion: Criterion) -> Result<lab::Broken, CalibrateError> {
+    if !(asked.is_finite() && asked > 0.0) {
+        let expected = "a positive number of pascals";
+        return Err(CalibrateError::Material { what: "tensile strength", value: asked, expected });
+    }
+    let test = lab::Failure::Tension;
+    // Strength is asked, not the whole fall of the load.
+    let options = lab::FailureOptions { stop: 0.9, ..lab::FailureOptions::new(test, criterion) };
+    lab::break_sample(sample, test, &options)
+}
+
+/// Bonds of which a criterion's strengths are asked.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BondKind {
+    /// The beams; only their radius matters here.
+    pub micro: Micro,
+    /// Coordination.
+    pub coordination: f64,
+    /// How it is counted.
+    pub convention: Convention,
+    /// κ of the radii.
+    pub dispersion: f64,
+}
+
+/// Particles of the boxes on which strengths are found, and how many of them are broken.
+const STRENGTH_BOXES: (usize, u64) = (5_000, 2);
+
+/// The factor from the material's strengths to the criterion's own: with all of them times it, boxes of such bonds peak at
+/// the tensile strength `asked` [Pa] of the material.
+///
+/// # Errors
+/// Those of packing, bonding and breaking.
+pub fn strength_factor(bonds: &BondKind, asked: f64, criterion: Criterion) -> Result<f64, CalibrateError> {
+    let (particles, packings) = STRENGTH_BOXES;
+    let mut factor = 0.0;
+    for seed in 1..=packings {
+        let spec = PackSpec::new(Domain::cuboid(1e-3, 1e-3, 1e-3), particles, seed);
+        let packing = pack(&PackSpec { dispersion: bonds.dispersion, ..spec })?;
+        let mut sample = Sample::new(packing, bonds.coordination, bonds.convention)?;
+        sample.set_micro(bonds.micro)?;
+        factor += asked / pull(&sample, asked, criterion)?.strength / packings as f64;
+    }
+    Ok(factor)
 }
 
 #[cfg(test)]

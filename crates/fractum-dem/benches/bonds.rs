@@ -4,7 +4,7 @@
 //! as a packing gives it.
 
 use fractum_dem::criterion::{Criterion, Level, Principal};
-use fractum_dem::{BeamNetwork, BeamSection, CrackFaces, Dof6, Fracture, Integrator, Lattice, Particles};
+use fractum_dem::{BeamNetwork, BeamSection, CrackFaces, Dof6, Fracture, Integrator, Lattice, Occasion, Particles};
 use fractum_math::Vec3;
 
 fn main() {
@@ -96,6 +96,6 @@ fn forces_and_criterion(bencher: divan::Bencher, side: usize) {
     let Some((mut bonds, mut particles, mut fracture)) = watched(side) else { return };
     bencher.bench_local(|| {
         bonds.add_forces_and_dyads(&mut particles);
-        fracture.break_overloaded(&mut bonds, &particles, 1e-6, 0.0, 0, 0.0)
+        fracture.break_overloaded(&mut bonds, &particles, Occasion::default())
     });
 }

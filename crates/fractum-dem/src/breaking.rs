@@ -1,7 +1,7 @@
 //! Quasi-static breaking, event by event.
 
 use fractum_math::Vec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, Mode};
 use crate::graph::BondGraph;
@@ -60,7 +60,7 @@ pub struct LoadPoint {
 }
 
 /// A bond that broke.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Crack {
     /// The bond.
     pub bond: u32,

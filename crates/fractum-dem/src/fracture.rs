@@ -2,13 +2,13 @@
 
 use fractum_contact::law::{ContactMemory, Linear, PairMotion, Rolling};
 use fractum_math::{Sym3, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::breaking::{Crack, facet_area};
 use crate::criterion::{BondLoad, Criterion};
 use crate::graph::BondGraph;
-use crate::particles::free;
 use crate::watch::{Bonded, Break, Site, Watch};
-use crate::{BeamNetwork, BeamSection, DemError, Particles};
+use crate::{BeamForces, BeamNetwork, BeamSection, DemError, Particles};
 
 /// The faces of a crack against one another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,12 +53,33 @@ pub struct Fracture {
     pairs: Vec<Face>,
     cracks: Vec<Crack>,
     released: f64,
+    /// What the bonds that broke last still exert, with the index of their crack.
+    acting: Vec<(usize, BeamForces)>,
     sites: Vec<Site>,
     breaks: Vec<Break>,
 }
 
+/// Everything that changes in a [`Fracture`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FractureState {
+    faces: Vec<Face>,
+    cracks: Vec<Crack>,
+    released: f64,
+}
+
+/// Where and when bonds break, for the list of cracks.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Occasion {
+    /// Time [s].
+    pub time: f64,
+    /// Number of the step or of the equilibrium.
+    pub event: usize,
+    /// Load, where there is one that matters.
+    pub load: f64,
+}
+
 /// Two particles whose bond is broken.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Face {
     pair: [u32; 2],
     /// Length of the bond without load [m].
@@ -128,6 +149,7 @@ impl Fracture {
             pairs: Vec::new(),
             cracks: Vec::new(),
             released: 0.0,
+            acting: Vec::new(),
             sites: Vec::new(),
             breaks: Vec::new(),
         })
@@ -138,12 +160,22 @@ impl Fracture {
         &self.graph
     }
 
+    /// What crack faces do.
+    pub fn faces(&self) -> CrackFaces {
+        self.faces
+    }
+
+    /// The criterion.
+    pub fn criterion(&self) -> &Criterion {
+        self.watch.criterion()
+    }
+
     /// What broke so far, in order.
     pub fn cracks(&self) -> &[Crack] {
         &self.cracks
     }
 
-    /// Elastic energy that bonds held when they broke [J].
+    /// Elastic energy that bonds held at their end [J].
     pub fn released(&self) -> f64 {
         self.released
     }
@@ -156,23 +188,23 @@ impl Fracture {
         self.watch.worst()
     }
 
+    /// Where a site is: a particle, or the middle of a bond.
+    pub fn place(&self, site: &Site, position: &[Vec3]) -> Vec3 {
+        match self.watch.criterion().level() {
+            Some(_) => position[site.index as usize],
+            None => {
+                let [i, j] = self.graph.pairs()[site.index as usize].map(|i| position[i as usize]);
+                (i + j) * 0.5
+            }
+        }
+    }
+
     /// Breaks what fails: for every overloaded site what it releases. Returns the number of bonds.
     ///
     /// The forces must be those that [`BeamNetwork::add_forces_and_dyads`] found at these positions. They stay as they
-    /// are, and velocity Verlet uses them for the half step that follows: a bond acts to its end, and its energy is booked
-    /// as of then. Taken away at once, it would cost the balance the square of its force, whatever the motion.
-    ///
-    /// - `dt` [s]: the step that follows; velocities are those of this moment
-    /// - `time` [s] and `load` for the list of cracks
-    pub fn break_overloaded(
-        &mut self,
-        bonds: &mut BeamNetwork,
-        particles: &Particles,
-        dt: f64,
-        time: f64,
-        event: usize,
-        load: f64,
-    ) -> usize {
+    /// are and act on the kick that follows: taken away at once, a force would cost the balance its square, whatever the
+    /// motion. [`Fracture::book_last_work`] takes what they do in it off the energies of the cracks.
+    pub fn break_overloaded(&mut self, bonds: &mut BeamNetwork, particles: &Particles, occasion: Occasion) -> usize {
         let Fracture { graph, watch, sites, breaks, .. } = self;
         if !watch.may_fail(&Moving { bonds, particles }, 1.0) {
             return 0;
@@ -193,7 +225,8 @@ impl Fracture {
             if !self.graph.break_bond(bond) {
                 continue;
             }
-            let energy = bonds.energy_of(bond as usize, particles).total() - half_step_work(bonds, particles, bond, dt);
+            let energy = bonds.energy_of(bond as usize, particles).total();
+            self.acting.push((self.cracks.len(), bonds.forces_of(bond as usize, particles)));
             let pair = bonds.pairs()[bond as usize];
             let [i, j] = pair.map(|i| i as usize);
             self.pairs.push(self.face(bonds, particles, bond));
@@ -202,9 +235,40 @@ impl Fracture {
             self.released += energy;
             let (a, b) = (self.reference[i], self.reference[j]);
             let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
+            let Occasion { time, event, load } = occasion;
             self.cracks.push(Crack { bond, pair, event, time, load, position, normal, area: self.area, mode, energy });
         }
         self.cracks.len() - before
+    }
+
+    /// Books the work that bonds which broke at tⁿ still did in the step after it; one call after each kick.
+    ///
+    /// - `particles`: with the velocities and spins vⁿ⁺½ of that step
+    /// - `dt` [s]: the step
+    pub fn book_last_work(&mut self, particles: &Particles, dt: f64) {
+        let Particles { velocity, spin, .. } = particles;
+        for (crack, forces) in self.acting.drain(..) {
+            let [i, j] = self.cracks[crack].pair.map(|i| i as usize);
+            let [first, second] = forces.moment;
+            let power = forces.force.dot(&(velocity[j] - velocity[i])) + first.dot(&spin[i]) + second.dot(&spin[j]);
+            self.cracks[crack].energy -= 0.5 * dt * power;
+            self.released -= 0.5 * dt * power;
+        }
+    }
+
+    /// Everything that changes, between two steps.
+    pub fn state(&self) -> FractureState {
+        FractureState { faces: self.pairs.clone(), cracks: self.cracks.clone(), released: self.released }
+    }
+
+    /// Puts a saved state back, into the network too, which must be unbroken.
+    pub fn restore(&mut self, state: FractureState, bonds: &mut BeamNetwork) {
+        FractureState { faces: self.pairs, cracks: self.cracks, released: self.released } = state;
+        for crack in &self.cracks {
+            self.graph.break_bond(crack.bond);
+            bonds.break_bond(crack.bond as usize);
+        }
+        self.watch.gather_all(&self.graph);
     }
 
     fn face(&self, bonds: &BeamNetwork, particles: &Particles, bond: u32) -> Face {
@@ -272,20 +336,6 @@ impl Fracture {
     }
 }
 
-/// Work of a bond on its particles in the half step that follows [J].
-fn half_step_work(bonds: &BeamNetwork, particles: &Particles, bond: u32, dt: f64) -> f64 {
-    let [i, j] = bonds.pairs()[bond as usize].map(|i| i as usize);
-    let forces = bonds.forces_of(bond as usize, particles);
-    let ahead = |i: usize| {
-        let held = particles.held[i];
-        let half = 0.5 * dt;
-        let velocity = particles.velocity[i] + free(particles.force[i], held) * (half / particles.mass[i]);
-        (velocity, particles.spin[i] + free(particles.moment[i], held >> 3) * (half / particles.inertia[i]))
-    };
-    let ((vi, wi), (vj, wj)) = (ahead(i), ahead(j));
-    0.5 * dt * (forces.force.dot(&(vj - vi)) + forces.moment[0].dot(&wi) + forces.moment[1].dot(&wj))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -316,7 +366,8 @@ mod tests {
         // Fine enough that the kink of the force where faces meet does not show.
         let dt = 0.02 * bonds.stable_step(&particles, 0.7);
         bonds.add_forces_and_dyads(&mut particles);
-        fracture.break_overloaded(&mut bonds, &particles, 0.0, 0.0, 0, 0.0);
+        fracture.break_overloaded(&mut bonds, &particles, Occasion::default());
+        fracture.book_last_work(&particles, 0.0);
         // What is left of the force once the bond is gone.
         particles.clear_forces();
         bonds.add_forces_and_dyads(&mut particles);
@@ -327,11 +378,13 @@ mod tests {
         let (mut drift, mut lost) = (0.0f64, 0.0);
         for step in 1..20_000 {
             particles.kick_and_drift(dt, Integrator::VelocityVerlet);
+            fracture.book_last_work(&particles, dt);
             particles.clear_forces();
             bonds.add_forces_and_dyads(&mut particles);
             let work = fracture.add_contact_forces(&mut particles, dt);
             particles.kick(dt, Integrator::VelocityVerlet);
-            fracture.break_overloaded(&mut bonds, &particles, dt, dt * f64::from(step), 0, 0.0);
+            let time = dt * f64::from(step);
+            fracture.break_overloaded(&mut bonds, &particles, Occasion { time, ..Occasion::default() });
             lost += work.friction + work.damping;
             let now = energy(&particles, &bonds) + fracture.released() + work.stored + lost;
             drift = drift.max((now - start).abs() / start);

@@ -40,7 +40,7 @@ pub use bond::{BeamEnergy, BeamForces, BeamNetwork, BeamSection, BondedPair, coh
 pub use breaking::{Batch, Breaking, Crack, LoadPoint, Outcome, Point, quasi_static};
 pub use criterion::Criterion;
 pub use error::DemError;
-pub use fracture::{CrackFaces, FaceWork, Fracture};
+pub use fracture::{CrackFaces, FaceWork, Fracture, FractureState, Occasion};
 pub use graph::{BondGraph, HalfEdge, Parts};
 pub use lattice::{Dof6, Equilibrium, Lattice, Supports, Tolerance};
 pub use leapfrog::{Leap, LeapWork, ParticleDamping};

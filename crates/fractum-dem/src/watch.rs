@@ -99,8 +99,13 @@ impl Watch {
             over: Vec::new(),
             worst: None,
         };
-        (0..stressed).for_each(|i| watch.gather(i, graph));
+        watch.gather_all(graph);
         Ok(watch)
+    }
+
+    /// Members and volumes of all neighbourhoods anew.
+    pub(crate) fn gather_all(&mut self, graph: &BondGraph) {
+        (0..self.inverse.len()).for_each(|i| self.gather(i, graph));
     }
 
     /// The criterion.

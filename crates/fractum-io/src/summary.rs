@@ -46,6 +46,9 @@ pub struct Summary {
     pub expect: Vec<Expectation>,
     /// The energy ledger at the end.
     pub energy: Energy,
+    /// What became of the bonds of each body whose bonds can break.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fracture: Vec<Fracture>,
     /// Sizes at the end.
     pub counts: Counts,
     /// Simulated time.
@@ -113,6 +116,29 @@ impl Expectation {
             source: source.into(),
         }
     }
+}
+
+/// What became of the bonds of a body.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fracture {
+    /// Name of the body.
+    pub body: String,
+    /// Bonds that broke.
+    pub broken_bonds: u64,
+    /// When the first one broke [s].
+    #[serde(with = "number")]
+    pub first_break: f64,
+    /// Facets that the broken bonds stand for [m²].
+    #[serde(with = "number")]
+    pub crack_area: f64,
+    /// Largest load over strength of any particle or bond at the rows of the history: how close it came.
+    #[serde(with = "number")]
+    pub largest_ratio: f64,
+    /// Where that was, in the undeformed body [m].
+    pub largest_at: Option<[f64; 3]>,
+    /// When that was [s].
+    #[serde(with = "number")]
+    pub largest_time: f64,
 }
 
 /// The energy ledger [J].

@@ -18,7 +18,9 @@ mod scene;
 pub mod statics;
 mod step;
 
-pub use bonded::{Bonded, BondedBody, BondedPart, BondedState, ParticleLoad, ParticleProbe, ParticleSupport};
+pub use bonded::{
+    BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest, ParticleLoad, ParticleProbe, ParticleSupport,
+};
 pub use boundary::{Load, Loads, Motion, Support, Supports, TimeFunction};
 pub use clock::{Clock, TimeStepSettings};
 pub use contacts::{ContactMaterial, Contacts, Drive, Form, Inertia, Overlap, OverlapWith, SolidGround, Tool};

@@ -163,6 +163,7 @@ impl Scene {
         let contacts = self.contact_frequency_square + self.contacts.frequency_square();
         let frequency = (frequency * frequency + contacts).sqrt();
         let contact = if self.contact_frequency_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
+        let contact = contact.max(self.bonded.damping_ratio());
         let damping = self.settings.damping;
         let xi = 0.5 * self.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
         2.0 / frequency * ((1.0 + xi * xi).sqrt() - xi)

@@ -60,11 +60,11 @@ impl Scene {
         let elapsed = if self.clock.step == 0 { 0.0 } else { dt_before };
         self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
         passed(Phase::Solid);
-        let bonded_load = self.add_bond_forces(time, dt_before, measure);
+        let (bonded_load, faces) = self.add_bond_forces(time, elapsed, dt_before, measure);
         if !self.bonded.is_empty() {
             passed(Phase::Bonds);
         }
-        let contact = self.add_contact_forces(elapsed);
+        let contact = self.add_contact_forces(elapsed, faces);
         passed(Phase::Contact);
         let load_before = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
         if self.clock.step == 0 {
@@ -121,24 +121,25 @@ impl Scene {
         }
     }
 
-    /// Forces of the bonds and of the loads on their particles; the work of these in the half step before [J].
-    fn add_bond_forces(&mut self, time: f64, dt_before: f64, measure: bool) -> f64 {
+    /// Forces of the bonds, of crack faces and of the loads on their particles; the work of loads in the half step
+    /// before [J], and that of crack faces.
+    fn add_bond_forces(&mut self, time: f64, elapsed: f64, dt_before: f64, measure: bool) -> (f64, ContactWork) {
         if self.bonded.is_empty() {
-            return 0.0;
+            return (0.0, ContactWork::default());
         }
-        self.bonded.update_bond_forces(measure);
-        self.bonded.add_loads(time, dt_before)
+        let faces = self.bonded.update_bond_forces(elapsed, measure);
+        (self.bonded.add_loads(time, dt_before), faces)
     }
 
     fn move_bonded(&mut self, time: f64, dt_before: f64, dt_after: f64, measure: bool) -> BondedWork {
         if self.bonded.is_empty() {
             return BondedWork::default();
         }
-        self.bonded.advance(time, dt_before, dt_after, self.settings.damping, measure)
+        self.bonded.advance(self.clock.step, time, dt_before, dt_after, self.settings.damping, measure)
     }
 
-    fn add_contact_forces(&mut self, dt: f64) -> ContactWork {
-        let mut work = ContactWork::default();
+    /// - `work`: that of the contacts counted so far
+    fn add_contact_forces(&mut self, dt: f64, mut work: ContactWork) -> ContactWork {
         if !self.contacts.is_empty() {
             work += self.contacts.add_forces(&mut self.solid, &mut self.bonded.particles, dt);
         }

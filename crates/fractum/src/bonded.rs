@@ -2,14 +2,19 @@
 
 use std::time::Instant;
 
-use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Micro, prepare, suitable_coordination};
+use fractum_calibrate::strength::{BondKind, strength_factor};
+use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Micro, Sample, prepare, suitable_coordination};
+use fractum_dem::{CrackFaces, Criterion};
 use fractum_io::assemble::PreparedBody;
-use fractum_io::case::model::{self, BodyKind, BondedBody, BondedShape, Case, PackingSource, ParticleSize};
+use fractum_io::case::model::{
+    self, BodyKind, BondFailure, BondedBody, BondedShape, Case, PackingSource, ParticleSize,
+};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
 use fractum_mesh::{Mesh, topology};
 use fractum_pack::{
     Certificate, ClosedSurface, Convention, Domain, PackError, PackSize, PackSpec, Packing, pack, read_stl,
 };
+use fractum_scene::BondFracture;
 use serde::{Deserialize, Serialize};
 
 use crate::cache::{Cache, key};
@@ -55,6 +60,8 @@ pub struct BondedReport {
     pub beams: Beams,
     /// Names and sizes of the wall sets.
     pub walls: Vec<(String, usize)>,
+    /// When its bonds break, with where the strengths came from.
+    pub fracture: Option<(Criterion, Origin)>,
 }
 
 /// All bodies of particles of a case.
@@ -116,6 +123,14 @@ struct BeamsKey {
     convention: Convention,
     young_modulus: f64,
     poisson_ratio: f64,
+}
+
+/// What decides the strengths of a criterion.
+#[derive(Serialize)]
+struct StrengthKey {
+    bonds: BondKind,
+    asked: f64,
+    criterion: Criterion,
 }
 
 /// Beams as they are kept: with a checksum, so that a damaged entry is not believed.
@@ -181,6 +196,10 @@ impl Maker<'_> {
         if beams_from == Origin::Made {
             self.cache.keep("beams", beams_key, &beams_bytes(made.beams));
         }
+        let fracture = match &material.fracture {
+            Some(failure) => Some(self.strengths(&failure.value, &made.sample, made.beams.micro, coordination)?),
+            None => None,
+        };
         let done = Instant::now();
         all.timings.push(format!(
             "{}: packing {:.2} s, bonds and beams {:.2} s",
@@ -202,14 +221,41 @@ impl Maker<'_> {
             convention,
             beams: made.beams,
             walls: sample.packing.walls.iter().map(|(name, set)| (name.clone(), set.len())).collect(),
+            fracture,
         });
+        let faces = CrackFaces { friction: material.contact.friction, damping_ratio: material.contact.damping_ratio };
+        let volume = sample.measured_volume();
+        let breaks = |(criterion, _)| BondFracture { criterion, faces, fraction: sample.fraction, volume };
         all.prepared.push(PreparedBody {
+            fracture: fracture.map(breaks),
             section: sample.lattice.section(),
             particles: made.particles,
             pairs: made.sample.network.pairs,
             walls: made.sample.packing.walls,
         });
         Ok(())
+    }
+
+    /// The criterion with its own strengths: given, kept, or found by breaking boxes of such bonds.
+    fn strengths(
+        &self,
+        failure: &BondFailure,
+        sample: &Sample,
+        micro: Micro,
+        coordination: f64,
+    ) -> Result<(Criterion, Origin), Box<Diagnostic>> {
+        let Some(asked) = failure.tensile_strength else { return Ok((failure.criterion, Origin::Given)) };
+        let (convention, dispersion) = (convention(self.bonded.convention), sample.packing.dispersion);
+        let criterion = failure.criterion;
+        let bonds = BondKind { micro, coordination, convention, dispersion };
+        let strength_key = key(&StrengthKey { bonds, asked, criterion });
+        let kept = self.cache.find("strength", strength_key, |bytes| Some(f64::from_le_bytes(bytes.try_into().ok()?)));
+        if let Some(factor) = kept.filter(|factor| factor.is_finite() && *factor > 0.0) {
+            return Ok((criterion.scaled(factor), Origin::Cached));
+        }
+        let factor = strength_factor(&bonds, asked, criterion).map_err(|error| self.wrong(&error))?;
+        self.cache.keep("strength", strength_key, &factor.to_le_bytes());
+        Ok((criterion.scaled(factor), Origin::Made))
     }
 
     /// Reads the packing, finds it among the kept ones, or makes it.

@@ -7,8 +7,9 @@ use fractum_io::number::quantity;
 use fractum_io::picture::{ColourMap, Paint, Picture, Spheres, Surface, View, range};
 use fractum_math::Vec3;
 use fractum_mesh::topology::boundary_of_tetrahedra;
-use fractum_scene::Scene;
+use fractum_scene::{BondedBody, CountKind, Scene};
 
+use crate::cracks::lost_bonds;
 use crate::report::PictureNote;
 
 /// The largest displacement in a picture, as a fraction of the size of the body.
@@ -85,7 +86,37 @@ pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
         let length: Vec<f64> = moved.iter().map(|u| u.norm()).collect();
         add("particles.png", "Displacement of bonded particles", "displacement", "m", &[], &length, false);
     }
+    if scene.count(CountKind::BrokenBonds) > 0 {
+        notes.extend(broken_bonds(scene, &balls, &view, folder, &format!("{time}{magnified}")));
+    }
     notes
+}
+
+/// Bonded bodies cut open across the line of sight, coloured by the bonds that particles have lost.
+fn broken_bonds(scene: &Scene, balls: &[[f64; 3]], view: &View, folder: &Path, when: &str) -> Option<PictureNote> {
+    let bonded = &scene.bonded;
+    let lost = lost_bonds(balls.len(), bonded.bodies().iter().flat_map(BondedBody::cracks));
+    let reference = bonded.reference();
+    let look = Vec3::from(view.direction);
+    let depth = |i: usize| reference[i].dot(&look);
+    let middle = reference.iter().map(|x| x.dot(&look)).sum::<f64>() / reference.len() as f64;
+    let kept: Vec<usize> = (0..balls.len()).filter(|&i| depth(i) >= middle).collect();
+    let centres: Vec<[f64; 3]> = kept.iter().map(|&i| balls[i]).collect();
+    let radii: Vec<f64> = kept.iter().map(|&i| bonded.particles.radius[i]).collect();
+    let values: Vec<f64> = kept.iter().map(|&i| lost[i]).collect();
+    let range = (0.0, 5.0);
+    let spheres = Spheres { centres: &centres, radii: &radii, paint: Paint::Nodes(&values) };
+    let picture = Picture { spheres: &[spheres], map: ColourMap::Damage, range, ..Picture::default() };
+    let file = "broken_bonds.png".to_owned();
+    picture.render(view).and_then(|image| image.write(&folder.join("pictures").join(&file))).ok()?;
+    Some(PictureNote {
+        file,
+        title: format!("Bonds that particles of the far half have lost at {when}"),
+        label: "broken bonds".to_owned(),
+        unit: "1".to_owned(),
+        damage: true,
+        range,
+    })
 }
 
 /// Spheres in the colour of their values, or plain without.

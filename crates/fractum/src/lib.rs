@@ -9,6 +9,7 @@
 
 pub mod bonded;
 mod cache;
+pub mod cracks;
 mod error;
 mod gallery;
 mod input;

@@ -2,13 +2,15 @@
 
 use std::fmt;
 
+use fractum_dem::Criterion as BondCriterion;
+use fractum_dem::criterion::Level;
 use fractum_fem::{Formulation, Kinematics, Plane, Shape};
 use fractum_io::assemble::Assembly;
 use fractum_io::case::model::{BodyKind, Case, LoadKind, Material, MeshSource, RigidBody, RigidShape, SolidBody};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
-use fractum_scene::Scene;
 use fractum_scene::statics::{Control, StaticSettings};
+use fractum_scene::{BondedBody, Scene};
 
 use crate::bonded::{BondedReport, Origin};
 
@@ -191,6 +193,18 @@ impl Plan {
                 quantity(micro.young_modulus, "Pa"),
             ),
         );
+        let breaking = match &report.fracture {
+            Some((criterion, origin)) => {
+                let found = match origin {
+                    Origin::Made => "found now by breaking two boxes in tension",
+                    Origin::Cached => "from the cache",
+                    Origin::Given => "as given",
+                };
+                format!("bonds break by {}; strengths {found}", criterion_text(criterion))
+            }
+            None => "bonds hold: the material has no fracture".to_owned(),
+        };
+        self.add("", breaking);
         let sets: Vec<String> = report.walls.iter().map(|(wall, n)| format!("{}.{wall} {n}", report.name)).collect();
         self.add("", format!("sets of particles: {} {}, {}", report.name, report.particles, sets.join(", ")));
     }
@@ -285,7 +299,13 @@ impl Plan {
         choose(scene.bonded.bond_counts().0 > 0, "cohesive beams", "no bonded body");
         let touched = !scene.grounds.is_empty() && scene.solid.body_count() > 0;
         choose(touched, "contact of solids with rigid bodies", "no rigid body, or no solid");
-        choose(!scene.bonded.particles.is_empty(), "contact of particles by Hertz' law", "no particles at the start");
+        choose(
+            !scene.contacts.is_empty(),
+            "contact of particles by Hertz' law",
+            "no particles that could meet anything",
+        );
+        let breaks = scene.bonded.bodies().iter().any(BondedBody::can_break);
+        choose(breaks, "breaking of bonds", "no material of bonded bodies has a fracture");
         let damping = case.damping;
         choose(damping.local > 0.0 || damping.mass > 0.0, "damping on the nodes", "not asked for");
         let viscous = damping.stiffness > 0.0 || damping.bulk_linear > 0.0 || damping.bulk_quadratic > 0.0;
@@ -405,4 +425,42 @@ fn area_of(mesh: &Mesh, group: &str, thickness: f64) -> String {
 
 fn megabytes(bytes: f64) -> String {
     format!("{} MB", (bytes / 1e6).ceil())
+}
+
+/// A criterion for bonds in words, with its own strengths.
+fn criterion_text(criterion: &BondCriterion) -> String {
+    let level = |level: Level| match level {
+        Level::Own => "of each particle",
+        Level::Neighbours => "of each particle and its neighbours",
+        Level::Second => "of each particle and two rings of neighbours",
+    };
+    let both = |tension: f64, compression: f64| {
+        format!("{} in tension, {} in compression", quantity(tension, "Pa"), quantity(compression, "Pa"))
+    };
+    match criterion {
+        BondCriterion::BeamRankine(c) => {
+            format!("the largest principal stress in the beam: {}", quantity(c.strength, "Pa"))
+        }
+        BondCriterion::Hydrostatic(c) => {
+            format!("the mean virial stress of the particle: {}", quantity(c.strength, "Pa"))
+        }
+        BondCriterion::Principal(c) => {
+            let strengths = match c.compressive_strength {
+                Some(compression) => both(c.tensile_strength, compression),
+                None => format!("{} in tension", quantity(c.tensile_strength, "Pa")),
+            };
+            format!("principal virial stresses {}: {strengths}", level(c.level))
+        }
+        BondCriterion::MohrCoulomb(c) => format!(
+            "Mohr-Coulomb on the virial stress {}: {}, friction angle {:.1} deg",
+            level(c.level),
+            both(c.tensile_strength, c.compressive_strength),
+            c.friction_angle.to_degrees()
+        ),
+        BondCriterion::DruckerPrager(c) => format!(
+            "Drucker-Prager on the virial stress {}: {}",
+            level(c.level),
+            both(c.tensile_strength, c.compressive_strength)
+        ),
+    }
 }

@@ -5,8 +5,9 @@ use std::path::Path;
 use fractum_io::Compression;
 use fractum_io::vtk::{Field, PolyCells, PolyData};
 use fractum_math::Vec3;
-use fractum_scene::Scene;
+use fractum_scene::{BondedBody, Scene};
 
+use crate::cracks::lost_bonds;
 use crate::error::Failure;
 
 fn vectors<'a>(of: impl Iterator<Item = Vec3> + 'a) -> Vec<[f64; 3]> {
@@ -26,6 +27,7 @@ pub(crate) fn write_particles(scene: &Scene, path: &Path) -> Result<(), Failure>
     for (index, part) in (0..).zip(bonded.bodies()) {
         body[part.range.clone()].fill(index);
     }
+    let lost = lost_bonds(all.len(), bonded.bodies().iter().flat_map(BondedBody::cracks));
     let data = PolyData {
         points: &points,
         cells: PolyCells::Points,
@@ -37,6 +39,7 @@ pub(crate) fn write_particles(scene: &Scene, path: &Path) -> Result<(), Failure>
             Field::vector("velocity", &velocity),
             Field::vector("spin", &spin),
             Field::integer("body", &body),
+            Field::scalar("broken_bonds", &lost),
         ],
         cell_data: &[],
         time: Some(scene.clock.time),

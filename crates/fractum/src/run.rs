@@ -11,10 +11,11 @@ use fractum_io::fragments::{self, Fragment};
 use fractum_io::log::{Progress, RunLog, Snapshot};
 use fractum_io::summary::{self, Status, Summary, hash_text};
 use fractum_io::{Compression, WriteError};
-use fractum_scene::{CountKind, Phase, Scene, SceneState, StepError};
+use fractum_scene::{BondedBody, CountKind, Phase, Scene, SceneState, StepError};
 use serde::{Deserialize, Serialize};
 
 use crate::cache::Cache;
+use crate::cracks::{self, Columns};
 use crate::error::Failure;
 use crate::input::{Input, load};
 use crate::plan::Plan;
@@ -309,6 +310,7 @@ impl Run<'_> {
         self.progress.finish(&self.snapshot(&scene), self.started.elapsed());
         let pieces = fragments_of(&scene);
         fragments::write(&self.folder.join("fragments.csv"), &pieces)?;
+        self.write_cracks(&scene)?;
         let mut summary = self.summary(&scene, status, threads);
         summary.state_hash = hash_text(state_hash);
         summary.time = summary::Time { steps: clock.step, dt: clock.dt_before, dt_min: clock.dt_min, end: clock.time };
@@ -334,6 +336,19 @@ impl Run<'_> {
                 Ok(Outcome { summary, folder: self.folder.to_owned(), resumable })
             }
         }
+    }
+
+    /// The bonds that broke, where some could.
+    fn write_cracks(&self, scene: &Scene) -> Result<(), Failure> {
+        let bodies = scene.bonded.bodies();
+        if !bodies.iter().any(BondedBody::can_break) {
+            return Ok(());
+        }
+        let all = bodies.iter().flat_map(|body| body.cracks().iter().map(|crack| (Some(body.name.as_str()), crack)));
+        let columns = Columns { time: "time [s]", load: None };
+        cracks::write_table(&self.folder.join("cracks.csv"), all.clone(), columns)?;
+        let points: Vec<[f64; 3]> = scene.bonded.reference().iter().map(|x| (*x).into()).collect();
+        cracks::write_lines(&self.folder.join("cracks.vtp"), &points, all.map(|(_, crack)| crack))
     }
 
     fn summary(&self, scene: &Scene, status: Status, threads: usize) -> Summary {
@@ -395,6 +410,7 @@ impl Run<'_> {
                 broken_edges: counts.broken_edges as u64,
                 fragments: scene.count(CountKind::Fragments) as u64,
             },
+            fracture: scene.bonded.bodies().iter().filter(|body| body.can_break()).map(fracture_of).collect(),
             wall: summary::Wall { total: self.started.elapsed().as_secs_f64(), phases },
             ..Summary::default()
         }
@@ -456,6 +472,20 @@ fn status_text(status: Status) -> &'static str {
         Status::Completed => "completed",
         Status::Stopped => "stopped",
         Status::Interrupted => "interrupted",
+    }
+}
+
+/// What became of the bonds of a body.
+fn fracture_of(body: &BondedBody) -> summary::Fracture {
+    let closest = body.closest();
+    summary::Fracture {
+        body: body.name.clone(),
+        broken_bonds: body.broken() as u64,
+        first_break: body.cracks().first().map_or(f64::NAN, |crack| crack.time),
+        crack_area: body.cracks().iter().map(|crack| crack.area).sum(),
+        largest_ratio: closest.map_or(f64::NAN, |c| c.ratio),
+        largest_at: closest.map(|c| c.place.into()),
+        largest_time: closest.map_or(f64::NAN, |c| c.time),
     }
 }
 

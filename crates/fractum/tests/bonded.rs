@@ -4,9 +4,8 @@ mod common;
 
 use std::fs;
 
-use common::{Workplace, files_below};
+use common::{Workplace, files_below, run};
 use fractum_pack::{Domain, PackSpec, pack};
-use serde_json::Value;
 
 const BAR: &str = r#"fractum = 1
 title = "A bonded bar, pulled"
@@ -68,16 +67,6 @@ history = { every = "20 ns" }
 checkpoint = { every = "1 ms" }
 "#;
 
-fn summary(place: &Workplace, folder: &str) -> Value {
-    serde_json::from_str(&fs::read_to_string(place.path(folder).join("summary.json")).unwrap()).unwrap()
-}
-
-fn run(place: &Workplace, folder: &str, threads: &str) -> Value {
-    let ended = place.fractum(&["run", "case.toml", "-o", folder, "--threads", threads]);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    summary(place, folder)
-}
-
 fn log(place: &Workplace, folder: &str) -> String {
     fs::read_to_string(place.path(folder).join("run.log")).unwrap()
 }
@@ -118,7 +107,7 @@ fn a_bonded_body_runs_from_its_material_alone() {
     // From the last checkpoint to the end again.
     let resumed = place.fractum(&["run", "case.toml", "-o", "2", "--threads", "1", "--resume", "--quiet"]);
     assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
-    let resumed = self::summary(&place, "2");
+    let resumed = common::summary(&place, "2");
     assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&summary["state_hash"], &summary["energy"]));
     let rows = |folder: &str| fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
     assert!(rows("one") == rows("2"));

@@ -4,8 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{Workplace, files_below};
-use serde_json::Value;
+use common::{Workplace, files_below, run, summary};
 
 /// Beads fall on a floor within walls; a free plate presses on them, and a driven paddle stirs.
 const HEAP: &str = r#"fractum = 1
@@ -116,16 +115,6 @@ fn place(case: &str) -> Workplace {
     fs::write(place.path("more.csv"), "x, y, z, r\n0, 0, 35, 1.5\n5 5 35 1.5 # a corner\n").unwrap();
     fs::write(place.path("paddle.stl"), paddle()).unwrap();
     place
-}
-
-fn run(place: &Workplace, folder: &str, threads: &str) -> Value {
-    let ended = place.fractum(&["run", "case.toml", "-o", folder, "--threads", threads]);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    summary(place, folder)
-}
-
-fn summary(place: &Workplace, folder: &str) -> Value {
-    serde_json::from_str(&fs::read_to_string(place.path(folder).join("summary.json")).unwrap()).unwrap()
 }
 
 #[test]

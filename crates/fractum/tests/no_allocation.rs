@@ -134,7 +134,7 @@ fn bonded_bar() -> Scene {
     let pairs = (0..count).flat_map(|i| ahead(i).map(move |j| [i as u32, j as u32])).collect();
     let particles = Particles::at_rest(position.clone(), vec![0.5; count], count as f64).unwrap();
     let section = BeamSection::new(1e3, 0.3).unwrap();
-    let part = BondedPart { name: "bar".into(), particles, pairs, section, density: 1.0 };
+    let part = BondedPart { name: "bar".into(), particles, pairs, section, density: 1.0, fracture: None };
     let mut bonded = Bonded::new(vec![part]).unwrap();
     let end = |x: f64| (0..count as u32).filter(|&i| site(i as usize).x == x).collect::<Vec<u32>>();
     let support = |name: &str, particles, motion| ParticleSupport { name: name.into(), particles, axis: 0, motion };

@@ -2,7 +2,7 @@
 
 use fractum_dem::{BeamSection, Particles};
 use fractum_math::Vec3;
-use fractum_scene::{Bonded, BondedPart, ParticleLoad, ParticleProbe, ParticleSupport, Probe};
+use fractum_scene::{BondFracture, Bonded, BondedPart, ParticleLoad, ParticleProbe, ParticleSupport, Probe};
 
 use super::conditions::motion_of;
 use super::{Context, function};
@@ -20,6 +20,8 @@ pub struct PreparedBody {
     pub section: BeamSection,
     /// Sets of particles that touch the walls of the shape, by name.
     pub walls: Vec<(String, Vec<u32>)>,
+    /// When its bonds break, with the criterion's own strengths.
+    pub fracture: Option<BondFracture>,
 }
 
 /// The sets of particles of a bonded body, in the numbering of the scene.
@@ -64,6 +66,7 @@ impl Context<'_> {
                 pairs: made.pairs,
                 section: made.section,
                 density: case.materials[material].density,
+                fracture: made.fracture,
             });
             start += count;
         }

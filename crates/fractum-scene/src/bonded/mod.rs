@@ -6,7 +6,11 @@ mod probe;
 
 use std::ops::Range;
 
-use fractum_dem::{BeamEnergy, BeamNetwork, BeamSection, Leap, LeapWork, ParticleDamping, Particles};
+use fractum_contact::ContactWork;
+use fractum_dem::{
+    BeamEnergy, BeamNetwork, BeamSection, Crack, CrackFaces, Criterion, Fracture, FractureState, Leap, LeapWork,
+    Occasion, ParticleDamping, Particles,
+};
 use fractum_fem::LocalDamping;
 use fractum_math::{Rotation, Vec3};
 use serde::{Deserialize, Serialize};
@@ -30,6 +34,32 @@ pub struct BondedPart {
     pub section: BeamSection,
     /// Density of the continuum that it stands for [kg/m³].
     pub density: f64,
+    /// When its bonds break; never where there is nothing.
+    pub fracture: Option<BondFracture>,
+}
+
+/// When the bonds of a body break, and what happens then.
+#[derive(Clone, Copy, Debug)]
+pub struct BondFracture {
+    /// The criterion, with its own strengths.
+    pub criterion: Criterion,
+    /// What crack faces do.
+    pub faces: CrackFaces,
+    /// Volume fraction of the interior of the packing.
+    pub fraction: f64,
+    /// Volume of the body [m³].
+    pub volume: f64,
+}
+
+/// How close a body came to its first or next broken bond.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Closest {
+    /// What it bore over what it can bear.
+    pub ratio: f64,
+    /// Where, in the undeformed body [m].
+    pub place: Vec3,
+    /// When [s].
+    pub time: f64,
 }
 
 /// A bonded body in a scene.
@@ -43,13 +73,29 @@ pub struct BondedBody {
     pub bonds: BeamNetwork,
     /// Density of the continuum that it stands for [kg/m³].
     pub density: f64,
-    broken: usize,
+    fracture: Option<Fracture>,
+    closest: Option<Closest>,
 }
 
 impl BondedBody {
     /// Bonds that have broken.
     pub fn broken(&self) -> usize {
-        self.broken
+        self.cracks().len()
+    }
+
+    /// What broke, in order.
+    pub fn cracks(&self) -> &[Crack] {
+        self.fracture.as_ref().map_or(&[], Fracture::cracks)
+    }
+
+    /// Whether its bonds can break.
+    pub fn can_break(&self) -> bool {
+        self.fracture.is_some()
+    }
+
+    /// The largest ratio of load to strength at the steps that were measured; none where bonds cannot break.
+    pub fn closest(&self) -> Option<Closest> {
+        self.closest
     }
 }
 
@@ -67,7 +113,7 @@ pub struct Bonded {
     forces: Forces,
     /// Elastic energy of the bonds when last measured.
     energy: BeamEnergy,
-    /// Elastic energy that broken bonds held [J].
+    /// Elastic energy that bonds which broke before tⁿ held [J].
     released: f64,
     /// Bound on the highest natural frequency [rad/s].
     frequency: f64,
@@ -81,9 +127,8 @@ pub struct BondedState {
     orientation: Vec<Rotation>,
     velocity: Vec<Vec3>,
     spin: Vec<Vec3>,
-    /// Broken bonds of each body, ascending.
-    broken: Vec<Vec<u32>>,
-    released: f64,
+    /// Broken bonds and crack faces of each body, with how close it came to breaking.
+    fracture: Vec<(Option<FractureState>, Option<Closest>)>,
 }
 
 /// Energies of one step [J].
@@ -106,7 +151,7 @@ impl Bonded {
         let mut plans = Vec::new();
         for part in parts {
             let start = all.particles.len();
-            let BondedPart { name, mut particles, pairs, section, density } = part;
+            let BondedPart { name, mut particles, pairs, section, density, fracture } = part;
             let range = start..start + particles.len();
             let own = &mut all.particles;
             own.position.append(&mut particles.position);
@@ -120,12 +165,18 @@ impl Bonded {
             own.radius.append(&mut particles.radius);
             own.held.append(&mut particles.held);
             let pairs: Vec<[u32; 2]> = pairs.iter().map(|pair| pair.map(|i| i + start as u32)).collect();
-            plans.push((name, range, pairs, section, density));
+            plans.push((name, range, pairs, section, density, fracture));
         }
         all.reference = all.particles.position.clone();
-        for (name, range, pairs, section, density) in plans {
+        for (name, range, pairs, section, density, plan) in plans {
             let bonds = BeamNetwork::new(&all.reference, &pairs, section)?;
-            all.bodies.push(BondedBody { name, range, bonds, density, broken: 0 });
+            let fracture = match plan {
+                Some(BondFracture { criterion, faces, fraction, volume }) => {
+                    Some(Fracture::new(&bonds, &all.particles, criterion, faces, fraction, volume)?)
+                }
+                None => None,
+            };
+            all.bodies.push(BondedBody { name, range, bonds, density, fracture, closest: None });
         }
         // 2/ω is the step that is stable without a safety factor.
         let highest = |body: &BondedBody| 2.0 / body.bonds.stable_step(&all.particles, 1.0);
@@ -177,12 +228,18 @@ impl Bonded {
 
     /// Bonds at the start, and those of them that have broken.
     pub fn bond_counts(&self) -> (usize, usize) {
-        self.bodies.iter().fold((0, 0), |(all, broken), body| (all + body.bonds.len(), broken + body.broken))
+        self.bodies.iter().fold((0, 0), |(all, broken), body| (all + body.bonds.len(), broken + body.broken()))
     }
 
     /// Bound on the highest natural frequency [rad/s]; breaking only lowers it.
     pub(crate) fn frequency(&self) -> f64 {
         self.frequency
+    }
+
+    /// Largest damping ratio of crack faces.
+    pub(crate) fn damping_ratio(&self) -> f64 {
+        let ratio = |body: &BondedBody| body.fracture.as_ref().map_or(0.0, |f| f.faces().damping_ratio);
+        self.bodies.iter().map(ratio).fold(0.0, f64::max)
     }
 
     /// Elastic energy of the bonds when last measured, by parts [J].
@@ -195,25 +252,46 @@ impl Bonded {
         self.released
     }
 
-    /// Breaks a bond for ever; its elastic energy is booked as released. A broken bond stays as it is.
-    pub fn break_bond(&mut self, body: usize, bond: usize) {
-        let BondedBody { bonds, broken, .. } = &mut self.bodies[body];
-        if bonds.is_live(bond) {
-            self.released += bonds.energy_of(bond, &self.particles).total();
-            bonds.break_bond(bond);
-            *broken += 1;
-        }
-    }
-
-    /// Replaces forces and moments by those of the bonds at the present positions.
+    /// Replaces forces and moments by those of the bonds and of crack faces at the present positions.
     ///
+    /// - `dt` [s]: the step that led here
     /// - `measure`: whether to sum the elastic energy, see [`Bonded::energy`]
-    pub(crate) fn update_bond_forces(&mut self, measure: bool) {
-        let Bonded { particles, bodies, energy, .. } = self;
+    pub(crate) fn update_bond_forces(&mut self, dt: f64, measure: bool) -> ContactWork {
+        let Bonded { particles, bodies, energy, released, .. } = self;
         particles.clear_forces();
-        bodies.iter_mut().for_each(|body| body.bonds.add_forces(particles));
+        let mut work = ContactWork::default();
+        *released = 0.0;
+        for BondedBody { bonds, fracture, .. } in bodies.iter_mut() {
+            let Some(fracture) = fracture else {
+                bonds.add_forces(particles);
+                continue;
+            };
+            bonds.add_forces_and_dyads(particles);
+            let faces = fracture.add_contact_forces(particles, dt);
+            work += ContactWork { stored: faces.stored, friction: faces.friction, damping: faces.damping };
+            *released += fracture.released();
+        }
         if measure {
             *energy = bodies.iter().fold(BeamEnergy::default(), |sum, body| sum + body.bonds.energy(particles));
+        }
+        work
+    }
+
+    /// Breaks what the forces of tⁿ overload; they still act on the kick that follows.
+    ///
+    /// - `measure`: whether to see how close every body is to breaking, too
+    fn break_overloaded(&mut self, step: u64, time: f64, measure: bool) {
+        let Bonded { particles, reference, bodies, .. } = self;
+        let occasion = Occasion { time, event: step as usize, load: 0.0 };
+        for BondedBody { bonds, fracture, closest, .. } in bodies {
+            let Some(fracture) = fracture else { continue };
+            if measure && let Some(site) = fracture.closest(bonds, particles) {
+                let place = fracture.place(&site, reference);
+                if closest.is_none_or(|known| site.ratio > known.ratio) {
+                    *closest = Some(Closest { ratio: site.ratio, place, time });
+                }
+            }
+            fracture.break_overloaded(bonds, particles, occasion);
         }
     }
 
@@ -224,19 +302,24 @@ impl Bonded {
         0.5 * dt_before * forces.power(particles)
     }
 
-    /// Advances velocities and positions, then puts prescribed motion in the place of free motion.
+    /// Breaks bonds, advances velocities and positions, then puts prescribed motion in the place of free motion.
     pub(crate) fn advance(
         &mut self,
+        step: u64,
         time: f64,
         dt_before: f64,
         dt_after: f64,
         damping: LocalDamping,
         measure: bool,
     ) -> BondedWork {
-        let Bonded { particles, reference, holds, forces, partial, .. } = self;
+        self.break_overloaded(step, time, measure);
+        let Bonded { particles, reference, bodies, holds, forces, partial, .. } = self;
         let damping = ParticleDamping { local: damping.local, mass_rate: damping.mass_rate };
         let motion = particles.leap(&Leap { dt_before, dt_after, damping, measure }, partial);
         let support = holds.impose(particles, reference, time, dt_before, dt_after);
+        for fracture in bodies.iter_mut().filter_map(|body| body.fracture.as_mut()) {
+            fracture.book_last_work(particles, dt_after);
+        }
         BondedWork {
             kinetic: motion.kinetic + support.kinetic,
             external_before: support.before,
@@ -249,21 +332,19 @@ impl Bonded {
     /// Everything that changes, for a checkpoint.
     pub fn state(&self) -> BondedState {
         let Particles { position, orientation, velocity, spin, .. } = self.particles.clone();
-        let dead = |body: &BondedBody| {
-            (0..body.bonds.len() as u32).filter(|&bond| !body.bonds.is_live(bond as usize)).collect()
-        };
-        let broken = self.bodies.iter().map(dead).collect();
-        BondedState { position, orientation, velocity, spin, broken, released: self.released }
+        let fracture = self.bodies.iter().map(|body| (body.fracture.as_ref().map(Fracture::state), body.closest));
+        BondedState { position, orientation, velocity, spin, fracture: fracture.collect() }
     }
 
     /// Puts a saved state back into bodies built from the same case.
     pub fn restore(&mut self, state: BondedState) {
-        let BondedState { position, orientation, velocity, spin, broken, released } = state;
-        for (body, dead) in self.bodies.iter_mut().zip(broken) {
-            body.broken = dead.len();
-            dead.iter().for_each(|&bond| body.bonds.break_bond(bond as usize));
+        let BondedState { position, orientation, velocity, spin, fracture } = state;
+        for (body, (broken, closest)) in self.bodies.iter_mut().zip(fracture) {
+            if let (Some(fracture), Some(state)) = (&mut body.fracture, broken) {
+                fracture.restore(state, &mut body.bonds);
+            }
+            body.closest = closest;
         }
         self.particles = Particles { position, orientation, velocity, spin, ..std::mem::take(&mut self.particles) };
-        self.released = released;
     }
 }

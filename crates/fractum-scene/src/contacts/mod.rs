@@ -151,9 +151,9 @@ impl Contacts {
         }
     }
 
-    /// Whether nothing can touch: no particles.
+    /// Whether nothing can touch: no particles but those of one bonded body, and nothing else that they could meet.
     pub fn is_empty(&self) -> bool {
-        self.body.is_empty() && self.tools.is_empty()
+        self.among.is_none() && self.tools.is_empty() && self.solids.is_empty()
     }
 
     /// Rigid bodies.

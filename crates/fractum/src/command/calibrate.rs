@@ -191,7 +191,10 @@ fn material(c: &Calibration, density: Option<f64>) -> String {
     );
     if let Some(strength) = &c.strength {
         let what = format!("{:?}", strength.criterion).to_lowercase();
-        text += &format!("# criterion {what}, for the load peak in tension\nstrength = \"{:e} Pa\"\n", strength.peak);
+        text += &format!(
+            "[materials.calibrated.fracture] # for the load peak in tension\ncriterion = \"{what}\"\ncriterion_strength = \"{:e} Pa\"\n",
+            strength.peak
+        );
     }
     text
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
+use fractum::cracks::{self, Columns};
 use fractum::{Failure, say};
 use fractum_calibrate::{Micro, Sample, lab, published};
 use fractum_dem::criterion::{
@@ -333,30 +334,8 @@ fn write(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Fai
     let outcome = &broken.outcome;
     let stress = broken.stress_per_load;
     atomic::write(&folder.join("load.csv"), load_curve(&outcome.curve, broken).as_bytes())?;
-    let mut text = String::from(
-        "bond,first,second,event,load factor,nominal stress [Pa],x [m],y [m],z [m],nx,ny,nz,area [m^2],mode,energy [J]\n",
-    );
-    for c in &outcome.cracks {
-        let ([i, j], x, n) = (c.pair, c.position, c.normal);
-        let _ = writeln!(
-            text,
-            "{},{i},{j},{},{:e},{:e},{:e},{:e},{:e},{:.6},{:.6},{:.6},{:e},{},{:e}",
-            c.bond,
-            c.event,
-            c.time,
-            c.load * stress,
-            x.x,
-            x.y,
-            x.z,
-            n.x,
-            n.y,
-            n.z,
-            c.area,
-            c.mode.word(),
-            c.energy
-        );
-    }
-    atomic::write(&folder.join("cracks.csv"), text.as_bytes())?;
+    let columns = Columns { time: "load factor", load: Some(("nominal stress [Pa]", stress)) };
+    cracks::write_table(&folder.join("cracks.csv"), outcome.cracks.iter().map(|c| (None, c)), columns)?;
     let axis = |label: &str, unit: &str| Axis::new(label, unit);
     let chart = Chart {
         title: "Nominal stress against nominal strain".into(),
@@ -384,31 +363,10 @@ fn fields(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Fa
     let outcome = &broken.outcome;
     let trouble = |error: fractum_io::vtk::VtkError| Failure::Output(error.into());
     let points: Vec<[f64; 3]> = sample.packing.position.iter().map(|x| (*x).into()).collect();
-    let lines: Vec<[u32; 2]> = outcome.cracks.iter().map(|c| c.pair).collect();
-    let code = |mode: Mode| Mode::ALL.iter().position(|&m| m == mode).unwrap_or_default() as i32;
-    let modes: Vec<i32> = outcome.cracks.iter().map(|c| code(c.mode)).collect();
-    let events: Vec<i32> = outcome.cracks.iter().map(|c| c.event as i32).collect();
-    let column = |f: &dyn Fn(&fractum_dem::Crack) -> f64| outcome.cracks.iter().map(f).collect::<Vec<f64>>();
-    let (area, load, energy) = (column(&|c| c.area), column(&|c| c.load), column(&|c| c.energy));
-    PolyData {
-        points: &points,
-        cells: PolyCells::Lines(&lines),
-        point_data: &[],
-        cell_data: &[
-            Field::integer("mode", &modes),
-            Field::integer("event", &events),
-            Field::scalar("area", &area),
-            Field::scalar("load", &load),
-            Field::scalar("energy", &energy),
-        ],
-        time: None,
-    }
-    .write(&folder.join("broken.vtp"), Compression::default())
-    .map_err(trouble)?;
+    cracks::write_lines(&folder.join("broken.vtp"), &points, outcome.cracks.iter())?;
     let parts = outcome.graph.parts();
     let fragment: Vec<i32> = parts.of.iter().map(|&p| p as i32).collect();
-    let mut lost = vec![0.0; points.len()];
-    lines.iter().flatten().for_each(|&i| lost[i as usize] += 1.0);
+    let lost = cracks::lost_bonds(points.len(), outcome.cracks.iter());
     let displacement = |state: &[Dof6]| state.iter().map(|u| [u[0], u[1], u[2]]).collect::<Vec<[f64; 3]>>();
     let (first, last) = (displacement(&outcome.first_state), displacement(&outcome.last_state));
     PolyData {

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use fractum::run::{Options, Outcome};
 use fractum::{ExitCode, Failure, say, tell};
-use fractum_io::summary::Status;
+use fractum_io::summary::{Fracture, Status};
 
 /// Fracture of solids: finite elements with damage, discrete elements, and the transition between them.
 #[derive(Parser)]
@@ -221,6 +221,9 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
         for (name, probe) in &summary.probes {
             say!("{name:<28} {}", fractum_io::number::quantity(probe.r#final, &probe.unit));
         }
+        for body in &summary.fracture {
+            say!("{:<28} {}", body.body, fracture_text(body));
+        }
         for expect in &summary.expect {
             let verdict = if expect.pass { "meets" } else { "MISSES" };
             say!(
@@ -234,6 +237,23 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
         say!("results in {}", folder.display());
     }
     Ok(ExitCode::Done)
+}
+
+/// What became of the bonds of a body, in words.
+fn fracture_text(body: &Fracture) -> String {
+    use fractum_io::number::quantity;
+    if body.broken_bonds > 0 {
+        let (first, area) = (quantity(body.first_break, "s"), quantity(body.crack_area, "m^2"));
+        return format!("{} bonds broke, the first at {first}; they stand for {area}", body.broken_bonds);
+    }
+    match body.largest_at {
+        Some([x, y, z]) => format!(
+            "no bond broke; the largest load was {:.1} % of the strength, at ({x:.3e}, {y:.3e}, {z:.3e}) m, t = {}",
+            100.0 * body.largest_ratio,
+            quantity(body.largest_time, "s")
+        ),
+        None => "no bond broke: nothing bore any load".to_owned(),
+    }
 }
 
 fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, Failure> {

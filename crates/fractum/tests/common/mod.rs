@@ -9,6 +9,7 @@ use std::process::{Child, Command, Stdio};
 use fractum_math::Vec3;
 use fractum_mesh::generate::structured_box;
 use fractum_mesh::{Mesh, MshFormat, write_msh};
+use serde_json::Value;
 
 /// A bar with a weak slab in its middle, pulled apart while it falls on a rigid plane: damage, removed elements,
 /// discrete elements, contacts between them and with the plane.
@@ -163,4 +164,16 @@ pub(crate) fn files_below(folder: &Path, suffix: &str) -> Vec<PathBuf> {
     }
     found.sort();
     found
+}
+
+/// Runs `case.toml` with a number of threads into a folder; its summary.
+pub(crate) fn run(place: &Workplace, folder: &str, threads: &str) -> Value {
+    let ended = place.fractum(&["run", "case.toml", "-o", folder, "--threads", threads]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    summary(place, folder)
+}
+
+/// The summary in a results folder.
+pub(crate) fn summary(place: &Workplace, folder: &str) -> Value {
+    serde_json::from_str(&fs::read_to_string(place.path(folder).join("summary.json")).unwrap()).unwrap()
 }

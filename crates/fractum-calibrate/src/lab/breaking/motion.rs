@@ -1,4 +1,4 @@
-use fractum_dem::{BeamNetwork, CrackFaces, Fracture, Integrator, LoadPoint, Particles, Point, StaticBody};
+use fractum_dem::{BeamNetwork, CrackFaces, Fracture, Integrator, LoadPoint, Occasion, Particles, Point, StaticBody};
 use fractum_math::{Rotation, Vec3};
 use serde::Serialize;
 
@@ -131,6 +131,7 @@ pub fn break_in_motion(
     while factor < BEYOND * first_factor {
         let before = push(&particles);
         particles.kick_and_drift(dt, Integrator::VelocityVerlet);
+        fracture.book_last_work(&particles, dt);
         particles.clear_forces();
         bonds.add_forces_and_dyads(&mut particles);
         let faces = fracture.add_contact_forces(&mut particles, dt);
@@ -148,7 +149,8 @@ pub fn break_in_motion(
         if load > peak.load {
             peak = Point { displacement: factor * displacement, load, broken };
         }
-        if fracture.break_overloaded(&mut bonds, &particles, dt, steps as f64 * dt, steps, load) > 0 {
+        let occasion = Occasion { time: steps as f64 * dt, event: steps, load };
+        if fracture.break_overloaded(&mut bonds, &particles, occasion) > 0 {
             first_break.get_or_insert(load * stress_per_load);
             last_broken = steps;
         }

@@ -118,6 +118,45 @@ pub struct Bonds {
     pub radius_ratio: f64,
     /// Young's modulus of the beams [Pa], > 0.
     pub young_modulus: f64,
-    /// Strength of the virial criterion [Pa], > 0.
-    pub strength: Option<f64>,
 }
+
+/// When the bonds of a material break.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BondFailure {
+    /// The criterion with the strengths of the case.
+    pub criterion: fractum_dem::Criterion,
+    /// Tensile strength of the material [Pa], > 0, to which the criterion's own strengths are found; `None` = the case gives
+    /// those.
+    pub tensile_strength: Option<f64>,
+}
+
+/// Criteria for bonds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BondCriterion {
+    /// Largest principal virial stress of a neighbourhood.
+    Principal,
+    /// Largest principal stress in the beam.
+    Beam,
+    /// Mean virial stress of a particle.
+    Hydrostatic,
+    /// Mohr-Coulomb with tension cut-off on the virial stress.
+    MohrCoulomb,
+    /// Drucker-Prager on the virial stress.
+    DruckerPrager,
+}
+
+choice!(BondCriterion {
+    "principal" => Principal, "beam" => Beam, "hydrostatic" => Hydrostatic, "mohr-coulomb" => MohrCoulomb,
+    "drucker-prager" => DruckerPrager,
+});
+
+/// Which bending moment of a beam counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BeamMoments {
+    /// The mean of both ends, as printed.
+    Mean,
+    /// The larger one.
+    Largest,
+}
+
+choice!(BeamMoments { "mean" => Mean, "largest" => Largest });

@@ -2,7 +2,7 @@
 
 use fractum_scene::Surface;
 
-use super::Bonds;
+use super::{BondFailure, Bonds};
 use crate::case::Spanned;
 use crate::case::choice::choice;
 
@@ -21,6 +21,8 @@ pub struct Material {
     pub damage: Option<Spanned<Damage>>,
     /// Beams of bonded bodies, where the material has a `bonds` table; found by calibration otherwise.
     pub bonds: Option<Spanned<Bonds>>,
+    /// When bonds break, where the material has a `fracture` table; they hold otherwise.
+    pub fracture: Option<Spanned<BondFailure>>,
     /// Contact of the discrete elements that this material leaves behind.
     pub contact: Surface,
 }

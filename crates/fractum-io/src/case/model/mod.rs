@@ -12,7 +12,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 pub use body::{Body, BodyKind, Formulation, Kinematics, Plane, SolidBody};
-pub use bonded::{BondedBody, BondedShape, Bonds, Convention, FileContent, PackingSource, ParticleSize};
+pub use bonded::{
+    BeamMoments, BondCriterion, BondFailure, BondedBody, BondedShape, Bonds, Convention, FileContent, PackingSource,
+    ParticleSize,
+};
 pub use boundary::{Components, Load, LoadKind, Motion, Support};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Criterion, Damage, Distribution, Material, Scatter, Softening};

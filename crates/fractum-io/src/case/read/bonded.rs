@@ -183,13 +183,11 @@ pub(super) fn bonds(table: Table<'_>) -> Option<Bonds> {
     let convention = table.choice("convention").required();
     let radius_ratio = table.quantity("radius_ratio").between(0.0, 2.0).required();
     let young_modulus = table.quantity("young_modulus").positive().required();
-    let strength = table.quantity("strength").positive().given();
     table.finish("here");
     Some(Bonds {
         coordination: coordination?,
         convention: convention?,
         radius_ratio: radius_ratio?,
         young_modulus: young_modulus?,
-        strength,
     })
 }

@@ -29,6 +29,10 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         let place = table.place.clone();
         super::bonded::bonds(table).map(|bonds| Spanned::new(bonds, place))
     });
+    let fracture = table.table("fracture").map(|table| {
+        let place = table.place.clone();
+        super::fracture::fracture(table).map(|failure| Spanned::new(failure, place))
+    });
     let contact = contact(&table);
     table.finish("here");
     Some(Material {
@@ -38,6 +42,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         poisson_ratio: poisson_ratio?,
         damage: damage.map_or(Some(None), |damage| damage.map(Some))?,
         bonds: bonds.map_or(Some(None), |bonds| bonds.map(Some))?,
+        fracture: fracture.map_or(Some(None), |fracture| fracture.map(Some))?,
         contact,
     })
 }
@@ -61,10 +66,7 @@ fn damage(table: Table<'_>) -> Option<Damage> {
     let tensile_strength = table.quantity("tensile_strength").positive().required();
     let fracture_energy = table.quantity("fracture_energy").positive().required();
     let friction_angle = if criterion.uses_friction_angle() {
-        let expected = "from 0 to below 90 deg (a number without a unit is in radians)";
-        let right = std::f64::consts::FRAC_PI_2;
-        let angle = table.quantity("friction_angle").check(|angle| (0.0..right).contains(angle), expected);
-        angle.or(FRICTION_ANGLE.to_radians())
+        read_friction_angle(&table)
     } else {
         table.refuse("friction_angle", "with this criterion");
         FRICTION_ANGLE.to_radians()
@@ -92,11 +94,19 @@ fn damage(table: Table<'_>) -> Option<Damage> {
     })
 }
 
+/// The angle of internal friction [rad].
+pub(super) fn read_friction_angle(table: &Table<'_>) -> f64 {
+    let expected = "from 0 to below 90 deg (a number without a unit is in radians)";
+    let right = std::f64::consts::FRAC_PI_2;
+    let angle = table.quantity("friction_angle").check(|angle| (0.0..right).contains(angle), expected);
+    angle.or(FRICTION_ANGLE.to_radians())
+}
+
 /// Friction angle where none is given [deg].
 const FRICTION_ANGLE: f64 = 35.0;
 
 /// Compressive over tensile strength where it is not given.
-const STRENGTH_RATIO: f64 = 10.0;
+pub(super) const STRENGTH_RATIO: f64 = 10.0;
 
 /// The compressive strength, high enough for the criterion to give the tensile strength in tension.
 fn compressive_strength(

@@ -4,6 +4,7 @@ mod bodies;
 mod bonded;
 mod boundary;
 mod expect;
+mod fracture;
 mod loose;
 mod materials;
 mod parameters;

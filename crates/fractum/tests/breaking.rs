@@ -1,0 +1,143 @@
+//! Bonded bodies that break, as their user meets them.
+
+mod common;
+
+use std::fs;
+
+use common::{Workplace, run, summary};
+use serde_json::Value;
+
+/// A bar that is pulled apart fast, from the state of uniform motion.
+const BAR: &str = r#"fractum = 1
+title = "A bonded bar, pulled apart"
+
+[parameters]
+length = "2 mm"
+rate = "20 m/s"
+
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "72 GPa"
+poisson_ratio = 0.23
+[materials.glass.fracture]
+criterion_strength = "60 MPa"
+[materials.glass.contact]
+friction = 0.4
+damping_ratio = 0.05
+
+[[bodies]]
+name = "bar"
+kind = "bonded"
+material = "glass"
+shape = "box"
+size = ["length", "1 mm", "1 mm"]
+particles = 600
+coordination = 8
+initial_velocity = { x = "rate*x/length" }
+
+[[supports]]
+group = "bar.x-"
+fix = "x"
+[[supports]]
+group = "bar.x+"
+velocity = { x = "rate" }
+
+[solver]
+end = "0.3 us"
+
+[[probes]]
+name = "pull"
+reaction = { group = "bar.x+", along = "x" }
+[[probes]]
+name = "broken"
+count = "broken_bonds"
+
+[output]
+fields = { every = "0.1 us" }
+history = { every = "5 ns" }
+checkpoint = { every = "1 ms" }
+"#;
+
+#[test]
+fn a_bonded_body_breaks_with_the_same_bits_on_any_threads_and_after_a_checkpoint() {
+    let place = Workplace::new(BAR);
+    let one = run(&place, "one", "1");
+    let broken = one["counts"]["broken_bonds"].as_u64().unwrap();
+    assert!(broken > 100, "{}", one["counts"]);
+    let energy = |name: &str| one["energy"][name].as_f64().unwrap();
+    assert!(energy("removed") > 0.0 && energy("residual_max_relative") < 1e-3, "{}", one["energy"]);
+    let fracture = &one["fracture"][0];
+    assert_eq!((fracture["body"].as_str(), fracture["broken_bonds"].as_u64()), (Some("bar"), Some(broken)));
+    assert!(fracture["largest_ratio"].as_f64().unwrap() >= 1.0, "{fracture}");
+
+    // One line per broken bond, in the order of time; the energies of those that broke before the end are what the ledger
+    // has removed by then.
+    let table = fs::read_to_string(place.path("one/cracks.csv")).unwrap();
+    let mut lines = table.lines();
+    let columns: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| columns.iter().position(|c| *c == name).unwrap();
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let number = |row: &[&str], name: &str| row[column(name)].parse::<f64>().unwrap();
+    assert_eq!(rows.len() as u64, broken);
+    assert!(rows.windows(2).all(|w| number(&w[0], "time [s]") <= number(&w[1], "time [s]")));
+    let before = |row: &&Vec<&str>| number(row, "time [s]") < 0.3e-6 * (1.0 - 1e-9);
+    let sum: f64 = rows.iter().filter(before).map(|row| number(row, "energy [J]")).sum();
+    assert!((sum / energy("removed") - 1.0).abs() < 1e-9, "{sum:e} of {:e}", energy("removed"));
+    assert!(place.path("one/cracks.vtp").is_file() && place.path("one/pictures/broken_bonds.png").is_file());
+
+    for threads in ["2", "7"] {
+        let other = run(&place, threads, threads);
+        assert_eq!((&other["state_hash"], &other["energy"]), (&one["state_hash"], &one["energy"]), "{threads} threads");
+    }
+    let resumed = place.fractum(&["run", "case.toml", "-o", "2", "--threads", "1", "--resume", "--quiet"]);
+    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+    let resumed = summary(&place, "2");
+    assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
+    assert_eq!(resumed["fracture"], one["fracture"]);
+    assert_eq!(fs::read_to_string(place.path("2/cracks.csv")).unwrap(), table);
+}
+
+#[test]
+fn a_body_that_holds_says_how_close_it_came() {
+    let place = Workplace::new(&BAR.replace("60 MPa", "6 GPa"));
+    let ended = place.fractum(&["run", "case.toml", "-o", "out"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stdout.contains("no bond broke; the largest load was"), "{}", ended.stdout);
+    let fracture: Value = summary(&place, "out")["fracture"][0].clone();
+    let ratio = fracture["largest_ratio"].as_f64().unwrap();
+    assert!(ratio > 0.01 && ratio < 1.0, "{fracture}");
+    assert!(fracture["largest_at"][0].as_f64().unwrap() < 2e-3 && fracture["first_break"].is_null(), "{fracture}");
+}
+
+#[test]
+fn criteria_take_only_keys_that_belong_to_them() {
+    let cases = [
+        ("criterion = \"beam\"\nlevel = 1", "materials.glass.fracture.level", "with this criterion"),
+        ("criterion = \"hydrostatic\"\ncompressive_strength = \"1 GPa\"", "fracture.compressive_strength", "criterion"),
+        ("moments = \"largest\"", "materials.glass.fracture.moments", "with this criterion"),
+        ("level = 3", "materials.glass.fracture.level", "0, 1 or 2"),
+        ("compressive_strength = \"10 MPa\"", "fracture.compressive_strength", "more than the tensile strength"),
+        ("tensile_strength = \"10 MPa\"", "fracture.tensile_strength", "beside criterion_strength"),
+        ("criterion = \"principle\"", "materials.glass.fracture.criterion", "principal"),
+    ];
+    for (lines, key, words) in cases {
+        let place =
+            Workplace::new(&BAR.replace("[materials.glass.contact]", &format!("{lines}\n[materials.glass.contact]")));
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{lines}: {}", ended.stderr);
+        assert!(ended.stderr.contains(key) && ended.stderr.contains(words), "{lines}: {}", ended.stderr);
+    }
+    let every = [
+        ("criterion = \"beam\"\nmoments = \"largest\"", "the largest principal stress in the beam: 60 MPa"),
+        ("criterion = \"hydrostatic\"", "the mean virial stress of the particle: 60 MPa"),
+        ("level = 2\ncompressive_strength = \"700 MPa\"", "two rings of neighbours: 60 MPa in tension, 700 MPa"),
+        ("criterion = \"mohr-coulomb\"\nfriction_angle = \"30 deg\"", "friction angle 30.0 deg"),
+        ("criterion = \"drucker-prager\"\nlevel = 0", "Drucker-Prager on the virial stress of each particle: 60 MPa"),
+    ];
+    for (lines, words) in every {
+        let place =
+            Workplace::new(&BAR.replace("[materials.glass.contact]", &format!("{lines}\n[materials.glass.contact]")));
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert!(ended.stdout.contains(words), "{lines}: {}{}", ended.stdout, ended.stderr);
+    }
+}
