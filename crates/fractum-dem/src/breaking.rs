@@ -128,10 +128,178 @@ pub(crate) fn facet_area(volume: f64, position: &[Vec3], pairs: &[[u32; 2]]) -> 
     3.0 * volume / length
 }
 
-/// Loads a body until it comes apart: the supports move until the first site fails, bonds break, equilibrium is found
-/// again with the supports where they are; when no site fails any more, the supports move on to the next failure.
+/// What a rise of the load ended with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// A site fails: [`QuasiStatic::release`] is next.
+    Failing,
+    /// The body has come apart or lost its strength.
+    Apart,
+    /// The largest load factor is reached, and the body holds.
+    Held,
+}
+
+/// A body under supports that move in proportion: they rise to the first failure, bonds break and equilibrium is found
+/// again with the supports where they are; when no site fails any more, they move on to the next failure.
 ///
 /// The solution is linear between two breaks, so that the load of the next failure is known and no step can miss it.
+#[derive(Clone, Debug)]
+pub struct QuasiStatic {
+    graph: BondGraph,
+    watch: Watch,
+    body: StaticBody,
+    area: f64,
+    displacement: f64,
+    batch: Batch,
+    limit: f64,
+    stop: f64,
+    factor: f64,
+    last: Option<LoadPoint>,
+    first: Option<Point>,
+    peak: Point,
+    effort_to_peak: (usize, usize),
+    event: usize,
+    /// Whether sites fail at the present load already.
+    cascade: bool,
+    cracks: Vec<Crack>,
+    breaks: Vec<Break>,
+    sites: Vec<Site>,
+}
+
+impl QuasiStatic {
+    /// Brings a body to equilibrium under its supports.
+    ///
+    /// - `supports`, `guess`: displacements at load factor one
+    ///
+    /// # Errors
+    /// An impossible criterion; [`DemError::NotConverged`].
+    pub fn new(lattice: Lattice, supports: Supports, guess: &[Dof6], what: &Breaking<'_>) -> Result<Self, DemError> {
+        let graph = BondGraph::new(lattice.len(), what.pairs);
+        let watch = Watch::new(what.criterion, &graph, what.radius, what.fraction)?;
+        let area = facet_area(what.volume, lattice.position(), what.pairs);
+        Ok(QuasiStatic {
+            graph,
+            watch,
+            body: StaticBody::new(lattice, supports, guess, what.tolerance)?,
+            area,
+            displacement: what.displacement,
+            batch: what.batch,
+            limit: what.limit,
+            stop: what.stop,
+            factor: 0.0,
+            last: None,
+            first: None,
+            peak: Point { displacement: 0.0, load: 0.0, broken: 0 },
+            effort_to_peak: (0, 0),
+            event: 0,
+            cascade: false,
+            cracks: Vec::new(),
+            breaks: Vec::new(),
+            sites: Vec::new(),
+        })
+    }
+
+    /// The body, at load factor one.
+    pub fn body(&self) -> &StaticBody {
+        &self.body
+    }
+
+    /// The bonds that hold.
+    pub fn graph(&self) -> &BondGraph {
+        &self.graph
+    }
+
+    /// The present load factor.
+    pub fn factor(&self) -> f64 {
+        self.factor
+    }
+
+    /// What broke so far, in order.
+    pub fn cracks(&self) -> &[Crack] {
+        &self.cracks
+    }
+
+    /// The site nearest to failure, with its ratio at the present load.
+    pub fn closest(&self) -> Option<Site> {
+        self.watch.worst().map(|site| Site { ratio: site.ratio * self.factor, ..site })
+    }
+
+    /// Moves the supports on to the next failure, unless sites fail where they are.
+    ///
+    /// - `separated`: whether the body has come apart; asked once something has broken
+    pub fn rise(&mut self, separated: impl Fn(&BondGraph) -> bool) -> (LoadPoint, Stage) {
+        self.event += 1;
+        let energy = self.body.energy();
+        let overload = if self.factor > 0.0 { 1.0 / self.factor } else { f64::INFINITY };
+        self.watch.look(&self.body, &self.graph, overload);
+        let worst = self.watch.worst();
+        let load_at = |factor: f64| factor * 2.0 * energy / self.displacement;
+        let held = load_at(self.factor);
+        // Where nothing is over at this load, the load rises to the next failure.
+        self.cascade = worst.is_some() && !self.watch.over().is_empty();
+        let weak = !self.cascade && held < self.stop * self.peak.load;
+        let apart = !self.cracks.is_empty() && (weak || separated(&self.graph));
+        let before = self.factor;
+        if !self.cascade && !apart {
+            self.factor = worst.map_or(self.limit, |w| (1.0 / w.ratio).max(before)).min(self.limit);
+        }
+        let (displacement, load) = (self.factor * self.displacement, load_at(self.factor));
+        let mut work = self.last.map_or(0.0, |l| l.work);
+        if self.factor > before {
+            // Between two breaks the load is proportional; at a break the supports stand still.
+            work += 0.5 * (load + held) * (self.factor - before) * self.displacement;
+        }
+        let (elastic, broken) = (self.factor * self.factor * energy, self.graph.broken());
+        let point = LoadPoint { displacement, load, elastic, work, broken };
+        self.last = Some(point);
+        if load > self.peak.load {
+            self.peak = Point { displacement, load, broken };
+            self.effort_to_peak = self.body.effort();
+        }
+        let holds = !self.cascade && worst.is_none_or(|w| w.ratio * self.limit < 1.0);
+        let stage = match (apart, holds) {
+            (true, _) => Stage::Apart,
+            (false, true) => Stage::Held,
+            (false, false) => Stage::Failing,
+        };
+        if stage == Stage::Failing {
+            self.first.get_or_insert(Point { displacement, load, broken: 0 });
+        }
+        (point, stage)
+    }
+
+    /// Breaks what fails and finds equilibrium again.
+    ///
+    /// # Errors
+    /// [`DemError::NotConverged`].
+    pub fn release(&mut self) -> Result<(), DemError> {
+        let QuasiStatic { graph, watch, body, sites, breaks, factor, .. } = self;
+        sites.clear();
+        match (self.cascade, self.batch) {
+            (true, Batch::PerSite) => sites.extend_from_slice(watch.over()),
+            _ => sites.extend(watch.worst()),
+        }
+        breaks.clear();
+        sites.iter().for_each(|site| watch.breaks(site, body, graph, breaks));
+        let load = self.last.map_or(0.0, |l| l.load);
+        for &Break { bond, mode } in breaks.iter() {
+            let energy = *factor * *factor * body.bond_energy(bond);
+            if graph.break_bond(bond) {
+                let pair = graph.pairs()[bond as usize];
+                let [a, b] = pair.map(|i| body.lattice().position()[i as usize]);
+                let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
+                let (event, area, time) = (self.event, self.area, *factor);
+                self.cracks.push(Crack { bond, pair, event, time, load, position, normal, area, mode, energy });
+                body.break_bond(bond);
+                watch.bond_broken(bond, graph);
+            }
+        }
+        body.solve()?;
+        Ok(())
+    }
+}
+
+/// Loads a body until it comes apart or the largest load factor is reached; see [`QuasiStatic`].
 ///
 /// - `supports`, `guess`: displacements at load factor one
 /// - `separated`: whether the body has come apart; asked after every equilibrium past the first break
@@ -145,82 +313,29 @@ pub fn quasi_static(
     what: &Breaking<'_>,
     separated: impl Fn(&BondGraph) -> bool,
 ) -> Result<Outcome, DemError> {
-    let mut graph = BondGraph::new(lattice.len(), what.pairs);
-    let mut watch = Watch::new(what.criterion, &graph, what.radius, what.fraction)?;
-    let area = facet_area(what.volume, lattice.position(), what.pairs);
-    let mut body = StaticBody::new(lattice, supports, guess, what.tolerance)?;
-    let first_state = body.state();
-    let (mut curve, mut cracks) = (Vec::<LoadPoint>::new(), Vec::new());
-    let (mut first, mut peak) = (None, Point { displacement: 0.0, load: 0.0, broken: 0 });
-    let (mut factor, mut work) = (0.0f64, 0.0);
-    let mut apart = false;
-    let mut effort_to_peak = (0, 0);
-    let mut breaks: Vec<Break> = Vec::new();
-    let mut sites: Vec<Site> = Vec::new();
-    for event in 1.. {
-        let energy = body.energy();
-        watch.look(&body, &graph, if factor > 0.0 { 1.0 / factor } else { f64::INFINITY });
-        let worst = watch.worst();
-        let held = factor * 2.0 * energy / what.displacement;
-        // Where nothing is over at this load, the load rises to the next failure.
-        let failing = worst.filter(|_| !watch.over().is_empty());
-        let weak = failing.is_none() && held < what.stop * peak.load;
-        apart = !cracks.is_empty() && (weak || separated(&graph));
-        let last = curve.last().copied();
-        let before = factor;
-        if failing.is_none() && !apart {
-            factor = worst.map_or(what.limit, |w| (1.0 / w.ratio).max(factor)).min(what.limit);
+    let mut run = QuasiStatic::new(lattice, supports, guess, what)?;
+    let first_state = run.body.state();
+    let mut curve = Vec::new();
+    let stage = loop {
+        let (point, stage) = run.rise(&separated);
+        curve.push(point);
+        if stage != Stage::Failing {
+            break stage;
         }
-        let (displacement, load) = (factor * what.displacement, factor * 2.0 * energy / what.displacement);
-        if factor > before {
-            // Between two breaks the load is proportional; at a break the supports stand still.
-            work = last.map_or(0.0, |l| l.work) + 0.5 * (load + held) * (factor - before) * what.displacement;
-        }
-        curve.push(LoadPoint { displacement, load, elastic: factor * factor * energy, work, broken: graph.broken() });
-        if load > peak.load {
-            peak = Point { displacement, load, broken: graph.broken() };
-            effort_to_peak = body.effort();
-        }
-        let reached = failing.is_none() && worst.is_none_or(|w| w.ratio * what.limit < 1.0);
-        if apart || reached {
-            break;
-        }
-        let Some(worst) = worst else { break };
-        first.get_or_insert(Point { displacement, load, broken: 0 });
-        sites.clear();
-        match (failing, what.batch) {
-            (Some(_), Batch::PerSite) => sites.extend_from_slice(watch.over()),
-            _ => sites.push(worst),
-        }
-        breaks.clear();
-        sites.iter().for_each(|site| watch.breaks(site, &body, &graph, &mut breaks));
-        for &Break { bond, mode } in &breaks {
-            let energy = factor * factor * body.bond_energy(bond);
-            if graph.break_bond(bond) {
-                let pair = what.pairs[bond as usize];
-                let [a, b] = pair.map(|i| body.lattice().position()[i as usize]);
-                let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
-                cracks.push(Crack { bond, pair, event, time: factor, load, position, normal, area, mode, energy });
-                body.break_bond(bond);
-                watch.bond_broken(bond, &graph);
-            }
-        }
-        body.solve()?;
-    }
-    let closest = watch.worst().map(|w| Site { ratio: w.ratio * factor, ..w });
-    let (last_state, effort) = (body.state(), body.effort());
+        run.release()?;
+    };
     Ok(Outcome {
-        first,
-        peak,
+        first: run.first,
+        peak: run.peak,
         curve,
-        cracks,
-        separated: apart,
-        closest,
-        graph,
+        separated: stage == Stage::Apart,
+        closest: run.closest(),
         first_state,
-        last_state,
-        effort,
-        effort_to_peak,
+        last_state: run.body.state(),
+        effort: run.body.effort(),
+        effort_to_peak: run.effort_to_peak,
+        cracks: run.cracks,
+        graph: run.graph,
     })
 }
 

@@ -256,6 +256,17 @@ impl Fracture {
         }
     }
 
+    /// Takes over bonds that broke at rest, which leave no faces in contact.
+    pub fn adopt(&mut self, cracks: impl Iterator<Item = Crack>, bonds: &mut BeamNetwork) {
+        for crack in cracks {
+            if self.graph.break_bond(crack.bond) {
+                bonds.break_bond(crack.bond as usize);
+                self.released += crack.energy;
+                self.cracks.push(crack);
+            }
+        }
+    }
+
     /// Everything that changes, between two steps.
     pub fn state(&self) -> FractureState {
         FractureState { faces: self.pairs.clone(), cracks: self.cracks.clone(), released: self.released }

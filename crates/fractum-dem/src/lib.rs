@@ -37,7 +37,7 @@ pub mod stress;
 mod watch;
 
 pub use bond::{BeamEnergy, BeamForces, BeamNetwork, BeamSection, BondedPair, cohesive_beam, cohesive_beam_energy};
-pub use breaking::{Batch, Breaking, Crack, LoadPoint, Outcome, Point, quasi_static};
+pub use breaking::{Batch, Breaking, Crack, LoadPoint, Outcome, Point, QuasiStatic, Stage, quasi_static};
 pub use criterion::Criterion;
 pub use error::DemError;
 pub use fracture::{CrackFaces, FaceWork, Fracture, FractureState, Occasion};

@@ -38,6 +38,20 @@ pub enum SceneError {
         /// Centre of the piece [m].
         z: f64,
     },
+    /// A support of a body at rest moves in another way than all others.
+    #[error(
+        "support {name} does not move along {axis} in proportion to time; between two breaks all supports move together: \
+         give a constant velocity, or a displacement that is a number times t"
+    )]
+    NotProportional {
+        /// Name of the support.
+        name: String,
+        /// Axis, x, y or z.
+        axis: char,
+    },
+    /// A scene that cannot be solved from break to break.
+    #[error("one bonded body and nothing else can be solved from break to break")]
+    OneBondedBody,
     /// The solid cannot be built.
     #[error(transparent)]
     Solid(#[from] fractum_fem::SolidError),
@@ -76,6 +90,19 @@ pub enum StepError {
         step: u64,
         /// Load parameter [s].
         time: f64,
+    },
+    /// The equilibrium of a bonded body was not found.
+    #[error(
+        "step {step}, t = {time:.6e} s: no equilibrium of the bonds found: {error}; raise solver.tolerance, or run it with \
+         kind = \"explicit\""
+    )]
+    NoBondedEquilibrium {
+        /// Step number.
+        step: u64,
+        /// Time to which the load belongs [s].
+        time: f64,
+        /// Why.
+        error: fractum_dem::DemError,
     },
     /// A piece is held by nothing any more.
     #[error(

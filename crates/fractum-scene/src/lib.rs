@@ -19,7 +19,8 @@ pub mod statics;
 mod step;
 
 pub use bonded::{
-    BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest, ParticleLoad, ParticleProbe, ParticleSupport,
+    BondFracture, Bonded, BondedBody, BondedPart, BondedState, BondedStaticSettings, BondedStatics, Closest,
+    ParticleLoad, ParticleProbe, ParticleSupport,
 };
 pub use boundary::{Load, Loads, Motion, Support, Supports, TimeFunction};
 pub use clock::{Clock, TimeStepSettings};

@@ -186,7 +186,7 @@ impl Scene {
 
     /// Completes the ledger of tⁿ and holds it against the guard.
     fn close_balance(&mut self) -> Result<(), StepError> {
-        let Scene { ledger, solid, bonded, books, .. } = self;
+        let Scene { ledger, solid, bonded, books, contacts, .. } = self;
         let bonds = bonded.energy();
         (ledger.bond_tension, ledger.bond_bending, ledger.bond_torsion) = (bonds.tension, bonds.bending, bonds.torsion);
         ledger.elastic = solid.elastic_energy() + bonds.total();
@@ -198,7 +198,12 @@ impl Scene {
         ledger.damping = books.damping + solid.viscous_dissipation();
         if self.clock.step == 0 {
             ledger.initial = ledger.kinetic + ledger.elastic + ledger.contact;
+            // Less than this is no energy: bodies that wait for a tool move by what rounding leaves.
+            ledger.scale = bonded.round_off_energy(self.clock.dt_after);
         }
+        // The first touch of a tool is found to a step only; it is measured by what a particle takes from it, not by the little
+        // work done so far.
+        ledger.scale = ledger.scale.max(contacts.touch_energy(&bonded.particles));
         ledger.update_maxima();
         let (relative, finite) = (ledger.relative_residual(), ledger.residual().is_finite());
         let (step, time, dt, limit) = (self.clock.step, self.clock.time, self.clock.dt_after, self.stable_dt());

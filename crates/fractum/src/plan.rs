@@ -55,6 +55,13 @@ impl Plan {
         plan.describe_physics(case, scene);
         match &assembly.statics {
             Some(settings) => plan.describe_statics(scene, settings),
+            None if assembly.bonded_statics.is_some() => {
+                let unknowns = 6 * scene.bonded.particles.len() - scene.bonded.held_count();
+                let breaks = scene.bonded.bodies().iter().any(BondedBody::can_break);
+                let path = if breaks { "from break to break" } else { "in one solution, since no bond can break" };
+                let end = quantity(case.solver.end, "s");
+                plan.add("equilibrium", format!("{unknowns} unknowns, {path}, to t = {end}"));
+            }
             None => {
                 plan.describe_time(case, scene);
                 plan.describe_size(case, scene);

@@ -94,7 +94,7 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     let mut scene = assembly.scene;
 
     let checkpoints = folder.join("checkpoint");
-    if options.resume && assembly.statics.is_some() {
+    if options.resume && case.solver.statics.is_some() {
         return Err(Failure::input("static runs keep no checkpoints; run without --resume"));
     }
     let resumed = if options.resume { restore(&checkpoints, &identity, &mut scene)? } else { None };
@@ -139,9 +139,10 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
         phases: [Duration::ZERO; PHASES.len()],
     };
     // The one place where the kind of solver decides.
-    let end = match &assembly.statics {
-        Some(settings) => run.equilibrate(&mut scene, *settings),
-        None => run.advance(&mut scene),
+    let end = match (&assembly.statics, &assembly.bonded_statics) {
+        (Some(settings), _) => run.equilibrate(&mut scene, *settings),
+        (None, Some(settings)) => run.break_at_rest(&mut scene, *settings),
+        (None, None) => run.advance(&mut scene),
     };
     run.conclude(scene, threads, end, &plan)
 }

@@ -141,3 +141,56 @@ fn criteria_take_only_keys_that_belong_to_them() {
         assert!(ended.stdout.contains(words), "{lines}: {}{}", ended.stdout, ended.stderr);
     }
 }
+
+/// The bar at rest: the same case but for the solver and for velocities that only motion has.
+fn at_rest() -> String {
+    let bar = BAR.replace("initial_velocity = { x = \"rate*x/length\" }\n", "");
+    bar.replace("end = \"0.3 us\"", "end = \"0.3 us\"\nkind = \"static\"")
+}
+
+#[test]
+fn the_same_case_breaks_at_rest_from_break_to_break() {
+    let place = Workplace::new(&at_rest());
+    let one = run(&place, "one", "1");
+    let energy = |name: &str| one["energy"][name].as_f64().unwrap();
+    let broken = one["counts"]["broken_bonds"].as_u64().unwrap();
+    assert!(broken > 50 && energy("kinetic") == 0.0, "{one}");
+    assert!(energy("residual_max_relative") < 1e-4 && energy("removed") > 0.0, "{}", one["energy"]);
+    assert!(energy("damping") > 0.0, "what sudden equilibria set free: {}", one["energy"]);
+    assert_eq!(one["fracture"][0]["broken_bonds"].as_u64(), Some(broken));
+    let two = run(&place, "two", "2");
+    assert_eq!((&two["state_hash"], &two["probes"]), (&one["state_hash"], &one["probes"]));
+
+    // The load before the first break is the stiffness times the stretch: no motion, no wave.
+    let history = fs::read_to_string(place.path("one/history.csv")).unwrap();
+    let mut rows = history.lines();
+    let columns: Vec<&str> = rows.next().unwrap().split(',').collect();
+    let first: Vec<f64> = rows.next().unwrap().split(',').map(|v| v.parse().unwrap()).collect();
+    let column = |name: &str| columns.iter().position(|c| c.starts_with(name)).unwrap();
+    let strain = 20.0 * first[column("time")] / 2e-3;
+    let young = first[column("pull")] / (1e-6 * strain);
+    assert!((young / 72e9 - 1.0).abs() < 0.1, "{young:e}");
+    let load = fs::read_to_string(place.path("one/cracks.csv")).unwrap();
+    let time = load.lines().nth(1).unwrap().split(',').nth(5).unwrap().parse::<f64>().unwrap();
+    assert!((time / first[column("time")] - 1.0).abs() < 1e-12, "the first row is the first break");
+}
+
+#[test]
+fn what_cannot_be_solved_from_break_to_break_says_why() {
+    let cases = [
+        (
+            "velocity = { x = \"rate\" }",
+            "velocity = { x = \"rate*t/1 us\" }",
+            "does not move along x in proportion to time",
+        ),
+        ("[solver]", "[[loads]]\ngravity = { z = \"-9.81 m/s^2\" }\n[solver]", "supports only"),
+        ("kind = \"static\"", "kind = \"static\"\ncontrol = \"path\"", "from break to break"),
+        ("coordination = 8", "coordination = 8\ninitial_velocity = { x = \"1 m/s\" }", "a body at rest"),
+    ];
+    for (from, to, words) in cases {
+        let place = Workplace::new(&at_rest().replace(from, to));
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{to}: {}", ended.stderr);
+        assert!(ended.stderr.contains(words) && ended.stderr.contains("solver.kind"), "{to}: {}", ended.stderr);
+    }
+}

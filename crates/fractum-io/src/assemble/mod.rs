@@ -18,7 +18,7 @@ use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::StaticSettings;
-use fractum_scene::{Loads, Probe, Scene, SceneError, SceneSettings, Supports, TimeStepSettings};
+use fractum_scene::{BondedStaticSettings, Loads, Probe, Scene, SceneError, SceneSettings, Supports, TimeStepSettings};
 
 use bonded::ParticleSets;
 
@@ -31,6 +31,8 @@ pub struct Assembly {
     pub scene: Scene,
     /// Settings of the quasi-static solver, where the case asks for it.
     pub statics: Option<StaticSettings>,
+    /// Settings of the solver that brings a bonded body from break to break; none for other runs.
+    pub bonded_statics: Option<BondedStaticSettings>,
     /// The probes of the case that are measured, in the order of `Case::probes`; none for expressions.
     pub probes: Vec<Option<Probe>>,
     /// Nodes of the mesh in the scene's numbering, or `u32::MAX` for nodes of no solid body.
@@ -161,6 +163,7 @@ impl Context<'_> {
         };
         let statics = self.statics(&solid, &supports);
         self.condition_particles(&mut bonded);
+        let bonded_statics = self.bonded_statics(&bonded);
         let probes = self.probes(&parts, &numbering, &supports, &bonded);
         if !self.diagnostics.is_empty() {
             return None;
@@ -185,6 +188,7 @@ impl Context<'_> {
         Some(Assembly {
             scene,
             statics,
+            bonded_statics,
             probes,
             file_order: numbering.file_order(),
             scene_node: numbering.scene_node,

@@ -1,12 +1,13 @@
 //! What a quasi-static run needs, and what it cannot do.
 
+use fractum_dem::Batch;
 use fractum_fem::{NotSecant, Solid};
-use fractum_scene::Supports;
 use fractum_scene::statics::{self, StaticSettings, check_supports};
+use fractum_scene::{Bonded, BondedStaticSettings, Supports};
 
 use super::Context;
 use crate::case::Place;
-use crate::case::model::{BodyKind, Control, LinearSolver};
+use crate::case::model::{Body, BodyKind, BondBatch, Control, LinearSolver};
 
 /// Relative residual of iterative linear solutions.
 const LINEAR_TOLERANCE: f64 = 1e-8;
@@ -28,9 +29,12 @@ impl Context<'_> {
             let found = format!(" = \"static\" with {found} in body \"{}\"", solid.body(body).name);
             self.error(&place, found, "small strains, open cracks and damage without delay; or kind = \"explicit\"");
         }
+        if matches!(self.case.bodies.as_slice(), [Body { kind: BodyKind::Bonded(_), .. }]) {
+            return None;
+        }
         if let Some(body) = self.case.bodies.iter().find(|body| !matches!(body.kind, BodyKind::Solid(_))) {
             let found = format!(" = \"static\" with body \"{}\"", body.name.value);
-            self.error(&place, found, "solid bodies only; or kind = \"explicit\"");
+            self.error(&place, found, "solid bodies only, or one bonded body; or kind = \"explicit\"");
             return None;
         }
         if let Err(error) = check_supports(solid, supports.held()) {
@@ -56,6 +60,42 @@ impl Context<'_> {
                 LinearSolver::Direct => statics::LinearSolver::Direct,
                 LinearSolver::Iterative => statics::LinearSolver::Iterative,
             },
+        })
+    }
+
+    /// Settings of the solver that brings a bonded body from break to break; none for other bodies and solvers, or with
+    /// errors noted.
+    pub(super) fn bonded_statics(&mut self, bonded: &Bonded) -> Option<BondedStaticSettings> {
+        let solver = &self.case.solver;
+        let options = solver.statics?;
+        let [Body { kind: BodyKind::Bonded(body), .. }] = self.case.bodies.as_slice() else { return None };
+        let place = self.place_of_solver();
+        let found = |what: &str| format!(" = \"static\" with a bonded body and {what}");
+        if options.control.is_some() || solver.step.is_some() {
+            let expected = "no control and no step: the load goes straight from break to break";
+            self.error(&place, found("solver.control or solver.step"), expected);
+        }
+        if !self.case.loads.is_empty() {
+            let expected = "supports only, which move in proportion to time; or kind = \"explicit\"";
+            self.error(&place, found("[[loads]]"), expected);
+        }
+        if body.initial_velocity.iter().any(Option::is_some) {
+            self.error(&place, found("initial_velocity"), "a body at rest; or kind = \"explicit\"");
+        }
+        if bonded.held_count() == 0 {
+            self.error(&place, found("no support"), "at least one [[supports]]");
+        }
+        if let Err(error) = bonded.check_proportional(solver.end) {
+            self.error(&place, format!(" = \"static\": {error}"), "");
+        }
+        Some(BondedStaticSettings {
+            end: solver.end,
+            tolerance: options.tolerance,
+            batch: match options.batch {
+                BondBatch::Site => Batch::PerSite,
+                BondBatch::One => Batch::One,
+            },
+            most_steps: options.most_steps,
         })
     }
 

@@ -404,6 +404,7 @@ static KEYS: &[KeyDoc] = &[
     key("solver.control", K::Choice(names::<Control>), "\"path\" where something may break, else \"time\"", "Static only: steps of time, or of damage, along the path of equilibrium through snap-back"),
     key("solver.linear_solver", K::Choice(names::<LinearSolver>), "\"auto\"", "Static only: Cholesky factorisation, conjugate gradients, or by size and reuse"),
     key("solver.tolerance", K::Quantity(D::NONE), "1e-4", "Static only: unbalanced force over the internal forces at which a step is accepted, > 0"),
+    key("solver.batch", K::Choice(names::<BondBatch>), "\"site\"", "Static with a bonded body: what breaks between two equilibria, the bonds that every overloaded particle releases, or those of the most overloaded one"),
     key("solver.max_steps", K::Integer, "10000", "Static only: steps after which the run ends in any case"),
     key("solver.stop_when", K::Table, "", "Ends the run once a probe has fallen below a fraction of its largest value so far"),
     key("solver.stop_when.probe", K::Text, "required", "Name of the probe"),

@@ -13,7 +13,7 @@ fn the_sample_holds_every_key_of_the_list() {
     paths(&toml::from_str(&every_key()).unwrap(), "", &mut found);
     let missing: Vec<_> = keys().iter().map(|key| key.path).filter(|path| !found.contains(*path)).collect();
     // A fixed step excludes the safety factor, and a solver the keys of the other.
-    let statics = ["solver.control", "solver.linear_solver", "solver.tolerance", "solver.max_steps"];
+    let statics = ["solver.control", "solver.linear_solver", "solver.tolerance", "solver.batch", "solver.max_steps"];
     assert_eq!(missing, [&["solver.step"], &statics[..]].concat());
     good(&SMALL.replace("end = 1e-3", "end = 1e-3\nstep = 1e-6"), &[]);
     good(&SMALL.replace("end = 1e-3", STATIC), &[]);
@@ -21,7 +21,7 @@ fn the_sample_holds_every_key_of_the_list() {
 
 /// A static solver with all of its keys, in place of the end of a run.
 const STATIC: &str = "end = 1e-3\nkind = \"static\"\ncontrol = \"path\"\nlinear_solver = \"direct\"\n\
-                      tolerance = 1e-5\nmax_steps = 100";
+                      tolerance = 1e-5\nbatch = \"one\"\nmax_steps = 100";
 
 /// Paths of the keys in a document, as in the list of keys.
 fn paths(value: &toml::Value, path: &str, found: &mut BTreeSet<String>) {
@@ -75,6 +75,7 @@ fn documented_defaults_are_the_defaults() {
     };
     // Where a key may stand in the two samples.
     let at_rest = SMALL.replace("end = 1e-3", STATIC);
+    let breaking = SMALL.replace("[[bodies]]", "[materials.steel.fracture]\ntensile_strength = 1e9\n[[bodies]]");
     let samples = [
         (at_rest.as_str(), "steel", "bodies[0]", ""),
         (text.as_str(), "concrete", "bodies[0]", "loads[3].pressure"),
@@ -84,6 +85,7 @@ fn documented_defaults_are_the_defaults() {
         (text.as_str(), "mortar", "bodies[7]", ""),
         (text.as_str(), "mortar", "bodies[8]", ""),
         (SMALL, "steel", "bodies[0]", ""),
+        (breaking.as_str(), "steel", "bodies[0]", ""),
     ];
     let mut untried = Vec::new();
     for key in keys() {

@@ -124,6 +124,42 @@ impl Holds {
         places.iter().map(|&(s, e, a)| self.sets[s as usize].reaction[e as usize] * direction[a as usize]).sum()
     }
 
+    /// Particle, axis and displacement at the time `end` of everything prescribed, which must move in proportion to time.
+    ///
+    /// # Errors
+    /// [`SceneError::NotProportional`].
+    pub(super) fn displacements(&self, reference: &[Vec3], end: f64) -> Result<Vec<(u32, usize, f64)>, SceneError> {
+        let mut found = Vec::new();
+        for Held { support, .. } in &self.sets {
+            for &particle in &support.particles {
+                let x = &reference[particle as usize];
+                let at = |share: f64| match &support.motion {
+                    Motion::Fixed => 0.0,
+                    // A velocity is proportional if it is constant.
+                    Motion::Velocity(v) => v(share * end, x) * share * end,
+                    Motion::Displacement(u) => u(share * end, x),
+                };
+                let whole = at(1.0);
+                let proportional = |share: f64| (at(share) - share * whole).abs() <= 1e-9 * whole.abs();
+                if ![0.0, 0.1, 0.25, 0.5, 0.7].into_iter().all(proportional) {
+                    let name = support.name.clone();
+                    return Err(SceneError::NotProportional { name, axis: ['x', 'y', 'z'][support.axis] });
+                }
+                found.push((particle, support.axis, whole));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Takes the forces of the supports from an equilibrium.
+    pub(super) fn set_reactions(&mut self, of: impl Fn(u32) -> [f64; 6]) {
+        for Held { support, reaction } in &mut self.sets {
+            for (&particle, reaction) in support.particles.iter().zip(reaction) {
+                *reaction = of(particle)[support.axis];
+            }
+        }
+    }
+
     /// Gives held axes, which have kept their velocity so far, the prescribed one, and finds the reactions.
     pub(super) fn impose(
         &mut self,

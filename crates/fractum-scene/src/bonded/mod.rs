@@ -1,6 +1,7 @@
 //! Bonded bodies: particles of their own beside the solids, joined by cohesive beams.
 
 mod boundary;
+mod equilibrium;
 mod piece;
 mod probe;
 
@@ -16,6 +17,7 @@ use fractum_math::{Rotation, Vec3};
 use serde::{Deserialize, Serialize};
 
 pub use boundary::{ParticleLoad, ParticleSupport};
+pub use equilibrium::{BondedStaticSettings, BondedStatics};
 pub use probe::ParticleProbe;
 
 use crate::error::SceneError;
@@ -73,6 +75,7 @@ pub struct BondedBody {
     pub bonds: BeamNetwork,
     /// Density of the continuum that it stands for [kg/m³].
     pub density: f64,
+    plan: Option<BondFracture>,
     fracture: Option<Fracture>,
     closest: Option<Closest>,
 }
@@ -176,7 +179,7 @@ impl Bonded {
                 }
                 None => None,
             };
-            all.bodies.push(BondedBody { name, range, bonds, density, fracture, closest: None });
+            all.bodies.push(BondedBody { name, range, bonds, density, plan, fracture, closest: None });
         }
         // 2/ω is the step that is stable without a safety factor.
         let highest = |body: &BondedBody| 2.0 / body.bonds.stable_step(&all.particles, 1.0);
@@ -199,6 +202,14 @@ impl Bonded {
             (0..3).filter(|axis| axes >> axis & 1 == 1).for_each(|axis| self.particles.spin[i][axis] = 0.0);
         }
         Ok(())
+    }
+
+    /// Whether all supports move in proportion to time until `end` [s].
+    ///
+    /// # Errors
+    /// [`SceneError::NotProportional`] with the first that does not.
+    pub fn check_proportional(&self, end: f64) -> Result<(), SceneError> {
+        self.holds.displacements(&self.reference, end).map(|_| ())
     }
 
     /// Sets what pushes particles.
@@ -240,6 +251,12 @@ impl Bonded {
     pub(crate) fn damping_ratio(&self) -> f64 {
         let ratio = |body: &BondedBody| body.fracture.as_ref().map_or(0.0, |f| f.faces().damping_ratio);
         self.bodies.iter().map(ratio).fold(0.0, f64::max)
+    }
+
+    /// Energy that is nothing [J]: a million steps in each of which places move by a rounding bring a thousandth of it.
+    pub(crate) fn round_off_energy(&self, dt: f64) -> f64 {
+        let farthest = self.reference.iter().map(|x| x.amax()).fold(0.0, f64::max);
+        1e9 * self.particles.mass.iter().sum::<f64>() * (f64::EPSILON * farthest / dt).powi(2)
     }
 
     /// Elastic energy of the bonds when last measured, by parts [J].

@@ -170,6 +170,15 @@ impl Contacts {
         self.rayleigh_frequency * self.rayleigh_frequency + self.node_frequency_square
     }
 
+    /// Energy of the mean particle at the speed of the fastest rigid body [J]: what the first touch is about.
+    pub(crate) fn touch_energy(&self, particles: &Particles) -> f64 {
+        let fastest = self.tools.iter().map(|tool| tool.frame.velocity.norm_squared()).fold(0.0, f64::max);
+        if fastest == 0.0 || particles.is_empty() {
+            return 0.0;
+        }
+        0.5 * fastest * particles.mass.iter().sum::<f64>() / particles.len() as f64
+    }
+
     /// Contacts at the last step.
     pub(crate) fn touching(&self) -> usize {
         let ground = |contacts: &GroundContacts<Hertz>| contacts.touches().count();

@@ -142,7 +142,20 @@ pub struct StaticOptions {
     pub tolerance: f64,
     /// Steps after which the run ends in any case, ≥ 1.
     pub most_steps: u64,
+    /// How many bonds of a bonded body break between two equilibria.
+    pub batch: BondBatch,
 }
+
+/// How many bonds break between two equilibria.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BondBatch {
+    /// What every overloaded particle releases.
+    Site,
+    /// What the most overloaded one releases.
+    One,
+}
+
+choice!(BondBatch { "site" => Site, "one" => One });
 
 /// How the load parameter of a static run proceeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

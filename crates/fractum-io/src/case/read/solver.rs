@@ -2,7 +2,7 @@
 
 use super::probes::ReadProbe;
 use crate::case::model::{
-    Control, Damping, LinearSolver, Output, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
+    BondBatch, Control, Damping, LinearSolver, Output, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
 };
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, nearest};
@@ -78,6 +78,7 @@ fn statics(table: &Table<'_>) -> StaticOptions {
         linear_solver: table.choice("linear_solver").or(LinearSolver::Auto),
         tolerance: table.quantity("tolerance").positive().or(1e-4),
         most_steps: table.integer("max_steps").check(|&steps| steps > 0, "at least 1").or(10_000),
+        batch: table.choice("batch").or(BondBatch::Site),
     }
 }
 

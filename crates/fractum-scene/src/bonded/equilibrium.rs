@@ -1,0 +1,172 @@
+//! Bonded bodies at rest: the load rises from break to break, see [`fractum_dem::QuasiStatic`].
+
+use fractum_dem::criterion::{BeamRankine, Criterion, EndMoments};
+use fractum_dem::{Batch, BeamEnergy, Breaking, Crack, Lattice, QuasiStatic, Stage, Supports, Tolerance};
+use fractum_math::{Rotation, Vec3};
+
+use super::{Bonded, BondedBody, Closest};
+use crate::error::{SceneError, StepError};
+use crate::scene::Scene;
+
+/// How a bonded body is brought from break to break.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BondedStaticSettings {
+    /// Time at which the supports have moved all their way [s]; before, they are in proportion.
+    pub end: f64,
+    /// Unbalanced force over the forces of the supports at which equilibrium is accepted.
+    pub tolerance: f64,
+    /// How many bonds break between two equilibria.
+    pub batch: Batch,
+    /// Equilibria after which the run ends in any case.
+    pub most_steps: u64,
+}
+
+/// Share of the largest load below which a body has lost its strength.
+const STRENGTHLESS: f64 = 1e-3;
+/// Most iterations of one equilibrium.
+const ITERATIONS: usize = 50_000;
+
+/// The solver of a scene that holds one bonded body.
+pub struct BondedStatics {
+    run: QuasiStatic,
+    settings: BondedStaticSettings,
+    /// Particle, axis and displacement of what moves, at the end.
+    prescribed: Vec<(u32, usize, f64)>,
+    stage: Stage,
+    /// Work of the supports from none to all of their way, were nothing to break, times two [J].
+    push: f64,
+    /// Work of the supports so far [J].
+    work: f64,
+    /// Elastic energy that breaks have set free beyond that of the broken bonds [J].
+    sudden: f64,
+}
+
+/// A criterion that nothing meets, for bodies without one.
+const UNBREAKABLE: Criterion = Criterion::BeamRankine(BeamRankine { strength: f64::MAX, moments: EndMoments::Mean });
+
+impl BondedStatics {
+    /// Brings the body to its first equilibrium.
+    ///
+    /// # Errors
+    /// [`SceneError::NotProportional`] for supports that do not move in proportion to time, an equilibrium that is not
+    /// found; a scene without a bonded body.
+    pub fn new(scene: &Scene, settings: BondedStaticSettings) -> Result<Self, SceneError> {
+        let bonded = &scene.bonded;
+        let [body] = bonded.bodies.as_slice() else { return Err(SceneError::OneBondedBody) };
+        let all = &bonded.particles;
+        let mean_radius = all.radius.iter().sum::<f64>() / all.len().max(1) as f64;
+        let lattice = Lattice::new(&bonded.reference, body.bonds.pairs(), body.bonds.section(), mean_radius)?;
+        let mut supports = Supports::none(all.len());
+        for (i, held) in (0..).zip(&all.held) {
+            (0..6).filter(|d| held >> d & 1 == 1).for_each(|d| supports.set(i, d, 0.0));
+        }
+        let prescribed = bonded.holds.displacements(&bonded.reference, settings.end)?;
+        prescribed.iter().for_each(|&(particle, axis, value)| supports.set(particle, axis, value));
+        let guess = vec![[0.0; 6]; all.len()];
+        let plan = body.plan;
+        let what = Breaking {
+            // Without a fracture nothing reaches this strength.
+            criterion: plan.map_or(UNBREAKABLE, |plan| plan.criterion),
+            pairs: body.bonds.pairs(),
+            radius: &all.radius,
+            fraction: plan.map_or(1.0, |plan| plan.fraction),
+            volume: plan.map_or(1.0, |plan| plan.volume),
+            displacement: 1.0,
+            batch: settings.batch,
+            limit: 1.0,
+            stop: STRENGTHLESS,
+            tolerance: Tolerance { residual: settings.tolerance, iterations: ITERATIONS },
+        };
+        let run = QuasiStatic::new(lattice, supports, &guess, &what)?;
+        let mut statics =
+            BondedStatics { run, settings, prescribed, stage: Stage::Failing, push: 0.0, work: 0.0, sudden: 0.0 };
+        statics.push = statics.push_of_supports();
+        Ok(statics)
+    }
+
+    /// Whether the body has come apart, holds at the end, or has used up its steps.
+    pub fn is_finished(&self, scene: &Scene) -> bool {
+        self.stage != Stage::Failing || scene.clock.step >= self.settings.most_steps
+    }
+
+    /// Equilibria found, and iterations for all of them.
+    pub fn effort(&self) -> (usize, usize) {
+        self.run.body().effort()
+    }
+
+    fn push_of_supports(&self) -> f64 {
+        let work = |&(i, axis, value): &(u32, usize, f64)| self.run.body().reaction(i)[axis] * value;
+        self.prescribed.iter().filter(|(.., value)| *value != 0.0).map(work).sum()
+    }
+
+    /// Moves the supports on to the next failure and brings the scene there.
+    pub fn rise(&mut self, scene: &mut Scene) {
+        let before = self.run.factor();
+        let (point, stage) = self.run.rise(|_| false);
+        self.stage = stage;
+        self.work += 0.5 * self.push * (self.run.factor().powi(2) - before.powi(2));
+        let time = point.displacement * self.settings.end;
+        scene.clock.dt_before = time - scene.clock.time;
+        scene.clock.dt_after = 0.0;
+        scene.clock.time = time;
+        scene.clock.step += 1;
+        let Bonded { particles, reference, bodies, holds, energy, .. } = &mut scene.bonded;
+        let factor = self.run.factor();
+        for (i, u) in self.run.body().state().iter().enumerate() {
+            let (shift, turn) = (Vec3::new(u[0], u[1], u[2]), Vec3::new(u[3], u[4], u[5]));
+            particles.position[i] = reference[i] + shift * factor;
+            particles.orientation[i] = Rotation::from_scaled_axis(turn * factor);
+        }
+        holds.set_reactions(|particle| self.run.body().reaction(particle).map(|force| force * factor));
+        let body = &mut bodies[0];
+        note_closest(body, &self.run, reference, time);
+        // Parts of the energy as the beams show them; their sum is that of the equilibrium.
+        let parts = body.bonds.energy(particles);
+        let scale = if parts.total() > 0.0 { point.elastic / parts.total() } else { 0.0 };
+        let [tension, bending, torsion] = [parts.tension, parts.bending, parts.torsion].map(|part| part * scale);
+        *energy = BeamEnergy { tension, bending, torsion };
+        let broken: f64 = self.run.cracks().iter().map(|crack| crack.energy).sum();
+        scene.ledger.external = self.work;
+        scene.ledger.elastic = point.elastic;
+        (scene.ledger.bond_tension, scene.ledger.bond_bending, scene.ledger.bond_torsion) = (tension, bending, torsion);
+        scene.ledger.removed = broken;
+        scene.ledger.damping = self.sudden;
+        scene.ledger.update_maxima();
+    }
+
+    /// Breaks what fails and finds equilibrium again, unless the run is over.
+    ///
+    /// # Errors
+    /// [`StepError::NoBondedEquilibrium`].
+    pub fn release(&mut self, scene: &mut Scene) -> Result<(), StepError> {
+        if self.stage != Stage::Failing {
+            return Ok(());
+        }
+        let before = self.run.cracks().len();
+        let square = self.run.factor().powi(2);
+        let elastic = square * self.run.body().energy();
+        self.run.release().map_err(|error| StepError::NoBondedEquilibrium {
+            step: scene.clock.step,
+            time: scene.clock.time,
+            error,
+        })?;
+        let lost: f64 = self.run.cracks()[before..].iter().map(|crack| crack.energy).sum();
+        self.sudden += elastic - square * self.run.body().energy() - lost;
+        self.push = self.push_of_supports();
+        let end = self.settings.end;
+        let BondedBody { fracture, bonds, .. } = &mut scene.bonded.bodies[0];
+        if let Some(fracture) = fracture {
+            let new = self.run.cracks()[before..].iter().copied();
+            fracture.adopt(new.map(|crack| Crack { time: crack.time * end, ..crack }), bonds);
+        }
+        Ok(())
+    }
+}
+
+/// Keeps the largest ratio.
+fn note_closest(body: &mut BondedBody, run: &QuasiStatic, reference: &[Vec3], time: f64) {
+    let Some((fracture, site)) = body.fracture.as_ref().zip(run.closest()) else { return };
+    if body.closest.is_none_or(|known| site.ratio > known.ratio) {
+        body.closest = Some(Closest { ratio: site.ratio, place: fracture.place(&site, reference), time });
+    }
+}
