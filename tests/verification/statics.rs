@@ -8,7 +8,7 @@ use fractum_fem::{
 use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::{Control, LinearSolver, StaticSettings, StaticSolver, check_supports};
+use fractum_scene::statics::{Control, LinearSolver, StaticSettings, StaticSolver, Stiffness, check_supports};
 use fractum_scene::{
     Load, Loads, Motion, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeFunction, TimeStepSettings,
 };
@@ -85,7 +85,13 @@ fn bar(formulation: Formulation) -> Solid {
     let body = Body { formulation, plane: Plane::Stress, thickness: 0.1, ..body };
     let near = |p: &Vec3| (p.x - 0.5).abs() < 0.03;
     let region = Region::Edges(body.edge_midpoints(&mesh.nodes).iter().map(near).collect());
-    let zone = DamageZone { law: soft(), region, strength_factor: Vec::new(), reduce_strength_to_fit: false };
+    let zone = DamageZone {
+        law: soft(),
+        region,
+        strength_factor: Vec::new(),
+        reduce_strength_to_fit: false,
+        crack_plane_gate: false,
+    };
     Solid::new(mesh.nodes, vec![Body { damage: Some(zone), ..body }]).unwrap()
 }
 
@@ -159,4 +165,23 @@ fn a_pressed_block_has_the_stress_of_its_load() {
     let mean = (0..fields.len() as u32).map(|e| fields[e as usize].0 * scene.solid.element_volume(0, e));
     let mean = mean.fold(Sym3::ZERO, |a, b| a + b);
     assert!((mean.0[2] + 1e6).abs() < 1.0, "{mean:?}");
+}
+
+#[test]
+fn the_first_period_of_a_clamped_bar_is_four_transits() {
+    let mesh = structured_rectangle([40, 2], [1.0, 0.05], None);
+    let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
+    let elastic = Elastic { poisson_ratio: 0.0, ..CONCRETE };
+    let speed = (elastic.young_modulus / elastic.density).sqrt();
+    let body = Body { plane: Plane::Stress, ..Body::new("bar", Shape::T3, elements, elastic) };
+    let solid = Solid::new(mesh.nodes, vec![body]).unwrap();
+    let supports = vec![
+        Support::new("left", nodes_where(&solid, |p| p.x < 1e-9), 0, Motion::Fixed),
+        Support::new("all", nodes_where(&solid, |_| true), 1, Motion::Fixed),
+    ];
+    let scene = scene(solid, supports, Vec::new());
+    let mut stiffness = Stiffness::new(&scene).unwrap();
+    stiffness.prepare(&scene).unwrap();
+    let period = stiffness.first_period(&scene).unwrap();
+    assert!((period * speed / 4.0 - 1.0).abs() < 0.01, "{period}");
 }

@@ -77,6 +77,8 @@ pub struct DamageZone {
     pub strength_factor: Vec<f64>,
     /// Lower the strength of edges too long for their fracture energy, instead of refusing the body.
     pub reduce_strength_to_fit: bool,
+    /// Near a crack, damage begins only where the plane of the crack goes on (smoothed formulation only).
+    pub crack_plane_gate: bool,
 }
 
 /// A group of elements with one material and one formulation; the input of [`crate::Solid::new`].
@@ -125,8 +127,13 @@ impl Body {
 
     /// The same body with damage everywhere by `law`.
     pub fn with_damage(self, law: DamageLaw) -> Self {
-        let zone =
-            DamageZone { law, region: Region::Everywhere, strength_factor: Vec::new(), reduce_strength_to_fit: false };
+        let zone = DamageZone {
+            law,
+            region: Region::Everywhere,
+            strength_factor: Vec::new(),
+            reduce_strength_to_fit: false,
+            crack_plane_gate: false,
+        };
         Body { damage: Some(zone), ..self }
     }
 

@@ -23,10 +23,12 @@
 mod block;
 mod body;
 mod cell;
+mod crack;
 mod damage;
 mod element;
 mod error;
 mod evaluate;
+mod gate;
 mod kernel;
 mod lane;
 pub mod material;
@@ -40,9 +42,11 @@ mod time_step;
 mod viscosity;
 
 pub use body::{Body, DamageZone, Formulation, Kinematics, Plane, Region, Shape};
+pub use crack::{CrackEdge, CrackPlane};
 pub use damage::EdgeDamage;
 pub use element::CUT_MODES;
 pub use error::SolidError;
+pub use gate::GateState;
 pub use material::{Criterion, CriterionKind, DamageLaw, Elastic, Softening};
 pub use nodes::{LocalDamping, StepWork};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};

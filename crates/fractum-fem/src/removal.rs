@@ -183,7 +183,7 @@ impl Solid {
 
 impl Block {
     /// Strain of one cell at these displacements.
-    fn strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
+    pub(crate) fn strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
         let h = self.cells.gradient(cell, displacement);
         match kinematics {
             Kinematics::Small => Sym3::symmetric_part(&h),

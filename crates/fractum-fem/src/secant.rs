@@ -34,7 +34,7 @@ pub struct SecantCell<'a> {
 pub struct DamagePoint {
     /// Body it belongs to.
     pub body: usize,
-    /// Largest equivalent stress so far [Pa].
+    /// Largest equivalent stress so far [Pa]; infinite for an edge that a gate keeps from being damaged.
     pub kappa: f64,
     /// Equivalent stress over which softening takes place, E G_f/(l f_t) [Pa].
     pub softening: f64,
@@ -139,29 +139,31 @@ impl Solid {
     /// The edges that may be damaged, in the order of [`Solid::effective_stresses`].
     pub fn damage_points(&self) -> Vec<DamagePoint> {
         let mut points = Vec::new();
-        self.for_each_point(|body, edge, strength, length| {
+        self.for_each_point(|body, edge, kappa, strength, length| {
             let model = &self.bodies[body].body;
             let energy = model.damage.as_ref().map_or(0.0, |zone| zone.law.fracture_energy);
             let softening = model.elastic.young_modulus * energy / (length * strength);
-            let EdgeDamage { kappa, broken, damage, .. } = *edge;
+            let EdgeDamage { broken, damage, .. } = *edge;
             points.push(DamagePoint { body, kappa, softening, broken, damage });
         });
         points
     }
 
-    /// Visits (body, edge, strength, length) of every edge that may be damaged.
-    fn for_each_point(&self, mut work: impl FnMut(usize, &EdgeDamage, f64, f64)) {
+    /// Visits (body, edge, κ, strength, length) of every edge that may be damaged; κ is infinite while a gate is closed.
+    fn for_each_point(&self, mut work: impl FnMut(usize, &EdgeDamage, f64, f64, f64)) {
         for block in &self.blocks {
             if let BlockLaw::Edges(law) = &block.law {
                 for cell in 0..law.edges.len() {
-                    work(block.body, &law.edges[cell], law.strength[cell], law.length[cell]);
+                    let kappa = law.edges[cell].kappa.max(law.threshold[cell]);
+                    work(block.body, &law.edges[cell], kappa, law.strength[cell], law.length[cell]);
                 }
             }
         }
         for (body, model) in self.bodies.iter().enumerate() {
             if let Some(standard) = &model.standard {
                 for edge in 0..standard.edges.len() {
-                    work(body, &standard.edges[edge], standard.strength[edge], standard.length[edge]);
+                    let state = &standard.edges[edge];
+                    work(body, state, state.kappa, standard.strength[edge], standard.length[edge]);
                 }
             }
         }
@@ -224,7 +226,9 @@ impl Solid {
             trial.clear();
             for cell in 0..law.edges.len() {
                 let mut edge = law.edges[cell];
-                law.softens.load(&mut edge, q[next], law.strength[cell], law.length[cell], 0.0);
+                if q[next] > law.threshold[cell] {
+                    law.softens.load(&mut edge, q[next], law.strength[cell], law.length[cell], 0.0);
+                }
                 trial.push(edge.damage);
                 next += 1;
             }
@@ -259,7 +263,7 @@ impl Solid {
             for cell in 0..law.edges.len() {
                 let seen = q[next];
                 next += 1;
-                if seen <= law.edges[cell].kappa {
+                if seen <= law.edges[cell].kappa.max(law.threshold[cell]) {
                     continue;
                 }
                 let strain = |field: &[Vec3]| Sym3::symmetric_part(&block.cells.gradient(cell, field));

@@ -10,6 +10,7 @@ use crate::cell::Geometry;
 use crate::damage::{EdgeCells, EdgeDamage, Softens};
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
+use crate::gate::{Gate, GateState};
 use crate::kernel::{self, Hooke};
 use crate::nodes::StepWork;
 use crate::standard::{StandardCells, StandardDamage};
@@ -29,6 +30,7 @@ pub(crate) struct BodyModel {
     /// Block and cell of each cell of the body (element, or edge if smoothed).
     pub(crate) location: Vec<(u32, u32)>,
     pub(crate) standard: Option<StandardDamage>,
+    pub(crate) gate: Option<Gate>,
     /// Edges whose strength was lowered to fit their length.
     pub(crate) reduced_edges: usize,
     /// Largest ratio of a characteristic length to the largest one that softening allows.
@@ -67,6 +69,8 @@ pub struct BodyState {
     pub edges: Vec<EdgeDamage>,
     /// Damage and last effective stress of elements (standard formulation with damage).
     pub elements: Vec<(f64, Sym3)>,
+    /// Crack-plane gate; empty without one.
+    pub gate: GateState,
 }
 
 /// What changes in a solid during a run.
@@ -253,31 +257,16 @@ impl Solid {
         count
     }
 
-    /// Area of crack, Σ d V/l over the edges with the volumes V of the reference mesh and the characteristic lengths l
-    /// [m²]: a crack through all of a bar counts as its cross-section.
-    pub fn crack_area(&self) -> f64 {
-        let mut area = 0.0;
-        for (index, model) in self.bodies.iter().enumerate() {
-            let share = 1.0 / model.body.shape.edge_count() as f64;
-            for (edge, damage) in self.edge_damage(index).iter().enumerate().filter(|(_, e)| e.damage > 0.0) {
-                let elements = model.elements_of_edge.row(edge);
-                let volume: f64 = elements.iter().map(|&e| share * self.element_volume(index, e)).sum();
-                area += damage.damage * volume / self.characteristic_length(index, edge);
-            }
-        }
-        area
-    }
-
-    /// Characteristic length of an edge that may be damaged [m].
-    fn characteristic_length(&self, body: usize, edge: usize) -> f64 {
+    /// Strength [Pa] and characteristic length [m] of an edge; infinite where it may not be damaged.
+    pub(crate) fn strength_and_length(&self, body: usize, edge: usize) -> (f64, f64) {
         let model = &self.bodies[body];
         if let Some(standard) = &model.standard {
-            return standard.length[edge];
+            return (standard.strength[edge], standard.length[edge]);
         }
         let (block, cell) = model.location[edge];
         match &self.blocks[block as usize].law {
-            BlockLaw::Edges(law) => law.length[cell as usize],
-            _ => f64::INFINITY,
+            BlockLaw::Edges(law) => (law.strength[cell as usize], law.length[cell as usize]),
+            _ => (f64::INFINITY, f64::INFINITY),
         }
     }
 
@@ -316,7 +305,8 @@ impl Solid {
             _ => (0.0, Sym3::ZERO),
         };
         let elements = if model.standard.is_some() { model.location.iter().map(of).collect() } else { Vec::new() };
-        BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements }
+        let gate = model.gate.as_ref().map_or_else(GateState::default, Gate::state);
+        BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements, gate }
     }
 
     /// Puts a saved state back. The solid must have been built from the same bodies.
@@ -347,9 +337,13 @@ impl Solid {
                 standard.edges = body.edges;
                 standard.fresh = true;
             }
+            if let Some(gate) = &mut model.gate {
+                gate.restore(&body.gate);
+            }
             model.alive = body.alive;
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
             self.rebuild_cells_around(index, &removed);
+            self.close_edges(index);
         }
         for (block, viscous) in self.blocks.iter_mut().zip(state.viscous) {
             block.viscous = viscous;
@@ -509,7 +503,7 @@ impl BodyModel {
             _ => None,
         };
         let alive = vec![true; body.elements.len()];
-        let model = BodyModel {
+        let mut model = BodyModel {
             body,
             hooke,
             viscosity: None,
@@ -518,9 +512,17 @@ impl BodyModel {
             elements_of_edge,
             location,
             standard,
+            gate: None,
             reduced_edges,
             largest_length_ratio,
         };
+        if smoothed && model.body.damage.as_ref().is_some_and(|zone| zone.crack_plane_gate) {
+            let armed = |edge: usize| {
+                let (block, _) = model.location[edge];
+                matches!(blocks[block as usize - first_block].law, BlockLaw::Edges(_))
+            };
+            model.gate = Some(Gate::new(&model, nodes, |element| volumes[element as usize], armed));
+        }
         Ok((model, blocks))
     }
 }

@@ -30,7 +30,7 @@ pub use fractum_contact::law::{ElasticMaterial, Surface, damping_of_restitution}
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fragment::{Fragment, fragments};
 pub use ledger::{EnergyKind, Ledger};
-pub use probe::{CountKind, Probe};
+pub use probe::{CountKind, CrackMeasure, Probe};
 pub use rigid::RigidGround;
 pub use scene::{Counts, Scene, SceneSettings, SceneState};
 pub use step::{Phase, StepReport};

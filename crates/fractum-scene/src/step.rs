@@ -9,6 +9,8 @@ use crate::scene::Scene;
 /// stable step reaches 10.
 const UNSTABLE_RATIO: f64 = 20.0;
 
+/// Steps between two looks at where cracks may go on.
+const STEPS_BETWEEN_GATES: u64 = 25;
 /// Removals after which the stable step is looked at again, and the steps that must lie between two looks.
 const STEPS_BETWEEN_CHECKS: u64 = 200;
 
@@ -96,6 +98,9 @@ impl Scene {
         self.books.damping += motion.damped_after + bonded.damped_after;
 
         passed(Phase::Motion);
+        if self.clock.step.is_multiple_of(STEPS_BETWEEN_GATES) && self.solid.has_gates() {
+            self.solid.update_gates();
+        }
         let report = self.release_cut_elements();
         passed(Phase::Transition);
         if self.debris.search(&self.solid) {

@@ -9,6 +9,7 @@
 
 pub mod bonded;
 mod cache;
+mod choice;
 pub mod cracks;
 mod error;
 mod gallery;

@@ -355,20 +355,16 @@ impl Plan {
         self.add("equilibrium", format!("{unknowns} unknowns, {control}, to t = {}", quantity(settings.end, "s")));
     }
 
-    fn describe_size(&mut self, case: &Case, scene: &Scene) {
-        let (mut nanoseconds, mut bytes, mut elements) = (0.0, 0.0, 0usize);
-        for index in 0..scene.solid.body_count() {
-            let body = scene.solid.body(index);
-            let kind = match (body.formulation, &body.damage) {
-                (Formulation::Standard, _) => 0,
-                (Formulation::Smoothed, None) => 1,
-                (Formulation::Smoothed, Some(_)) => 2,
-            };
-            let turning = if body.kinematics == Kinematics::Corotational { 10.0 } else { 1.0 };
-            nanoseconds += COST[kind] * turning * body.elements.len() as f64;
-            bytes += MEMORY[kind] * body.elements.len() as f64;
-            elements += body.elements.len();
+    /// Adds what motion and equilibrium would cost.
+    pub fn compare_solvers(&mut self, case: &Case, assembly: &mut Assembly) {
+        let seconds = 1e-9 * elements_cost(&assembly.scene).0 / rayon::current_num_threads() as f64;
+        for (topic, text) in crate::choice::compare(case, assembly, seconds) {
+            self.add(topic, text);
         }
+    }
+
+    fn describe_size(&mut self, case: &Case, scene: &Scene) {
+        let (mut nanoseconds, mut bytes, elements) = elements_cost(scene);
         let bonds = scene.counts().bonds as f64;
         nanoseconds += COST_OF_BOND * bonds;
         bytes += MEMORY_OF_BOND * bonds;
@@ -393,6 +389,24 @@ impl Plan {
             ),
         );
     }
+}
+
+/// Time of the elements in a step [ns], their memory [B], and their number.
+fn elements_cost(scene: &Scene) -> (f64, f64, usize) {
+    let (mut nanoseconds, mut bytes, mut elements) = (0.0, 0.0, 0);
+    for index in 0..scene.solid.body_count() {
+        let body = scene.solid.body(index);
+        let kind = match (body.formulation, &body.damage) {
+            (Formulation::Standard, _) => 0,
+            (Formulation::Smoothed, None) => 1,
+            (Formulation::Smoothed, Some(_)) => 2,
+        };
+        let turning = if body.kinematics == Kinematics::Corotational { 10.0 } else { 1.0 };
+        nanoseconds += COST[kind] * turning * body.elements.len() as f64;
+        bytes += MEMORY[kind] * body.elements.len() as f64;
+        elements += body.elements.len();
+    }
+    (nanoseconds, bytes, elements)
 }
 
 fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {

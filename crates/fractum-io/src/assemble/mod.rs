@@ -164,7 +164,7 @@ impl Context<'_> {
         let statics = self.statics(&solid, &supports);
         self.condition_particles(&mut bonded);
         let bonded_statics = self.bonded_statics(&bonded);
-        let probes = self.probes(&parts, &numbering, &supports, &bonded);
+        let probes = self.probes(&parts, &numbering, &solid, &supports, &bonded);
         if !self.diagnostics.is_empty() {
             return None;
         }

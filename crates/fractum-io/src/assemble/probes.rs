@@ -1,10 +1,12 @@
 //! Probes on the groups of the mesh.
 
-use fractum_scene::{Bonded, CountKind, EnergyKind, Probe, Supports};
+use fractum_fem::Solid;
+use fractum_scene::{Bonded, CountKind, CrackMeasure, EnergyKind, Probe, Supports};
 
 use super::Context;
 use super::bodies::{Numbering, Part};
 use super::use_in_words;
+use crate::case::Field;
 use crate::case::model::{self, GroupUse, ProbeKind};
 
 impl Context<'_> {
@@ -13,18 +15,26 @@ impl Context<'_> {
         &mut self,
         parts: &[Part],
         numbering: &Numbering,
+        solid: &Solid,
         supports: &Supports,
         bonded: &Bonded,
     ) -> Vec<Option<Probe>> {
         let case = self.case;
         let mut measured = |kind| match self.particle_probe(kind, bonded).or_else(|| self.tool_probe(kind)) {
             Some(probe) => Some(probe),
-            None => self.probe(kind, parts, numbering, supports),
+            None => self.probe(kind, parts, numbering, solid, supports),
         };
         case.probes.iter().map(|probe| measured(&probe.kind)).collect()
     }
 
-    fn probe(&mut self, kind: &ProbeKind, parts: &[Part], numbering: &Numbering, supports: &Supports) -> Option<Probe> {
+    fn probe(
+        &mut self,
+        kind: &ProbeKind,
+        parts: &[Part],
+        numbering: &Numbering,
+        solid: &Solid,
+        supports: &Supports,
+    ) -> Option<Probe> {
         Some(match kind {
             ProbeKind::Reaction { group, along } => {
                 let places = supports.places(&self.group_nodes(group, numbering));
@@ -97,7 +107,30 @@ impl Context<'_> {
             ProbeKind::Momentum { along } => Probe::Momentum(*along),
             ProbeKind::AngularMomentum { along } => Probe::AngularMomentum(*along),
             ProbeKind::CrackArea => Probe::CrackArea,
+            ProbeKind::Crack { measure, along, within } => {
+                let inside = within.as_ref().map_or_else(Vec::new, |within| edges_within(solid, &within.value));
+                if let Some(within) = within.as_ref().filter(|_| inside.iter().flatten().all(|inside| !inside)) {
+                    let found = ": no edge of a body that may be damaged fulfils the condition";
+                    self.error(&within.place, found, "a condition that holds where a crack is expected");
+                }
+                let measure = match measure {
+                    model::CrackMeasure::Angle => CrackMeasure::Angle,
+                    model::CrackMeasure::Centre => CrackMeasure::Centre,
+                    model::CrackMeasure::Front => CrackMeasure::Front,
+                };
+                Probe::Crack { measure, direction: *along, inside }
+            }
             ProbeKind::Expression(_) => return None,
         })
     }
+}
+
+/// Which edges of bodies that may be damaged fulfil a condition at their middles, body by body.
+fn edges_within(solid: &Solid, condition: &Field) -> Vec<Vec<bool>> {
+    let body = |index: usize| {
+        let body = solid.body(index);
+        let middles = if body.damage.is_some() { body.edge_midpoints(&solid.reference) } else { Vec::new() };
+        middles.into_iter().map(|p| condition.holds_at(p)).collect()
+    };
+    (0..solid.body_count()).map(body).collect()
 }

@@ -280,6 +280,7 @@ static KEYS: &[KeyDoc] = &[
     key("materials.NAME.damage.scatter.width", K::Quantity(D::NONE), "", "Uniform only, required there: half width around 1, within 0 and 1"),
     key("materials.NAME.damage.scatter.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
     key("materials.NAME.damage.reduce_strength_to_fit", K::Flag, "false", "Lower ft where an element is too large for Gf, instead of refusing it"),
+    key("materials.NAME.damage.crack_plane_gate", K::Flag, "false", "Smoothed formulation only: near a crack, damage begins only where the plane of the crack goes on; for few, separate cracks"),
     key("materials.NAME.damage.unilateral", K::Flag, "false", "Stiffness recovers where cracks close"),
     key("materials.NAME.damage.rate_time", K::Quantity(D::TIME), "\"0 s\"", "Time constant of the damage-rate limiter, ≥ 0; 0 is off"),
     key("materials.NAME.bonds", K::Table, "", "Beams of bonded bodies, as `fractum calibrate` writes them; without this table they are calibrated"),
@@ -437,6 +438,10 @@ static KEYS: &[KeyDoc] = &[
     key("probes[].angular_momentum", K::Table, "", "Angular momentum of the scene about the origin, in kg m^2/s"),
     key("probes[].angular_momentum.along", K::Direction, "required", "Direction"),
     key("probes[].crack_area", K::Flag, "", "true records the area of the cracks, in m^2"),
+    key("probes[].crack", K::Table, "", "How a crack lies: its edges that have lost half of their strength; not a number before there are any"),
+    key("probes[].crack.measure", K::Choice(names::<CrackMeasure>), "required", "Angle between the direction and the plane of the crack (its line in 2D), in rad; or position of its centre or its foremost edge along the direction, in m"),
+    key("probes[].crack.along", K::Direction, "required", "Direction"),
+    key("probes[].crack.where", K::Condition, "", "Which edges count, by their middles; absent means all"),
     key("probes[].expression", K::ProbeExpression, "", "Expression of t and probes above it; max, min, absmax, mean, final, time_of_max (of a probe) and at(probe, time) make it one number at the end of the run"),
     key("probes[].unit", K::Unit(None), "from the expression", "Expression only: its SI unit; required where a factor without unit leaves it open"),
 

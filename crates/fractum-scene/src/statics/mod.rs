@@ -7,13 +7,15 @@
 
 mod mixing;
 mod path;
+mod period;
 mod support_check;
 mod system;
 
-use fractum_fem::{CellDamage, DamagePoint, Shape};
+use fractum_fem::{CellDamage, DamagePoint, Solid};
 use fractum_math::{Sym3, Vec3};
 use fractum_sparse::SparseError;
 
+pub use period::Stiffness;
 pub use support_check::check_supports;
 pub use system::LinearWork;
 
@@ -79,6 +81,20 @@ enum Dimension {
 }
 
 impl Dimension {
+    fn new(
+        solid: &Solid,
+        held: &[u8],
+        linear: LinearSolver,
+        reuse: usize,
+        tolerance: f64,
+    ) -> Result<Self, SparseError> {
+        Ok(if solid.is_plane() {
+            Dimension::Plane(System::new(solid, held, linear, reuse, tolerance)?)
+        } else {
+            Dimension::Space(System::new(solid, held, linear, reuse, tolerance)?)
+        })
+    }
+
     fn prepare(&mut self, scene: &Scene, damage: &CellDamage) -> Result<(), SparseError> {
         match self {
             Dimension::Plane(system) => system.prepare(&scene.solid, damage),
@@ -136,11 +152,7 @@ impl StaticSolver {
         let elastic = !solid.has_damage();
         let reuse = if elastic { (settings.end / settings.step).ceil() as usize } else { 2 };
         let (held, linear, tolerance) = (scene.supports().held(), settings.linear, settings.linear_tolerance);
-        let system = if solid.body(0).shape == Shape::T3 {
-            Dimension::Plane(System::new(solid, held, linear, reuse, tolerance)?)
-        } else {
-            Dimension::Space(System::new(solid, held, linear, reuse, tolerance)?)
-        };
+        let system = Dimension::new(solid, held, linear, reuse, tolerance)?;
         let zero = vec![Vec3::zeros(); solid.reference.len()];
         Ok(StaticSolver {
             settings,
@@ -192,6 +204,7 @@ impl StaticSolver {
     /// # Errors
     /// [`StepError`] if there is none, or none that the iteration finds.
     pub fn step(&mut self, scene: &mut Scene) -> Result<StepReport, StepError> {
+        scene.solid.update_gates();
         let points = scene.solid.damage_points();
         self.damage = scene.solid.cell_damage();
         let intact = points.iter().all(|point| point.damage == 0.0);

@@ -257,8 +257,10 @@ fn fracture_text(body: &Fracture) -> String {
 }
 
 fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, Failure> {
-    let input = fractum::load(case, set, &cache())?;
-    say!("{}", fractum::plan::Plan::new(&input.case, &input.mesh, &input.assembly, &input.bonded));
+    let mut input = fractum::load(case, set, &cache())?;
+    let mut plan = fractum::plan::Plan::new(&input.case, &input.mesh, &input.assembly, &input.bonded);
+    plan.compare_solvers(&input.case, &mut input.assembly);
+    say!("{plan}");
     for warning in &input.assembly.warnings {
         say!("{warning}");
     }

@@ -49,6 +49,8 @@ pub struct Damage {
     pub scatter: Option<Scatter>,
     /// Lower the strength where an element is too large for its fracture energy, instead of refusing it.
     pub reduce_strength_to_fit: bool,
+    /// Near a crack, damage begins only where the plane of the crack goes on.
+    pub crack_plane_gate: bool,
     /// Stiffness recovers in compression.
     pub unilateral: bool,
     /// Time constant of the damage-rate limiter [s]; 0 = off.

@@ -19,7 +19,9 @@ pub use bonded::{
 pub use boundary::{Components, Load, LoadKind, Motion, Support};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Criterion, Damage, Distribution, Material, Scatter, Softening};
-pub use probe::{CountKind, EnergyKind, Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
+pub use probe::{
+    CountKind, CrackMeasure, EnergyKind, Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take,
+};
 pub use rigid::{RigidBody, RigidShape};
 
 use super::choice::choice;

@@ -2,9 +2,9 @@
 
 use fractum_math::Vec3;
 
-use crate::case::Spanned;
 use crate::case::choice::choice;
 use crate::case::expression::Program;
+use crate::case::{Field, Spanned};
 
 /// A named number recorded in the history, or computed from it at the end of the run.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,6 +78,15 @@ pub enum ProbeKind {
     },
     /// Area of the cracks [m²].
     CrackArea,
+    /// How a crack lies, by its edges that have lost half of their strength.
+    Crack {
+        /// What about it.
+        measure: CrackMeasure,
+        /// Unit vector.
+        along: Vec3,
+        /// Where edges count, by the position of their middles; everywhere if absent.
+        within: Option<Spanned<Field>>,
+    },
     /// Expression of other probes, all declared before this one.
     Expression(ProbeExpression),
 }
@@ -133,6 +142,19 @@ pub enum Take {
     /// Value at this time [s], interpolated.
     At(f64),
 }
+
+/// What is measured of a crack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CrackMeasure {
+    /// Angle between a direction and its plane, or its line in the plane [rad].
+    Angle,
+    /// Position of its centre along a direction [m].
+    Centre,
+    /// Position of its foremost edge along a direction [m].
+    Front,
+}
+
+choice!(CrackMeasure { "angle" => Angle, "centre" => Centre, "front" => Front });
 
 /// Components of the stress tensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -149,7 +149,7 @@ fn material_of(table: &Table<'_>, materials: &[(String, Option<Material>)], used
 }
 
 /// `Some(None)` where the key is absent, nothing where its value is wrong.
-fn optional<T>(
+pub(super) fn optional<T>(
     table: &Table<'_>,
     name: &'static str,
     read: impl FnOnce(&'static str) -> Option<T>,

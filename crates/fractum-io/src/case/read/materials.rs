@@ -76,6 +76,7 @@ fn damage(table: Table<'_>) -> Option<Damage> {
     let residual = table.quantity("residual").between(0.0, 1.0).or(0.02);
     let scatter = table.table("scatter").map(scatter);
     let reduce_strength_to_fit = table.flag("reduce_strength_to_fit").or(false);
+    let crack_plane_gate = table.flag("crack_plane_gate").or(false);
     let unilateral = table.flag("unilateral").or(false);
     let rate_time = table.quantity("rate_time").not_negative().or(0.0);
     table.finish("here");
@@ -89,6 +90,7 @@ fn damage(table: Table<'_>) -> Option<Damage> {
         residual,
         scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,
         reduce_strength_to_fit,
+        crack_plane_gate,
         unilateral,
         rate_time,
     })

@@ -1,10 +1,11 @@
 //! `[[probes]]`.
 
+use super::bodies::optional;
 use super::boundary::exactly_one;
 use super::parameters::check_name;
-use super::vectors::direction;
+use super::vectors::{condition, direction};
 use crate::case::expression::{Named, Names, Op, Type, parse_unit};
-use crate::case::model::{Probe, ProbeExpression, ProbeInput, ProbeKind, Take};
+use crate::case::model::{CrackMeasure, Probe, ProbeExpression, ProbeInput, ProbeKind, Take};
 use crate::case::reader::{ParameterNames, Table};
 use crate::case::tree::{Node, Value};
 use crate::case::unit::Dimension;
@@ -49,7 +50,7 @@ fn probe(table: Table<'_>, earlier: &[ReadProbe], names: &[String]) -> ReadProbe
     let name = table.text("name").spanned().required().filter(|name| good_name(&table, name, earlier));
     let own_name = names.get(earlier.len()).cloned().unwrap_or_default();
     let mut read = ReadProbe { name: own_name, dimension: None, scalar: false, probe: None };
-    const KINDS: [&str; 11] = [
+    const KINDS: [&str; 12] = [
         "reaction",
         "displacement",
         "velocity",
@@ -60,6 +61,7 @@ fn probe(table: Table<'_>, earlier: &[ReadProbe], names: &[String]) -> ReadProbe
         "momentum",
         "angular_momentum",
         "crack_area",
+        "crack",
         "expression",
     ];
     let Some(key) = exactly_one(&table, &KINDS) else { return read };
@@ -133,11 +135,22 @@ fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimensio
         "count" => (ProbeKind::Count(table.choice("count").required()?), Dimension::NONE),
         "momentum" => (ProbeKind::Momentum { along: along()? }, Dimension::MOMENTUM),
         "angular_momentum" => (ProbeKind::AngularMomentum { along: along()? }, Dimension::ANGULAR_MOMENTUM),
+        "crack" => crack(table)?,
         _ => {
             table.flag("crack_area").check(|on| *on, "true; leave the probe out where it is not wanted").required()?;
             (ProbeKind::CrackArea, Dimension::AREA)
         }
     })
+}
+
+fn crack(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("crack")?;
+    let measure = inner.choice("measure").required();
+    let along = direction(&inner, "along").required();
+    let within = optional(&inner, "where", |name| condition(&inner, name).spanned().given());
+    inner.finish("here");
+    let dimension = if measure? == CrackMeasure::Angle { Dimension::NONE } else { Dimension::LENGTH };
+    Some((ProbeKind::Crack { measure: measure?, along: along?, within: within? }, dimension))
 }
 
 struct ReadExpression {

@@ -1,0 +1,144 @@
+//! Where cracks are, and how they lie.
+
+use fractum_math::{Sym3, Vec3};
+
+use crate::body::Shape;
+use crate::solid::Solid;
+
+/// An edge that a crack runs through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrackEdge {
+    /// Body it belongs to.
+    pub body: usize,
+    /// Its number there.
+    pub edge: u32,
+    /// Its middle without load [m].
+    pub middle: Vec3,
+    /// Its share of the crack, V/l with the volume V of the reference mesh and the characteristic length l [m²].
+    pub area: f64,
+    /// Damage, 0 to 1.
+    pub damage: f64,
+    /// Part of the strength that is lost, 0 to 1; behind damage at first, as stiffness goes before strength.
+    pub softened: f64,
+}
+
+/// Centre and normal of the plane nearest to a crack; in the plane the line nearest to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrackPlane {
+    /// Centre of the crack [m].
+    pub centre: Vec3,
+    /// Unit normal, of either sign.
+    pub normal: Vec3,
+}
+
+impl CrackPlane {
+    /// The plane with the least sum of squared distances to weighted points; none if they are no plane, or no line in
+    /// the plane.
+    ///
+    /// - `points`: place [m] and weight of each
+    /// - `plane`: whether they lie in the xy-plane, where the normal lies too
+    pub fn through(points: &[(Vec3, f64)], plane: bool) -> Option<CrackPlane> {
+        let weight: f64 = points.iter().map(|p| p.1).sum();
+        if weight.is_nan() || weight <= 0.0 {
+            return None;
+        }
+        let centre = points.iter().map(|&(p, w)| p * w).sum::<Vec3>() / weight;
+        let mut spread = Sym3::ZERO;
+        for &(p, w) in points {
+            let r = p - centre;
+            spread += Sym3::symmetric_part(&(r * r.transpose())) * (w / weight);
+        }
+        if plane {
+            // Never the least spread: the normal lies in the plane.
+            spread.0[2] = 2.0 * spread.trace();
+        }
+        let (values, directions) = spread.eigen();
+        let mut order = [0, 1, 2];
+        order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+        let [least, next, most] = order.map(|i| values[i]);
+        let flat = most > 0.0 && least < 0.5 * next;
+        flat.then(|| CrackPlane { centre, normal: directions.column(order[0]).into() })
+    }
+
+    /// Angle between a unit direction and the plane [rad], 0 to π/2.
+    pub fn angle_to(&self, direction: &Vec3) -> f64 {
+        self.normal.dot(direction).abs().min(1.0).asin()
+    }
+}
+
+impl Solid {
+    /// All damaged edges, body by body in the order of their edges.
+    pub fn crack_edges(&self) -> Vec<CrackEdge> {
+        let mut found = Vec::new();
+        for (index, model) in self.bodies.iter().enumerate() {
+            let share = 1.0 / model.body.shape.edge_count() as f64;
+            let Some(edges) = &model.edges else { continue };
+            for (edge, state) in self.edge_damage(index).iter().enumerate().filter(|(_, e)| e.damage > 0.0) {
+                let elements = model.elements_of_edge.row(edge);
+                let volume: f64 = elements.iter().map(|&e| share * self.element_volume(index, e)).sum();
+                let (strength, length) = self.strength_and_length(index, edge);
+                let [i, j] = edges.nodes[edge];
+                found.push(CrackEdge {
+                    body: index,
+                    edge: edge as u32,
+                    middle: (self.reference[i as usize] + self.reference[j as usize]) * 0.5,
+                    area: volume / length,
+                    damage: state.damage,
+                    softened: 1.0 - (1.0 - state.damage) * state.kappa / strength,
+                });
+            }
+        }
+        found
+    }
+
+    /// Area of crack, Σ d V/l over the edges [m²]: a crack through all of a bar counts as its cross-section.
+    pub fn crack_area(&self) -> f64 {
+        self.crack_edges().iter().map(|edge| edge.damage * edge.area).sum()
+    }
+
+    /// Whether the solid is plane.
+    pub fn is_plane(&self) -> bool {
+        self.bodies.iter().any(|model| model.body.shape == Shape::T3)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64, z: f64) -> (Vec3, f64) {
+        (Vec3::new(x, y, z), 1.0)
+    }
+
+    #[test]
+    fn a_band_of_points_lies_at_the_angle_of_its_middle_line() {
+        let (sin, cos) = 20f64.to_radians().sin_cos();
+        let points: Vec<_> = (0..40)
+            .map(|i| {
+                let (along, across) = (0.05 * f64::from(i), 0.05 * f64::from(i % 3 - 1));
+                at(1.0 + along * cos - across * sin, 2.0 + along * sin + across * cos, 0.0)
+            })
+            .collect();
+        let line = CrackPlane::through(&points, true).unwrap();
+        assert!((line.angle_to(&Vec3::x()).to_degrees() - 20.0).abs() < 0.5);
+        assert!((line.angle_to(&Vec3::y()).to_degrees() - 70.0).abs() < 0.5);
+        assert_eq!(line.normal.z, 0.0);
+    }
+
+    #[test]
+    fn points_of_a_plane_in_space_give_its_normal() {
+        let points: Vec<_> =
+            (0..25).map(|i| (f64::from(i % 5), f64::from(i / 5))).map(|(x, y)| at(x, y, 0.5 * x)).collect();
+        let plane = CrackPlane::through(&points, false).unwrap();
+        assert!((plane.angle_to(&Vec3::z()) - 2f64.atan()).abs() < 1e-9);
+        assert!(plane.angle_to(&Vec3::y()) < 1e-9);
+    }
+
+    #[test]
+    fn points_without_direction_give_none() {
+        let square = [at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(0.0, 1.0, 0.0), at(1.0, 1.0, 0.0)];
+        assert_eq!(CrackPlane::through(&square, true), None);
+        assert_eq!(CrackPlane::through(&square[..1], true), None);
+        assert_eq!(CrackPlane::through(&[], true), None);
+    }
+}
