@@ -41,6 +41,12 @@ UNSTRUCTURED = {
     "cantilever-plane/depth-2": ("cantilever-plane/beam.geo", {"depth": 2}, False),
     "cantilever-plane/depth-4": ("cantilever-plane/beam.geo", {"depth": 4}, False),
     "cantilever-plane/depth-8": ("cantilever-plane/beam.geo", {"depth": 8}, False),
+    "cantilever-plane/delaunay-2": ("cantilever-plane/delaunay.geo", {"depth": 2}, False),
+    "cantilever-plane/delaunay-4": ("cantilever-plane/delaunay.geo", {"depth": 4}, False),
+    "cantilever-plane/delaunay-8": ("cantilever-plane/delaunay.geo", {"depth": 8}, False),
+    "kirsch-plane/coarse": ("kirsch-plane/plate.geo", {"h": 0.002}, False),
+    "kirsch-plane/medium": ("kirsch-plane/plate.geo", {"h": 0.001}, False),
+    "kirsch-plane/fine": ("kirsch-plane/plate.geo", {"h": 0.0005}, False),
 }
 
 LARGE = {

@@ -8,7 +8,7 @@ use fractum_fem::{
 use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::{Control, LinearSolver, StaticSettings, StaticSolver, Stiffness, check_supports};
+use fractum_scene::statics::{Control, LinearSolver, Opening, StaticSettings, StaticSolver, Stiffness, check_supports};
 use fractum_scene::{
     Load, Loads, Motion, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeFunction, TimeStepSettings,
 };
@@ -184,4 +184,39 @@ fn the_first_period_of_a_clamped_bar_is_four_transits() {
     stiffness.prepare(&scene).unwrap();
     let period = stiffness.first_period(&scene).unwrap();
     assert!((period * speed / 4.0 - 1.0).abs() < 0.01, "{period}");
+}
+
+#[test]
+fn opening_control_follows_the_snap_back_of_a_bar_as_well() {
+    let solid = bar(Formulation::Smoothed);
+    let (left, right) = (nodes_where(&solid, |p| p.x < 1e-9), nodes_where(&solid, |p| p.x > 1.0 - 1e-9));
+    let corner = nodes_where(&solid, |p| p.x < 1e-9 && p.y < 1e-9);
+    // Two rows of nodes on either side of the part that softens.
+    let row = |x: f64| nodes_where(&solid, |p| (p.x - x).abs() < 0.01);
+    let opening = Opening { nodes: row(0.575), against: row(0.425), direction: Vec3::x(), step: 2e-6, end: 6e-5 };
+    let supports = vec![
+        Support::new("left", left, 0, Motion::Fixed),
+        Support::new("corner", corner, 1, Motion::Fixed),
+        Support::new("right", right.clone(), 0, Motion::Displacement(Arc::new(|t, _| 4e-4 * t))),
+    ];
+    let mut scene = scene(solid, supports, Vec::new());
+    let control = Control::Opening(opening.clone());
+    let mut solver = StaticSolver::new(&scene, settings(control, LinearSolver::Direct)).unwrap();
+    let places = scene.supports().places(&right);
+    let (mut peak, mut back, mut last, mut open) = (0.0f64, false, 0.0, 0.0);
+    while !solver.is_finished(&scene) {
+        solver.step(&mut scene).unwrap();
+        peak = peak.max(scene.supports().reaction(&places, &Vec3::x()));
+        back |= scene.clock.time < last;
+        last = scene.clock.time;
+        let now = opening.of(&scene.solid.displacement);
+        assert!(now > open, "the opening only grows");
+        open = now;
+    }
+    assert!(back, "the end of the bar goes back");
+    assert!((open - opening.end).abs() < 1e-9 * opening.end);
+    let strength = soft().tensile_strength * 0.01;
+    assert!((peak / strength - 1.0).abs() < 0.05, "{peak} of {strength} N");
+    assert!(scene.supports().reaction(&places, &Vec3::x()) < 0.5 * peak);
+    assert!(scene.ledger().residual_max_relative < 1e-3);
 }

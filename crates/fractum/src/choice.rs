@@ -10,8 +10,8 @@ use fractum_scene::statics::{Stiffness, check_supports};
 
 /// First periods over which loading by motion is quasi-static: 20 keep the kinetic energy far below the elastic one.
 const PERIODS: f64 = 20.0;
-/// Iterations to equilibrium along the path of one crack through a specimen: 600 to 1,500 in the gallery.
-const ITERATIONS: f64 = 1000.0;
+/// Iterations to equilibrium along the path of one crack through a specimen: 350 to 1,100 in the gallery.
+const ITERATIONS: f64 = 600.0;
 /// Nodes up to which the first period is looked for: a few seconds.
 const MOST_NODES: usize = 300_000;
 

@@ -257,6 +257,10 @@ impl Plan {
                     100.0 * ratio
                 ),
             );
+            if d.crack_plane_gate {
+                let tried = if body.shape == Shape::T3 { "" } else { "; in space tried on a tension bar only" };
+                self.add("", format!("crack-plane gate: for few, separate, straight cracks{tried}"));
+            }
         }
     }
 
@@ -348,9 +352,13 @@ impl Plan {
     fn describe_statics(&mut self, scene: &Scene, settings: &StaticSettings) {
         let plane = scene.solid.body(0).shape == Shape::T3;
         let unknowns = scene.solid.reference.len() * if plane { 2 } else { 3 } - scene.supports().count();
-        let control = match settings.control {
-            Control::Time => "by steps of the load parameter",
-            Control::Path => "along the path of equilibrium, by steps of damage",
+        let control = match &settings.control {
+            Control::Time => "by steps of the load parameter".to_owned(),
+            Control::Path => "along the path of equilibrium, by steps of damage".to_owned(),
+            Control::Opening(opening) => {
+                let (step, end) = (quantity(opening.step, "m"), quantity(opening.end, "m"));
+                format!("along the path of equilibrium, a crack opening by {step} per step, to {end}")
+            }
         };
         self.add("equilibrium", format!("{unknowns} unknowns, {control}, to t = {}", quantity(settings.end, "s")));
     }

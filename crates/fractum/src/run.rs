@@ -140,7 +140,7 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     };
     // The one place where the kind of solver decides.
     let end = match (&assembly.statics, &assembly.bonded_statics) {
-        (Some(settings), _) => run.equilibrate(&mut scene, *settings),
+        (Some(settings), _) => run.equilibrate(&mut scene, settings.clone()),
         (None, Some(settings)) => run.break_at_rest(&mut scene, *settings),
         (None, None) => run.advance(&mut scene),
     };

@@ -161,7 +161,7 @@ impl Context<'_> {
                 return None;
             }
         };
-        let statics = self.statics(&solid, &supports);
+        let statics = self.statics(&solid, &supports, &numbering);
         self.condition_particles(&mut bonded);
         let bonded_statics = self.bonded_statics(&bonded);
         let probes = self.probes(&parts, &numbering, &solid, &supports, &bonded);

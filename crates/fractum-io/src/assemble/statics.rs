@@ -6,6 +6,7 @@ use fractum_scene::statics::{self, StaticSettings, check_supports};
 use fractum_scene::{Bonded, BondedStaticSettings, Supports};
 
 use super::Context;
+use super::bodies::Numbering;
 use crate::case::Place;
 use crate::case::model::{Body, BodyKind, BondBatch, Control, LinearSolver};
 
@@ -16,9 +17,14 @@ const STEPS: f64 = 50.0;
 
 impl Context<'_> {
     /// Settings of the static solver; none for other solvers, or with errors noted.
-    pub(super) fn statics(&mut self, solid: &Solid, supports: &Supports) -> Option<StaticSettings> {
+    pub(super) fn statics(
+        &mut self,
+        solid: &Solid,
+        supports: &Supports,
+        numbering: &Numbering,
+    ) -> Option<StaticSettings> {
         let solver = &self.case.solver;
-        let options = solver.statics?;
+        let options = solver.statics.as_ref()?;
         let place = self.place_of_solver();
         if let Some((body, why)) = solid.not_secant() {
             let found = match why {
@@ -43,10 +49,18 @@ impl Context<'_> {
         }
         let damage = solid.has_damage();
         let whole = if damage { solver.end / STEPS } else { solver.end };
+        let opening = options.opening.as_ref().map(|opening| statics::Opening {
+            nodes: self.group_nodes(&opening.group, numbering),
+            against: self.group_nodes(&opening.against, numbering),
+            direction: opening.along,
+            step: opening.step,
+            end: opening.end,
+        });
         Some(StaticSettings {
             control: match options.control {
+                _ if opening.is_some() => opening.map(statics::Control::Opening)?,
                 Some(Control::Time) => statics::Control::Time,
-                Some(Control::Path) => statics::Control::Path,
+                Some(Control::Path | Control::Opening) => statics::Control::Path,
                 None if damage => statics::Control::Path,
                 None => statics::Control::Time,
             },

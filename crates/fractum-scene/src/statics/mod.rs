@@ -6,6 +6,7 @@
 //! u = a + (t - tⁿ) b from two right-hand sides, and t follows from the most strained edge alone.
 
 mod mixing;
+mod opening;
 mod path;
 mod period;
 mod support_check;
@@ -15,6 +16,7 @@ use fractum_fem::{CellDamage, DamagePoint, Solid};
 use fractum_math::{Sym3, Vec3};
 use fractum_sparse::SparseError;
 
+pub use opening::Opening;
 pub use period::Stiffness;
 pub use support_check::check_supports;
 pub use system::LinearWork;
@@ -26,12 +28,14 @@ use mixing::Mixer;
 use system::System;
 
 /// How the load parameter proceeds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Control {
     /// In steps of the load parameter.
     Time,
     /// In steps of damage, through snap-back.
     Path,
+    /// In steps of the opening of a crack, through snap-back.
+    Opening(Opening),
 }
 
 /// How linear systems are solved.
@@ -46,7 +50,7 @@ pub enum LinearSolver {
 }
 
 /// Settings of the quasi-static solution.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct StaticSettings {
     /// How the load parameter proceeds.
     pub control: Control,
@@ -130,10 +134,20 @@ pub struct StaticSolver {
     /// Equivalent stresses over κ, at least 1: those that the damage of the trial comes from, and those that it brings.
     loading: Vec<f64>,
     image: Vec<f64>,
+    /// What the last step added to `loading` per growth: the next one is likely to go on like that.
+    trend: Vec<f64>,
     mixer: Mixer,
-    /// Reactions and loads of the last equilibrium; empty before the first.
-    outer: [Vec<Vec3>; 2],
+    outer: Outer,
     iterations: usize,
+}
+
+/// Forces at the last equilibrium, for the work of the next step; empty before the first.
+#[derive(Default)]
+struct Outer {
+    reaction: Vec<Vec3>,
+    load: Vec<Vec3>,
+    /// What the removal of elements took from the internal forces since; empty where none left.
+    lost: Vec<Vec3>,
 }
 
 /// Displacements and forces prescribed at one value of the load parameter.
@@ -171,8 +185,9 @@ impl StaticSolver {
             q: Vec::new(),
             loading: Vec::new(),
             image: Vec::new(),
+            trend: Vec::new(),
             mixer: Mixer::default(),
-            outer: [Vec::new(), Vec::new()],
+            outer: Outer::default(),
             iterations: 0,
         })
     }
@@ -196,7 +211,11 @@ impl StaticSolver {
 
     /// Whether the run is over.
     pub fn is_finished(&self, scene: &Scene) -> bool {
-        scene.clock.time >= self.settings.end * (1.0 - 1e-12) || scene.clock.step >= self.settings.most_steps
+        let open = match &self.settings.control {
+            Control::Opening(opening) => opening.of(&scene.solid.displacement) >= opening.end * (1.0 - 1e-12),
+            Control::Time | Control::Path => false,
+        };
+        open || scene.clock.time >= self.settings.end * (1.0 - 1e-12) || scene.clock.step >= self.settings.most_steps
     }
 
     /// Finds the next state of equilibrium.
@@ -214,6 +233,9 @@ impl StaticSolver {
             let growth = if intact { ONSET } else { self.growth };
             let found = self.iterate(scene, &points, longest, growth, monotone)?;
             if let Some((time, iterations)) = found {
+                self.trend.clear();
+                self.trend
+                    .extend(self.q.iter().zip(&points).map(|(q, point)| (q / point.kappa - 1.0).max(0.0) / growth));
                 if !monotone && iterations <= ITERATIONS[1] {
                     self.growth = (1.4 * self.growth).min(GROWTH[2]);
                     self.part = (2.0 * self.part).min(1.0);
@@ -223,7 +245,7 @@ impl StaticSolver {
             }
             let smallest = match self.settings.control {
                 Control::Path => self.growth <= GROWTH[1] || intact,
-                Control::Time => self.part <= SMALLEST_PART,
+                Control::Time | Control::Opening(_) => self.part <= SMALLEST_PART,
             };
             if smallest && monotone {
                 let (step, time) = (scene.clock.step, scene.clock.time);
@@ -254,6 +276,14 @@ impl StaticSolver {
         self.mixer.reset();
         self.loading.clear();
         self.loading.resize(points.len(), 1.0);
+        if !monotone && self.settings.control == Control::Path && self.trend.len() == points.len() {
+            for ((ratio, trend), point) in self.loading.iter_mut().zip(&self.trend).zip(points) {
+                *ratio = if point.damage > 0.0 { 1.0 + trend * growth } else { 1.0 };
+            }
+            self.q.clear();
+            self.q.extend(self.loading.iter().zip(points).map(|(ratio, point)| ratio * point.kappa));
+            scene.solid.trial_damage(&self.q, &mut self.trial);
+        }
         for iteration in 1..=if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] } {
             self.iterations += 1;
             if !(self.elastic && self.prepared) {
@@ -269,8 +299,14 @@ impl StaticSolver {
             } else {
                 scene.solid.effective_stresses(&self.start, &mut self.start_stress);
                 scene.solid.effective_stresses(&self.slope, &mut self.slope_stress);
-                tau = match self.settings.control {
+                tau = match &self.settings.control {
                     Control::Time => longest,
+                    Control::Opening(opening) => {
+                        let target = opening.of(&scene.solid.displacement) + opening.step * self.part;
+                        let found = opening.find(target.min(opening.end), &self.start, &self.slope);
+                        let Some(tau) = found else { return Ok(None) };
+                        tau.min(self.settings.end - present)
+                    }
                     Control::Path => {
                         let found = path::largest_step(
                             &scene.solid,
@@ -381,7 +417,7 @@ impl Scene {
         &mut self,
         displacement: &[Vec3],
         time: f64,
-        outer: &mut [Vec<Vec3>; 2],
+        outer: &mut Outer,
     ) -> Result<StepReport, StepError> {
         let before = std::mem::replace(&mut self.solid.displacement, displacement.to_vec());
         self.solid.update_internal_forces(0.0, true);
@@ -393,16 +429,25 @@ impl Scene {
         for i in 0..displacement.len() {
             let moved = displacement[i] - before[i];
             let mean = |now: &[Vec3], then: &[Vec3]| (now[i] + then.get(i).copied().unwrap_or_default()) * 0.5;
-            external += moved.dot(&(mean(&reaction, &outer[0]) + mean(&load, &outer[1])));
+            external += moved.dot(&(mean(&reaction, &outer.reaction) + mean(&load, &outer.load)));
+            // The way to the next equilibrium began without the forces of the elements that had left.
+            self.books.removed += 0.5 * moved.dot(&outer.lost.get(i).copied().unwrap_or_default());
         }
-        *outer = [reaction, load];
+        *outer = Outer { reaction, load, lost: Vec::new() };
         self.books.external += external;
         self.clock.dt_before = time - self.clock.time;
         self.clock.dt_after = self.clock.dt_before;
         self.clock.time = time;
         self.clock.step += 1;
         self.book_equilibrium()?;
-        Ok(self.release_cut_elements())
+        let report = self.release_cut_elements();
+        if report.removed > 0 {
+            // `inner` is the negative of the forces that held the displacements.
+            let mut held = vec![Vec3::zeros(); displacement.len()];
+            self.solid.secant_force(&self.solid.cell_damage(), displacement, &mut held);
+            outer.lost = inner.iter().zip(&held).map(|(inner, held)| -inner - held).collect();
+        }
+        Ok(report)
     }
 
     /// The error of a system without solution.

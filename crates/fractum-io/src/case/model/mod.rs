@@ -11,6 +11,8 @@ mod rigid;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use fractum_math::Vec3;
+
 pub use body::{Body, BodyKind, Formulation, Kinematics, Plane, SolidBody};
 pub use bonded::{
     BeamMoments, BondCriterion, BondFailure, BondedBody, BondedShape, Bonds, Convention, FileContent, PackingSource,
@@ -134,10 +136,12 @@ pub enum SolverKind {
 choice!(SolverKind { "explicit" => Explicit, "static" => Static });
 
 /// What concerns a static run only.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct StaticOptions {
     /// How the load parameter proceeds; `None` = along the path where something may break, else by time.
     pub control: Option<Control>,
+    /// The opening that controls the path; with `Control::Opening` only.
+    pub opening: Option<Opening>,
     /// How linear systems are solved.
     pub linear_solver: LinearSolver,
     /// Unbalanced force over internal forces at which a step is accepted [-], > 0.
@@ -166,9 +170,26 @@ pub enum Control {
     Time,
     /// By steps of damage, through snap-back.
     Path,
+    /// By steps of the opening of a crack, through snap-back.
+    Opening,
 }
 
-choice!(Control { "time" => Time, "path" => Path });
+choice!(Control { "time" => Time, "path" => Path, "opening" => Opening });
+
+/// The opening of a crack that controls a static run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Opening {
+    /// Mesh group on one side.
+    pub group: Spanned<String>,
+    /// Mesh group on the other side.
+    pub against: Spanned<String>,
+    /// Unit vector along which `group` moves away from `against`.
+    pub along: Vec3,
+    /// Growth in a step [m], > 0.
+    pub step: f64,
+    /// Opening at which the run ends [m], > 0.
+    pub end: f64,
+}
 
 /// How linear systems of a static run are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -358,9 +379,11 @@ impl Case {
             ProbeKind::Stress { group, .. } => Some((group, GroupUse::ProbeElements)),
             _ => None,
         });
+        let opening = self.solver.statics.as_ref().and_then(|statics| statics.opening.as_ref());
+        let openings = opening.into_iter().flat_map(|o| [&o.group, &o.against]).map(|g| (g, GroupUse::ProbeNodes));
         let of_mesh =
             |group: &&Spanned<String>| self.particle_group(&group.value).is_none() && self.tool(&group.value).is_none();
         let named = supports.chain(loads).chain(probes).filter(|(group, _)| of_mesh(group));
-        bodies.chain(named).collect()
+        bodies.chain(named).chain(openings).collect()
     }
 }

@@ -1,8 +1,9 @@
 //! `[damping]`, `[solver]` and `[output]`.
 
 use super::probes::ReadProbe;
+use super::vectors::direction;
 use crate::case::model::{
-    BondBatch, Control, Damping, LinearSolver, Output, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
+    BondBatch, Control, Damping, LinearSolver, Opening, Output, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
 };
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, nearest};
@@ -27,16 +28,17 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe]) -> Option<Solver> {
     let table = root.table_or_empty("solver");
     let kind = table.choice("kind").or_if_absent(SolverKind::Explicit);
     let end = table.quantity("end").positive().required();
-    let statics = (kind == Some(SolverKind::Static)).then(|| statics(&table));
-    if statics.is_none() && kind.is_some() {
-        for key in ["control", "linear_solver", "tolerance", "max_steps"] {
+    let is_static = kind == Some(SolverKind::Static);
+    let statics = if is_static { statics(&table).map(Some) } else { Some(None) };
+    if !is_static && kind.is_some() {
+        for key in ["control", "opening", "linear_solver", "tolerance", "max_steps"] {
             table.refuse(key, "with kind = \"explicit\"");
         }
     }
     let step = table.quantity("step").positive();
     let step =
         step.check(|step| end.is_none_or(|end| *step <= end), "no more than the end of the run").spanned().given();
-    if statics.is_some() {
+    if is_static {
         for key in ["safety", "time_step", "balance_stop"] {
             table.refuse(key, "with kind = \"static\"");
         }
@@ -65,21 +67,45 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe]) -> Option<Solver> {
         safety,
         time_step,
         step,
-        statics,
+        statics: statics?,
         stop_when: stop_when?,
         balance_warning,
         balance_stop,
     })
 }
 
-fn statics(table: &Table<'_>) -> StaticOptions {
-    StaticOptions {
-        control: table.choice::<Control>("control").given(),
+fn statics(table: &Table<'_>) -> Option<StaticOptions> {
+    let control = table.choice::<Control>("control").given();
+    let opening = if control == Some(Control::Opening) {
+        opening(table).map(Some)
+    } else {
+        table.refuse("opening", "without control = \"opening\"");
+        Some(None)
+    };
+    Some(StaticOptions {
+        control,
+        opening: opening?,
         linear_solver: table.choice("linear_solver").or(LinearSolver::Auto),
         tolerance: table.quantity("tolerance").positive().or(1e-4),
         most_steps: table.integer("max_steps").check(|&steps| steps > 0, "at least 1").or(10_000),
         batch: table.choice("batch").or(BondBatch::Site),
+    })
+}
+
+fn opening(solver: &Table<'_>) -> Option<Opening> {
+    if !solver.has("opening") {
+        let note = Diagnostic::error(&solver.place_of("opening"), "is missing");
+        solver.reader.note(note.expected("the groups whose distance controls the run, with along, step and end"));
+        return None;
     }
+    let table = solver.table("opening")?;
+    let group = table.text("group").spanned().required();
+    let against = table.text("against").spanned().required();
+    let along = direction(&table, "along").required();
+    let step = table.quantity("step").positive().required();
+    let end = table.quantity("end").positive().required();
+    table.finish("here");
+    Some(Opening { group: group?, against: against?, along: along?, step: step?, end: end? })
 }
 
 fn stop_when(solver: &Table<'_>, probes: &[ReadProbe]) -> Option<StopWhen> {
