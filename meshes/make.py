@@ -44,6 +44,8 @@ UNSTRUCTURED = {
     "cantilever-plane/delaunay-2": ("cantilever-plane/delaunay.geo", {"depth": 2}, False),
     "cantilever-plane/delaunay-4": ("cantilever-plane/delaunay.geo", {"depth": 4}, False),
     "cantilever-plane/delaunay-8": ("cantilever-plane/delaunay.geo", {"depth": 8}, False),
+    "notched-beam-plane/delaunay-10": ("notched-beam-plane/beam.geo", {"h": 0.01}, False),
+    "notched-beam-plane/delaunay-5": ("notched-beam-plane/beam.geo", {"h": 0.005}, False),
     "kirsch-plane/coarse": ("kirsch-plane/plate.geo", {"h": 0.002}, False),
     "kirsch-plane/medium": ("kirsch-plane/plate.geo", {"h": 0.001}, False),
     "kirsch-plane/fine": ("kirsch-plane/plate.geo", {"h": 0.0005}, False),
