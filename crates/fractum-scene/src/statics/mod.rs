@@ -78,6 +78,8 @@ const ITERATIONS: [usize; 2] = [16, 10];
 const MONOTONE_ITERATIONS: usize = 400;
 /// Part of a step of the load parameter below which it is not cut any more.
 const SMALLEST_PART: f64 = 1.0 / 64.0;
+/// Part of a step of the opening below which a step of damage takes its place.
+const SMALLEST_OPENING: f64 = 1.0 / 8.0;
 
 enum Dimension {
     Plane(System<2>),
@@ -228,10 +230,11 @@ impl StaticSolver {
         self.damage = scene.solid.cell_damage();
         let intact = points.iter().all(|point| point.damage == 0.0);
         let mut monotone = false;
+        let mut by_damage = self.settings.control == Control::Path;
         loop {
             let longest = (self.settings.end - scene.clock.time).min(self.settings.step * self.part);
             let growth = if intact { ONSET } else { self.growth };
-            let found = self.iterate(scene, &points, longest, growth, monotone)?;
+            let found = self.iterate(scene, &points, longest, growth, by_damage, monotone)?;
             if let Some((time, iterations)) = found {
                 self.trend.clear();
                 self.trend
@@ -244,8 +247,13 @@ impl StaticSolver {
                 return scene.accept_equilibrium(&self.start, time, &mut self.outer);
             }
             let smallest = match self.settings.control {
-                Control::Path => self.growth <= GROWTH[1] || intact,
-                Control::Time | Control::Opening(_) => self.part <= SMALLEST_PART,
+                Control::Time => self.part <= SMALLEST_PART,
+                Control::Opening(_) if !by_damage => {
+                    // Where several states have this opening, a step of damage is still one of them.
+                    by_damage = self.part <= SMALLEST_OPENING;
+                    false
+                }
+                Control::Path | Control::Opening(_) => self.growth <= GROWTH[1] || intact,
             };
             if smallest && monotone {
                 let (step, time) = (scene.clock.step, scene.clock.time);
@@ -260,6 +268,7 @@ impl StaticSolver {
     /// Iterates to equilibrium from the present state; the new load parameter, with the displacements in `self.start` and
     /// the equivalent stresses that the edges have seen in `self.q`, or nothing if the iteration does not get there.
     ///
+    /// - `by_damage`: go as far as `growth` allows, whatever the control
     /// - `monotone`: damage only grows from iterate to iterate. As no edge passes `growth` this always ends, with edges
     ///   that may have seen a little more than they bear in the end
     fn iterate(
@@ -268,6 +277,7 @@ impl StaticSolver {
         points: &[DamagePoint],
         longest: f64,
         growth: f64,
+        by_damage: bool,
         monotone: bool,
     ) -> Result<Option<(f64, usize)>, StepError> {
         let present = scene.clock.time;
@@ -276,7 +286,7 @@ impl StaticSolver {
         self.mixer.reset();
         self.loading.clear();
         self.loading.resize(points.len(), 1.0);
-        if !monotone && self.settings.control == Control::Path && self.trend.len() == points.len() {
+        if !monotone && by_damage && self.trend.len() == points.len() {
             for ((ratio, trend), point) in self.loading.iter_mut().zip(&self.trend).zip(points) {
                 *ratio = if point.damage > 0.0 { 1.0 + trend * growth } else { 1.0 };
             }
@@ -301,13 +311,13 @@ impl StaticSolver {
                 scene.solid.effective_stresses(&self.slope, &mut self.slope_stress);
                 tau = match &self.settings.control {
                     Control::Time => longest,
-                    Control::Opening(opening) => {
+                    Control::Opening(opening) if !by_damage => {
                         let target = opening.of(&scene.solid.displacement) + opening.step * self.part;
                         let found = opening.find(target.min(opening.end), &self.start, &self.slope);
                         let Some(tau) = found else { return Ok(None) };
                         tau.min(self.settings.end - present)
                     }
-                    Control::Path => {
+                    Control::Path | Control::Opening(_) => {
                         let found = path::largest_step(
                             &scene.solid,
                             points,
