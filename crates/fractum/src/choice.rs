@@ -20,6 +20,9 @@ const MOST_NODES: usize = 300_000;
 /// - `step_seconds`: estimated time of one explicit step [s]
 pub(crate) fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -> Vec<(&'static str, String)> {
     let scene = &mut assembly.scene;
+    if scene.solid.body_count() == 0 {
+        return Vec::new();
+    }
     if let Some(why) = motion_only(case, scene) {
         return vec![("choice", format!("kind = \"explicit\": {why}"))];
     }
@@ -63,7 +66,7 @@ pub(crate) fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -
 fn motion_only(case: &Case, scene: &Scene) -> Option<&'static str> {
     let solid = &scene.solid;
     if solid.body_count() < case.bodies.len() {
-        Some("only solid bodies can be at equilibrium")
+        Some("solids beside other bodies are for motion only")
     } else if solid.not_secant().is_some() {
         Some("equilibrium is for small strains, open cracks and damage without delay")
     } else if check_supports(solid, scene.supports().held()).is_err() {

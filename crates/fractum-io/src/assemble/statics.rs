@@ -81,7 +81,7 @@ impl Context<'_> {
     /// errors noted.
     pub(super) fn bonded_statics(&mut self, bonded: &Bonded) -> Option<BondedStaticSettings> {
         let solver = &self.case.solver;
-        let options = solver.statics?;
+        let options = solver.statics.as_ref()?;
         let [Body { kind: BodyKind::Bonded(body), .. }] = self.case.bodies.as_slice() else { return None };
         let place = self.place_of_solver();
         let found = |what: &str| format!(" = \"static\" with a bonded body and {what}");
