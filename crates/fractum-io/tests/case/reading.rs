@@ -1,8 +1,8 @@
 //! A case with every key, read into SI.
 
 use fractum_io::case::model::{
-    BodyKind, BondedShape, Bound, Convention, Criterion, Formulation, LoadKind, Motion, PackingSource, ParticleSize,
-    ProbeKind, Softening,
+    BodyKind, BondedShape, Bound, Convention, CrackMeasure, Criterion, Formulation, LoadKind, Motion, PackingSource,
+    ParticleSize, ProbeKind, Softening,
 };
 use fractum_io::case::{Severity, Spanned, TimeFunction, read_case};
 use fractum_math::Vec3;
@@ -81,11 +81,15 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!((case.output.history_every, case.output.checkpoint_every), (2e-6, 300.0));
 
     let units: Vec<_> = case.probes.iter().map(|probe| probe.unit.as_str()).collect();
-    let expected = ["N", "m", "m/s", "1", "Pa", "J", "1", "kg m/s", "kg m^2/s", "m^2", "Pa", "J/m^2", "N"];
+    let expected = ["N", "m", "m/s", "1", "Pa", "J", "1", "kg m/s", "kg m^2/s", "m^2", "1", "Pa", "J/m^2", "N"];
     assert_eq!(units, expected, "N/m is J/m^2");
-    let ProbeKind::Expression(strength) = &case.probes[10].kind else { panic!() };
+    let ProbeKind::Crack { measure, along, within } = &case.probes[10].kind else { panic!() };
+    assert_eq!((*measure, *along), (CrackMeasure::Angle, Vec3::y()));
+    let within = &within.as_ref().unwrap().value;
+    assert!(within.holds_at(Vec3::zeros()) && !within.holds_at(Vec3::x()));
+    let ProbeKind::Expression(strength) = &case.probes[11].kind else { panic!() };
     assert!((strength.value(&[314.159_265_358_979_3]) / 1e4 - 1.0).abs() < 1e-12);
-    assert!(case.probes[10].is_scalar() && case.probes[12].is_scalar() && !case.probes[0].is_scalar());
+    assert!(case.probes[11].is_scalar() && case.probes[13].is_scalar() && !case.probes[0].is_scalar());
 
     assert_eq!(case.expect[0].bound, Bound::Near { value: 1e4, tolerance: 500.0, relative: Some(0.05) });
     assert_eq!(case.expect[2].bound, Bound::Between { above: Some(1e-4), below: Some(2e-3) });
