@@ -207,7 +207,7 @@ fn the_scheme_of_tchamwa_and_wielgosz_damps_a_front_and_closes_the_balance() {
         // A checkpoint holds the forces of the step before.
         let resumed = place.fractum(&["run", "case.toml", "-o", "out", "--threads", "1", "--resume", "--quiet"]);
         assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
-        assert_eq!(self::summary(&place, "out")["state_hash"], summary["state_hash"]);
+        assert_eq!(common::summary(&place, "out")["state_hash"], summary["state_hash"]);
         [energy("damping"), energy("external")]
     };
     let [none, _] = energies("");
@@ -219,7 +219,7 @@ fn the_scheme_of_tchamwa_and_wielgosz_damps_a_front_and_closes_the_balance() {
 }
 
 #[test]
-fn damping_of_particles_is_refused_where_there_are_none_or_it_would_do_nothing() {
+fn a_dissipation_that_would_do_nothing_is_refused() {
     let place = Workplace::new(&kicked("tchamwa_wielgosz = 1.0"));
     let ended = place.fractum(&["check", "case.toml"]);
     assert_eq!(ended.code, Some(1));
@@ -229,14 +229,14 @@ fn damping_of_particles_is_refused_where_there_are_none_or_it_would_do_nothing()
 #[test]
 fn a_packing_that_misses_its_targets_is_refused_unless_it_is_given() {
     // Three particles thick: its walls put it into layers.
-    let thin = BAR.replace("[\"3 mm\", \"1 mm\", \"1 mm\"]", "[\"3 mm\", \"3 mm\", \"0.27 mm\"]");
+    let thin = BAR.replace("[\"3 mm\", \"1 mm\", \"1 mm\"]", "[\"3 mm\", \"3 mm\", \"0.35 mm\"]");
     let place = Workplace::new(&thin);
     let ended = place.fractum(&["check", "case.toml"]);
     assert_eq!(ended.code, Some(1), "{}", ended.stdout);
     for words in ["bodies[0].name: the packing misses its target", "reached", "--keep"] {
         assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
     }
-    let made = place.fractum(&["pack", "--box", "3 mm,3 mm,0.27 mm", "--count", "1500", "--keep", "-o", "kept"]);
+    let made = place.fractum(&["pack", "--box", "3 mm,3 mm,0.35 mm", "--count", "1500", "--keep", "-o", "kept"]);
     assert_eq!(made.code, Some(0), "{}", made.stderr);
     let shape = &thin[thin.find("shape = ").unwrap()..thin.find("coordination").unwrap()];
     let given = thin.replace(shape, "packing = \"kept/packing.fpk\"\n").replace("abs(x - 2.5 mm)", "abs(x - 1.5 mm)");
