@@ -43,7 +43,7 @@ pub use error::DemError;
 pub use fracture::{CrackFaces, FaceWork, Fracture, FractureState, Occasion};
 pub use graph::{BondGraph, HalfEdge, Parts};
 pub use lattice::{Dof6, Equilibrium, Lattice, Supports, Tolerance};
-pub use leapfrog::{Leap, LeapWork, ParticleDamping};
+pub use leapfrog::{Leap, LeapWork, ParticleDamping, PastForces};
 pub use particles::{Integrator, Particles};
 pub use static_body::StaticBody;
 pub use watch::{Bonded, Break, Site, Watch};

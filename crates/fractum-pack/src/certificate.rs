@@ -123,7 +123,7 @@ impl Certificate {
         }
         if !self.isotropy.isotropic() {
             let reached = format!("{:.3} against {:.3}", self.isotropy.deviation, self.isotropy.shot_noise);
-            let remedy = "raise the dispersion to 0.25 (ordered packings form below 0.15) or widen the domain";
+            let remedy = "try another seed, raise the dispersion to 0.25 (ordered packings form below 0.15), or widen the domain";
             return refuse("contact directions within 20 % of shot noise", reached, remedy);
         }
         Ok(())

@@ -1,11 +1,11 @@
 use fractum_math::Vec3;
 
-use crate::PackError;
 use crate::domain::Domain;
 use crate::neighbours::spatial_order;
 use crate::packing::{Compaction, Packing};
 use crate::random::Random;
 use crate::relax::Assembly;
+use crate::{Certificate, PackError};
 
 /// What to pack.
 #[derive(Clone, Debug)]
@@ -55,6 +55,36 @@ const NARROWEST: f64 = 2.5;
 const BALANCE: f64 = 0.02;
 /// The same for the first relaxation after forced insertion.
 const FIRST_BALANCE: f64 = 0.04;
+
+/// Packings made before an uncertified one is given out, and the distance of their seeds.
+const ATTEMPTS: u64 = 3;
+const SEEDS_APART: u64 = 1_000_000;
+
+/// Packs as [`pack`] does, and again with another seed, a few times at most, where the certificate misses its targets: one
+/// packing in six is less isotropic than it should be by chance.
+///
+/// Gives the first packing that passes [`Certificate::check`], or the first of all where none does.
+///
+/// # Errors
+/// Those of [`pack`].
+pub fn pack_certified(spec: &PackSpec) -> Result<(Packing, Certificate), PackError> {
+    let measured = |seed: u64| {
+        let packing = pack(&PackSpec { seed, ..spec.clone() })?;
+        let certificate = Certificate::of(&packing);
+        Ok((packing, certificate))
+    };
+    let first = measured(spec.seed)?;
+    if first.1.check().is_ok() {
+        return Ok(first);
+    }
+    for attempt in 1..ATTEMPTS {
+        let other = measured(spec.seed.wrapping_add(attempt * SEEDS_APART))?;
+        if other.1.check().is_ok() {
+            return Ok(other);
+        }
+    }
+    Ok(first)
+}
 
 /// Packs spheres into a domain: random insertion, forced insertion with relaxation, compaction to the asked
 /// coordination, and release of the walls (Jebahi et al. 2015, algorithm 2).
@@ -296,7 +326,7 @@ fn rattlers(contacts: &[Vec<u32>], walls: &[u32]) -> usize {
 mod tests {
     use super::*;
     use crate::surface::tests::cube;
-    use crate::{Certificate, ClosedSurface, Convention, bond};
+    use crate::{ClosedSurface, Convention, bond};
 
     fn digest(packing: &Packing) -> Vec<u64> {
         packing
@@ -412,6 +442,15 @@ mod tests {
             failing(PackSpec { coordination: 9.0, ..PackSpec::new(unit(), 100, 1) }),
             PackError::Refused { .. }
         ));
+    }
+
+    #[test]
+    fn an_uncertified_packing_is_tried_again_and_then_given_out_as_it_is() {
+        // A slab three diameters thick is layered by its walls whatever the seed.
+        let spec = PackSpec::new(Domain::cuboid(1.0, 1.0, 0.12), 1500, 1);
+        let (packing, certificate) = pack_certified(&spec).unwrap();
+        assert!(certificate.check().is_err(), "{certificate:?}");
+        assert_eq!(digest(&packing), digest(&pack(&spec).unwrap()));
     }
 
     #[test]

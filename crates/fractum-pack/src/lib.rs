@@ -31,7 +31,7 @@ mod surface;
 
 pub use certificate::{Certificate, interior_fraction};
 pub use cloud::cloud;
-pub use cooker::{PackSize, PackSpec, pack};
+pub use cooker::{PackSize, PackSpec, pack, pack_certified};
 pub use domain::{Domain, DomainData};
 pub use error::PackError;
 pub use isotropy::Isotropy;

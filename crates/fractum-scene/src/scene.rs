@@ -159,8 +159,9 @@ impl Scene {
 
     /// Largest stable step with contacts and damping [s].
     pub fn stable_dt(&self) -> f64 {
-        let frequency = self.stable.frequency.max(self.bonded.frequency());
-        let contacts = self.contact_frequency_square + self.contacts.frequency_square();
+        let divisor = self.bonded.step_divisor();
+        let frequency = self.stable.frequency.max(self.bonded.frequency() * divisor);
+        let contacts = self.contact_frequency_square + self.contacts.frequency_square() * divisor * divisor;
         let frequency = (frequency * frequency + contacts).sqrt();
         let contact = if self.contact_frequency_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
         let contact = contact.max(self.bonded.damping_ratio());

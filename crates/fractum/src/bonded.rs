@@ -12,7 +12,7 @@ use fractum_io::case::model::{
 use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
 use fractum_mesh::{Mesh, topology};
 use fractum_pack::{
-    Certificate, ClosedSurface, Convention, Domain, PackError, PackSize, PackSpec, Packing, pack, read_stl,
+    Certificate, ClosedSurface, Convention, Domain, PackError, PackSize, PackSpec, Packing, pack_certified, read_stl,
 };
 use fractum_scene::BondFracture;
 use serde::{Deserialize, Serialize};
@@ -21,6 +21,9 @@ use crate::cache::{Cache, key};
 
 /// Contacts per particle at which compaction stops.
 const CONTACTS: f64 = 6.2;
+
+/// What to do about a packing that misses its targets.
+const REFUSED: &str = "fractum pack shows the whole certificate, and with --keep it writes a packing that the key packing takes all the same";
 
 /// Where something came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,6 +157,10 @@ impl Maker<'_> {
         let (packing, packing_from) = self.packing()?;
         let packed = Instant::now();
         if let Err(error) = Certificate::of(&packing).check() {
+            if packing_from != Origin::Given {
+                let wrong = self.refuse(&self.name.place, format!(": {error}"));
+                return Err(Box::new(wrong.remedy(REFUSED)));
+            }
             let warning = Diagnostic::warning(&self.name.place, format!(": {error}"));
             all.warnings.push(warning.remedy("fractum pack shows the whole certificate"));
         }
@@ -283,7 +290,7 @@ impl Maker<'_> {
             ParticleSize::Radius(radius) => PackSize::MeanRadius(radius),
         };
         let spec = PackSpec { domain, size: size_of, dispersion, seed, coordination: CONTACTS };
-        let packing = pack(&spec).map_err(|error| {
+        let (packing, _) = pack_certified(&spec).map_err(|error| {
             let place = match error {
                 PackError::TooSmall { .. } | PackError::Count(_) => &size.place,
                 _ => &shape.place,

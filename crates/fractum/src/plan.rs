@@ -321,6 +321,8 @@ impl Plan {
         choose(damping.local > 0.0 || damping.mass > 0.0, "damping on the nodes", "not asked for");
         let viscous = damping.stiffness > 0.0 || damping.bulk_linear > 0.0 || damping.bulk_quadratic > 0.0;
         choose(viscous, "viscous stress", "not asked for");
+        let dissipation = damping.tchamwa_wielgosz.is_some();
+        choose(dissipation, "damping of the highest frequencies of particles", "not asked for");
         let turning = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).kinematics == Kinematics::Corotational);
         choose(turning, "large rotations", "all bodies have small strains");
         self.add("physics", on.join(", "));

@@ -186,3 +186,62 @@ fn what_cannot_be_packed_bonded_or_calibrated_is_refused_with_a_remedy() {
     assert!(ended.stderr.contains("bodies[0].file: the surface is not closed: 3 edges"), "{}", ended.stderr);
     assert!(ended.stderr.contains("repair it in the mesher"), "{}", ended.stderr);
 }
+
+/// The bar, kicked by a step of velocity at an end, with what else stands under `[damping]`.
+fn kicked(damping: &str) -> String {
+    let gentle = r#"velocity = { x = { smooth_ramp = [["0 s", "0 m/s"], ["1 us", "0.1 mm/s"]] } }"#;
+    let small = BAR.replace("particles = 1500", "particles = 600").replace(gentle, "velocity = { x = \"1 m/s\" }");
+    small.replace("mass = \"1000 1/s\"", damping)
+}
+
+#[test]
+fn the_scheme_of_tchamwa_and_wielgosz_damps_a_front_and_closes_the_balance() {
+    let energies = |damping: &str| {
+        let place = Workplace::new(&kicked(damping));
+        let summary = run(&place, "out", "1");
+        let energy = |name: &str| summary["energy"][name].as_f64().unwrap();
+        assert!(energy("residual_max_relative") < 1e-4, "{damping}: {}", summary["energy"]);
+        if damping.is_empty() {
+            return [energy("damping"), energy("external")];
+        }
+        // A checkpoint holds the forces of the step before.
+        let resumed = place.fractum(&["run", "case.toml", "-o", "out", "--threads", "1", "--resume", "--quiet"]);
+        assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+        assert_eq!(common::summary(&place, "out")["state_hash"], summary["state_hash"]);
+        [energy("damping"), energy("external")]
+    };
+    let [none, _] = energies("");
+    assert_eq!(none, 0.0);
+    let [little, work] = energies("tchamwa_wielgosz = 1.05");
+    let [much, more_work] = energies("tchamwa_wielgosz = 1.3");
+    let (little, much) = (little / work, much / more_work);
+    assert!(little > 1e-3 && much > 1.5 * little && much < 0.5, "{little} {much}");
+}
+
+#[test]
+fn a_dissipation_that_would_do_nothing_is_refused() {
+    let place = Workplace::new(&kicked("tchamwa_wielgosz = 1.0"));
+    let ended = place.fractum(&["check", "case.toml"]);
+    assert_eq!(ended.code, Some(1));
+    assert!(ended.stderr.contains("damping.tchamwa_wielgosz = 1.0; expected between 1 and 2"), "{}", ended.stderr);
+}
+
+#[test]
+fn a_packing_that_misses_its_targets_is_refused_unless_it_is_given() {
+    // Three particles thick: its walls put it into layers.
+    let thin = BAR.replace("[\"3 mm\", \"1 mm\", \"1 mm\"]", "[\"3 mm\", \"3 mm\", \"0.35 mm\"]");
+    let place = Workplace::new(&thin);
+    let ended = place.fractum(&["check", "case.toml"]);
+    assert_eq!(ended.code, Some(1), "{}", ended.stdout);
+    for words in ["bodies[0].name: the packing misses its target", "reached", "--keep"] {
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
+    let made = place.fractum(&["pack", "--box", "3 mm,3 mm,0.35 mm", "--count", "1500", "--keep", "-o", "kept"]);
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    let shape = &thin[thin.find("shape = ").unwrap()..thin.find("coordination").unwrap()];
+    let given = thin.replace(shape, "packing = \"kept/packing.fpk\"\n").replace("abs(x - 2.5 mm)", "abs(x - 1.5 mm)");
+    fs::write(place.path("case.toml"), given).unwrap();
+    let ended = place.fractum(&["check", "case.toml"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!((ended.stdout + &ended.stderr).contains("misses its target"));
+}

@@ -121,8 +121,9 @@ fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<Rig
     Scene::new(solid, supports, loads, debris, planes, &surface, settings)
 }
 
-/// A jittered lattice of bonded particles, held at one end and pulled at the other, under gravity.
-fn bonded_bar() -> Scene {
+/// A jittered lattice of bonded particles, held at one end and pulled at the other, under gravity; φ of the scheme of
+/// Tchamwa and Wielgosz.
+fn bonded_bar(phi: f64) -> Scene {
     const SIDES: [usize; 3] = [30, 10, 10];
     let site =
         |i: usize| Vec3::new((i % SIDES[0]) as f64, (i / SIDES[0] % SIDES[1]) as f64, (i / SIDES[0] / SIDES[1]) as f64);
@@ -136,6 +137,7 @@ fn bonded_bar() -> Scene {
     let section = BeamSection::new(1e3, 0.3).unwrap();
     let part = BondedPart { name: "bar".into(), particles, pairs, section, density: 1.0, fracture: None };
     let mut bonded = Bonded::new(vec![part]).unwrap();
+    bonded.set_dissipation(phi);
     let end = |x: f64| (0..count as u32).filter(|&i| site(i as usize).x == x).collect::<Vec<u32>>();
     let support = |name: &str, particles, motion| ParticleSupport { name: name.into(), particles, axis: 0, motion };
     let pull = Motion::Velocity(Arc::new(|_, _| 1e-3));
@@ -188,9 +190,12 @@ fn a_warm_step_allocates_nothing() {
         assert_eq!(requests(&mut scene), 0, "standard with growing damage");
         assert!(scene.counts().damaged_edges > 0);
 
-        let mut scene = bonded_bar();
+        let mut scene = bonded_bar(1.0);
         assert_eq!(requests(&mut scene), 0, "bonded particles");
         assert!(scene.counts().bonds > 7000);
+
+        let mut scene = bonded_bar(1.2);
+        assert_eq!(requests(&mut scene), 0, "bonded particles, high frequencies damped");
 
         let mut scene = landing(nodes, armed(smoothed));
         assert_eq!(requests(&mut scene), 0, "on a rigid plane");

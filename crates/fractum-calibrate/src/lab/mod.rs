@@ -3,6 +3,7 @@
 
 mod bending;
 mod breaking;
+mod chain;
 mod gauge;
 mod hydrostatic;
 mod shear;
@@ -14,6 +15,7 @@ pub use breaking::{
     Broken, BrokenInMotion, Diameter, Failure, FailureOptions, Geometry, MotionEnergy, MotionOptions, break_in_motion,
     break_sample, diameter, geometry, hondros,
 };
+pub use chain::chain;
 pub use gauge::Gauge;
 pub use hydrostatic::{Hydrostatic, hydrostatic};
 pub use shear::{Shear, shear};

@@ -48,7 +48,7 @@ pub struct Impact {
 /// Cycles followed.
 const CYCLES: usize = 2;
 /// Share of the stable step.
-const SAFETY: f64 = 0.7;
+pub(super) const SAFETY: f64 = 0.7;
 
 /// A cylinder sample in motion: particles with the mass of the measured cylinder, and bonds.
 struct Body {
@@ -139,15 +139,27 @@ pub fn vibration(
         Mode::Bending => 2.0 * PI / 1.875_104_f64.powi(2) * body.length.powi(2) * wave * 2.0 / body.radius,
         Mode::Torsion => 4.0 * body.length * wave * (2.0 * (1.0 + poisson_ratio)).sqrt(),
     };
+    let dt = body.dt;
+    let first = signal(&body.particles);
+    let (period, steps) = follow(dt, theory, first, || {
+        body.step();
+        signal(&body.particles)
+    });
+    Ok(Vibration { period, theory, steps, dt })
+}
+
+/// Period of a signal about zero, mean of some cycles (not a number where there are none), and the steps taken.
+///
+/// - `theory`: about the period; `first`: the signal before the first step; `step` makes one and gives the signal
+pub(super) fn follow(dt: f64, theory: f64, first: f64, mut step: impl FnMut() -> f64) -> (f64, usize) {
     // Downward zero crossings, which a high mode on top of the slow one could double near zero: each must be half a
     // theoretical period after the last.
-    let (mut last, mut steps, mut crossings) = (signal(&body.particles), 0usize, Vec::<f64>::new());
-    let limit = (10.0 * theory / body.dt) as usize;
+    let (mut last, mut steps, mut crossings) = (first, 0usize, Vec::<f64>::new());
+    let limit = (10.0 * theory / dt) as usize;
     while crossings.len() <= CYCLES && steps < limit {
-        body.step();
+        let value = step();
         steps += 1;
-        let value = signal(&body.particles);
-        let time = (steps as f64 - value / (value - last)) * body.dt;
+        let time = (steps as f64 - value / (value - last)) * dt;
         if last > 0.0 && value <= 0.0 && crossings.last().is_none_or(|t| time - t > 0.5 * theory) {
             crossings.push(time);
         }
@@ -157,7 +169,7 @@ pub fn vibration(
         [first, .., end] => (end - first) / (crossings.len() - 1) as f64,
         _ => f64::NAN,
     };
-    Ok(Vibration { period, theory, steps, dt: body.dt })
+    (period, steps)
 }
 
 /// Length of the pulse of an impact, and of the time over which its arrival is watched, in times of a wave through the

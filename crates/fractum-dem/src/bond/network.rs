@@ -1,18 +1,20 @@
 use std::ops::Add;
 
-use fractum_math::{Rotation, Sym3, Vec3};
-use nalgebra::Matrix6;
+use fractum_math::{Rotation, Sym3, Vec3, largest_eigenvalue};
+use nalgebra::{Matrix6, Vector6};
 use rayon::prelude::*;
 
 use super::cohesive_beam::{BeamEnergy, BondedPair, beam, cohesive_beam_energy};
 use super::lanes::{Lanes, Vector};
 use super::{BeamSection, cohesive_beam};
-use crate::{DemError, Particles};
+use crate::{DemError, Lattice, Particles};
 
 /// Bonds computed side by side.
 const WIDTH: usize = 8;
 /// Particles whose bonds form one block of parallel work.
 const BLOCK: usize = 2048;
+/// Products of the Lanczos process for the highest frequency.
+const LANCZOS_STEPS: usize = 48;
 
 /// The cohesive beams of a body, ready for many time steps.
 ///
@@ -227,6 +229,35 @@ impl BeamNetwork {
             .map(|c| chunk(c * BLOCK..((c + 1) * BLOCK).min(self.len())))
             .collect();
         parts.into_iter().fold(BeamEnergy::default(), BeamEnergy::add)
+    }
+
+    /// Highest natural frequency ω [rad/s] of particles `range`, which hold all ends of these bonds, by the Lanczos process
+    /// on the linear stiffness of the live ones; it converges from below, and the value carries a margin of 2 %. Breaking
+    /// bonds only lowers it.
+    pub fn highest_frequency(&self, particles: &Particles, range: std::ops::Range<usize>) -> Result<f64, DemError> {
+        let own = |i: u32| i - range.start as u32;
+        let live = self.pairs.iter().zip(&self.live).filter(|(_, live)| **live);
+        let pairs: Vec<[u32; 2]> = live.map(|(pair, _)| pair.map(own)).collect();
+        let position = &particles.position[range.clone()];
+        // Rotations times this length have the inertia of a displacement of the largest particle.
+        let scale = particles.radius[range.clone()].iter().copied().fold(0.0, f64::max);
+        let lattice = Lattice::new(position, &pairs, self.section, scale)?;
+        let root = |i: usize| {
+            let (mass, inertia) = (particles.mass[range.start + i], particles.inertia[range.start + i]);
+            (1.0 / mass.sqrt(), scale / inertia.sqrt())
+        };
+        let scaled = |i: usize, v: &[f64; 6]| -> [f64; 6] {
+            let (move_by, turn_by) = root(i);
+            std::array::from_fn(|a| v[a] * if a < 3 { move_by } else { turn_by })
+        };
+        let free = vec![0; position.len()];
+        let (mut x, mut force) = (vec![[0.0; 6]; position.len()], vec![[0.0; 6]; position.len()]);
+        let square = largest_eigenvalue(position.len(), LANCZOS_STEPS, |q: &[Vector6<f64>]| {
+            x.iter_mut().zip(q).enumerate().for_each(|(i, (x, q))| *x = scaled(i, &q.data.0[0]));
+            lattice.apply(&x, &free, &mut force);
+            force.iter().enumerate().map(|(i, f)| Vector6::from(scaled(i, f))).collect()
+        });
+        Ok(1.02 * square.sqrt())
     }
 
     /// A time step that is certainly stable, 2/ω with a bound on ω from the assembled stiffness, times `safety`

@@ -6,7 +6,7 @@ use fractum_scene::{BondFracture, Bonded, BondedPart, ParticleLoad, ParticleProb
 
 use super::conditions::motion_of;
 use super::{Context, function};
-use crate::case::model::{BodyKind, LoadKind, ProbeKind};
+use crate::case::model::{BodyKind, LoadKind, ProbeKind, TimeStep};
 use crate::case::{Diagnostic, Field, Spanned, nearest};
 
 /// The particles of a bonded or loose body, made outside: packed or read, bonded and calibrated.
@@ -70,7 +70,15 @@ impl Context<'_> {
             });
             start += count;
         }
-        match Bonded::new(parts) {
+        let frequency_of_all = case.solver.time_step != TimeStep::Element;
+        let joined = Bonded::new(parts).and_then(|mut bonded| {
+            bonded.set_dissipation(case.damping.tchamwa_wielgosz.unwrap_or(1.0));
+            if frequency_of_all {
+                bonded.find_frequency()?;
+            }
+            Ok(bonded)
+        });
+        match joined {
             Ok(bonded) => Some(bonded),
             Err(error) => {
                 let place = self.whole_case();

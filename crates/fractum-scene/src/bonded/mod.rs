@@ -10,7 +10,7 @@ use std::ops::Range;
 use fractum_contact::ContactWork;
 use fractum_dem::{
     BeamEnergy, BeamNetwork, BeamSection, Crack, CrackFaces, Criterion, Fracture, FractureState, Leap, LeapWork,
-    Occasion, ParticleDamping, Particles,
+    Occasion, ParticleDamping, Particles, PastForces,
 };
 use fractum_fem::LocalDamping;
 use fractum_math::{Rotation, Vec3};
@@ -118,9 +118,13 @@ pub struct Bonded {
     energy: BeamEnergy,
     /// Elastic energy that bonds which broke before tⁿ held [J].
     released: f64,
-    /// Bound on the highest natural frequency [rad/s].
+    /// Highest natural frequency, or a bound on it [rad/s].
     frequency: f64,
     partial: Vec<LeapWork>,
+    /// φ − 1 of the scheme of Tchamwa and Wielgosz.
+    dissipation: f64,
+    /// Forces of the step before, where that scheme is used.
+    past: PastForces,
 }
 
 /// Everything that changes in bonded bodies during a run.
@@ -132,6 +136,7 @@ pub struct BondedState {
     spin: Vec<Vec3>,
     /// Broken bonds and crack faces of each body, with how close it came to breaking.
     fracture: Vec<(Option<FractureState>, Option<Closest>)>,
+    past: PastForces,
 }
 
 /// Energies of one step [J].
@@ -188,6 +193,19 @@ impl Bonded {
         Ok(all)
     }
 
+    /// Finds the highest frequency of the bonds as they are by the Lanczos process, in the place of its bound.
+    ///
+    /// # Errors
+    /// Beams that are none, which [`Bonded::new`] refuses.
+    pub fn find_frequency(&mut self) -> Result<(), SceneError> {
+        let mut highest: f64 = 0.0;
+        for body in self.bodies.iter().filter(|body| !body.bonds.is_empty()) {
+            highest = highest.max(body.bonds.highest_frequency(&self.particles, body.range.clone())?);
+        }
+        self.frequency = self.frequency.min(highest);
+        Ok(())
+    }
+
     /// Sets what holds and moves particles, which have their initial velocities and spins by now.
     ///
     /// - `turning`: particles and the axes (bits) about which they do not turn
@@ -210,6 +228,19 @@ impl Bonded {
     /// [`SceneError::NotProportional`] with the first that does not.
     pub fn check_proportional(&self, end: f64) -> Result<(), SceneError> {
         self.holds.displacements(&self.reference, end).map(|_| ())
+    }
+
+    /// Damps the highest frequencies by the scheme of Tchamwa and Wielgosz.
+    ///
+    /// - `phi`: φ ≥ 1; 1 is velocity Verlet without dissipation
+    pub fn set_dissipation(&mut self, phi: f64) {
+        self.dissipation = phi - 1.0;
+        self.past = if phi > 1.0 { PastForces::none(self.particles.len()) } else { PastForces::default() };
+    }
+
+    /// By how much the dissipation shortens the stable step: √(2φ − 1).
+    pub(crate) fn step_divisor(&self) -> f64 {
+        (1.0 + 2.0 * self.dissipation).sqrt()
     }
 
     /// Sets what pushes particles.
@@ -242,7 +273,7 @@ impl Bonded {
         self.bodies.iter().fold((0, 0), |(all, broken), body| (all + body.bonds.len(), broken + body.broken()))
     }
 
-    /// Bound on the highest natural frequency [rad/s]; breaking only lowers it.
+    /// Highest natural frequency, or a bound on it [rad/s]; breaking only lowers it.
     pub(crate) fn frequency(&self) -> f64 {
         self.frequency
     }
@@ -330,9 +361,9 @@ impl Bonded {
         measure: bool,
     ) -> BondedWork {
         self.break_overloaded(step, time, measure);
-        let Bonded { particles, reference, bodies, holds, forces, partial, .. } = self;
-        let damping = ParticleDamping { local: damping.local, mass_rate: damping.mass_rate };
-        let motion = particles.leap(&Leap { dt_before, dt_after, damping, measure }, partial);
+        let Bonded { particles, reference, bodies, holds, forces, partial, past, dissipation, .. } = self;
+        let damping = ParticleDamping { local: damping.local, mass_rate: damping.mass_rate, dissipation: *dissipation };
+        let motion = particles.leap(&Leap { dt_before, dt_after, damping, measure }, past, partial);
         let support = holds.impose(particles, reference, time, dt_before, dt_after);
         for fracture in bodies.iter_mut().filter_map(|body| body.fracture.as_mut()) {
             fracture.book_last_work(particles, dt_after);
@@ -350,12 +381,13 @@ impl Bonded {
     pub fn state(&self) -> BondedState {
         let Particles { position, orientation, velocity, spin, .. } = self.particles.clone();
         let fracture = self.bodies.iter().map(|body| (body.fracture.as_ref().map(Fracture::state), body.closest));
-        BondedState { position, orientation, velocity, spin, fracture: fracture.collect() }
+        let (fracture, past) = (fracture.collect(), self.past.clone());
+        BondedState { position, orientation, velocity, spin, fracture, past }
     }
 
     /// Puts a saved state back into bodies built from the same case.
     pub fn restore(&mut self, state: BondedState) {
-        let BondedState { position, orientation, velocity, spin, fracture } = state;
+        let BondedState { position, orientation, velocity, spin, fracture, past } = state;
         for (body, (broken, closest)) in self.bodies.iter_mut().zip(fracture) {
             if let (Some(fracture), Some(state)) = (&mut body.fracture, broken) {
                 fracture.restore(state, &mut body.bonds);
@@ -363,5 +395,6 @@ impl Bonded {
             body.closest = closest;
         }
         self.particles = Particles { position, orientation, velocity, spin, ..std::mem::take(&mut self.particles) };
+        self.past = past;
     }
 }

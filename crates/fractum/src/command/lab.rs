@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
-use fractum::{ExitCode, Failure};
+use fractum::{ExitCode, Failure, say};
 use fractum_calibrate::{CalibrateError, Micro, Sample, lab, published};
 use fractum_dem::Tolerance;
 use fractum_io::atomic;
@@ -29,6 +29,12 @@ pub(crate) enum LabCommand {
         /// Packings per row.
         #[arg(long, default_value_t = 3)]
         seeds: u64,
+    },
+    /// A row of particles in free tension, bending and torsion against the clamped-free bar.
+    Chain {
+        /// Particles after the clamped one.
+        #[arg(long, default_value_t = 40)]
+        particles: usize,
     },
     /// E and Poisson's ratio against the number of particles, both conventions, as CSV and as a plot beside it.
     Convergence {
@@ -107,6 +113,7 @@ pub(crate) fn run(command: &LabCommand) -> Result<ExitCode, Failure> {
         LabCommand::Break(arguments) => lab_break::run(arguments)?,
         LabCommand::Strength(arguments) => lab_strength::run(arguments)?,
         LabCommand::Tables { seeds } => tables(*seeds).map_err(wrong)?,
+        LabCommand::Chain { particles } => chain(*particles).map_err(wrong)?,
         LabCommand::Convergence { seeds, largest, output } => convergence(*seeds, *largest, output)?,
     }
     Ok(ExitCode::Done)
@@ -145,7 +152,17 @@ fn test(arguments: &TestArguments) -> Result<(), Failure> {
         Ok(value.unwrap_or_default())
     })();
     let result = result.map_err(wrong)?;
-    println!("{}", serde_json::to_string_pretty(&result).unwrap_or_default());
+    say!("{}", serde_json::to_string_pretty(&result).unwrap_or_default());
+    Ok(())
+}
+
+fn chain(particles: usize) -> Result<(), CalibrateError> {
+    say!("mode     period [s]   of theory [s]   difference");
+    for mode in [lab::Mode::Tension, lab::Mode::Bending, lab::Mode::Torsion] {
+        let lab::Vibration { period, theory, .. } = lab::chain(mode, particles)?;
+        let name = format!("{mode:?}").to_lowercase();
+        say!("{name:8} {period:.6e} {theory:.6e}    {:+.3} %", 100.0 * (period / theory - 1.0));
+    }
     Ok(())
 }
 
@@ -155,8 +172,8 @@ fn tables(seeds: u64) -> Result<(), CalibrateError> {
     };
     let cubes = make(Domain::cuboid(2e-3, 2e-3, 2e-3), 10_000)?;
     let spheres = make(Domain::sphere(5e-3), 15_000)?;
-    println!("mean over {seeds} packings; differences from the target in %, scatter as standard deviation in %");
-    println!(
+    say!("mean over {seeds} packings; differences from the target in %, scatter as standard deviation in %");
+    say!(
         "target E, nu           cn    r_m   E_m GPa |  E GPa   diff  scatter |    nu    diff  scatter |  K GPa   diff  scatter"
     );
     for a in published::anchors() {
@@ -176,7 +193,7 @@ fn tables(seeds: u64) -> Result<(), CalibrateError> {
         }
         let target = a.young_modulus / (3.0 * (1.0 - 2.0 * a.poisson_ratio));
         let ((e, se), (n, sn), (k, sk)) = (spread(&young), spread(&poisson), spread(&bulk));
-        println!(
+        say!(
             "{:5.0} GPa {:5.2} {:12.0} {:6.3} {:9.2} | {:6.2} {:+6.2} {:8.2} | {:.4} {:+6.2} {:8.2} | {:6.2} {:+6.2} {:8.2}",
             a.young_modulus / 1e9,
             a.poisson_ratio,
@@ -237,7 +254,7 @@ fn convergence(seeds: u64, largest: usize, output: &Path) -> Result<(), Failure>
                 100.0 * se,
                 100.0 * sn
             );
-            println!("{line}");
+            say!("{line}");
             text += &(line + "\n");
             young.series[k].points.push([count as f64, e / 1e9, se * e / 1e9]);
             poisson.series[k].points.push([count as f64, n, sn * n]);

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use fractum::{ExitCode, Failure};
+use fractum::{ExitCode, Failure, say, tell};
 use fractum_calibrate::{Micro, Sample, lab};
 use fractum_io::atomic;
 use fractum_pack::{Certificate, Packing, bond};
@@ -32,19 +32,19 @@ pub(crate) struct PackArguments {
 /// Packs, measures, refuses what misses its targets, and writes.
 pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
     let wrong = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
-    let packing = arguments.shape.packing()?;
+    let packing = if arguments.keep { arguments.shape.packing()? } else { arguments.shape.certified_packing()? };
     let mut certificate = Certificate::of(&packing);
     certificate.elastic_isotropy = elastic_isotropy(&packing).map_err(|error| wrong(&error))?;
     show(&certificate);
     match certificate.check() {
-        Err(error) if arguments.keep => eprintln!("kept although {error}"),
+        Err(error) if arguments.keep => tell!("kept although {error}"),
         Err(error) => return Err(Failure::input(format!("{error}; --keep writes it all the same"))),
         Ok(()) => {}
     }
     let bonds = match arguments.coordination {
         Some(asked) => {
             let network = bond(&packing, asked, arguments.convention.into()).map_err(|error| wrong(&error))?;
-            println!(
+            say!(
                 "{} bonds up to {:.4} times the touching distance: coordination {:.3} (all), {:.3} (interior)",
                 network.pairs.len(),
                 network.factor,
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
     atomic::write_with(&folder.join("packing.vtp"), |out| packing.write_vtp(&bonds, out))?;
     let json = serde_json::to_string_pretty(&certificate).unwrap_or_default();
     atomic::write(&folder.join("certificate.json"), json.as_bytes())?;
-    println!("packing in {}", folder.display());
+    say!("packing in {}", folder.display());
     Ok(ExitCode::Done)
 }
 
@@ -82,30 +82,38 @@ fn elastic_isotropy(packing: &Packing) -> Result<Option<[f64; 3]>, fractum_calib
 }
 
 fn show(c: &Certificate) {
-    println!(
+    say!(
         "particles            {}, mean radius {:.4e} m, dispersion {:.3}, seed {}",
-        c.particles, c.mean_radius, c.dispersion, c.seed
+        c.particles,
+        c.mean_radius,
+        c.dispersion,
+        c.seed
     );
     let core = c.fraction_core.map_or("no core".into(), |f| format!("{f:.4} core"));
-    println!("volume fraction      {:.4} box, {core}", c.fraction_box);
-    println!(
+    say!("volume fraction      {:.4} box, {core}", c.fraction_box);
+    say!(
         "contacts             {:.3} all, {:.3} interior; {:.1} % rattlers",
         c.coordination_all,
         c.coordination_interior,
         100.0 * c.rattlers
     );
-    println!(
+    say!(
         "overlap / radius     {:.1e} mean, {:.1e} largest ({:.1e} mean before the walls were released)",
-        c.overlap_mean, c.overlap_max, c.overlap_compacted
+        c.overlap_mean,
+        c.overlap_max,
+        c.overlap_compacted
     );
     let i = &c.isotropy;
-    println!(
+    say!(
         "contact isotropy     {:.4} against {:.4} of random directions ({} contacts); mean square as printed in the book {:.2e}",
-        i.deviation, i.shot_noise, i.contacts, i.mean_square
+        i.deviation,
+        i.shot_noise,
+        i.contacts,
+        i.mean_square
     );
     if let Some([x, y, z]) = c.elastic_isotropy {
-        println!("elastic isotropy     E/mean {x:.4} {y:.4} {z:.4} along x, y, z");
+        say!("elastic isotropy     E/mean {x:.4} {y:.4} {z:.4} along x, y, z");
     }
     let walls: Vec<String> = c.walls.iter().map(|(name, n)| format!("{name} {n}")).collect();
-    println!("wall sets            {}", walls.join(", "));
+    say!("wall sets            {}", walls.join(", "));
 }

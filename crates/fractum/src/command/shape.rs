@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use fractum::Failure;
 use fractum_io::case::{Dimension, parse_quantity};
 use fractum_mesh::read_msh;
-use fractum_pack::{ClosedSurface, Domain, PackSize, PackSpec, Packing, pack, read_stl};
+use fractum_pack::{ClosedSurface, Domain, PackError, PackSize, PackSpec, Packing, pack, pack_certified, read_stl};
 
 /// The shape to fill and the particles to fill it with.
 #[derive(Args, Clone)]
@@ -74,6 +74,15 @@ impl From<Convention> for fractum_pack::Convention {
 impl ShapeArguments {
     /// Makes the packing, or reads it.
     pub(crate) fn packing(&self) -> Result<Packing, Failure> {
+        self.packing_by(pack)
+    }
+
+    /// Makes a packing that passes its certificate where some seed gives one, or reads it.
+    pub(crate) fn certified_packing(&self) -> Result<Packing, Failure> {
+        self.packing_by(|spec| Ok(pack_certified(spec)?.0))
+    }
+
+    fn packing_by(&self, make: impl Fn(&PackSpec) -> Result<Packing, PackError>) -> Result<Packing, Failure> {
         if let Some(file) = &self.packing {
             let wrong = |error| Failure::input(format!("{}: {error}", file.display()));
             return Packing::from_bytes(&read(file)?).map_err(wrong);
@@ -84,7 +93,7 @@ impl ShapeArguments {
         };
         let domain = self.domain()?;
         let spec = PackSpec { domain, size, dispersion: self.dispersion, seed: self.seed, coordination: self.contacts };
-        pack(&spec).map_err(|error| Failure::input(error.to_string()))
+        make(&spec).map_err(|error| Failure::input(error.to_string()))
     }
 
     fn domain(&self) -> Result<Domain, Failure> {

@@ -86,7 +86,7 @@ pub struct MeshSource {
     pub unit: f64,
 }
 
-/// Damping of the solids; all zero by default.
+/// Damping of solids and particles; all zero by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Damping {
     /// Local non-viscous damping: fraction of the unbalanced force [-], 0..1.
@@ -99,6 +99,8 @@ pub struct Damping {
     pub bulk_linear: f64,
     /// Quadratic bulk viscosity [-], ≥ 0.
     pub bulk_quadratic: f64,
+    /// φ of the scheme of Tchamwa and Wielgosz on bodies of particles [-], 1..2.
+    pub tchamwa_wielgosz: Option<f64>,
 }
 
 /// Time and its steps.

@@ -130,7 +130,9 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
     let mesh = mesh(&table, bodies.as_deref());
     let supports = boundary::supports(&table);
     let loads = boundary::loads(&table);
-    let damping = solver::damping(&table);
+    let of_particles = |body: &Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
+    let particles = bodies.as_ref().map(|bodies| bodies.iter().any(of_particles));
+    let damping = solver::damping(&table, particles);
     let probes = probes::read(&table);
     let solver = solver::read(&table, &probes);
     let output = solver::output(&table, solver.as_ref().map(|solver| solver.end));

@@ -6,16 +6,29 @@ use crate::case::model::{
     BondBatch, Control, Damping, LinearSolver, Opening, Output, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
 };
 use crate::case::reader::Table;
+use crate::case::tree::Value;
 use crate::case::{Diagnostic, nearest};
 
-pub(super) fn damping(root: &Table<'_>) -> Damping {
+/// Reads the damping; `particles` says whether there are bodies made of particles, where that is known.
+pub(super) fn damping(root: &Table<'_>, particles: Option<bool>) -> Damping {
     let table = root.table_or_empty("damping");
+    let tchamwa_wielgosz = table.quantity("tchamwa_wielgosz").between(1.0, 2.0).given();
+    let kind = root.peek("solver").and_then(|node| match &node.value {
+        Value::Table(entries) => entries.iter().find(|entry| entry.name == "kind").map(|entry| &entry.node.value),
+        _ => None,
+    });
+    if particles == Some(false) {
+        table.refuse("tchamwa_wielgosz", "where no body is made of particles");
+    } else if matches!(kind, Some(Value::Text(kind)) if kind == "static") {
+        table.refuse("tchamwa_wielgosz", "with kind = \"static\"");
+    }
     let damping = Damping {
         local: table.quantity("local").check(|local| (0.0..1.0).contains(local), "from 0 to below 1").or(0.0),
         mass: table.quantity("mass").not_negative().or(0.0),
         stiffness: table.quantity("stiffness").not_negative().or(0.0),
         bulk_linear: table.quantity("bulk_linear").not_negative().or(0.0),
         bulk_quadratic: table.quantity("bulk_quadratic").not_negative().or(0.0),
+        tchamwa_wielgosz,
     };
     table.finish("here");
     damping
