@@ -1,7 +1,7 @@
 //! The largest stable step of central differences, 2/ω_max.
 
-use fractum_math::{CHUNK, Mat3, Vec3, sum_chunks};
-use nalgebra::{DMatrix, Matrix6, SMatrix};
+use fractum_math::{Mat3, Vec3, largest_eigenvalue};
+use nalgebra::{Matrix6, SMatrix};
 use rayon::prelude::*;
 
 use crate::cell::Geometry;
@@ -72,33 +72,7 @@ impl Solid {
     fn largest_eigenvalue(&mut self) -> f64 {
         let count = self.reference.len();
         let root: Vec<f64> = self.inverse_mass.iter().map(|m| m.sqrt()).collect();
-        let norm = |v: &[Vec3]| sum_chunks(v.len(), |i| v[i].norm_squared()).sqrt();
-        let mut q: Vec<Vec3> = (0..count).map(|i| start_vector(i as u64)).collect();
-        let start = norm(&q);
-        q.iter_mut().for_each(|v| *v /= start);
-        let mut before = vec![Vec3::zeros(); count];
-        let (mut alphas, mut betas) = (Vec::new(), Vec::<f64>::new());
-        for _ in 0..LANCZOS_STEPS.min(3 * count) {
-            let mut w = self.scaled_stiffness(&q, &root);
-            let alpha = sum_chunks(count, |i| w[i].dot(&q[i]));
-            let beta = betas.last().copied().unwrap_or(0.0);
-            w.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(i, w)| *w -= q[i] * alpha + before[i] * beta);
-            alphas.push(alpha);
-            let next = norm(&w);
-            if next <= 1e-12 * alpha.abs() {
-                break;
-            }
-            w.iter_mut().for_each(|v| *v /= next);
-            betas.push(next);
-            before = std::mem::replace(&mut q, w);
-        }
-        let size = alphas.len();
-        let tridiagonal = DMatrix::from_fn(size, size, |i, j| match i.abs_diff(j) {
-            0 => alphas[i],
-            1 => betas[i.min(j)],
-            _ => 0.0,
-        });
-        tridiagonal.symmetric_eigenvalues().max()
+        largest_eigenvalue(count, LANCZOS_STEPS, |q| self.scaled_stiffness(q, &root))
     }
 
     /// M^-½ K M^-½ q.
@@ -135,15 +109,4 @@ fn element_eigenvalue(gradients: &[Vec3], hooke: &Hooke) -> f64 {
     // Eigenvalues of D S are those of Lᵀ S L with D = L Lᵀ; volume cancels against the lumped mass.
     let Some(l) = d.cholesky().map(|c| c.l()) else { return f64::INFINITY };
     (l.transpose() * sum * l).symmetric_eigenvalues().max()
-}
-
-/// A reproducible vector without symmetry.
-fn start_vector(index: u64) -> Vec3 {
-    let component = |axis: u64| {
-        let mut x = (index * 3 + axis).wrapping_add(0x9e37_79b9_7f4a_7c15);
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
-    Vec3::new(component(0), component(1), component(2))
 }

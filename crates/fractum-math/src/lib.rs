@@ -1,8 +1,8 @@
 //! The small algebra that every kernel of fractum shares.
 //!
 //! Vectors and matrices are nalgebra's; this crate adds what the mechanics needs on top: symmetric tensors in Voigt
-//! order xx yy zz xy yz zx with their principal values, ragged tables, connected parts, and parallel sums whose result does not depend
-//! on the number of threads.
+//! order xx yy zz xy yz zx with their principal values, ragged tables, connected parts, parallel sums whose result does
+//! not depend on the number of threads, and the largest eigenvalue of an operator.
 //!
 //! ```
 //! use fractum_math::{Sym3, Vec3};
@@ -12,11 +12,13 @@
 //! ```
 
 mod connected;
+mod lanczos;
 mod ragged;
 mod reduce;
 mod sym3;
 
 pub use connected::connected;
+pub use lanczos::largest_eigenvalue;
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};
 pub use sym3::Sym3;
