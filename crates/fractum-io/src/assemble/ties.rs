@@ -100,6 +100,8 @@ impl Context<'_> {
             let left: HashSet<[u32; 3]> = left.iter().map(|f| sorted(f.nodes.map(scene))).collect();
             let shared: Vec<[u32; 3]> =
                 facets.iter().flatten().copied().filter(|f| left.contains(&sorted(*f))).collect();
+            // The whole of what the region has in common with the rest.
+            all.covered.extend(shared.iter().map(|f| sorted(*f)));
             let among = Spanned::new(self.case.bodies[*body].name.value.clone(), replaces.place.clone());
             self.tie(solid, bonded, &shared, (&replaces.value, &replaces.place), &among, None, &mut all);
         }
