@@ -118,7 +118,7 @@ fn what_cannot_be_tied_is_refused_with_a_remedy() {
         (
             alone.replace("point = [\"2 mm\"", "point = [\"7 mm\"").clone() + apart,
             "ties[0].solid",
-            "the nearest is 9.9",
+            "the nearest is 9.8",
         ),
         (BAR.to_owned() + &apart.replace("\"core\"", "\"cor\""), "ties[0].bonded", "did you mean \"core\"?"),
         (BAR.to_owned() + &apart.replace("\"bar\"", "\"bra\""), "ties[0].solid", "did you mean \"bar\"?"),

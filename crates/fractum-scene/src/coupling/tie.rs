@@ -287,7 +287,7 @@ impl Ties {
             }
             ties.follow(&solid, &mut bonded.particles);
             solid.update_internal_forces(0.0, false);
-            bonded.update_bond_forces(false);
+            bonded.update_bond_forces(0.0, false);
             ties.pass_on(&mut solid, &mut bonded.particles);
             let own = &bonded.particles;
             let forces = solid.force.iter().copied();
@@ -416,7 +416,7 @@ mod tests {
             .collect();
         let particles = Particles::at_rest(position, vec![RADIUS; 64], 2500.0 * 64e-9).unwrap();
         let section = BeamSection { radius: 0.4 * RADIUS, young_modulus: 200e9, poisson_ratio: 0.3 };
-        let part = BondedPart { name: "lattice".into(), particles, pairs, section, density: 2500.0 };
+        let part = BondedPart { name: "lattice".into(), particles, pairs, section, density: 2500.0, fracture: None };
         let mut bonded = Bonded::new(vec![part]).unwrap();
         bonded.set_loads(on_particles);
         let among: Vec<u32> = (0..64).collect();
@@ -468,7 +468,7 @@ mod tests {
             assert!(bonded.particles.orientation[i].angle_to(&turn) < 1e-7);
         }
         solid.update_internal_forces(0.0, false);
-        bonded.update_bond_forces(false);
+        bonded.update_bond_forces(0.0, false);
         ties.pass_on(solid, &mut bonded.particles);
         let scale = ELASTIC.young_modulus * RADIUS * RADIUS;
         let most = solid.force.iter().chain(&bonded.particles.force).map(|f| f.norm()).fold(0.0, f64::max);
