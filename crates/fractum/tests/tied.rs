@@ -34,6 +34,8 @@ point = ["2 mm", 0, 0]
 size = ["2 mm", "2 mm", "2 mm"]
 material = "glass"
 particles = 800
+[bodies.groups]
+first = "x < 2.1 mm"
 
 [[supports]]
 group = "left"
@@ -116,13 +118,13 @@ fn what_cannot_be_tied_is_refused_with_a_remedy() {
         (BAR.replace("size = [\"2 mm\"", "size = [\"0.1 mm\""), "bodies[1].replaces", "none of its elements wholly"),
         (BAR.replace("replaces = \"bar\"", "replaces = \"bra\""), "bodies[1].replaces", "did you mean \"bar\"?"),
         (
-            alone.replace("point = [\"2 mm\"", "point = [\"7 mm\"").clone() + apart,
+            alone.replace("point = [\"2 mm\"", "point = [\"7 mm\"").replace("x < 2.1 mm", "x > 0 mm") + apart,
             "ties[0].solid",
             "the nearest is 9.8",
         ),
         (BAR.to_owned() + &apart.replace("\"core\"", "\"cor\""), "ties[0].bonded", "did you mean \"core\"?"),
         (BAR.to_owned() + &apart.replace("\"bar\"", "\"bra\""), "ties[0].solid", "did you mean \"bar\"?"),
-        (BAR.replace("group = \"left\"", "group = \"core.x-\""), "supports[0].group", "are tied to a solid"),
+        (BAR.replace("group = \"left\"", "group = \"core.first\""), "supports[0].group", "are tied to a solid"),
         (BAR.to_owned() + apart + "within = \"-1 um\"", "ties[0].within", "more than 0"),
     ];
     for (case, key, words) in cases {
