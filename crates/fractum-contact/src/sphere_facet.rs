@@ -299,7 +299,7 @@ impl<L: ContactLaw> GroundContacts<L> {
     }
 }
 
-fn tree_of(surface: &FacetMesh, points: &[Vec3]) -> Bvh {
+pub(crate) fn tree_of(surface: &FacetMesh, points: &[Vec3]) -> Bvh {
     let bounds = |facet: u32| {
         let corner = |&c: &u32| points[c as usize];
         let corners = surface.corners(facet);

@@ -145,6 +145,12 @@ impl Solid {
         })
     }
 
+    /// Gives a node mass beside that of its elements [kg], for ever.
+    pub fn add_mass(&mut self, node: usize, mass: f64) {
+        self.mass[node] += mass;
+        self.inverse_mass[node] = 1.0 / self.mass[node];
+    }
+
     /// Adds viscous stress to every body.
     pub fn set_viscosity(&mut self, viscosity: Viscosity) {
         for model in &mut self.bodies {

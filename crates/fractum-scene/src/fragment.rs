@@ -4,7 +4,7 @@ use fractum_math::{Vec3, connected};
 /// A connected piece of a solid or of a bonded body, or a single discrete element that nothing holds any more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fragment {
-    /// Nodes in the piece; particles in that of a bonded body.
+    /// Nodes in the piece; particles in that of a bonded body, and after the nodes where both are tied.
     pub nodes: Vec<u32>,
     /// Elements that are still there.
     pub elements: usize,
@@ -18,8 +18,62 @@ pub struct Fragment {
     pub centroid: Vec3,
     /// Velocity of the centre of mass [m/s].
     pub velocity: Vec3,
+    /// Corners of the box around it [m].
+    pub bounds: [Vec3; 2],
+}
+
+impl Fragment {
     /// Largest side of the box around it [m].
-    pub extent: f64,
+    pub fn extent(&self) -> f64 {
+        (self.bounds[1] - self.bounds[0]).max()
+    }
+
+    /// One piece of both.
+    fn take(&mut self, other: Fragment) {
+        let mass = self.mass + other.mass;
+        let mean = |a: Vec3, b: Vec3| (a * self.mass + b * other.mass) / mass;
+        (self.centroid, self.velocity) = (mean(self.centroid, other.centroid), mean(self.velocity, other.velocity));
+        self.bounds = [self.bounds[0].inf(&other.bounds[0]), self.bounds[1].sup(&other.bounds[1])];
+        self.mass = mass;
+        self.volume += other.volume;
+        self.elements += other.elements;
+        self.bonds += other.bonds;
+        self.nodes.extend(other.nodes);
+    }
+}
+
+/// Pieces of solids and of bonded bodies, those that ties hold together as one.
+///
+/// - `links`: pairs of a particle and a node that are tied
+pub(crate) fn joined(
+    mut solids: Vec<Fragment>,
+    mut bonded: Vec<Fragment>,
+    links: impl Iterator<Item = (u32, u32)>,
+) -> Vec<Fragment> {
+    let owners = |pieces: &[Fragment]| {
+        let size = pieces.iter().flat_map(|p| &p.nodes).max().map_or(0, |n| *n as usize + 1);
+        let mut owner = vec![0u32; size];
+        for (index, piece) in (0..).zip(pieces) {
+            piece.nodes.iter().for_each(|&n| owner[n as usize] = index);
+        }
+        owner
+    };
+    let (of_node, of_particle) = (owners(&solids), owners(&bonded));
+    let shift = solids.len() as u32;
+    solids.append(&mut bonded);
+    let pairs = links.map(|(particle, node)| [of_node[node as usize], shift + of_particle[particle as usize]]);
+    let part = connected(solids.len(), pairs);
+    let mut whole: Vec<Option<Fragment>> = solids.into_iter().map(Some).collect();
+    for index in (0..whole.len()).rev() {
+        let first = part[index] as usize;
+        if first != index
+            && let Some(part) = whole[index].take()
+            && let Some(first) = &mut whole[first]
+        {
+            first.take(part);
+        }
+    }
+    whole.into_iter().flatten().collect()
 }
 
 /// Pieces connected by elements, heaviest first.
@@ -70,6 +124,6 @@ fn piece(solid: &Solid, nodes: Vec<u32>, elements: usize, volume: f64) -> Fragme
         low = low.inf(&position);
         high = high.sup(&position);
     }
-    let extent = (high - low).max();
-    Fragment { nodes, elements, bonds: 0, mass, volume, centroid: centroid / mass, velocity: velocity / mass, extent }
+    let bounds = [low, high];
+    Fragment { nodes, elements, bonds: 0, mass, volume, centroid: centroid / mass, velocity: velocity / mass, bounds }
 }

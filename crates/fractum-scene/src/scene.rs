@@ -5,8 +5,8 @@ use crate::bonded::{Bonded, BondedState};
 use crate::boundary::{Loads, Supports};
 use crate::clock::{Clock, TimeStepSettings};
 use crate::contacts::{Contacts, ContactsState};
-use crate::coupling::{Debris, DebrisState};
-use crate::fragment::{Fragment, fragments};
+use crate::coupling::{Attachment, Debris, DebrisState, Ties};
+use crate::fragment::{Fragment, fragments, joined};
 use crate::ledger::{Books, Ledger};
 use crate::probe::CountKind;
 use crate::rigid::{Candidate, RigidGround};
@@ -24,6 +24,8 @@ pub struct Scene {
     pub debris: Debris,
     /// Bonded bodies, with particles of their own.
     pub bonded: Bonded,
+    /// What ties bonded bodies to solids.
+    pub ties: Ties,
     /// Contacts of particles with nodes of their own, and the rigid bodies that they meet.
     pub contacts: Contacts,
     /// Rigid shapes that nodes of solids and debris touch.
@@ -113,6 +115,7 @@ impl Scene {
             solid,
             debris,
             bonded: Bonded::default(),
+            ties: Ties::default(),
             contacts: Contacts::default(),
             grounds,
             clock: Clock::new(0.0),
@@ -138,6 +141,13 @@ impl Scene {
         self
     }
 
+    /// The same scene with particles of its bonded bodies tied to its solids, before its first step.
+    pub fn with_ties(mut self, attachments: &[Attachment]) -> Self {
+        self.ties = Ties::new(&mut self.solid, &mut self.bonded, attachments);
+        self.clock = Clock::new(self.next_dt(0.0));
+        self
+    }
+
     /// The same scene with contacts of its particles, before its first step.
     pub fn with_contacts(mut self, contacts: Contacts) -> Self {
         self.contacts = contacts;
@@ -148,19 +158,21 @@ impl Scene {
     /// Largest stable step of the solid by itself, and what governs it; none where bonds or contacts ask for a
     /// smaller one.
     pub fn governing_element(&self) -> Option<StableStep> {
-        let others = self.bonded.frequency().max(self.contacts.frequency_square().sqrt());
+        let bonds = self.bonded.frequency().max(self.ties.frequency());
+        let others = bonds.max(self.contacts.frequency_square().sqrt());
         (self.stable.frequency >= others && self.solid.body_count() > 0).then_some(self.stable)
     }
 
     /// Whether the contacts of particles ask for a smaller step than elements and bonds.
     pub fn contacts_govern(&self) -> bool {
-        self.contacts.frequency_square().sqrt() > self.stable.frequency.max(self.bonded.frequency())
+        let bodies = self.stable.frequency.max(self.bonded.frequency()).max(self.ties.frequency());
+        self.contacts.frequency_square().sqrt() > bodies
     }
 
     /// Largest stable step with contacts and damping [s].
     pub fn stable_dt(&self) -> f64 {
         let divisor = self.bonded.step_divisor();
-        let frequency = self.stable.frequency.max(self.bonded.frequency() * divisor);
+        let frequency = self.stable.frequency.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
         let contacts = self.contact_frequency_square + self.contacts.frequency_square() * divisor * divisor;
         let frequency = (frequency * frequency + contacts).sqrt();
         let contact = if self.contact_frequency_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
@@ -252,7 +264,7 @@ impl Scene {
     pub fn fragments(&self) -> Vec<Fragment> {
         let mut pieces = fragments(&self.solid);
         if !self.bonded.is_empty() {
-            pieces.extend(self.bonded.fragments());
+            pieces = joined(pieces, self.bonded.fragments(), self.ties.links());
             pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass));
         }
         pieces
@@ -284,6 +296,7 @@ impl Scene {
         if let Some(bonded) = state.bonded {
             self.bonded.restore(bonded);
         }
+        self.ties.restore(&self.solid, &self.bonded.particles);
         if let Some(contacts) = state.contacts {
             self.contacts.restore(contacts);
         }

@@ -1,4 +1,5 @@
 use fractum_contact::ContactWork;
+use fractum_dem::Particles;
 use fractum_math::Vec3;
 
 use crate::bonded::BondedWork;
@@ -67,6 +68,7 @@ impl Scene {
             passed(Phase::Bonds);
         }
         let contact = self.add_contact_forces(elapsed, faces);
+        self.ties.pass_on(&mut self.solid, &mut self.bonded.particles);
         passed(Phase::Contact);
         let load_before = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
         if self.clock.step == 0 {
@@ -140,7 +142,10 @@ impl Scene {
         if self.bonded.is_empty() {
             return BondedWork::default();
         }
-        self.bonded.advance(self.clock.step, time, dt_before, dt_after, self.settings.damping, measure)
+        let Scene { bonded, ties, solid, settings, clock, .. } = self;
+        bonded.break_overloaded(clock.step, time, measure);
+        let follow = |particles: &mut Particles| ties.follow(solid, particles);
+        bonded.advance(time, dt_before, dt_after, settings.damping, measure, follow)
     }
 
     /// - `work`: that of the contacts counted so far

@@ -18,6 +18,7 @@ use fractum_scene::BondFracture;
 use serde::{Deserialize, Serialize};
 
 use crate::cache::{Cache, key};
+use crate::region::{Region, region};
 
 /// Contacts per particle at which compaction stops.
 const CONTACTS: f64 = 6.2;
@@ -154,7 +155,8 @@ struct Maker<'a> {
 impl Maker<'_> {
     fn make(&self, all: &mut BondedBodies) -> Result<(), Box<Diagnostic>> {
         let start = Instant::now();
-        let (packing, packing_from) = self.packing()?;
+        let region = self.region()?;
+        let (packing, packing_from) = self.packing(region.as_ref())?;
         let packed = Instant::now();
         if let Err(error) = Certificate::of(&packing).check() {
             if packing_from != Origin::Given {
@@ -239,6 +241,7 @@ impl Maker<'_> {
             particles: made.particles,
             pairs: made.sample.network.pairs,
             walls: made.sample.packing.walls,
+            replaced: region.map_or_else(Vec::new, |region| region.elements),
         });
         Ok(())
     }
@@ -265,8 +268,22 @@ impl Maker<'_> {
         Ok((criterion.scaled(factor), Origin::Made))
     }
 
+    /// What it takes the place of.
+    fn region(&self) -> Result<Option<Region>, Box<Diagnostic>> {
+        let (Some(replaces), PackingSource::Shape { shape, .. }) = (&self.bonded.replaces, &self.bonded.packing) else {
+            return Ok(None);
+        };
+        let domain = match &shape.value {
+            BondedShape::Group(_) => None,
+            other => Some(self.domain(other).map_err(|(place, error)| self.refuse(&place, format!(": {error}")))?),
+        };
+        region(self.case, self.mesh, replaces, shape, domain.as_ref()).map(Some)
+    }
+
     /// Reads the packing, finds it among the kept ones, or makes it.
-    fn packing(&self) -> Result<(Packing, Origin), Box<Diagnostic>> {
+    ///
+    /// - `region`: what is filled instead of the shape
+    fn packing(&self, region: Option<&Region>) -> Result<(Packing, Origin), Box<Diagnostic>> {
         let (shape, size, dispersion, seed) = match &self.bonded.packing {
             PackingSource::File(file) => {
                 let read = Packing::from_bytes(&file.bytes);
@@ -275,7 +292,10 @@ impl Maker<'_> {
             }
             PackingSource::Shape { shape, size, dispersion, seed } => (shape, size, *dispersion, *seed),
         };
-        let domain = self.domain(&shape.value).map_err(|(place, error)| self.refuse(&place, format!(": {error}")))?;
+        let domain = match region {
+            Some(region) => region.domain.clone(),
+            None => self.domain(&shape.value).map_err(|(place, error)| self.refuse(&place, format!(": {error}")))?,
+        };
         let (count, radius) = match size.value {
             ParticleSize::Count(count) => (Some(count), None),
             ParticleSize::Radius(radius) => (None, Some(radius)),

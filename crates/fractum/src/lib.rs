@@ -19,6 +19,7 @@ pub mod plan;
 mod quasi_static;
 mod record;
 mod record_bonded;
+mod region;
 pub mod report;
 pub mod run;
 pub mod terminal;

@@ -5,7 +5,7 @@ use std::fmt;
 use fractum_dem::Criterion as BondCriterion;
 use fractum_dem::criterion::Level;
 use fractum_fem::{Formulation, Kinematics, Plane, Shape};
-use fractum_io::assemble::Assembly;
+use fractum_io::assemble::{Assembly, TieReport};
 use fractum_io::case::model::{BodyKind, Case, LoadKind, Material, MeshSource, RigidBody, RigidShape, SolidBody};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
@@ -51,6 +51,7 @@ impl Plan {
             plan.describe_mesh(source, mesh);
         }
         plan.describe_bodies(case, scene, bonded);
+        plan.describe_ties(&assembly.ties);
         plan.describe_conditions(case, mesh, scene);
         plan.describe_physics(case, scene);
         match &assembly.statics {
@@ -264,6 +265,14 @@ impl Plan {
         }
     }
 
+    fn describe_ties(&mut self, ties: &[TieReport]) {
+        for TieReport { bonded, solid, particles, facets, within } in ties {
+            let within = quantity(*within, "m");
+            let text = format!("{bonded} to {solid}: {particles} particles to {facets} facets (gaps up to {within})");
+            self.add("tie", text);
+        }
+    }
+
     fn describe_conditions(&mut self, case: &Case, mesh: &Mesh, scene: &Scene) {
         for support in &case.supports {
             let letters = |on: &dyn Fn(usize) -> bool| -> String {
@@ -325,6 +334,9 @@ impl Plan {
         choose(dissipation, "damping of the highest frequencies of particles", "not asked for");
         let turning = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).kinematics == Kinematics::Corotational);
         choose(turning, "large rotations", "all bodies have small strains");
+        if !scene.ties.is_empty() {
+            on.push("ties of particles to facets");
+        }
         self.add("physics", on.join(", "));
         self.add("skipped", off.join(", "));
     }

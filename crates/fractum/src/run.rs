@@ -503,7 +503,7 @@ fn fragments_of(scene: &Scene) -> Vec<Fragment> {
             elements: piece.elements as u64,
             centroid: piece.centroid.into(),
             velocity: piece.velocity.into(),
-            largest_extent: piece.extent,
+            largest_extent: piece.extent(),
         })
         .collect()
 }

@@ -8,7 +8,8 @@ use fractum_dem::{BeamSection, Particles};
 use fractum_fem::{Body, Criterion, DamageLaw, Elastic, Kinematics, Shape, Softening, Solid, Viscosity};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
-use fractum_scene::coupling::Debris;
+use fractum_mesh::topology::boundary_of_tetrahedra;
+use fractum_scene::coupling::{Debris, Layer};
 use fractum_scene::{
     Bonded, BondedPart, Load, Loads, Motion, ParticleLoad, ParticleSupport, RigidGround, Scene, SceneSettings, Support,
     Supports, Surface, TimeStepSettings,
@@ -121,9 +122,28 @@ fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<Rig
     Scene::new(solid, supports, loads, debris, planes, &surface, settings)
 }
 
-/// A jittered lattice of bonded particles, held at one end and pulled at the other, under gravity; φ of the scheme of
-/// Tchamwa and Wielgosz.
+/// A lattice of its own; φ of the scheme of Tchamwa and Wielgosz.
 fn bonded_bar(phi: f64) -> Scene {
+    let mut bonded = lattice();
+    bonded.set_dissipation(phi);
+    scene(Solid::new(Vec::new(), Vec::new()).unwrap(), Vec::new(), Vec::new(), Vec::new()).with_bonded(bonded)
+}
+
+/// The lattice under a block of tetrahedra, to which its upper particles are tied.
+fn tied_bar() -> Scene {
+    let mesh = structured_box([20, 8, 4], Vec3::new(29.0, 9.0, 5.0), None);
+    let nodes: Vec<Vec3> = mesh.nodes.iter().map(|x| x + Vec3::z() * 9.5).collect();
+    let elastic = Elastic { density: 1.0, young_modulus: 1e3, poisson_ratio: 0.2 };
+    let facets: Vec<[u32; 3]> = boundary_of_tetrahedra(&mesh.tetrahedra).iter().map(|f| f.nodes).collect();
+    let solid = Solid::new(nodes, vec![Body::new("block", Shape::T4, mesh.tetrahedra, elastic)]).unwrap();
+    let bonded = lattice();
+    let free: Vec<u32> = (0..3000).filter(|i| (1..29).contains(&(i % 30))).collect();
+    let layer = Layer::find(&solid, &facets, &bonded.particles, &free, 0.2).unwrap();
+    scene(solid, Vec::new(), Vec::new(), Vec::new()).with_bonded(bonded).with_ties(&layer.attachments)
+}
+
+/// A jittered lattice of bonded particles, held at one end and pulled at the other, under gravity.
+fn lattice() -> Bonded {
     const SIDES: [usize; 3] = [30, 10, 10];
     let site =
         |i: usize| Vec3::new((i % SIDES[0]) as f64, (i / SIDES[0] % SIDES[1]) as f64, (i / SIDES[0] / SIDES[1]) as f64);
@@ -137,7 +157,6 @@ fn bonded_bar(phi: f64) -> Scene {
     let section = BeamSection::new(1e3, 0.3).unwrap();
     let part = BondedPart { name: "bar".into(), particles, pairs, section, density: 1.0, fracture: None };
     let mut bonded = Bonded::new(vec![part]).unwrap();
-    bonded.set_dissipation(phi);
     let end = |x: f64| (0..count as u32).filter(|&i| site(i as usize).x == x).collect::<Vec<u32>>();
     let support = |name: &str, particles, motion| ParticleSupport { name: name.into(), particles, axis: 0, motion };
     let pull = Motion::Velocity(Arc::new(|_, _| 1e-3));
@@ -145,7 +164,7 @@ fn bonded_bar(phi: f64) -> Scene {
     bonded.set_supports(supports, &[(0, 0b111)]).unwrap();
     let force = ParticleLoad::Force { particles: vec![(150, 1.0)], axis: 1, value: Arc::new(|t, _| t) };
     bonded.set_loads(vec![force, ParticleLoad::Gravity { axis: 2, value: Arc::new(|_, _| -1e-3) }]);
-    scene(Solid::new(Vec::new(), Vec::new()).unwrap(), Vec::new(), Vec::new(), Vec::new()).with_bonded(bonded)
+    bonded
 }
 
 /// Requests for memory in 100 steps, after 50 that warm up; the queues of the threads grow in these.
@@ -196,6 +215,10 @@ fn a_warm_step_allocates_nothing() {
 
         let mut scene = bonded_bar(1.2);
         assert_eq!(requests(&mut scene), 0, "bonded particles, high frequencies damped");
+
+        let mut scene = tied_bar();
+        assert_eq!(requests(&mut scene), 0, "tied");
+        assert!(scene.ties.counts().0 > 200);
 
         let mut scene = landing(nodes, armed(smoothed));
         assert_eq!(requests(&mut scene), 0, "on a rigid plane");

@@ -2,6 +2,7 @@
 
 use fractum_dem::{BeamSection, Particles};
 use fractum_math::Vec3;
+use fractum_scene::coupling::Attachment;
 use fractum_scene::{BondFracture, Bonded, BondedPart, ParticleLoad, ParticleProbe, ParticleSupport, Probe};
 
 use super::conditions::motion_of;
@@ -22,6 +23,8 @@ pub struct PreparedBody {
     pub walls: Vec<(String, Vec<u32>)>,
     /// When its bonds break, with the criterion's own strengths.
     pub fracture: Option<BondFracture>,
+    /// Tetrahedra of the mesh that it takes the place of.
+    pub replaced: Vec<u32>,
 }
 
 /// The sets of particles of a bonded body, in the numbering of the scene.
@@ -94,7 +97,7 @@ impl Context<'_> {
     }
 
     /// The particles that a name of the case means; an error if the body has no such set.
-    fn particles(&mut self, group: &Spanned<String>) -> Vec<u32> {
+    pub(super) fn particles(&mut self, group: &Spanned<String>) -> Vec<u32> {
         let Some((body, set)) = self.case.particle_group(&group.value) else { return Vec::new() };
         let Some(own) = self.particle_sets.iter().find(|sets| sets.body == body) else { return Vec::new() };
         let wanted = set.unwrap_or_default();
@@ -113,12 +116,33 @@ impl Context<'_> {
         Vec::new()
     }
 
-    /// Supports and loads on particles.
-    pub(super) fn condition_particles(&mut self, bonded: &mut Bonded) {
+    /// Supports and loads on particles; those that are tied follow a solid, and no support.
+    pub(super) fn condition_particles(
+        &mut self,
+        bonded: &mut Bonded,
+        attachments: &[Attachment],
+        warnings: &mut Vec<Diagnostic>,
+    ) {
         let case = self.case;
+        let mut tied: Vec<u32> = attachments.iter().map(|a| a.particle).collect();
+        tied.sort_unstable();
         let (mut sets, mut turning) = (Vec::new(), Vec::new());
         for support in case.supports.iter().filter(|s| case.particle_group(&s.group.value).is_some()) {
-            let particles = self.particles(&support.group);
+            let mut particles = self.particles(&support.group);
+            let whole = particles.len();
+            particles.retain(|i| tied.binary_search(i).is_err());
+            if particles.is_empty() && whole > 0 {
+                let found = format!("= \"{}\": all of its {whole} particles are tied to a solid", support.group.value);
+                self.error(&support.group.place, found, "particles that are free; support the solid instead");
+            } else if particles.len() < whole {
+                let count = whole - particles.len();
+                let found =
+                    format!("= \"{}\": {count} of its {whole} particles are tied to a solid", support.group.value);
+                let warning = Diagnostic::warning(&support.group.place, found);
+                warnings.push(
+                    warning.remedy("they follow it, and the support holds the others; support the solid as well"),
+                );
+            }
             let name = &support.name.as_ref().unwrap_or(&support.group).value;
             for (axis, motion) in support.motion.iter().enumerate() {
                 let Some(motion) = motion else { continue };

@@ -59,7 +59,8 @@ impl Context<'_> {
             })
             .map(|material| {
                 let material = &case.materials[material];
-                let elastic = elastic(material.young_modulus, material.poisson_ratio);
+                let modulus = material.contact_modulus.unwrap_or(material.young_modulus);
+                let elastic = elastic(modulus, material.poisson_ratio);
                 ContactMaterial { elastic, density: material.density, surface: material.contact }
             })
             .collect();

@@ -7,9 +7,11 @@ mod conditions;
 mod contacts;
 mod probes;
 mod statics;
+mod ties;
 
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
+pub use ties::TieReport;
 
 use std::sync::Arc;
 
@@ -43,6 +45,8 @@ pub struct Assembly {
     pub elements: Vec<Vec<u32>>,
     /// Outward boundary facets of the solids at the start, in scene nodes; edges repeat their second node.
     pub boundary: Vec<[u32; 3]>,
+    /// Ties of bonded bodies to solids.
+    pub ties: Vec<TieReport>,
     /// Doubts that do not keep the scene from running.
     pub warnings: Vec<Diagnostic>,
 }
@@ -128,8 +132,13 @@ impl Context<'_> {
         if !self.diagnostics.is_empty() {
             return None;
         }
+        let taken = self.taken(&prepared);
         let mut bonded = self.bonded(prepared)?;
-        let parts = self.solid_parts()?;
+        let mut parts = self.solid_parts()?;
+        self.take_out(&mut parts, &taken);
+        if !self.diagnostics.is_empty() {
+            return None;
+        }
         let numbering = self.number_nodes(&parts)?;
         let bodies = self.solid_bodies(&parts, &numbering)?;
         let nodes = numbering.positions.clone();
@@ -150,7 +159,7 @@ impl Context<'_> {
             bulk_quadratic: damping.bulk_quadratic,
         });
         let boundary = self.boundary(&parts, &numbering);
-        let boundary_of_parts = self.facets_of_parts(&parts, &numbering);
+        let mut boundary_of_parts = self.facets_of_parts(&parts, &numbering);
         let supports = self.supports(&numbering);
         let loads = self.loads(&parts, &numbering, &boundary);
         let supports = match Supports::new(supports, &solid.reference) {
@@ -162,7 +171,10 @@ impl Context<'_> {
             }
         };
         let statics = self.statics(&solid, &supports, &numbering);
-        self.condition_particles(&mut bonded);
+        let ties = self.ties(&solid, &bonded, &taken, &parts, &numbering, &boundary_of_parts);
+        let touched = |facet: &[u32; 3]| !ties.covered.contains(&ties::sorted(*facet));
+        boundary_of_parts.iter_mut().for_each(|facets| facets.retain(touched));
+        self.condition_particles(&mut bonded, &ties.attachments, &mut warnings);
         let bonded_statics = self.bonded_statics(&bonded);
         let probes = self.probes(&parts, &numbering, &solid, &supports, &bonded);
         if !self.diagnostics.is_empty() {
@@ -183,7 +195,8 @@ impl Context<'_> {
             &surface,
             self.settings(),
         )
-        .with_bonded(bonded);
+        .with_bonded(bonded)
+        .with_ties(&ties.attachments);
         let scene = self.with_contacts(scene, &parts, &boundary_of_parts, tools, &mut warnings)?;
         Some(Assembly {
             scene,
@@ -194,6 +207,7 @@ impl Context<'_> {
             scene_node: numbering.scene_node,
             elements: parts.into_iter().map(|part| part.elements).collect(),
             boundary,
+            ties: ties.reports,
             warnings,
         })
     }

@@ -301,6 +301,7 @@ static KEYS: &[KeyDoc] = &[
     key("materials.NAME.contact.rolling_friction", K::Quantity(D::NONE), "0", "Coefficient of rolling friction, ≥ 0: couple over normal force and reduced radius"),
     key("materials.NAME.contact.damping_ratio", K::Quantity(D::NONE), "0.1", "Fraction of critical damping, 0 to 1"),
     key("materials.NAME.contact.restitution", K::Quantity(D::NONE), "", "Coefficient of restitution, above 0 to 1, instead of the damping ratio"),
+    key("materials.NAME.contact.young_modulus", K::Quantity(D::PRESSURE), "", "Young's modulus that contacts of its particles take instead, > 0: particles of a bonded body stand for a continuum that yields by itself, and a stiff contact adds little to it"),
 
     key("bodies[]", K::Tables, "required", "Bodies, at least one"),
     key("bodies[].name", K::Text, "required", "Name, unique among bodies"),
@@ -345,6 +346,7 @@ static KEYS: &[KeyDoc] = &[
     key("bodies[].unit", K::Unit(Some(D::LENGTH)), "\"m\"", "Unit of the coordinates in the file"),
     key("bodies[].particles", K::Integer, "10000", "Bonded: number of particles, 20 to 20 million; loose: at most so many, without it as many as there is room for"),
     key("bodies[].particle_radius", K::Quantity(D::LENGTH), "", "Mean particle radius, > 0; bonded: instead of their number; loose, required with a shape"),
+    key("bodies[].replaces", K::Text, "", "Bonded: solid body whose tetrahedra wholly within the shape (of the group) it takes the place of; its particles fill the region that they leave, and are tied to the rest"),
     key("bodies[].dispersion", K::Quantity(D::NONE), "0.25", "(largest - smallest)/mean of the particle radii, 0 to 1; 0 where loose particles say nothing"),
     key("bodies[].seed", K::Integer, "1", "Bonded and particles: seed of the packing"),
     key("bodies[].packing", K::Text, "", "Bonded: packing made by `fractum pack` (.fpk), relative to the case file, instead of a shape"),
@@ -357,6 +359,11 @@ static KEYS: &[KeyDoc] = &[
     key("bodies[].contact.rolling_friction", K::Quantity(D::NONE), "0", "Coefficient of rolling friction, ≥ 0: couple over normal force and reduced radius"),
     key("bodies[].contact.damping_ratio", K::Quantity(D::NONE), "0.1", "Fraction of critical damping, 0 to 1"),
     key("bodies[].contact.restitution", K::Quantity(D::NONE), "", "Coefficient of restitution, above 0 to 1, instead of the damping ratio"),
+
+    key("ties[]", K::Tables, "", "Particles of a bonded body that follow the surface of a solid where they touch it at the start, and give it their forces"),
+    key("ties[].solid", K::Text, "required", "Solid body, or mesh group of facets on the surface of one"),
+    key("ties[].bonded", K::Text, "required", "Bonded body, or set of its particles"),
+    key("ties[].within", K::Quantity(D::LENGTH), "a tenth of the mean particle radius", "Largest gap between particle and facet, > 0"),
 
     key("supports[]", K::Tables, "", "Prescribed motion of groups; one of fix, velocity, displacement per axis"),
     key("supports[].name", K::Text, "", "Name, unique among supports"),

@@ -218,7 +218,9 @@ impl Forces {
     }
 
     /// Adds the forces of `time`.
-    pub(super) fn add(&mut self, particles: &mut Particles, reference: &[Vec3], time: f64) {
+    ///
+    /// - `tied`: particles whose weight acts on nodes
+    pub(super) fn add(&mut self, particles: &mut Particles, tied: &[u32], reference: &[Vec3], time: f64) {
         let Forces { loads, applied, gravity } = self;
         applied.clear();
         *gravity = Vec3::zeros();
@@ -239,17 +241,19 @@ impl Forces {
         }
         if *gravity != Vec3::zeros() {
             let Particles { force, mass, .. } = particles;
-            force.iter_mut().zip(mass).for_each(|(force, mass)| *force += *gravity * *mass);
+            force.iter_mut().zip(&*mass).for_each(|(force, mass)| *force += *gravity * *mass);
+            tied.iter().for_each(|&i| force[i as usize] -= *gravity * mass[i as usize]);
         }
     }
 
     /// Power of the last forces at the present velocities [W].
-    pub(super) fn power(&self, particles: &Particles) -> f64 {
+    pub(super) fn power(&self, particles: &Particles, tied: &[u32]) -> f64 {
         let velocity = &particles.velocity;
         let mut power: f64 = self.applied.iter().map(|(i, force)| force.dot(&velocity[*i as usize])).sum();
         if self.gravity != Vec3::zeros() {
             let momentum: Vec3 = velocity.iter().zip(&particles.mass).map(|(v, m)| v * *m).sum();
-            power += self.gravity.dot(&momentum);
+            let others: Vec3 = tied.iter().map(|&i| velocity[i as usize] * particles.mass[i as usize]).sum();
+            power += self.gravity.dot(&(momentum - others));
         }
         power
     }

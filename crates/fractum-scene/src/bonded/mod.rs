@@ -114,6 +114,8 @@ pub struct Bonded {
     bodies: Vec<BondedBody>,
     holds: Holds,
     forces: Forces,
+    /// Particles that follow the facets of a solid, ascending; their mass is the nodes'.
+    tied: Vec<u32>,
     /// Elastic energy of the bonds when last measured.
     energy: BeamEnergy,
     /// Elastic energy that bonds which broke before tⁿ held [J].
@@ -248,6 +250,20 @@ impl Bonded {
         self.forces = Forces::new(loads);
     }
 
+    /// Hands particles over to what moves them from now on.
+    pub(crate) fn set_tied(&mut self, mut tied: Vec<u32>) {
+        tied.sort_unstable();
+        // Held in all degrees of freedom, they take no part in the leap.
+        tied.iter().for_each(|&i| self.particles.held[i as usize] = 0b11_1111);
+        self.tied = tied;
+    }
+
+    /// Mass of a particle that moves by itself, 0 of a tied one [kg].
+    fn own_mass(&self, particle: usize) -> f64 {
+        let tied = self.tied.binary_search(&(particle as u32)).is_ok();
+        if tied { 0.0 } else { self.particles.mass[particle] }
+    }
+
     /// Whether there is no bonded body.
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
@@ -328,7 +344,7 @@ impl Bonded {
     /// Breaks what the forces of tⁿ overload; they still act on the kick that follows.
     ///
     /// - `measure`: whether to see how close every body is to breaking, too
-    fn break_overloaded(&mut self, step: u64, time: f64, measure: bool) {
+    pub(crate) fn break_overloaded(&mut self, step: u64, time: f64, measure: bool) {
         let Bonded { particles, reference, bodies, .. } = self;
         let occasion = Occasion { time, event: step as usize, load: 0.0 };
         for BondedBody { bonds, fracture, closest, .. } in bodies {
@@ -345,33 +361,36 @@ impl Bonded {
 
     /// Adds the loads of `time`; returns their work in the half step before [J].
     pub(crate) fn add_loads(&mut self, time: f64, dt_before: f64) -> f64 {
-        let Bonded { particles, reference, forces, .. } = self;
-        forces.add(particles, reference, time);
-        0.5 * dt_before * forces.power(particles)
+        let Bonded { particles, reference, forces, tied, .. } = self;
+        forces.add(particles, tied, reference, time);
+        0.5 * dt_before * forces.power(particles, tied)
     }
 
-    /// Breaks bonds, advances velocities and positions, then puts prescribed motion in the place of free motion.
+    /// Advances velocities and positions, then puts prescribed motion in the place of free motion.
+    ///
+    /// - `follow`: takes tied particles to their places
     pub(crate) fn advance(
         &mut self,
-        step: u64,
         time: f64,
         dt_before: f64,
         dt_after: f64,
         damping: LocalDamping,
         measure: bool,
+        follow: impl FnOnce(&mut Particles),
     ) -> BondedWork {
-        self.break_overloaded(step, time, measure);
-        let Bonded { particles, reference, bodies, holds, forces, partial, past, dissipation, .. } = self;
+        let Bonded { particles, reference, bodies, holds, forces, partial, past, dissipation, tied, .. } = self;
         let damping = ParticleDamping { local: damping.local, mass_rate: damping.mass_rate, dissipation: *dissipation };
+        let counted_twice = if measure { energy_of(particles, tied) } else { 0.0 };
         let motion = particles.leap(&Leap { dt_before, dt_after, damping, measure }, past, partial);
         let support = holds.impose(particles, reference, time, dt_before, dt_after);
+        follow(particles);
         for fracture in bodies.iter_mut().filter_map(|body| body.fracture.as_mut()) {
             fracture.book_last_work(particles, dt_after);
         }
         BondedWork {
-            kinetic: motion.kinetic + support.kinetic,
+            kinetic: motion.kinetic + support.kinetic - counted_twice,
             external_before: support.before,
-            external_after: support.after + 0.5 * dt_after * forces.power(particles),
+            external_after: support.after + 0.5 * dt_after * forces.power(particles, tied),
             damped_before: motion.damped_before,
             damped_after: motion.damped_after,
         }
@@ -397,4 +416,13 @@ impl Bonded {
         self.particles = Particles { position, orientation, velocity, spin, ..std::mem::take(&mut self.particles) };
         self.past = past;
     }
+}
+
+/// Kinetic energy that the leap sums for particles at constant velocity [J].
+fn energy_of(particles: &Particles, of: &[u32]) -> f64 {
+    let energy = |i: usize| {
+        particles.mass[i] * particles.velocity[i].norm_squared()
+            + particles.inertia[i] * particles.spin[i].norm_squared()
+    };
+    of.iter().map(|&i| 0.5 * energy(i as usize)).sum()
 }

@@ -29,22 +29,27 @@ impl Bonded {
             self.bodies.iter().find(|b| b.range.contains(&(particles[0] as usize))).map_or(1.0, |b| b.density);
         let (mut mass, mut centroid, mut velocity) = (0.0, Vec3::zeros(), Vec3::zeros());
         let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        let mut volume = 0.0;
         for i in particles.iter().map(|&i| i as usize) {
-            mass += all.mass[i];
-            centroid += all.position[i] * all.mass[i];
-            velocity += all.velocity[i] * all.mass[i];
+            let own = self.own_mass(i);
+            mass += own;
+            volume += all.mass[i] / density;
+            centroid += all.position[i] * own;
+            velocity += all.velocity[i] * own;
             low = low.inf(&all.position[i].add_scalar(-all.radius[i]));
             high = high.sup(&all.position[i].add_scalar(all.radius[i]));
         }
+        // Tied particles alone have no mass of their own.
+        let share = if mass > 0.0 { 1.0 / mass } else { 0.0 };
         Fragment {
             nodes: particles,
             elements: 0,
             bonds,
             mass,
-            volume: mass / density,
-            centroid: centroid / mass,
-            velocity: velocity / mass,
-            extent: (high - low).max(),
+            volume,
+            centroid: centroid * share,
+            velocity: velocity * share,
+            bounds: [low, high],
         }
     }
 }

@@ -74,13 +74,16 @@ impl Bonded {
     /// Linear momentum of all particles [kg m/s].
     pub(crate) fn momentum(&self) -> Vec3 {
         let all = &self.particles;
-        (0..all.len()).map(|i| all.velocity[i] * all.mass[i]).sum()
+        (0..all.len()).map(|i| all.velocity[i] * self.own_mass(i)).sum()
     }
 
     /// Angular momentum of all particles about the origin, their spin included [kg m²/s].
     pub(crate) fn angular_momentum(&self) -> Vec3 {
         let all = &self.particles;
-        let of = |i: usize| all.position[i].cross(&all.velocity[i]) * all.mass[i] + all.spin[i] * all.inertia[i];
+        let of = |i: usize| match self.own_mass(i) {
+            0.0 => Vec3::zeros(),
+            mass => all.position[i].cross(&all.velocity[i]) * mass + all.spin[i] * all.inertia[i],
+        };
         (0..all.len()).map(of).sum()
     }
 

@@ -1,8 +1,10 @@
-//! The transition of damaged elements to discrete elements.
+//! What joins elements and particles: the transition of damaged elements, and ties.
 
 mod debris;
 mod holder;
 mod radius;
+mod tie;
 
 pub use debris::{Debris, DebrisState, Pair};
 pub use radius::largest_radii;
+pub use tie::{Attachment, Layer, Ties};

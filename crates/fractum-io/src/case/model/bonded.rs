@@ -12,6 +12,9 @@ pub struct BondedBody {
     pub material: usize,
     /// Where its particles come from.
     pub packing: PackingSource,
+    /// Solid body whose elements wholly within the shape it takes the place of; it fills the region that they leave, and
+    /// is tied to the rest.
+    pub replaces: Option<Spanned<String>>,
     /// Coordination of its bonds; `None` = chosen to suit Poisson's ratio. That of the material's `bonds`, where it has
     /// them.
     pub coordination: Option<Spanned<f64>>,

@@ -25,6 +25,8 @@ pub struct Material {
     pub fracture: Option<Spanned<BondFailure>>,
     /// Contact of the discrete elements that this material leaves behind.
     pub contact: Surface,
+    /// Young's modulus that contacts of its particles take [Pa], > 0; `None` = that of the material.
+    pub contact_modulus: Option<f64>,
 }
 
 /// Softening damage.

@@ -7,6 +7,7 @@ mod loose;
 mod material;
 mod probe;
 mod rigid;
+mod tie;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -25,6 +26,7 @@ pub use probe::{
     CountKind, CrackMeasure, EnergyKind, Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take,
 };
 pub use rigid::{RigidBody, RigidShape};
+pub use tie::Tie;
 
 use super::choice::choice;
 use super::{Diagnostic, Dimension, Spanned};
@@ -45,6 +47,8 @@ pub struct Case {
     pub materials: Vec<Material>,
     /// Bodies, in the order of the file; at least one.
     pub bodies: Vec<Body>,
+    /// Ties between bonded bodies and solids, in the order of the file.
+    pub ties: Vec<Tie>,
     /// Supports, in the order of the file.
     pub supports: Vec<Support>,
     /// Loads, in the order of the file.
@@ -367,6 +371,9 @@ impl Case {
             BodyKind::Rigid(RigidBody { shape: RigidShape::Group { group, .. }, .. }) => Some((group, GroupUse::Tool)),
             BodyKind::Rigid(_) | BodyKind::Particles(_) => None,
         });
+        let is_body = |name: &str| self.bodies.iter().any(|body| body.name.value == name);
+        let ties = self.ties.iter().map(|tie| (&tie.solid, GroupUse::Facets));
+        let ties = ties.filter(move |(group, _)| !is_body(&group.value));
         let supports = self.supports.iter().map(|support| (&support.group, GroupUse::Support));
         let loads = self.loads.iter().filter_map(|load| match &load.kind {
             LoadKind::Force { group, .. } => Some((group, GroupUse::Force)),
@@ -386,6 +393,6 @@ impl Case {
         let of_mesh =
             |group: &&Spanned<String>| self.particle_group(&group.value).is_none() && self.tool(&group.value).is_none();
         let named = supports.chain(loads).chain(probes).filter(|(group, _)| of_mesh(group));
-        bodies.chain(named).chain(openings).collect()
+        bodies.chain(ties).chain(named).chain(openings).collect()
     }
 }

@@ -30,6 +30,13 @@ pub(super) const SHAPES: [&str; 5] = ["box", "cylinder", "sphere", "group", "stl
 
 /// Reads a bonded body of the material at `material`, which is nothing where it is wrong.
 pub(super) fn bonded(table: &Table<'_>, material: Option<usize>, here: Option<&Material>) -> Option<BondedBody> {
+    if table.has("packing") {
+        table.refuse("replaces", "beside a packing made before");
+    }
+    let replaces = match table.has("packing") {
+        true => Some(None),
+        false => table.text("replaces").spanned().map(Some).or_if_absent(None),
+    };
     let packing = packing(table);
     let beams = here.and_then(|material| material.bonds.as_ref());
     let (coordination, convention) = match beams {
@@ -51,6 +58,7 @@ pub(super) fn bonded(table: &Table<'_>, material: Option<usize>, here: Option<&M
     Some(BondedBody {
         material: material?,
         packing: packing?,
+        replaces: replaces?,
         coordination,
         convention,
         groups: groups?,

@@ -33,6 +33,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         let place = table.place.clone();
         super::fracture::fracture(table).map(|failure| Spanned::new(failure, place))
     });
+    let contact_modulus = contact_modulus(&table);
     let contact = contact(&table);
     table.finish("here");
     Some(Material {
@@ -44,6 +45,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         bonds: bonds.map_or(Some(None), |bonds| bonds.map(Some))?,
         fracture: fracture.map_or(Some(None), |fracture| fracture.map(Some))?,
         contact,
+        contact_modulus: contact_modulus?,
     })
 }
 
@@ -192,9 +194,15 @@ fn scatter(table: Table<'_>) -> Option<Scatter> {
     Some(Scatter { distribution: distribution?, seed })
 }
 
+/// Young's modulus of contacts; `Some(None)` where nothing is said.
+fn contact_modulus(parent: &Table<'_>) -> Option<Option<f64>> {
+    parent.table_or_empty("contact").quantity("young_modulus").positive().map(Some).or_if_absent(None)
+}
+
 /// The `contact` table of a material or tool.
 pub(super) fn contact(parent: &Table<'_>) -> Surface {
     let table = parent.table_or_empty("contact");
+    table.node("young_modulus"); // a material's, read by itself
     let default = Surface::default();
     let friction = table.quantity("friction").not_negative().or(default.friction);
     let rolling_friction = table.quantity("rolling_friction").not_negative().or(default.rolling_friction);

@@ -12,6 +12,7 @@ mod probes;
 mod rigid;
 mod solver;
 mod table_file;
+mod ties;
 mod time_functions;
 mod vectors;
 
@@ -127,6 +128,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
     let parameters = parameters::read(&table);
     let materials = materials::read(&table);
     let bodies = bodies::read(&table, &materials);
+    let ties = ties::read(&table, bodies.as_deref());
     let mesh = mesh(&table, bodies.as_deref());
     let supports = boundary::supports(&table);
     let loads = boundary::loads(&table);
@@ -149,6 +151,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
         mesh: mesh?,
         materials: materials.into_iter().map(|(_, material)| material).collect::<Option<_>>()?,
         bodies: bodies?,
+        ties: ties?,
         supports: supports?,
         loads: loads?,
         damping,
