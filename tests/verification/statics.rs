@@ -179,10 +179,10 @@ fn the_first_period_of_a_clamped_bar_is_four_transits() {
         Support::new("left", nodes_where(&solid, |p| p.x < 1e-9), 0, Motion::Fixed),
         Support::new("all", nodes_where(&solid, |_| true), 1, Motion::Fixed),
     ];
-    let scene = scene(solid, supports, Vec::new());
+    let mut scene = scene(solid, supports, Vec::new());
     let mut stiffness = Stiffness::new(&scene).unwrap();
     stiffness.prepare(&scene).unwrap();
-    let period = stiffness.first_period(&scene).unwrap();
+    let period = stiffness.first_period(&mut scene, 1.0).unwrap();
     assert!((period * speed / 4.0 - 1.0).abs() < 0.01, "{period}");
 }
 

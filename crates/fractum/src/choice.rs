@@ -8,10 +8,13 @@ use fractum_io::number::quantity;
 use fractum_scene::Scene;
 use fractum_scene::statics::{Stiffness, check_supports};
 
-/// First periods over which loading by motion is quasi-static: 20 keep the kinetic energy far below the elastic one.
+/// First periods over which loading by motion is quasi-static: 20 keep the kinetic energy far below the elastic one. Where
+/// something breaks as many follow the peak.
 const PERIODS: f64 = 20.0;
 /// Iterations to equilibrium along the path of one crack through a specimen: 350 to 1,100 in the gallery.
 const ITERATIONS: f64 = 600.0;
+/// Time that is spent twice for a better estimate [s].
+const SOON: f64 = 0.5;
 /// Nodes up to which the first period is looked for: a few seconds.
 const MOST_NODES: usize = 300_000;
 
@@ -31,14 +34,22 @@ pub(crate) fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -
         return vec![("choice", text)];
     }
     let Ok(mut stiffness) = Stiffness::new(scene) else { return Vec::new() };
-    let begin = Instant::now();
-    if stiffness.prepare(scene).is_err() {
-        return Vec::new();
+    // The first assembly is slower than those of a run: where that costs little, the second counts.
+    let mut prepared = f64::INFINITY;
+    for _ in 0..2 {
+        let begin = Instant::now();
+        if stiffness.prepare(scene).is_err() {
+            return Vec::new();
+        }
+        prepared = begin.elapsed().as_secs_f64().min(prepared);
+        if prepared > SOON {
+            break;
+        }
     }
-    let prepared = begin.elapsed().as_secs_f64();
-    let Ok(period) = stiffness.first_period(scene) else { return Vec::new() };
+    let Ok(period) = stiffness.first_period(scene, case.solver.end) else { return Vec::new() };
     let dt = case.solver.safety * 2.0 / scene.solid.stable_step().frequency;
-    let steps = PERIODS * period / dt;
+    let periods = if scene.solid.has_damage() { 2.0 * PERIODS } else { PERIODS };
+    let steps = periods * period / dt;
     let motion = steps * step_seconds;
     let (times, what) = if scene.solid.has_damage() {
         (ITERATIONS, format!("about {ITERATIONS} iterations along the path of a crack"))
@@ -55,9 +66,16 @@ pub(crate) fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -
         let better = if rest < motion { "static" } else { "explicit" };
         format!("for slow loading take kind = \"{better}\"")
     };
-    let moved = format!("{} periods of motion are {steps:.0} steps, {}", PERIODS, quantity(motion, "s"));
+    let moved = format!("{periods} periods of motion are {steps:.0} steps, {}", quantity(motion, "s"));
     vec![
-        ("period", format!("{} at first, {:.0} time steps", quantity(period, "s"), period / dt)),
+        (
+            "period",
+            format!(
+                "{} of the slowest vibration that the load excites, {:.0} time steps",
+                quantity(period, "s"),
+                period / dt
+            ),
+        ),
         ("choice", format!("{moved}; equilibrium is {what}, {}: {advice}", quantity(rest, "s"))),
     ]
 }

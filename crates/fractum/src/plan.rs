@@ -19,6 +19,9 @@ const COST: [f64; 3] = [20.0, 45.0, 50.0];
 /// Bytes per element: standard, smoothed, smoothed with damage.
 const MEMORY: [f64; 3] = [250.0, 450.0, 550.0];
 
+/// Elements that a further thread needs to be of use.
+const ELEMENTS_PER_THREAD: usize = 5_000;
+
 /// The same for a bond with its share of particles.
 const COST_OF_BOND: f64 = 60.0;
 const MEMORY_OF_BOND: f64 = 400.0;
@@ -379,7 +382,10 @@ impl Plan {
 
     /// Adds what motion and equilibrium would cost.
     pub fn compare_solvers(&mut self, case: &Case, assembly: &mut Assembly) {
-        let seconds = 1e-9 * elements_cost(&assembly.scene).0 / rayon::current_num_threads() as f64;
+        let (nanoseconds, _, elements) = elements_cost(&assembly.scene);
+        // Few elements keep one thread busy only.
+        let threads = rayon::current_num_threads().min(1 + elements / ELEMENTS_PER_THREAD);
+        let seconds = 1e-9 * nanoseconds / threads as f64;
         for (topic, text) in crate::choice::compare(case, assembly, seconds) {
             self.add(topic, text);
         }
