@@ -92,14 +92,21 @@ pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
     notes
 }
 
-/// Bonded bodies cut open across the line of sight, coloured by the bonds that particles have lost.
+/// Bonded bodies cut open in the middle, normal to the axis that `view` looks along most, seen straight on and coloured by the
+/// bonds that particles have lost.
 fn broken_bonds(scene: &Scene, balls: &[[f64; 3]], view: &View, folder: &Path, when: &str) -> Option<PictureNote> {
     let bonded = &scene.bonded;
     let lost = lost_bonds(balls.len(), bonded.bodies().iter().flat_map(BondedBody::cracks));
     let reference = bonded.reference();
-    let look = Vec3::from(view.direction);
+    let axis = Vec3::from(view.direction).iamax();
+    let mut look = Vec3::zeros();
+    look[axis] = view.direction[axis].signum();
+    let up = if axis == 2 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
+    let view = View { direction: look.into(), up, ..*view };
     let depth = |i: usize| reference[i].dot(&look);
-    let middle = reference.iter().map(|x| x.dot(&look)).sum::<f64>() / reference.len() as f64;
+    let (near, far) =
+        (0..balls.len()).map(depth).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
+    let middle = 0.5 * (near + far);
     let kept: Vec<usize> = (0..balls.len()).filter(|&i| depth(i) >= middle).collect();
     let centres: Vec<[f64; 3]> = kept.iter().map(|&i| balls[i]).collect();
     let radii: Vec<f64> = kept.iter().map(|&i| bonded.particles.radius[i]).collect();
@@ -108,7 +115,7 @@ fn broken_bonds(scene: &Scene, balls: &[[f64; 3]], view: &View, folder: &Path, w
     let spheres = Spheres { centres: &centres, radii: &radii, paint: Paint::Nodes(&values) };
     let picture = Picture { spheres: &[spheres], map: ColourMap::Damage, range, ..Picture::default() };
     let file = "broken_bonds.png".to_owned();
-    picture.render(view).and_then(|image| image.write(&folder.join("pictures").join(&file))).ok()?;
+    picture.render(&view).and_then(|image| image.write(&folder.join("pictures").join(&file))).ok()?;
     Some(PictureNote {
         file,
         title: format!("Bonds that particles of the far half have lost at {when}"),
