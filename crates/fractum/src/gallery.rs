@@ -15,6 +15,9 @@ use crate::report::PictureNote;
 /// The largest displacement in a picture, as a fraction of the size of the body.
 const SHOWN_DISPLACEMENT: f64 = 0.04;
 
+/// Shortest over next side of what is seen from its broad side.
+const FLAT: f64 = 0.35;
+
 /// What a picture shows but does not colour.
 const GREY: [u8; 3] = [150, 150, 150];
 
@@ -92,15 +95,18 @@ pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
     notes
 }
 
-/// Bonded bodies cut open in the middle, normal to the axis that `view` looks along most, seen straight on and coloured by the
-/// bonds that particles have lost.
+/// Bonded bodies cut open in the middle, seen straight on and coloured by the bonds that particles have lost: along their broad
+/// side where they are flat, upright elsewhere.
 fn broken_bonds(scene: &Scene, balls: &[[f64; 3]], view: &View, folder: &Path, when: &str) -> Option<PictureNote> {
     let bonded = &scene.bonded;
     let lost = lost_bonds(balls.len(), bonded.bodies().iter().flat_map(BondedBody::cracks));
     let reference = bonded.reference();
-    let axis = Vec3::from(view.direction).iamax();
+    let size = extent(reference);
+    let thin = size.imin();
+    let flat = size[thin] < FLAT * size[(thin + 1) % 3].min(size[(thin + 2) % 3]);
+    let axis = if flat { thin } else { 1 };
     let mut look = Vec3::zeros();
-    look[axis] = view.direction[axis].signum();
+    look[axis] = if axis == 2 { -1.0 } else { 1.0 };
     let up = if axis == 2 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
     let view = View { direction: look.into(), up, ..*view };
     let depth = |i: usize| reference[i].dot(&look);

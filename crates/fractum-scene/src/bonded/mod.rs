@@ -81,6 +81,11 @@ pub struct BondedBody {
 }
 
 impl BondedBody {
+    /// Bound on the highest frequency [rad/s]: 2/ω is the step that is stable without a safety factor.
+    fn bound(&self, particles: &Particles) -> f64 {
+        2.0 / self.bonds.stable_step(particles, 1.0)
+    }
+
     /// Bonds that have broken.
     pub fn broken(&self) -> usize {
         self.cracks().len()
@@ -188,21 +193,24 @@ impl Bonded {
             };
             all.bodies.push(BondedBody { name, range, bonds, density, plan, fracture, closest: None });
         }
-        // 2/ω is the step that is stable without a safety factor.
-        let highest = |body: &BondedBody| 2.0 / body.bonds.stable_step(&all.particles, 1.0);
-        all.frequency = all.bodies.iter().map(highest).fold(0.0, f64::max);
+        all.frequency = all.bodies.iter().map(|body| body.bound(&all.particles)).fold(0.0, f64::max);
         all.partial = vec![LeapWork::default(); all.particles.block_count()];
         Ok(all)
     }
 
-    /// Finds the highest frequency of the bonds as they are by the Lanczos process, in the place of its bound.
+    /// Finds the highest frequency of the bonds as they are by the Lanczos process, in the place of its bound. Bodies that
+    /// can break keep the bound: where crack faces meet within a step, the balance pays for every step's length.
     ///
     /// # Errors
     /// Beams that are none, which [`Bonded::new`] refuses.
     pub fn find_frequency(&mut self) -> Result<(), SceneError> {
         let mut highest: f64 = 0.0;
         for body in self.bodies.iter().filter(|body| !body.bonds.is_empty()) {
-            highest = highest.max(body.bonds.highest_frequency(&self.particles, body.range.clone())?);
+            highest = highest.max(if body.can_break() {
+                body.bound(&self.particles)
+            } else {
+                body.bonds.highest_frequency(&self.particles, body.range.clone())?
+            });
         }
         self.frequency = self.frequency.min(highest);
         Ok(())
