@@ -1,42 +1,20 @@
 //! Bonds that break in motion, and the contact of what they held.
 
-use fractum_contact::law::{ContactMemory, Linear, PairMotion, Rolling};
+use std::ops::Range;
+
+use fractum_contact::close_pairs;
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::breaking::{Crack, facet_area};
 use crate::criterion::{BondLoad, Criterion};
+use crate::face::{CrackFaces, Face, FaceWork};
 use crate::graph::BondGraph;
 use crate::watch::{Bonded, Break, Site, Watch};
 use crate::{BeamForces, BeamNetwork, BeamSection, DemError, Particles};
 
-/// The faces of a crack against one another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CrackFaces {
-    /// Coulomb's coefficient μ ≥ 0.
-    pub friction: f64,
-    /// Damping of the closing motion over the critical one, ξ ≥ 0.
-    pub damping_ratio: f64,
-}
-
-impl Default for CrackFaces {
-    fn default() -> Self {
-        CrackFaces { friction: 0.5, damping_ratio: 0.0 }
-    }
-}
-
-/// Energies of crack faces in one step [J].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FaceWork {
-    /// In the springs of faces that touch.
-    pub stored: f64,
-    /// Taken by friction in the step.
-    pub friction: f64,
-    /// Taken by damping in the step.
-    pub damping: f64,
-    /// Taken or given by the finite step where faces meet or part within it; of second order in the step.
-    pub kinks: f64,
-}
+/// Gap up to which strangers are listed, over the smallest radius.
+const SKIN: f64 = 0.5;
 
 /// A criterion in the company of a moving network: breaks bonds, keeps the list of them, and lets their particles touch.
 ///
@@ -76,20 +54,6 @@ pub struct Occasion {
     pub event: usize,
     /// Load, where there is one that matters.
     pub load: f64,
-}
-
-/// Two particles whose bond is broken.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Face {
-    pair: [u32; 2],
-    /// Length of the bond without load [m].
-    rest: f64,
-    /// Distance at which they touch [m].
-    closing: f64,
-    /// Distance at the last step [m].
-    last: f64,
-    law: Linear,
-    memory: ContactMemory,
 }
 
 /// A network and its particles as a criterion sees them.
@@ -229,7 +193,8 @@ impl Fracture {
             self.acting.push((self.cracks.len(), bonds.forces_of(bond as usize, particles)));
             let pair = bonds.pairs()[bond as usize];
             let [i, j] = pair.map(|i| i as usize);
-            self.pairs.push(self.face(bonds, particles, bond));
+            let rest = bonds.length(bond as usize);
+            self.pairs.push(Face::new(bonds.section(), particles, pair, rest, self.faces, false));
             bonds.break_bond(bond as usize);
             self.watch.bond_broken(bond, &self.graph);
             self.released += energy;
@@ -282,68 +247,42 @@ impl Fracture {
         self.watch.gather_all(&self.graph);
     }
 
-    fn face(&self, bonds: &BeamNetwork, particles: &Particles, bond: u32) -> Face {
-        let pair = bonds.pairs()[bond as usize];
-        let [i, j] = pair.map(|i| i as usize);
-        let rest = bonds.length(bond as usize);
-        let section = bonds.section();
-        let normal_stiffness = section.axial() / rest;
-        let reduced = particles.mass[i] * particles.mass[j] / (particles.mass[i] + particles.mass[j]);
-        let law = Linear {
-            normal_stiffness,
-            tangential_stiffness: 12.0 * section.bending() / rest.powi(3),
-            normal_damping: 2.0 * self.faces.damping_ratio * (reduced * normal_stiffness).sqrt(),
-            friction: self.faces.friction,
-            rolling: Rolling::default(),
-        };
-        let distance = (particles.position[j] - particles.position[i]).norm();
-        Face { pair, rest, closing: rest.min(distance), last: distance, law, memory: ContactMemory::default() }
-    }
-
-    /// Adds the forces of crack faces that touch; one call per step.
+    /// Adds the forces of crack faces and of strangers that touch; one call per step.
     ///
     /// - `dt` [s]: the step that led here
     pub fn add_contact_forces(&mut self, particles: &mut Particles, dt: f64) -> FaceWork {
         let mut work = FaceWork::default();
-        let Particles { position, velocity, spin, force, moment, .. } = particles;
-        for face in &mut self.pairs {
-            let [i, j] = face.pair.map(|i| i as usize);
-            let apart = position[j] - position[i];
-            let distance = apart.norm();
-            let overlap = face.closing - distance;
-            // The trapezoid of the forces over the step against the change of the spring: not the same across the kink.
-            let (before, after) = ((face.closing - face.last).max(0.0), overlap.max(0.0));
-            if (before > 0.0) != (after > 0.0) {
-                let given = 0.5 * (before + after) * (distance - face.last);
-                work.kinks += face.law.normal_stiffness * (0.5 * (before * before - after * after) - given);
-            }
-            face.last = distance;
-            face.closing = face.closing.max(distance.min(face.rest));
-            // Far apart and long so: nothing to forget either.
-            if overlap < -face.rest {
-                continue;
-            }
-            let normal = apart / distance;
-            let arm = 0.5 * distance;
-            let turning = (spin[i] + spin[j]).cross(&normal) * arm;
-            let motion = PairMotion {
-                normal,
-                overlap,
-                velocity: velocity[j] - velocity[i] - turning,
-                spin: spin[j] - spin[i],
-                dt,
-            };
-            let found = face.law.force(&motion, &mut face.memory);
-            let twist = normal.cross(&found.on_second) * -arm;
-            force[i] -= found.on_second;
-            force[j] += found.on_second;
-            moment[i] += twist;
-            moment[j] += twist;
-            work.stored += found.stored;
-            work.friction += found.friction;
-            work.damping += found.damping;
-        }
+        self.pairs.iter_mut().for_each(|face| face.add_force(particles, dt, &mut work));
         work
+    }
+
+    /// Looks for particles that were never bonded to each other and have come close, one of which has lost bonds: they
+    /// touch from now on as crack faces do. A call every few steps is enough, but must come at the same steps in a run
+    /// that goes on from a saved state.
+    ///
+    /// - `range`: the particles of the body
+    pub fn meet_strangers(&mut self, bonds: &BeamNetwork, particles: &Particles, range: Range<usize>) {
+        let Fracture { graph, pairs, cracks, .. } = self;
+        if cracks.is_empty() {
+            return;
+        }
+        let (centres, radii) = (&particles.position[range.clone()], &particles.radius[range.clone()]);
+        let skin = SKIN * radii.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut lost = vec![false; range.len()];
+        cracks.iter().flat_map(|crack| crack.pair).for_each(|i| lost[i as usize - range.start] = true);
+        // Strangers that have parted again have nothing to remember.
+        pairs.retain(|face| !face.stranger || face.gap(particles) < skin);
+        let mut known: Vec<[u32; 2]> = pairs.iter().filter(|face| face.stranger).map(|face| face.pair).collect();
+        known.sort_unstable();
+        let start = range.start as u32;
+        for [i, j] in close_pairs(centres, radii, skin) {
+            let pair = [i + start, j + start];
+            let concerned = lost[i as usize] || lost[j as usize];
+            if concerned && !graph.were_bonded(pair) && known.binary_search(&pair).is_err() {
+                let rest = radii[i as usize] + radii[j as usize];
+                pairs.push(Face::new(bonds.section(), particles, pair, rest, self.faces, true));
+            }
+        }
     }
 }
 
@@ -421,6 +360,42 @@ mod tests {
             assert_eq!((fracture.cracks().len(), jump), (1, 0.0));
             assert!(drift < 2e-4, "{length}: {drift}");
         }
+    }
+
+    #[test]
+    fn a_loose_particle_bounces_off_particles_it_was_never_bonded_to() {
+        // The bond of the first two is overstretched and breaks; the second one flies at the other pair.
+        let position: Vec<Vec3> = [0.0, 1.0, 2.5, 3.5].map(|x| Vec3::x() * x).to_vec();
+        let section = BeamSection::new(1e4, 0.3).unwrap();
+        let mut bonds = BeamNetwork::new(&position, &[[0, 1], [2, 3]], section).unwrap();
+        let mut particles = Particles::at_rest(position, vec![0.45; 4], 4.0).unwrap();
+        let faces = CrackFaces { friction: 0.5, damping_ratio: 0.0 };
+        let mut fracture = Fracture::new(&bonds, &particles, beam(50.0), faces, 0.6, 1.0).unwrap();
+        particles.position[0].x -= 0.01;
+        particles.velocity[1].x = 0.05;
+        let dt = 0.02 * bonds.stable_step(&particles, 0.7);
+        bonds.add_forces_and_dyads(&mut particles);
+        fracture.break_overloaded(&mut bonds, &particles, Occasion::default());
+        particles.clear_forces();
+        let mut work = FaceWork::default();
+        for step in 0..40_000 {
+            particles.kick_and_drift(dt, Integrator::VelocityVerlet);
+            fracture.book_last_work(&particles, 0.0);
+            particles.clear_forces();
+            bonds.add_forces_and_dyads(&mut particles);
+            work = fracture.add_contact_forces(&mut particles, dt);
+            particles.kick(dt, Integrator::VelocityVerlet);
+            if step % 20 == 0 {
+                fracture.meet_strangers(&bonds, &particles, 0..4);
+            }
+        }
+        let momentum: f64 = particles.velocity.iter().map(|v| v.x).sum();
+        assert!((momentum - 0.05).abs() < 1e-12 && fracture.cracks().len() == 1, "{momentum}");
+        assert!(particles.position[1].x < particles.position[2].x - 0.9, "{:?}", particles.position);
+        // One on two of the same mass: the ball keeps between a third of its speed, thrown back, and none.
+        assert!((-0.05 / 3.0 - 1e-6..1e-3).contains(&particles.velocity[1].x), "{:?}", particles.velocity);
+        let energy = particles.kinetic_energy() + bonds.energy(&particles).total() + work.stored;
+        assert!((energy / (0.5 * 0.05 * 0.05) - 1.0).abs() < 1e-3, "{energy}");
     }
 
     #[test]

@@ -78,6 +78,12 @@ impl BondGraph {
         was
     }
 
+    /// Whether a bond joins these particles or did before it broke.
+    pub fn were_bonded(&self, [i, j]: [u32; 2]) -> bool {
+        let row = self.offsets[i as usize] as usize..self.offsets[i as usize + 1] as usize;
+        self.half[row].iter().any(|h| h.other == j)
+    }
+
     /// The bonds of a particle that hold, in the order of their numbers.
     #[inline]
     pub fn neighbours(&self, particle: usize) -> impl Iterator<Item = HalfEdge> {

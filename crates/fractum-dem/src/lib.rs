@@ -26,6 +26,7 @@ mod breaking;
 mod conjugate;
 pub mod criterion;
 mod error;
+mod face;
 mod fracture;
 mod graph;
 mod lattice;
@@ -40,7 +41,8 @@ pub use bond::{BeamEnergy, BeamForces, BeamNetwork, BeamSection, BondedPair, coh
 pub use breaking::{Batch, Breaking, Crack, LoadPoint, Outcome, Point, QuasiStatic, Stage, quasi_static};
 pub use criterion::Criterion;
 pub use error::DemError;
-pub use fracture::{CrackFaces, FaceWork, Fracture, FractureState, Occasion};
+pub use face::{CrackFaces, FaceWork};
+pub use fracture::{Fracture, FractureState, Occasion};
 pub use graph::{BondGraph, HalfEdge, Parts};
 pub use lattice::{Dof6, Equilibrium, Lattice, Supports, Tolerance};
 pub use leapfrog::{Leap, LeapWork, ParticleDamping, PastForces};

@@ -48,8 +48,9 @@ pub struct Certificate {
 
 /// Depth of the core in mean diameters.
 const CORE: f64 = 2.0;
-/// How deep walls order a random packing, in mean diameters: directions of shallower packings are theirs, and not judged.
-const WALLS_REACH: f64 = 5.0;
+/// Depths in mean diameters between which directions are not judged: walls order the core of such packings a little, as
+/// they do in discs and plates of rock, while shallower ones are layers throughout.
+const WALLS_REACH: std::ops::Range<f64> = 2.5..5.0;
 /// Contacts that make a core worth measuring.
 const FEW: usize = 500;
 /// Pairs this close count as contacts of the released packing (directions only).
@@ -110,7 +111,7 @@ impl Certificate {
     }
 
     /// Refuses a packing that is looser, more overlapped or less isotropic than a random close packing. Walls order some
-    /// five diameters next to them; what holds nothing deeper is not judged by its directions.
+    /// five diameters next to them; what has a core, but none deeper than that, is not judged by its directions.
     ///
     /// # Errors
     /// [`PackError::Refused`] with what was reached.
@@ -128,7 +129,7 @@ impl Certificate {
             let reached = format!("{:.2e}", self.overlap_mean);
             return refuse("mean overlap below 0.5 % of the mean radius", reached, "ask for a lower coordination");
         }
-        if self.depth > WALLS_REACH && !self.isotropy.isotropic() {
+        if !WALLS_REACH.contains(&self.depth) && !self.isotropy.isotropic() {
             let reached = format!("{:.3} against {:.3}", self.isotropy.deviation, self.isotropy.shot_noise);
             let remedy = "try another seed, or a dispersion of 0.25 and more (ordered packings form below 0.15)";
             return refuse("contact directions within 20 % of shot noise", reached, remedy);

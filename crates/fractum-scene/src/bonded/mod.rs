@@ -23,6 +23,9 @@ pub use probe::ParticleProbe;
 use crate::error::SceneError;
 use boundary::{Forces, Holds};
 
+/// Steps between two searches for particles of a broken body that meet others of it.
+const STEPS_BETWEEN_SEARCHES: u64 = 20;
+
 /// A bonded body before it joins a scene.
 #[derive(Clone, Debug)]
 pub struct BondedPart {
@@ -355,8 +358,11 @@ impl Bonded {
     pub(crate) fn break_overloaded(&mut self, step: u64, time: f64, measure: bool) {
         let Bonded { particles, reference, bodies, .. } = self;
         let occasion = Occasion { time, event: step as usize, load: 0.0 };
-        for BondedBody { bonds, fracture, closest, .. } in bodies {
+        for BondedBody { bonds, fracture, closest, range, .. } in bodies {
             let Some(fracture) = fracture else { continue };
+            if step.is_multiple_of(STEPS_BETWEEN_SEARCHES) {
+                fracture.meet_strangers(bonds, particles, range.clone());
+            }
             if measure && let Some(site) = fracture.closest(bonds, particles) {
                 let place = fracture.place(&site, reference);
                 if closest.is_none_or(|known| site.ratio > known.ratio) {

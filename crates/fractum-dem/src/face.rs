@@ -1,0 +1,126 @@
+//! Contact of what bonds held, and of what they never held.
+
+use fractum_contact::law::{ContactMemory, Linear, PairMotion, Rolling};
+use serde::{Deserialize, Serialize};
+
+use crate::{BeamSection, Particles};
+
+/// The faces of a crack against one another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrackFaces {
+    /// Coulomb's coefficient μ ≥ 0.
+    pub friction: f64,
+    /// Damping of the closing motion over the critical one, ξ ≥ 0.
+    pub damping_ratio: f64,
+}
+
+impl Default for CrackFaces {
+    fn default() -> Self {
+        CrackFaces { friction: 0.5, damping_ratio: 0.0 }
+    }
+}
+
+/// Energies of crack faces in one step [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FaceWork {
+    /// In the springs of faces that touch.
+    pub stored: f64,
+    /// Taken by friction in the step.
+    pub friction: f64,
+    /// Taken by damping in the step.
+    pub damping: f64,
+    /// Taken or given by the finite step where faces meet or part within it; of second order in the step.
+    pub kinks: f64,
+}
+
+/// Two particles of a body that touch where no bond joins them: it is broken, or never was.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Face {
+    pub(crate) pair: [u32; 2],
+    /// Whether there never was a bond.
+    pub(crate) stranger: bool,
+    /// Length of the bond without load, or sum of the radii [m].
+    rest: f64,
+    /// Distance at which they touch [m].
+    closing: f64,
+    /// Distance at the last step [m].
+    last: f64,
+    law: Linear,
+    memory: ContactMemory,
+}
+
+impl Face {
+    /// Two particles as they stand: they give no force yet.
+    ///
+    /// - `rest` [m]: the distance at which they touch, once they have parted as far
+    pub(crate) fn new(
+        section: BeamSection,
+        particles: &Particles,
+        pair: [u32; 2],
+        rest: f64,
+        faces: CrackFaces,
+        stranger: bool,
+    ) -> Self {
+        let [i, j] = pair.map(|i| i as usize);
+        let normal_stiffness = section.axial() / rest;
+        let reduced = particles.mass[i] * particles.mass[j] / (particles.mass[i] + particles.mass[j]);
+        let law = Linear {
+            normal_stiffness,
+            tangential_stiffness: 12.0 * section.bending() / rest.powi(3),
+            normal_damping: 2.0 * faces.damping_ratio * (reduced * normal_stiffness).sqrt(),
+            friction: faces.friction,
+            rolling: Rolling::default(),
+        };
+        let distance = (particles.position[j] - particles.position[i]).norm();
+        Face {
+            pair,
+            stranger,
+            rest,
+            closing: rest.min(distance),
+            last: distance,
+            law,
+            memory: ContactMemory::default(),
+        }
+    }
+
+    /// Distance between the surfaces, negative where they overlap [m].
+    pub(crate) fn gap(&self, particles: &Particles) -> f64 {
+        let [i, j] = self.pair.map(|i| i as usize);
+        (particles.position[j] - particles.position[i]).norm() - self.rest
+    }
+
+    /// Adds the force of the moment; `dt` is the step that led here [s].
+    pub(crate) fn add_force(&mut self, particles: &mut Particles, dt: f64, work: &mut FaceWork) {
+        let Particles { position, velocity, spin, force, moment, .. } = particles;
+        let [i, j] = self.pair.map(|i| i as usize);
+        let apart = position[j] - position[i];
+        let distance = apart.norm();
+        let overlap = self.closing - distance;
+        // The trapezoid of the forces over the step against the change of the spring: not the same across the kink.
+        let (before, after) = ((self.closing - self.last).max(0.0), overlap.max(0.0));
+        if (before > 0.0) != (after > 0.0) {
+            let given = 0.5 * (before + after) * (distance - self.last);
+            work.kinks += self.law.normal_stiffness * (0.5 * (before * before - after * after) - given);
+        }
+        self.last = distance;
+        self.closing = self.closing.max(distance.min(self.rest));
+        // Far apart and long so: nothing to forget either.
+        if overlap < -self.rest {
+            return;
+        }
+        let normal = apart / distance;
+        let arm = 0.5 * distance;
+        let turning = (spin[i] + spin[j]).cross(&normal) * arm;
+        let motion =
+            PairMotion { normal, overlap, velocity: velocity[j] - velocity[i] - turning, spin: spin[j] - spin[i], dt };
+        let found = self.law.force(&motion, &mut self.memory);
+        let twist = normal.cross(&found.on_second) * -arm;
+        force[i] -= found.on_second;
+        force[j] += found.on_second;
+        moment[i] += twist;
+        moment[j] += twist;
+        work.stored += found.stored;
+        work.friction += found.friction;
+        work.damping += found.damping;
+    }
+}
