@@ -95,8 +95,8 @@ pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
     notes
 }
 
-/// Bonded bodies cut open in the middle, seen straight on and coloured by the bonds that particles have lost: along their broad
-/// side where they are flat, upright elsewhere.
+/// Bonded bodies cut open in the middle of what broke, seen straight on and coloured by the bonds that particles have lost: along
+/// their broad side where they are flat, upright elsewhere.
 fn broken_bonds(scene: &Scene, balls: &[[f64; 3]], view: &View, folder: &Path, when: &str) -> Option<PictureNote> {
     let bonded = &scene.bonded;
     let lost = lost_bonds(balls.len(), bonded.bodies().iter().flat_map(BondedBody::cracks));
@@ -110,9 +110,7 @@ fn broken_bonds(scene: &Scene, balls: &[[f64; 3]], view: &View, folder: &Path, w
     let up = if axis == 2 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
     let view = View { direction: look.into(), up, ..*view };
     let depth = |i: usize| reference[i].dot(&look);
-    let (near, far) =
-        (0..balls.len()).map(depth).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
-    let middle = 0.5 * (near + far);
+    let middle = (0..balls.len()).map(|i| lost[i] * depth(i)).sum::<f64>() / lost.iter().sum::<f64>();
     let kept: Vec<usize> = (0..balls.len()).filter(|&i| depth(i) >= middle).collect();
     let centres: Vec<[f64; 3]> = kept.iter().map(|&i| balls[i]).collect();
     let radii: Vec<f64> = kept.iter().map(|&i| bonded.particles.radius[i]).collect();
@@ -124,7 +122,7 @@ fn broken_bonds(scene: &Scene, balls: &[[f64; 3]], view: &View, folder: &Path, w
     picture.render(&view).and_then(|image| image.write(&folder.join("pictures").join(&file))).ok()?;
     Some(PictureNote {
         file,
-        title: format!("Bonds that particles of the far half have lost at {when}"),
+        title: format!("Section through what broke: bonds that particles have lost at {when}"),
         label: "broken bonds".to_owned(),
         unit: "1".to_owned(),
         damage: true,
