@@ -1,5 +1,7 @@
 //! Which particles are joined by bonds that still hold.
 
+use fractum_math::numbered_parts;
+
 /// Particles and bonds as a graph; bonds go and never come back.
 #[derive(Clone, Debug)]
 pub struct BondGraph {
@@ -94,35 +96,11 @@ impl BondGraph {
     /// Parts of the body by the bonds that hold, among the particles of `inside` only; the others are parts of their
     /// own.
     pub fn parts_among(&self, inside: impl Fn(usize) -> bool) -> Parts {
-        let n = self.particles();
-        let mut root: Vec<u32> = (0..n as u32).collect();
-        fn find(root: &mut [u32], mut i: u32) -> u32 {
-            while root[i as usize] != i {
-                root[i as usize] = root[root[i as usize] as usize];
-                i = root[i as usize];
-            }
-            i
-        }
-        let inside: Vec<bool> = (0..n).map(inside).collect();
-        for (bond, &[i, j]) in self.pairs.iter().enumerate() {
-            if self.live[bond] && inside[i as usize] && inside[j as usize] {
-                let (a, b) = (find(&mut root, i), find(&mut root, j));
-                // The lowest particle stands for its part.
-                root[a.max(b) as usize] = a.min(b);
-            }
-        }
-        let mut of = vec![0; n];
-        let mut count = 0;
-        for i in 0..n as u32 {
-            let first = find(&mut root, i);
-            of[i as usize] = if first == i {
-                count += 1;
-                count as u32 - 1
-            } else {
-                of[first as usize]
-            };
-        }
-        Parts { of, count }
+        let inside: Vec<bool> = (0..self.particles()).map(inside).collect();
+        let live = self.pairs.iter().zip(&self.live).filter(|(_, live)| **live).map(|(pair, _)| *pair);
+        let links = live.filter(|pair| pair.iter().all(|&i| inside[i as usize]));
+        let (of, count) = numbered_parts(self.particles(), links);
+        Parts { of, count: count as usize }
     }
 
     /// Parts of the whole body.

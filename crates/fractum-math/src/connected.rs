@@ -22,3 +22,23 @@ pub fn connected(count: usize, links: impl IntoIterator<Item = [u32; 2]>) -> Vec
     }
     labels
 }
+
+/// The same with the parts numbered in the order of their first members: the part of each member, and their number.
+///
+/// ```
+/// assert_eq!(fractum_math::numbered_parts(5, [[3, 1], [4, 3]]), (vec![0, 1, 2, 1, 1], 3));
+/// ```
+///
+/// # Panics
+/// As [`connected`].
+pub fn numbered_parts(count: usize, links: impl IntoIterator<Item = [u32; 2]>) -> (Vec<u32>, u32) {
+    let mut part = connected(count, links);
+    let mut parts = 0;
+    for member in 0..count {
+        let first = part[member] as usize;
+        // The first member of a part has its number by the time the others ask for it.
+        part[member] = if first == member { parts } else { part[first] };
+        parts += u32::from(first == member);
+    }
+    (part, parts)
+}

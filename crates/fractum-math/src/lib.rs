@@ -17,7 +17,7 @@ mod ragged;
 mod reduce;
 mod sym3;
 
-pub use connected::connected;
+pub use connected::{connected, numbered_parts};
 pub use lanczos::largest_eigenvalue;
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};

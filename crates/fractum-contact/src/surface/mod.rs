@@ -3,7 +3,7 @@
 mod closest;
 mod weights;
 
-use fractum_math::{Ragged, Vec3, connected};
+use fractum_math::{Ragged, Vec3, numbered_parts};
 
 use crate::SurfaceError;
 pub(crate) use closest::closest_on_segment;
@@ -84,7 +84,7 @@ impl FacetMesh {
             edges.push(same[0].0);
             edge_facets.push([same[0].1, same[same.len() - 1].1]);
         }
-        let (part, parts) = numbered_parts(facets.len(), &edge_facets);
+        let (part, parts) = numbered_parts(facets.len(), edge_facets.iter().copied());
         Ok(FacetMesh {
             triangles: facets.iter().all(|f| f.as_ref().len() == 3),
             facets: Ragged::from_rows(facets),
@@ -217,19 +217,6 @@ fn check_facet(points: &[Vec3], facet: usize, corners: &[u32]) -> Result<(), Sur
         }
     }
     Ok(())
-}
-
-/// Part of each facet, numbered by their first facets, and the number of parts.
-fn numbered_parts(facets: usize, edge_facets: &[[u32; 2]]) -> (Vec<u32>, u32) {
-    let mut part = connected(facets, edge_facets.iter().copied());
-    let mut parts = 0;
-    for facet in 0..facets {
-        let first = part[facet] as usize;
-        // The first facet of a part has its number by the time the others ask for it.
-        part[facet] = if first == facet { parts } else { part[first] };
-        parts += u32::from(first == facet);
-    }
-    (part, parts)
 }
 
 #[cfg(test)]

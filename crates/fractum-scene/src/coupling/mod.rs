@@ -2,9 +2,11 @@
 
 mod debris;
 mod holder;
+mod layer;
 mod radius;
 mod tie;
 
 pub use debris::{Debris, DebrisState, Pair};
+pub use layer::{Attachment, Layer};
 pub use radius::largest_radii;
-pub use tie::{Attachment, Layer, Ties};
+pub use tie::Ties;
