@@ -204,11 +204,6 @@ impl QuasiStatic {
         &self.body
     }
 
-    /// The bonds that hold.
-    pub fn graph(&self) -> &BondGraph {
-        &self.graph
-    }
-
     /// The present load factor.
     pub fn factor(&self) -> f64 {
         self.factor

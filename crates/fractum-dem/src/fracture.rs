@@ -129,11 +129,6 @@ impl Fracture {
         self.faces
     }
 
-    /// The criterion.
-    pub fn criterion(&self) -> &Criterion {
-        self.watch.criterion()
-    }
-
     /// What broke so far, in order.
     pub fn cracks(&self) -> &[Crack] {
         &self.cracks

@@ -31,7 +31,7 @@ impl ParticleDamping {
     }
 }
 
-/// PastForces and moments of a step, which the scheme of Tchamwa and Wielgosz holds against those of the next.
+/// Forces and moments of a step, which the scheme of Tchamwa and Wielgosz holds against those of the next.
 ///
 /// It drifts by Δt v + φ Δt² a. Seen from velocities u = Δx/Δt at half steps this reads
 /// uⁿ⁺½ = uⁿ⁻½ + Δt aⁿ + (φ − 1) Δt (aⁿ − aⁿ⁻¹): central differences with the resistance (φ − 1)(Fⁿ − Fⁿ⁻¹), which in a
@@ -39,7 +39,7 @@ impl ParticleDamping {
 /// damping. Without forces of a step before, as here by default, the first step is the one of the scheme from rest.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PastForces {
-    /// PastForces on the free degrees of freedom [N], one per particle.
+    /// Forces on the free degrees of freedom [N], one per particle.
     pub force: Vec<Vec3>,
     /// Moments on them [N m].
     pub moment: Vec<Vec3>,
