@@ -417,7 +417,7 @@ static KEYS: &[KeyDoc] = &[
     key("solver.opening.along", K::Direction, "required", "Direction in which group moves away from against"),
     key("solver.opening.step", K::Quantity(D::LENGTH), "required", "Growth of the opening in a step, > 0"),
     key("solver.opening.end", K::Quantity(D::LENGTH), "required", "Opening at which the run ends, > 0"),
-    key("solver.linear_solver", K::Choice(names::<LinearSolver>), "\"auto\"", "Static only: Cholesky factorisation, conjugate gradients, or by size and reuse"),
+    key("solver.linear_solver", K::Choice(names::<LinearSolver>), "\"auto\"", "Static with a solid: Cholesky factorisation, conjugate gradients, or by size and reuse"),
     key("solver.tolerance", K::Quantity(D::NONE), "1e-4", "Static only: unbalanced force over the internal forces at which a step is accepted, > 0"),
     key("solver.batch", K::Choice(names::<BondBatch>), "\"site\"", "Static with a bonded body: what breaks between two equilibria, the bonds that every overloaded particle releases, or those of the most overloaded one"),
     key("solver.max_steps", K::Integer, "10000", "Static only: steps after which the run ends in any case"),

@@ -21,12 +21,32 @@ fn the_sample_holds_every_key_of_the_list() {
     assert_eq!(left, ["solver.step"]);
     good(&SMALL.replace("end = 1e-3", "end = 1e-3\nstep = 1e-6"), &[]);
     good(&SMALL.replace("end = 1e-3", STATIC), &[]);
+    good(BONDED_AT_REST, &[]);
 }
 
 /// A static solver with all of its keys, in place of the end of a run.
 const STATIC: &str = "end = 1e-3\nkind = \"static\"\ncontrol = \"opening\"\n\
                       opening = { group = \"top\", against = \"bottom\", along = \"y\", step = 1e-6, end = 1e-4 }\nlinear_solver = \"direct\"\n\
-                      tolerance = 1e-5\nbatch = \"one\"\nmax_steps = 100";
+                      tolerance = 1e-5\nmax_steps = 100";
+
+/// A bonded body at rest, with the key of the static solver that only such bodies have.
+const BONDED_AT_REST: &str = r#"fractum = 1
+[materials.steel]
+density = 7800
+young_modulus = 210e9
+poisson_ratio = 0.3
+[[bodies]]
+name = "box"
+kind = "bonded"
+shape = "box"
+size = [1e-3, 1e-3, 1e-3]
+particles = 1000
+material = "steel"
+[solver]
+end = 1e-3
+kind = "static"
+batch = "one"
+"#;
 
 /// Paths of the keys in a document, as in the list of keys.
 fn paths(value: &toml::Value, path: &str, found: &mut BTreeSet<String>) {
@@ -90,6 +110,7 @@ fn documented_defaults_are_the_defaults() {
         (text.as_str(), "mortar", "bodies[7]", ""),
         (text.as_str(), "mortar", "bodies[8]", ""),
         (SMALL, "steel", "bodies[0]", ""),
+        (BONDED_AT_REST, "steel", "bodies[0]", ""),
         (breaking.as_str(), "steel", "bodies[0]", ""),
     ];
     let mut untried = Vec::new();

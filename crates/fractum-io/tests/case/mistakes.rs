@@ -88,6 +88,12 @@ fn each_mistake_about_a_bonded_body_has_one_clear_message() {
             "11:1: bodies[0].seed has no effect beside a packing made before; remove it",
         ),
         (
+            "[solver]",
+            "[solver]\nkind = \"static\"\nlinear_solver = \"direct\"",
+            "14:1: solver.linear_solver has no effect where no body is a solid: bonds are solved by conjugate gradients; \
+             remove it",
+        ),
+        (
             "poisson_ratio = 0.23",
             "poisson_ratio = 0.23\nbonds = { coordination = 8 }",
             "6:9: materials.glass.bonds.convention is missing; expected \"interior\" or \"all\"",
@@ -287,6 +293,21 @@ fn each_mistake_has_one_clear_message() {
             "kind = \"rigid\"\nshape = \"plane\"\nnormal = [0, 0, 0]",
             "12:10: bodies[0].normal = [0, 0, 0]; \
              expected an axis such as \"x\" or \"-y\", or three numbers that are not all zero",
+        ),
+        (
+            "[solver]",
+            "[damping]\nlocal = 0.5\n[solver]\nkind = \"static\"",
+            "14:1: damping.local has no effect with solver.kind = \"static\", where nothing moves fast; remove it",
+        ),
+        (
+            "[solver]",
+            "[solver]\nkind = \"static\"\nbatch = \"one\"",
+            "15:1: solver.batch has no effect where no body is bonded; remove it",
+        ),
+        (
+            "[solver]",
+            "[solver]\nbatch = \"one\"",
+            "14:1: solver.batch has no effect with kind = \"explicit\"; remove it",
         ),
         (
             "kind = \"solid\"\ngroup = \"bar\"\nmaterial = \"steel\"",

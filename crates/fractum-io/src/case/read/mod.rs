@@ -132,11 +132,9 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
     let mesh = mesh(&table, bodies.as_deref());
     let supports = boundary::supports(&table);
     let loads = boundary::loads(&table);
-    let of_particles = |body: &Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
-    let particles = bodies.as_ref().map(|bodies| bodies.iter().any(of_particles));
-    let damping = solver::damping(&table, particles);
+    let damping = solver::damping(&table, bodies.as_deref());
     let probes = probes::read(&table);
-    let solver = solver::read(&table, &probes);
+    let solver = solver::read(&table, &probes, bodies.as_deref());
     let output = solver::output(&table, solver.as_ref().map(|solver| solver.end));
     let expect = expect::read(&table, &probes);
     let verify = table.table_or_empty("verify");

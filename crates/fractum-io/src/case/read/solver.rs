@@ -3,24 +3,27 @@
 use super::probes::ReadProbe;
 use super::vectors::direction;
 use crate::case::model::{
-    BondBatch, Control, Damping, LinearSolver, Opening, Output, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
+    Body, BodyKind, BondBatch, Control, Damping, LinearSolver, Opening, Output, Solver, SolverKind, StaticOptions,
+    StopWhen, TimeStep,
 };
 use crate::case::reader::Table;
 use crate::case::tree::Value;
 use crate::case::{Diagnostic, nearest};
 
-/// Reads the damping; `particles` says whether there are bodies made of particles, where that is known.
-pub(super) fn damping(root: &Table<'_>, particles: Option<bool>) -> Damping {
+/// Reads the damping; which keys have an effect depends on the solver, and on the bodies where they are known.
+pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>) -> Damping {
     let table = root.table_or_empty("damping");
     let tchamwa_wielgosz = table.quantity("tchamwa_wielgosz").between(1.0, 2.0).given();
     let kind = root.peek("solver").and_then(|node| match &node.value {
         Value::Table(entries) => entries.iter().find(|entry| entry.name == "kind").map(|entry| &entry.node.value),
         _ => None,
     });
-    if particles == Some(false) {
+    if matches!(kind, Some(Value::Text(kind)) if kind == "static") {
+        for key in ["local", "mass", "stiffness", "bulk_linear", "bulk_quadratic", "tchamwa_wielgosz"] {
+            table.refuse(key, "with solver.kind = \"static\", where nothing moves fast");
+        }
+    } else if bodies.is_some_and(|bodies| !bodies.iter().any(is_of_particles)) {
         table.refuse("tchamwa_wielgosz", "where no body is made of particles");
-    } else if matches!(kind, Some(Value::Text(kind)) if kind == "static") {
-        table.refuse("tchamwa_wielgosz", "with kind = \"static\"");
     }
     let damping = Damping {
         local: table.quantity("local").check(|local| (0.0..1.0).contains(local), "from 0 to below 1").or(0.0),
@@ -37,14 +40,18 @@ pub(super) fn damping(root: &Table<'_>, particles: Option<bool>) -> Damping {
 /// Safety factor above which a run is close to the edge of stability.
 const RISKY_SAFETY: f64 = 0.95;
 
-pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe]) -> Option<Solver> {
+fn is_of_particles(body: &Body) -> bool {
+    matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_))
+}
+
+pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body]>) -> Option<Solver> {
     let table = root.table_or_empty("solver");
     let kind = table.choice("kind").or_if_absent(SolverKind::Explicit);
     let end = table.quantity("end").positive().required();
     let is_static = kind == Some(SolverKind::Static);
-    let statics = if is_static { statics(&table).map(Some) } else { Some(None) };
+    let statics = if is_static { statics(&table, bodies).map(Some) } else { Some(None) };
     if !is_static && kind.is_some() {
-        for key in ["control", "opening", "linear_solver", "tolerance", "max_steps"] {
+        for key in ["control", "opening", "linear_solver", "tolerance", "batch", "max_steps"] {
             table.refuse(key, "with kind = \"explicit\"");
         }
     }
@@ -87,7 +94,14 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe]) -> Option<Solver> {
     })
 }
 
-fn statics(table: &Table<'_>) -> Option<StaticOptions> {
+fn statics(table: &Table<'_>, bodies: Option<&[Body]>) -> Option<StaticOptions> {
+    let holds = |of: fn(&Body) -> bool| bodies.is_none_or(|bodies| bodies.iter().any(of));
+    if !holds(|body| matches!(body.kind, BodyKind::Solid(_))) {
+        table.refuse("linear_solver", "where no body is a solid: bonds are solved by conjugate gradients");
+    }
+    if !holds(|body| matches!(body.kind, BodyKind::Bonded(_))) {
+        table.refuse("batch", "where no body is bonded");
+    }
     let control = table.choice::<Control>("control").given();
     let opening = if control == Some(Control::Opening) {
         opening(table).map(Some)
