@@ -1,7 +1,7 @@
 //! What goes into fractum and what comes out of it: cases, results, checkpoints and reports.
 //!
 //! - in: [`case`] reads and checks a case file
-//! - to compute with: [`history`] (`history.csv`), [`summary`] (`summary.json`, `verify.json`), [`fragments`]
+//! - to compute with: [`history`] (`history.csv`), [`summary`] (`summary.json`, `verify.json`), [`expectation`], [`fragments`]
 //! - to look at: [`vtk`] (ParaView), [`picture`] (PNG), [`plot`] (SVG), [`report`] (`report.html`)
 //! - while it runs: [`log`] (`run.log` and the progress line), [`checkpoint`] (stop and go on, bit for bit)
 //! - beneath: [`atomic`] (files that are whole or absent), [`number`] (numbers and units as text), [`error`]
@@ -29,6 +29,7 @@ pub mod case;
 pub mod checkpoint;
 mod compress;
 pub mod error;
+pub mod expectation;
 pub mod fragments;
 pub mod history;
 pub mod log;

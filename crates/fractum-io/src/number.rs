@@ -55,6 +55,11 @@ pub fn quantity(value: f64, unit: &str) -> String {
     if prefixed.unit.is_empty() || value.is_nan() { number } else { format!("{number} {}", prefixed.unit) }
 }
 
+/// A share in per cent with three significant digits: `5 %`.
+pub fn percent(share: f64) -> String {
+    format!("{} %", significant(100.0 * share, 3))
+}
+
 /// `value` with `digits` significant digits at most, no trailing zeros, and an exponent where it is shorter.
 pub fn significant(value: f64, digits: usize) -> String {
     if value.is_nan() {

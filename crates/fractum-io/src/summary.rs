@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::atomic;
 use crate::error::{ReadError, WriteError};
+use crate::expectation::{Expectation, Verified};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -74,48 +75,6 @@ pub struct Probe {
     /// When the largest value came first [s].
     #[serde(with = "number")]
     pub time_of_max: f64,
-}
-
-/// One `[[expect]]` of the case against the run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Expectation {
-    /// Name of the probe.
-    pub quantity: String,
-    /// Unit of value and reference.
-    pub unit: String,
-    /// What came out.
-    #[serde(with = "number")]
-    pub value: f64,
-    /// What was expected.
-    #[serde(with = "number")]
-    pub reference: f64,
-    /// (value - reference) / |reference|; for a reference of zero the value itself.
-    #[serde(with = "number")]
-    pub error: f64,
-    /// Largest |error| that passes.
-    #[serde(with = "number")]
-    pub tolerance: f64,
-    /// Whether |error| is within the tolerance; never for NaN.
-    pub pass: bool,
-    /// Where the reference is from.
-    pub source: String,
-}
-
-impl Expectation {
-    /// Holds `value` against `reference`, both in `unit`.
-    pub fn compare(quantity: &str, unit: &str, value: f64, reference: f64, tolerance: f64, source: &str) -> Self {
-        let error = if reference == 0.0 { value } else { (value - reference) / reference.abs() };
-        Self {
-            quantity: quantity.into(),
-            unit: unit.into(),
-            value,
-            reference,
-            error,
-            tolerance,
-            pass: error.abs() <= tolerance,
-            source: source.into(),
-        }
-    }
 }
 
 /// What became of the bonds of a body.
@@ -232,42 +191,6 @@ pub struct Wall {
     pub phases: BTreeMap<String, f64>,
 }
 
-/// One line of `verify.json`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Verified {
-    /// Name of the case.
-    pub case: String,
-    /// Name of the probe.
-    pub quantity: String,
-    /// What came out.
-    #[serde(with = "number")]
-    pub value: f64,
-    /// What was expected.
-    #[serde(with = "number")]
-    pub reference: f64,
-    /// Relative error, as in [`Expectation`].
-    #[serde(with = "number")]
-    pub error: f64,
-    /// Largest |error| that passes.
-    #[serde(with = "number")]
-    pub tolerance: f64,
-    /// Whether it passed.
-    pub pass: bool,
-    /// Time on the clock [s].
-    #[serde(with = "number")]
-    pub seconds: f64,
-    /// Where the reference is from.
-    pub source: String,
-}
-
-impl Verified {
-    /// The line of `verify.json` for an expectation of `case`, which ran for `seconds`.
-    pub fn new(case: &str, expectation: &Expectation, seconds: f64) -> Self {
-        let Expectation { quantity, value, reference, error, tolerance, pass, source, .. } = expectation.clone();
-        Self { case: case.into(), quantity, value, reference, error, tolerance, pass, seconds, source }
-    }
-}
-
 impl Summary {
     /// The file's text.
     pub fn to_json(&self) -> String {
@@ -319,14 +242,14 @@ fn json<T: Serialize + ?Sized>(value: &T) -> String {
 }
 
 /// A number that JSON may lack: `null` stands for NaN and the infinities, and reads back as NaN.
-mod number {
+pub(crate) mod number {
     use serde::{Deserialize, Deserializer, Serializer};
 
-    pub(super) fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
         if value.is_finite() { serializer.serialize_f64(*value) } else { serializer.serialize_none() }
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
         Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
     }
 }
@@ -334,13 +257,15 @@ mod number {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::model::Bound;
 
     fn example() -> Summary {
         let mut summary =
             Summary { fractum: "0.1.0".into(), title: "Brazilian".into(), threads: 2, ..Default::default() };
         let probe = Probe { unit: "N".into(), r#final: f64::NAN, max: 1.5, min: -0.1, time_of_max: 1e-3 };
         summary.probes.insert("load".into(), probe);
-        summary.expect.push(Expectation::compare("strength", "Pa", 10_200.0, 10_000.0, 0.05, "a paper"));
+        let bound = Bound::Near { value: 10_000.0, tolerance: 500.0, relative: Some(0.05) };
+        summary.expect.push(Expectation::hold("strength", "Pa", 10_200.0, bound, "a paper"));
         summary.case_hash = hash_text(0xff);
         summary.wall.phases.insert("solid".into(), 1.25);
         summary
@@ -370,6 +295,7 @@ mod tests {
             "unit",
             "value",
             "reference",
+            "comparison",
             "error",
             "tolerance",
             "pass",
@@ -432,24 +358,27 @@ mod tests {
     }
 
     #[test]
-    fn an_expectation_passes_within_its_tolerance_only() {
-        let compare = |value, reference| Expectation::compare("q", "-", value, reference, 0.05, "");
-        assert!(compare(10.5, 10.0).pass && compare(-10.5, -10.0).pass);
-        assert!(!compare(10.51, 10.0).pass && !compare(f64::NAN, 10.0).pass);
-        assert!(compare(0.04, 0.0).pass && !compare(0.06, 0.0).pass);
-        assert_eq!(compare(-11.0, -10.0).error, -0.1);
-    }
-
-    #[test]
     fn verify_lines_have_the_names_of_the_contract() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("verify.json");
-        let line = Verified::new("patch", &Expectation::compare("stress", "Pa", 1.0, 1.0, 0.1, "exact"), 2.0);
+        let bound = Bound::Near { value: 1.0, tolerance: 0.1, relative: Some(0.1) };
+        let line = Verified::new("patch", &Expectation::hold("stress", "Pa", 1.0, bound, "exact"), 2.0);
         write_verify(&path, &[line]).unwrap();
         let lines: serde_json::Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
         let keys: Vec<&String> = lines[0].as_object().unwrap().keys().collect();
-        let mut expected =
-            ["case", "quantity", "value", "reference", "error", "tolerance", "pass", "seconds", "source"];
+        let mut expected = [
+            "case",
+            "quantity",
+            "unit",
+            "value",
+            "reference",
+            "comparison",
+            "error",
+            "tolerance",
+            "pass",
+            "seconds",
+            "source",
+        ];
         expected.sort_unstable();
         assert_eq!(keys, expected);
     }

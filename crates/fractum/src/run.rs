@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use fractum_io::case::model::{Bound, Case, ProbeKind};
+use fractum_io::case::model::{Case, Expect, ProbeKind};
 use fractum_io::checkpoint::{self, Header, Identity};
+use fractum_io::expectation::Expectation;
 use fractum_io::fragments::{self, Fragment};
 use fractum_io::log::{Progress, RunLog, Snapshot};
 use fractum_io::summary::{self, Status, Summary, hash_text};
@@ -509,39 +510,13 @@ fn fragments_of(scene: &Scene) -> Vec<Fragment> {
 }
 
 /// Holds a value of the summary against its reference.
-fn expectation(expect: &fractum_io::case::model::Expect, summary: &Summary) -> summary::Expectation {
+fn expectation(expect: &Expect, summary: &Summary) -> Expectation {
     let name = &expect.quantity.value;
     let value = match summary.probes.get(name) {
         Some(probe) => probe.r#final,
         None => summary_value(summary, name),
     };
-    let (reference, error, tolerance, pass) = match expect.bound {
-        Bound::Near { value: reference, tolerance, relative } => {
-            let error = match relative {
-                Some(_) => (value - reference) / reference.abs(),
-                None => value - reference,
-            };
-            let allowed = relative.unwrap_or(tolerance);
-            (reference, error, allowed, error.abs() <= allowed)
-        }
-        Bound::Between { above, below } => {
-            let over = below.map_or(f64::NEG_INFINITY, |limit| value - limit);
-            let under = above.map_or(f64::NEG_INFINITY, |limit| limit - value);
-            let reference = below.or(above).unwrap_or(f64::NAN);
-            (reference, over.max(under).max(0.0), 0.0, over <= 0.0 && under <= 0.0)
-        }
-    };
-    summary::Expectation {
-        quantity: name.clone(),
-        unit: expect.unit.clone(),
-        value,
-        reference,
-        error,
-        tolerance,
-        // A value that is not a number passes nothing.
-        pass: pass && value.is_finite(),
-        source: expect.source.clone(),
-    }
+    Expectation::hold(name, &expect.unit, value, expect.bound, &expect.source)
 }
 
 /// A number of the summary by its dotted path, such as `energy.residual_max_relative`.

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use fractum_io::case::read_case;
-use fractum_io::summary::{Verified, write_verify};
+use fractum_io::expectation::Verified;
+use fractum_io::number::quantity;
+use fractum_io::summary::write_verify;
 
 use crate::cache::Cache;
 use crate::error::Failure;
@@ -50,13 +52,12 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
     });
     let mut lines = Vec::new();
     say!(
-        "{:<44} {:<34} {:>14} {:>14} {:>10} {:>10}  {:<5} {:>8}",
+        "{:<36} {:<30} {:>14} {:>22} {:>10}  {:<5} {:>8}",
         "case",
         "quantity",
         "value",
-        "reference",
-        "error",
-        "tolerance",
+        "expected",
+        "off by",
         "pass",
         "seconds"
     );
@@ -105,13 +106,12 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
 
 fn print_line(line: &Verified) {
     say!(
-        "{:<44} {:<34} {:>14.6e} {:>14.6e} {:>10.2e} {:>10.2e}  {:<5} {:>8.2}",
+        "{:<36} {:<30} {:>14} {:>22} {:>10}  {:<5} {:>8.2}",
         line.case,
         line.quantity,
-        line.value,
-        line.reference,
-        line.error,
-        line.tolerance,
+        quantity(line.value, &line.unit),
+        line.required(),
+        line.off(),
         if line.pass { "pass" } else { "FAIL" },
         line.seconds
     );

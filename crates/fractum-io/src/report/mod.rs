@@ -14,7 +14,7 @@ use crate::error::WriteError;
 use crate::fragments::Fragment;
 use crate::history::Table;
 use crate::log::duration;
-use crate::number::{grouped, quantity, significant};
+use crate::number::{grouped, percent, quantity, significant};
 use crate::plot::{Chart, Level};
 use crate::summary::{Status, Summary, Wall};
 use charts::words;
@@ -167,19 +167,15 @@ fn expectations(summary: &Summary) -> Markup {
                 h2 { "Against the references" }
                 div.scroll { table {
                     tr {
-                        th { "Quantity" } th.number { "Result" } th.number { "Reference" } th.number { "Error" }
-                        th.number { "Tolerance" } th { "" } th { "Source" }
+                        th { "Quantity" } th.number { "Result" } th.number { "Expected" } th.number { "Off by" }
+                        th { "" } th { "Source" }
                     }
                     @for line in &summary.expect {
-                        // For a reference of zero error and tolerance are absolute.
-                        @let relative = line.reference != 0.0;
-                        @let shown = |value: f64| if relative { percent(value) } else { quantity(value, &line.unit) };
                         tr {
                             td { (words(&line.quantity)) }
                             td.number { (quantity(line.value, &line.unit)) }
-                            td.number { (quantity(line.reference, &line.unit)) }
-                            td.number { (shown(line.error)) }
-                            td.number { "± " (shown(line.tolerance)) }
+                            td.number { (line.required()) }
+                            td.number { (line.off()) }
                             td { span class={ "verdict " (if line.pass { "pass" } else { "fail" }) } {
                                 (if line.pass { "pass" } else { "fail" })
                             } }
@@ -362,15 +358,13 @@ fn origin(data: &ReportData) -> Markup {
     }
 }
 
-fn percent(share: f64) -> String {
-    format!("{} %", significant(100.0 * share, 3))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::model::Bound;
+    use crate::expectation::Expectation;
     use crate::history::Column;
-    use crate::summary::{Expectation, Probe};
+    use crate::summary::Probe;
 
     fn example() -> ReportData {
         let mut data = ReportData {
@@ -393,8 +387,10 @@ mod tests {
             ..ReportData::default()
         };
         data.summary.title = "Disc <split>".into();
-        data.summary.expect.push(Expectation::compare("strength", "Pa", 10_200.0, 10_000.0, 0.05, "a paper"));
-        data.summary.expect.push(Expectation::compare("imbalance", "N", 3.0, 0.0, 1.0, "equilibrium"));
+        let bound = |value, tolerance, relative| Bound::Near { value, tolerance, relative };
+        let [strength, imbalance] = [bound(10_000.0, 500.0, Some(0.05)), bound(0.0, 1.0, None)];
+        data.summary.expect.push(Expectation::hold("strength", "Pa", 10_200.0, strength, "a paper"));
+        data.summary.expect.push(Expectation::hold("imbalance", "N", 3.0, imbalance, "equilibrium"));
         data.summary.probes.insert("load".into(), Probe { unit: "N".into(), max: 3000.0, ..Probe::default() });
         data
     }

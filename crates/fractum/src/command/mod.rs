@@ -225,14 +225,9 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
             say!("{:<28} {}", body.body, fracture_text(body));
         }
         for expect in &summary.expect {
-            let verdict = if expect.pass { "meets" } else { "MISSES" };
-            say!(
-                "{:<28} {} {verdict} its reference {} ({})",
-                expect.quantity,
-                fractum_io::number::quantity(expect.value, &expect.unit),
-                fractum_io::number::quantity(expect.reference, &expect.unit),
-                expect.source
-            );
+            let verdict = if expect.pass { "as expected" } else { "NOT as expected" };
+            let value = fractum_io::number::quantity(expect.value, &expect.unit);
+            say!("{:<28} {value}, {verdict}: {} ({})", expect.quantity, expect.required(), expect.source);
         }
         say!("results in {}", folder.display());
     }
