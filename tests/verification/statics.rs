@@ -8,7 +8,9 @@ use fractum_fem::{
 use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::{Control, LinearSolver, Opening, StaticSettings, StaticSolver, Stiffness, check_supports};
+use fractum_scene::statics::{
+    Control, LinearSolver, NoEquilibrium, Opening, StaticSettings, StaticSolver, Stiffness, check_supports,
+};
 use fractum_scene::{
     Load, Loads, Motion, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeFunction, TimeStepSettings,
 };
@@ -17,7 +19,17 @@ use fractum_tests::{CONCRETE, jittered_box};
 const FORMULATIONS: [Formulation; 2] = [Formulation::Standard, Formulation::Smoothed];
 
 fn settings(control: Control, linear: LinearSolver) -> StaticSettings {
-    StaticSettings { control, step: 0.1, end: 1.0, most_steps: 2000, tolerance: 1e-6, linear_tolerance: 1e-13, linear }
+    StaticSettings {
+        control,
+        step: 0.1,
+        end: 1.0,
+        most_steps: 2000,
+        tolerance: 1e-6,
+        linear_tolerance: 1e-13,
+        linear,
+        no_equilibrium: NoEquilibrium::Stop,
+        damping: None,
+    }
 }
 
 fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>) -> Scene {

@@ -26,12 +26,19 @@ pub struct Clock {
     pub dt_after: f64,
     /// Smallest step of the run so far [s].
     pub dt_min: f64,
+    /// Steps done when motion began, from rest or from the given velocities: 0 but after a hand-over from equilibrium.
+    pub motion_since: u64,
 }
 
 impl Clock {
     /// A clock at zero.
     pub fn new(dt: f64) -> Self {
-        Clock { time: 0.0, step: 0, dt_before: dt, dt_after: dt, dt_min: dt }
+        Clock { time: 0.0, step: 0, dt_before: dt, dt_after: dt, dt_min: dt, motion_since: 0 }
+    }
+
+    /// Whether the step that follows is the first one of motion: nothing has moved before it.
+    pub(crate) fn begins_motion(&self) -> bool {
+        self.step == self.motion_since
     }
 
     /// Passes to the next step, which will be followed by one of size `dt`.

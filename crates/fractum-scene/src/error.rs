@@ -82,8 +82,8 @@ pub enum StepError {
     },
     /// No equilibrium was found however small the step.
     #[error(
-        "step {step}, t = {time:.6e} s: no equilibrium found; the solid may have no static answer here - use control = \"path\", end the run before \
-         with solver.stop_when, or run it with kind = \"explicit\""
+        "step {step}, t = {time:.6e} s: no equilibrium found; the solid may have no static answer here - use control = \"path\", let it move to the \
+         next one with no_equilibrium = \"motion\", or end the run before with solver.stop_when"
     )]
     NoEquilibrium {
         /// Step number.

@@ -55,12 +55,13 @@ impl Scene {
     /// # Errors
     /// As [`Scene::step`].
     pub fn step_observed(&mut self, measure: bool, mut passed: impl FnMut(Phase)) -> Result<StepReport, StepError> {
-        let measure = measure || self.clock.step == 0;
+        let first = self.clock.begins_motion();
+        let measure = measure || first;
         let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
         let dt_kick = 0.5 * (dt_before + dt_after);
 
-        // Nothing has moved before t = 0.
-        let elapsed = if self.clock.step == 0 { 0.0 } else { dt_before };
+        // Nothing has moved before.
+        let elapsed = if first { 0.0 } else { dt_before };
         self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
         passed(Phase::Solid);
         let (bonded_load, faces) = self.add_bond_forces(time, elapsed, dt_before, measure);
@@ -71,7 +72,7 @@ impl Scene {
         self.ties.pass_on(&mut self.solid, &mut self.bonded.particles);
         passed(Phase::Contact);
         let load_before = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
-        if self.clock.step == 0 {
+        if first {
             self.start_half_a_step_early(dt_before);
         }
 
@@ -87,7 +88,7 @@ impl Scene {
         let books = &mut self.books;
         books.friction += contact.friction;
         books.damping += contact.damping;
-        if self.clock.step > 0 {
+        if !first {
             books.external += support.before + bonded.external_before + tools.external_before + load_before;
             books.damping += motion.damped_before + bonded.damped_before;
         }
@@ -114,7 +115,7 @@ impl Scene {
         Ok(report)
     }
 
-    /// The velocities given at t = 0 become those of the half step before it, so that the balance starts exact.
+    /// The velocities given at the start become those of the half step before it, so that the balance starts exact.
     fn start_half_a_step_early(&mut self, dt: f64) {
         let Scene { solid, supports, bonded, contacts, .. } = self;
         bonded.particles.start_half_a_step_early(dt);
@@ -239,6 +240,8 @@ impl Scene {
         ledger.damage = solid.dissipated_energy();
         ledger.external = books.external;
         ledger.removed = books.removed;
+        ledger.friction = books.friction;
+        ledger.damping = books.damping + solid.viscous_dissipation();
         ledger.update_maxima();
         if ledger.residual().is_finite() {
             return Ok(());

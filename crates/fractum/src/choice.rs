@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use fractum_io::assemble::Assembly;
-use fractum_io::case::model::Case;
+use fractum_io::case::TimeFunction;
+use fractum_io::case::model::{BodyKind, Case, LoadKind, Motion, SolverKind};
 use fractum_io::number::quantity;
 use fractum_scene::Scene;
 use fractum_scene::statics::{Stiffness, check_supports};
@@ -24,6 +25,9 @@ const MOST_NODES: usize = 300_000;
 pub(crate) fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -> Vec<(&'static str, String)> {
     let scene = &mut assembly.scene;
     if scene.solid.body_count() == 0 {
+        return Vec::new();
+    }
+    if case.solver.kind == SolverKind::Auto {
         return Vec::new();
     }
     if let Some(why) = motion_only(case, scene) {
@@ -78,6 +82,93 @@ pub(crate) fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -
         ),
         ("choice", format!("{moved}; equilibrium is {what}, {}: {advice}", quantity(rest, "s"))),
     ]
+}
+
+/// Seconds of an iteration to equilibrium on a common machine, per entry of the factor and per entry of a matrix that is solved
+/// iteratively.
+const DIRECT: f64 = 4e-8;
+const ITERATIVE: f64 = 3e-7;
+/// Nanoseconds of a step of motion per element.
+const STEP: f64 = 45.0;
+
+/// Settles a kind of solver that the case leaves open, and says why; nothing where it does not.
+///
+/// The answer depends on case and mesh alone, so that another machine does the same.
+pub(crate) fn choose(case: &Case, assembly: &mut Assembly) -> Option<String> {
+    if case.solver.kind != SolverKind::Auto {
+        return None;
+    }
+    let (chosen, why) = if assembly.statics.is_none() {
+        let why = motion_only(case, &assembly.scene).unwrap_or("no solid bodies by themselves");
+        ("explicit", why.to_owned())
+    } else {
+        decide(case, assembly)
+    };
+    if chosen == "explicit" {
+        assembly.statics = None;
+    }
+    Some(format!("kind = \"{chosen}\": {why}"))
+}
+
+fn decide(case: &Case, assembly: &mut Assembly) -> (&'static str, String) {
+    let (scene, end) = (&mut assembly.scene, case.solver.end);
+    if let Some(why) = inertia_counts(case) {
+        return ("explicit", why.to_owned());
+    }
+    let Ok(mut stiffness) = Stiffness::new(scene) else {
+        return ("explicit", "the linear system is too large".to_owned());
+    };
+    let period = stiffness.prepare(scene).and_then(|()| stiffness.first_period(scene, end));
+    let Ok(period) = period else { return ("explicit", "the stiffness is singular".to_owned()) };
+    let first = quantity(period, "s");
+    let change = scene.fastest_change(period, end);
+    if change > 2.0 / PERIODS {
+        let part = 100.0 * change;
+        return (
+            "explicit",
+            format!("loads change by {part:.0} % within the first period of {first}, so that inertia counts"),
+        );
+    }
+    let elements: usize = (0..scene.solid.body_count()).map(|b| scene.solid.body(b).elements.len()).sum();
+    let steps = end / (case.solver.safety * 2.0 / scene.solid.stable_step().frequency);
+    let motion = 1e-9 * STEP * elements as f64 * steps;
+    let (entries, direct) = stiffness.entries();
+    let times = if scene.solid.has_damage() { ITERATIONS } else { 1.0 };
+    let rest = times * entries as f64 * if direct { DIRECT } else { ITERATIVE };
+    let costs = format!(
+        "loads are slow against the first period of {first}; equilibrium takes about {}, {steps:.0} steps of motion about {}",
+        quantity(rest, "s"),
+        quantity(motion, "s")
+    );
+    (if rest < motion { "static" } else { "explicit" }, costs)
+}
+
+/// Why motion is meant, as far as the case file alone tells.
+fn inertia_counts(case: &Case) -> Option<&'static str> {
+    let pulse = |function: &TimeFunction| {
+        let kinds = matches!(function, TimeFunction::Triangle { .. } | TimeFunction::HalfSine { .. });
+        kinds || matches!(function, TimeFunction::DoubleExponential { .. })
+    };
+    let any = |of: &[Option<TimeFunction>; 3]| of.iter().flatten().any(pulse);
+    let loads = case.loads.iter().any(|load| match &load.kind {
+        LoadKind::Force { force, .. } => any(force),
+        LoadKind::Traction { traction, .. } => any(traction),
+        LoadKind::Pressure { pressure, .. } => pulse(pressure),
+        LoadKind::Gravity { acceleration } => any(acceleration),
+    });
+    let supports = case
+        .supports
+        .iter()
+        .flat_map(|support| support.motion.iter().flatten())
+        .any(|motion| matches!(&motion.value, Motion::Velocity(of) | Motion::Displacement(of) if pulse(of)));
+    let moves = |body: &fractum_io::case::model::Body| matches!(&body.kind, BodyKind::Solid(solid) if solid.initial_velocity.iter().any(Option::is_some));
+    if loads || supports {
+        Some("a load is a pulse")
+    } else if case.bodies.iter().any(moves) {
+        Some("a body has an initial velocity")
+    } else {
+        None
+    }
 }
 
 /// Why equilibrium is out of the question.

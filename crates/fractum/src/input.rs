@@ -26,6 +26,8 @@ pub struct Input {
     pub bonded: Vec<BondedReport>,
     /// What took how long to make ready.
     pub timings: Vec<String>,
+    /// Which solver was chosen and why, where the case leaves it open.
+    pub choice: Option<String>,
 }
 
 /// Reads a case and its mesh, makes its bonded bodies and builds the scene.
@@ -45,7 +47,8 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
     let made = prepare_bodies(&case, &mesh, cache)?;
     let mut assembly = assemble(&case, &mesh, made.prepared, crate::loose::facets(&case)?)?;
     assembly.warnings.extend(made.warnings);
-    Ok(Input { case, mesh, mesh_hash, assembly, bonded: made.reports, timings: made.timings })
+    let choice = crate::choice::choose(&case, &mut assembly);
+    Ok(Input { case, mesh, mesh_hash, assembly, bonded: made.reports, timings: made.timings, choice })
 }
 
 /// The mesh in metres, and the hash of its file.

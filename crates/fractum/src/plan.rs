@@ -9,10 +9,11 @@ use fractum_io::assemble::{Assembly, TieReport};
 use fractum_io::case::model::{BodyKind, Case, LoadKind, Material, MeshSource, RigidBody, RigidShape, SolidBody};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
-use fractum_scene::statics::{Control, StaticSettings};
+use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
 use fractum_scene::{BondedBody, Scene};
 
 use crate::bonded::{BondedReport, Origin};
+use crate::input::Input;
 
 /// Nanoseconds per element and step on one core of a common machine: standard, smoothed, smoothed with damage.
 const COST: [f64; 3] = [20.0, 45.0, 50.0];
@@ -43,8 +44,9 @@ impl fmt::Display for Plan {
 }
 
 impl Plan {
-    /// The plan of a case on its mesh.
-    pub fn new(case: &Case, mesh: &Mesh, assembly: &Assembly, bonded: &[BondedReport]) -> Self {
+    /// The plan of a case that was read.
+    pub fn new(input: &Input) -> Self {
+        let Input { case, mesh, assembly, bonded, choice, .. } = input;
         let mut plan = Plan { lines: Vec::new() };
         let scene = &assembly.scene;
         if !case.title.is_empty() {
@@ -57,6 +59,9 @@ impl Plan {
         plan.describe_ties(&assembly.ties);
         plan.describe_conditions(case, mesh, scene);
         plan.describe_physics(case, scene);
+        if let Some(choice) = choice {
+            plan.add("choice", choice);
+        }
         match &assembly.statics {
             Some(settings) => plan.describe_statics(scene, settings),
             None if assembly.bonded_statics.is_some() => {
@@ -378,6 +383,13 @@ impl Plan {
             }
         };
         self.add("equilibrium", format!("{unknowns} unknowns, {control}, to t = {}", quantity(settings.end, "s")));
+        if settings.no_equilibrium == NoEquilibrium::Motion {
+            let damping = match settings.damping {
+                Some(_) => "the damping of the case",
+                None => "twice the critical damping of the first period",
+            };
+            self.add("motion", format!("where there is no equilibrium, with {damping}"));
+        }
     }
 
     /// Adds what motion and equilibrium would cost.

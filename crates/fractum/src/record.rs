@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fractum_io::Compression;
-use fractum_io::case::model::{Case, ProbeExpression, ProbeInput, ProbeKind, Take};
+use fractum_io::case::model::{Case, NoEquilibrium, ProbeExpression, ProbeInput, ProbeKind, Take};
 use fractum_io::history::{Column, History};
 use fractum_io::vtk::{CellBlock, CellKind, Collection, Field, PolyCells, PolyData, UnstructuredGrid, Values};
 use fractum_scene::Scene;
@@ -33,10 +33,14 @@ const LEDGER_COLUMNS: [(&str, &str); 13] = [
 const BOND_COLUMNS: [(&str, &str); 4] =
     [("bond_tension", "J"), ("bond_bending", "J"), ("bond_torsion", "J"), ("broken_bonds", "1")];
 
+/// Further column where equilibrium may give way to motion: 1 while the scene moves.
+const IN_MOTION: (&str, &str) = ("in_motion", "1");
+
 /// How many columns of a history, which these names begin, belong to the ledger and not to probes.
 pub(crate) fn ledger_columns(names: &[&str]) -> usize {
     let known = LEDGER_COLUMNS.iter().chain(&BOND_COLUMNS);
-    names.iter().zip(known).take_while(|(name, (column, _))| *name == column).count()
+    let count = names.iter().zip(known).take_while(|(name, (column, _))| *name == column).count();
+    count + usize::from(names.get(count) == Some(&IN_MOTION.0))
 }
 
 /// Where recording stands; part of every checkpoint.
@@ -65,6 +69,8 @@ pub(crate) struct Recorder<'a> {
     state: RecordState,
     grid: GridLayout,
     inputs: Vec<f64>,
+    /// Whether the rows that follow are of motion; none where that is no question.
+    in_motion: Option<bool>,
 }
 
 /// The mesh of the solids as VTK wants it, in the order of the file.
@@ -104,9 +110,11 @@ impl<'a> Recorder<'a> {
         resumed: Option<RecordState>,
     ) -> Result<Self, Failure> {
         let bonds: &[(&str, &str)] = if scene.bonded.is_empty() { &[] } else { &BOND_COLUMNS };
+        let hands_over = case.solver.statics.as_ref().is_some_and(|s| s.no_equilibrium == NoEquilibrium::Motion);
         let columns: Vec<Column> = LEDGER_COLUMNS
             .iter()
             .chain(bonds)
+            .chain(hands_over.then_some(&IN_MOTION))
             .map(|(name, unit)| Column::new(*name, *unit))
             .chain(
                 case.probes
@@ -137,6 +145,7 @@ impl<'a> Recorder<'a> {
             grid: GridLayout::new(scene, file_order),
             state,
             inputs: Vec::new(),
+            in_motion: hands_over.then_some(true),
         })
     }
 
@@ -153,6 +162,11 @@ impl<'a> Recorder<'a> {
     /// What has been recorded.
     pub(crate) fn state(&self) -> &RecordState {
         &self.state
+    }
+
+    /// Says whether the rows that follow are of motion; of no effect where the case does not ask for both.
+    pub(crate) fn set_in_motion(&mut self, moves: bool) {
+        self.in_motion = self.in_motion.map(|_| moves);
     }
 
     /// Adds a row for the instant `time` that the last step measured.
@@ -175,6 +189,7 @@ impl<'a> Recorder<'a> {
         if !scene.bonded.is_empty() {
             row.extend([ledger.bond_tension, ledger.bond_bending, ledger.bond_torsion, counts.broken_bonds as f64]);
         }
+        row.extend(self.in_motion.map(|moves| f64::from(u8::from(moves))));
         self.state.times.push(time);
         self.state.energies.push(energies);
         for index in 0..self.case.probes.len() {

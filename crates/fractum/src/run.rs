@@ -12,6 +12,7 @@ use fractum_io::fragments::{self, Fragment};
 use fractum_io::log::{Progress, RunLog, Snapshot};
 use fractum_io::summary::{self, Status, Summary, hash_text};
 use fractum_io::{Compression, WriteError};
+use fractum_scene::statics::StaticSolver;
 use fractum_scene::{BondedBody, CountKind, Phase, Scene, SceneState, StepError};
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +21,7 @@ use crate::cracks::{self, Columns};
 use crate::error::Failure;
 use crate::input::{Input, load};
 use crate::plan::Plan;
+use crate::quasi_static::{Quiet, StaticProgress};
 use crate::record::{RecordState, Recorder, index_of_max};
 use crate::report::{self, Notes};
 use crate::tell;
@@ -70,6 +72,8 @@ pub fn interrupt() {
 struct RunState {
     scene: SceneState,
     record: RecordState,
+    /// Of runs at equilibrium only.
+    statics: Option<StaticProgress>,
 }
 
 /// Runs the case at `path`.
@@ -88,17 +92,29 @@ pub fn run(path: &Path, options: &Options) -> Result<Outcome, Failure> {
 
 fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome, Failure> {
     let started = Instant::now();
-    let Input { case, mesh, mesh_hash, assembly, bonded, timings } = load(path, &options.overrides, &options.cache)?;
-    let plan = Plan::new(&case, &mesh, &assembly, &bonded);
+    let input = load(path, &options.overrides, &options.cache)?;
+    let plan = Plan::new(&input);
+    let Input { case, mesh_hash, assembly, timings, .. } = input;
     let folder = options.output.clone().unwrap_or_else(|| default_folder(path));
     let identity = Identity { program: program(), case_hash: case.hash(), mesh_hash };
     let mut scene = assembly.scene;
 
     let checkpoints = folder.join("checkpoint");
-    if options.resume && case.solver.statics.is_some() {
-        return Err(Failure::input("static runs keep no checkpoints; run without --resume"));
+    if options.resume && assembly.bonded_statics.is_some() {
+        let text = "runs of bonded bodies at rest keep no checkpoints; run without --resume";
+        return Err(Failure::input(text));
     }
-    let resumed = if options.resume { restore(&checkpoints, &identity, &mut scene)? } else { None };
+    // Prepared before anything is put back: a resumed run solves the same systems in the same order.
+    let mut quiet = match &assembly.statics {
+        Some(settings) => match StaticSolver::new(&scene, settings.clone()) {
+            Ok(solver) => Some(Quiet::new(solver)),
+            Err(error) => {
+                return Err(Failure::input(format!("{error}; choose solver.linear_solver = \"iterative\"")));
+            }
+        },
+        None => None,
+    };
+    let resumed = if options.resume { restore(&checkpoints, &identity, &mut scene, quiet.as_mut())? } else { None };
     if options.resume && resumed.is_none() {
         return Err(Failure::input(format!(
             "{}: no checkpoint to resume from; run without --resume",
@@ -140,12 +156,14 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
         phases: [Duration::ZERO; PHASES.len()],
     };
     // The one place where the kind of solver decides.
-    let end = match (&assembly.statics, &assembly.bonded_statics) {
-        (Some(settings), _) => run.equilibrate(&mut scene, settings.clone()),
+    let end = match (&mut quiet, &assembly.bonded_statics) {
+        (Some(quiet), _) => run.equilibrate(&mut scene, quiet),
         (None, Some(settings)) => run.break_at_rest(&mut scene, *settings),
         (None, None) => run.advance(&mut scene),
     };
-    run.conclude(scene, threads, end, &plan)
+    let at_rest = assembly.bonded_statics.is_some() || quiet.as_ref().is_some_and(|quiet| !quiet.moves());
+    let resumable = assembly.bonded_statics.is_none();
+    run.conclude(scene, threads, end, &plan, at_rest).map(|outcome| Outcome { resumable, ..outcome })
 }
 
 /// Why the loop over the steps ended.
@@ -167,7 +185,7 @@ pub(crate) struct Run<'a> {
     pub(crate) progress: Progress<std::io::Stderr>,
     pub(crate) log: RunLog,
     pub(crate) started: Instant,
-    saved: Instant,
+    pub(crate) saved: Instant,
     warned: bool,
     warnings: Vec<String>,
     phases: [Duration; PHASES.len()],
@@ -178,11 +196,11 @@ impl Run<'_> {
         let every = Duration::from_secs_f64(self.case.output.checkpoint_every);
         while !scene.is_finished() {
             if is_interrupted() {
-                self.save(scene)?;
+                self.save(scene, None)?;
                 return Ok(End::Interrupted);
             }
             if self.saved.elapsed() >= every {
-                self.save(scene)?;
+                self.save(scene, None)?;
             }
             let (time, dt) = (scene.clock.time, scene.clock.dt_after);
             if self.recorder.frame_is_due(time) {
@@ -213,7 +231,7 @@ impl Run<'_> {
         result
     }
 
-    fn step(&mut self, scene: &mut Scene, measure: bool) -> Result<(), StepError> {
+    pub(crate) fn step(&mut self, scene: &mut Scene, measure: bool) -> Result<(), StepError> {
         let mut last = Instant::now();
         let phases = &mut self.phases;
         scene.step_observed(measure, |phase| {
@@ -256,8 +274,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn save(&mut self, scene: &Scene) -> Result<(), Failure> {
-        let state = RunState { scene: scene.state(), record: self.recorder.sync()? };
+    pub(crate) fn save(&mut self, scene: &Scene, statics: Option<StaticProgress>) -> Result<(), Failure> {
+        let state = RunState { scene: scene.state(), record: self.recorder.sync()?, statics };
         let header = Header { identity: self.identity.clone(), step: scene.clock.step, time: scene.clock.time };
         let file = checkpoint::save(&self.folder.join("checkpoint"), &header, &state, Compression::Fast)?;
         self.log.line(format!("step {}: state saved in {}", scene.clock.step, file.display()))?;
@@ -290,6 +308,7 @@ impl Run<'_> {
         threads: usize,
         end: Result<End, Failure>,
         plan: &Plan,
+        at_rest: bool,
     ) -> Result<Outcome, Failure> {
         let end = end?;
         let status = match &end {
@@ -302,7 +321,7 @@ impl Run<'_> {
         if !matches!(end, End::Interrupted) {
             self.timed(PHASES.len() - 1, |run| run.recorder.frame(&scene))?;
         }
-        if matches!(end, End::Finished) && self.case.solver.statics.is_none() {
+        if matches!(end, End::Finished) && !at_rest {
             // The forces and energies of the last instant: one more step, of which nothing else is kept.
             let (time, dt) = (clock.time, clock.dt_after);
             if self.step(&mut scene, true).is_ok() {
@@ -333,10 +352,7 @@ impl Run<'_> {
                 self.log.line(&error)?;
                 Err(Failure::Stopped { error, folder: self.folder.display().to_string() })
             }
-            _ => {
-                let resumable = self.case.solver.statics.is_none();
-                Ok(Outcome { summary, folder: self.folder.to_owned(), resumable })
-            }
+            _ => Ok(Outcome { summary, folder: self.folder.to_owned(), resumable: true }),
         }
     }
 
@@ -420,12 +436,20 @@ impl Run<'_> {
 }
 
 /// Restores the newest checkpoint of this case into the scene.
-fn restore(folder: &Path, identity: &Identity, scene: &mut Scene) -> Result<Option<RecordState>, Failure> {
+fn restore(
+    folder: &Path,
+    identity: &Identity,
+    scene: &mut Scene,
+    quiet: Option<&mut Quiet>,
+) -> Result<Option<RecordState>, Failure> {
     let Some(loaded) = checkpoint::load_latest::<RunState>(folder, identity)? else { return Ok(None) };
     for refused in &loaded.passed_over {
         tell!("warning: {refused}");
     }
     scene.restore(loaded.state.scene);
+    if let (Some(quiet), Some(progress)) = (quiet, loaded.state.statics) {
+        quiet.restore(scene, progress);
+    }
     Ok(Some(loaded.state.record))
 }
 

@@ -108,3 +108,81 @@ fn gate_and_opening_are_refused_where_they_cannot_act() {
         assert!(ended.code == Some(1) && found.contains(words), "{words}: {}", ended.stderr);
     }
 }
+
+/// A bar so brittle that it snaps back, pulled by an end that goes on.
+fn brittle_bar(solver: &str) -> String {
+    BAR.replace("100 J/m^2", "15 J/m^2")
+        .replace("crack_plane_gate = true", "")
+        .replace(
+            "kind = \"static\"\nend = \"1 s\"\nstop_when = { probe = \"load\", below = 0.2 }",
+            &format!("kind = \"static\"\nend = \"1 s\"\n{solver}"),
+        )
+        .replace("0.4 mm*t", "0.06 mm*t")
+}
+
+/// Columns of the history.
+fn history(place: &Workplace, folder: &str, names: &[&str]) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').map(|name| name.split(' ').next().unwrap()).collect();
+    let places: Vec<usize> = names.iter().map(|name| header.iter().position(|h| h == name).unwrap()).collect();
+    let row = |line: &str| {
+        let values: Vec<&str> = line.split(',').collect();
+        places.iter().map(|&place| values[place].parse().unwrap()).collect()
+    };
+    lines.map(row).collect()
+}
+
+#[test]
+fn a_bar_that_snaps_back_moves_to_the_state_that_the_path_reaches_and_its_ledger_closes() {
+    let path = Workplace::new(&brittle_bar("control = \"path\""));
+    run(&path, "out", "1");
+    let path = history(&path, "out", &["time", "load"]);
+    let moved = Workplace::new(&brittle_bar("control = \"time\"\nno_equilibrium = \"motion\""));
+    let summary = run(&moved, "out", "2");
+    assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", summary["energy"]);
+    let rows = history(&moved, "out", &["time", "load", "in_motion", "kinetic", "damping", "damage"]);
+    let begin = rows.iter().position(|row| row[2] == 1.0).expect("it jumps");
+    let end = rows.iter().rposition(|row| row[2] == 1.0).unwrap();
+    // What the jump sets free is taken by damping.
+    let (before, after) = (&rows[begin], &rows[end + 1]);
+    assert!(after[4] > before[4] + 0.005 * after[5], "{before:?} {after:?}");
+    assert!(rows.iter().any(|row| row[3] > 0.0) && after[3] == 0.0);
+    // The path comes back to this extension after its turn.
+    let turn = (1..path.len()).find(|&i| path[i][0] < path[i - 1][0]).expect("it snaps back");
+    let there = (turn..path.len()).find(|&i| path[i][0] >= after[0] && path[i - 1][0] < after[0]).expect("it returns");
+    let [low, high] = [&path[there - 1], &path[there]];
+    let load = low[1] + (high[1] - low[1]) * (after[0] - low[0]) / (high[0] - low[0]);
+    let peak = path.iter().map(|row| row[1]).fold(0.0, f64::max);
+    assert!(after[1] < 0.6 * peak && (after[1] - load).abs() < 0.02 * peak, "{} {load} {peak}", after[1]);
+    // Without motion the run says where it ends.
+    let stopped = Workplace::new(&brittle_bar("control = \"time\""));
+    let ended = stopped.fractum(&["run", "case.toml", "-o", "out"]);
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.contains("no_equilibrium = \"motion\""), "{}", ended.stderr);
+}
+
+#[test]
+fn the_program_chooses_the_solver_and_says_why() {
+    let kind = |from: &str, to: &str| BAR.replace("kind = \"static\"", "kind = \"auto\"").replace(from, to);
+    for (case, words) in [
+        (kind("", ""), "kind = \"static\": loads are slow against the first period of"),
+        (
+            kind("\"0.4 mm*t/1 s\"", "{ pulse = \"half-sine\", peak = \"1 um\", duration = \"1 ms\" }"),
+            "a load is a pulse",
+        ),
+        (kind("fix = \"xyz\"", "fix = \"x\""), "kind = \"explicit\": a body is free to move"),
+        (kind("end = \"1 s\"", "end = \"2 ms\""), "so that inertia counts"),
+    ] {
+        let checked = Workplace::new(&case).fractum(&["check", "case.toml"]);
+        assert!(
+            checked.code == Some(0) && checked.stdout.contains(words),
+            "{words}: {}{}",
+            checked.stdout,
+            checked.stderr
+        );
+    }
+    let place = Workplace::new(&kind("stop_when", "step = \"1 ms\"\nstop_when"));
+    let checked = place.fractum(&["check", "case.toml"]);
+    assert!(checked.code == Some(1) && checked.stderr.contains("solver.step has no effect"), "{}", checked.stderr);
+}

@@ -286,3 +286,73 @@ fn without_a_checkpoint_there_is_nothing_to_resume() {
     assert!(ended.stderr.contains("never: no checkpoint to resume from; run without --resume"), "{}", ended.stderr);
     assert!(!place.path("never").exists());
 }
+
+/// A brittle bar at equilibrium, which moves where it snaps back.
+const SNAPPING_BAR: &str = r#"fractum = 1
+
+[mesh]
+file = "bar.msh"
+
+[materials.concrete]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+[materials.concrete.damage]
+tensile_strength = "3 MPa"
+fracture_energy = "15 J/m^2"
+
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "concrete"
+strength_factor = "if(abs(x - 20 cm) < 3 cm, 0.5, 1.0)"
+
+[[supports]]
+group = "x-"
+fix = "xyz"
+[[supports]]
+group = "x+"
+displacement = { x = "0.06 mm*t/1 s" }
+
+[solver]
+kind = "static"
+control = "time"
+no_equilibrium = "motion"
+end = "1 s"
+
+[[probes]]
+name = "load"
+reaction = { group = "x+", along = "x" }
+
+[output.checkpoint]
+every = "20 ms"
+"#;
+
+#[test]
+fn a_run_at_equilibrium_and_in_motion_goes_on_with_the_same_bits() {
+    let place = Workplace::new(SNAPPING_BAR);
+    let expected = uninterrupted(&place, "whole", "2");
+    assert!(expected.history.lines().any(|line| line.contains(",1,")), "it moves");
+    let results = place.path("stopped");
+    let mut code = None;
+    for round in 0..8 {
+        let saved = checkpoints(&results).last().copied().unwrap_or(0);
+        let mut arguments = vec!["run", "case.toml", "-o", "stopped", "--quiet", "--threads", "1"];
+        arguments.extend((saved > 0).then_some("--resume"));
+        if round < 7 {
+            let mut run = place.start(&arguments);
+            wait_for_checkpoint(&mut run, &results, saved + 5);
+            signal(&run, if round % 2 == 0 { "INT" } else { "TERM" });
+            code = run.wait().unwrap().code();
+        } else {
+            code = place.fractum(&arguments).code;
+        }
+        assert!(matches!(code, Some(0 | 130)), "{code:?}");
+        if code == Some(0) {
+            break;
+        }
+    }
+    assert_eq!(code, Some(0));
+    expected.assert_same(&Results::read(&results), "at equilibrium, after signals");
+}

@@ -24,7 +24,7 @@ use fractum_scene::{BondedStaticSettings, Loads, Probe, Scene, SceneError, Scene
 
 use bonded::ParticleSets;
 
-use crate::case::model::{Case, GroupUse, Support, TimeStep};
+use crate::case::model::{Case, GroupUse, SolverKind, Support, TimeStep};
 use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction, nearest};
 
 /// A scene with what is needed to speak of it in the user's terms.
@@ -225,8 +225,8 @@ impl Context<'_> {
             time_step: TimeStepSettings {
                 safety: solver.safety,
                 // Without motion the step is of no use: its bound is cheap.
-                element_bound: solver.time_step == TimeStep::Element || solver.statics.is_some(),
-                fixed: solver.step.as_ref().map(|step| step.value),
+                element_bound: solver.time_step == TimeStep::Element || solver.kind == SolverKind::Static,
+                fixed: solver.step.as_ref().filter(|_| solver.statics.is_none()).map(|step| step.value),
                 end: solver.end,
             },
             damping: LocalDamping { local: self.case.damping.local, mass_rate: self.case.damping.mass },

@@ -1,14 +1,14 @@
 //! What a quasi-static run needs, and what it cannot do.
 
 use fractum_dem::Batch;
-use fractum_fem::{NotSecant, Solid};
+use fractum_fem::{LocalDamping, NotSecant, Solid};
 use fractum_scene::statics::{self, StaticSettings, check_supports};
 use fractum_scene::{Bonded, BondedStaticSettings, Supports};
 
 use super::Context;
 use super::bodies::Numbering;
 use crate::case::Place;
-use crate::case::model::{Body, BodyKind, BondBatch, Control, LinearSolver};
+use crate::case::model::{Body, BodyKind, BondBatch, Control, Damping, LinearSolver, NoEquilibrium, SolverKind};
 
 /// Relative residual of iterative linear solutions.
 const LINEAR_TOLERANCE: f64 = 1e-8;
@@ -24,8 +24,15 @@ impl Context<'_> {
         numbering: &Numbering,
     ) -> Option<StaticSettings> {
         let solver = &self.case.solver;
-        let options = solver.statics.as_ref()?;
+        solver.statics.as_ref()?;
         let place = self.place_of_solver();
+        let solids_only = self.case.bodies.iter().all(|body| matches!(body.kind, BodyKind::Solid(_)));
+        if solver.kind == SolverKind::Auto {
+            // What is not for equilibrium is for motion.
+            let possible =
+                solids_only && solid.not_secant().is_none() && check_supports(solid, supports.held()).is_ok();
+            return possible.then(|| self.static_settings(solid, numbering)).flatten();
+        }
         if let Some((body, why)) = solid.not_secant() {
             let found = match why {
                 NotSecant::Corotational => "kinematics = \"corotational\"",
@@ -47,6 +54,14 @@ impl Context<'_> {
             let remedy = if supports.count() == 0 { "at least one [[supports]]" } else { "" };
             self.error(&place, format!(" = \"static\": {error}"), remedy);
         }
+        self.static_settings(solid, numbering)
+    }
+
+    fn static_settings(&mut self, solid: &Solid, numbering: &Numbering) -> Option<StaticSettings> {
+        let solver = &self.case.solver;
+        let options = solver.statics.as_ref()?;
+        let Damping { local, mass, stiffness, bulk_linear, bulk_quadratic, .. } = self.case.damping;
+        let given = [local, mass, stiffness, bulk_linear, bulk_quadratic].iter().any(|&value| value > 0.0);
         let damage = solid.has_damage();
         let whole = if damage { solver.end / STEPS } else { solver.end };
         let opening = options.opening.as_ref().map(|opening| statics::Opening {
@@ -74,6 +89,11 @@ impl Context<'_> {
                 LinearSolver::Direct => statics::LinearSolver::Direct,
                 LinearSolver::Iterative => statics::LinearSolver::Iterative,
             },
+            damping: given.then_some(LocalDamping { local, mass_rate: mass }),
+            no_equilibrium: match options.no_equilibrium {
+                NoEquilibrium::Stop => statics::NoEquilibrium::Stop,
+                NoEquilibrium::Motion => statics::NoEquilibrium::Motion,
+            },
         })
     }
 
@@ -81,7 +101,7 @@ impl Context<'_> {
     /// errors noted.
     pub(super) fn bonded_statics(&mut self, bonded: &Bonded) -> Option<BondedStaticSettings> {
         let solver = &self.case.solver;
-        let options = solver.statics.as_ref()?;
+        let options = solver.statics.as_ref().filter(|_| solver.kind == SolverKind::Static)?;
         let [Body { kind: BodyKind::Bonded(body), .. }] = self.case.bodies.as_slice() else { return None };
         let place = self.place_of_solver();
         let found = |what: &str| format!(" = \"static\" with a bonded body and {what}");

@@ -405,7 +405,7 @@ static KEYS: &[KeyDoc] = &[
     key("damping.tchamwa_wielgosz", K::Quantity(D::NONE), "", "φ of the scheme of Tchamwa and Wielgosz on bodies of particles, between 1 and 2: damps their highest frequencies; 1.05 to 1.3 are usual"),
 
     key("solver", K::Table, "required", "Time and its steps"),
-    key("solver.kind", K::Choice(names::<SolverKind>), "\"explicit\"", "Kind of solver: motion over time, or equilibrium under a load that grows slowly"),
+    key("solver.kind", K::Choice(names::<SolverKind>), "\"explicit\"", "Kind of solver: motion over time, equilibrium under a load that grows slowly, or whichever suits the scene and its loads"),
     key("solver.end", K::Quantity(D::TIME), "required", "End of the run, > 0"),
     key("solver.safety", K::Quantity(D::NONE), "0.8", "Factor on the stable time step, > 0 and at most 2; above 1 is unstable"),
     key("solver.time_step", K::Choice(names::<TimeStep>), "\"power-iteration\"", "How the stable step is found: for the whole mesh or all bonds, or rigorously by the worst element or particle"),
@@ -420,6 +420,7 @@ static KEYS: &[KeyDoc] = &[
     key("solver.linear_solver", K::Choice(names::<LinearSolver>), "\"auto\"", "Static with a solid: Cholesky factorisation, conjugate gradients, or by size and reuse"),
     key("solver.tolerance", K::Quantity(D::NONE), "1e-4", "Static only: unbalanced force over the internal forces at which a step is accepted, > 0"),
     key("solver.batch", K::Choice(names::<BondBatch>), "\"site\"", "Static with a bonded body: what breaks between two equilibria, the bonds that every overloaded particle releases, or those of the most overloaded one"),
+    key("solver.no_equilibrium", K::Choice(names::<NoEquilibrium>), "\"stop\"", "Static only: what happens where a step has no equilibrium: the run ends, or the scene moves until it has come to rest"),
     key("solver.max_steps", K::Integer, "10000", "Static only: steps after which the run ends in any case"),
     key("solver.stop_when", K::Table, "", "Ends the run once a probe has fallen below a fraction of its largest value so far"),
     key("solver.stop_when.probe", K::Text, "required", "Name of the probe"),

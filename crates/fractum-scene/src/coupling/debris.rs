@@ -385,6 +385,11 @@ impl Debris {
         energy
     }
 
+    /// Ends all turning.
+    pub(crate) fn stop(&mut self) {
+        self.state.spin.fill(Vec3::zeros());
+    }
+
     fn inertia(&self, mass: f64, radius: f64) -> f64 {
         (if self.planar { 0.5 } else { 0.4 }) * mass * radius * radius
     }

@@ -5,6 +5,8 @@
 //! whatever the load does meanwhile: t may go back. With the damage of the last iterate K is linear, so that
 //! u = a + (t - tⁿ) b from two right-hand sides, and t follows from the most strained edge alone.
 
+mod equilibrium;
+mod hand_over;
 mod mixing;
 mod opening;
 mod path;
@@ -12,10 +14,12 @@ mod period;
 mod support_check;
 mod system;
 
-use fractum_fem::{CellDamage, DamagePoint, Solid};
+use fractum_fem::{CellDamage, DamagePoint, LocalDamping, Solid};
 use fractum_math::{Sym3, Vec3};
 use fractum_sparse::SparseError;
+use serde::{Deserialize, Serialize};
 
+pub use hand_over::Interlude;
 pub use opening::Opening;
 pub use period::Stiffness;
 pub use support_check::check_supports;
@@ -24,6 +28,7 @@ pub use system::LinearWork;
 use crate::error::StepError;
 use crate::scene::Scene;
 use crate::step::StepReport;
+use equilibrium::{Boundary, Outer};
 use mixing::Mixer;
 use system::System;
 
@@ -49,6 +54,15 @@ pub enum LinearSolver {
     Iterative,
 }
 
+/// What happens where a step has no equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoEquilibrium {
+    /// The run ends.
+    Stop,
+    /// The scene moves until it has come to rest.
+    Motion,
+}
+
 /// Settings of the quasi-static solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticSettings {
@@ -66,6 +80,11 @@ pub struct StaticSettings {
     pub linear_tolerance: f64,
     /// How linear systems are solved.
     pub linear: LinearSolver,
+    /// What happens where a step has no equilibrium.
+    pub no_equilibrium: NoEquilibrium,
+    /// Damping of the motion between two states of equilibrium; without it, twice the critical damping of the first period, so
+    /// that it creeps to the next one instead of shooting past it.
+    pub damping: Option<LocalDamping>,
 }
 
 /// How far the most strained edge goes down its softening curve per step of a path: at first, at least and at most.
@@ -80,6 +99,8 @@ const MONOTONE_ITERATIONS: usize = 400;
 const SMALLEST_PART: f64 = 1.0 / 64.0;
 /// Part of a step of the opening below which a step of damage takes its place.
 const SMALLEST_OPENING: f64 = 1.0 / 8.0;
+/// Forces over the largest so far that count as none: what rounding leaves in a body that has parted.
+const NO_FORCE: f64 = 1e-6;
 
 enum Dimension {
     Plane(System<2>),
@@ -140,22 +161,23 @@ pub struct StaticSolver {
     trend: Vec<f64>,
     mixer: Mixer,
     outer: Outer,
+    /// Largest forces of a state of equilibrium so far [N].
+    largest_forces: f64,
     iterations: usize,
 }
 
-/// Forces at the last equilibrium, for the work of the next step; empty before the first.
-#[derive(Default)]
-struct Outer {
-    reaction: Vec<Vec3>,
-    load: Vec<Vec3>,
-    /// What the removal of elements took from the internal forces since; empty where none left.
-    lost: Vec<Vec3>,
-}
-
-/// Displacements and forces prescribed at one value of the load parameter.
-struct Boundary {
-    displacement: Vec<Vec3>,
-    force: Vec<Vec3>,
+/// What a static solver remembers from step to step, for a checkpoint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StaticState {
+    growth: f64,
+    part: f64,
+    trend: Vec<f64>,
+    outer: Outer,
+    largest_forces: f64,
+    iterations: u64,
+    factorisations: u64,
+    solutions: u64,
+    linear_iterations: u64,
 }
 
 impl StaticSolver {
@@ -190,8 +212,14 @@ impl StaticSolver {
             trend: Vec::new(),
             mixer: Mixer::default(),
             outer: Outer::default(),
+            largest_forces: 0.0,
             iterations: 0,
         })
+    }
+
+    /// Settings of the solution.
+    pub fn settings(&self) -> &StaticSettings {
+        &self.settings
     }
 
     /// Work of the linear solver, and equilibrium iterations.
@@ -201,6 +229,45 @@ impl StaticSolver {
             Dimension::Space(system) => system.work,
         };
         (linear, self.iterations)
+    }
+
+    /// What it remembers, for a checkpoint.
+    pub fn state(&self) -> StaticState {
+        let (linear, iterations) = self.work();
+        StaticState {
+            growth: self.growth,
+            part: self.part,
+            trend: self.trend.clone(),
+            outer: self.outer.clone(),
+            largest_forces: self.largest_forces,
+            iterations: iterations as u64,
+            factorisations: linear.factorisations as u64,
+            solutions: linear.solutions as u64,
+            linear_iterations: linear.iterations as u64,
+        }
+    }
+
+    /// Puts back what a solver of the same scene, prepared before any step, remembered.
+    pub fn restore(&mut self, state: StaticState) {
+        (self.growth, self.part, self.trend, self.outer) = (state.growth, state.part, state.trend, state.outer);
+        self.largest_forces = state.largest_forces;
+        self.iterations = state.iterations as usize;
+        let work = LinearWork {
+            factorisations: state.factorisations as usize,
+            solutions: state.solutions as usize,
+            iterations: state.linear_iterations as usize,
+        };
+        match &mut self.system {
+            Dimension::Plane(system) => system.work = work,
+            Dimension::Space(system) => system.work = work,
+        }
+    }
+
+    /// Goes on from the state in which motion has left the scene.
+    pub fn take_up(&mut self, scene: &mut Scene) {
+        self.outer = scene.outer_at_rest();
+        self.growth = GROWTH[0];
+        self.trend.clear();
     }
 
     /// Entries of the Cholesky factor; none with an iterative solver.
@@ -235,7 +302,9 @@ impl StaticSolver {
             let longest = (self.settings.end - scene.clock.time).min(self.settings.step * self.part);
             let growth = if intact { ONSET } else { self.growth };
             let found = self.iterate(scene, &points, longest, growth, by_damage, monotone)?;
-            if let Some((time, iterations)) = found {
+            if let Some((time, iterations)) = found
+                && !self.jumps(&points)
+            {
                 self.trend.clear();
                 self.trend
                     .extend(self.q.iter().zip(&points).map(|(q, point)| (q / point.kappa - 1.0).max(0.0) / growth));
@@ -256,13 +325,19 @@ impl StaticSolver {
                 Control::Path | Control::Opening(_) => self.growth <= GROWTH[1] || intact,
             };
             if smallest && monotone {
-                let (step, time) = (scene.clock.step, scene.clock.time);
-                return Err(StepError::NoEquilibrium { step, time });
+                return Err(scene.no_equilibrium());
             }
             monotone = smallest;
             self.growth = (0.5 * self.growth).max(GROWTH[1]);
             self.part = (0.5 * self.part).max(SMALLEST_PART);
         }
+    }
+
+    /// Whether the state found lies beyond states that are no equilibrium: some edge went further down its softening curve
+    /// than any step of a path takes it.
+    fn jumps(&self, points: &[DamagePoint]) -> bool {
+        let far = |(point, q): (&DamagePoint, &f64)| !point.broken && *q > path::limit(point, GROWTH[2]) * (1.0 + 1e-9);
+        self.settings.control == Control::Time && points.iter().zip(&self.q).any(far)
     }
 
     /// Iterates to equilibrium from the present state; the new load parameter, with the displacements in `self.start` and
@@ -345,12 +420,17 @@ impl StaticSolver {
             }
             scene.solid.trial_damage(&self.q, &mut self.trial);
             let exact = scene.boundary_at(present, present + tau);
-            if scene.unbalance(&self.trial, &self.start, &exact.force, &mut self.right) <= self.settings.tolerance {
+            let (missing, forces) = scene.unbalance(&self.trial, &self.start, &exact.force, &mut self.right);
+            if missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
+                self.largest_forces = self.largest_forces.max(forces);
                 return Ok(Some((present + tau, iteration)));
             }
             self.image.clear();
             self.image.extend(points.iter().zip(&self.q).map(|(point, q)| (q / point.kappa).max(1.0)));
             if monotone {
+                if self.jumps(points) {
+                    return Ok(None);
+                }
                 self.loading.copy_from_slice(&self.image);
                 continue;
             }
@@ -391,86 +471,5 @@ impl StaticSolver {
             *u += p;
         }
         Ok(())
-    }
-}
-
-impl Scene {
-    /// Forces from outside and prescribed displacements at `time`, the free displacements as they are at `present`.
-    fn boundary_at(&mut self, present: f64, time: f64) -> Boundary {
-        let Scene { solid, supports, loads, .. } = self;
-        let mut displacement = solid.displacement.clone();
-        supports.prescribe(&mut displacement, &solid.reference, present, time);
-        solid.force.fill(Vec3::zeros());
-        loads.add_forces(solid, time, 0.0);
-        Boundary { displacement, force: solid.force.clone() }
-    }
-
-    /// Unbalanced force on the free unknowns over the internal forces.
-    fn unbalance(&self, damage: &CellDamage, field: &[Vec3], load: &[Vec3], force: &mut [Vec3]) -> f64 {
-        self.solid.secant_force(damage, field, force);
-        let held = self.supports.held();
-        let (mut missing, mut scale) = (0.0, 0.0);
-        for (i, (inner, outer)) in force.iter().zip(load).enumerate() {
-            let bits = held.get(i).copied().unwrap_or(0);
-            for axis in 0..3 {
-                scale += inner[axis] * inner[axis] + outer[axis] * outer[axis];
-                if bits & (1 << axis) == 0 {
-                    missing += (outer[axis] - inner[axis]).powi(2);
-                }
-            }
-        }
-        if scale > 0.0 { (missing / scale).sqrt() } else { 0.0 }
-    }
-
-    /// Takes over displacements in equilibrium at `time`: history, reactions, ledger, removal.
-    fn accept_equilibrium(
-        &mut self,
-        displacement: &[Vec3],
-        time: f64,
-        outer: &mut Outer,
-    ) -> Result<StepReport, StepError> {
-        let before = std::mem::replace(&mut self.solid.displacement, displacement.to_vec());
-        self.solid.update_internal_forces(0.0, true);
-        let inner = self.solid.force.clone();
-        self.loads.add_forces(&mut self.solid, time, 0.0);
-        let load: Vec<Vec3> = self.solid.force.iter().zip(&inner).map(|(f, i)| f - i).collect();
-        let reaction = self.supports.take_reactions(&self.solid.force);
-        let mut external = 0.0;
-        for i in 0..displacement.len() {
-            let moved = displacement[i] - before[i];
-            let mean = |now: &[Vec3], then: &[Vec3]| (now[i] + then.get(i).copied().unwrap_or_default()) * 0.5;
-            external += moved.dot(&(mean(&reaction, &outer.reaction) + mean(&load, &outer.load)));
-            // The way to the next equilibrium began without the forces of the elements that had left.
-            self.books.removed += 0.5 * moved.dot(&outer.lost.get(i).copied().unwrap_or_default());
-        }
-        *outer = Outer { reaction, load, lost: Vec::new() };
-        self.books.external += external;
-        self.clock.dt_before = time - self.clock.time;
-        self.clock.dt_after = self.clock.dt_before;
-        self.clock.time = time;
-        self.clock.step += 1;
-        self.book_equilibrium()?;
-        let report = self.release_cut_elements();
-        if report.removed > 0 {
-            // `inner` is the negative of the forces that held the displacements.
-            let mut held = vec![Vec3::zeros(); displacement.len()];
-            self.solid.secant_force(&self.solid.cell_damage(), displacement, &mut held);
-            outer.lost = inner.iter().zip(&held).map(|(inner, held)| -inner - held).collect();
-        }
-        Ok(report)
-    }
-
-    /// The error of a system without solution.
-    fn come_apart(&self, error: SparseError) -> StepError {
-        let (step, time) = (self.clock.step, self.clock.time);
-        match error {
-            SparseError::Indefinite { node, .. } => {
-                let p = self.solid.reference[node];
-                StepError::ComeApart { step, time, x: p.x, y: p.y, z: p.z }
-            }
-            SparseError::Stalled { .. } | SparseError::TooLarge { .. } => {
-                StepError::NoSolution { step, time, reason: error.to_string() }
-            }
-        }
     }
 }

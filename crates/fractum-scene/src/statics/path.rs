@@ -4,7 +4,7 @@ use fractum_fem::{DamagePoint, Solid};
 use fractum_math::Sym3;
 
 /// What an edge may see in a step: κ and a part of the larger of κ and the scale of its softening [Pa].
-fn limit(point: &DamagePoint, growth: f64) -> f64 {
+pub(super) fn limit(point: &DamagePoint, growth: f64) -> f64 {
     point.kappa + growth * point.kappa.max(point.softening)
 }
 

@@ -30,6 +30,14 @@ impl Stiffness {
         Ok(Stiffness { system: Dimension::new(&scene.solid, held, LinearSolver::Auto, ITERATIONS, TOLERANCE)? })
     }
 
+    /// Entries of the Cholesky factor, or of the matrix where the solution is iterative.
+    pub fn entries(&self) -> (usize, bool) {
+        match &self.system {
+            Dimension::Plane(system) => system.entries(),
+            Dimension::Space(system) => system.entries(),
+        }
+    }
+
     /// Assembles and factorises the stiffness, once of what every iteration to equilibrium does.
     ///
     /// # Errors
@@ -86,5 +94,32 @@ impl Stiffness {
             }
         }
         Ok(2.0 * std::f64::consts::PI / square.sqrt())
+    }
+}
+
+/// Looks at supports and loads for their fastest change.
+const SAMPLES: f64 = 200.0;
+
+impl Scene {
+    /// Largest change of what supports and loads prescribe within a duration, over the largest value of the run up to `end`;
+    /// 0 where nothing changes. What is there from the start is no change.
+    pub fn fastest_change(&mut self, duration: f64, end: f64) -> f64 {
+        let step = duration.max(end / SAMPLES);
+        let (mut change, mut largest) = ([0.0f64; 2], [0.0f64; 2]);
+        let mut last: Option<super::Boundary> = None;
+        for sample in 0..=(end / step).ceil() as usize {
+            let now = self.boundary_at(0.0, (step * sample as f64).min(end));
+            let far = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+            let size = |a: &[Vec3]| a.iter().map(|a| a.norm()).fold(0.0, f64::max);
+            largest[0] = largest[0].max(size(&now.displacement));
+            largest[1] = largest[1].max(size(&now.force));
+            if let Some(last) = &last {
+                change[0] = change[0].max(far(&now.displacement, &last.displacement));
+                change[1] = change[1].max(far(&now.force, &last.force));
+            }
+            last = Some(now);
+        }
+        let part = |i: usize| if largest[i] > 0.0 { change[i] / largest[i] } else { 0.0 };
+        part(0).max(part(1)) * (duration / step)
     }
 }

@@ -159,6 +159,14 @@ impl<const B: usize> System<B> {
         Ok(())
     }
 
+    /// Entries of the factor, or of the matrix where there is none, and whether there is one.
+    pub(super) fn entries(&self) -> (usize, bool) {
+        match &self.method {
+            Method::Direct(factor) => (factor.entries(), true),
+            Method::Iterative(_) => (B * B * self.matrix.pattern().blocks(), false),
+        }
+    }
+
     /// Whether the system is factored, and the entries of the factor.
     pub(super) fn factor_entries(&self) -> Option<usize> {
         match &self.method {

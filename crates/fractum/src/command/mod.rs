@@ -213,7 +213,9 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
         if resumable {
             tell!("interrupted; state saved, go on with: fractum run {} -o {results} --resume", run.case.display());
         } else {
-            tell!("interrupted; a static run keeps no state to go on from; what it reached is in {results}");
+            tell!(
+                "interrupted; the run of a bonded body at rest keeps no state to go on from; what it reached is in {results}"
+            );
         }
         return Ok(ExitCode::Interrupted);
     }
@@ -253,7 +255,7 @@ fn fracture_text(body: &Fracture) -> String {
 
 fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, Failure> {
     let mut input = fractum::load(case, set, &cache())?;
-    let mut plan = fractum::plan::Plan::new(&input.case, &input.mesh, &input.assembly, &input.bonded);
+    let mut plan = fractum::plan::Plan::new(&input);
     plan.compare_solvers(&input.case, &mut input.assembly);
     say!("{plan}");
     for warning in &input.assembly.warnings {

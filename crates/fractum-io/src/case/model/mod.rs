@@ -120,7 +120,7 @@ pub struct Solver {
     pub time_step: TimeStep,
     /// Fixed time step [s], > 0; `None` = from the stable one.
     pub step: Option<Spanned<f64>>,
-    /// Options of a static run; `None` with the explicit solver.
+    /// Options of a static run, or of one that may become static; `None` with the explicit solver.
     pub statics: Option<StaticOptions>,
     /// Early end.
     pub stop_when: Option<StopWhen>,
@@ -137,9 +137,11 @@ pub enum SolverKind {
     Explicit,
     /// Quasi-static equilibrium.
     Static,
+    /// Whichever suits the scene.
+    Auto,
 }
 
-choice!(SolverKind { "explicit" => Explicit, "static" => Static });
+choice!(SolverKind { "explicit" => Explicit, "static" => Static, "auto" => Auto });
 
 /// What concerns a static run only.
 #[derive(Debug, Clone, PartialEq)]
@@ -156,7 +158,20 @@ pub struct StaticOptions {
     pub most_steps: u64,
     /// How many bonds of a bonded body break between two equilibria.
     pub batch: BondBatch,
+    /// What happens where a step has no equilibrium.
+    pub no_equilibrium: NoEquilibrium,
 }
+
+/// What happens where a step has no equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoEquilibrium {
+    /// The run ends.
+    Stop,
+    /// The scene moves until it has come to rest.
+    Motion,
+}
+
+choice!(NoEquilibrium { "stop" => Stop, "motion" => Motion });
 
 /// How many bonds break between two equilibria.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use super::probes::ReadProbe;
 use super::vectors::direction;
 use crate::case::model::{
-    Body, BodyKind, BondBatch, Control, Damping, LinearSolver, Opening, Output, Solver, SolverKind, StaticOptions,
-    StopWhen, TimeStep,
+    Body, BodyKind, BondBatch, Control, Damping, LinearSolver, NoEquilibrium, Opening, Output, Solver, SolverKind,
+    StaticOptions, StopWhen, TimeStep,
 };
 use crate::case::reader::Table;
 use crate::case::tree::Value;
@@ -14,11 +14,15 @@ use crate::case::{Diagnostic, nearest};
 pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>) -> Damping {
     let table = root.table_or_empty("damping");
     let tchamwa_wielgosz = table.quantity("tchamwa_wielgosz").between(1.0, 2.0).given();
-    let kind = root.peek("solver").and_then(|node| match &node.value {
-        Value::Table(entries) => entries.iter().find(|entry| entry.name == "kind").map(|entry| &entry.node.value),
-        _ => None,
-    });
-    if matches!(kind, Some(Value::Text(kind)) if kind == "static") {
+    let is = |key: &str, value: &str| {
+        root.peek("solver").is_some_and(|node| match &node.value {
+            Value::Table(entries) => entries.iter().any(|entry| {
+                entry.name == key && matches!(&entry.node.value, Value::Text(text) if text.as_str() == value)
+            }),
+            _ => false,
+        })
+    };
+    if is("kind", "static") && !is("no_equilibrium", "motion") {
         for key in ["local", "mass", "stiffness", "bulk_linear", "bulk_quadratic", "tchamwa_wielgosz"] {
             table.refuse(key, "with solver.kind = \"static\", where nothing moves fast");
         }
@@ -49,17 +53,27 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     let kind = table.choice("kind").or_if_absent(SolverKind::Explicit);
     let end = table.quantity("end").positive().required();
     let is_static = kind == Some(SolverKind::Static);
-    let statics = if is_static { statics(&table, bodies).map(Some) } else { Some(None) };
-    if !is_static && kind.is_some() {
-        for key in ["control", "opening", "linear_solver", "tolerance", "batch", "max_steps"] {
-            table.refuse(key, "with kind = \"explicit\"");
+    let statics = match kind {
+        Some(SolverKind::Static | SolverKind::Auto) => statics(&table, bodies).map(Some),
+        Some(SolverKind::Explicit) => {
+            for key in ["control", "opening", "linear_solver", "tolerance", "batch", "max_steps", "no_equilibrium"] {
+                table.refuse(key, "with kind = \"explicit\"");
+            }
+            Some(None)
         }
+        None => Some(None),
+    };
+    if kind == Some(SolverKind::Auto) {
+        table.refuse("step", "with kind = \"auto\": its meaning depends on the solver");
     }
     let step = table.quantity("step").positive();
     let step =
         step.check(|step| end.is_none_or(|end| *step <= end), "no more than the end of the run").spanned().given();
+    let moves = statics
+        .as_ref()
+        .is_some_and(|statics| statics.as_ref().is_none_or(|statics| statics.no_equilibrium == NoEquilibrium::Motion));
     if is_static {
-        for key in ["safety", "time_step", "balance_stop"] {
+        for key in ["safety", "time_step", "balance_stop"].into_iter().filter(|_| !moves) {
             table.refuse(key, "with kind = \"static\"");
         }
     } else if step.is_some() {
@@ -98,6 +112,7 @@ fn statics(table: &Table<'_>, bodies: Option<&[Body]>) -> Option<StaticOptions> 
     let holds = |of: fn(&Body) -> bool| bodies.is_none_or(|bodies| bodies.iter().any(of));
     if !holds(|body| matches!(body.kind, BodyKind::Solid(_))) {
         table.refuse("linear_solver", "where no body is a solid: bonds are solved by conjugate gradients");
+        table.refuse("no_equilibrium", "where no body is a solid");
     }
     if !holds(|body| matches!(body.kind, BodyKind::Bonded(_))) {
         table.refuse("batch", "where no body is bonded");
@@ -116,6 +131,7 @@ fn statics(table: &Table<'_>, bodies: Option<&[Body]>) -> Option<StaticOptions> 
         tolerance: table.quantity("tolerance").positive().or(1e-4),
         most_steps: table.integer("max_steps").check(|&steps| steps > 0, "at least 1").or(10_000),
         batch: table.choice("batch").or(BondBatch::Site),
+        no_equilibrium: table.choice("no_equilibrium").or(NoEquilibrium::Stop),
     })
 }
 

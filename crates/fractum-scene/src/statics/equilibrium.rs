@@ -1,0 +1,133 @@
+//! States of equilibrium: what is prescribed at them, whether forces balance, and their place in the ledger.
+
+use fractum_fem::CellDamage;
+use fractum_math::Vec3;
+use fractum_sparse::SparseError;
+use serde::{Deserialize, Serialize};
+
+use crate::error::StepError;
+use crate::scene::Scene;
+use crate::step::StepReport;
+
+/// Forces at the state that the next step starts from, for its work; empty before the first.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Outer {
+    reaction: Vec<Vec3>,
+    load: Vec<Vec3>,
+    /// What the removal of elements took from the internal forces since; empty where none left.
+    lost: Vec<Vec3>,
+    /// What is out of balance in a state that motion has left; empty after an equilibrium.
+    unbalanced: Vec<Vec3>,
+}
+
+/// Displacements and forces prescribed at one value of the load parameter.
+pub(super) struct Boundary {
+    pub(super) displacement: Vec<Vec3>,
+    pub(super) force: Vec<Vec3>,
+}
+
+impl Scene {
+    /// Forces from outside and prescribed displacements at `time`, the free displacements as they are at `present`.
+    pub(super) fn boundary_at(&mut self, present: f64, time: f64) -> Boundary {
+        let Scene { solid, supports, loads, .. } = self;
+        let mut displacement = solid.displacement.clone();
+        supports.prescribe(&mut displacement, &solid.reference, present, time);
+        solid.force.fill(Vec3::zeros());
+        loads.add_forces(solid, time, 0.0);
+        Boundary { displacement, force: solid.force.clone() }
+    }
+
+    /// Unbalanced force on the free unknowns, and all forces that it is held against [N].
+    pub(super) fn unbalance(
+        &self,
+        damage: &CellDamage,
+        field: &[Vec3],
+        load: &[Vec3],
+        force: &mut [Vec3],
+    ) -> (f64, f64) {
+        self.solid.secant_force(damage, field, force);
+        let held = self.supports.held();
+        let (mut missing, mut scale) = (0.0, 0.0);
+        for (i, (inner, outer)) in force.iter().zip(load).enumerate() {
+            let bits = held.get(i).copied().unwrap_or(0);
+            for axis in 0..3 {
+                scale += inner[axis] * inner[axis] + outer[axis] * outer[axis];
+                if bits & (1 << axis) == 0 {
+                    missing += (outer[axis] - inner[axis]).powi(2);
+                }
+            }
+        }
+        (missing.sqrt(), scale.sqrt())
+    }
+
+    /// Takes over displacements in equilibrium at `time`: history, reactions, ledger, removal.
+    pub(super) fn accept_equilibrium(
+        &mut self,
+        displacement: &[Vec3],
+        time: f64,
+        outer: &mut Outer,
+    ) -> Result<StepReport, StepError> {
+        let before = std::mem::replace(&mut self.solid.displacement, displacement.to_vec());
+        self.solid.update_internal_forces(0.0, true);
+        let inner = self.solid.force.clone();
+        self.loads.add_forces(&mut self.solid, time, 0.0);
+        let load: Vec<Vec3> = self.solid.force.iter().zip(&inner).map(|(f, i)| f - i).collect();
+        let reaction = self.supports.take_reactions(&self.solid.force);
+        let mut external = 0.0;
+        for i in 0..displacement.len() {
+            let moved = displacement[i] - before[i];
+            let mean = |now: &[Vec3], then: &[Vec3]| (now[i] + then.get(i).copied().unwrap_or_default()) * 0.5;
+            external += moved.dot(&(mean(&reaction, &outer.reaction) + mean(&load, &outer.load)));
+            // The way to the next equilibrium began without the forces of the elements that had left.
+            self.books.removed += 0.5 * moved.dot(&outer.lost.get(i).copied().unwrap_or_default());
+            self.books.damping += 0.5 * moved.dot(&outer.unbalanced.get(i).copied().unwrap_or_default());
+        }
+        *outer = Outer { reaction, load, ..Outer::default() };
+        self.books.external += external;
+        self.clock.dt_before = time - self.clock.time;
+        self.clock.dt_after = self.clock.dt_before;
+        self.clock.time = time;
+        self.clock.step += 1;
+        self.book_equilibrium()?;
+        let report = self.release_cut_elements();
+        if report.removed > 0 {
+            // `inner` is the negative of the forces that held the displacements.
+            let mut held = vec![Vec3::zeros(); displacement.len()];
+            self.solid.secant_force(&self.solid.cell_damage(), displacement, &mut held);
+            outer.lost = inner.iter().zip(&held).map(|(inner, held)| -inner - held).collect();
+        }
+        Ok(report)
+    }
+
+    /// The error of a step without equilibrium.
+    pub(super) fn no_equilibrium(&self) -> StepError {
+        StepError::NoEquilibrium { step: self.clock.step, time: self.clock.time }
+    }
+
+    /// The error of a system without solution.
+    pub(super) fn come_apart(&self, error: SparseError) -> StepError {
+        let (step, time) = (self.clock.step, self.clock.time);
+        match error {
+            SparseError::Indefinite { node, .. } => {
+                let p = self.solid.reference[node];
+                StepError::ComeApart { step, time, x: p.x, y: p.y, z: p.z }
+            }
+            SparseError::Stalled { .. } | SparseError::TooLarge { .. } => {
+                StepError::NoSolution { step, time, reason: error.to_string() }
+            }
+        }
+    }
+
+    /// The forces of a state at rest that is no exact equilibrium.
+    pub(super) fn outer_at_rest(&mut self) -> Outer {
+        self.solid.update_internal_forces(0.0, true);
+        let inner = self.solid.force.clone();
+        let time = self.clock.time;
+        self.loads.add_forces(&mut self.solid, time, 0.0);
+        let force = &self.solid.force;
+        let load = force.iter().zip(&inner).map(|(f, i)| f - i).collect();
+        let reaction = self.supports.take_reactions(force);
+        let unbalanced = force.iter().zip(&reaction).map(|(f, r)| f + r).collect();
+        Outer { reaction, load, lost: Vec::new(), unbalanced }
+    }
+}

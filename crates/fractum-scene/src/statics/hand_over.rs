@@ -1,0 +1,121 @@
+//! From equilibrium to motion where a step has no equilibrium, and back once the motion has died.
+
+use fractum_fem::LocalDamping;
+use fractum_math::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::Stiffness;
+use crate::error::StepError;
+use crate::scene::Scene;
+
+/// Kinetic over elastic energy below which motion has died, with a small part of all energy put in beside the elastic one: a
+/// body in two holds none.
+const AT_REST: f64 = 1e-5;
+const SMALL: f64 = 1e-3;
+/// Damping over the critical one of the first period where none is given: what then moves creeps.
+const DAMPING: f64 = 2.0;
+/// Looks at the energies per first period.
+const LOOKS: f64 = 20.0;
+/// Where no period is found: ways of a wave across the solid that take its place.
+const CROSSINGS: f64 = 20.0;
+
+/// Motion between two states of equilibrium.
+///
+/// The scene starts from rest, with the forces that its supports and loads have then; time goes on as real time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Interlude {
+    /// Time at which it began [s].
+    pub begin: f64,
+    /// First period of the solid as it was then [s].
+    pub period: f64,
+    /// Time for which it lasts at least [s].
+    pub least: f64,
+    /// Largest kinetic energy so far [J].
+    pub most_kinetic: f64,
+    damping: LocalDamping,
+    /// Time of the next look at the energies [s].
+    next_look: f64,
+}
+
+impl Interlude {
+    /// Whether to [`Scene::look`] at the energies in this step.
+    pub fn look_is_due(&self, time: f64) -> bool {
+        time >= self.next_look
+    }
+}
+
+impl Scene {
+    /// Lets the scene move from rest.
+    ///
+    /// - `damping`: instead of twice the critical damping of the first period
+    /// - `periods`: first periods for which it moves at least
+    pub fn begin_motion(&mut self, damping: Option<LocalDamping>, periods: f64) -> Interlude {
+        let time = self.clock.time;
+        let period = self.period_as_it_is(time);
+        let critical = 4.0 * std::f64::consts::PI / period;
+        let damping = damping.unwrap_or(LocalDamping { local: 0.0, mass_rate: DAMPING * critical });
+        self.settings.damping = damping;
+        self.stable = self.solid.stable_step();
+        self.debris.search(&self.solid);
+        self.update_contact_frequency();
+        let dt = self.next_dt(time);
+        let clock = &mut self.clock;
+        (clock.dt_before, clock.dt_after, clock.dt_min) = (dt, dt, clock.dt_min.min(dt));
+        clock.motion_since = clock.step;
+        Interlude {
+            begin: time,
+            period,
+            least: periods * period,
+            most_kinetic: 0.0,
+            damping,
+            next_look: time + period / LOOKS,
+        }
+    }
+
+    /// Goes on with motion that a checkpoint interrupted.
+    pub fn resume_motion(&mut self, interlude: &Interlude) {
+        self.settings.damping = interlude.damping;
+    }
+
+    fn period_as_it_is(&mut self, time: f64) -> f64 {
+        let found = Stiffness::new(self).and_then(|mut stiffness| {
+            stiffness.prepare(self)?;
+            stiffness.first_period(self, time)
+        });
+        found.ok().filter(|period| period.is_finite()).unwrap_or_else(|| {
+            let points = &self.solid.reference;
+            let low = points.iter().fold(Vec3::repeat(f64::INFINITY), |low, p| low.inf(p));
+            let high = points.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
+            let speed = |body| self.solid.body(body).elastic.p_wave_speed();
+            let slowest = (0..self.solid.body_count()).map(speed).fold(f64::INFINITY, f64::min);
+            CROSSINGS * (high - low).norm() / slowest
+        })
+    }
+
+    /// Advances the scene by a step with its ledger; ends the motion at the beginning of that step if it has died by then,
+    /// and says so. The kinetic energy that was left is booked as damping.
+    ///
+    /// # Errors
+    /// As [`Scene::step`].
+    pub fn look(&mut self, interlude: &mut Interlude) -> Result<bool, StepError> {
+        let (clock, displacement) = (self.clock, self.solid.displacement.clone());
+        let report = self.step(true)?;
+        let kinetic = self.ledger.kinetic;
+        interlude.next_look = self.clock.time + interlude.period / LOOKS;
+        interlude.most_kinetic = interlude.most_kinetic.max(kinetic);
+        let early = clock.time < interlude.begin + interlude.least;
+        if early || report.removed > 0 || kinetic > AT_REST * (self.ledger.elastic + SMALL * self.ledger.scale) {
+            return Ok(false);
+        }
+        // What the step did after its energies were taken is taken back.
+        self.clock = clock;
+        self.solid.displacement = displacement;
+        self.solid.velocity.fill(Vec3::zeros());
+        self.debris.stop();
+        self.books.external = self.ledger.external;
+        self.books.damping = self.ledger.damping - self.solid.viscous_dissipation() + kinetic;
+        self.ledger.damping += kinetic;
+        self.ledger.kinetic = 0.0;
+        Ok(true)
+    }
+}
