@@ -143,15 +143,11 @@ impl Law {
             young: vec![],
         };
         let rows: Vec<Vec<f64>> = points.iter().map(|p| law.basis(p.radius_ratio, p.coordination)).collect();
-        let matrix = DMatrix::from_fn(points.len(), terms, |i, j| rows[i][j]);
-        let svd = matrix.svd(true, true);
-        let solve = |f: &dyn Fn(&Point) -> f64| {
-            let right = DVector::from_iterator(points.len(), points.iter().map(|p| f(p)));
-            svd.solve(&right, 1e-12).map(|x| x.as_slice().to_vec())
-        };
-        let failed = |_| CalibrateError::LawTable { line: 0, what: "the fit failed".into() };
-        law.poisson = solve(&|p| p.poisson_ratio).map_err(failed)?;
-        law.young = solve(&|p| (p.young_ratio / p.radius_ratio.powi(2)).ln()).map_err(failed)?;
+        let right = [
+            points.iter().map(|p| p.poisson_ratio).collect(),
+            points.iter().map(|p| (p.young_ratio / p.radius_ratio.powi(2)).ln()).collect(),
+        ];
+        [law.poisson, law.young] = least_squares(&rows, right)?;
         let residual = |f: &dyn Fn(&Point) -> f64| {
             let square: f64 = points.iter().map(|p| f(p).powi(2)).sum();
             [(square / points.len() as f64).sqrt(), points.iter().map(|p| f(p).abs()).fold(0.0, f64::max)]
@@ -163,10 +159,7 @@ impl Law {
 
     /// Products of Chebyshev polynomials in ln r_m and cn, each mapped to [-1, 1].
     fn basis(&self, radius_ratio: f64, coordination: f64) -> Vec<f64> {
-        let unit = |x: f64, [l, h]: [f64; 2]| (2.0 * x - l - h) / (h - l);
-        let s = chebyshev(unit(radius_ratio.ln(), self.radius_ratio.map(f64::ln)), DEGREE.0);
-        let t = chebyshev(unit(coordination, self.coordination), DEGREE.1);
-        s.iter().flat_map(|s| t.iter().map(move |t| s * t)).collect()
+        products(DEGREE, (radius_ratio, self.radius_ratio), (coordination, self.coordination))
     }
 
     fn sum(&self, coefficients: &[f64], radius_ratio: f64, coordination: f64) -> f64 {
@@ -220,6 +213,30 @@ impl Law {
         let radius_ratio = low.exp();
         Ok(Micro { radius_ratio, young_modulus: young_modulus / self.young_ratio(radius_ratio, coordination) })
     }
+}
+
+/// Products of Chebyshev polynomials up to two degrees, in the logarithm of a first number and in a second one, each with the
+/// range that is mapped to [-1, 1]; the second runs fast.
+pub(crate) fn products(degree: (usize, usize), first: (f64, [f64; 2]), second: (f64, [f64; 2])) -> Vec<f64> {
+    let unit = |(x, [l, h]): (f64, [f64; 2])| (2.0 * x - l - h) / (h - l);
+    let s = chebyshev(unit((first.0.ln(), first.1.map(f64::ln))), degree.0);
+    let t = chebyshev(unit(second), degree.1);
+    s.iter().flat_map(|s| t.iter().map(move |t| s * t)).collect()
+}
+
+/// Coefficients of the terms in `rows` that come nearest to each of the right sides.
+pub(crate) fn least_squares<const N: usize>(
+    rows: &[Vec<f64>],
+    right: [Vec<f64>; N],
+) -> Result<[Vec<f64>; N], CalibrateError> {
+    let terms = rows.first().map_or(0, Vec::len);
+    let svd = DMatrix::from_fn(rows.len(), terms, |i, j| rows[i][j]).svd(true, true);
+    let mut found = [const { Vec::new() }; N];
+    for (found, right) in found.iter_mut().zip(right) {
+        let failed = |_| CalibrateError::LawTable { line: 0, what: "the fit failed".into() };
+        *found = svd.solve(&DVector::from_vec(right), 1e-12).map_err(failed)?.as_slice().to_vec();
+    }
+    Ok(found)
 }
 
 fn chebyshev(x: f64, degree: usize) -> Vec<f64> {

@@ -24,6 +24,7 @@ mod prepare;
 pub mod published;
 mod sample;
 pub mod strength;
+pub mod strength_law;
 
 pub use calibrate::{Calibration, Request, calibrate, suitable_coordination};
 pub use error::CalibrateError;

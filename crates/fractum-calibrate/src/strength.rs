@@ -74,7 +74,7 @@ pub fn calibrate(samples: &[&Sample], asked: f64, criterion: StrengthCriterion) 
 }
 
 /// A tension test to the load peak.
-fn pull(sample: &Sample, asked: f64, criterion: Criterion) -> Result<lab::Broken, CalibrateError> {
+pub(crate) fn pull(sample: &Sample, asked: f64, criterion: Criterion) -> Result<lab::Broken, CalibrateError> {
     if !(asked.is_finite() && asked > 0.0) {
         let expected = "a positive number of pascals";
         return Err(CalibrateError::Material { what: "tensile strength", value: asked, expected });

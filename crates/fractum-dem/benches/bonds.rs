@@ -95,7 +95,7 @@ fn forces_alone(bencher: divan::Bencher, side: usize) {
 fn forces_and_criterion(bencher: divan::Bencher, side: usize) {
     let Some((mut bonds, mut particles, mut fracture)) = watched(side) else { return };
     bencher.bench_local(|| {
-        bonds.add_forces_and_dyads(&mut particles);
+        fracture.add_bond_forces(&mut bonds, &mut particles);
         fracture.break_overloaded(&mut bonds, &particles, Occasion::default())
     });
 }

@@ -35,7 +35,22 @@ pub struct Fracture {
     acting: Vec<(usize, BeamForces)>,
     sites: Vec<Site>,
     breaks: Vec<Break>,
+    /// What was summed beside the last forces.
+    beside: Beside,
+    /// Steps for which dyads are summed with the forces, since bounds without them did not suffice.
+    wary: u32,
 }
+
+/// What was summed beside forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Beside {
+    Nothing,
+    Pulls,
+    Dyads,
+}
+
+/// Steps with dyads after a step in which the bound without them was passed. What breaks does not depend on it.
+const WARY: u32 = 100;
 
 /// Everything that changes in a [`Fracture`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -116,6 +131,8 @@ impl Fracture {
             acting: Vec::new(),
             sites: Vec::new(),
             breaks: Vec::new(),
+            beside: Beside::Nothing,
+            wary: 0,
         })
     }
 
@@ -139,10 +156,33 @@ impl Fracture {
         self.released
     }
 
+    /// Adds the forces of the bonds, and sums beside them what the criterion needs: far from failure a bound.
+    pub fn add_bond_forces(&mut self, bonds: &mut BeamNetwork, particles: &mut Particles) {
+        self.beside = match self.watch.criterion() {
+            Criterion::BeamRankine(_) => Beside::Nothing,
+            _ if self.wary > 0 => Beside::Dyads,
+            _ => Beside::Pulls,
+        };
+        match self.beside {
+            Beside::Nothing => bonds.add_forces(particles),
+            Beside::Pulls => bonds.add_forces_and_pulls(particles),
+            Beside::Dyads => bonds.add_forces_and_dyads(particles),
+        }
+    }
+
+    /// Sums the dyads of the present positions unless that was done with the forces.
+    fn need_dyads(&mut self, bonds: &mut BeamNetwork, particles: &Particles) {
+        if self.beside == Beside::Pulls {
+            bonds.find_dyads(particles);
+            self.beside = Beside::Dyads;
+        }
+    }
+
     /// The site that is nearest to failure; none where nothing bears anything.
     ///
-    /// The forces must be those that [`BeamNetwork::add_forces_and_dyads`] found at these positions.
-    pub fn closest(&mut self, bonds: &BeamNetwork, particles: &Particles) -> Option<Site> {
+    /// The forces must be those that [`Fracture::add_bond_forces`] found at these positions.
+    pub fn closest(&mut self, bonds: &mut BeamNetwork, particles: &Particles) -> Option<Site> {
+        self.need_dyads(bonds, particles);
         self.watch.look(&Moving { bonds, particles }, &self.graph, f64::INFINITY);
         self.watch.worst()
     }
@@ -160,10 +200,19 @@ impl Fracture {
 
     /// Breaks what fails: for every overloaded site what it releases. Returns the number of bonds.
     ///
-    /// The forces must be those that [`BeamNetwork::add_forces_and_dyads`] found at these positions. They stay as they
+    /// The forces must be those that [`Fracture::add_bond_forces`] found at these positions. They stay as they
     /// are and act on the kick that follows: taken away at once, a force would cost the balance its square, whatever the
     /// motion. [`Fracture::book_last_work`] takes what they do in it off the energies of the cracks.
     pub fn break_overloaded(&mut self, bonds: &mut BeamNetwork, particles: &Particles, occasion: Occasion) -> usize {
+        if self.beside == Beside::Pulls {
+            if !self.watch.pulls_may_fail(bonds, 1.0) {
+                return 0;
+            }
+            self.wary = WARY;
+            self.need_dyads(bonds, particles);
+        } else {
+            self.wary = self.wary.saturating_sub(1);
+        }
         let Fracture { graph, watch, sites, breaks, .. } = self;
         if !watch.may_fail(&Moving { bonds, particles }, 1.0) {
             return 0;
@@ -310,12 +359,12 @@ mod tests {
         particles.spin[0] = Vec3::new(0.0, 0.0, 0.01);
         // Fine enough that the kink of the force where faces meet does not show.
         let dt = 0.02 * bonds.stable_step(&particles, 0.7);
-        bonds.add_forces_and_dyads(&mut particles);
+        fracture.add_bond_forces(&mut bonds, &mut particles);
         fracture.break_overloaded(&mut bonds, &particles, Occasion::default());
         fracture.book_last_work(&particles, 0.0);
         // What is left of the force once the bond is gone.
         particles.clear_forces();
-        bonds.add_forces_and_dyads(&mut particles);
+        fracture.add_bond_forces(&mut bonds, &mut particles);
         fracture.add_contact_forces(&mut particles, 0.0);
         let jump = if fracture.cracks().is_empty() { 0.0 } else { particles.force[1].norm() };
         let energy = |p: &Particles, b: &BeamNetwork| p.kinetic_energy() + b.energy(p).total();
@@ -325,7 +374,7 @@ mod tests {
             particles.kick_and_drift(dt, Integrator::VelocityVerlet);
             fracture.book_last_work(&particles, dt);
             particles.clear_forces();
-            bonds.add_forces_and_dyads(&mut particles);
+            fracture.add_bond_forces(&mut bonds, &mut particles);
             let work = fracture.add_contact_forces(&mut particles, dt);
             particles.kick(dt, Integrator::VelocityVerlet);
             let time = dt * f64::from(step);
@@ -369,7 +418,7 @@ mod tests {
         particles.position[0].x -= 0.01;
         particles.velocity[1].x = 0.05;
         let dt = 0.02 * bonds.stable_step(&particles, 0.7);
-        bonds.add_forces_and_dyads(&mut particles);
+        fracture.add_bond_forces(&mut bonds, &mut particles);
         fracture.break_overloaded(&mut bonds, &particles, Occasion::default());
         particles.clear_forces();
         let mut work = FaceWork::default();
@@ -377,7 +426,7 @@ mod tests {
             particles.kick_and_drift(dt, Integrator::VelocityVerlet);
             fracture.book_last_work(&particles, 0.0);
             particles.clear_forces();
-            bonds.add_forces_and_dyads(&mut particles);
+            fracture.add_bond_forces(&mut bonds, &mut particles);
             work = fracture.add_contact_forces(&mut particles, dt);
             particles.kick(dt, Integrator::VelocityVerlet);
             if step % 20 == 0 {
@@ -433,11 +482,13 @@ mod tests {
             let faces = CrackFaces::default();
             let mut fracture = Fracture::new(&bonds, &particles, criterion, faces, 0.6, 60.0).unwrap();
             particles.clear_forces();
-            bonds.add_forces_and_dyads(&mut particles);
-            let worst = fracture.closest(&bonds, &particles).unwrap().ratio;
+            fracture.add_bond_forces(&mut bonds, &mut particles);
+            let worst = fracture.closest(&mut bonds, &particles).unwrap().ratio;
             let body = Moving { bonds: &bonds, particles: &particles };
             assert!(fracture.watch.may_fail(&body, worst));
             assert!(!fracture.watch.may_fail(&body, 100.0 * worst));
+            assert!(fracture.watch.pulls_may_fail(&bonds, worst));
+            assert!(!fracture.watch.pulls_may_fail(&bonds, 100.0 * worst));
         }
     }
 }

@@ -62,6 +62,11 @@ impl BondGraph {
         &self.pairs
     }
 
+    /// The particles of each bond that holds.
+    pub fn live_pairs(&self) -> impl Iterator<Item = [u32; 2]> + Clone {
+        self.pairs.iter().zip(&self.live).filter(|(_, live)| **live).map(|(pair, _)| *pair)
+    }
+
     /// Number of broken bonds.
     pub fn broken(&self) -> usize {
         self.broken
@@ -97,8 +102,7 @@ impl BondGraph {
     /// own.
     pub fn parts_among(&self, inside: impl Fn(usize) -> bool) -> Parts {
         let inside: Vec<bool> = (0..self.particles()).map(inside).collect();
-        let live = self.pairs.iter().zip(&self.live).filter(|(_, live)| **live).map(|(pair, _)| *pair);
-        let links = live.filter(|pair| pair.iter().all(|&i| inside[i as usize]));
+        let links = self.live_pairs().filter(|pair| pair.iter().all(|&i| inside[i as usize]));
         let (of, count) = numbered_parts(self.particles(), links);
         Parts { of, count: count as usize }
     }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::criterion::{BondLoad, Criterion, Level, Mode, Release, StressCriterion};
 use crate::graph::BondGraph;
-use crate::{BeamSection, DemError};
+use crate::{BeamNetwork, BeamSection, DemError};
 
 /// Particles or bonds handled as one block by the parallel loops.
 const BLOCK: usize = 1024;
@@ -57,6 +57,7 @@ pub struct Watch {
     /// Members of each neighbourhood, for level 2 only.
     members: Vec<Vec<u32>>,
     dyads: Vec<Sym3>,
+    pulls: Vec<[f64; 2]>,
     stress: Vec<Sym3>,
     /// Sites over the limit at the last look, by index.
     over: Vec<Site>,
@@ -95,6 +96,7 @@ impl Watch {
             fraction,
             members: vec![Vec::new(); listed],
             dyads: vec![Sym3::ZERO; stressed],
+            pulls: vec![[0.0; 2]; stressed],
             stress: vec![Sym3::ZERO; stressed],
             over: Vec::new(),
             worst: None,
@@ -177,6 +179,29 @@ impl Watch {
             Criterion::MohrCoulomb(c) => self.own_bound_reaches(&c, body, limit),
             Criterion::DruckerPrager(c) => self.own_bound_reaches(&c, body, limit),
         }
+    }
+
+    /// The same from [`BeamNetwork::pulls`], without a tensor: still cheaper, and farther from what is there.
+    pub fn pulls_may_fail(&mut self, bonds: &BeamNetwork, limit: f64) -> bool {
+        match self.criterion {
+            Criterion::BeamRankine(_) => true,
+            Criterion::Hydrostatic(c) => self.pulls_reach(&c, bonds, limit),
+            Criterion::Principal(c) => self.pulls_reach(&c, bonds, limit),
+            Criterion::MohrCoulomb(c) => self.pulls_reach(&c, bonds, limit),
+            Criterion::DruckerPrager(c) => self.pulls_reach(&c, bonds, limit),
+        }
+    }
+
+    fn pulls_reach(&mut self, criterion: &impl StressCriterion, bonds: &BeamNetwork, limit: f64) -> bool {
+        bonds.pulls(&mut self.pulls);
+        let fraction = self.fraction;
+        let reaches = |(pulls, volume): (&[[f64; 2]], &[f64])| {
+            let over = |(&[pulled, pressed], volume): (&[f64; 2], &f64)| {
+                criterion.bound_between(pulled, pressed) * fraction >= limit * volume
+            };
+            pulls.iter().zip(volume).any(over)
+        };
+        self.pulls.par_chunks(BLOCK).zip(self.volume.par_chunks(BLOCK)).any(reaches)
     }
 
     fn own_bound_reaches(&mut self, criterion: &impl StressCriterion, body: &impl Bonded, limit: f64) -> bool {

@@ -1,7 +1,8 @@
-use fractum_fem::{CrackEdge, CrackPlane};
+use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 
 use crate::bonded::ParticleProbe;
+use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 
@@ -83,48 +84,16 @@ pub enum Probe {
     },
     /// Area of crack, Σ V d/l over the damaged edges [m²].
     CrackArea,
-    /// How the crack lies: the edges that have lost at least half of their strength. Not a number where there is none.
+    /// How the crack lies: the edges that have lost at least half of their strength, and the broken bonds. Not a number
+    /// where there are none.
     Crack {
         /// What about it.
         measure: CrackMeasure,
-        /// Unit direction.
-        direction: Vec3,
-        /// Which edges count, body by body; empty for all.
-        inside: Vec<Vec<bool>>,
+        /// Direction, and the point of it that a helix or cone needs.
+        axis: Axis,
+        /// Which edges and bonds count; all if absent.
+        inside: Option<InsideCracks>,
     },
-}
-
-/// What a probe measures of a crack along a direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CrackMeasure {
-    /// Angle between the direction and the plane of the crack (its line in the plane) [rad], 0 to π/2.
-    Angle,
-    /// Position of its centre along the direction [m].
-    Centre,
-    /// Position of its foremost edge along the direction [m].
-    Front,
-}
-
-/// Part of the strength that an edge of a crack has lost at least.
-const SOFTENED: f64 = 0.5;
-
-fn measure_crack(scene: &Scene, measure: CrackMeasure, direction: &Vec3, inside: &[Vec<bool>]) -> f64 {
-    let counts = |edge: &CrackEdge| {
-        let here = inside.get(edge.body).is_none_or(|of| of.get(edge.edge as usize).copied().unwrap_or(false));
-        here && edge.softened >= SOFTENED
-    };
-    let edges = scene.solid.crack_edges().into_iter().filter(counts);
-    let points: Vec<(Vec3, f64)> = edges.map(|edge| (edge.middle, edge.area * edge.softened)).collect();
-    match measure {
-        CrackMeasure::Angle => {
-            CrackPlane::through(&points, scene.solid.is_plane()).map_or(f64::NAN, |plane| plane.angle_to(direction))
-        }
-        CrackMeasure::Centre => {
-            let weight: f64 = points.iter().map(|p| p.1).sum();
-            points.iter().map(|(p, w)| p.dot(direction) * w).sum::<f64>() / weight
-        }
-        CrackMeasure::Front => points.iter().map(|(p, _)| p.dot(direction)).fold(f64::NAN, f64::max),
-    }
 }
 
 impl Probe {
@@ -177,7 +146,7 @@ impl Probe {
             }
             Probe::ToolVelocity { tool, direction } => scene.contacts.tools()[*tool].frame.velocity.dot(direction),
             Probe::CrackArea => solid.crack_area(),
-            Probe::Crack { measure, direction, inside } => measure_crack(scene, *measure, direction, inside),
+            Probe::Crack { measure, axis, inside } => measure_crack(scene, *measure, axis, inside.as_ref()),
         }
     }
 }

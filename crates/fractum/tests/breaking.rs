@@ -145,6 +145,12 @@ fn criteria_take_only_keys_that_belong_to_them() {
 /// The bar at rest: the same case but for the solver and for velocities that only motion has.
 fn at_rest() -> String {
     let bar = BAR.replace("initial_velocity = { x = \"rate*x/length\" }\n", "");
+    let probes = r#"
+[[probes]]
+name = "front"
+crack = { measure = "front", along = "x", where = "z > 0.5 mm" }
+"#;
+    let bar = bar + probes;
     bar.replace("end = \"0.3 us\"", "end = \"0.3 us\"\nkind = \"static\"")
 }
 
@@ -173,6 +179,50 @@ fn the_same_case_breaks_at_rest_from_break_to_break() {
     let load = fs::read_to_string(place.path("one/cracks.csv")).unwrap();
     let time = load.lines().nth(1).unwrap().split(',').nth(5).unwrap().parse::<f64>().unwrap();
     assert!((time / first[column("time")] - 1.0).abs() < 1e-12, "the first row is the first break");
+
+    // Probes look at the broken bonds: nothing before the first, then the farthest of those that count.
+    let cracks = load.lines().skip(1).map(|line| line.split(',').collect::<Vec<&str>>());
+    let places = cracks.map(|row| [6, 8].map(|k| row[k].parse::<f64>().unwrap()));
+    let front = places.filter(|[_, z]| *z > 0.5e-3).map(|[x, _]| x).fold(f64::NAN, f64::max);
+    assert_eq!(one["probes"]["front"]["final"].as_f64(), Some(front));
+    assert!(first[column("front")].is_nan());
+}
+
+#[test]
+fn helix_and_cone_have_an_axis_and_the_other_measures_have_none() {
+    let probe = |text: &str| format!("{BAR}\n[[probes]]\nname = \"shape\"\ncrack = {{ {text} }}\n");
+    let point = r#"point = ["0 m", "0 m", "1 mm"]"#;
+    for measure in ["helix", "cone", "cone_share"] {
+        let place = Workplace::new(&probe(&format!("measure = \"{measure}\", along = \"z\", {point}")));
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(0), "{measure}: {}", ended.stderr);
+    }
+    let place = Workplace::new(&probe(&format!("measure = \"angle\", along = \"z\", {point}")));
+    let ended = place.fractum(&["check", "case.toml"]);
+    assert!(ended.code == Some(1) && ended.stderr.contains("no effect with this measure"), "{}", ended.stderr);
+    let place = Workplace::new(&probe("measure = \"cone\", along = \"z\", where = \"z > 1 m\""));
+    let ended = place.fractum(&["check", "case.toml"]);
+    assert!(ended.code == Some(1) && ended.stderr.contains("no bond that may break"), "{}", ended.stderr);
+}
+
+#[test]
+fn the_laboratory_lists_the_fragments_at_rest_and_in_motion() {
+    let place = Workplace::new(BAR);
+    let sample = ["--box", "2 mm,1 mm,1 mm", "--count", "300", "--density", "2000 kg/m^3", "-o", "out"];
+    let ended = place.fractum(&[&["lab", "break", "tension", "--transits", "5"][..], &sample].concat());
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    for (file, moves) in [("out/fragments.csv", false), ("out/motion-fragments.csv", true)] {
+        let text = fs::read_to_string(place.path(file)).unwrap();
+        let rows: Vec<Vec<f64>> =
+            text.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect();
+        assert!(rows.len() > 1 && rows.windows(2).all(|w| w[0][1] >= w[1][1]), "{text}");
+        assert_eq!((rows[0][0], rows.iter().map(|row| row[3]).sum::<f64>()), (1.0, 300.0));
+        // The measured body is that of the packing's faces, a little off the box.
+        let mass: f64 = rows.iter().map(|row| row[1]).sum();
+        assert!((mass / 4e-6 - 1.0).abs() < 0.1, "{mass:e}");
+        assert!(rows.iter().all(|row| (row[1] / row[2] / 2000.0 - 1.0).abs() < 1e-9));
+        assert_eq!(rows.iter().any(|row| row[8..11].iter().any(|v| *v != 0.0)), moves);
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use nalgebra::{Matrix6, Vector6};
 use rayon::prelude::*;
 
 use super::cohesive_beam::{BeamEnergy, BondedPair, beam, cohesive_beam_energy};
-use super::lanes::{Lanes, Vector};
+use super::lanes::{Lanes, Vector, dot};
 use super::{BeamSection, cohesive_beam};
 use crate::{DemError, Lattice, Particles};
 
@@ -46,6 +46,8 @@ struct Block {
     sums: Vec<[f64; 6]>,
     /// Sums of the dyads of forces and arms, where they are wanted.
     dyads: Vec<[f64; 6]>,
+    /// Sums of the bounds of these dyads, where they are wanted.
+    pulls: Vec<[f64; 2]>,
     /// Sums that other blocks hold for particles of this one: (block, slot, own particle).
     incoming: Vec<(u32, u32, u32)>,
 }
@@ -61,6 +63,11 @@ struct Group {
     inverse: [f64; WIDTH],
     live: [f64; WIDTH],
 }
+
+/// What a pass over the bonds sums beside forces.
+const NOTHING: u8 = 0;
+const DYADS: u8 = 1;
+const PULLS: u8 = 2;
 
 impl BeamNetwork {
     /// Bonds particles at their present distances; their orientations count from now on.
@@ -149,16 +156,45 @@ impl BeamNetwork {
 
     /// Adds the forces and moments of all live bonds to the particles'.
     pub fn add_forces(&mut self, particles: &mut Particles) {
-        self.add_forces_of::<false>(particles);
+        self.add_forces_of::<NOTHING>(particles);
     }
 
     /// [`BeamNetwork::add_forces`], which also keeps what [`BeamNetwork::dyads`] tells of these forces.
     pub fn add_forces_and_dyads(&mut self, particles: &mut Particles) {
-        self.add_forces_of::<true>(particles);
+        self.add_forces_of::<DYADS>(particles);
+    }
+
+    /// [`BeamNetwork::add_forces`], which also keeps what [`BeamNetwork::pulls`] tells of these forces: a third of the work
+    /// that dyads are.
+    pub fn add_forces_and_pulls(&mut self, particles: &mut Particles) {
+        self.add_forces_of::<PULLS>(particles);
+    }
+
+    /// Finds the dyads at the present positions, and leaves forces as they are.
+    pub fn find_dyads(&mut self, particles: &Particles) {
+        let Particles { position, orientation, .. } = particles;
+        let section = self.section;
+        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<false, DYADS>(position, orientation, &section));
+    }
+
+    /// Bounds of the principal values of the dyads [N m], as at the last [`BeamNetwork::add_forces_and_pulls`]: the sums of
+    /// the largest ones of each bond, and of the smallest ones with their sign changed. ½ sym(r ⊗ f) has the principal
+    /// values ¼ (r·f ± |r| |f|) and 0, and the largest one of a sum is at most the sum of the largest ones.
+    pub fn pulls(&self, out: &mut [[f64; 2]]) {
+        let blocks = &self.blocks;
+        out.par_chunks_mut(BLOCK).zip(blocks).for_each(|(out, block)| {
+            out.fill([0.0; 2]);
+            out.iter_mut().zip(&block.pulls).for_each(|(out, sum)| *out = *sum);
+            for &(from, slot, own) in &block.incoming {
+                if let Some(sum) = blocks[from as usize].pulls.get(slot as usize) {
+                    (0..2).for_each(|k| out[own as usize][k] += sum[k]);
+                }
+            }
+        });
     }
 
     /// Half the sums of sym(r_ij ⊗ f_ij) over the bonds of each particle [N m], as at the last
-    /// [`BeamNetwork::add_forces_and_dyads`]; zero before it.
+    /// [`BeamNetwork::add_forces_and_dyads`] or [`BeamNetwork::find_dyads`]; zero before it.
     pub fn dyads(&self, out: &mut [Sym3]) {
         let blocks = &self.blocks;
         out.par_chunks_mut(BLOCK).zip(blocks).for_each(|(out, block)| {
@@ -173,10 +209,10 @@ impl BeamNetwork {
         });
     }
 
-    fn add_forces_of<const DYADS: bool>(&mut self, particles: &mut Particles) {
+    fn add_forces_of<const BESIDE: u8>(&mut self, particles: &mut Particles) {
         let section = self.section;
         let Particles { position, orientation, force, moment, .. } = particles;
-        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<DYADS>(position, orientation, &section));
+        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<true, BESIDE>(position, orientation, &section));
         let blocks = &self.blocks;
         let owned = force.par_chunks_mut(BLOCK).zip(moment.par_chunks_mut(BLOCK));
         owned.zip(blocks).for_each(|((force, moment), block)| {
@@ -341,16 +377,31 @@ impl Block {
             })
             .collect();
         let sums = vec![[0.0; 6]; count + partners.len()];
-        Block { start, count, groups, partners, sums, dyads: Vec::new(), incoming: Vec::new() }
+        Block { start, count, groups, partners, sums, dyads: Vec::new(), pulls: Vec::new(), incoming: Vec::new() }
     }
 
-    fn sum_bonds<const DYADS: bool>(&mut self, position: &[Vec3], orientation: &[Rotation], section: &BeamSection) {
+    /// Sums what is wanted of the bonds.
+    fn sum_bonds<const FORCES: bool, const BESIDE: u8>(
+        &mut self,
+        position: &[Vec3],
+        orientation: &[Rotation],
+        section: &BeamSection,
+    ) {
         debug_assert!(self.start + self.count <= position.len());
-        let Block { groups, sums, dyads, .. } = self;
-        sums.fill([0.0; 6]);
-        if DYADS {
-            dyads.clear();
+        let Block { groups, sums, dyads, pulls, .. } = self;
+        if FORCES {
+            sums.fill([0.0; 6]);
+        }
+        if BESIDE != NOTHING {
+            // Both at once, so that no later step allocates.
             dyads.resize(sums.len(), [0.0; 6]);
+            pulls.resize(sums.len(), [0.0; 2]);
+        }
+        if BESIDE == DYADS {
+            dyads.fill([0.0; 6]);
+        }
+        if BESIDE == PULLS {
+            pulls.fill([0.0; 2]);
         }
         for group in groups {
             let (mut gap, mut turns) = ([[0.0; WIDTH]; 3], [[[0.0; WIDTH]; 4]; 2]);
@@ -372,7 +423,7 @@ impl Block {
             let arm = gap.map(Lanes);
             let (force, first, second) =
                 beam(arm, turns.map(turn), axis, Lanes(group.inverse), Lanes(group.live), section);
-            for k in 0..WIDTH {
+            for k in 0..if FORCES { WIDTH } else { 0 } {
                 let (i, j) = (group.slots[0][k] as usize, group.slots[1][k] as usize);
                 let own = &mut sums[i];
                 for a in 0..3 {
@@ -385,7 +436,21 @@ impl Block {
                     other[a + 3] += second[a].0[k];
                 }
             }
-            if DYADS {
+            if BESIDE == PULLS {
+                let quarter = Lanes::splat(0.25);
+                // The force on the first particle is the opposite of `force`.
+                let along = dot(arm, force) * quarter;
+                let size = (dot(arm, arm) * dot(force, force)).sqrt() * quarter;
+                let (most, least) = (size - along, size + along);
+                for k in 0..WIDTH {
+                    for end in 0..2 {
+                        let sum = &mut pulls[group.slots[end][k] as usize];
+                        sum[0] += most.0[k];
+                        sum[1] += least.0[k];
+                    }
+                }
+            }
+            if BESIDE == DYADS {
                 // ½ sym(r ⊗ f) is the same at both ends; the force on the first particle is the opposite of `force`.
                 let quarter = Lanes::splat(-0.25);
                 let part = |a: usize, b: usize| (arm[a] * force[b] + arm[b] * force[a]) * quarter;

@@ -24,6 +24,15 @@ impl StressCriterion for DruckerPrager {
     }
 
     #[inline]
+    fn bound_between(&self, pulled: f64, pressed: f64) -> f64 {
+        // The ratio is convex in the stress: over the cube of principal values it is largest at a corner, where some of
+        // them are pulled and the others pressed.
+        let corner = |values: [f64; 3]| self.ratio(&Sym3::new(values[0], values[1], values[2], 0.0, 0.0, 0.0));
+        let (high, low) = (pulled, -pressed);
+        corner([high, low, low]).max(corner([high, high, low])).max(corner([high; 3])).max(corner([low; 3]))
+    }
+
+    #[inline]
     fn ratio(&self, stress: &Sym3) -> f64 {
         let (ft, fc) = (self.tensile_strength, self.compressive_strength);
         let root = 3f64.sqrt();

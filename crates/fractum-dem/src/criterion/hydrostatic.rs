@@ -18,6 +18,11 @@ impl StressCriterion for Hydrostatic {
     }
 
     #[inline]
+    fn bound_between(&self, pulled: f64, _: f64) -> f64 {
+        pulled / self.strength
+    }
+
+    #[inline]
     fn ratio(&self, stress: &Sym3) -> f64 {
         (stress.trace() / (3.0 * self.strength)).max(0.0)
     }

@@ -97,6 +97,10 @@ pub trait StressCriterion: Sync {
     /// Largest value that [`StressCriterion::ratio`] can have for this stress, cheaply: without eigenvalues.
     fn bound(&self, stress: &Sym3) -> f64;
 
+    /// Largest value that [`StressCriterion::ratio`] can have for any stress with principal values from −`pressed` to
+    /// `pulled`, neither below zero.
+    fn bound_between(&self, pulled: f64, pressed: f64) -> f64;
+
     /// Stress over strength: one where the particle fails, proportional to the stress.
     fn ratio(&self, stress: &Sym3) -> f64;
 
@@ -223,6 +227,16 @@ mod tests {
                 prop_assert!(ratio >= 0.0);
                 prop_assert!(criterion.bound(&stress) >= ratio * (1.0 - 1e-9) - 1e-9);
                 prop_assert!((criterion.ratio(&(stress * factor)) - factor * ratio).abs() < 1e-6 * (1.0 + factor * ratio));
+            }
+        }
+
+        #[test]
+        fn no_stress_within_a_range_exceeds_its_bound(c in prop::array::uniform6(-9.0f64..9.0)) {
+            let stress = Sym3(c);
+            let [first, _, last] = stress.principal_values();
+            for criterion in criteria() {
+                let bound = criterion.bound_between(first.max(0.0), (-last).max(0.0));
+                prop_assert!(bound >= criterion.ratio(&stress) * (1.0 - 1e-9) - 1e-9);
             }
         }
 

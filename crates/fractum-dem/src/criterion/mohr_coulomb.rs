@@ -37,6 +37,11 @@ impl StressCriterion for MohrCoulomb {
     }
 
     #[inline]
+    fn bound_between(&self, pulled: f64, pressed: f64) -> f64 {
+        (pulled / self.tensile_strength).max(self.shear(pulled, -pressed))
+    }
+
+    #[inline]
     fn ratio(&self, stress: &Sym3) -> f64 {
         let [first, _, last] = stress.principal_values();
         (first / self.tensile_strength).max(self.shear(first, last)).max(0.0)

@@ -30,6 +30,11 @@ impl StressCriterion for Principal {
     }
 
     #[inline]
+    fn bound_between(&self, pulled: f64, pressed: f64) -> f64 {
+        (pulled / self.tensile_strength).max(self.crushing(-pressed))
+    }
+
+    #[inline]
     fn ratio(&self, stress: &Sym3) -> f64 {
         let [first, _, last] = stress.principal_values();
         (first / self.tensile_strength).max(self.crushing(last)).max(0.0)

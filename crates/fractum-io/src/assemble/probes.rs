@@ -1,7 +1,8 @@
 //! Probes on the groups of the mesh.
 
+use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
-use fractum_scene::{Bonded, CountKind, CrackMeasure, EnergyKind, Probe, Supports};
+use fractum_scene::{Bonded, BondedBody, CountKind, CrackMeasure, EnergyKind, InsideCracks, Probe, Supports};
 
 use super::Context;
 use super::bodies::{Numbering, Part};
@@ -22,7 +23,7 @@ impl Context<'_> {
         let case = self.case;
         let mut measured = |kind| match self.particle_probe(kind, bonded).or_else(|| self.tool_probe(kind)) {
             Some(probe) => Some(probe),
-            None => self.probe(kind, parts, numbering, solid, supports),
+            None => self.probe(kind, parts, numbering, solid, supports, bonded),
         };
         case.probes.iter().map(|probe| measured(&probe.kind)).collect()
     }
@@ -34,6 +35,7 @@ impl Context<'_> {
         numbering: &Numbering,
         solid: &Solid,
         supports: &Supports,
+        bonded: &Bonded,
     ) -> Option<Probe> {
         Some(match kind {
             ProbeKind::Reaction { group, along } => {
@@ -107,18 +109,27 @@ impl Context<'_> {
             ProbeKind::Momentum { along } => Probe::Momentum(*along),
             ProbeKind::AngularMomentum { along } => Probe::AngularMomentum(*along),
             ProbeKind::CrackArea => Probe::CrackArea,
-            ProbeKind::Crack { measure, along, within } => {
-                let inside = within.as_ref().map_or_else(Vec::new, |within| edges_within(solid, &within.value));
-                if let Some(within) = within.as_ref().filter(|_| inside.iter().flatten().all(|inside| !inside)) {
-                    let found = ": no edge of a body that may be damaged fulfils the condition";
+            ProbeKind::Crack { measure, along, point, within } => {
+                let inside = within.as_ref().map(|within| InsideCracks {
+                    edges: edges_within(solid, &within.value),
+                    bonds: bonds_within(bonded, &within.value),
+                });
+                if let (Some(within), Some(InsideCracks { edges, bonds })) = (within, &inside)
+                    && edges.iter().chain(bonds).flatten().all(|inside| !inside)
+                {
+                    let found =
+                        ": no edge of a body that may be damaged and no bond that may break fulfils the condition";
                     self.error(&within.place, found, "a condition that holds where a crack is expected");
                 }
                 let measure = match measure {
                     model::CrackMeasure::Angle => CrackMeasure::Angle,
                     model::CrackMeasure::Centre => CrackMeasure::Centre,
                     model::CrackMeasure::Front => CrackMeasure::Front,
+                    model::CrackMeasure::Helix => CrackMeasure::Helix,
+                    model::CrackMeasure::Cone => CrackMeasure::Cone,
+                    model::CrackMeasure::ConeShare => CrackMeasure::ConeShare,
                 };
-                Probe::Crack { measure, direction: *along, inside }
+                Probe::Crack { measure, axis: Axis { point: *point, direction: *along }, inside }
             }
             ProbeKind::Expression(_) => return None,
         })
@@ -133,4 +144,14 @@ fn edges_within(solid: &Solid, condition: &Field) -> Vec<Vec<bool>> {
         middles.into_iter().map(|p| condition.holds_at(p)).collect()
     };
     (0..solid.body_count()).map(body).collect()
+}
+
+/// Which bonds of bodies that may break fulfil a condition at their middles, body by body.
+fn bonds_within(bonded: &Bonded, condition: &Field) -> Vec<Vec<bool>> {
+    let place = bonded.reference();
+    let holds = |&[i, j]: &[u32; 2]| condition.holds_at((place[i as usize] + place[j as usize]) * 0.5);
+    let body = |body: &BondedBody| {
+        if body.can_break() { body.bonds.pairs().iter().map(holds).collect() } else { Vec::new() }
+    };
+    bonded.bodies().iter().map(body).collect()
 }

@@ -120,7 +120,12 @@ fn documented_defaults_are_the_defaults() {
         };
         let mut tried = false;
         for (text, material, body, function) in samples {
-            let path = key.path.replace("NAME", material).replace("bodies[]", body).replace("TIME_FUNCTION", function);
+            let path = key
+                .path
+                .replace("NAME", material)
+                .replace("bodies[]", body)
+                .replace("probes[]", "probes[14]")
+                .replace("TIME_FUNCTION", function);
             let value = default["v"].to_string();
             // Take the key out first, so that the document is silent about it.
             let silent = without(text, &path).unwrap_or(text.to_string());

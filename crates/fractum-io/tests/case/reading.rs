@@ -81,9 +81,9 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!((case.output.history_every, case.output.checkpoint_every), (2e-6, 300.0));
 
     let units: Vec<_> = case.probes.iter().map(|probe| probe.unit.as_str()).collect();
-    let expected = ["N", "m", "m/s", "1", "Pa", "J", "1", "kg m/s", "kg m^2/s", "m^2", "1", "Pa", "J/m^2", "N"];
+    let expected = ["N", "m", "m/s", "1", "Pa", "J", "1", "kg m/s", "kg m^2/s", "m^2", "1", "Pa", "J/m^2", "N", "1"];
     assert_eq!(units, expected, "N/m is J/m^2");
-    let ProbeKind::Crack { measure, along, within } = &case.probes[10].kind else { panic!() };
+    let ProbeKind::Crack { measure, along, within, .. } = &case.probes[10].kind else { panic!() };
     assert_eq!((*measure, *along), (CrackMeasure::Angle, Vec3::y()));
     let within = &within.as_ref().unwrap().value;
     assert!(within.holds_at(Vec3::zeros()) && !within.holds_at(Vec3::x()));

@@ -341,7 +341,7 @@ impl Bonded {
                 bonds.add_forces(particles);
                 continue;
             };
-            bonds.add_forces_and_dyads(particles);
+            fracture.add_bond_forces(bonds, particles);
             let faces = fracture.add_contact_forces(particles, dt);
             work += ContactWork { stored: faces.stored, friction: faces.friction, damping: faces.damping };
             *released += fracture.released();

@@ -1,11 +1,12 @@
 //! `fractum calibrate`: a material in, micro-parameters out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use fractum::{ExitCode, Failure, say};
-use fractum_calibrate::{Calibration, Request, StrengthCriterion, calibrate, laws};
+use fractum_calibrate::strength_law::{self, READINGS, StrengthLaw, Survey};
+use fractum_calibrate::{Calibration, Request, StrengthCriterion, calibrate, laws, published};
 use fractum_io::atomic;
 use fractum_io::case::{Dimension, parse_quantity};
 
@@ -15,10 +16,10 @@ use super::shape::{Convention, pressure};
 #[derive(Args)]
 pub(crate) struct CalibrateArguments {
     /// Young's modulus, such as "72 GPa".
-    #[arg(long, required_unless_present = "refit")]
+    #[arg(long, required_unless_present_any = ["refit", "refit_strength"])]
     young: Option<String>,
     /// Poisson's ratio.
-    #[arg(long, required_unless_present = "refit")]
+    #[arg(long, required_unless_present_any = ["refit", "refit_strength"])]
     poisson: Option<f64>,
     /// Density, written into material.toml.
     #[arg(long)]
@@ -50,6 +51,10 @@ pub(crate) struct CalibrateArguments {
     /// Make the stored laws again, into laws.csv and database.csv of the output folder.
     #[arg(long)]
     refit: bool,
+    /// Fit the strength over that of the principal criterion, for the load peak and for the first break, to tension tests
+    /// of our own packings, and compare with eq. (22) of Nguyen et al. (2019): strength-law.csv and strength-tests.csv.
+    #[arg(long, conflicts_with = "refit")]
+    refit_strength: bool,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -84,6 +89,9 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<ExitCode, Failure> {
         say!("{} tests in {:.0} s; laws in {}", points.len(), started.elapsed().as_secs_f64(), folder.display());
         return Ok(ExitCode::Done);
     }
+    if arguments.refit_strength {
+        return refit_strength(folder, started);
+    }
     let mut request =
         Request::new(pressure(arguments.young.as_deref().unwrap_or_default())?, arguments.poisson.unwrap_or(f64::NAN));
     let criterion = match arguments.criterion {
@@ -115,6 +123,38 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<ExitCode, Failure> {
     )?;
     atomic::write(&folder.join("material.toml"), material(&result, density).as_bytes())?;
     say!("material.toml and calibration.json in {}", folder.display());
+    Ok(ExitCode::Done)
+}
+
+fn refit_strength(folder: &Path, started: Instant) -> Result<ExitCode, Failure> {
+    let wrong = |error: fractum_calibrate::CalibrateError| Failure::input(error.to_string());
+    let mut points = strength_law::survey(&Survey::fitted()).map_err(wrong)?;
+    let law = StrengthLaw::fit(&points).map_err(wrong)?;
+    let check = strength_law::survey(&Survey::check()).map_err(wrong)?;
+    say!(
+        "sigma_M/sigma_m in tension, differences in %: scatter of packings | fit on its {} tests, rms max | fit on {} tests of another packing | eq. (22) on both",
+        points.len(),
+        check.len()
+    );
+    for reading in READINGS {
+        let fit = |p: &strength_law::Point| law.ratio(reading, p.radius_ratio, p.coordination, p.particles);
+        let equation = |p: &strength_law::Point| published::strength_ratio(p.radius_ratio, p.coordination);
+        let percent = |[rms, most]: [f64; 2]| format!("{:5.2} {:5.2}", 100.0 * rms, 100.0 * most);
+        say!(
+            "{:11} {:5.2} | {} | {} | {}   {}",
+            format!("{reading:?}"),
+            100.0 * strength_law::scatter(&points, reading),
+            percent(strength_law::difference(&points, reading, fit)),
+            percent(strength_law::difference(&check, reading, fit)),
+            percent(strength_law::difference(&points, reading, equation)),
+            percent(strength_law::difference(&check, reading, equation)),
+        );
+    }
+    atomic::create_folder(folder)?;
+    atomic::write(&folder.join("strength-law.csv"), strength_law::write_law(&law).as_bytes())?;
+    points.extend(check);
+    atomic::write(&folder.join("strength-tests.csv"), strength_law::write_tests(&points).as_bytes())?;
+    say!("{} tests in {:.0} s; law in {}", points.len(), started.elapsed().as_secs_f64(), folder.display());
     Ok(ExitCode::Done)
 }
 

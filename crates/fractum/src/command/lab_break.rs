@@ -11,12 +11,14 @@ use fractum_calibrate::{Micro, Sample, lab, published};
 use fractum_dem::criterion::{
     BeamRankine, Criterion, DruckerPrager, EndMoments, Hydrostatic, Level, Mode, MohrCoulomb, Principal,
 };
-use fractum_dem::{Batch, CrackFaces, Dof6, LoadPoint};
+use fractum_dem::{Batch, CrackFaces, Dof6, LoadPoint, Particles, Piece, pieces};
 use fractum_io::case::{Dimension, parse_quantity};
+use fractum_io::fragments::{self, Fragment};
 use fractum_io::picture::{ColourMap, Paint, Picture, Spheres, View};
 use fractum_io::plot::{Axis, Chart, Mark, Series, Style};
 use fractum_io::vtk::{Field, PolyCells, PolyData};
 use fractum_io::{Compression, atomic};
+use fractum_math::Vec3;
 
 use super::shape::{Convention, ShapeArguments, pressure};
 
@@ -76,7 +78,7 @@ pub(crate) struct BreakArguments {
     /// would rise from zero to the first break, in times that a wave takes along the sample; 80 is slow.
     #[arg(long)]
     transits: Option<f64>,
-    /// Density of the continuum, for motion.
+    /// Density of the continuum, for motion and for the mass of fragments.
     #[arg(long, default_value = "2500 kg/m^3")]
     density: String,
     /// Friction of crack faces, in motion.
@@ -204,8 +206,8 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
     let folder = &arguments.output;
     atomic::create_folder(folder)?;
     let mut summary = summary(&sample, test, &criterion, &broken, seconds);
+    let density = parse_quantity(&arguments.density, Dimension::DENSITY).map_err(Failure::input)?;
     if let Some(transits) = arguments.transits {
-        let density = parse_quantity(&arguments.density, Dimension::DENSITY).map_err(Failure::input)?;
         let faces = CrackFaces { friction: arguments.friction, damping_ratio: 0.0 };
         let motion = lab::MotionOptions { density, transits, start: 0.9, faces, safety: arguments.safety };
         let started = Instant::now();
@@ -220,12 +222,14 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
         );
         summary["motion"] = serde_json::to_value(&moved).unwrap_or_default();
         atomic::write(&folder.join("motion.csv"), load_curve(&moved.curve, &broken).as_bytes())?;
+        write_fragments(&folder.join("motion-fragments.csv"), moved.pieces, density)?;
     }
     atomic::write(&folder.join("summary.json"), serde_json::to_string_pretty(&summary).unwrap_or_default().as_bytes())?;
     write(folder, &sample, &broken)?;
+    write_fragments(&folder.join("fragments.csv"), pieces_at_rest(&sample, &broken, density)?, density)?;
     show(&sample, test, &criterion, &broken);
     say!(
-        "{seconds:.1} s; load.csv, cracks.csv, broken.vtp, particles.vtp, load.svg, picture.png, summary.json in {}",
+        "{seconds:.1} s; load.csv, cracks.csv, fragments.csv, broken.vtp, particles.vtp, load.svg, picture.png, summary.json in {}",
         folder.display()
     );
     Ok(())
@@ -356,6 +360,34 @@ fn write(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Fai
     };
     atomic::write(&folder.join("load.svg"), chart.to_svg().as_bytes())?;
     fields(folder, sample, broken)
+}
+
+/// The pieces in the last state.
+fn pieces_at_rest(sample: &Sample, broken: &lab::Broken, density: f64) -> Result<Vec<Piece>, Failure> {
+    let outcome = &broken.outcome;
+    let factor = outcome.curve.last().map_or(0.0, |point| point.displacement) / broken.displacement;
+    let shifted = sample.packing.position.iter().zip(&outcome.last_state);
+    let position = shifted.map(|(x, u)| x + Vec3::new(u[0], u[1], u[2]) * factor).collect();
+    let particles = Particles::at_rest(position, sample.packing.radius.clone(), density * sample.measured_volume())
+        .map_err(|error| Failure::input(format!("{error}; check --density")))?;
+    Ok(pieces(&particles, outcome.graph.live_pairs(), |i| particles.mass[i]))
+}
+
+/// `fragments.csv` as a run writes it, the heaviest piece first.
+fn write_fragments(path: &Path, mut pieces: Vec<Piece>, density: f64) -> Result<(), Failure> {
+    pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass));
+    let fragment = |(id, piece): (u64, &Piece)| Fragment {
+        id,
+        mass: piece.mass,
+        volume: piece.content / density,
+        nodes: piece.particles.len() as u64,
+        elements: 0,
+        centroid: piece.centroid.into(),
+        velocity: piece.velocity.into(),
+        largest_extent: (piece.bounds[1] - piece.bounds[0]).max(),
+    };
+    let table: Vec<Fragment> = (1..).zip(&pieces).map(fragment).collect();
+    Ok(fragments::write(path, &table)?)
 }
 
 /// Files for ParaView, and the picture.

@@ -1,4 +1,5 @@
 use fractum_dem::Crack;
+use fractum_dem::crack_shape::{Axis, helix_angle};
 use fractum_math::{Mat3, Sym3, Vec3};
 use serde::Serialize;
 
@@ -44,7 +45,11 @@ pub fn geometry(sample: &Sample, test: Failure, cracks: &[Crack]) -> Option<Geom
             let flat = cracks.iter().filter(trace).map(|c| Vec3::new(0.0, c.position.y, c.position.z));
             line(flat).map_or((None, None), |(along, rough)| (Some(degrees(along.y.abs().acos())), Some(rough)))
         }
-        Failure::Torsion => (helix(cracks, centre, size).map(degrees), None),
+        Failure::Torsion => {
+            let points: Vec<(Vec3, f64)> = cracks.iter().map(|c| (c.position, c.area)).collect();
+            let axis = Axis { point: centre, direction: Vec3::x() };
+            (helix_angle(&points, &axis, size).map(degrees), None)
+        }
         Failure::Compression => (None, None),
     };
     Some(Geometry { start: out(first.position), early: out(middle), angle, roughness })
@@ -77,71 +82,9 @@ fn line(points: impl Iterator<Item = Vec3> + Clone) -> Option<(Vec3, f64)> {
     Some((axes.column(0).into_owned(), values[1].max(0.0).sqrt()))
 }
 
-/// Angle between the axis x and the helix on the surface that most broken bonds of the outer third lie on: the slope
-/// θ = θ₀ + s x with the largest |Σ exp(i(θ − s x))|.
-fn helix(cracks: &[Crack], centre: Vec3, radius: f64) -> Option<f64> {
-    let on_surface = |c: &Crack| {
-        let d = c.position - centre;
-        (d.y.hypot(d.z) > 0.67 * radius).then(|| (d.x, d.z.atan2(d.y)))
-    };
-    let points: Vec<(f64, f64)> = cracks.iter().filter_map(on_surface).collect();
-    if points.len() < 10 {
-        return None;
-    }
-    // Angles to the axis from 5° to 85° of either hand, in steps of a quarter of a degree.
-    let strength = |tangent: f64| {
-        let s = tangent / radius;
-        let (c, q) = points.iter().fold((0.0, 0.0), |(c, q), (x, theta)| {
-            let (sine, cosine) = (theta - s * x).sin_cos();
-            (c + cosine, q + sine)
-        });
-        c * c + q * q
-    };
-    let angles = (20..=340).flat_map(|k| [f64::from(k), -f64::from(k)]).map(|q| (0.25 * q).to_radians());
-    angles
-        .fold(None, |best: Option<(f64, f64)>, angle| {
-            let value = strength(angle.tan());
-            if best.is_none_or(|(b, _)| value > b) { Some((value, angle)) } else { best }
-        })
-        .map(|(_, angle)| angle.abs())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fractum_dem::criterion::Mode;
-
-    fn crack(position: Vec3) -> Crack {
-        Crack {
-            bond: 0,
-            pair: [0, 1],
-            event: 1,
-            time: 1.0,
-            load: 1.0,
-            position,
-            normal: Vec3::x(),
-            area: 1.0,
-            mode: Mode::Tension,
-            energy: 0.0,
-        }
-    }
-
-    #[test]
-    fn a_drawn_helix_is_found_with_its_angle() {
-        // Three quarters of a turn at 40° to the axis, with jitter across it.
-        let radius: f64 = 2.0;
-        let slope = 40f64.to_radians().tan() / radius;
-        let cracks: Vec<Crack> = (0..200)
-            .map(|k| {
-                let theta = f64::from(k) / 200.0 * 1.5 * std::f64::consts::PI;
-                let jitter = 0.1 * (f64::from(k) * 1.7).sin();
-                let r = 0.9 * radius;
-                crack(Vec3::new(theta / slope + jitter, r * theta.cos(), r * theta.sin()))
-            })
-            .collect();
-        let angle = helix(&cracks, Vec3::zeros(), radius).unwrap().to_degrees();
-        assert!((angle - 40.0).abs() < 1.5, "{angle}");
-    }
 
     #[test]
     fn plane_and_line_are_those_of_the_points() {

@@ -69,6 +69,8 @@ pub struct Broken {
     pub stress_per_load: f64,
     /// Nominal strain per unit of displacement [1/m or 1].
     pub strain_per_displacement: f64,
+    /// Displacement (or rotation) of the supports at load factor one.
+    pub displacement: f64,
     /// All of it.
     pub outcome: Outcome,
 }
@@ -112,6 +114,7 @@ pub fn break_sample(sample: &Sample, test: Failure, options: &FailureOptions) ->
         strength: outcome.peak.load * stress_per_load,
         stress_per_load,
         strain_per_displacement,
+        displacement,
         outcome,
     })
 }

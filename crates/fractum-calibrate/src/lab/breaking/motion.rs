@@ -1,4 +1,6 @@
-use fractum_dem::{BeamNetwork, CrackFaces, Fracture, Integrator, LoadPoint, Occasion, Particles, Point, StaticBody};
+use fractum_dem::{
+    BeamNetwork, CrackFaces, Fracture, Integrator, LoadPoint, Occasion, Particles, Piece, Point, StaticBody, pieces,
+};
 use fractum_math::{Rotation, Vec3};
 use serde::Serialize;
 
@@ -43,6 +45,9 @@ pub struct BrokenInMotion {
     /// Load curve.
     #[serde(skip)]
     pub curve: Vec<LoadPoint>,
+    /// The pieces at the end.
+    #[serde(skip)]
+    pub pieces: Vec<Piece>,
 }
 
 /// Where the energy is [J].
@@ -122,7 +127,7 @@ pub fn break_in_motion(
     // What supports do per unit of the load factor, against the forces of bonds and contacts.
     let push = |p: &Particles| -held.iter().map(|&(i, d)| p.force[i][d] * state[i][d]).sum::<f64>();
     let dt = bonds.stable_step(&particles, motion.safety);
-    bonds.add_forces_and_dyads(&mut particles);
+    fracture.add_bond_forces(&mut bonds, &mut particles);
     let mut energy =
         MotionEnergy { external: particles.kinetic_energy() + bonds.energy(&particles).total(), ..Default::default() };
     let (mut peak, mut first_break) = (Point { displacement: 0.0, load: 0.0, broken: 0 }, None);
@@ -133,7 +138,7 @@ pub fn break_in_motion(
         particles.kick_and_drift(dt, Integrator::VelocityVerlet);
         fracture.book_last_work(&particles, dt);
         particles.clear_forces();
-        bonds.add_forces_and_dyads(&mut particles);
+        fracture.add_bond_forces(&mut bonds, &mut particles);
         let faces = fracture.add_contact_forces(&mut particles, dt);
         let after = push(&particles);
         energy.external += 0.5 * (before + after) * rate * dt;
@@ -186,7 +191,8 @@ pub fn break_in_motion(
     }
     let strength = peak.load * stress_per_load;
     let broken = fracture.cracks().len();
-    Ok(BrokenInMotion { first_break, strength, peak, broken, separated, steps, dt, energy, curve })
+    let pieces = pieces(&particles, fracture.graph().live_pairs(), |i| particles.mass[i]);
+    Ok(BrokenInMotion { first_break, strength, peak, broken, separated, steps, dt, energy, curve, pieces })
 }
 
 /// The kinetic energy that velocity Verlet conserves exactly in a linear body, with those half a step before and after:

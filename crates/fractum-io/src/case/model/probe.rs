@@ -78,12 +78,14 @@ pub enum ProbeKind {
     },
     /// Area of the cracks [m²].
     CrackArea,
-    /// How a crack lies, by its edges that have lost half of their strength.
+    /// How a crack lies, by its edges that have lost half of their strength and its broken bonds.
     Crack {
         /// What about it.
         measure: CrackMeasure,
         /// Unit vector.
         along: Vec3,
+        /// A point of the axis of a helix or cone [m].
+        point: Vec3,
         /// Where edges count, by the position of their middles; everywhere if absent.
         within: Option<Spanned<Field>>,
     },
@@ -150,11 +152,20 @@ pub enum CrackMeasure {
     Angle,
     /// Position of its centre along a direction [m].
     Centre,
-    /// Position of its foremost edge along a direction [m].
+    /// Position of its foremost edge or bond along a direction [m].
     Front,
+    /// Angle between an axis and the helix on the surface about it [rad].
+    Helix,
+    /// Angle between the flank of a cone about an axis and the plane across the axis [rad].
+    Cone,
+    /// Part of the crack that lies on that cone [-].
+    ConeShare,
 }
 
-choice!(CrackMeasure { "angle" => Angle, "centre" => Centre, "front" => Front });
+choice!(CrackMeasure {
+    "angle" => Angle, "centre" => Centre, "front" => Front, "helix" => Helix, "cone" => Cone,
+    "cone_share" => ConeShare,
+});
 
 /// Components of the stress tensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,9 +1,11 @@
 //! `[[probes]]`.
 
+use fractum_math::Vec3;
+
 use super::bodies::optional;
 use super::boundary::exactly_one;
 use super::parameters::check_name;
-use super::vectors::{condition, direction};
+use super::vectors::{condition, direction, point};
 use crate::case::expression::{Named, Names, Op, Type, parse_unit};
 use crate::case::model::{CrackMeasure, Probe, ProbeExpression, ProbeInput, ProbeKind, Take};
 use crate::case::reader::{ParameterNames, Table};
@@ -148,9 +150,18 @@ fn crack(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
     let measure = inner.choice("measure").required();
     let along = direction(&inner, "along").required();
     let within = optional(&inner, "where", |name| condition(&inner, name).spanned().given());
+    let about_axis = matches!(measure, Some(CrackMeasure::Helix | CrackMeasure::Cone | CrackMeasure::ConeShare));
+    let origin = if about_axis {
+        point(&inner, "point").or_if_absent(Vec3::zeros())
+    } else {
+        inner.refuse("point", "with this measure");
+        Some(Vec3::zeros())
+    };
     inner.finish("here");
-    let dimension = if measure? == CrackMeasure::Angle { Dimension::NONE } else { Dimension::LENGTH };
-    Some((ProbeKind::Crack { measure: measure?, along: along?, within: within? }, dimension))
+    let measure = measure?;
+    let dimension =
+        if matches!(measure, CrackMeasure::Centre | CrackMeasure::Front) { Dimension::LENGTH } else { Dimension::NONE };
+    Some((ProbeKind::Crack { measure, along: along?, point: origin?, within: within? }, dimension))
 }
 
 struct ReadExpression {
