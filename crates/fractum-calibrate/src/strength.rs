@@ -5,6 +5,7 @@ use fractum_dem::criterion::{BeamRankine, EndMoments, Hydrostatic, Level, Princi
 use fractum_pack::{Convention, Domain, PackSpec, pack};
 use serde::Serialize;
 
+use crate::strength_law::{self, READINGS};
 use crate::{CalibrateError, Micro, Sample, lab, published};
 
 /// Criteria whose one strength can be calibrated.
@@ -47,6 +48,9 @@ pub struct Strength {
     pub range: [[f64; 2]; 2],
     /// By eq. (22) of Nguyen et al. (2019), for the principal criterion.
     pub law: Option<f64>,
+    /// By our own law for these packings, see [`strength_law`]: for the load peak and for the first break, for the
+    /// principal criterion within its ranges.
+    pub own_law: Option<[f64; 2]>,
 }
 
 /// Finds the strength on samples whose beams are set, by tension along x.
@@ -65,12 +69,20 @@ pub fn calibrate(samples: &[&Sample], asked: f64, criterion: StrengthCriterion) 
     }
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
     let range = |v: &[f64]| v.iter().fold([f64::INFINITY, 0.0f64], |[l, h], &x| [l.min(x), h.max(x)]);
-    let law = samples.first().filter(|_| criterion == StrengthCriterion::Principal).map(|sample| {
-        // The published law counts bonds over all particles.
+    // The laws count bonds over all particles.
+    let place = |sample: &&Sample| {
         let ratio = sample.lattice.section().radius / sample.mean_radius;
-        asked / published::strength_ratio(ratio, sample.network.coordination_all)
+        (ratio, sample.network.coordination_all, sample.packing.len())
+    };
+    let place = samples.first().filter(|_| criterion == StrengthCriterion::Principal).map(place);
+    let law = place.map(|(ratio, coordination, _)| asked / published::strength_ratio(ratio, coordination));
+    let own = strength_law::stored()?;
+    let own_law = place.filter(|&(ratio, coordination, _)| own.covers(ratio, coordination));
+    let own_law = own_law.map(|(ratio, coordination, particles)| {
+        READINGS.map(|reading| asked / own.ratio(reading, ratio, coordination, particles))
     });
-    Ok(Strength { criterion, peak: mean(&peak), first_break: mean(&first), range: [range(&peak), range(&first)], law })
+    let range = [range(&peak), range(&first)];
+    Ok(Strength { criterion, peak: mean(&peak), first_break: mean(&first), range, law, own_law })
 }
 
 /// A tension test to the load peak.

@@ -268,7 +268,7 @@ mod tests {
             let at = |k: usize| {
                 let theta = k as f64 / 250.0 * 1.5 * PI;
                 let (theta, along) =
-                    if k % 5 == 0 { (PI * noise(k), 3.0 * noise(k + 31)) } else { (theta, theta / slope) };
+                    if k.is_multiple_of(5) { (PI * noise(k), 3.0 * noise(k + 31)) } else { (theta, theta / slope) };
                 let r = 0.9 * radius;
                 (Vec3::new(along + 0.1 * noise(k + 77), 1.0 + r * theta.cos(), r * theta.sin()), 1.0)
             };

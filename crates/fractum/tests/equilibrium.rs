@@ -100,7 +100,11 @@ fn gate_and_opening_are_refused_where_they_cannot_act() {
             "kind = \"static\"\nopening = { group = \"x+\", against = \"x-\", along = \"x\", step = 1e-6, end = 1e-4 }",
             "solver.opening has no effect without control = \"opening\"",
         ),
-        ("\"y < 6 cm\"", "\"y > 6 m\"", "no edge of a body that may be damaged fulfils the condition"),
+        (
+            "\"y < 6 cm\"",
+            "\"y > 6 m\"",
+            "no edge of a body that may be damaged and no bond that may break fulfils the condition",
+        ),
     ] {
         let place = Workplace::new(&BAR.replacen(from, to, 1));
         let ended = place.fractum(&["check", "case.toml"]);

@@ -207,6 +207,11 @@ fn show(c: &Calibration, seconds: f64) {
             s.peak
         );
         say!("                     {:.4e} Pa for the first break ({first_low:.4e} to {first_high:.4e})", s.first_break);
+        if let Some([peak, first]) = s.own_law {
+            say!(
+                "                     {peak:.4e} Pa by the stored law for the load peak, {first:.4e} Pa for the first break"
+            );
+        }
         if let Some(law) = s.law {
             say!("                     {law:.4e} Pa by eq. (22) of Nguyen et al. (2019)");
         }
