@@ -149,7 +149,10 @@ impl Scene {
     }
 
     /// The same scene with contacts of its particles, before its first step.
-    pub fn with_contacts(mut self, contacts: Contacts) -> Self {
+    ///
+    /// - `surface`: nodes on the surface of the solids, ascending
+    pub fn with_contacts(mut self, mut contacts: Contacts, surface: &[u32]) -> Self {
+        contacts.meet_nodes(&self.solid, &mut self.debris, &self.bonded.particles, surface);
         self.contacts = contacts;
         self.clock = Clock::new(self.next_dt(0.0));
         self
@@ -298,7 +301,7 @@ impl Scene {
         }
         self.ties.restore(&self.solid, &self.bonded.particles);
         if let Some(contacts) = state.contacts {
-            self.contacts.restore(contacts);
+            self.contacts.restore(&self.solid, &self.debris, contacts);
         }
         for (ground, candidates) in self.grounds.iter_mut().zip(state.grounds) {
             ground.restore(candidates);

@@ -20,6 +20,11 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// Force of a pair; its memory advances with the call, which must be one per step.
     fn force(&self, motion: &PairMotion, memory: &mut Self::Memory) -> ContactForce;
 
+    /// Makes some more of the overlap give no force [m]; what gives none shrinks for good as the pair parts.
+    ///
+    /// So a pair that is found deep within each other bears nothing as it stands, and brings no energy.
+    fn add_slack(memory: &mut Self::Memory, by: f64);
+
     /// Normal and tangential stiffness at an overlap [m], in N/m.
     fn stiffness(&self, overlap: f64) -> (f64, f64);
 }
@@ -29,6 +34,10 @@ impl ContactLaw for Linear {
 
     fn force(&self, motion: &PairMotion, memory: &mut ContactMemory) -> ContactForce {
         Linear::force(self, motion, memory)
+    }
+
+    fn add_slack(memory: &mut ContactMemory, by: f64) {
+        memory.slack += by;
     }
 
     fn stiffness(&self, _overlap: f64) -> (f64, f64) {
