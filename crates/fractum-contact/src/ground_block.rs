@@ -73,7 +73,9 @@ impl<L: ContactLaw> Block<L> {
                 continue;
             }
             self.follow(ground, old.clone());
-            self.add_touches(ground, spheres, law, dt, sphere);
+            // A sphere that was taken as it stood, deep within an edge, may leave on the other side: what gives no force is its own.
+            let slack = self.before[old.clone()].iter().map(|t| L::slack(&t.memory)).fold(0.0, f64::max);
+            self.add_touches(ground, spheres, law, dt, (sphere, slack));
             for touch in self.before[old.clone()].iter().zip(&self.taken).filter(|(_, taken)| !**taken).map(|(t, _)| t)
             {
                 self.ended += ending(touch, law(sphere, 0.0));
@@ -120,18 +122,21 @@ impl<L: ContactLaw> Block<L> {
         }
     }
 
-    /// Forces of the feet of one sphere.
+    /// Forces of the feet of one sphere, with what contacts that continue none start with.
     fn add_touches(
         &mut self,
         ground: &Ground,
         spheres: &Spheres,
         law: &(impl Fn(u32, f64) -> L + Sync),
         dt: f64,
-        sphere: u32,
+        (sphere, slack): (u32, f64),
     ) {
         let i = sphere as usize;
         for (foot, origin) in self.feet.iter().zip(&self.origin) {
             let mut memory = origin.map_or_else(Default::default, |k| self.before[k].memory);
+            if origin.is_none() {
+                L::add_slack(&mut memory, slack);
+            }
             let place = spheres.position[i] + foot.offset;
             let (ground_velocity, ground_spin) = ground.motion_at(foot.feature, &place);
             let velocity = ground_velocity - spheres.velocity[i] - spheres.spin[i].cross(&foot.offset);

@@ -184,6 +184,10 @@ impl ContactLaw for Hertz {
         memory.slack += by;
     }
 
+    fn slack(memory: &HertzMemory) -> f64 {
+        memory.slack
+    }
+
     fn stiffness(&self, overlap: f64) -> (f64, f64) {
         let root = overlap.max(0.0).sqrt();
         (1.5 * self.normal * root, self.tangential * root)

@@ -10,7 +10,7 @@ use fractum_scene::{
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function};
-use crate::case::model::{Body, BodyKind, LoadKind, ProbeKind, RigidBody, RigidShape};
+use crate::case::model::{Body, BodyKind, InitialOverlap, LoadKind, ProbeKind, RigidBody, RigidShape};
 use crate::case::{Diagnostic, Spanned};
 
 /// Depth of an overlap over the radius of the particle at the start that is reported.
@@ -129,11 +129,47 @@ impl Context<'_> {
                 name(worst.particle),
                 worst.depth
             );
-            let place = self.whole_case();
-            let warning = Diagnostic::warning(&place, found);
-            warnings.push(warning.remedy("they push apart at once; move one of them, or make the cloud looser"));
+            warnings.push(self.overlap_warning(found));
         }
-        Some(scene.with_contacts(contacts, surface))
+        let mut scene = scene.with_contacts(contacts, surface);
+        warnings.extend(self.node_overlaps(&scene, surface));
+        if case.solver.initial_overlap == InitialOverlap::Keep {
+            scene.keep_overlaps();
+        }
+        Some(scene)
+    }
+
+    /// Nodes of solids that are in other bodies at the start.
+    fn node_overlaps(&self, scene: &Scene, surface: &[u32]) -> Option<Diagnostic> {
+        let infinite = Vec3::repeat(f64::INFINITY);
+        let places = surface.iter().map(|&n| scene.solid.position(n as usize));
+        let (low, high) = places.fold((infinite, -infinite), |(low, high), p| (low.inf(&p), high.sup(&p)));
+        let nodes = scene.node_overlaps();
+        let deep = nodes.iter().filter(|(_, depth, _)| *depth > DEEP * (high - low).norm());
+        let (node, depth, other) = deep.clone().next()?;
+        let other = match other {
+            OverlapWith::Solid(name) => format!("solid {name}"),
+            OverlapWith::Tool(name) => format!("rigid body {name}"),
+            OverlapWith::Particle(particle) => format!("particle {particle}"),
+        };
+        let at = scene.solid.position(*node as usize);
+        Some(self.overlap_warning(format!(
+            "{} nodes of solids are within other bodies at the start, deepest that at ({:.4e}, {:.4e}, {:.4e}) m in {other}, \
+             by {depth:.4e} m",
+            deep.count(),
+            at.x,
+            at.y,
+            at.z
+        )))
+    }
+
+    fn overlap_warning(&self, found: String) -> Diagnostic {
+        Diagnostic::warning(&self.whole_case(), found).remedy(match self.case.solver.initial_overlap {
+            InitialOverlap::Push => {
+                "they push apart at once; move one of them, make the cloud looser, or set solver.initial_overlap = \"keep\""
+            }
+            InitialOverlap::Keep => "they give no force until they have parted",
+        })
     }
 
     /// Facets of rigid bodies and containers act in space only.

@@ -9,7 +9,7 @@ use fractum_math::connected;
 use super::debris_among::{DebrisAmong, Made};
 use super::nodes_on_ground::{NodesOnGround, frequency_square};
 use super::tool::{Form, Tool};
-use super::{Contacts, SKIN};
+use super::{Contacts, OverlapWith, SKIN};
 use crate::coupling::Debris;
 
 impl Contacts {
@@ -43,7 +43,7 @@ impl Contacts {
     }
 
     /// Whether nodes of solids that are no discrete elements yet may touch something here.
-    pub(crate) fn meets_nodes(&self) -> bool {
+    pub fn meets_nodes(&self) -> bool {
         self.nodes_on_tools.iter().any(Option::is_some) || self.solids.iter().any(|ground| ground.visitors().is_some())
     }
 
@@ -118,6 +118,42 @@ impl Contacts {
         for ground in &mut self.solids {
             ground.take_up(solid, &spheres, &which);
         }
+    }
+
+    /// Takes everything of particles as it stands, as [`Contacts::take_up_on_solids`] does.
+    pub(crate) fn take_up_particles(&mut self, solid: &Solid, particles: &Particles) {
+        self.take_up_on_solids(solid, particles, |_| true);
+        let Particles { position, velocity, spin, radius, .. } = particles;
+        let spheres = Spheres { position, velocity, spin, radius };
+        if let Some(mut among) = self.among.take() {
+            among.search(&spheres, |i, j| self.law_among(radius, &particles.mass, i, j));
+            among.take_up(&spheres, |_, _| true);
+            self.among = Some(among);
+        }
+        for (tool, (contacts, _)) in self.tools.iter().zip(&mut self.on_tools) {
+            contacts.search(&tool.ground(), &spheres);
+            contacts.take_up(&tool.ground(), &spheres, |_| Some(0.0));
+        }
+    }
+
+    /// Takes all contacts of nodes as they stand, and tells them: node, depth [m] and what the node is in.
+    pub(crate) fn take_up_nodes(&mut self, solid: &Solid) -> Vec<(u32, f64, OverlapWith)> {
+        let mut found = Vec::new();
+        let mut tell = |nodes: &NodesOnGround, other: OverlapWith| {
+            found.extend(nodes.touches().map(|(touch, _, node)| (node, touch.overlap, other.clone())));
+        };
+        for (tool, nodes) in self.tools.iter().zip(&mut self.nodes_on_tools) {
+            if let Some(nodes) = nodes {
+                nodes.take_up(&tool.ground(), solid);
+                tell(nodes, OverlapWith::Tool(tool.name.clone()));
+            }
+        }
+        for ground in &mut self.solids {
+            ground.take_up_nodes(solid);
+            let name = &solid.body(ground.body()).name;
+            ground.visitors().iter().for_each(|nodes| tell(nodes, OverlapWith::Solid(name.clone())));
+        }
+        found
     }
 
     /// Contacts of nodes at the last step.

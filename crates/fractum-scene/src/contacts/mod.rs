@@ -210,19 +210,13 @@ impl Contacts {
         let mut work = ContactWork::default();
         let Particles { position, velocity, spin, radius, mass, force, moment, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
-        let Contacts { materials, bonded, body, pairs, among, tools, on_tools, solids, .. } = self;
-        let body = &*body;
-        if let Some(among) = among {
-            let law = |i: u32, j: u32| {
-                let (i, j) = (i as usize, j as usize);
-                let (a, b) = (body[i] as usize, body[j] as usize);
-                let reduced = |of: &[f64]| of[i] * of[j] / (of[i] + of[j]);
-                let pair = &pairs[a * materials.len() + b];
-                (a != b || !bonded[a]).then(|| Hertz::new(pair, reduced(radius), reduced(mass)))
-            };
-            among.search(&spheres, law);
+        if let Some(mut among) = self.among.take() {
+            among.search(&spheres, |i, j| self.law_among(radius, mass, i, j));
             work += among.add_forces(&spheres, force, moment, dt);
+            self.among = Some(among);
         }
+        let Contacts { body, tools, on_tools, solids, .. } = self;
+        let body = &*body;
         for (tool, (contacts, pairs)) in tools.iter_mut().zip(on_tools) {
             let heavy = tool.mass();
             let law = |i: u32, curvature: f64| {
@@ -247,6 +241,15 @@ impl Contacts {
             self.node_frequency_square = self.node_frequency_square.max(ground.frequency_square());
         }
         work
+    }
+
+    /// The law of two particles; none where bonds hold them.
+    fn law_among(&self, radius: &[f64], mass: &[f64], i: u32, j: u32) -> Option<Hertz> {
+        let (i, j) = (i as usize, j as usize);
+        let (a, b) = (self.body[i] as usize, self.body[j] as usize);
+        let reduced = |of: &[f64]| of[i] * of[j] / (of[i] + of[j]);
+        let pair = &self.pairs[a * self.materials.len() + b];
+        (a != b || !self.bonded[a]).then(|| Hertz::new(pair, reduced(radius), reduced(mass)))
     }
 
     /// Accelerations at a time [m/s²].

@@ -104,6 +104,15 @@ impl NodesOnGround {
         contacts.take_up(ground, &spheres, growth);
     }
 
+    /// Takes all contacts as they stand.
+    pub(crate) fn take_up(&mut self, ground: &Ground, solid: &Solid) {
+        self.locate(solid);
+        let NodesOnGround { position, velocity, spin, radius, contacts, .. } = self;
+        let spheres = Spheres { position, velocity, spin, radius };
+        contacts.search(ground, &spheres);
+        contacts.take_up(ground, &spheres, |_| Some(0.0));
+    }
+
     /// Takes a saved state: the discrete elements that there were, and the contacts.
     pub(crate) fn restore(&mut self, debris: &Debris, touches: Vec<Touch<ContactMemory>>) {
         self.nodes.truncate(self.at_start);

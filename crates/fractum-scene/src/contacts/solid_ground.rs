@@ -146,6 +146,15 @@ impl SolidGround {
         }
     }
 
+    /// Takes the contacts of nodes of other solids as they stand.
+    pub(super) fn take_up_nodes(&mut self, solid: &Solid) {
+        self.locate(solid);
+        let SolidGround { mesh, points, velocity, visitors, .. } = self;
+        if let Some(visitors) = visitors {
+            visitors.take_up(&Ground::Deformable { surface: mesh, points, velocity }, solid);
+        }
+    }
+
     /// Takes the contacts of particles as they stand.
     pub(super) fn take_up(&mut self, solid: &Solid, spheres: &Spheres, which: impl Fn(u32) -> bool + Sync) {
         self.locate(solid);
