@@ -32,6 +32,7 @@ UNSTRUCTURED = {
     "tension-bar/gmsh-fine": ("tension-bar/bar.geo", {"h": 0.0025}, True),
     "patch/cube": ("patch/cube.geo", {}, False),
     "falling-block/block": ("falling-block/block.geo", {}, False),
+    "ball-on-edge/scene": ("ball-on-edge/scene.geo", {}, False),
     "tied/bar": ("tied/bar.geo", {}, False),
     "tied/column": ("tied/column.geo", {}, True),
     "tied/block": ("tied/block.geo", {}, True),

@@ -4,7 +4,8 @@
 //! [`GroundContacts`] those of spheres with facets and rigid shapes, found by the [`DoubleHierarchy`]. [`law`] says what
 //! a touching pair feels. None of them knows particles or nodes as populations: they see positions, radii and velocities.
 //!
-//! Left out: contact of facets with facets, and of spheres from behind with a surface without inside.
+//! Left out: contact of facets with facets. Behind the facets of a body with an inside, a centre is pushed out only where that is
+//! asked for ([`GroundContacts::on_solid_ground`]).
 //!
 //! ```
 //! use fractum_contact::close_pairs;
@@ -16,7 +17,9 @@
 mod broad_phase;
 mod error;
 mod frame;
+mod ground_block;
 mod hierarchy;
+mod inside;
 pub mod law;
 mod nearest;
 mod passes;

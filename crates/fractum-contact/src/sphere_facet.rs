@@ -1,7 +1,5 @@
 //! Spheres on a ground of facets or a rigid shape, through time.
 
-use std::ops::Range;
-
 use fractum_math::Vec3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
@@ -10,15 +8,13 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::frame::Frame;
-use crate::hierarchy::{DoubleHierarchy, Foot};
-use crate::law::{ContactLaw, PairMotion};
+use crate::ground_block::Block;
+use crate::law::ContactLaw;
 use crate::shape::Shape;
 use crate::surface::FacetMesh;
 
 /// Spheres handled as one piece of parallel work.
 const BLOCK: usize = 256;
-/// Cosine of the angle between the normals of two steps beyond which a contact is a new one.
-const SAME_CONTACT: f64 = 0.5;
 
 /// A population of spheres; one entry per sphere in every array.
 #[derive(Clone, Copy, Debug)]
@@ -73,23 +69,23 @@ pub struct Touch<M> {
     /// Feature of the surface.
     pub feature: u32,
     /// Connected part of the surface; the history of a contact belongs to the sphere and this part.
-    part: u32,
+    pub(crate) part: u32,
     /// From the centre of the sphere to the contact [m].
     pub offset: Vec3,
     /// Overlap [m].
     pub overlap: f64,
-    normal: Vec3,
-    weight: f64,
-    memory: M,
+    pub(crate) normal: Vec3,
+    pub(crate) weight: f64,
+    pub(crate) memory: M,
     /// Force on the sphere [N]; the ground feels the opposite at the contact.
     pub force: Vec3,
     /// Moment on the sphere about its centre [N m].
     pub moment: Vec3,
     /// Couple on the sphere, part of `moment`; a rigid ground feels the opposite [N m].
     pub couple: Vec3,
-    stored: f64,
-    friction: f64,
-    damping: f64,
+    pub(crate) stored: f64,
+    pub(crate) friction: f64,
+    pub(crate) damping: f64,
 }
 
 /// Energies of contacts in one step.
@@ -125,24 +121,8 @@ pub struct GroundContacts<L: ContactLaw> {
     points_at: Vec<Vec3>,
     /// Tree of the facets of a rigid ground, which stays.
     tree: Option<Bvh>,
-}
-
-/// Some spheres near the ground.
-#[derive(Clone, Debug)]
-struct Block<L: ContactLaw> {
-    spheres: Vec<u32>,
-    /// Start of the facets of each sphere, and one more.
-    starts: Vec<u32>,
-    facets: Vec<u32>,
-    touches: Vec<Touch<L::Memory>>,
-    before: Vec<Touch<L::Memory>>,
-    hierarchy: DoubleHierarchy,
-    feet: Vec<Foot>,
-    /// Contact of the last step that each foot continues.
-    origin: Vec<Option<usize>>,
-    /// Whether each contact of the last step goes on.
-    taken: Vec<bool>,
-    ended: ContactWork,
+    /// How far within the ground a centre still counts [m]; none where a surface has no inside.
+    depth: Option<f64>,
 }
 
 impl<L: ContactLaw> GroundContacts<L> {
@@ -150,7 +130,22 @@ impl<L: ContactLaw> GroundContacts<L> {
     ///
     /// - `skin` [m] > 0: what may move before facets are looked up again; a fraction of the smallest radius
     pub fn new(skin: f64) -> Self {
-        GroundContacts { skin, blocks: Vec::new(), searched_at: Vec::new(), points_at: Vec::new(), tree: None }
+        GroundContacts {
+            skin,
+            blocks: Vec::new(),
+            searched_at: Vec::new(),
+            points_at: Vec::new(),
+            tree: None,
+            depth: None,
+        }
+    }
+
+    /// The same on facets that look outward: centres that are up to `depth` [m] behind them are within the ground, which
+    /// pushes them out. So may spheres be points.
+    ///
+    /// A sphere whose closest place lies on an open edge counts as outside.
+    pub fn on_solid_ground(self, depth: f64) -> Self {
+        GroundContacts { depth: Some(depth), ..self }
     }
 
     /// Looks up the facets near each sphere if the skin is used up; true if it did.
@@ -186,7 +181,7 @@ impl<L: ContactLaw> GroundContacts<L> {
     }
 
     fn find_near(&mut self, ground: &Ground, radii: &[f64]) {
-        let (centres, skin) = (&self.searched_at, self.skin);
+        let (centres, skin, depth) = (&self.searched_at, self.skin, self.depth.unwrap_or(0.0));
         let spheres: Vec<u32> = (0..centres.len() as u32).collect();
         let near: Vec<Vec<(u32, Vec<u32>)>> = match ground {
             Ground::Shape { shape, hollow, .. } => spheres
@@ -204,10 +199,12 @@ impl<L: ContactLaw> GroundContacts<L> {
                 let keep = matches!(ground, Ground::Rigid { .. });
                 let tree = self.tree.take().filter(|_| keep).unwrap_or_else(|| tree_of(surface, points));
                 let near_sphere = |i: u32| {
-                    let (x, reach) = (centres[i as usize], radii[i as usize] + skin);
+                    let (x, reach) = (centres[i as usize], radii[i as usize].max(depth) + skin);
                     let half = Vector::new(reach, reach, reach);
                     let around = Aabb::from_half_extents(Vector::new(x.x, x.y, x.z), half);
-                    let close = |&f: &u32| surface.closest(f, points, &x).1.norm_squared() < reach * reach;
+                    let close = |&f: &u32| {
+                        !surface.is_gone(f) && surface.closest(f, points, &x).1.norm_squared() < reach * reach
+                    };
                     let mut facets: Vec<u32> = tree.intersect_aabb(&around).filter(close).collect();
                     facets.sort_unstable();
                     facets
@@ -247,7 +244,8 @@ impl<L: ContactLaw> GroundContacts<L> {
         law: impl Fn(u32, f64) -> L + Sync,
         dt: f64,
     ) -> ContactWork {
-        self.blocks.par_iter_mut().for_each(|block| block.update(ground, spheres, &law, dt));
+        let depth = self.depth;
+        self.blocks.par_iter_mut().for_each(|block| block.update(ground, spheres, depth, &law, dt));
         let mut work = ContactWork::default();
         for block in &self.blocks {
             work += block.ended;
@@ -258,6 +256,26 @@ impl<L: ContactLaw> GroundContacts<L> {
             }
         }
         work
+    }
+
+    /// Takes the contacts of some spheres as they stand, without any force; they touch no nearer than now until they have
+    /// parted. Asks for a [`search`](GroundContacts::search) before.
+    ///
+    /// - `grown`: by how much a sphere has grown since the last update [m], whose contacts then keep their force; none for
+    ///   spheres that are left alone
+    pub fn take_up(&mut self, ground: &Ground, spheres: &Spheres, grown: impl Fn(u32) -> Option<f64> + Sync) {
+        let depth = self.depth;
+        self.blocks.par_iter_mut().for_each(|block| block.take_up(ground, spheres, depth, &grown));
+    }
+
+    /// Has the next search look up everything, since radii or facets have changed.
+    pub fn look_again(&mut self) {
+        self.searched_at.clear();
+    }
+
+    /// Spheres near the ground, ascending: all that can touch before the next search.
+    pub fn near(&self) -> impl Iterator<Item = u32> {
+        self.blocks.iter().flat_map(|block| block.spheres.iter().copied())
     }
 
     /// Contacts of the last update, in the order of the spheres.
@@ -310,184 +328,4 @@ pub(crate) fn tree_of(surface: &FacetMesh, points: &[Vec3]) -> Bvh {
     };
     let boxes: Vec<Aabb> = (0..surface.len() as u32).map(bounds).collect();
     Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
-}
-
-impl<L: ContactLaw> Block<L> {
-    fn empty() -> Self {
-        Block {
-            spheres: Vec::new(),
-            starts: vec![0],
-            facets: Vec::new(),
-            touches: Vec::new(),
-            before: Vec::new(),
-            hierarchy: DoubleHierarchy::default(),
-            feet: Vec::new(),
-            origin: Vec::new(),
-            taken: Vec::new(),
-            ended: ContactWork::default(),
-        }
-    }
-
-    fn update(&mut self, ground: &Ground, spheres: &Spheres, law: &(impl Fn(u32, f64) -> L + Sync), dt: f64) {
-        std::mem::swap(&mut self.touches, &mut self.before);
-        self.touches.clear();
-        self.ended = ContactWork::default();
-        let mut next_old = 0;
-        for k in 0..self.spheres.len() {
-            let sphere = self.spheres[k];
-            let (centre, radius) = (&spheres.position[sphere as usize], spheres.radius[sphere as usize]);
-            let first_old = next_old;
-            while self.before.get(next_old).is_some_and(|t| t.sphere == sphere) {
-                next_old += 1;
-            }
-            let old = first_old..next_old;
-            let facets = &self.facets[self.starts[k] as usize..self.starts[k + 1] as usize];
-            find_feet(ground, facets, centre, radius, &mut self.hierarchy, &mut self.feet);
-            if self.feet.is_empty() && old.is_empty() {
-                continue;
-            }
-            self.follow(ground, old.clone());
-            self.add_touches(ground, spheres, law, dt, sphere);
-            for touch in self.before[old.clone()].iter().zip(&self.taken).filter(|(_, taken)| !**taken).map(|(t, _)| t)
-            {
-                self.ended += ending(touch, law(sphere, 0.0));
-            }
-        }
-    }
-
-    /// Finds which contact of the last step each foot continues: the one on the same feature; or else the one on the
-    /// same part of the surface that points most nearly the same way and that nothing else continues; or else, on an
-    /// edge so shallow that both are one, the one beside it.
-    fn follow(&mut self, ground: &Ground, old: Range<usize>) {
-        let Block { feet, before, origin, taken, .. } = self;
-        let before = &before[old.clone()];
-        let part = |foot: &Foot| ground.part(foot.facet);
-        taken.clear();
-        taken.resize(before.len(), false);
-        origin.clear();
-        for foot in feet.iter() {
-            let same = before.iter().position(|t| t.feature == foot.feature);
-            if let Some(k) = same {
-                taken[k] = true;
-            }
-            origin.push(same);
-        }
-        for (foot, from) in feet.iter().zip(origin.iter_mut()).filter(|(_, from)| from.is_none()) {
-            let mut best = SAME_CONTACT;
-            for (k, touch) in before.iter().enumerate().filter(|(k, t)| !taken[*k] && t.part == part(foot)) {
-                let likeness = touch.normal.dot(&foot.normal);
-                if likeness > best {
-                    (best, *from) = (likeness, Some(k));
-                }
-            }
-            if let Some(k) = *from {
-                taken[k] = true;
-            }
-        }
-        for i in 0..feet.len() {
-            if let (None, Some(twin)) = (origin[i], feet[i].twin) {
-                origin[i] = origin[twin as usize];
-            }
-        }
-        for from in origin.iter_mut().flatten() {
-            *from += old.start;
-        }
-    }
-
-    /// Forces of the feet of one sphere.
-    fn add_touches(
-        &mut self,
-        ground: &Ground,
-        spheres: &Spheres,
-        law: &(impl Fn(u32, f64) -> L + Sync),
-        dt: f64,
-        sphere: u32,
-    ) {
-        let i = sphere as usize;
-        for (foot, origin) in self.feet.iter().zip(&self.origin) {
-            let mut memory = origin.map_or_else(Default::default, |k| self.before[k].memory);
-            let place = spheres.position[i] + foot.offset;
-            let (ground_velocity, ground_spin) = ground.motion_at(foot.feature, &place);
-            let velocity = ground_velocity - spheres.velocity[i] - spheres.spin[i].cross(&foot.offset);
-            let overlap = spheres.radius[i] - foot.distance;
-            let spin = ground_spin - spheres.spin[i];
-            let motion = PairMotion { normal: foot.normal, overlap, velocity, spin, dt };
-            let force = law(sphere, foot.curvature).force(&motion, &mut memory);
-            let moment = -foot.offset.cross(&force.on_second) - force.couple_on_second;
-            self.touches.push(Touch {
-                sphere,
-                feature: foot.feature,
-                part: ground.part(foot.facet),
-                offset: foot.offset,
-                overlap,
-                normal: foot.normal,
-                weight: foot.weight,
-                memory,
-                force: -force.on_second * foot.weight,
-                moment: moment * foot.weight,
-                couple: -force.couple_on_second * foot.weight,
-                stored: force.stored * foot.weight,
-                friction: force.friction * foot.weight,
-                damping: force.damping * foot.weight,
-            });
-        }
-    }
-}
-
-/// What is left of a contact that ended: its springs relax.
-fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L) -> ContactWork {
-    let mut memory = touch.memory;
-    let still = Vec3::zeros();
-    let motion = PairMotion { normal: touch.normal, overlap: 0.0, velocity: still, spin: still, dt: 0.0 };
-    let force = law.force(&motion, &mut memory);
-    ContactWork { stored: 0.0, friction: force.friction * touch.weight, damping: force.damping * touch.weight }
-}
-
-impl Ground<'_> {
-    fn part(&self, facet: u32) -> u32 {
-        match self {
-            Ground::Rigid { surface, .. } | Ground::Deformable { surface, .. } => surface.part(facet),
-            Ground::Shape { .. } => 0,
-        }
-    }
-
-    /// Velocity of the ground at a place on a feature [m/s] and its angular velocity [rad/s]; that of a facet that
-    /// deforms counts as zero.
-    fn motion_at(&self, feature: u32, place: &Vec3) -> (Vec3, Vec3) {
-        match self {
-            Ground::Rigid { frame, .. } | Ground::Shape { frame, .. } => (frame.velocity_at(place), frame.spin),
-            Ground::Deformable { surface, points, velocity } => {
-                (surface.interpolate(feature, place, points, velocity), Vec3::zeros())
-            }
-        }
-    }
-}
-
-/// Feet of a sphere, in space.
-fn find_feet(
-    ground: &Ground,
-    facets: &[u32],
-    centre: &Vec3,
-    radius: f64,
-    hierarchy: &mut DoubleHierarchy,
-    feet: &mut Vec<Foot>,
-) {
-    let frame = match ground {
-        Ground::Deformable { surface, points, .. } => {
-            hierarchy.feet(surface, points, facets, centre, radius, feet);
-            return;
-        }
-        Ground::Rigid { surface, points, frame } => {
-            hierarchy.feet(surface, points, facets, &frame.to_body(centre), radius, feet);
-            frame
-        }
-        Ground::Shape { shape, hollow, frame } => {
-            shape.feet(*hollow, &frame.to_body(centre), radius, feet);
-            frame
-        }
-    };
-    for foot in feet {
-        foot.offset = frame.to_space(&foot.offset);
-        foot.normal = frame.to_space(&foot.normal);
-    }
 }

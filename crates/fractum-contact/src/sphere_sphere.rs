@@ -161,6 +161,31 @@ impl<L: ContactLaw> SphereContacts<L> {
         work
     }
 
+    /// Takes the pairs that overlap and for which `which` holds as they stand, without any force; they touch no nearer than
+    /// now until they have parted. Asks for a [`search`](SphereContacts::search) before.
+    pub fn take_up(&mut self, spheres: &Spheres, which: impl Fn(u32, u32) -> bool) {
+        for k in 0..self.pairs.len() {
+            let [i, j] = self.pairs[k];
+            let apart = spheres.position[j as usize] - spheres.position[i as usize];
+            let overlap = spheres.radius[i as usize] + spheres.radius[j as usize] - apart.norm();
+            if overlap > 0.0 && which(i, j) {
+                self.memories[k] = L::Memory::default();
+                L::add_slack(&mut self.memories[k], overlap);
+                self.touching[k] = true;
+            }
+        }
+    }
+
+    /// Pairs that touched at the last step, with their laws.
+    pub fn laws_touching(&self) -> impl Iterator<Item = ([u32; 2], &L)> {
+        self.pairs
+            .iter()
+            .zip(&self.laws)
+            .zip(&self.touching)
+            .filter(|(_, touching)| **touching)
+            .map(|(p, _)| (*p.0, p.1))
+    }
+
     /// Pairs that touched at the last step.
     pub fn touching(&self) -> impl Iterator<Item = [u32; 2]> {
         self.pairs.iter().zip(&self.touching).filter(|(_, touching)| **touching).map(|(pair, _)| *pair)

@@ -25,7 +25,7 @@ pub use bonded::{
 };
 pub use boundary::{Load, Loads, Motion, Support, Supports, TimeFunction};
 pub use clock::{Clock, TimeStepSettings};
-pub use contacts::{ContactMaterial, Contacts, Drive, Form, Inertia, Overlap, OverlapWith, SolidGround, Tool};
+pub use contacts::{ContactMaterial, Contacts, Drive, Form, Inertia, Overlap, OverlapWith, SolidGround, Tool, pieces};
 pub use crack_measure::{CrackMeasure, InsideCracks};
 pub use error::{SceneError, StepError};
 pub use fractum_contact::law::{ElasticMaterial, Surface, damping_of_restitution};

@@ -1,6 +1,6 @@
 //! Rigid shapes that the nodes and discrete elements of solids touch.
 
-use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion, Surface};
+use fractum_contact::law::{ContactForce, ContactLaw, ContactMemory, Linear, PairMotion, Surface};
 use fractum_contact::{ContactWork, Frame, Outside, Shape};
 use fractum_fem::Solid;
 use fractum_math::{Rotation, Vec3};
@@ -56,6 +56,11 @@ impl RigidGround {
         RigidGround { shape, frame: Frame::at_rest(), tool: Some(tool), surface, candidates: Vec::new() }
     }
 
+    /// The rigid body that it is the shape of.
+    pub(crate) fn tool(&self) -> Option<usize> {
+        self.tool
+    }
+
     /// Sets the nodes that may touch: the surface of the solids.
     pub(crate) fn watch(&mut self, nodes: &[u32], solid: &Solid, debris: &Debris) {
         for &node in nodes {
@@ -81,6 +86,21 @@ impl RigidGround {
             };
             self.candidates.insert(place, candidate);
         }
+    }
+
+    /// Takes all contacts as they stand: they give no force, and touch no nearer than now until they have parted. Tells
+    /// them: node and depth [m].
+    pub(crate) fn take_up(&mut self, tools: &[Tool], solid: &Solid) -> Vec<(u32, f64)> {
+        let frame = self.tool.and_then(|index| tools.get(index)).map_or(self.frame, |tool| tool.frame);
+        let mut found = Vec::new();
+        for c in &mut self.candidates {
+            let depth = -self.shape.outside(&frame.to_body(&solid.position(c.node as usize))).distance;
+            if depth > 0.0 {
+                Linear::add_slack(&mut c.memory, depth);
+                found.push((c.node, depth));
+            }
+        }
+        found
     }
 
     /// Contacts for a checkpoint.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use crate::bonded::{Bonded, BondedState};
 use crate::boundary::{Loads, Supports};
 use crate::clock::{Clock, TimeStepSettings};
-use crate::contacts::{Contacts, ContactsState};
+use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
 use crate::fragment::{Fragment, fragments, joined};
 use crate::ledger::{Books, Ledger};
@@ -149,10 +149,38 @@ impl Scene {
     }
 
     /// The same scene with contacts of its particles, before its first step.
-    pub fn with_contacts(mut self, contacts: Contacts) -> Self {
+    ///
+    /// - `surface`: nodes on the surface of the solids, ascending
+    pub fn with_contacts(mut self, mut contacts: Contacts, surface: &[u32]) -> Self {
+        contacts.meet_nodes(&self.solid, &mut self.debris, &self.bonded.particles, surface);
         self.contacts = contacts;
         self.clock = Clock::new(self.next_dt(0.0));
         self
+    }
+
+    /// Takes everything that overlaps as it stands, before the first step: it gives no force, and touches no nearer than now until
+    /// it has parted.
+    pub fn keep_overlaps(&mut self) {
+        self.contacts.take_up_particles(&self.solid, &self.bonded.particles);
+        self.take_up_nodes();
+    }
+
+    /// Nodes of solids that are in something before the first step: node, depth [m] and what it is in, deepest first.
+    pub fn node_overlaps(&self) -> Vec<(u32, f64, OverlapWith)> {
+        let mut found = self.clone().take_up_nodes();
+        found.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        found
+    }
+
+    fn take_up_nodes(&mut self) -> Vec<(u32, f64, OverlapWith)> {
+        let mut found = self.contacts.take_up_nodes(&self.solid);
+        for ground in &mut self.grounds {
+            let inside = ground.take_up(self.contacts.tools(), &self.solid);
+            let name = ground.tool().and_then(|index| self.contacts.tools().get(index)).map(|tool| tool.name.clone());
+            let other = OverlapWith::Tool(name.unwrap_or_default());
+            found.extend(inside.into_iter().map(|(node, depth)| (node, depth, other.clone())));
+        }
+        found
     }
 
     /// Largest stable step of the solid by itself, and what governs it; none where bonds or contacts ask for a
@@ -298,7 +326,7 @@ impl Scene {
         }
         self.ties.restore(&self.solid, &self.bonded.particles);
         if let Some(contacts) = state.contacts {
-            self.contacts.restore(contacts);
+            self.contacts.restore(&self.solid, &self.debris, contacts);
         }
         for (ground, candidates) in self.grounds.iter_mut().zip(state.grounds) {
             ground.restore(candidates);

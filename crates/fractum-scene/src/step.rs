@@ -154,10 +154,12 @@ impl Scene {
         if !self.contacts.is_empty() {
             work += self.contacts.add_forces(&mut self.solid, &mut self.bonded.particles, dt);
         }
-        if self.debris.is_empty() && self.grounds.is_empty() {
+        if self.debris.is_empty() && self.grounds.is_empty() && !self.contacts.meets_nodes() {
             return work;
         }
         work += self.debris.add_forces(&mut self.solid, dt);
+        let Scene { contacts, solid, debris, bonded, .. } = self;
+        work += contacts.add_node_forces(solid, debris, &mut bonded.particles, dt);
         for ground in &mut self.grounds {
             work += ground.add_forces(self.contacts.tools_mut(), &mut self.solid, &mut self.debris, dt);
         }
@@ -180,6 +182,8 @@ impl Scene {
                     ground.watch_node(node, &self.solid, &self.debris);
                 }
             }
+            let Scene { contacts, solid, debris, bonded, removed, .. } = self;
+            contacts.release(solid, debris, &bonded.particles, removed, before);
             self.removed_since_check += report.removed;
         }
         // Cells that lost elements may be stiffer for their mass than any before.

@@ -325,8 +325,8 @@ impl Plan {
         choose(damage, "damage and removal of elements", "no body can be damaged");
         choose(damage, "discrete elements (from the first removal)", "nothing turns into them");
         choose(scene.bonded.bond_counts().0 > 0, "cohesive beams", "no bonded body");
-        let touched = !scene.grounds.is_empty() && scene.solid.body_count() > 0;
-        choose(touched, "contact of solids with rigid bodies", "no rigid body, or no solid");
+        let touched = (!scene.grounds.is_empty() || scene.contacts.meets_nodes()) && scene.solid.body_count() > 0;
+        choose(touched, "contact of solids with other bodies", "nothing that a solid could meet");
         choose(
             !scene.contacts.is_empty(),
             "contact of particles by Hertz' law",

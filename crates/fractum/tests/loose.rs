@@ -160,3 +160,70 @@ fn wrong_particles_and_bodies_are_explained() {
     let said = format!("{}{}", ended.stdout, ended.stderr);
     assert!(said.contains("particle 0 of more and particle 1 of more, by 2.0000e-3 m"), "{said}");
 }
+
+/// Two overlapping beads on a floor that they overlap too, and a solid bar with a corner in a rigid sphere.
+const TIGHT: &str = r#"fractum = 1
+title = "Too tight"
+[mesh]
+file = "bar.msh"
+[materials.soft]
+density = "2500 kg/m^3"
+young_modulus = "1 MPa"
+poisson_ratio = 0.25
+contact = { friction = 0.4, damping_ratio = 0 }
+[[bodies]]
+name = "beads"
+kind = "particles"
+material = "soft"
+file = "beads.csv"
+unit = "mm"
+[[bodies]]
+name = "floor"
+kind = "rigid"
+shape = "plane"
+point = ["0 mm", "0 mm", "-10.3 mm"]
+normal = "z"
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "soft"
+[[bodies]]
+name = "ball"
+kind = "rigid"
+shape = "sphere"
+point = ["-10 mm", "-10 mm", "-10 mm"]
+radius = "25 mm"
+[solver]
+end = "2 ms"
+initial_overlap = "keep"
+[[probes]]
+name = "kinetic"
+energy = "kinetic"
+[[probes]]
+name = "contact"
+energy = "contact"
+"#;
+
+#[test]
+fn what_overlaps_at_the_start_is_told_and_may_be_kept() {
+    let place = Workplace::new(TIGHT);
+    fs::write(place.path("beads.csv"), "-200,-200,-1.9,3\n-200,-200,-7.5,3\n").unwrap();
+    let told = place.fractum(&["check", "case.toml"]);
+    let said = format!("{}{}", told.stdout, told.stderr);
+    for words in [
+        "2 contacts overlap at the start, deepest particle 0 of beads and particle 1 of beads, by 4.0000e-4 m",
+        "1 nodes of solids are within other bodies at the start, deepest that at (0.0000e0, 0.0000e0, 0.0000e0) m in rigid body ball",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+    let largest = |folder: &str, overlap: &str| {
+        let set = format!("solver.initial_overlap={overlap}");
+        let ended = place.fractum(&["run", "case.toml", "-o", folder, "--quiet", "--set", &set]);
+        assert!(folder == "pushed" || ended.code == Some(0), "{}", ended.stderr);
+        let summary = summary(&place, folder);
+        ["kinetic", "contact"].map(|probe| summary["probes"][probe]["max"].as_f64().unwrap())
+    };
+    assert_eq!(largest("kept", "keep"), [0.0, 0.0]);
+    assert!(largest("pushed", "push").iter().all(|energy| *energy > 0.0));
+}

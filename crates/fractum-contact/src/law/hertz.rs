@@ -88,6 +88,8 @@ pub struct HertzMemory {
     /// Force of the normal damper at the last step [N].
     damper: f64,
     rolling: RollingMemory,
+    /// Part of the overlap that gives no force [m], see [`ContactLaw::add_slack`].
+    slack: f64,
 }
 
 impl Hertz {
@@ -118,16 +120,18 @@ impl ContactLaw for Hertz {
         let old = *memory;
         let old_stiffness = self.tangential * old.root;
         let old_spring = 0.5 * old_stiffness * old.slip.norm_squared();
-        if motion.overlap <= 0.0 {
-            *memory = HertzMemory::default();
+        let slack = old.slack.min(motion.overlap.max(0.0));
+        let overlap = motion.overlap - slack;
+        if overlap <= 0.0 {
+            *memory = HertzMemory { slack, ..HertzMemory::default() };
             return ContactForce {
                 damping: 0.5 * (old.damper * approach + old.drag.dot(&across)) * motion.dt,
                 friction: old_spring + old.rolling.stored(),
                 ..ContactForce::default()
             };
         }
-        let root = motion.overlap.sqrt();
-        let elastic = self.normal * motion.overlap * root;
+        let root = overlap.sqrt();
+        let elastic = self.normal * overlap * root;
         let viscosity = self.damping * root.sqrt();
         let damper = (viscosity * approach).max(-elastic);
         let normal_force = elastic + damper;
@@ -155,14 +159,14 @@ impl ContactLaw for Hertz {
             let size = whole.norm();
             (trial, if size > limit { whole * (limit / size) - trial * stiffness } else { drag })
         };
-        *memory = HertzMemory { slip, drag, root, damper, rolling: old.rolling };
+        *memory = HertzMemory { slip, drag, root, damper, rolling: old.rolling, slack };
 
         let spring = 0.5 * stiffness * slip.norm_squared();
         let work = 0.5 * (turned * old_stiffness + slip * stiffness).dot(&across) * motion.dt;
         let mut force = ContactForce {
             on_second: n * normal_force - slip * stiffness - drag,
             couple_on_second: Vec3::zeros(),
-            stored: 0.4 * elastic * motion.overlap + spring,
+            stored: 0.4 * elastic * overlap + spring,
             friction: work + old_spring - spring,
             damping: 0.5 * ((old.damper + damper) * approach + (old.drag + drag).dot(&across)) * motion.dt,
         };
@@ -174,6 +178,14 @@ impl ContactLaw for Hertz {
             force.friction += rolled.friction;
         }
         force
+    }
+
+    fn add_slack(memory: &mut HertzMemory, by: f64) {
+        memory.slack += by;
+    }
+
+    fn slack(memory: &HertzMemory) -> f64 {
+        memory.slack
     }
 
     fn stiffness(&self, overlap: f64) -> (f64, f64) {

@@ -57,6 +57,8 @@ pub struct ContactMemory {
     rolling: RollingMemory,
     /// Force of the normal damper at the last step [N].
     damper: f64,
+    /// Part of the overlap that gives no force [m], see [`ContactLaw::add_slack`](super::ContactLaw::add_slack).
+    pub(super) slack: f64,
 }
 
 impl Linear {
@@ -130,7 +132,9 @@ impl Linear {
         let n = motion.normal;
         let approach = -motion.velocity.dot(&n);
         let last = std::mem::take(&mut memory.damper);
-        if motion.overlap <= 0.0 {
+        memory.slack = memory.slack.min(motion.overlap.max(0.0));
+        let overlap = motion.overlap - memory.slack;
+        if overlap <= 0.0 {
             // What the springs held is lost: they slip with nothing to press them.
             let across = motion.velocity + n * approach;
             let (_, slid) = self.slide(memory.slip, memory.slip + across * motion.dt, 0.0);
@@ -142,7 +146,7 @@ impl Linear {
                 ..ContactForce::default()
             };
         }
-        let elastic = self.normal_stiffness * motion.overlap;
+        let elastic = self.normal_stiffness * overlap;
         let damper = (self.normal_damping * approach).max(-elastic);
         let normal_force = elastic + damper;
         memory.damper = damper;
@@ -159,7 +163,7 @@ impl Linear {
         let mut force = ContactForce {
             on_second: n * normal_force - slip * self.tangential_stiffness,
             couple_on_second: Vec3::zeros(),
-            stored: 0.5 * self.normal_stiffness * motion.overlap * motion.overlap
+            stored: 0.5 * self.normal_stiffness * overlap * overlap
                 + 0.5 * self.tangential_stiffness * slip.norm_squared(),
             friction: slid,
             damping: 0.5 * (last + damper) * approach * motion.dt,
@@ -210,7 +214,7 @@ mod tests {
             let normal = Vec3::from(normal);
             prop_assume!(normal.norm() > 0.1);
             let motion = PairMotion { normal: normal.normalize(), overlap, velocity: velocity.into(), spin: spin.into(), dt: 1e-5 };
-            let mut memory = ContactMemory { slip: Vec3::from(slip), rolling: RollingMemory::default(), damper: 0.0 };
+            let mut memory = ContactMemory { slip: Vec3::from(slip), ..ContactMemory::default() };
             let force = law().force(&motion, &mut memory);
             let along = force.on_second.dot(&motion.normal);
             let across = (force.on_second - motion.normal * along).norm();

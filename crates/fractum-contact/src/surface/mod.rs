@@ -6,6 +6,7 @@ mod weights;
 use fractum_math::{Ragged, Vec3, numbered_parts};
 
 use crate::SurfaceError;
+pub(crate) use closest::area_vector;
 pub(crate) use closest::closest_on_segment;
 use closest::{Place, closest_on_polygon, closest_on_triangle};
 
@@ -31,6 +32,8 @@ pub struct FacetMesh {
     part: Vec<u32>,
     parts: u32,
     triangles: bool,
+    /// Whether each facet has gone; empty as long as all are there.
+    gone: Vec<bool>,
 }
 
 /// What a feature number stands for.
@@ -94,6 +97,7 @@ impl FacetMesh {
             points: points.len() as u32,
             part,
             parts,
+            gone: Vec::new(),
         })
     }
 
@@ -117,6 +121,20 @@ impl FacetMesh {
     /// Whether there are no facets; never true.
     pub fn is_empty(&self) -> bool {
         self.facets.is_empty()
+    }
+
+    /// Takes a facet out: nothing touches it any more. Those around it stay, with an open edge.
+    pub fn remove(&mut self, facet: u32) {
+        if self.gone.is_empty() {
+            self.gone.resize(self.facets.len(), false);
+        }
+        self.gone[facet as usize] = true;
+    }
+
+    /// Whether a facet has been taken out.
+    #[inline]
+    pub fn is_gone(&self, facet: u32) -> bool {
+        !self.gone.is_empty() && self.gone[facet as usize]
     }
 
     /// Number of parts that share no edge.
@@ -176,6 +194,24 @@ impl FacetMesh {
             let [a, b] = self.edge_facets[edge as usize];
             (edge, if a == facet { b } else { a })
         })
+    }
+
+    /// Whether a feature lies on the border of what is left of the surface.
+    ///
+    /// - `candidates`: facets near the feature, all of those around it among them
+    pub(crate) fn is_open_at(&self, feature: u32, candidates: &[u32]) -> bool {
+        let open = |edge: u32| {
+            let [a, b] = self.edge_facets[edge as usize];
+            a == b || self.is_gone(a) || self.is_gone(b)
+        };
+        match self.feature(feature) {
+            Feature::Facet(_) => false,
+            Feature::Edge(edge) => open(edge),
+            Feature::Point(point) => candidates
+                .iter()
+                .filter(|&&facet| self.corners(facet).contains(&point))
+                .any(|&facet| self.neighbours(facet).any(|(edge, _)| self.edge(edge).contains(&point) && open(edge))),
+        }
     }
 
     /// Whether a facet has an edge or a point (a feature number) on its border.

@@ -5,12 +5,12 @@ use fractum_math::{Mat3, Rotation, Vec3};
 use fractum_mesh::topology;
 use fractum_scene::{
     ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, OverlapWith, Probe,
-    RigidGround, Scene, Shape, SolidGround, Tool,
+    RigidGround, Scene, Shape, SolidGround, Tool, pieces,
 };
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function};
-use crate::case::model::{Body, BodyKind, LoadKind, ProbeKind, RigidBody, RigidShape};
+use crate::case::model::{Body, BodyKind, InitialOverlap, LoadKind, ProbeKind, RigidBody, RigidShape};
 use crate::case::{Diagnostic, Spanned};
 
 /// Depth of an overlap over the radius of the particle at the start that is reported.
@@ -45,7 +45,9 @@ impl Context<'_> {
         scene: Scene,
         parts: &[Part],
         facets: &[Vec<[u32; 3]>],
+        surface: &[u32],
         tools: Vec<Tool>,
+        tied: &[u32],
         warnings: &mut Vec<Diagnostic>,
     ) -> Option<Scene> {
         let case = self.case;
@@ -64,18 +66,27 @@ impl Context<'_> {
                 ContactMaterial { elastic, density: material.density, surface: material.contact }
             })
             .collect();
+        let pieces = pieces(&scene.solid);
+        let solids_meet = pieces.iter().any(|piece| *piece != pieces[0]);
         if materials.is_empty() {
-            self.refuse_facets(&tools);
-            if tools.is_empty() {
+            if scene.solid.is_plane() {
+                self.refuse_facets(&tools);
+            }
+            if tools.is_empty() && !solids_meet {
                 return Some(scene);
             }
         }
         let mut solids = Vec::new();
-        let meeting = if materials.is_empty() { &[] } else { facets };
+        let meeting = if materials.is_empty() && !solids_meet { &[] } else { facets };
         for (index, (part, facets)) in parts.iter().zip(meeting).enumerate().filter(|(_, (_, f))| !f.is_empty()) {
             let surface = case.materials[part.body.material].contact;
             match SolidGround::new(&scene.solid, index, surface, facets) {
-                Ok(ground) => solids.push(ground),
+                Ok(ground) if tied.is_empty() => solids.push(ground),
+                Ok(ground) => solids.push(ground.without(tied.iter().copied(), &scene.bonded.particles.radius)),
+                Err(error) if materials.is_empty() => {
+                    let found = format!(": other solids pass through it: {error}");
+                    warnings.push(Diagnostic::warning(&part.place, found));
+                }
                 Err(error) => self.error(&part.place, format!(": particles cannot touch it: {error}"), ""),
             }
         }
@@ -90,6 +101,13 @@ impl Context<'_> {
             }
         }
         let mut contacts = Contacts::new(&scene.bonded, materials, tools, solids, gravity);
+        if !tied.is_empty() {
+            // A bonded region fits its cavity within the tolerance of the packing.
+            contacts.take_up_on_solids(&scene.solid, &scene.bonded.particles, |i| {
+                let body = scene.bonded.bodies().iter().find(|body| body.range.contains(&(i as usize)));
+                body.is_some_and(|body| tied.iter().any(|&t| body.range.contains(&(t as usize))))
+            });
+        }
         let (mut solid, mut particles) = (scene.solid.clone(), scene.bonded.particles.clone());
         let overlaps = contacts.overlaps(&mut solid, &mut particles);
         let deep = overlaps.iter().filter(|o| o.depth > DEEP * particles.radius[o.particle as usize]);
@@ -111,22 +129,58 @@ impl Context<'_> {
                 name(worst.particle),
                 worst.depth
             );
-            let place = self.whole_case();
-            let warning = Diagnostic::warning(&place, found);
-            warnings.push(warning.remedy("they push apart at once; move one of them, or make the cloud looser"));
+            warnings.push(self.overlap_warning(found));
         }
-        Some(scene.with_contacts(contacts))
+        let mut scene = scene.with_contacts(contacts, surface);
+        warnings.extend(self.node_overlaps(&scene, surface));
+        if case.solver.initial_overlap == InitialOverlap::Keep {
+            scene.keep_overlaps();
+        }
+        Some(scene)
     }
 
-    /// Facets of rigid bodies and containers act on particles only.
+    /// Nodes of solids that are in other bodies at the start.
+    fn node_overlaps(&self, scene: &Scene, surface: &[u32]) -> Option<Diagnostic> {
+        let infinite = Vec3::repeat(f64::INFINITY);
+        let places = surface.iter().map(|&n| scene.solid.position(n as usize));
+        let (low, high) = places.fold((infinite, -infinite), |(low, high), p| (low.inf(&p), high.sup(&p)));
+        let nodes = scene.node_overlaps();
+        let deep = nodes.iter().filter(|(_, depth, _)| *depth > DEEP * (high - low).norm());
+        let (node, depth, other) = deep.clone().next()?;
+        let other = match other {
+            OverlapWith::Solid(name) => format!("solid {name}"),
+            OverlapWith::Tool(name) => format!("rigid body {name}"),
+            OverlapWith::Particle(particle) => format!("particle {particle}"),
+        };
+        let at = scene.solid.position(*node as usize);
+        Some(self.overlap_warning(format!(
+            "{} nodes of solids are within other bodies at the start, deepest that at ({:.4e}, {:.4e}, {:.4e}) m in {other}, \
+             by {depth:.4e} m",
+            deep.count(),
+            at.x,
+            at.y,
+            at.z
+        )))
+    }
+
+    fn overlap_warning(&self, found: String) -> Diagnostic {
+        Diagnostic::warning(&self.whole_case(), found).remedy(match self.case.solver.initial_overlap {
+            InitialOverlap::Push => {
+                "they push apart at once; move one of them, make the cloud looser, or set solver.initial_overlap = \"keep\""
+            }
+            InitialOverlap::Keep => "they give no force until they have parted",
+        })
+    }
+
+    /// Facets of rigid bodies and containers act in space only.
     fn refuse_facets(&mut self, tools: &[Tool]) {
         for tool in tools.iter().filter(|tool| touches_solids(tool).is_none()) {
             let body = self.case.bodies.iter().find(|body| body.name.value == tool.name);
             if let Some(Body { name, .. }) = body {
                 self.error(
                     &name.place,
-                    "meets no particles; solids feel planes, boxes, cylinders and spheres from outside only",
-                    "one of these shapes, or a body of kind \"particles\" or \"bonded\"",
+                    "meets no particles; plane bodies feel planes, boxes, cylinders and spheres from outside only",
+                    "one of these shapes",
                 );
             }
         }

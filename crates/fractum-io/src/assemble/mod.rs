@@ -20,7 +20,9 @@ use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::StaticSettings;
-use fractum_scene::{BondedStaticSettings, Loads, Probe, Scene, SceneError, SceneSettings, Supports, TimeStepSettings};
+use fractum_scene::{
+    BondedBody, BondedStaticSettings, Loads, Probe, Scene, SceneError, SceneSettings, Supports, TimeStepSettings,
+};
 
 use bonded::ParticleSets;
 
@@ -172,7 +174,9 @@ impl Context<'_> {
         };
         let statics = self.statics(&solid, &supports, &numbering);
         let ties = self.ties(&solid, &bonded, &taken, &parts, &numbering, &boundary_of_parts);
-        let touched = |facet: &[u32; 3]| !ties.covered.contains(&ties::sorted(*facet));
+        // Facets under tied particles matter to what breaks off only.
+        let breaks = bonded.bodies().iter().any(BondedBody::can_break);
+        let touched = |facet: &[u32; 3]| breaks || !ties.covered.contains(&ties::sorted(*facet));
         boundary_of_parts.iter_mut().for_each(|facets| facets.retain(touched));
         self.condition_particles(&mut bonded, &ties.attachments, &mut warnings);
         let bonded_statics = self.bonded_statics(&bonded);
@@ -197,7 +201,8 @@ impl Context<'_> {
         )
         .with_bonded(bonded)
         .with_ties(&ties.attachments);
-        let scene = self.with_contacts(scene, &parts, &boundary_of_parts, tools, &mut warnings)?;
+        let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
+        let scene = self.with_contacts(scene, &parts, &boundary_of_parts, &surface, tools, &tied, &mut warnings)?;
         Some(Assembly {
             scene,
             statics,

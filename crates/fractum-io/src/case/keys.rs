@@ -410,6 +410,7 @@ static KEYS: &[KeyDoc] = &[
     key("solver.safety", K::Quantity(D::NONE), "0.8", "Factor on the stable time step, > 0 and at most 2; above 1 is unstable"),
     key("solver.time_step", K::Choice(names::<TimeStep>), "\"power-iteration\"", "How the stable step is found: for the whole mesh or all bonds, or rigorously by the worst element or particle"),
     key("solver.step", K::Quantity(D::TIME), "", "Explicit: fixed time step, > 0, instead of safety times the stable one; static: largest step, by default the whole run where nothing may break, else 1/50 of it"),
+    key("solver.initial_overlap", K::Choice(names::<InitialOverlap>), "\"push\"", "Explicit: what touches and overlaps at the start pushes apart at once, or gives no force and touches no nearer than it starts until it has parted"),
     key("solver.control", K::Choice(names::<Control>), "\"path\" where something may break, else \"time\"", "Static only: steps of time, or of damage or a crack's opening, along the path of equilibrium through snap-back"),
     key("solver.opening", K::Table, "", "With control = \"opening\", required there: how far two groups have moved apart"),
     key("solver.opening.group", K::Text, "required", "Mesh group on one side"),

@@ -1,22 +1,30 @@
 //! Contacts of particles that have nodes of their own - loose and bonded ones - with each other, with rigid bodies and
-//! with the facets of solids.
+//! with the facets of solids; and of the nodes of solids with all of these.
 
+mod debris_among;
+mod meeting;
+mod nodes_on_ground;
 mod solid_ground;
 mod tool;
 
-use fractum_contact::law::{ElasticMaterial, Hertz, HertzMemory, MaterialPair, Surface};
+use fractum_contact::law::{ContactMemory, ElasticMaterial, Hertz, HertzMemory, MaterialPair, Surface};
 use fractum_contact::{ContactWork, GroundContacts, SphereContacts, Spheres, Touch};
 use fractum_dem::Particles;
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
+pub use meeting::pieces;
 pub use solid_ground::SolidGround;
 pub(crate) use tool::ToolWork;
 pub use tool::{Drive, Form, Inertia, Tool};
 
 use crate::bonded::Bonded;
 use crate::boundary::TimeFunction;
+use crate::coupling::Debris;
+use debris_among::DebrisAmong;
+use nodes_on_ground::NodesOnGround;
+use solid_ground::GroundState;
 use tool::ToolState;
 
 /// Skin of the searches over the smallest radius.
@@ -51,6 +59,9 @@ pub struct Contacts {
     /// Contacts with each tool, and its material with that of each body.
     on_tools: Vec<(GroundContacts<Hertz>, Vec<MaterialPair>)>,
     solids: Vec<SolidGround>,
+    /// Nodes of solids on each rigid body that has facets or is a container, and their discrete elements among the particles.
+    nodes_on_tools: Vec<Option<NodesOnGround>>,
+    debris: Option<DebrisAmong>,
     /// Accelerations of everything, by axis.
     gravity: Vec<(usize, TimeFunctionOf)>,
     rayleigh_frequency: f64,
@@ -73,7 +84,9 @@ impl std::fmt::Debug for TimeFunctionOf {
 pub(crate) struct ContactsState {
     among: Vec<([u32; 2], HertzMemory)>,
     tools: Vec<(ToolState, Vec<Touch<HertzMemory>>)>,
-    solids: Vec<Vec<Touch<HertzMemory>>>,
+    solids: Vec<GroundState>,
+    nodes_on_tools: Vec<Vec<Touch<ContactMemory>>>,
+    debris: Vec<([u32; 2], ContactMemory)>,
     node_frequency_square: f64,
 }
 
@@ -141,6 +154,8 @@ impl Contacts {
             on_tools: tools.iter().map(on_tool).collect(),
             among: (!alone && !body.is_empty()).then(|| SphereContacts::new(skin)),
             solids: solids.into_iter().map(|solid| solid.prepared(skin, &materials)).collect(),
+            nodes_on_tools: tools.iter().map(|_| None).collect(),
+            debris: None,
             gravity: gravity.into_iter().map(|(axis, value)| (axis, TimeFunctionOf(value))).collect(),
             bonded: is_bonded,
             materials,
@@ -185,6 +200,7 @@ impl Contacts {
         self.among.as_ref().map_or(0, |among| among.touching().count())
             + self.on_tools.iter().map(|(contacts, _)| ground(contacts)).sum::<usize>()
             + self.solids.iter().map(|solid| ground(solid.contacts())).sum::<usize>()
+            + self.node_contacts()
     }
 
     /// Adds the forces of the moment to particles, rigid bodies and the nodes of solids.
@@ -194,19 +210,13 @@ impl Contacts {
         let mut work = ContactWork::default();
         let Particles { position, velocity, spin, radius, mass, force, moment, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
-        let Contacts { materials, bonded, body, pairs, among, tools, on_tools, solids, .. } = self;
-        let body = &*body;
-        if let Some(among) = among {
-            let law = |i: u32, j: u32| {
-                let (i, j) = (i as usize, j as usize);
-                let (a, b) = (body[i] as usize, body[j] as usize);
-                let reduced = |of: &[f64]| of[i] * of[j] / (of[i] + of[j]);
-                let pair = &pairs[a * materials.len() + b];
-                (a != b || !bonded[a]).then(|| Hertz::new(pair, reduced(radius), reduced(mass)))
-            };
-            among.search(&spheres, law);
+        if let Some(mut among) = self.among.take() {
+            among.search(&spheres, |i, j| self.law_among(radius, mass, i, j));
             work += among.add_forces(&spheres, force, moment, dt);
+            self.among = Some(among);
         }
+        let Contacts { body, tools, on_tools, solids, .. } = self;
+        let body = &*body;
         for (tool, (contacts, pairs)) in tools.iter_mut().zip(on_tools) {
             let heavy = tool.mass();
             let law = |i: u32, curvature: f64| {
@@ -231,6 +241,15 @@ impl Contacts {
             self.node_frequency_square = self.node_frequency_square.max(ground.frequency_square());
         }
         work
+    }
+
+    /// The law of two particles; none where bonds hold them.
+    fn law_among(&self, radius: &[f64], mass: &[f64], i: u32, j: u32) -> Option<Hertz> {
+        let (i, j) = (i as usize, j as usize);
+        let (a, b) = (self.body[i] as usize, self.body[j] as usize);
+        let reduced = |of: &[f64]| of[i] * of[j] / (of[i] + of[j]);
+        let pair = &self.pairs[a * self.materials.len() + b];
+        (a != b || !self.bonded[a]).then(|| Hertz::new(pair, reduced(radius), reduced(mass)))
     }
 
     /// Accelerations at a time [m/s²].
@@ -271,8 +290,10 @@ impl Contacts {
             found.extend(pairs.map(|([i, j], depth)| Overlap { particle: i, other: OverlapWith::Particle(j), depth }));
         }
         let deepest = |contacts: &GroundContacts<Hertz>, other: OverlapWith| -> Vec<Overlap> {
+            // What was taken up as it stands bears nothing.
+            let loaded = |t: &&Touch<HertzMemory>| t.force != Vec3::zeros();
             let of = |t: &Touch<HertzMemory>| Overlap { particle: t.sphere, other: other.clone(), depth: t.overlap };
-            contacts.touches().map(of).collect()
+            contacts.touches().filter(loaded).map(of).collect()
         };
         for (tool, (contacts, _)) in still.tools.iter().zip(&still.on_tools) {
             found.extend(deepest(contacts, OverlapWith::Tool(tool.name.clone())));
@@ -295,13 +316,15 @@ impl Contacts {
                 .zip(&self.on_tools)
                 .map(|(t, (contacts, _))| (t.state(), contacts.state()))
                 .collect(),
-            solids: self.solids.iter().map(|solid| solid.contacts().state()).collect(),
+            solids: self.solids.iter().map(SolidGround::state).collect(),
+            nodes_on_tools: self.nodes_on_tools_state(),
+            debris: self.debris.as_ref().map_or_else(Vec::new, DebrisAmong::state),
             node_frequency_square: self.node_frequency_square,
         }
     }
 
     /// Puts a saved state back.
-    pub(crate) fn restore(&mut self, state: ContactsState) {
+    pub(crate) fn restore(&mut self, solid: &Solid, debris: &Debris, state: ContactsState) {
         if let Some(among) = &mut self.among {
             among.restore(state.among);
         }
@@ -309,8 +332,14 @@ impl Contacts {
             tool.restore(own);
             contacts.restore(touches);
         }
-        for (solid, touches) in self.solids.iter_mut().zip(state.solids) {
-            solid.restore(touches);
+        for (ground, touches) in self.solids.iter_mut().zip(state.solids) {
+            ground.restore(solid, debris, touches);
+        }
+        for (nodes, touches) in self.nodes_on_tools.iter_mut().zip(state.nodes_on_tools) {
+            nodes.iter_mut().for_each(|nodes| nodes.restore(debris, touches.clone()));
+        }
+        if let Some(among) = &mut self.debris {
+            among.restore(state.debris);
         }
         self.node_frequency_square = state.node_frequency_square;
     }

@@ -1,16 +1,18 @@
 //! The surface of a solid as ground for particles.
 
-use fractum_contact::law::{ContactLaw, ElasticMaterial, Hertz, HertzMemory, MaterialPair, Surface};
+use fractum_contact::law::{ContactLaw, ContactMemory, ElasticMaterial, Hertz, HertzMemory, MaterialPair, Surface};
 use fractum_contact::{ContactWork, FacetMesh, Ground, GroundContacts, Spheres, SurfaceError, Touch};
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 
 use super::ContactMaterial;
+use super::nodes_on_ground::{NodesOnGround, frequency_square};
+use crate::coupling::Debris;
 
-/// Outward facets of one solid body, with the contacts of particles on them.
+/// Outward facets of one solid body, with the contacts of particles, and of nodes of other solids, on them.
 ///
-/// These are the facets of the start. One goes with its element; the nodes of that element are particles then, which
-/// meet other particles of the solid only.
+/// These are the facets of the start. One goes with its element; the nodes of that element are discrete elements then, which
+/// meet everything but the facets of their own solid.
 #[derive(Clone, Debug)]
 pub struct SolidGround {
     body: usize,
@@ -25,6 +27,12 @@ pub struct SolidGround {
     /// Material of the body with that of each body of particles.
     pairs: Vec<MaterialPair>,
     frequency_square: f64,
+    /// Facets by their nodes, ascending.
+    by_nodes: Vec<([u32; 3], u32)>,
+    /// Nodes of solids that this one shares no node with.
+    visitors: Option<NodesOnGround>,
+    /// Radii of the particles as this body feels them, where some count as points: those that are tied to it. Else empty.
+    felt: Vec<f64>,
 }
 
 impl SolidGround {
@@ -53,7 +61,28 @@ impl SolidGround {
             contacts: GroundContacts::new(1.0),
             pairs: Vec::new(),
             frequency_square: 0.0,
+            by_nodes: {
+                let mut by_nodes: Vec<_> = facets.iter().map(|&f| sorted(f)).zip(0..).collect();
+                by_nodes.sort_unstable();
+                by_nodes
+            },
+            visitors: None,
+            felt: Vec::new(),
         })
+    }
+
+    /// The same without contact of some particles, which are tied to it; `radii` of all particles [m].
+    pub fn without(mut self, particles: impl Iterator<Item = u32>, radii: &[f64]) -> Self {
+        self.felt = radii.to_vec();
+        particles.for_each(|i| self.felt[i as usize] = 0.0);
+        self
+    }
+
+    /// The same with contact of nodes of other solids.
+    ///
+    /// - `surface`: nodes on the surfaces of all solids, ascending; `bodies`: whose nodes may touch this one
+    pub(crate) fn meets_nodes(&mut self, surface: &[u32], bodies: Vec<bool>, debris: &Debris) {
+        self.visitors = Some(NodesOnGround::new(surface, bodies, debris));
     }
 
     pub(super) fn prepared(mut self, skin: f64, materials: &[ContactMaterial]) -> Self {
@@ -72,8 +101,98 @@ impl SolidGround {
         &self.contacts
     }
 
-    pub(super) fn restore(&mut self, touches: Vec<Touch<HertzMemory>>) {
+    pub(super) fn visitors(&self) -> Option<&NodesOnGround> {
+        self.visitors.as_ref()
+    }
+
+    pub(super) fn state(&self) -> GroundState {
+        (self.contacts.state(), self.visitors.as_ref().map_or_else(Vec::new, |nodes| nodes.contacts().state()))
+    }
+
+    pub(super) fn restore(&mut self, solid: &Solid, debris: &Debris, (touches, nodes): GroundState) {
+        let dead = (0u32..).zip(solid.alive(self.body)).filter(|(_, alive)| !**alive);
+        let dead: Vec<(usize, u32)> = dead.map(|(element, _)| (self.body, element)).collect();
+        self.remove_facets(solid, &dead);
         self.contacts.restore(touches);
+        if let Some(visitors) = &mut self.visitors {
+            visitors.restore(debris, nodes);
+        }
+    }
+
+    /// Takes out the facets of removed elements.
+    pub(super) fn remove_facets(&mut self, solid: &Solid, removed: &[(usize, u32)]) {
+        let mut some = false;
+        for &(_, element) in removed.iter().filter(|(body, _)| *body == self.body) {
+            let [a, b, c, d] = solid.body(self.body).elements[element as usize];
+            for facet in [[a, b, c], [a, b, d], [a, c, d], [b, c, d]] {
+                if let Ok(place) = self.by_nodes.binary_search_by_key(&sorted(facet), |(nodes, _)| *nodes) {
+                    self.mesh.remove(self.by_nodes[place].1);
+                    some = true;
+                }
+            }
+        }
+        if some {
+            self.contacts.look_again();
+            self.visitors.iter_mut().for_each(NodesOnGround::look_again);
+        }
+    }
+
+    /// Takes nodes of new discrete elements as they stand.
+    pub(super) fn admit(&mut self, born: &[u32], solid: &Solid, debris: &Debris) {
+        self.locate(solid);
+        let SolidGround { mesh, points, velocity, visitors, .. } = self;
+        if let Some(visitors) = visitors {
+            visitors.admit(born, &Ground::Deformable { surface: mesh, points, velocity }, solid, debris);
+        }
+    }
+
+    /// Takes the contacts of nodes of other solids as they stand.
+    pub(super) fn take_up_nodes(&mut self, solid: &Solid) {
+        self.locate(solid);
+        let SolidGround { mesh, points, velocity, visitors, .. } = self;
+        if let Some(visitors) = visitors {
+            visitors.take_up(&Ground::Deformable { surface: mesh, points, velocity }, solid);
+        }
+    }
+
+    /// Takes the contacts of particles as they stand.
+    pub(super) fn take_up(&mut self, solid: &Solid, spheres: &Spheres, which: impl Fn(u32) -> bool + Sync) {
+        self.locate(solid);
+        let SolidGround { mesh, points, velocity, contacts, felt, .. } = self;
+        let ground = Ground::Deformable { surface: mesh, points, velocity };
+        let spheres = Spheres { radius: if felt.is_empty() { spheres.radius } else { felt }, ..*spheres };
+        contacts.search(&ground, &spheres);
+        contacts.take_up(&ground, &spheres, |i| which(i).then_some(0.0));
+    }
+
+    /// Adds the forces of nodes of other solids to both.
+    pub(super) fn add_node_forces(&mut self, solid: &mut Solid, debris: &mut Debris, dt: f64) -> ContactWork {
+        let SolidGround { mesh, nodes, points, velocity, visitors, elastic, surface, .. } = self;
+        let Some(visitors) = visitors else { return ContactWork::default() };
+        let ground = Ground::Deformable { surface: mesh, points, velocity };
+        let law = |solid: &Solid, debris: &Debris, node: u32| {
+            debris.facet_law(node, solid.mass[node as usize], elastic, *surface)
+        };
+        let work = visitors.add_forces(&ground, solid, debris, law, dt);
+        let mut fastest: f64 = 0.0;
+        for (touch, place, node) in visitors.touches() {
+            let mut mobility = 1.0 / solid.mass[node as usize];
+            mesh.share(touch.feature, &place, points, |point, weight| {
+                let own = nodes[point as usize] as usize;
+                solid.force[own] -= touch.force * weight;
+                mobility += weight * weight / solid.mass[own];
+            });
+            fastest = fastest.max(frequency_square(&law(solid, debris, node), mobility));
+        }
+        self.frequency_square = self.frequency_square.max(fastest);
+        work
+    }
+
+    fn locate(&mut self, solid: &Solid) {
+        for (place, &node) in self.nodes.iter().enumerate() {
+            self.points[place] = solid.position(node as usize);
+            self.velocity[place] = solid.velocity[node as usize];
+        }
     }
 
     /// Largest squared frequency that the contacts of the last step give to a node [1/s²].
@@ -90,11 +209,9 @@ impl SolidGround {
         law: impl Fn(&MaterialPair, u32) -> Hertz + Sync,
         dt: f64,
     ) -> ContactWork {
-        for (place, &node) in self.nodes.iter().enumerate() {
-            self.points[place] = solid.position(node as usize);
-            self.velocity[place] = solid.velocity[node as usize];
-        }
-        let SolidGround { mesh, nodes, points, velocity, contacts, pairs, .. } = self;
+        self.locate(solid);
+        let SolidGround { mesh, nodes, points, velocity, contacts, pairs, felt, .. } = self;
+        let spheres = &Spheres { radius: if felt.is_empty() { spheres.radius } else { felt }, ..*spheres };
         let ground = Ground::Deformable { surface: mesh, points, velocity };
         let law_of = |i: u32| law(&pairs[body_of[i as usize] as usize], i);
         contacts.search(&ground, spheres);
@@ -112,4 +229,12 @@ impl SolidGround {
         self.frequency_square = fastest;
         work
     }
+}
+
+/// Contacts of particles, and of nodes of other solids.
+pub(super) type GroundState = (Vec<Touch<HertzMemory>>, Vec<Touch<ContactMemory>>);
+
+fn sorted(mut nodes: [u32; 3]) -> [u32; 3] {
+    nodes.sort_unstable();
+    nodes
 }

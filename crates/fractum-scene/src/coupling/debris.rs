@@ -1,4 +1,4 @@
-use fractum_contact::law::{ContactForce, ContactMemory, Linear, PairMotion, Surface};
+use fractum_contact::law::{ContactForce, ContactMemory, ElasticMaterial, Linear, PairMotion, Surface};
 use fractum_contact::{ContactWork, close_pairs};
 use fractum_fem::Solid;
 use fractum_math::Vec3;
@@ -165,6 +165,48 @@ impl Debris {
         }
     }
 
+    /// Body of a node.
+    pub(crate) fn body(&self, node: u32) -> usize {
+        self.body[node as usize] as usize
+    }
+
+    /// Young's modulus [Pa] and Poisson's ratio of a node against another material, as between two nodes.
+    pub(crate) fn mean_elasticity(&self, node: u32, other: &ElasticMaterial) -> (f64, f64) {
+        let ((e1, nu1), (e2, nu2)) = (self.elasticity[node as usize], (other.young_modulus, other.poisson_ratio));
+        (2.0 * e1 * e2 / (e1 + e2), 0.5 * (nu1 + nu2))
+    }
+
+    /// The law of a node of a solid in space on a facet of another body.
+    pub(crate) fn facet_law(&self, node: u32, mass: f64, other: &ElasticMaterial, surface: Surface) -> Linear {
+        let (e, nu) = self.mean_elasticity(node, other);
+        Linear::on_wall(e, nu, self.radius(node), mass, surface.against(self.surface(node)))
+    }
+
+    /// Finds the elements that hold the nodes; needed before a node that is no particle yet touches facets.
+    pub(crate) fn prepare_holders(&mut self, solid: &Solid) {
+        self.prepare(solid);
+        if self.holders.is_empty() {
+            self.holders = Holders::new(solid);
+        }
+    }
+
+    /// Angular velocity at a node: of its particle, or of an element that holds it [rad/s].
+    pub(crate) fn turning_at(&self, solid: &Solid, node: u32) -> Vec3 {
+        match self.particle_of[node as usize] {
+            NONE => self.holders.of(solid, node).map_or_else(Vec3::zeros, |holder| holder.spin(solid)),
+            particle => self.turning[particle as usize],
+        }
+    }
+
+    /// Adds a torque at a node [N m]: on its particle, or as forces on an element that holds it.
+    pub(crate) fn add_torque_at(&mut self, solid: &mut Solid, node: u32, torque: Vec3) {
+        if self.particle_of[node as usize] != NONE {
+            self.add_torque(node, torque);
+        } else if let Some(holder) = self.holders.of(solid, node) {
+            holder.add_torque(solid, torque);
+        }
+    }
+
     /// Radius of the particle at a node, 0 without one [m].
     pub(crate) fn radius_if_particle(&self, node: u32) -> f64 {
         if self.particle_of[node as usize] == NONE { 0.0 } else { self.radius[node as usize] }
@@ -196,10 +238,7 @@ impl Debris {
     /// Puts particles on the nodes of elements that were just removed, and opens the edges that lost their last
     /// element to contact.
     pub(crate) fn release(&mut self, solid: &Solid, removed: &[(usize, u32)]) {
-        self.prepare(solid);
-        if self.holders.is_empty() {
-            self.holders = Holders::new(solid);
-        }
+        self.prepare_holders(solid);
         for &(body, element) in removed {
             let corners = solid.body(body).shape.node_count();
             for &node in &solid.body(body).elements[element as usize][..corners] {
@@ -420,8 +459,7 @@ impl Debris {
     /// Puts a saved state back.
     pub(crate) fn restore(&mut self, solid: &Solid, state: DebrisState) {
         if !state.nodes.is_empty() {
-            self.prepare(solid);
-            self.holders = Holders::new(solid);
+            self.prepare_holders(solid);
         }
         self.particle_of.fill(NONE);
         for (particle, &node) in (0..).zip(&state.nodes) {

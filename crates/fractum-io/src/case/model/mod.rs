@@ -122,6 +122,8 @@ pub struct Solver {
     pub step: Option<Spanned<f64>>,
     /// Options of a static run, or of one that may become static; `None` with the explicit solver.
     pub statics: Option<StaticOptions>,
+    /// What overlaps at the start does.
+    pub initial_overlap: InitialOverlap,
     /// Early end.
     pub stop_when: Option<StopWhen>,
     /// Energy imbalance over external work at which to warn [-].
@@ -235,6 +237,17 @@ pub enum TimeStep {
 }
 
 choice!(TimeStep { "power-iteration" => PowerIteration, "element" => Element });
+
+/// What overlaps at the start does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InitialOverlap {
+    /// It pushes apart at once.
+    Push,
+    /// It gives no force, and touches no nearer than it starts until it has parted.
+    Keep,
+}
+
+choice!(InitialOverlap { "push" => Push, "keep" => Keep });
 
 /// Ends the run early, when a probe has fallen below a fraction of its largest value so far.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,8 +3,8 @@
 use super::probes::ReadProbe;
 use super::vectors::direction;
 use crate::case::model::{
-    Body, BodyKind, BondBatch, Control, Damping, LinearSolver, NoEquilibrium, Opening, Output, Solver, SolverKind,
-    StaticOptions, StopWhen, TimeStep,
+    Body, BodyKind, BondBatch, Control, Damping, InitialOverlap, LinearSolver, NoEquilibrium, Opening, Output, Solver,
+    SolverKind, StaticOptions, StopWhen, TimeStep,
 };
 use crate::case::reader::Table;
 use crate::case::tree::Value;
@@ -73,6 +73,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         .as_ref()
         .is_some_and(|statics| statics.as_ref().is_none_or(|statics| statics.no_equilibrium == NoEquilibrium::Motion));
     if is_static {
+        table.refuse("initial_overlap", "with kind = \"static\"");
         for key in ["safety", "time_step", "balance_stop"].into_iter().filter(|_| !moves) {
             table.refuse(key, "with kind = \"static\"");
         }
@@ -89,6 +90,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         table.reader.note(note);
     }
     let time_step = table.choice("time_step").or(TimeStep::PowerIteration);
+    let initial_overlap = table.choice("initial_overlap").or(InitialOverlap::Push);
     let stop_when = if table.has("stop_when") { stop_when(&table, probes).map(Some) } else { Some(None) };
     let balance_warning = table.quantity("balance_warning").positive().or(1e-3);
     let expected = format!("at least balance_warning, which is {balance_warning}");
@@ -101,6 +103,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         safety,
         time_step,
         step,
+        initial_overlap,
         statics: statics?,
         stop_when: stop_when?,
         balance_warning,

@@ -1,0 +1,292 @@
+//! A share of the spheres near a ground: their contacts of one step, and how they follow from those of the last.
+
+use std::ops::Range;
+
+use fractum_math::Vec3;
+
+use crate::hierarchy::{DoubleHierarchy, Foot};
+use crate::inside::foot_from_inside;
+use crate::law::{ContactLaw, PairMotion};
+use crate::sphere_facet::{ContactWork, Ground, Spheres, Touch};
+use crate::surface::FacetMesh;
+
+/// Cosine of the angle between the normals of two steps beyond which a contact is a new one.
+const SAME_CONTACT: f64 = 0.5;
+
+/// Some spheres near the ground.
+#[derive(Clone, Debug)]
+pub(crate) struct Block<L: ContactLaw> {
+    pub(crate) spheres: Vec<u32>,
+    /// Start of the facets of each sphere, and one more.
+    pub(crate) starts: Vec<u32>,
+    pub(crate) facets: Vec<u32>,
+    pub(crate) touches: Vec<Touch<L::Memory>>,
+    before: Vec<Touch<L::Memory>>,
+    hierarchy: DoubleHierarchy,
+    feet: Vec<Foot>,
+    /// Contact of the last step that each foot continues.
+    origin: Vec<Option<usize>>,
+    /// Whether each contact of the last step goes on.
+    taken: Vec<bool>,
+    pub(crate) ended: ContactWork,
+}
+
+impl<L: ContactLaw> Block<L> {
+    pub(crate) fn empty() -> Self {
+        Block {
+            spheres: Vec::new(),
+            starts: vec![0],
+            facets: Vec::new(),
+            touches: Vec::new(),
+            before: Vec::new(),
+            hierarchy: DoubleHierarchy::default(),
+            feet: Vec::new(),
+            origin: Vec::new(),
+            taken: Vec::new(),
+            ended: ContactWork::default(),
+        }
+    }
+
+    pub(crate) fn update(
+        &mut self,
+        ground: &Ground,
+        spheres: &Spheres,
+        depth: Option<f64>,
+        law: &(impl Fn(u32, f64) -> L + Sync),
+        dt: f64,
+    ) {
+        std::mem::swap(&mut self.touches, &mut self.before);
+        self.touches.clear();
+        self.ended = ContactWork::default();
+        let mut next_old = 0;
+        for k in 0..self.spheres.len() {
+            let sphere = self.spheres[k];
+            let (centre, radius) = (&spheres.position[sphere as usize], spheres.radius[sphere as usize]);
+            let first_old = next_old;
+            while self.before.get(next_old).is_some_and(|t| t.sphere == sphere) {
+                next_old += 1;
+            }
+            let old = first_old..next_old;
+            let facets = &self.facets[self.starts[k] as usize..self.starts[k + 1] as usize];
+            find_feet(ground, facets, centre, radius, depth, &mut self.hierarchy, &mut self.feet);
+            if self.feet.is_empty() && old.is_empty() {
+                continue;
+            }
+            self.follow(ground, old.clone());
+            // A sphere that was taken as it stood, deep within an edge, may leave on the other side: what gives no force is its own.
+            let slack = self.before[old.clone()].iter().map(|t| L::slack(&t.memory)).fold(0.0, f64::max);
+            self.add_touches(ground, spheres, law, dt, (sphere, slack));
+            for touch in self.before[old.clone()].iter().zip(&self.taken).filter(|(_, taken)| !**taken).map(|(t, _)| t)
+            {
+                self.ended += ending(touch, law(sphere, 0.0));
+            }
+        }
+    }
+
+    /// Finds which contact of the last step each foot continues: the one on the same feature; or else the one on the
+    /// same part of the surface that points most nearly the same way and that nothing else continues; or else, on an
+    /// edge so shallow that both are one, the one beside it.
+    fn follow(&mut self, ground: &Ground, old: Range<usize>) {
+        let Block { feet, before, origin, taken, .. } = self;
+        let before = &before[old.clone()];
+        let part = |foot: &Foot| ground.part(foot.facet);
+        taken.clear();
+        taken.resize(before.len(), false);
+        origin.clear();
+        for foot in feet.iter() {
+            let same = before.iter().position(|t| t.feature == foot.feature);
+            if let Some(k) = same {
+                taken[k] = true;
+            }
+            origin.push(same);
+        }
+        for (foot, from) in feet.iter().zip(origin.iter_mut()).filter(|(_, from)| from.is_none()) {
+            let mut best = SAME_CONTACT;
+            for (k, touch) in before.iter().enumerate().filter(|(k, t)| !taken[*k] && t.part == part(foot)) {
+                let likeness = touch.normal.dot(&foot.normal);
+                if likeness > best {
+                    (best, *from) = (likeness, Some(k));
+                }
+            }
+            if let Some(k) = *from {
+                taken[k] = true;
+            }
+        }
+        for i in 0..feet.len() {
+            if let (None, Some(twin)) = (origin[i], feet[i].twin) {
+                origin[i] = origin[twin as usize];
+            }
+        }
+        for from in origin.iter_mut().flatten() {
+            *from += old.start;
+        }
+    }
+
+    /// Forces of the feet of one sphere, with what contacts that continue none start with.
+    fn add_touches(
+        &mut self,
+        ground: &Ground,
+        spheres: &Spheres,
+        law: &(impl Fn(u32, f64) -> L + Sync),
+        dt: f64,
+        (sphere, slack): (u32, f64),
+    ) {
+        let i = sphere as usize;
+        for (foot, origin) in self.feet.iter().zip(&self.origin) {
+            let mut memory = origin.map_or_else(Default::default, |k| self.before[k].memory);
+            if origin.is_none() {
+                L::add_slack(&mut memory, slack);
+            }
+            let place = spheres.position[i] + foot.offset;
+            let (ground_velocity, ground_spin) = ground.motion_at(foot.feature, &place);
+            let velocity = ground_velocity - spheres.velocity[i] - spheres.spin[i].cross(&foot.offset);
+            let overlap = spheres.radius[i] - foot.distance;
+            let spin = ground_spin - spheres.spin[i];
+            let motion = PairMotion { normal: foot.normal, overlap, velocity, spin, dt };
+            let force = law(sphere, foot.curvature).force(&motion, &mut memory);
+            let moment = -foot.offset.cross(&force.on_second) - force.couple_on_second;
+            self.touches.push(Touch {
+                sphere,
+                feature: foot.feature,
+                part: ground.part(foot.facet),
+                offset: foot.offset,
+                overlap,
+                normal: foot.normal,
+                weight: foot.weight,
+                memory,
+                force: -force.on_second * foot.weight,
+                moment: moment * foot.weight,
+                couple: -force.couple_on_second * foot.weight,
+                stored: force.stored * foot.weight,
+                friction: force.friction * foot.weight,
+                damping: force.damping * foot.weight,
+            });
+        }
+    }
+}
+
+impl<L: ContactLaw> Block<L> {
+    /// Takes the contacts of some spheres as they stand: those that are new give no force, and those that have become deeper
+    /// since the last step because the sphere has grown give that of before.
+    ///
+    /// - `grown`: by how much a sphere has grown [m]; none of the others
+    pub(crate) fn take_up(
+        &mut self,
+        ground: &Ground,
+        spheres: &Spheres,
+        depth: Option<f64>,
+        grown: &impl Fn(u32) -> Option<f64>,
+    ) {
+        std::mem::swap(&mut self.touches, &mut self.before);
+        self.touches.clear();
+        let mut next_old = 0;
+        for k in 0..self.spheres.len() {
+            let sphere = self.spheres[k];
+            let first = self.touches.len();
+            while let Some(touch) = self.before.get(next_old).filter(|t| t.sphere == sphere) {
+                self.touches.push(*touch);
+                next_old += 1;
+            }
+            let Some(growth) = grown(sphere) else { continue };
+            for touch in &mut self.touches[first..] {
+                touch.overlap += growth;
+                L::add_slack(&mut touch.memory, growth);
+            }
+            let (centre, radius) = (&spheres.position[sphere as usize], spheres.radius[sphere as usize]);
+            let facets = &self.facets[self.starts[k] as usize..self.starts[k + 1] as usize];
+            find_feet(ground, facets, centre, radius, depth, &mut self.hierarchy, &mut self.feet);
+            for foot in &self.feet {
+                if self.touches[first..].iter().any(|t| t.feature == foot.feature) {
+                    continue;
+                }
+                let overlap = radius - foot.distance;
+                let mut memory = L::Memory::default();
+                L::add_slack(&mut memory, overlap);
+                self.touches.push(Touch {
+                    sphere,
+                    feature: foot.feature,
+                    part: ground.part(foot.facet),
+                    offset: foot.offset,
+                    overlap,
+                    normal: foot.normal,
+                    weight: foot.weight,
+                    memory,
+                    force: Vec3::zeros(),
+                    moment: Vec3::zeros(),
+                    couple: Vec3::zeros(),
+                    stored: 0.0,
+                    friction: 0.0,
+                    damping: 0.0,
+                });
+            }
+        }
+    }
+}
+
+/// What is left of a contact that ended: its springs relax.
+fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L) -> ContactWork {
+    let mut memory = touch.memory;
+    let still = Vec3::zeros();
+    let motion = PairMotion { normal: touch.normal, overlap: 0.0, velocity: still, spin: still, dt: 0.0 };
+    let force = law.force(&motion, &mut memory);
+    ContactWork { stored: 0.0, friction: force.friction * touch.weight, damping: force.damping * touch.weight }
+}
+
+impl Ground<'_> {
+    fn part(&self, facet: u32) -> u32 {
+        match self {
+            Ground::Rigid { surface, .. } | Ground::Deformable { surface, .. } => surface.part(facet),
+            Ground::Shape { .. } => 0,
+        }
+    }
+
+    /// Velocity of the ground at a place on a feature [m/s] and its angular velocity [rad/s]; that of a facet that
+    /// deforms counts as zero.
+    fn motion_at(&self, feature: u32, place: &Vec3) -> (Vec3, Vec3) {
+        match self {
+            Ground::Rigid { frame, .. } | Ground::Shape { frame, .. } => (frame.velocity_at(place), frame.spin),
+            Ground::Deformable { surface, points, velocity } => {
+                (surface.interpolate(feature, place, points, velocity), Vec3::zeros())
+            }
+        }
+    }
+}
+
+/// Feet of a sphere, in space.
+fn find_feet(
+    ground: &Ground,
+    facets: &[u32],
+    centre: &Vec3,
+    radius: f64,
+    depth: Option<f64>,
+    hierarchy: &mut DoubleHierarchy,
+    feet: &mut Vec<Foot>,
+) {
+    let mut on_facets = |surface: &FacetMesh, points: &[Vec3], centre: &Vec3, feet: &mut Vec<Foot>| match depth
+        .and_then(|depth| foot_from_inside(surface, points, facets, centre, depth))
+    {
+        Some(foot) => {
+            feet.clear();
+            feet.push(foot);
+        }
+        None => hierarchy.feet(surface, points, facets, centre, radius, feet),
+    };
+    let frame = match ground {
+        Ground::Deformable { surface, points, .. } => {
+            on_facets(surface, points, centre, feet);
+            return;
+        }
+        Ground::Rigid { surface, points, frame } => {
+            on_facets(surface, points, &frame.to_body(centre), feet);
+            frame
+        }
+        Ground::Shape { shape, hollow, frame } => {
+            shape.feet(*hollow, &frame.to_body(centre), radius, feet);
+            frame
+        }
+    };
+    for foot in feet {
+        foot.offset = frame.to_space(&foot.offset);
+        foot.normal = frame.to_space(&foot.normal);
+    }
+}

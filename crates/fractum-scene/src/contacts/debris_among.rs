@@ -1,0 +1,160 @@
+//! Discrete elements of solids among particles that have nodes of their own.
+
+use fractum_contact::law::{ContactLaw, ContactMemory, Linear};
+use fractum_contact::{ContactWork, SphereContacts, Spheres};
+use fractum_dem::Particles;
+use fractum_fem::Solid;
+use fractum_math::Vec3;
+
+use super::ContactMaterial;
+use crate::coupling::Debris;
+
+/// How much faster a turning sphere answers to the tangential spring: 1 + m r²/I.
+const TURNING: f64 = 3.5;
+
+/// Contacts of discrete elements with loose and bonded particles, by the linear law of discrete elements among each other.
+///
+/// One population: the particles, then the discrete elements in the order of their birth.
+#[derive(Clone, Debug)]
+pub(crate) struct DebrisAmong {
+    contacts: SphereContacts<Linear>,
+    position: Vec<Vec3>,
+    velocity: Vec<Vec3>,
+    spin: Vec<Vec3>,
+    radius: Vec<f64>,
+    force: Vec<Vec3>,
+    moment: Vec<Vec3>,
+    /// Sums of stiffness over mass.
+    rows: Vec<f64>,
+}
+
+/// What the particles are made of.
+#[derive(Clone, Copy)]
+pub(super) struct Made<'a> {
+    pub(super) body: &'a [u16],
+    pub(super) materials: &'a [ContactMaterial],
+}
+
+impl DebrisAmong {
+    pub(super) fn new(skin: f64) -> Self {
+        DebrisAmong {
+            contacts: SphereContacts::new(skin),
+            position: Vec::new(),
+            velocity: Vec::new(),
+            spin: Vec::new(),
+            radius: Vec::new(),
+            force: Vec::new(),
+            moment: Vec::new(),
+            rows: Vec::new(),
+        }
+    }
+
+    fn locate(&mut self, solid: &Solid, debris: &Debris, particles: &Particles) {
+        let born = &debris.state().nodes;
+        let fill = |all: &mut Vec<Vec3>, own: &[Vec3], of: &dyn Fn(u32) -> Vec3| {
+            all.clear();
+            all.extend_from_slice(own);
+            all.extend(born.iter().map(|&n| of(n)));
+        };
+        fill(&mut self.position, &particles.position, &|n| solid.position(n as usize));
+        fill(&mut self.velocity, &particles.velocity, &|n| solid.velocity[n as usize]);
+        fill(&mut self.spin, &particles.spin, &|n| debris.spin(n));
+        self.radius.clear();
+        self.radius.extend_from_slice(&particles.radius);
+        self.radius.extend(born.iter().map(|&n| debris.radius(n)));
+    }
+
+    fn search(&mut self, solid: &Solid, debris: &Debris, particles: &Particles, made: Made) {
+        let DebrisAmong { contacts, position, velocity, spin, radius, .. } = self;
+        let count = particles.len();
+        let law = |i: u32, j: u32| {
+            let (particle, born) = (i as usize, (j as usize).checked_sub(count)?);
+            let material = &made.materials[*made.body.get(particle)? as usize];
+            let node = debris.state().nodes[born];
+            let radii = [radius[particle], radius[j as usize]];
+            let masses = [particles.mass[particle], solid.mass[node as usize]];
+            let (e, nu) = debris.mean_elasticity(node, &material.elastic);
+            let surface = material.surface.against(debris.surface(node));
+            Some(Linear::between_spheres(e, nu, radii, masses, surface))
+        };
+        contacts.search(&Spheres { position, velocity, spin, radius }, law);
+    }
+
+    /// Takes new discrete elements as they stand.
+    ///
+    /// - `before`: how many there were
+    pub(super) fn admit(&mut self, before: usize, solid: &Solid, debris: &Debris, particles: &Particles, made: Made) {
+        self.locate(solid, debris, particles);
+        self.search(solid, debris, particles, made);
+        let DebrisAmong { contacts, position, velocity, spin, radius, .. } = self;
+        let first = particles.len() + before;
+        contacts.take_up(&Spheres { position, velocity, spin, radius }, |_, j| j as usize >= first);
+    }
+
+    /// Adds the forces of the moment to nodes and particles.
+    pub(super) fn add_forces(
+        &mut self,
+        solid: &mut Solid,
+        debris: &mut Debris,
+        particles: &mut Particles,
+        made: Made,
+        dt: f64,
+    ) -> ContactWork {
+        self.locate(solid, debris, particles);
+        self.search(solid, debris, particles, made);
+        let DebrisAmong { contacts, position, velocity, spin, radius, force, moment, .. } = self;
+        for sum in [&mut *force, &mut *moment] {
+            sum.clear();
+            sum.resize(position.len(), Vec3::zeros());
+        }
+        let work = contacts.add_forces(&Spheres { position, velocity, spin, radius }, force, moment, dt);
+        let count = particles.len();
+        for (own, sum) in particles.force.iter_mut().zip(&*force) {
+            *own += sum;
+        }
+        for (own, sum) in particles.moment.iter_mut().zip(&*moment) {
+            *own += sum;
+        }
+        for born in 0..debris.len() {
+            let node = debris.state().nodes[born];
+            solid.force[node as usize] += force[count + born];
+            debris.add_torque(node, moment[count + born]);
+        }
+        work
+    }
+
+    /// Largest squared frequency that the contacts of the last step add, by Gershgorin's rows [1/s²].
+    pub(super) fn frequency_square(&mut self, solid: &Solid, debris: &Debris, particles: &Particles) -> f64 {
+        let DebrisAmong { contacts, radius, rows, .. } = self;
+        rows.clear();
+        rows.resize(radius.len(), 0.0);
+        let count = particles.len();
+        let mass = |k: u32| match (k as usize).checked_sub(count) {
+            None => particles.mass[k as usize],
+            Some(born) => solid.mass[debris.state().nodes[born] as usize],
+        };
+        for (pair, law) in contacts.laws_touching() {
+            let (normal, tangential) = law.stiffness(0.0);
+            let [i, j] = pair;
+            let rolling = law.rolling.frequency_factor(radius[i as usize].min(radius[j as usize]));
+            let stiffness = normal.max(TURNING * tangential + rolling * normal);
+            let coupling = stiffness / (mass(i) * mass(j)).sqrt();
+            rows[i as usize] += stiffness / mass(i) + coupling;
+            rows[j as usize] += stiffness / mass(j) + coupling;
+        }
+        rows.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Number of contacts at the last step.
+    pub(super) fn touching(&self) -> usize {
+        self.contacts.touching().count()
+    }
+
+    pub(super) fn state(&self) -> Vec<([u32; 2], ContactMemory)> {
+        self.contacts.state()
+    }
+
+    pub(super) fn restore(&mut self, state: Vec<([u32; 2], ContactMemory)>) {
+        self.contacts.restore(state);
+    }
+}

@@ -1,0 +1,195 @@
+//! What nodes of solids meet beside the nodes of their own kind: facets of rigid bodies and of other solids, containers, and
+//! particles with nodes of their own.
+
+use fractum_contact::{ContactWork, Spheres};
+use fractum_dem::Particles;
+use fractum_fem::Solid;
+use fractum_math::connected;
+
+use super::debris_among::{DebrisAmong, Made};
+use super::nodes_on_ground::{NodesOnGround, frequency_square};
+use super::tool::{Form, Tool};
+use super::{Contacts, OverlapWith, SKIN};
+use crate::coupling::Debris;
+
+impl Contacts {
+    /// Has the nodes of solids meet what there is; plane ones meet nothing of it.
+    ///
+    /// - `surface`: nodes on the surfaces of the solids, ascending
+    pub(crate) fn meet_nodes(&mut self, solid: &Solid, debris: &mut Debris, particles: &Particles, surface: &[u32]) {
+        if solid.body_count() == 0 || solid.is_plane() {
+            return;
+        }
+        if !particles.is_empty() {
+            let smallest = particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
+            self.debris = Some(DebrisAmong::new(SKIN * smallest));
+        }
+        let piece = pieces(solid);
+        let apart = |body: usize| -> Vec<bool> { piece.iter().map(|other| *other != piece[body]).collect() };
+        let meets = self.solids.iter().any(|ground| apart(ground.body()).contains(&true));
+        if meets || self.tools.iter().any(has_walls) {
+            debris.prepare_holders(solid);
+        }
+        for ground in &mut self.solids {
+            let bodies = apart(ground.body());
+            if bodies.contains(&true) {
+                ground.meets_nodes(surface, bodies, debris);
+            }
+        }
+        self.solids.retain(|ground| ground.visitors().is_some() || !particles.is_empty());
+        for (tool, nodes) in self.tools.iter().zip(&mut self.nodes_on_tools) {
+            *nodes = has_walls(tool).then(|| NodesOnGround::new(surface, vec![true; piece.len()], debris));
+        }
+    }
+
+    /// Whether nodes of solids that are no discrete elements yet may touch something here.
+    pub fn meets_nodes(&self) -> bool {
+        self.nodes_on_tools.iter().any(Option::is_some) || self.solids.iter().any(|ground| ground.visitors().is_some())
+    }
+
+    /// Adds the forces of nodes of solids; after those of the particles, which put rigid bodies and facets in their places.
+    pub(crate) fn add_node_forces(
+        &mut self,
+        solid: &mut Solid,
+        debris: &mut Debris,
+        particles: &mut Particles,
+        dt: f64,
+    ) -> ContactWork {
+        let mut work = ContactWork::default();
+        let mut fastest = self.node_frequency_square;
+        for (tool, nodes) in self.tools.iter_mut().zip(&mut self.nodes_on_tools) {
+            let Some(nodes) = nodes else { continue };
+            let surface = tool.surface;
+            let law =
+                |solid: &Solid, debris: &Debris, node: u32| debris.wall_law(node, solid.mass[node as usize], surface);
+            work += nodes.add_forces(&tool.ground(), solid, debris, law, dt);
+            for (touch, place, node) in nodes.touches() {
+                tool.push(&-touch.force, &-touch.couple, &place);
+                let mobility = 1.0 / solid.mass[node as usize];
+                fastest = fastest.max(frequency_square(&law(solid, debris, node), mobility));
+            }
+        }
+        for ground in &mut self.solids {
+            work += ground.add_node_forces(solid, debris, dt);
+            fastest = fastest.max(ground.frequency_square());
+        }
+        if let Some(among) = self.debris.as_mut().filter(|_| !debris.is_empty()) {
+            let made = Made { body: &self.body, materials: &self.materials };
+            work += among.add_forces(solid, debris, particles, made, dt);
+            fastest = fastest.max(among.frequency_square(solid, debris, particles));
+        }
+        self.node_frequency_square = fastest;
+        work
+    }
+
+    /// Facets of removed elements go; new discrete elements are taken as they stand.
+    ///
+    /// - `removed`: elements by body; `before`: number of discrete elements before
+    pub(crate) fn release(
+        &mut self,
+        solid: &Solid,
+        debris: &Debris,
+        particles: &Particles,
+        removed: &[(usize, u32)],
+        before: usize,
+    ) {
+        let born = &debris.state().nodes[before..];
+        for ground in &mut self.solids {
+            ground.remove_facets(solid, removed);
+            ground.admit(born, solid, debris);
+        }
+        for (tool, nodes) in self.tools.iter().zip(&mut self.nodes_on_tools) {
+            if let Some(nodes) = nodes {
+                nodes.admit(born, &tool.ground(), solid, debris);
+            }
+        }
+        if let Some(among) = self.debris.as_mut().filter(|_| !born.is_empty()) {
+            let made = Made { body: &self.body, materials: &self.materials };
+            among.admit(before, solid, debris, particles, made);
+        }
+    }
+
+    /// Takes what overlaps as it stands: it gives no force, and touches no nearer than now until it has parted.
+    ///
+    /// - `which`: the particles whose contacts with solids are taken; all contacts of others than solids are left alone
+    pub fn take_up_on_solids(&mut self, solid: &Solid, particles: &Particles, which: impl Fn(u32) -> bool + Sync) {
+        let Particles { position, velocity, spin, radius, .. } = particles;
+        let spheres = Spheres { position, velocity, spin, radius };
+        for ground in &mut self.solids {
+            ground.take_up(solid, &spheres, &which);
+        }
+    }
+
+    /// Takes everything of particles as it stands, as [`Contacts::take_up_on_solids`] does.
+    pub(crate) fn take_up_particles(&mut self, solid: &Solid, particles: &Particles) {
+        self.take_up_on_solids(solid, particles, |_| true);
+        let Particles { position, velocity, spin, radius, .. } = particles;
+        let spheres = Spheres { position, velocity, spin, radius };
+        if let Some(mut among) = self.among.take() {
+            among.search(&spheres, |i, j| self.law_among(radius, &particles.mass, i, j));
+            among.take_up(&spheres, |_, _| true);
+            self.among = Some(among);
+        }
+        for (tool, (contacts, _)) in self.tools.iter().zip(&mut self.on_tools) {
+            contacts.search(&tool.ground(), &spheres);
+            contacts.take_up(&tool.ground(), &spheres, |_| Some(0.0));
+        }
+    }
+
+    /// Takes all contacts of nodes as they stand, and tells them: node, depth [m] and what the node is in.
+    pub(crate) fn take_up_nodes(&mut self, solid: &Solid) -> Vec<(u32, f64, OverlapWith)> {
+        let mut found = Vec::new();
+        let mut tell = |nodes: &NodesOnGround, other: OverlapWith| {
+            found.extend(nodes.touches().map(|(touch, _, node)| (node, touch.overlap, other.clone())));
+        };
+        for (tool, nodes) in self.tools.iter().zip(&mut self.nodes_on_tools) {
+            if let Some(nodes) = nodes {
+                nodes.take_up(&tool.ground(), solid);
+                tell(nodes, OverlapWith::Tool(tool.name.clone()));
+            }
+        }
+        for ground in &mut self.solids {
+            ground.take_up_nodes(solid);
+            let name = &solid.body(ground.body()).name;
+            ground.visitors().iter().for_each(|nodes| tell(nodes, OverlapWith::Solid(name.clone())));
+        }
+        found
+    }
+
+    /// Contacts of nodes at the last step.
+    pub(super) fn node_contacts(&self) -> usize {
+        let on = |nodes: &NodesOnGround| nodes.contacts().touches().count();
+        let tools = self.nodes_on_tools.iter().flatten().map(on).sum::<usize>();
+        let solids = self.solids.iter().filter_map(|ground| ground.visitors()).map(on).sum::<usize>();
+        tools + solids + self.debris.as_ref().map_or(0, DebrisAmong::touching)
+    }
+
+    pub(super) fn nodes_on_tools_state(&self) -> Vec<Vec<fractum_contact::Touch<fractum_contact::law::ContactMemory>>> {
+        let of = |nodes: &Option<NodesOnGround>| nodes.as_ref().map_or_else(Vec::new, |n| n.contacts().state());
+        self.nodes_on_tools.iter().map(of).collect()
+    }
+}
+
+/// Whether nodes meet a rigid body as facets or as a container; those of other shapes know it as
+/// [`RigidGround`](crate::RigidGround).
+fn has_walls(tool: &Tool) -> bool {
+    !matches!(tool.form, Form::Shape { hollow: false, .. })
+}
+
+/// The piece that each solid body belongs to, by the first body of it: bodies that share nodes are one piece, whose bodies do
+/// not touch each other.
+pub fn pieces(solid: &Solid) -> Vec<u32> {
+    let mut owner = vec![u32::MAX; solid.reference.len()];
+    let mut links = Vec::new();
+    for body in 0..solid.body_count() {
+        for &node in solid.body(body).elements.iter().flatten() {
+            let first = &mut owner[node as usize];
+            if *first == u32::MAX {
+                *first = body as u32;
+            } else if *first != body as u32 {
+                links.push([*first, body as u32]);
+            }
+        }
+    }
+    connected(solid.body_count(), links)
+}

@@ -1,0 +1,210 @@
+//! Solids that break on other solids, on rigid facets and among loose particles: momentum, energy, sameness.
+
+use std::collections::HashMap;
+
+use fractum_dem::Particles;
+use fractum_fem::{Body, Criterion, DamageLaw, Elastic, Kinematics, LocalDamping, Shape, Softening, Solid};
+use fractum_math::{Rotation, Vec3};
+use fractum_mesh::generate::{Jitter, structured_box};
+use fractum_mesh::topology::boundary_of_tetrahedra;
+use fractum_scene::coupling::Debris;
+use fractum_scene::{
+    Bonded, BondedPart, ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, Loads,
+    Probe, Scene, SceneSettings, SolidGround, Supports, Surface, TimeStepSettings, Tool,
+};
+
+const SURFACE: Surface = Surface { friction: 0.4, damping_ratio: 0.05, rolling_friction: 0.0 };
+
+fn elastic() -> Elastic {
+    Elastic { young_modulus: 10e9, poisson_ratio: 0.2, density: 2400.0 }
+}
+
+/// A box of tetrahedra from the origin, and its outward facets with nodes counted from `first`.
+fn block(cells: [u32; 3], size: Vec3, first: u32) -> (Vec<Vec3>, Vec<[u32; 4]>, Vec<[u32; 3]>) {
+    let mesh = structured_box(cells, size, Some(Jitter { fraction: 0.1, seed: 5 }));
+    let elements: Vec<[u32; 4]> = mesh.tetrahedra.iter().map(|e| e.map(|n| n + first)).collect();
+    let facets = boundary_of_tetrahedra(&elements).iter().map(|f| f.nodes).collect();
+    (mesh.nodes, elements, facets)
+}
+
+/// What stands in the way of the block.
+enum Target {
+    /// Another block of tetrahedra.
+    Solid,
+    /// A free rigid block of facets.
+    Facets,
+}
+
+/// A tilted brittle block of 0.1 m flies at 8 m/s onto a free block, and loose particles wait around.
+fn crash(target: Target, particles: bool) -> Scene {
+    let turn = Rotation::from_scaled_axis(Vec3::new(0.4, 0.3, 0.1));
+    let (points, elements, facets) = block([4, 4, 4], Vec3::repeat(0.1), 0);
+    let mut nodes: Vec<Vec3> = points.iter().map(|x| turn * (x - Vec3::repeat(0.05))).collect();
+    let lowest = nodes.iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
+    nodes.iter_mut().for_each(|x| x.z -= lowest - 1e-4);
+    let law = DamageLaw {
+        criterion: Criterion::rankine(),
+        tensile_strength: 3e6,
+        fracture_energy: 60.0,
+        softening: Softening::Exponential,
+        residual: 0.02,
+        unilateral: false,
+        rate_time: 0.0,
+    };
+    let mut brittle = Body::new("block", Shape::T4, elements, elastic()).smoothed().with_damage(law);
+    brittle.kinematics = Kinematics::Corotational;
+    brittle.damage.as_mut().unwrap().reduce_strength_to_fit = true;
+    let (mut bodies, mut all_facets, mut tools) = (vec![brittle], vec![facets], Vec::new());
+    let count = nodes.len();
+    let size = Vec3::new(0.3, 0.3, 0.08);
+    let shift = Vec3::new(0.15, 0.15, 0.08);
+    match target {
+        Target::Solid => {
+            let (points, elements, facets) = block([6, 6, 2], size, count as u32);
+            nodes.extend(points.iter().map(|x| x - shift));
+            let mut anvil = Body::new("anvil", Shape::T4, elements, elastic());
+            anvil.kinematics = Kinematics::Corotational;
+            bodies.push(anvil);
+            all_facets.push(facets);
+        }
+        Target::Facets => {
+            let (points, _, facets) = block([3, 3, 1], size, 0);
+            let points: Vec<Vec3> = points.iter().map(|x| x - shift).collect();
+            let mesh = FacetMesh::new(&points, &facets).unwrap();
+            let form = Form::Mesh { mesh, points };
+            let mut tool = Tool::new("anvil", form, Frame::at_rest(), ElasticMaterial::RIGID, SURFACE);
+            tool.along = [Drive::Free, Drive::Free, Drive::Free];
+            tool.inertia = Some(Inertia { mass: 17.0, tensor: fractum_math::Mat3::identity() });
+            tools.push(tool);
+        }
+    }
+    let mut solid = Solid::new(nodes, bodies).unwrap();
+    solid.velocity[..count].fill(Vec3::new(1.0, 0.0, -8.0));
+    let mut surface: Vec<u32> = all_facets.iter().flatten().flatten().copied().collect();
+    surface.sort_unstable();
+    surface.dedup();
+    let mut bonded = Bonded::default();
+    let mut materials = Vec::new();
+    if particles {
+        let ring = |k: usize| {
+            let angle = std::f64::consts::TAU * k as f64 / 24.0;
+            Vec3::new(0.13 * angle.cos(), 0.13 * angle.sin(), 0.02 + 0.025 * (k % 3) as f64)
+        };
+        let position: Vec<Vec3> = (0..24).map(ring).collect();
+        let mut own = Particles::at_rest(position.clone(), vec![8e-3; 24], 24.0 * 5e-3).unwrap();
+        for (velocity, x) in own.velocity.iter_mut().zip(&position) {
+            *velocity = -x * 200.0;
+        }
+        let part = BondedPart {
+            name: "beads".into(),
+            particles: own,
+            pairs: Vec::new(),
+            section: fractum_dem::BeamSection { radius: 1.0, young_modulus: 1.0, poisson_ratio: 0.3 },
+            density: 2400.0,
+            fracture: None,
+        };
+        bonded = Bonded::new(vec![part]).unwrap();
+        let elastic = ElasticMaterial { young_modulus: 10e9, poisson_ratio: 0.2 };
+        materials.push(ContactMaterial { elastic, density: 2400.0, surface: SURFACE });
+    }
+    let ground = |(body, facets): (usize, &Vec<[u32; 3]>)| SolidGround::new(&solid, body, SURFACE, facets).unwrap();
+    let solids = all_facets.iter().enumerate().map(ground).collect();
+    let contacts = Contacts::new(&bonded, materials, tools, solids, Vec::new());
+    let debris = Debris::new(&solid, vec![SURFACE; all_facets.len()]);
+    let settings = SceneSettings {
+        time_step: TimeStepSettings { safety: 0.2, element_bound: false, fixed: None, end: 4e-3 },
+        damping: LocalDamping::default(),
+        stiffness_time: 0.0,
+        balance_stop: 1e-2,
+    };
+    let (loads, supports) = (Loads::new(Vec::new(), solid.mass.len()), Supports::new(Vec::new(), &solid.reference));
+    Scene::new(solid, supports.unwrap(), loads, debris, Vec::new(), &surface, settings)
+        .with_bonded(bonded)
+        .with_contacts(contacts, &surface)
+}
+
+/// Linear and angular momentum.
+fn momenta(scene: &Scene) -> (Vec3, Vec3) {
+    let of = |probe: fn(Vec3) -> Probe| Vec3::from_fn(|k, _| probe(Vec3::ith(k, 1.0)).value(scene));
+    (of(Probe::Momentum), of(Probe::AngularMomentum))
+}
+
+/// Runs to the end; momenta at the start and the largest changes of both since.
+fn run(scene: &mut Scene, mut seen: impl FnMut(&Scene)) -> ((Vec3, Vec3), (f64, f64)) {
+    let start = momenta(scene);
+    let mut change: (f64, f64) = (0.0, 0.0);
+    while !scene.is_finished() {
+        scene.step(scene.clock.step.is_multiple_of(10)).unwrap();
+        let now = momenta(scene);
+        change = (change.0.max((now.0 - start.0).norm()), change.1.max((now.1 - start.1).norm()));
+        seen(scene);
+    }
+    (start, change)
+}
+
+#[test]
+fn a_block_that_breaks_on_another_among_loose_particles_keeps_momentum_and_energy() {
+    let mut scene = crash(Target::Solid, true);
+    // Pairs of a discrete element that nothing holds and a particle that met from apart: how deep they came.
+    let mut depth: HashMap<(u32, usize), Option<f64>> = HashMap::new();
+    let (start, change) = run(&mut scene, |scene| {
+        let debris = scene.debris.state();
+        for &node in &debris.nodes {
+            for (bead, x) in scene.bonded.particles.position.iter().enumerate() {
+                let apart = (scene.solid.position(node as usize) - x).norm();
+                let overlap = scene.debris.radius(node) + scene.bonded.particles.radius[bead] - apart;
+                // One that overlapped when it was born does not count.
+                let entry = depth.entry((node, bead)).or_insert((overlap <= 0.0).then_some(0.0));
+                *entry = entry.map(|deepest| deepest.max(overlap));
+            }
+        }
+    });
+    let counts = scene.counts();
+    assert!(counts.removed_elements > 20, "{counts:?}");
+    assert!(change.0 < 1e-12 * start.0.norm(), "{change:?} {start:?}");
+    assert!(change.1 < 1e-12 * start.0.norm() * 0.1, "{change:?} {start:?}");
+    let met: Vec<f64> = depth.values().flatten().copied().filter(|d| *d > 0.0).collect();
+    let deepest = met.iter().copied().fold(0.0, f64::max);
+    assert!(met.len() > 10 && deepest < 2e-3, "{} pairs met, {deepest} m deep", met.len());
+    let ledger = scene.ledger();
+    assert!(ledger.friction > 0.0 && ledger.residual_max_relative < 1e-3, "{ledger:?}");
+    // The anvil has taken up the blow.
+    let anvil: f64 = (125..scene.solid.mass.len()).map(|i| scene.solid.mass[i] * scene.solid.velocity[i].z).sum();
+    assert!(anvil < 0.2 * start.0.z, "{anvil} {}", start.0.z);
+}
+
+#[test]
+fn a_block_that_breaks_on_free_rigid_facets_keeps_momentum_and_energy() {
+    let mut scene = crash(Target::Facets, false);
+    let (start, change) = run(&mut scene, |_| {});
+    assert!(scene.counts().removed_elements > 20, "{:?}", scene.counts());
+    assert!(change.0 < 1e-12 * start.0.norm(), "{change:?} {start:?}");
+    let below = (0..125).map(|i| scene.solid.position(i).z - scene.contacts.tools()[0].displacement().z);
+    assert!(below.clone().fold(0.0, f64::min) > -5e-3, "{}", below.fold(0.0, f64::min));
+    assert!(scene.ledger().residual_max_relative < 1e-3, "{:?}", scene.ledger());
+}
+
+#[test]
+fn meetings_are_the_same_bits_for_any_number_of_threads_and_after_a_saved_state() {
+    let state = |threads: usize, save: bool| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut scene = crash(Target::Solid, true);
+            let mut fresh = scene.clone();
+            for _ in 0..2000 {
+                scene.step(false).unwrap();
+            }
+            if save {
+                fresh.restore(scene.state());
+                scene = fresh;
+            }
+            for _ in 0..300 {
+                scene.step(false).unwrap();
+            }
+            assert!(scene.debris.len() > 20 && scene.counts().contacts > 10, "{:?}", scene.counts());
+            scene.state()
+        })
+    };
+    let first = state(1, false);
+    assert!(first == state(3, true) && first == state(1, true));
+}
