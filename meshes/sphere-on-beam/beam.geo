@@ -1,9 +1,10 @@
 // A beam of square section along x, from -span/2 to span/2, in two halves that meet in its neutral plane z = 0.
 // `left` and `right` are the lines at mid-height of its ends, on which it is simply supported.
-// The centre of the upper face is a node.
+// The centre of the upper face is the middle of a facet: a force there is shared by three nodes.
 If (!Exists(span)) span = 0.1535; EndIf
 If (!Exists(side)) side = 0.01; EndIf
 If (!Exists(size)) size = 0.0025; EndIf
+If (!Exists(middle)) middle = 0.005; EndIf   // side of that facet
 
 Macro Section
   // six points of a section at x
@@ -41,8 +42,14 @@ For k In {0:1}
   Surface Loop(1 + k) = {1 + k, 101 + k, 210 + k, 211 + k, 220 + 2*k, 221 + 2*k};
   Volume(1 + k) = {1 + k};
 EndFor
-Point(300) = {0, 0, side/2, size};
-Point{300} In Surface{212};
+For k In {0:2}
+  Point(300 + k) = {middle/Sqrt(3)*Cos(2*Pi*k/3), middle/Sqrt(3)*Sin(2*Pi*k/3), side/2, size};
+EndFor
+For k In {0:2}
+  Line(310 + k) = {300 + k, 300 + (k + 1)%3};
+  Transfinite Curve{310 + k} = 2;
+  Curve{310 + k} In Surface{212};
+EndFor
 
 Physical Volume("beam") = {1, 2};
 Physical Curve("left") = {2};
