@@ -11,6 +11,7 @@ mod ties;
 
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
+pub use statics::may_rest;
 pub use ties::TieReport;
 
 use std::sync::Arc;
@@ -170,7 +171,7 @@ impl Context<'_> {
                 return None;
             }
         };
-        let statics = self.statics(&solid, &supports, &numbering);
+        let statics = self.statics(&solid, &numbering);
         let ties = self.ties(&solid, &bonded, &taken, &parts, &numbering, &boundary_of_parts);
         let touched = |facet: &[u32; 3]| !ties.covered.contains(&ties::sorted(*facet));
         boundary_of_parts.iter_mut().for_each(|facets| facets.retain(touched));
@@ -198,6 +199,10 @@ impl Context<'_> {
         .with_bonded(bonded)
         .with_ties(&ties.attachments);
         let scene = self.with_contacts(scene, &parts, &boundary_of_parts, tools, &mut warnings)?;
+        let statics = statics.filter(|_| self.is_held(&scene));
+        if !self.diagnostics.is_empty() {
+            return None;
+        }
         Some(Assembly {
             scene,
             statics,
