@@ -53,6 +53,11 @@ UNSTRUCTURED = {
     "kirsch-plane/coarse": ("kirsch-plane/plate.geo", {"h": 0.002}, False),
     "kirsch-plane/medium": ("kirsch-plane/plate.geo", {"h": 0.001}, False),
     "kirsch-plane/fine": ("kirsch-plane/plate.geo", {"h": 0.0005}, False),
+    "bending-plane/plain": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0, "layers": 0}, False),
+    "bending-plane/notched": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0.03, "layers": 0}, False),
+    "bending-plane/notched-10": ("bending/beam.geo", {"h": 0.01, "far": 0.02, "notch": 0.03, "layers": 0}, False),
+    "bending/plain": ("bending/beam.geo", {"h": 0.01, "far": 0.02, "notch": 0, "layers": 6}, True),
+    "bending/notched": ("bending/beam.geo", {"h": 0.01, "far": 0.02, "notch": 0.03, "layers": 6}, True),
 }
 
 LARGE = {

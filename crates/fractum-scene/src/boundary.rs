@@ -200,7 +200,7 @@ impl Supports {
 }
 
 /// Integral of a velocity by Gauss' rule of two points on 16 parts [m].
-fn integral(velocity: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+pub(crate) fn integral(velocity: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     const PARTS: usize = 16;
     let width = (to - from) / PARTS as f64;
     let offset = 0.5 / 3f64.sqrt();

@@ -16,30 +16,30 @@ use crate::coupling::Debris;
 /// that turns into a particle while it lies nearer than its radius keeps touching as a point until it has left.
 #[derive(Clone, Debug)]
 pub struct RigidGround {
-    shape: Shape,
+    pub(crate) shape: Shape,
     /// Where it is if it belongs to no rigid body of the scene.
-    frame: Frame,
+    pub(crate) frame: Frame,
     /// The rigid body that it is the shape of, which moves it.
-    tool: Option<usize>,
+    pub(crate) tool: Option<usize>,
     /// Friction and damping of its contacts, together with those of the other surface.
     surface: Surface,
-    candidates: Vec<Candidate>,
+    pub(crate) candidates: Vec<Candidate>,
 }
 
 /// A node that may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Candidate {
-    node: u32,
-    law: Linear,
-    radius: f64,
-    memory: ContactMemory,
-    force: Vec3,
-    couple: Vec3,
+    pub(crate) node: u32,
+    pub(crate) law: Linear,
+    pub(crate) radius: f64,
+    pub(crate) memory: ContactMemory,
+    pub(crate) force: Vec3,
+    pub(crate) couple: Vec3,
     /// From the node to the contact [m].
-    arm: Vec3,
-    stored: f64,
-    friction: f64,
-    damping: f64,
+    pub(crate) arm: Vec3,
+    pub(crate) stored: f64,
+    pub(crate) friction: f64,
+    pub(crate) damping: f64,
 }
 
 impl RigidGround {

@@ -2,12 +2,12 @@
 
 use std::time::Instant;
 
-use fractum_io::assemble::Assembly;
+use fractum_io::assemble::{Assembly, may_rest};
 use fractum_io::case::TimeFunction;
-use fractum_io::case::model::{BodyKind, Case, LoadKind, Motion, SolverKind};
+use fractum_io::case::model::{Body, BodyKind, Case, LoadKind, Motion, SolverKind};
 use fractum_io::number::quantity;
 use fractum_scene::Scene;
-use fractum_scene::statics::{Stiffness, check_supports};
+use fractum_scene::statics::Stiffness;
 
 /// First periods over which loading by motion is quasi-static: 20 keep the kinetic energy far below the elastic one. Where
 /// something breaks as many follow the peak.
@@ -161,7 +161,7 @@ fn inertia_counts(case: &Case) -> Option<&'static str> {
         .iter()
         .flat_map(|support| support.motion.iter().flatten())
         .any(|motion| matches!(&motion.value, Motion::Velocity(of) | Motion::Displacement(of) if pulse(of)));
-    let moves = |body: &fractum_io::case::model::Body| matches!(&body.kind, BodyKind::Solid(solid) if solid.initial_velocity.iter().any(Option::is_some));
+    let moves = |body: &Body| matches!(&body.kind, BodyKind::Solid(solid) if solid.initial_velocity.iter().any(Option::is_some));
     if loads || supports {
         Some("a load is a pulse")
     } else if case.bodies.iter().any(moves) {
@@ -174,11 +174,11 @@ fn inertia_counts(case: &Case) -> Option<&'static str> {
 /// Why equilibrium is out of the question.
 fn motion_only(case: &Case, scene: &Scene) -> Option<&'static str> {
     let solid = &scene.solid;
-    if solid.body_count() < case.bodies.len() {
-        Some("solids beside other bodies are for motion only")
+    if !case.bodies.iter().all(may_rest) {
+        Some("solids beside particles, or beside rigid bodies that contact moves, are for motion only")
     } else if solid.not_secant().is_some() {
         Some("equilibrium is for small strains, open cracks and damage without delay")
-    } else if check_supports(solid, scene.supports().held()).is_err() {
+    } else if scene.check_supports().is_err() {
         Some("a body is free to move")
     } else {
         None

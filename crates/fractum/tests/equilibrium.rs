@@ -190,3 +190,68 @@ fn the_program_chooses_the_solver_and_says_why() {
     let checked = place.fractum(&["check", "case.toml"]);
     assert!(checked.code == Some(1) && checked.stderr.contains("solver.step has no effect"), "{}", checked.stderr);
 }
+
+/// The bar on a plane, pushed down, sideways and up again by its other end.
+fn pressed_bar(motion: &str, friction: &str) -> String {
+    let body = "[[bodies]]\nname = \"floor\"\nkind = \"rigid\"\nshape = \"plane\"\nnormal = \"x\"\n";
+    let (head, rest) = BAR.split_once("[[supports]]").unwrap();
+    let (_, solver) = rest.split_once("[solver]").unwrap();
+    let (solver, _) = solver.split_once("[[probes]]").unwrap();
+    let (before, after) = head.split_once("[materials.concrete.damage]").unwrap();
+    let (_, after) = after.split_once("[[bodies]]").unwrap();
+    let solver = solver.replace("stop_when = { probe = \"load\", below = 0.2 }", "step = \"50 ms\"");
+    let contact = format!("[materials.concrete.contact]\nfriction = {friction}\n");
+    let after = after.replace("strength_factor = \"if(abs(x - 20 cm) < 3 cm, 0.5, 1.0)\"", "");
+    let before = before.replace("poisson_ratio = 0.2", "poisson_ratio = 0");
+    format!(
+        r#"{before}{contact}[[bodies]]{after}{body}contact = {{ friction = {friction} }}
+[[supports]]
+group = "x+"
+{motion}
+[solver]{solver}
+[[probes]]
+name = "load"
+reaction = {{ group = "x+", along = "-x" }}
+[[probes]]
+name = "carried"
+reaction = {{ group = "floor", along = "-x" }}
+[[probes]]
+name = "side"
+reaction = {{ group = "floor", along = "y" }}
+"#
+    )
+}
+
+#[test]
+fn a_bar_presses_on_a_plane_and_leaves_it_without_sticking() {
+    let motion = r#"fix = "yz"
+displacement = { x = { ramp = [["0 s", "0 m"], ["0.4 s", "-20 um"], ["1 s", "10 um"]] } }"#;
+    let place = Workplace::new(&pressed_bar(motion, "0"));
+    let summary = run(&place, "out", "1");
+    assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-6, "{}", summary["energy"]);
+    let rows = history(&place, "out", &["time", "load", "carried", "contact"]);
+    let rigid = 30e9 * 0.12 * 0.12 * 20e-6 / 0.4;
+    let deepest = rows.iter().find(|row| (row[0] - 0.4).abs() < 1e-9).unwrap();
+    // The springs of the contact give way as half a row of elements would.
+    assert!(deepest[1] < rigid && deepest[1] > 0.9 * rigid, "{deepest:?} {rigid}");
+    for row in &rows {
+        assert!((row[1] + row[2]).abs() < 1e-4 * rigid && row[1] > -1e-4 * rigid, "{row:?}");
+    }
+    let last = rows.last().unwrap();
+    assert!(last[1].abs() < 1e-9 * rigid && last[3] == 0.0, "{last:?}");
+}
+
+#[test]
+fn a_pressed_bar_slides_at_the_friction_of_coulomb() {
+    let motion = r#"fix = "z"
+displacement = { x = "-20 um*min(t/0.3 s, 1)", y = "0.5 mm*max(t - 0.3 s, 0 s)/0.7 s" }"#;
+    let place = Workplace::new(&pressed_bar(motion, "0.05"));
+    let summary = run(&place, "out", "1");
+    // Sliding steps are booked with the mean of the forces at their ends.
+    assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-2, "{}", summary["energy"]);
+    assert!(summary["energy"]["friction"].as_f64().unwrap() > 0.0);
+    let rows = history(&place, "out", &["carried", "side"]);
+    assert!(rows.iter().all(|row| row[1].abs() <= 0.05 * row[0].abs() * (1.0 + 1e-6)), "{rows:?}");
+    let last = rows.last().unwrap();
+    assert!((last[1] / last[0]).abs() > 0.05 * (1.0 - 1e-3), "{last:?}");
+}

@@ -11,6 +11,7 @@ mod ties;
 
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
+pub use statics::may_rest;
 pub use ties::TieReport;
 
 use std::sync::Arc;
@@ -172,7 +173,7 @@ impl Context<'_> {
                 return None;
             }
         };
-        let statics = self.statics(&solid, &supports, &numbering);
+        let statics = self.statics(&solid, &numbering);
         let ties = self.ties(&solid, &bonded, &taken, &parts, &numbering, &boundary_of_parts);
         // Facets under tied particles matter to what breaks off only.
         let breaks = bonded.bodies().iter().any(BondedBody::can_break);
@@ -203,6 +204,10 @@ impl Context<'_> {
         .with_ties(&ties.attachments);
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
         let scene = self.with_contacts(scene, &parts, &boundary_of_parts, &surface, tools, &tied, &mut warnings)?;
+        let statics = statics.filter(|_| self.is_held(&scene));
+        if !self.diagnostics.is_empty() {
+            return None;
+        }
         Some(Assembly {
             scene,
             statics,

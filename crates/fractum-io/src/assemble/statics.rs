@@ -2,8 +2,8 @@
 
 use fractum_dem::Batch;
 use fractum_fem::{LocalDamping, NotSecant, Solid};
-use fractum_scene::statics::{self, StaticSettings, check_supports};
-use fractum_scene::{Bonded, BondedStaticSettings, Supports};
+use fractum_scene::statics::{self, StaticSettings};
+use fractum_scene::{Bonded, BondedStaticSettings, Scene};
 
 use super::Context;
 use super::bodies::Numbering;
@@ -17,20 +17,13 @@ const STEPS: f64 = 50.0;
 
 impl Context<'_> {
     /// Settings of the static solver; none for other solvers, or with errors noted.
-    pub(super) fn statics(
-        &mut self,
-        solid: &Solid,
-        supports: &Supports,
-        numbering: &Numbering,
-    ) -> Option<StaticSettings> {
+    pub(super) fn statics(&mut self, solid: &Solid, numbering: &Numbering) -> Option<StaticSettings> {
         let solver = &self.case.solver;
         solver.statics.as_ref()?;
         let place = self.place_of_solver();
-        let solids_only = self.case.bodies.iter().all(|body| matches!(body.kind, BodyKind::Solid(_)));
         if solver.kind == SolverKind::Auto {
-            // What is not for equilibrium is for motion.
-            let possible =
-                solids_only && solid.not_secant().is_none() && check_supports(solid, supports.held()).is_ok();
+            // What is not for equilibrium is for motion; whether the supports hold is seen on the whole scene.
+            let possible = solid.not_secant().is_none() && self.case.bodies.iter().all(may_rest);
             return possible.then(|| self.static_settings(solid, numbering)).flatten();
         }
         if let Some((body, why)) = solid.not_secant() {
@@ -45,16 +38,25 @@ impl Context<'_> {
         if matches!(self.case.bodies.as_slice(), [Body { kind: BodyKind::Bonded(_), .. }]) {
             return None;
         }
-        if let Some(body) = self.case.bodies.iter().find(|body| !matches!(body.kind, BodyKind::Solid(_))) {
+        if let Some(body) = self.case.bodies.iter().find(|body| !may_rest(body)) {
             let found = format!(" = \"static\" with body \"{}\"", body.name.value);
-            self.error(&place, found, "solid bodies only, or one bonded body; or kind = \"explicit\"");
+            let expected =
+                "solid bodies with rigid ones that are driven by velocity or stand still, or one bonded body";
+            self.error(&place, found, format!("{expected}; or kind = \"explicit\""));
             return None;
         }
-        if let Err(error) = check_supports(solid, supports.held()) {
-            let remedy = if supports.count() == 0 { "at least one [[supports]]" } else { "" };
+        self.static_settings(solid, numbering)
+    }
+
+    /// Whether what the static solver gets is held; an error where the case asks for that solver.
+    pub(super) fn is_held(&mut self, scene: &Scene) -> bool {
+        let Err(error) = scene.check_supports() else { return true };
+        if self.case.solver.kind == SolverKind::Static {
+            let place = self.place_of_solver();
+            let remedy = if scene.supports().count() == 0 { "at least one [[supports]]" } else { "" };
             self.error(&place, format!(" = \"static\": {error}"), remedy);
         }
-        self.static_settings(solid, numbering)
+        false
     }
 
     fn static_settings(&mut self, solid: &Solid, numbering: &Numbering) -> Option<StaticSettings> {
@@ -135,5 +137,14 @@ impl Context<'_> {
 
     fn place_of_solver(&self) -> Place {
         Place { key: "solver.kind".to_owned(), ..self.whole_case() }
+    }
+}
+
+/// Whether a body has a place in equilibrium: solids, and rigid bodies that contact does not move.
+pub fn may_rest(body: &Body) -> bool {
+    match &body.kind {
+        BodyKind::Solid(_) => true,
+        BodyKind::Rigid(rigid) => rigid.mass.is_none() && rigid.spin.iter().all(Option::is_none),
+        BodyKind::Bonded(_) | BodyKind::Particles(_) => false,
     }
 }

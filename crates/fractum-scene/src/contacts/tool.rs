@@ -165,7 +165,7 @@ impl Tool {
         self.inertia.map_or_else(Vec3::zeros, |inertia| self.frame.velocity * inertia.mass)
     }
 
-    pub(super) fn clear_forces(&mut self) {
+    pub(crate) fn clear_forces(&mut self) {
         (self.force, self.moment) = (Vec3::zeros(), Vec3::zeros());
     }
 

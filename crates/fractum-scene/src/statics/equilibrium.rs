@@ -72,6 +72,8 @@ impl Scene {
         let inner = self.solid.force.clone();
         self.loads.add_forces(&mut self.solid, time, 0.0);
         let load: Vec<Vec3> = self.solid.force.iter().zip(&inner).map(|(f, i)| f - i).collect();
+        self.accept_contacts(&before, self.clock.time, time);
+        self.add_contact_forces_at_rest();
         let reaction = self.supports.take_reactions(&self.solid.force);
         let mut external = 0.0;
         for i in 0..displacement.len() {
@@ -118,14 +120,24 @@ impl Scene {
         }
     }
 
+    fn add_contact_forces_at_rest(&mut self) {
+        for candidate in self.grounds.iter().flat_map(|ground| &ground.candidates) {
+            self.solid.force[candidate.node as usize] += candidate.force;
+        }
+    }
+
     /// The forces of a state at rest that is no exact equilibrium.
     pub(super) fn outer_at_rest(&mut self) -> Outer {
         self.solid.update_internal_forces(0.0, true);
         let inner = self.solid.force.clone();
         let time = self.clock.time;
         self.loads.add_forces(&mut self.solid, time, 0.0);
+        let load = self.solid.force.iter().zip(&inner).map(|(f, i)| f - i).collect();
+        let (displacement, books) = (self.solid.displacement.clone(), self.books);
+        self.accept_contacts(&displacement, time, time);
+        self.books = books;
+        self.add_contact_forces_at_rest();
         let force = &self.solid.force;
-        let load = force.iter().zip(&inner).map(|(f, i)| f - i).collect();
         let reaction = self.supports.take_reactions(force);
         let unbalanced = force.iter().zip(&reaction).map(|(f, r)| f + r).collect();
         Outer { reaction, load, lost: Vec::new(), unbalanced }

@@ -1,5 +1,6 @@
 //! From equilibrium to motion where a step has no equilibrium, and back once the motion has died.
 
+use fractum_contact::Frame;
 use fractum_fem::LocalDamping;
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
@@ -99,6 +100,7 @@ impl Scene {
     /// As [`Scene::step`].
     pub fn look(&mut self, interlude: &mut Interlude) -> Result<bool, StepError> {
         let (clock, displacement) = (self.clock, self.solid.displacement.clone());
+        let frames: Vec<Frame> = self.contacts.tools().iter().map(|tool| tool.frame).collect();
         let report = self.step(true)?;
         let kinetic = self.ledger.kinetic;
         interlude.next_look = self.clock.time + interlude.period / LOOKS;
@@ -112,6 +114,9 @@ impl Scene {
         self.solid.displacement = displacement;
         self.solid.velocity.fill(Vec3::zeros());
         self.debris.stop();
+        for (tool, frame) in self.contacts.tools_mut().iter_mut().zip(frames) {
+            tool.frame = Frame { velocity: Vec3::zeros(), ..frame };
+        }
         self.books.external = self.ledger.external;
         self.books.damping = self.ledger.damping - self.solid.viscous_dissipation() + kinetic;
         self.ledger.damping += kinetic;

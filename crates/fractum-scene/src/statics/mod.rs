@@ -5,6 +5,7 @@
 //! whatever the load does meanwhile: t may go back. With the damage of the last iterate K is linear, so that
 //! u = a + (t - tⁿ) b from two right-hand sides, and t follows from the most strained edge alone.
 
+mod contact;
 mod equilibrium;
 mod hand_over;
 mod mixing;
@@ -28,6 +29,7 @@ pub use system::LinearWork;
 use crate::error::StepError;
 use crate::scene::Scene;
 use crate::step::StepReport;
+use contact::Spring;
 use equilibrium::{Boundary, Outer};
 use mixing::Mixer;
 use system::System;
@@ -122,10 +124,10 @@ impl Dimension {
         })
     }
 
-    fn prepare(&mut self, scene: &Scene, damage: &CellDamage) -> Result<(), SparseError> {
+    fn prepare(&mut self, scene: &Scene, damage: &CellDamage, springs: &[Spring]) -> Result<(), SparseError> {
         match self {
-            Dimension::Plane(system) => system.prepare(&scene.solid, damage),
-            Dimension::Space(system) => system.prepare(&scene.solid, damage),
+            Dimension::Plane(system) => system.prepare(&scene.solid, damage, springs),
+            Dimension::Space(system) => system.prepare(&scene.solid, damage, springs),
         }
     }
 
@@ -151,6 +153,9 @@ pub struct StaticSolver {
     start: Vec<Vec3>,
     slope: Vec<Vec3>,
     right: Vec<Vec3>,
+    /// What touches in the last iterate, which is `place`.
+    springs: Vec<Spring>,
+    place: Vec<Vec3>,
     start_stress: Vec<Sym3>,
     slope_stress: Vec<Sym3>,
     q: Vec<f64>,
@@ -204,6 +209,8 @@ impl StaticSolver {
             start: zero.clone(),
             slope: zero.clone(),
             right: zero,
+            springs: Vec::new(),
+            place: Vec::new(),
             start_stress: Vec::new(),
             slope_stress: Vec::new(),
             q: Vec::new(),
@@ -369,16 +376,19 @@ impl StaticSolver {
             self.q.extend(self.loading.iter().zip(points).map(|(ratio, point)| ratio * point.kappa));
             scene.solid.trial_damage(&self.q, &mut self.trial);
         }
+        self.place.clone_from(&scene.solid.displacement);
+        let mut found_at = present;
         for iteration in 1..=if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] } {
             self.iterations += 1;
-            if !(self.elastic && self.prepared) {
-                self.system.prepare(scene, &self.trial).map_err(|e| scene.come_apart(e))?;
+            self.springs = scene.springs(&self.place, [present, found_at], longest, iteration == 1);
+            if !(self.elastic && self.prepared && scene.grounds.is_empty()) {
+                self.system.prepare(scene, &self.trial, &self.springs).map_err(|e| scene.come_apart(e))?;
                 self.prepared = true;
             }
             let ahead = if tau.abs() > 1e-9 * self.settings.end { tau } else { longest };
             let here = scene.boundary_at(present, present);
             let there = scene.boundary_at(present, present + ahead);
-            self.respond(scene, &here, &there, ahead)?;
+            self.respond(scene, &here, &there, ahead, present - found_at)?;
             if points.is_empty() {
                 tau = longest;
             } else {
@@ -419,7 +429,14 @@ impl StaticSolver {
                 }
             }
             scene.solid.trial_damage(&self.q, &mut self.trial);
-            let exact = scene.boundary_at(present, present + tau);
+            let mut exact = scene.boundary_at(present, present + tau);
+            if !scene.grounds.is_empty() {
+                found_at = present + tau;
+                self.place.clone_from(&self.start);
+                for spring in scene.springs(&self.place, [present, found_at], longest, false) {
+                    exact.force[spring.node as usize] += spring.force;
+                }
+            }
             let (missing, forces) = scene.unbalance(&self.trial, &self.start, &exact.force, &mut self.right);
             if missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
                 self.largest_forces = self.largest_forces.max(forces);
@@ -445,12 +462,25 @@ impl StaticSolver {
     }
 
     /// Displacements at the present load parameter and their slope, for the damage of the trial.
-    fn respond(&mut self, scene: &Scene, here: &Boundary, there: &Boundary, ahead: f64) -> Result<(), StepError> {
+    ///
+    /// - `since`: from the iterate at which the springs were found to the present load parameter [s]
+    fn respond(
+        &mut self,
+        scene: &Scene,
+        here: &Boundary,
+        there: &Boundary,
+        ahead: f64,
+        since: f64,
+    ) -> Result<(), StepError> {
         let solid = &scene.solid;
         let mut field = here.displacement.clone();
         solid.secant_force(&self.trial, &field, &mut self.right);
         for (right, force) in self.right.iter_mut().zip(&here.force) {
             *right = force - *right;
+        }
+        for Spring { node, force, stiffness, rate, .. } in &self.springs {
+            let i = *node as usize;
+            self.right[i] += force + rate * since - stiffness * (field[i] - self.place[i]);
         }
         self.system.solve(&self.right, &mut self.start).map_err(|e| scene.come_apart(e))?;
         for (u, p) in self.start.iter_mut().zip(&field) {
@@ -465,6 +495,10 @@ impl StaticSolver {
         solid.secant_force(&self.trial, &field, &mut self.right);
         for (i, right) in self.right.iter_mut().enumerate() {
             *right = (there.force[i] - here.force[i]) / ahead - *right;
+        }
+        for Spring { node, stiffness, rate, .. } in &self.springs {
+            let i = *node as usize;
+            self.right[i] += rate - stiffness * field[i];
         }
         self.system.solve(&self.right, &mut self.slope).map_err(|e| scene.come_apart(e))?;
         for (u, p) in self.slope.iter_mut().zip(&field) {

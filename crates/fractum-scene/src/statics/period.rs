@@ -43,7 +43,8 @@ impl Stiffness {
     /// # Errors
     /// [`SparseError`] if the scene can move without resistance.
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), SparseError> {
-        self.system.prepare(scene, &scene.solid.cell_damage())
+        let springs = scene.springs(&scene.solid.displacement, [scene.clock.time; 2], 1.0, true);
+        self.system.prepare(scene, &scene.solid.cell_damage(), &springs)
     }
 
     /// Period of the slowest vibration that the supports and loads of a time can excite [s], by inverse iteration with the

@@ -10,10 +10,11 @@ use crate::fragment::parts;
 /// Fails if some connected piece of the solid can move as a rigid body.
 ///
 /// - `held`: bit a of a node is set where its axis a is prescribed; empty without supports
+/// - `touched`: nodes that cannot move against a direction
 ///
 /// # Errors
 /// [`SceneError::FreeBody`] with the body and the motion.
-pub fn check_supports(solid: &Solid, held: &[u8]) -> Result<(), SceneError> {
+pub fn check_supports(solid: &Solid, held: &[u8], touched: &[(u32, Vec3)]) -> Result<(), SceneError> {
     let plane = solid.body(0).shape == Shape::T3;
     for (body, nodes) in pieces(solid) {
         let holds = |&n: &u32| held.get(n as usize).copied().unwrap_or(0);
@@ -21,15 +22,18 @@ pub fn check_supports(solid: &Solid, held: &[u8]) -> Result<(), SceneError> {
         let spread = |&n: &u32| (solid.reference[n as usize] - centre).norm();
         let size = nodes.iter().map(spread).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         let mut gram = Matrix6::zeros();
+        let mut hold = |node: u32, along: Vec3| {
+            let x = (solid.reference[node as usize] - centre) / size;
+            let turn = |about: Vec3| about.cross(&x).dot(&along);
+            let row = Vector6::new(along.x, along.y, along.z, turn(Vec3::x()), turn(Vec3::y()), turn(Vec3::z()));
+            gram += row * row.transpose();
+        };
         for node in nodes.iter().filter(|n| holds(n) != 0) {
-            let x = (solid.reference[*node as usize] - centre) / size;
-            for axis in (0..3).filter(|axis| holds(node) & (1 << axis) != 0) {
-                let turn = |about: Vec3| about.cross(&x)[axis];
-                let unit = Vec3::from_fn(|a, _| if a == axis { 1.0 } else { 0.0 });
-                let row = Vector6::new(unit.x, unit.y, unit.z, turn(Vec3::x()), turn(Vec3::y()), turn(Vec3::z()));
-                gram += row * row.transpose();
-            }
+            (0..3).filter(|axis| holds(node) & (1 << axis) != 0).for_each(|axis| hold(*node, Vec3::ith(axis, 1.0)));
         }
+        let mut members = nodes.clone();
+        members.sort_unstable();
+        touched.iter().filter(|(node, _)| members.binary_search(node).is_ok()).for_each(|&(n, along)| hold(n, along));
         if plane {
             // What leaves the plane is no motion of a plane body.
             for mode in [2, 3, 4] {

@@ -7,6 +7,7 @@ use fractum_math::Vec3;
 use fractum_sparse::{BlockMatrix, Factor, Motions, Pattern, Preconditioner, SparseError, conjugate_gradients};
 
 use super::LinearSolver;
+use super::contact::Spring;
 
 /// Unknowns up to which one factorisation is cheaper than an iteration, in space and in the plane.
 const DIRECT: [usize; 2] = [25_000, 300_000];
@@ -93,8 +94,13 @@ impl<const B: usize> System<B> {
         })
     }
 
-    /// Takes over the stiffness of a solid at this damage.
-    pub(super) fn prepare(&mut self, solid: &Solid, damage: &CellDamage) -> Result<(), SparseError> {
+    /// Takes over the stiffness of a solid at this damage, and of what it touches.
+    pub(super) fn prepare(
+        &mut self,
+        solid: &Solid,
+        damage: &CellDamage,
+        springs: &[Spring],
+    ) -> Result<(), SparseError> {
         self.matrix.clear();
         let (matrix, pairs) = (&mut self.matrix, &self.pairs);
         solid.for_each_cell(damage, |cell| {
@@ -112,6 +118,10 @@ impl<const B: usize> System<B> {
                 }
             }
         });
+        for spring in springs {
+            let block = std::array::from_fn(|a| std::array::from_fn(|b| spring.stiffness[(a, b)]));
+            matrix.add(spring.node as usize, spring.node as usize, block);
+        }
         let spare = matrix.largest_diagonal();
         matrix.hold(&self.held, spare);
         self.work.factorisations += 1;

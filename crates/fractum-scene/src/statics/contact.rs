@@ -1,0 +1,180 @@
+//! Contact with rigid shapes at equilibrium: penalty springs, on where a node overlaps and off where it does not.
+//!
+//! The springs are those of motion: the tangential one remembers its stretch at the last equilibrium and slips where Coulomb's
+//! law lets it. The iteration takes them linear about its last iterate, what slips by its secant.
+
+use fractum_contact::{Frame, Outside};
+use fractum_math::{Mat3, Vec3};
+
+use crate::boundary::integral;
+use crate::contacts::{Drive, Tool};
+use crate::error::SceneError;
+use crate::rigid::{Candidate, RigidGround};
+use crate::scene::Scene;
+use crate::statics::check_supports;
+
+/// Gap over the size of the solid up to which a node counts as touching: what rounding leaves of a body that lies on a shape.
+const TOUCHING: f64 = 1e-9;
+
+/// A node that a shape pushes: its force, linear about the state it was found at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spring {
+    /// Node.
+    pub(super) node: u32,
+    /// Unit normal out of the shape.
+    normal: Vec3,
+    /// Force on the node [N].
+    pub(super) force: Vec3,
+    /// How it falls with the displacement of the node [N/m].
+    pub(super) stiffness: Mat3,
+    /// How it changes as the shape moves on [N/s].
+    pub(super) rate: Vec3,
+}
+
+/// A tangential spring at one instant.
+struct Tangential {
+    slip: Vec3,
+    /// Way against friction since the last equilibrium [m].
+    slid: Vec3,
+}
+
+/// Normal out of the shape and overlap of a node at a place.
+fn sense(ground: &RigidGround, frame: &Frame, c: &Candidate, place: &Vec3) -> (Vec3, f64) {
+    let Outside { normal, distance, .. } = ground.shape.outside(&frame.to_body(place));
+    (-frame.to_space(&normal), c.radius - distance)
+}
+
+/// The tangential spring of a contact with the normal force `pressure` after a relative motion.
+fn tangential(c: &Candidate, normal: &Vec3, pressure: f64, moved: Vec3) -> Tangential {
+    let across = |v: Vec3| v - normal * v.dot(normal);
+    let trial = across(c.memory.slip + moved);
+    let (reach, limit) = (c.law.tangential_stiffness * trial.norm(), c.law.friction * pressure);
+    let slip = if reach > limit { trial * (limit / reach) } else { trial };
+    Tangential { slip, slid: trial - slip }
+}
+
+impl Tool {
+    /// Way that its drive takes it between two times [m].
+    fn way(&self, from: f64, to: f64) -> Vec3 {
+        Vec3::from_fn(|axis, _| match &self.along[axis] {
+            Drive::Velocity(velocity) => integral(|t| velocity(t, &self.frame.origin), from, to),
+            _ => 0.0,
+        })
+    }
+}
+
+impl Scene {
+    /// Fails if some connected piece of the solids can move as a rigid body against neither supports nor the shapes it lies on.
+    ///
+    /// # Errors
+    /// [`SceneError::FreeBody`] with the body and the motion.
+    pub fn check_supports(&self) -> Result<(), SceneError> {
+        let springs = self.springs(&self.solid.displacement, [0.0, 0.0], 1.0, true);
+        let touched: Vec<(u32, Vec3)> = springs.iter().map(|spring| (spring.node, spring.normal)).collect();
+        check_supports(&self.solid, self.supports.held(), &touched)
+    }
+
+    /// Springs of the nodes that touch shapes under a displacement field.
+    ///
+    /// - `times`: load parameters of the last equilibrium and of the field
+    /// - `ahead`: duration from which the pace of the shapes is taken [s]
+    /// - `near`: also those that just do not touch, with no force
+    pub(super) fn springs(&self, field: &[Vec3], times: [f64; 2], ahead: f64, near: bool) -> Vec<Spring> {
+        let mut springs = Vec::new();
+        if self.grounds.is_empty() {
+            return springs;
+        }
+        let size = self.solid.reference.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let gap = if near { TOUCHING * size } else { 0.0 };
+        for ground in &self.grounds {
+            let (mut frame, way, pace) = self.motion_of(ground, times, ahead);
+            frame.origin += way;
+            for c in &ground.candidates {
+                let i = c.node as usize;
+                let (normal, overlap) = sense(ground, &frame, c, &(self.solid.reference[i] + field[i]));
+                if overlap <= -gap {
+                    continue;
+                }
+                let pressure = c.law.normal_stiffness * overlap.max(0.0);
+                let moved = field[i] - self.solid.displacement[i] - way;
+                let Tangential { slip, slid } = tangential(c, &normal, pressure, moved);
+                // What slips is held by the secant of its friction: iterates that go from sticking to slipping and back settle.
+                let (held, went) = (slip.norm(), slid.norm());
+                let holds = if held > 0.0 {
+                    c.law.tangential_stiffness * held / (held + went)
+                } else if went == 0.0 && pressure > 0.0 && c.law.friction > 0.0 {
+                    c.law.tangential_stiffness
+                } else {
+                    0.0
+                };
+                let along = normal * normal.transpose();
+                let stiffness = along * c.law.normal_stiffness + (Mat3::identity() - along) * holds;
+                let force = normal * pressure - slip * c.law.tangential_stiffness;
+                springs.push(Spring { node: c.node, normal, force, stiffness, rate: stiffness * pace });
+            }
+        }
+        springs
+    }
+
+    /// Where a shape was at the last equilibrium, the way it has gone since, and its pace.
+    fn motion_of(&self, ground: &RigidGround, [present, time]: [f64; 2], ahead: f64) -> (Frame, Vec3, Vec3) {
+        match ground.tool.and_then(|index| self.contacts.tools().get(index)) {
+            Some(tool) => (tool.frame, tool.way(present, time), tool.way(time, time + ahead) / ahead),
+            None => (ground.frame, Vec3::zeros(), Vec3::zeros()),
+        }
+    }
+
+    /// Takes over the contacts of a state of equilibrium: memories, forces on the rigid bodies, their places, and the ledger.
+    ///
+    /// - `before`: displacements at the last equilibrium; those of the scene are the new ones
+    pub(super) fn accept_contacts(&mut self, before: &[Vec3], present: f64, time: f64) {
+        if self.grounds.is_empty() {
+            return;
+        }
+        self.contacts.tools_mut().iter_mut().for_each(Tool::clear_forces);
+        let (mut friction, mut external) = (0.0, 0.0);
+        for index in 0..self.grounds.len() {
+            let (old, way, _) = self.motion_of(&self.grounds[index], [present, time], 1.0);
+            let new = Frame { origin: old.origin + way, ..old };
+            let Scene { grounds, contacts, solid, debris, .. } = self;
+            let mut candidates = std::mem::take(&mut grounds[index].candidates);
+            let ground = &grounds[index];
+            for c in &mut candidates {
+                let i = c.node as usize;
+                let place = solid.position(i);
+                let (_, was) = sense(ground, &old, c, &(solid.reference[i] + before[i]));
+                let (normal, overlap) = sense(ground, &new, c, &place);
+                let pressure = c.law.normal_stiffness * overlap.max(0.0);
+                let full = debris.radius_if_particle(c.node);
+                if c.radius == 0.0 && full > 0.0 && -overlap > full {
+                    c.radius = full;
+                }
+                let Tangential { slip, slid } =
+                    tangential(c, &normal, pressure, solid.displacement[i] - before[i] - way);
+                friction += 0.5 * c.law.tangential_stiffness * (c.memory.slip + slip).dot(&slid);
+                let half = 0.5 * c.law.normal_stiffness;
+                // The way to a contact is without force, and so is that from it.
+                let idle = half
+                    * ((overlap.max(0.0) + was.max(0.0)) * (overlap - was)
+                        - (overlap.max(0.0).powi(2) - was.max(0.0).powi(2)));
+                let force = normal * pressure - slip * c.law.tangential_stiffness;
+                external += 0.5 * (c.force + force).dot(&way) - idle;
+                c.memory.slip = slip;
+                (c.force, c.couple, c.arm) = (force, Vec3::zeros(), normal * (overlap - c.radius));
+                c.stored = half * overlap.max(0.0).powi(2) + 0.5 * c.law.tangential_stiffness * slip.norm_squared();
+                (c.friction, c.damping) = (0.0, 0.0);
+                if let Some(tool) = ground.tool.and_then(|tool| contacts.tools_mut().get_mut(tool)) {
+                    tool.push(&-force, &Vec3::zeros(), &(place + c.arm));
+                }
+            }
+            grounds[index].candidates = candidates;
+        }
+        for tool in self.contacts.tools_mut() {
+            tool.frame.origin += tool.way(present, time);
+            tool.frame.velocity = Vec3::zeros();
+        }
+        self.books.friction += friction;
+        self.books.external += external;
+        self.ledger.contact = self.grounds.iter().flat_map(|ground| &ground.candidates).map(|c| c.stored).sum();
+    }
+}
