@@ -68,7 +68,7 @@ pub(crate) struct BreakArguments {
     #[arg(long)]
     limit: Option<f64>,
     /// Load over its peak below which a sample whose cracks have come to rest has lost its strength; 0.02 in
-    /// tension, 0.9 elsewhere.
+    /// tension, 0.97 in bending, 0.9 elsewhere.
     #[arg(long)]
     stop: Option<f64>,
     /// Unbalanced forces over the applied ones at which an equilibrium is accepted.

@@ -158,7 +158,7 @@ fn silica(count: usize, seeds: u64, criterion: Criterion) -> Result<(), Calibrat
             sample.set_micro(Micro { radius_ratio: 0.68, young_modulus: 295.5e9 })?;
             let mut options = lab::FailureOptions::new(test, criterion);
             // Strength is asked, not the whole fall of the load.
-            options.stop = 0.8;
+            options.stop = options.stop.max(0.8);
             let broken = lab::break_sample(&sample, test, &options)?;
             first.push(broken.first_break.unwrap_or(f64::NAN));
             peak.push(broken.strength);
