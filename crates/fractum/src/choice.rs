@@ -12,7 +12,7 @@ use fractum_scene::statics::Stiffness;
 /// First periods over which loading by motion is quasi-static: 20 keep the kinetic energy far below the elastic one. Where
 /// something breaks as many follow the peak.
 const PERIODS: f64 = 20.0;
-/// Iterations to equilibrium along the path of one crack through a specimen: 350 to 1,100 in the gallery.
+/// Iterations to equilibrium along the path of one crack through a specimen: 390 to 980 in the gallery.
 const ITERATIONS: f64 = 600.0;
 /// Time that is spent twice for a better estimate [s].
 const SOON: f64 = 0.5;
@@ -61,7 +61,7 @@ pub(crate) fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -
         (1.0, "one solution".to_owned())
     };
     // Two solutions go with each factorisation, and take less.
-    let rest = times * 1.3 * prepared;
+    let rest = times * (1.3 * prepared + evaluation(scene));
     let lasting = case.solver.end / period;
     let equilibrium = assembly.statics.is_some();
     let advice = if !equilibrium && lasting < PERIODS {
@@ -88,6 +88,8 @@ pub(crate) fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -
 /// iteratively.
 const DIRECT: f64 = 4e-8;
 const ITERATIVE: f64 = 3e-7;
+/// Seconds per element beside the linear system, of an iteration in which something may break.
+const EVALUATION: f64 = 2e-6;
 /// Nanoseconds of a step of motion per element.
 const STEP: f64 = 45.0;
 
@@ -129,18 +131,23 @@ fn decide(case: &Case, assembly: &mut Assembly) -> (&'static str, String) {
             format!("loads change by {part:.0} % within the first period of {first}, so that inertia counts"),
         );
     }
-    let elements: usize = (0..scene.solid.body_count()).map(|b| scene.solid.body(b).elements.len()).sum();
+    let elements = scene.counts().elements;
     let steps = end / (case.solver.safety * 2.0 / scene.solid.stable_step().frequency);
     let motion = 1e-9 * STEP * elements as f64 * steps;
     let (entries, direct) = stiffness.entries();
     let times = if scene.solid.has_damage() { ITERATIONS } else { 1.0 };
-    let rest = times * entries as f64 * if direct { DIRECT } else { ITERATIVE };
+    let rest = times * (entries as f64 * if direct { DIRECT } else { ITERATIVE } + evaluation(scene));
     let costs = format!(
         "loads are slow against the first period of {first}; equilibrium takes about {}, {steps:.0} steps of motion about {}",
         quantity(rest, "s"),
         quantity(motion, "s")
     );
     (if rest < motion { "static" } else { "explicit" }, costs)
+}
+
+/// Time of an iteration beside the linear system [s].
+fn evaluation(scene: &Scene) -> f64 {
+    if scene.solid.has_damage() { EVALUATION * scene.counts().elements as f64 } else { 0.0 }
 }
 
 /// Why motion is meant, as far as the case file alone tells.

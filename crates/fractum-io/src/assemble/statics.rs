@@ -32,14 +32,14 @@ impl Context<'_> {
                 NotSecant::Unilateral => "damage.unilateral = true",
                 NotSecant::Rate => "damage.rate_time",
             };
-            let found = format!(" = \"static\" with {found} in body \"{}\"", solid.body(body).name);
+            let found = format!("= \"static\" with {found} in body \"{}\"", solid.body(body).name);
             self.error(&place, found, "small strains, open cracks and damage without delay; or kind = \"explicit\"");
         }
         if matches!(self.case.bodies.as_slice(), [Body { kind: BodyKind::Bonded(_), .. }]) {
             return None;
         }
         if let Some(body) = self.case.bodies.iter().find(|body| !may_rest(body)) {
-            let found = format!(" = \"static\" with body \"{}\"", body.name.value);
+            let found = format!("= \"static\" with body \"{}\"", body.name.value);
             let expected =
                 "solid bodies with rigid ones that are driven by velocity or stand still, or one bonded body";
             self.error(&place, found, format!("{expected}; or kind = \"explicit\""));
@@ -54,7 +54,7 @@ impl Context<'_> {
         if self.case.solver.kind == SolverKind::Static {
             let place = self.place_of_solver();
             let remedy = if scene.supports().count() == 0 { "at least one [[supports]]" } else { "" };
-            self.error(&place, format!(" = \"static\": {error}"), remedy);
+            self.error(&place, format!("= \"static\": {error}"), remedy);
         }
         false
     }
@@ -106,7 +106,7 @@ impl Context<'_> {
         let options = solver.statics.as_ref().filter(|_| solver.kind == SolverKind::Static)?;
         let [Body { kind: BodyKind::Bonded(body), .. }] = self.case.bodies.as_slice() else { return None };
         let place = self.place_of_solver();
-        let found = |what: &str| format!(" = \"static\" with a bonded body and {what}");
+        let found = |what: &str| format!("= \"static\" with a bonded body and {what}");
         if options.control.is_some() || solver.step.is_some() {
             let expected = "no control and no step: the load goes straight from break to break";
             self.error(&place, found("solver.control or solver.step"), expected);
@@ -122,7 +122,7 @@ impl Context<'_> {
             self.error(&place, found("no support"), "at least one [[supports]]");
         }
         if let Err(error) = bonded.check_proportional(solver.end) {
-            self.error(&place, format!(" = \"static\": {error}"), "");
+            self.error(&place, format!("= \"static\": {error}"), "");
         }
         Some(BondedStaticSettings {
             end: solver.end,
@@ -136,7 +136,7 @@ impl Context<'_> {
     }
 
     fn place_of_solver(&self) -> Place {
-        Place { key: "solver.kind".to_owned(), ..self.whole_case() }
+        self.case.solver.place.clone()
     }
 }
 

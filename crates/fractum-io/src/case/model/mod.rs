@@ -29,7 +29,7 @@ pub use rigid::{RigidBody, RigidShape};
 pub use tie::Tie;
 
 use super::choice::choice;
-use super::{Diagnostic, Dimension, Spanned};
+use super::{Diagnostic, Dimension, Place, Spanned};
 
 /// A case, read and checked. What needs the mesh (group names, two or three dimensions) is checked by its user, with
 /// the places kept here.
@@ -112,6 +112,8 @@ pub struct Damping {
 pub struct Solver {
     /// Kind of solver.
     pub kind: SolverKind,
+    /// Where it is written.
+    pub place: Place,
     /// End of the run [s], > 0.
     pub end: f64,
     /// Factor on the stable step [-], within 0..=2.

@@ -51,6 +51,7 @@ fn is_of_particles(body: &Body) -> bool {
 pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body]>) -> Option<Solver> {
     let table = root.table_or_empty("solver");
     let kind = table.choice("kind").or_if_absent(SolverKind::Explicit);
+    let place = table.peek("kind").map_or_else(|| table.place_of("kind"), |node| node.place.clone());
     let end = table.quantity("end").positive().required();
     let is_static = kind == Some(SolverKind::Static);
     let statics = match kind {
@@ -99,6 +100,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     table.finish("here");
     Some(Solver {
         kind: kind?,
+        place,
         end: end?,
         safety,
         time_step,
