@@ -327,7 +327,7 @@ impl Plan {
         choose(scene.bonded.bond_counts().0 > 0, "cohesive beams", "no bonded body");
         let touched = (!scene.grounds.is_empty() || scene.contacts.meets_nodes()) && scene.solid.body_count() > 0;
         choose(touched, "contact of solids with other bodies", "nothing that a solid could meet");
-        let balls = !scene.contacts.is_empty() && (damage || scene.bonded.particles.len() > 0);
+        let balls = !scene.contacts.is_empty() && (damage || !scene.bonded.particles.is_empty());
         choose(balls, "contact of particles by Hertz' law", "no particles that could meet anything");
         let breaks = scene.bonded.bodies().iter().any(BondedBody::can_break);
         choose(breaks, "breaking of bonds", "no material of bonded bodies has a fracture");

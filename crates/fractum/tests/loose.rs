@@ -158,7 +158,7 @@ fn wrong_particles_and_bodies_are_explained() {
     let ended = place.fractum(&["check", "case.toml"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let said = format!("{}{}", ended.stdout, ended.stderr);
-    assert!(said.contains("particle 0 of more and particle 1 of more, by 2.0000e-3 m"), "{said}");
+    assert!(said.contains("particle 0 of more and particle 1 of more, by 2 mm"), "{said}");
 }
 
 /// Two overlapping beads on a floor that they overlap too, and a solid bar with a corner in a rigid sphere.
@@ -212,8 +212,8 @@ fn what_overlaps_at_the_start_is_told_and_may_be_kept() {
     let told = place.fractum(&["check", "case.toml"]);
     let said = format!("{}{}", told.stdout, told.stderr);
     for words in [
-        "2 contacts overlap at the start, deepest particle 0 of beads and particle 1 of beads, by 4.0000e-4 m",
-        "1 nodes of solids are within other bodies at the start, deepest that at (0.0000e0, 0.0000e0, 0.0000e0) m in rigid body ball",
+        "2 contacts overlap at the start, deepest particle 0 of beads and particle 1 of beads, by 400 µm",
+        "1 node of a solid is within other bodies at the start, deepest that at (0 m, 0 m, 0 m) in rigid body ball",
     ] {
         assert!(said.contains(words), "{said}");
     }

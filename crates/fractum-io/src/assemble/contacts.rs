@@ -12,6 +12,7 @@ use super::bodies::{Numbering, Part};
 use super::{Context, function};
 use crate::case::model::{Body, BodyKind, InitialOverlap, LoadKind, ProbeKind, RigidBody, RigidShape};
 use crate::case::{Diagnostic, Spanned};
+use crate::number::quantity;
 
 /// Depth of an overlap over the radius of the particle at the start that is reported.
 const DEEP: f64 = 1e-6;
@@ -124,10 +125,13 @@ impl Context<'_> {
                 OverlapWith::Solid(body) => format!("solid {body}"),
             };
             let found = format!(
-                "{} contacts overlap at the start, deepest {} and {other}, by {:.4e} m",
-                deep.count(),
+                "{} at the start, deepest {} and {other}, by {}",
+                match deep.count() {
+                    1 => "1 contact overlaps".to_owned(),
+                    count => format!("{count} contacts overlap"),
+                },
                 name(worst.particle),
-                worst.depth
+                quantity(worst.depth, "m")
             );
             warnings.push(self.overlap_warning(found));
         }
@@ -154,12 +158,15 @@ impl Context<'_> {
         };
         let at = scene.solid.position(*node as usize);
         Some(self.overlap_warning(format!(
-            "{} nodes of solids are within other bodies at the start, deepest that at ({:.4e}, {:.4e}, {:.4e}) m in {other}, \
-             by {depth:.4e} m",
-            deep.count(),
-            at.x,
-            at.y,
-            at.z
+            "{} within other bodies at the start, deepest that at ({}, {}, {}) in {other}, by {}",
+            match deep.count() {
+                1 => "1 node of a solid is".to_owned(),
+                count => format!("{count} nodes of solids are"),
+            },
+            quantity(at.x, "m"),
+            quantity(at.y, "m"),
+            quantity(at.z, "m"),
+            quantity(*depth, "m")
         )))
     }
 
