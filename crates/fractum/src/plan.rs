@@ -380,6 +380,9 @@ impl Plan {
             }
         };
         self.add("equilibrium", format!("{unknowns} unknowns, {control}, to t = {}", quantity(settings.end, "s")));
+        if scene.solid.has_damage() {
+            self.add("contact", "crack faces that close press on each other, without friction");
+        }
         if settings.no_equilibrium == NoEquilibrium::Motion {
             let damping = match settings.damping {
                 Some(_) => "the damping of the case",

@@ -255,3 +255,54 @@ displacement = { x = "-20 um*min(t/0.3 s, 1)", y = "0.5 mm*max(t - 0.3 s, 0 s)/0
     let last = rows.last().unwrap();
     assert!((last[1] / last[0]).abs() > 0.05 * (1.0 - 1e-3), "{last:?}");
 }
+
+/// The bar pulled apart at its weak slab, pushed back by 20 um more, and let go.
+fn closing_bar() -> String {
+    let way = r#"x = { ramp = [["0 s", "0 m"], ["0.5 s", "0.4 mm"], ["0.9 s", "-20 um"], ["1 s", "10 um"]] } }
+fix = "yz""#;
+    BAR.replace("stop_when = { probe = \"load\", below = 0.2 }", "control = \"time\"\nstep = \"5 ms\"")
+        .replace("crack_plane_gate = true", "")
+        .replace("x = \"0.4 mm*t/1 s\" }", way)
+}
+
+#[test]
+fn a_crack_that_closes_carries_compression_and_opens_without_sticking() {
+    let place = Workplace::new(&closing_bar());
+    let summary = run(&place, "one", "1");
+    assert_eq!(summary["state_hash"], run(&place, "two", "2")["state_hash"]);
+    assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", summary["energy"]);
+    let planned = place.fractum(&["check", "case.toml"]);
+    assert!(planned.stdout.contains("without friction"), "{}", planned.stdout);
+    let rows = history(&place, "one", &["time", "load", "contact"]);
+    let rigid = 30e9 * 0.12 * 0.12 * 20e-6 / 0.4;
+    let at = |time: f64| rows.iter().find(|row| (row[0] - time).abs() < 1e-9).unwrap();
+    // Faces meet where they parted; spheres in place of the slab give way more than it did.
+    let deepest = at(0.9);
+    assert!(-deepest[1] > 0.6 * rigid && -deepest[1] < rigid, "{deepest:?} {rigid}");
+    for row in rows.iter().filter(|row| row[0] > 0.7 && row[0] < 0.88 || row[0] > 0.97) {
+        assert!(row[1].abs() < 0.02 * rigid && row[2] < 1e-4 * deepest[2], "{row:?}");
+    }
+    // On the way back the same springs let go.
+    let half = at(0.935);
+    assert!((half[1] / deepest[1] - (20.0 - 10.5) / 20.0).abs() < 0.02, "{half:?} {deepest:?}");
+}
+
+#[test]
+fn halves_that_have_slid_press_on_nodes_that_they_shared_no_element_with() {
+    let way = r#"x = { ramp = [["0 s", "0 m"], ["0.5 s", "0.4 mm"], ["0.6 s", "120 mm"], ["0.7 s", "120 mm"],
+["0.9 s", "-11.25 mm"], ["1 s", "-11.33 mm"]] }, y = { ramp = [["0 s", "0 m"], ["0.6 s", "0 m"], ["0.7 s", "30 mm"]] } }
+fix = "z""#;
+    let case = closing_bar().replace("fix = \"yz\"", "");
+    let (head, rest) = case.split_once("x = { ramp").unwrap();
+    let (_, tail) = rest.split_once("[solver]").unwrap();
+    let place = Workplace::new(&format!("{head}{way}\n[solver]{tail}"));
+    let summary = run(&place, "one", "1");
+    assert_eq!(summary["state_hash"], run(&place, "two", "2")["state_hash"]);
+    assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-4, "{}", summary["energy"]);
+    let rows = history(&place, "one", &["time", "load", "contact"]);
+    let at = |time: f64| rows.iter().find(|row| (row[0] - time).abs() < 1e-3).unwrap();
+    assert!(at(0.9)[1].abs() < 1e-3 && at(0.9)[2] == 0.0, "{:?}", at(0.9));
+    // No contact ever pulls, and as many springs bear as they close further.
+    let [first, second, third] = [at(0.945), at(0.955), at(0.965)].map(|row| row[1]);
+    assert!(first < -1e3 && ((third - second) / (second - first) - 1.0).abs() < 0.01, "{first} {second} {third}");
+}

@@ -1,3 +1,7 @@
+mod at_rest;
+
+pub(crate) use at_rest::Push;
+
 use fractum_contact::law::{ContactForce, ContactMemory, ElasticMaterial, Linear, PairMotion, Surface};
 use fractum_contact::{ContactWork, close_pairs};
 use fractum_fem::Solid;
@@ -306,16 +310,9 @@ impl Debris {
             return false;
         }
         let centres: Vec<Vec3> = state.nodes.iter().map(|&n| solid.position(n as usize)).collect();
-        let radii: Vec<f64> = state.nodes.iter().map(|&n| self.radius[n as usize]).collect();
-        let skin = 0.5 * radii.iter().sum::<f64>() / radii.len() as f64;
-        let mut strangers: Vec<[u32; 2]> = close_pairs(&centres, &radii, skin)
-            .into_iter()
-            .map(|pair| {
-                let [i, j] = pair.map(|p| state.nodes[p as usize]);
-                [i.min(j), i.max(j)]
-            })
-            .collect();
-        strangers.sort_unstable();
+        let radii = state.nodes.iter().map(|&n| self.radius[n as usize]);
+        let skin = 0.5 * radii.sum::<f64>() / state.nodes.len() as f64;
+        let strangers = self.near(&centres, skin);
         let mut pairs = Vec::with_capacity(strangers.len());
         let mut old = state.pairs.iter().peekable();
         for nodes in strangers {
@@ -335,6 +332,19 @@ impl Debris {
         self.state.skin = skin;
         self.state.stale = false;
         true
+    }
+
+    /// Pairs of nodes whose particles, centred at `centres`, are no farther apart than the skin [m], ascending.
+    fn near(&self, centres: &[Vec3], skin: f64) -> Vec<[u32; 2]> {
+        let nodes = &self.state.nodes;
+        let radii: Vec<f64> = nodes.iter().map(|&n| self.radius[n as usize]).collect();
+        let ascending = |pair: [u32; 2]| {
+            let [i, j] = pair.map(|p| nodes[p as usize]);
+            [i.min(j), i.max(j)]
+        };
+        let mut pairs: Vec<[u32; 2]> = close_pairs(centres, &radii, skin).into_iter().map(ascending).collect();
+        pairs.sort_unstable();
+        pairs
     }
 
     /// Adds the contact forces of all pairs to the nodes.

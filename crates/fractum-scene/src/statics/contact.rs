@@ -1,4 +1,4 @@
-//! Contact with rigid shapes at equilibrium: penalty springs, on where a node overlaps and off where it does not.
+//! Contact at equilibrium, with rigid shapes and of discrete elements with each other: penalty springs, on where a node overlaps and off where it does not.
 //!
 //! The springs are those of motion: the tangential one remembers its stretch at the last equilibrium and slips where Coulomb's
 //! law lets it. The iteration takes them linear about its last iterate, what slips by its secant.
@@ -8,6 +8,7 @@ use fractum_math::{Mat3, Vec3};
 
 use crate::boundary::integral;
 use crate::contacts::{Drive, Tool};
+use crate::coupling::Push;
 use crate::error::SceneError;
 use crate::rigid::{Candidate, RigidGround};
 use crate::scene::Scene;
@@ -16,19 +17,42 @@ use crate::statics::check_supports;
 /// Gap over the size of the solid up to which a node counts as touching: what rounding leaves of a body that lies on a shape.
 const TOUCHING: f64 = 1e-9;
 
-/// A node that a shape pushes: its force, linear about the state it was found at.
+/// A node that a shape or another node pushes: its force, linear about the state it was found at.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spring {
     /// Node.
     pub(super) node: u32,
-    /// Unit normal out of the shape.
+    /// The node that pushes it and feels the opposite.
+    pub(super) partner: Option<u32>,
+    /// Unit normal towards the node.
     normal: Vec3,
     /// Force on the node [N].
     pub(super) force: Vec3,
-    /// How it falls with the displacement of the node [N/m].
+    /// How it falls with the displacement of the node, against that of its partner [N/m].
     pub(super) stiffness: Mat3,
     /// How it changes as the shape moves on [N/s].
     pub(super) rate: Vec3,
+}
+
+impl Spring {
+    /// A displacement field at its node, against that of its partner.
+    pub(super) fn of(&self, field: &[Vec3]) -> Vec3 {
+        let own = field[self.node as usize];
+        self.partner.map_or(own, |partner| own - field[partner as usize])
+    }
+
+    /// Adds a force on its node, and the opposite on its partner.
+    pub(super) fn push(&self, force: Vec3, forces: &mut [Vec3]) {
+        forces[self.node as usize] += force;
+        if let Some(partner) = self.partner {
+            forces[partner as usize] -= force;
+        }
+    }
+
+    /// The two nodes that it couples.
+    pub(super) fn pair(&self) -> Option<[u32; 2]> {
+        self.partner.map(|partner| [self.node, partner])
+    }
 }
 
 /// A tangential spring at one instant.
@@ -74,13 +98,19 @@ impl Scene {
         check_supports(&self.solid, self.supports.held(), &touched)
     }
 
-    /// Springs of the nodes that touch shapes under a displacement field.
+    /// Springs of the nodes that touch shapes or each other under a displacement field.
     ///
     /// - `times`: load parameters of the last equilibrium and of the field
     /// - `ahead`: duration from which the pace of the shapes is taken [s]
     /// - `near`: also those that just do not touch, with no force
     pub(super) fn springs(&self, field: &[Vec3], times: [f64; 2], ahead: f64, near: bool) -> Vec<Spring> {
-        let mut springs = Vec::new();
+        let pushed = |push: Push| {
+            let stiffness = push.normal * push.normal.transpose() * push.stiffness;
+            let force = push.normal * (push.stiffness * push.overlap);
+            let [partner, node] = push.nodes;
+            Spring { node, partner: Some(partner), normal: push.normal, force, stiffness, rate: Vec3::zeros() }
+        };
+        let mut springs: Vec<Spring> = self.debris.pushes(&self.solid, field).map(pushed).collect();
         if self.grounds.is_empty() {
             return springs;
         }
@@ -110,7 +140,8 @@ impl Scene {
                 let along = normal * normal.transpose();
                 let stiffness = along * c.law.normal_stiffness + (Mat3::identity() - along) * holds;
                 let force = normal * pressure - slip * c.law.tangential_stiffness;
-                springs.push(Spring { node: c.node, normal, force, stiffness, rate: stiffness * pace });
+                let rate = stiffness * pace;
+                springs.push(Spring { node: c.node, partner: None, normal, force, stiffness, rate });
             }
         }
         springs
@@ -128,9 +159,23 @@ impl Scene {
     ///
     /// - `before`: displacements at the last equilibrium; those of the scene are the new ones
     pub(super) fn accept_contacts(&mut self, before: &[Vec3], present: f64, time: f64) {
-        if self.grounds.is_empty() {
+        if !self.has_contacts() {
             return;
         }
+        self.books.external -= self.debris.accept_at_rest(&self.solid, before);
+        if !self.grounds.is_empty() {
+            self.accept_grounds(before, present, time);
+        }
+        let on_grounds: f64 = self.grounds.iter().flat_map(|ground| &ground.candidates).map(|c| c.stored).sum();
+        self.ledger.contact = on_grounds + self.debris.stored();
+    }
+
+    /// Whether anything can touch at equilibrium.
+    pub(super) fn has_contacts(&self) -> bool {
+        !(self.grounds.is_empty() && self.debris.is_empty())
+    }
+
+    fn accept_grounds(&mut self, before: &[Vec3], present: f64, time: f64) {
         self.contacts.tools_mut().iter_mut().for_each(Tool::clear_forces);
         let (mut friction, mut external) = (0.0, 0.0);
         for index in 0..self.grounds.len() {
@@ -175,6 +220,5 @@ impl Scene {
         }
         self.books.friction += friction;
         self.books.external += external;
-        self.ledger.contact = self.grounds.iter().flat_map(|ground| &ground.candidates).map(|c| c.stored).sum();
     }
 }

@@ -9,6 +9,9 @@ use crate::error::StepError;
 use crate::scene::Scene;
 use crate::step::StepReport;
 
+/// Displacement over the size of the solid beyond which a piece has come loose.
+const FAR: f64 = 10.0;
+
 /// Forces at the state that the next step starts from, for its work; empty before the first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Outer {
@@ -98,12 +101,24 @@ impl Scene {
             self.solid.secant_force(&self.solid.cell_damage(), displacement, &mut held);
             outer.lost = inner.iter().zip(&held).map(|(inner, held)| -inner - held).collect();
         }
+        self.debris.search(&self.solid);
         Ok(report)
     }
 
     /// The error of a step without equilibrium.
     pub(super) fn no_equilibrium(&self) -> StepError {
         StepError::NoEquilibrium { step: self.clock.step, time: self.clock.time }
+    }
+
+    /// Fails where anchors alone hold what is loaded.
+    ///
+    /// - `factor`: what displacements are multiplied with
+    pub(super) fn check_loose(&self, field: &[Vec3], factor: f64) -> Result<(), StepError> {
+        let size = self.solid.reference.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let far = |u: &Vec3| u.norm() * factor.abs() > FAR * size;
+        let found = if self.debris.is_empty() { None } else { field.iter().position(far) };
+        let error = |node| self.come_apart(SparseError::Indefinite { node, component: 0 });
+        found.map_or(Ok(()), |node| Err(error(node)))
     }
 
     /// The error of a system without solution.
@@ -124,6 +139,7 @@ impl Scene {
         for candidate in self.grounds.iter().flat_map(|ground| &ground.candidates) {
             self.solid.force[candidate.node as usize] += candidate.force;
         }
+        self.debris.add_forces_at_rest(&mut self.solid);
     }
 
     /// The forces of a state at rest that is no exact equilibrium.
@@ -134,8 +150,11 @@ impl Scene {
         self.loads.add_forces(&mut self.solid, time, 0.0);
         let load = self.solid.force.iter().zip(&inner).map(|(f, i)| f - i).collect();
         let (displacement, books) = (self.solid.displacement.clone(), self.books);
+        let stored = self.debris.stored();
         self.accept_contacts(&displacement, time, time);
         self.books = books;
+        // Tangential springs between discrete elements let go.
+        self.books.friction += stored - self.debris.stored();
         self.add_contact_forces_at_rest();
         let force = &self.solid.force;
         let reaction = self.supports.take_reactions(force);

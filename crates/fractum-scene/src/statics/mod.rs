@@ -89,6 +89,18 @@ pub struct StaticSettings {
     pub damping: Option<LocalDamping>,
 }
 
+impl StaticSettings {
+    /// The linear system of a scene.
+    ///
+    /// - `touching`: nodes coupled beside those of cells
+    fn lay_out(&self, scene: &Scene, touching: &[[u32; 2]]) -> Result<Dimension, SparseError> {
+        let elastic = !scene.solid.has_damage();
+        let reuse = if elastic { (self.end / self.step).ceil() as usize } else { 2 };
+        let held = scene.supports().held();
+        Dimension::new(&scene.solid, held, self.linear, reuse, self.linear_tolerance, touching)
+    }
+}
+
 /// How far the most strained edge goes down its softening curve per step of a path: at first, at least and at most.
 const GROWTH: [f64; 3] = [0.05, 0.01, 0.25];
 /// The step that finds the onset of damage goes no further than this.
@@ -116,18 +128,41 @@ impl Dimension {
         linear: LinearSolver,
         reuse: usize,
         tolerance: f64,
+        touching: &[[u32; 2]],
     ) -> Result<Self, SparseError> {
         Ok(if solid.is_plane() {
-            Dimension::Plane(System::new(solid, held, linear, reuse, tolerance)?)
+            Dimension::Plane(System::new(solid, held, linear, reuse, tolerance, touching)?)
         } else {
-            Dimension::Space(System::new(solid, held, linear, reuse, tolerance)?)
+            Dimension::Space(System::new(solid, held, linear, reuse, tolerance, touching)?)
         })
     }
 
-    fn prepare(&mut self, scene: &Scene, damage: &CellDamage, springs: &[Spring]) -> Result<(), SparseError> {
+    fn couples(&self, pair: [u32; 2]) -> bool {
         match self {
-            Dimension::Plane(system) => system.prepare(&scene.solid, damage, springs),
-            Dimension::Space(system) => system.prepare(&scene.solid, damage, springs),
+            Dimension::Plane(system) => system.couples(pair),
+            Dimension::Space(system) => system.couples(pair),
+        }
+    }
+
+    fn anchors(&self) -> &[f64] {
+        match self {
+            Dimension::Plane(system) => system.anchors(),
+            Dimension::Space(system) => system.anchors(),
+        }
+    }
+
+    fn work(&mut self) -> &mut LinearWork {
+        match self {
+            Dimension::Plane(system) => &mut system.work,
+            Dimension::Space(system) => &mut system.work,
+        }
+    }
+
+    fn prepare(&mut self, scene: &Scene, damage: &CellDamage, springs: &[Spring]) -> Result<(), SparseError> {
+        let anchored = !scene.debris.is_empty();
+        match self {
+            Dimension::Plane(system) => system.prepare(&scene.solid, damage, springs, anchored),
+            Dimension::Space(system) => system.prepare(&scene.solid, damage, springs, anchored),
         }
     }
 
@@ -155,6 +190,9 @@ pub struct StaticSolver {
     right: Vec<Vec3>,
     /// What touches in the last iterate, which is `place`.
     springs: Vec<Spring>,
+    /// Pairs of nodes that have touched so far and belong to no cell, and how many of them the system has places for.
+    touching: Vec<[u32; 2]>,
+    coupled: usize,
     place: Vec<Vec3>,
     start_stress: Vec<Sym3>,
     slope_stress: Vec<Sym3>,
@@ -177,6 +215,7 @@ pub struct StaticState {
     growth: f64,
     part: f64,
     trend: Vec<f64>,
+    touching: Vec<[u32; 2]>,
     outer: Outer,
     largest_forces: f64,
     iterations: u64,
@@ -193,9 +232,7 @@ impl StaticSolver {
     pub fn new(scene: &Scene, settings: StaticSettings) -> Result<Self, SparseError> {
         let solid = &scene.solid;
         let elastic = !solid.has_damage();
-        let reuse = if elastic { (settings.end / settings.step).ceil() as usize } else { 2 };
-        let (held, linear, tolerance) = (scene.supports().held(), settings.linear, settings.linear_tolerance);
-        let system = Dimension::new(solid, held, linear, reuse, tolerance)?;
+        let system = settings.lay_out(scene, &[])?;
         let zero = vec![Vec3::zeros(); solid.reference.len()];
         Ok(StaticSolver {
             settings,
@@ -210,6 +247,8 @@ impl StaticSolver {
             slope: zero.clone(),
             right: zero,
             springs: Vec::new(),
+            touching: Vec::new(),
+            coupled: 0,
             place: Vec::new(),
             start_stress: Vec::new(),
             slope_stress: Vec::new(),
@@ -245,6 +284,7 @@ impl StaticSolver {
             growth: self.growth,
             part: self.part,
             trend: self.trend.clone(),
+            touching: self.touching.clone(),
             outer: self.outer.clone(),
             largest_forces: self.largest_forces,
             iterations: iterations as u64,
@@ -257,17 +297,14 @@ impl StaticSolver {
     /// Puts back what a solver of the same scene, prepared before any step, remembered.
     pub fn restore(&mut self, state: StaticState) {
         (self.growth, self.part, self.trend, self.outer) = (state.growth, state.part, state.trend, state.outer);
+        self.touching = state.touching;
         self.largest_forces = state.largest_forces;
         self.iterations = state.iterations as usize;
-        let work = LinearWork {
+        *self.system.work() = LinearWork {
             factorisations: state.factorisations as usize,
             solutions: state.solutions as usize,
             iterations: state.linear_iterations as usize,
         };
-        match &mut self.system {
-            Dimension::Plane(system) => system.work = work,
-            Dimension::Space(system) => system.work = work,
-        }
     }
 
     /// Goes on from the state in which motion has left the scene.
@@ -380,7 +417,9 @@ impl StaticSolver {
         let mut found_at = present;
         for iteration in 1..=if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] } {
             self.iterations += 1;
+            scene.debris.meet(&scene.solid, &self.place);
             self.springs = scene.springs(&self.place, [present, found_at], longest, iteration == 1);
+            self.couple(scene)?;
             if !(self.elastic && self.prepared && scene.grounds.is_empty()) {
                 self.system.prepare(scene, &self.trial, &self.springs).map_err(|e| scene.come_apart(e))?;
                 self.prepared = true;
@@ -430,11 +469,12 @@ impl StaticSolver {
             }
             scene.solid.trial_damage(&self.q, &mut self.trial);
             let mut exact = scene.boundary_at(present, present + tau);
-            if !scene.grounds.is_empty() {
+            if scene.has_contacts() {
                 found_at = present + tau;
                 self.place.clone_from(&self.start);
+                scene.debris.meet(&scene.solid, &self.place);
                 for spring in scene.springs(&self.place, [present, found_at], longest, false) {
-                    exact.force[spring.node as usize] += spring.force;
+                    spring.push(spring.force, &mut exact.force);
                 }
             }
             let (missing, forces) = scene.unbalance(&self.trial, &self.start, &exact.force, &mut self.right);
@@ -461,6 +501,20 @@ impl StaticSolver {
         Ok(None)
     }
 
+    /// Gives the system places for all pairs of nodes that touch.
+    fn couple(&mut self, scene: &Scene) -> Result<(), StepError> {
+        let missing = |pair: &[u32; 2]| !self.system.couples(*pair) && !self.touching.contains(pair);
+        let found: Vec<[u32; 2]> = self.springs.iter().filter_map(Spring::pair).filter(missing).collect();
+        self.touching.extend(found);
+        if self.touching.len() > self.coupled {
+            let work = *self.system.work();
+            self.system = self.settings.lay_out(scene, &self.touching).map_err(|e| scene.come_apart(e))?;
+            *self.system.work() = work;
+            (self.coupled, self.prepared) = (self.touching.len(), false);
+        }
+        Ok(())
+    }
+
     /// Displacements at the present load parameter and their slope, for the damage of the trial.
     ///
     /// - `since`: from the iterate at which the springs were found to the present load parameter [s]
@@ -478,11 +532,15 @@ impl StaticSolver {
         for (right, force) in self.right.iter_mut().zip(&here.force) {
             *right = force - *right;
         }
-        for Spring { node, force, stiffness, rate, .. } in &self.springs {
-            let i = *node as usize;
-            self.right[i] += force + rate * since - stiffness * (field[i] - self.place[i]);
+        for spring in &self.springs {
+            let moved = spring.of(&field) - spring.of(&self.place);
+            spring.push(spring.force + spring.rate * since - spring.stiffness * moved, &mut self.right);
+        }
+        for (i, anchor) in self.system.anchors().iter().enumerate() {
+            self.right[i] += (self.place[i] - field[i]) * *anchor;
         }
         self.system.solve(&self.right, &mut self.start).map_err(|e| scene.come_apart(e))?;
+        scene.check_loose(&self.start, 1.0)?;
         for (u, p) in self.start.iter_mut().zip(&field) {
             *u += p;
         }
@@ -496,11 +554,11 @@ impl StaticSolver {
         for (i, right) in self.right.iter_mut().enumerate() {
             *right = (there.force[i] - here.force[i]) / ahead - *right;
         }
-        for Spring { node, stiffness, rate, .. } in &self.springs {
-            let i = *node as usize;
-            self.right[i] += rate - stiffness * field[i];
+        for spring in &self.springs {
+            spring.push(spring.rate - spring.stiffness * spring.of(&field), &mut self.right);
         }
         self.system.solve(&self.right, &mut self.slope).map_err(|e| scene.come_apart(e))?;
+        scene.check_loose(&self.slope, ahead)?;
         for (u, p) in self.slope.iter_mut().zip(&field) {
             *u += p;
         }

@@ -3,6 +3,7 @@
 use fractum_math::Vec3;
 use fractum_sparse::SparseError;
 
+use super::contact::Spring;
 use super::{Dimension, LinearSolver};
 use crate::scene::Scene;
 
@@ -27,7 +28,10 @@ impl Stiffness {
     /// [`SparseError::TooLarge`] if the factor does not fit.
     pub fn new(scene: &Scene) -> Result<Self, SparseError> {
         let held = scene.supports().held();
-        Ok(Stiffness { system: Dimension::new(&scene.solid, held, LinearSolver::Auto, ITERATIONS, TOLERANCE)? })
+        let springs = scene.springs(&scene.solid.displacement, [scene.clock.time; 2], 1.0, true);
+        let touching: Vec<[u32; 2]> = springs.iter().filter_map(Spring::pair).collect();
+        let system = Dimension::new(&scene.solid, held, LinearSolver::Auto, ITERATIONS, TOLERANCE, &touching)?;
+        Ok(Stiffness { system })
     }
 
     /// Entries of the Cholesky factor, or of the matrix where the solution is iterative.

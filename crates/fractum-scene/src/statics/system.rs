@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fractum_fem::{CellDamage, Solid};
-use fractum_math::Vec3;
+use fractum_math::{Ragged, Vec3};
 use fractum_sparse::{BlockMatrix, Factor, Motions, Pattern, Preconditioner, SparseError, conjugate_gradients};
 
 use super::LinearSolver;
@@ -14,6 +14,9 @@ const DIRECT: [usize; 2] = [25_000, 300_000];
 /// Solutions with one matrix from which a factorisation pays on larger ones, and the unknowns up to which it fits.
 const REUSE: usize = 7;
 const DIRECT_IF_REUSED: usize = 250_000;
+/// What anchors every node to its last place once there are discrete elements, over its stiffness: a piece that has come loose
+/// then stays where it is, and equilibrium, which the forces alone are held against, does not know it.
+const ANCHOR: f64 = 1e-10;
 /// Nodes in a cluster of the coarse space.
 const CLUSTER: usize = 64;
 /// Iterations after which the linear solver gives up.
@@ -41,6 +44,8 @@ pub(super) struct System<const B: usize> {
     /// Place of the block of every pair of nodes of every cell.
     pairs: Vec<u32>,
     held: Vec<u8>,
+    /// Stiffness of the anchor of every node [N/m]; empty where nothing is anchored.
+    anchors: Vec<f64>,
     places: Vec<[f64; 3]>,
     method: Method<B>,
     tolerance: f64,
@@ -51,16 +56,19 @@ pub(super) struct System<const B: usize> {
 
 impl<const B: usize> System<B> {
     /// - `reuse`: solutions that are expected with one matrix
+    /// - `touching`: nodes coupled beside those of cells
     pub(super) fn new(
         solid: &Solid,
         held: &[u8],
         choice: LinearSolver,
         reuse: usize,
         tolerance: f64,
+        touching: &[[u32; 2]],
     ) -> Result<Self, SparseError> {
         let nodes = solid.reference.len();
         let cells = solid.cell_nodes();
-        let pattern = Arc::new(Pattern::from_cliques(nodes, &cells));
+        let cliques = cells.rows().chain(touching.iter().map(|pair| &pair[..]));
+        let pattern = Arc::new(Pattern::from_cliques(nodes, &Ragged::from_rows(cliques)));
         if pattern.blocks() > u32::MAX as usize {
             return Err(SparseError::TooLarge { entries: pattern.blocks() });
         }
@@ -85,6 +93,7 @@ impl<const B: usize> System<B> {
             matrix: BlockMatrix::zeros(pattern),
             pairs,
             held,
+            anchors: Vec::new(),
             places,
             method,
             tolerance,
@@ -94,12 +103,25 @@ impl<const B: usize> System<B> {
         })
     }
 
+    /// Whether the matrix has a place for the stiffness between two nodes.
+    pub(super) fn couples(&self, [i, j]: [u32; 2]) -> bool {
+        self.matrix.pattern().row(i as usize).binary_search(&j).is_ok()
+    }
+
+    /// Stiffness of the anchor of every node [N/m]; empty where nothing is anchored.
+    pub(super) fn anchors(&self) -> &[f64] {
+        &self.anchors
+    }
+
     /// Takes over the stiffness of a solid at this damage, and of what it touches.
+    ///
+    /// - `anchored`: whether nodes are anchored
     pub(super) fn prepare(
         &mut self,
         solid: &Solid,
         damage: &CellDamage,
         springs: &[Spring],
+        anchored: bool,
     ) -> Result<(), SparseError> {
         self.matrix.clear();
         let (matrix, pairs) = (&mut self.matrix, &self.pairs);
@@ -120,7 +142,23 @@ impl<const B: usize> System<B> {
         });
         for spring in springs {
             let block = std::array::from_fn(|a| std::array::from_fn(|b| spring.stiffness[(a, b)]));
-            matrix.add(spring.node as usize, spring.node as usize, block);
+            let node = spring.node as usize;
+            matrix.add(node, node, block);
+            if let Some(partner) = spring.partner {
+                let partner = partner as usize;
+                matrix.add(partner, partner, block);
+                let opposite = block.map(|row: [f64; B]| row.map(|value| -value));
+                matrix.add(node, partner, opposite);
+                matrix.add(partner, node, opposite);
+            }
+        }
+        self.anchors.clear();
+        for node in 0..if anchored { self.held.len() } else { 0 } {
+            let diagonal = matrix.diagonal(node);
+            let anchor = ANCHOR * (0..B).map(|a| diagonal[a][a]).fold(0.0, f64::max);
+            let own = |a, b| if a == b { anchor } else { 0.0 };
+            matrix.add(node, node, std::array::from_fn(|a| std::array::from_fn(|b| own(a, b))));
+            self.anchors.push(anchor);
         }
         let spare = matrix.largest_diagonal();
         matrix.hold(&self.held, spare);
