@@ -146,22 +146,35 @@ impl<L: ContactLaw> Block<L> {
             let force = law(sphere, foot.curvature).force(&motion, &mut memory);
             let moment = -foot.offset.cross(&force.on_second) - force.couple_on_second;
             self.touches.push(Touch {
-                sphere,
-                feature: foot.feature,
-                part: ground.part(foot.facet),
-                offset: foot.offset,
-                overlap,
-                normal: foot.normal,
-                weight: foot.weight,
-                memory,
                 force: -force.on_second * foot.weight,
                 moment: moment * foot.weight,
                 couple: -force.couple_on_second * foot.weight,
                 stored: force.stored * foot.weight,
                 friction: force.friction * foot.weight,
                 damping: force.damping * foot.weight,
+                ..unloaded(ground, sphere, foot, overlap, memory)
             });
         }
+    }
+}
+
+/// A contact at a foot that bears nothing.
+fn unloaded<M>(ground: &Ground, sphere: u32, foot: &Foot, overlap: f64, memory: M) -> Touch<M> {
+    Touch {
+        sphere,
+        feature: foot.feature,
+        part: ground.part(foot.facet),
+        offset: foot.offset,
+        overlap,
+        normal: foot.normal,
+        weight: foot.weight,
+        memory,
+        force: Vec3::zeros(),
+        moment: Vec3::zeros(),
+        couple: Vec3::zeros(),
+        stored: 0.0,
+        friction: 0.0,
+        damping: 0.0,
     }
 }
 
@@ -202,22 +215,7 @@ impl<L: ContactLaw> Block<L> {
                 let overlap = radius - foot.distance;
                 let mut memory = L::Memory::default();
                 L::add_slack(&mut memory, overlap);
-                self.touches.push(Touch {
-                    sphere,
-                    feature: foot.feature,
-                    part: ground.part(foot.facet),
-                    offset: foot.offset,
-                    overlap,
-                    normal: foot.normal,
-                    weight: foot.weight,
-                    memory,
-                    force: Vec3::zeros(),
-                    moment: Vec3::zeros(),
-                    couple: Vec3::zeros(),
-                    stored: 0.0,
-                    friction: 0.0,
-                    damping: 0.0,
-                });
+                self.touches.push(unloaded(ground, sphere, foot, overlap, memory));
             }
         }
     }

@@ -93,12 +93,24 @@ impl Expectation {
 
     /// What was asked for, in words: `50 MPa ± 5 %`, `below 0.001`.
     pub fn required(&self) -> String {
-        required(self.comparison, self.reference, self.tolerance, &self.unit)
+        let Expectation { reference, tolerance, .. } = *self;
+        let shown = |value| quantity(value, &self.unit);
+        match self.comparison {
+            Comparison::Relative => format!("{} ± {}", shown(reference), percent(tolerance)),
+            Comparison::Absolute => format!("{} ± {}", shown(reference), shown(tolerance)),
+            Comparison::Below => format!("below {}", shown(reference)),
+            Comparison::Above => format!("above {}", shown(reference)),
+            Comparison::Between => format!("{} to {}", shown(reference - tolerance), shown(reference + tolerance)),
+        }
     }
 
     /// The error in words: a share or a quantity; nothing within limits.
     pub fn off(&self) -> String {
-        off(self.comparison, self.error, &self.unit)
+        match self.comparison {
+            Comparison::Relative => percent(self.error),
+            Comparison::Below | Comparison::Above | Comparison::Between if self.error == 0.0 => String::new(),
+            _ => quantity(self.error, &self.unit),
+        }
     }
 }
 
@@ -113,87 +125,17 @@ fn beyond(value: f64, above: f64, below: f64) -> f64 {
     }
 }
 
-fn required(comparison: Comparison, reference: f64, tolerance: f64, unit: &str) -> String {
-    let shown = |value| quantity(value, unit);
-    match comparison {
-        Comparison::Relative => format!("{} ± {}", shown(reference), percent(tolerance)),
-        Comparison::Absolute => format!("{} ± {}", shown(reference), shown(tolerance)),
-        Comparison::Below => format!("below {}", shown(reference)),
-        Comparison::Above => format!("above {}", shown(reference)),
-        Comparison::Between => format!("{} to {}", shown(reference - tolerance), shown(reference + tolerance)),
-    }
-}
-
-fn off(comparison: Comparison, error: f64, unit: &str) -> String {
-    match comparison {
-        Comparison::Relative => percent(error),
-        Comparison::Absolute => quantity(error, unit),
-        Comparison::Below | Comparison::Above | Comparison::Between if error == 0.0 => String::new(),
-        Comparison::Below | Comparison::Above | Comparison::Between => quantity(error, unit),
-    }
-}
-
-/// One line of `verify.json`.
+/// One line of `verify.json`: an expectation with the case it belongs to.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Verified {
     /// Name of the case.
     pub case: String,
-    /// Name of the probe.
-    pub quantity: String,
-    /// Unit of value and reference.
-    pub unit: String,
-    /// What came out.
-    #[serde(with = "number")]
-    pub value: f64,
-    /// What was expected.
-    #[serde(with = "number")]
-    pub reference: f64,
-    /// What error and tolerance mean.
-    pub comparison: Comparison,
-    /// As in [`Expectation`].
-    #[serde(with = "number")]
-    pub error: f64,
-    /// Largest |error| that passes.
-    #[serde(with = "number")]
-    pub tolerance: f64,
-    /// Whether it passed.
-    pub pass: bool,
+    /// What was expected, and what came out.
+    #[serde(flatten)]
+    pub expectation: Expectation,
     /// Time on the clock [s].
     #[serde(with = "number")]
     pub seconds: f64,
-    /// Where the reference is from.
-    pub source: String,
-}
-
-impl Verified {
-    /// The line of `verify.json` for an expectation of `case`, which ran for `seconds`.
-    pub fn new(case: &str, expectation: &Expectation, seconds: f64) -> Self {
-        let Expectation { quantity, unit, value, reference, comparison, error, tolerance, pass, source } =
-            expectation.clone();
-        Self {
-            case: case.into(),
-            quantity,
-            unit,
-            value,
-            reference,
-            comparison,
-            error,
-            tolerance,
-            pass,
-            seconds,
-            source,
-        }
-    }
-
-    /// As [`Expectation::required`].
-    pub fn required(&self) -> String {
-        required(self.comparison, self.reference, self.tolerance, &self.unit)
-    }
-
-    /// As [`Expectation::off`].
-    pub fn off(&self) -> String {
-        off(self.comparison, self.error, &self.unit)
-    }
 }
 
 #[cfg(test)]

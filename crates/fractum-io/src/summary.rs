@@ -362,7 +362,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("verify.json");
         let bound = Bound::Near { value: 1.0, tolerance: 0.1, relative: Some(0.1) };
-        let line = Verified::new("patch", &Expectation::hold("stress", "Pa", 1.0, bound, "exact"), 2.0);
+        let expectation = Expectation::hold("stress", "Pa", 1.0, bound, "exact");
+        let line = Verified { case: "patch".into(), expectation, seconds: 2.0 };
         write_verify(&path, &[line]).unwrap();
         let lines: serde_json::Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
         let keys: Vec<&String> = lines[0].as_object().unwrap().keys().collect();

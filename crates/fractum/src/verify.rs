@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use fractum_io::case::read_case;
-use fractum_io::expectation::Verified;
+use fractum_io::expectation::{Expectation, Verified};
 use fractum_io::number::quantity;
 use fractum_io::summary::write_verify;
 
@@ -79,17 +79,16 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
         let seconds = started.elapsed().as_secs_f64();
         let first = lines.len();
         match outcome {
-            Ok(outcome) => lines.extend(outcome.summary.expect.iter().map(|e| Verified::new(&name, e, seconds))),
+            Ok(outcome) => lines.extend(outcome.summary.expect.into_iter().map(|expectation| Verified {
+                case: name.clone(),
+                expectation,
+                seconds,
+            })),
             Err(error) => {
                 tell!("{name}: {error}");
-                lines.push(Verified {
-                    case: name.clone(),
-                    quantity: "run".into(),
-                    pass: false,
-                    seconds,
-                    source: error.to_string(),
-                    ..Verified::default()
-                });
+                let expectation =
+                    Expectation { quantity: "run".into(), source: error.to_string(), ..Expectation::default() };
+                lines.push(Verified { case: name.clone(), expectation, seconds });
             }
         }
         lines[first..].iter().for_each(print_line);
@@ -99,20 +98,21 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
     }
     fractum_io::atomic::create_folder(&selection.output)?;
     write_verify(&selection.output.join("verify.json"), &lines)?;
-    let passed = lines.iter().filter(|line| line.pass).count();
+    let passed = lines.iter().filter(|line| line.expectation.pass).count();
     say!("{passed} of {} passed; {}", lines.len(), selection.output.join("verify.json").display());
     Ok(lines)
 }
 
 fn print_line(line: &Verified) {
+    let expectation = &line.expectation;
     say!(
         "{:<36} {:<30} {:>14} {:>22} {:>10}  {:<5} {:>8.2}",
         line.case,
-        line.quantity,
-        quantity(line.value, &line.unit),
-        line.required(),
-        line.off(),
-        if line.pass { "pass" } else { "FAIL" },
+        expectation.quantity,
+        quantity(expectation.value, &expectation.unit),
+        expectation.required(),
+        expectation.off(),
+        if expectation.pass { "pass" } else { "FAIL" },
         line.seconds
     );
 }

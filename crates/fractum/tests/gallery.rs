@@ -18,8 +18,11 @@ fn quick_cases_meet_their_references() {
     let lines = verify(&selection).unwrap();
     let missed: Vec<String> = lines
         .iter()
-        .filter(|line| !line.pass)
-        .map(|line| format!("{} {}: {} against {}", line.case, line.quantity, line.value, line.reference))
+        .filter(|line| !line.expectation.pass)
+        .map(|line| {
+            let found = &line.expectation;
+            format!("{} {}: {}, expected {}", line.case, found.quantity, found.value, found.required())
+        })
         .collect();
     assert!(lines.len() > 40, "{} references were checked", lines.len());
     assert!(missed.is_empty(), "{missed:#?}");

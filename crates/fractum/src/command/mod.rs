@@ -146,9 +146,11 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::New { template, output } => new::new(template.as_deref(), output),
         Command::Verify { names, quick, cases, output, threads } => {
             let selection = fractum::verify::Selection { cases, names, quick, output, threads, cache: cache() };
-            fractum::verify::verify(&selection).and_then(|lines| match lines.iter().filter(|l| !l.pass).count() {
-                0 => Ok(ExitCode::Done),
-                failed => Err(Failure::Unmet(format!("{failed} of {} references are not met", lines.len()))),
+            fractum::verify::verify(&selection).and_then(|lines| {
+                match lines.iter().filter(|l| !l.expectation.pass).count() {
+                    0 => Ok(ExitCode::Done),
+                    failed => Err(Failure::Unmet(format!("{failed} of {} references are not met", lines.len()))),
+                }
             })
         }
         Command::Mesh { command } => mesh::execute(command),
