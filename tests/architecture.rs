@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What each crate may name of the others. A new crate or arrow is entered here on purpose, or not at all.
-const ARROWS: [(&str, &[&str]); 11] = [
+const ARROWS: [(&str, &[&str]); 12] = [
     ("fractum-math", &[]),
     ("fractum-mesh", &["math"]),
     ("fractum-contact", &["math", "mesh"]),
@@ -16,7 +16,8 @@ const ARROWS: [(&str, &[&str]); 11] = [
     ("fractum-sparse", &["math"]),
     ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse"]),
     ("fractum-io", &["math", "mesh", "fem", "dem", "scene"]),
-    ("fractum", &["math", "mesh", "fem", "dem", "pack", "calibrate", "scene", "io"]),
+    ("fractum-prepare", &["math", "mesh", "dem", "pack", "calibrate", "scene", "io"]),
+    ("fractum", &["math", "mesh", "fem", "dem", "pack", "calibrate", "scene", "io", "prepare"]),
 ];
 
 /// Crates whose kernels take numbers: no files, no printing, no wall clock, nothing of the case format.

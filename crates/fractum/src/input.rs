@@ -8,9 +8,8 @@ use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics, read_case};
 use fractum_mesh::{Mesh, read_msh};
 
-use crate::bonded::{BondedReport, prepare_bodies};
-use crate::cache::Cache;
 use crate::error::Failure;
+use fractum_prepare::{BondedReport, Cache, choose, facets, prepare_bodies};
 
 /// A case with its mesh and the scene made of both.
 pub struct Input {
@@ -45,9 +44,9 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
     };
     check_groups(&case, &mesh)?;
     let made = prepare_bodies(&case, &mesh, cache)?;
-    let mut assembly = assemble(&case, &mesh, made.prepared, crate::loose::facets(&case)?)?;
+    let mut assembly = assemble(&case, &mesh, made.prepared, facets(&case)?)?;
     assembly.warnings.extend(made.warnings);
-    let choice = crate::choice::choose(&case, &mut assembly);
+    let choice = choose(&case, &mut assembly);
     Ok(Input { case, mesh, mesh_hash, assembly, bonded: made.reports, timings: made.timings, choice })
 }
 

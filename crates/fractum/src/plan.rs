@@ -12,8 +12,8 @@ use fractum_mesh::Mesh;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
 use fractum_scene::{BondedBody, Scene};
 
-use crate::bonded::{BondedReport, Origin};
 use crate::input::Input;
+use fractum_prepare::{BondedReport, Origin};
 
 /// Nanoseconds per element and step on one core of a common machine: standard, smoothed, smoothed with damage.
 const COST: [f64; 3] = [20.0, 45.0, 50.0];
@@ -398,7 +398,7 @@ impl Plan {
         // Few elements keep one thread busy only.
         let threads = rayon::current_num_threads().min(1 + elements / ELEMENTS_PER_THREAD);
         let seconds = 1e-9 * nanoseconds / threads as f64;
-        for (topic, text) in crate::choice::compare(case, assembly, seconds) {
+        for (topic, text) in fractum_prepare::compare(case, assembly, seconds) {
             self.add(topic, text);
         }
     }

@@ -16,7 +16,6 @@ use fractum_scene::statics::StaticSolver;
 use fractum_scene::{BondedBody, CountKind, Phase, Scene, SceneState, StepError};
 use serde::{Deserialize, Serialize};
 
-use crate::cache::Cache;
 use crate::cracks::{self, Columns};
 use crate::error::Failure;
 use crate::input::{Input, load};
@@ -25,6 +24,7 @@ use crate::quasi_static::{Quiet, StaticProgress};
 use crate::record::{RecordState, Recorder, index_of_max};
 use crate::report::{self, Notes};
 use crate::tell;
+use fractum_prepare::Cache;
 
 /// How a case is run.
 #[derive(Clone, Debug, Default)]

@@ -9,10 +9,10 @@ use fractum_io::expectation::{Expectation, Verified};
 use fractum_io::number::quantity;
 use fractum_io::summary::write_verify;
 
-use crate::cache::Cache;
 use crate::error::Failure;
 use crate::run::{Options, run};
 use crate::{say, tell};
+use fractum_prepare::Cache;
 
 /// What is verified, and where results go.
 #[derive(Clone, Debug)]

@@ -13,7 +13,7 @@ fn quick_cases_meet_their_references() {
         quick: true,
         output: output.path().to_owned(),
         threads: None,
-        cache: fractum::Cache::new(Some(output.path().join("cache"))),
+        cache: fractum_prepare::Cache::new(Some(output.path().join("cache"))),
     };
     let lines = verify(&selection).unwrap();
     let missed: Vec<String> = lines

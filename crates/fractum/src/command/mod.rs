@@ -190,14 +190,14 @@ fn report(failure: &Failure, json: bool) {
 
 /// The cache of packings and beams: the folder named by `FRACTUM_CACHE` (none if that is empty), else `fractum` among
 /// the caches of the user.
-fn cache() -> fractum::Cache {
+fn cache() -> fractum_prepare::Cache {
     let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     if std::env::var_os("FRACTUM_CACHE").is_some() {
-        return fractum::Cache::new(folder("FRACTUM_CACHE"));
+        return fractum_prepare::Cache::new(folder("FRACTUM_CACHE"));
     }
     let caches = folder("XDG_CACHE_HOME").or_else(|| folder("LOCALAPPDATA"));
     let caches = caches.or_else(|| folder("HOME").map(|home| home.join(".cache")));
-    fractum::Cache::new(caches.map(|caches| caches.join("fractum")))
+    fractum_prepare::Cache::new(caches.map(|caches| caches.join("fractum")))
 }
 
 fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {

@@ -140,7 +140,7 @@ fn group_surface(file: &Path, group: Option<&str>) -> Result<ClosedSurface, Fail
     if let Some(name) = group.filter(|name| mesh.group(name).is_empty()) {
         return Err(wrong(format!("no group \"{name}\"; groups here: {}", mesh.group_names().join(", "))));
     }
-    fractum::bonded::group_surface(&mesh, group).map_err(|error| wrong(error.to_string()))
+    fractum_prepare::group_surface(&mesh, group).map_err(|error| wrong(error.to_string()))
 }
 
 /// Reads a file.

@@ -105,7 +105,7 @@ fn read_table(file: &FileContent, unit: f64) -> Result<(Vec<Vec3>, Vec<f64>), Bo
 ///
 /// # Errors
 /// Files that hold no closed surface.
-pub(crate) fn facets(case: &Case) -> Result<Vec<PreparedFacets>, Diagnostics> {
+pub fn facets(case: &Case) -> Result<Vec<PreparedFacets>, Diagnostics> {
     let (mut all, mut errors) = (Vec::new(), Vec::new());
     for body in &case.bodies {
         let BodyKind::Rigid(rigid) = &body.kind else { continue };

@@ -22,7 +22,7 @@ const MOST_NODES: usize = 300_000;
 /// What the solvers would do with a case, line by line; empty where only motion can be meant.
 ///
 /// - `step_seconds`: estimated time of one explicit step [s]
-pub(crate) fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -> Vec<(&'static str, String)> {
+pub fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -> Vec<(&'static str, String)> {
     let scene = &mut assembly.scene;
     if scene.solid.body_count() == 0 {
         return Vec::new();
@@ -96,7 +96,7 @@ const STEP: f64 = 45.0;
 /// Settles a kind of solver that the case leaves open, and says why; nothing where it does not.
 ///
 /// The answer depends on case and mesh alone, so that another machine does the same.
-pub(crate) fn choose(case: &Case, assembly: &mut Assembly) -> Option<String> {
+pub fn choose(case: &Case, assembly: &mut Assembly) -> Option<String> {
     if case.solver.kind != SolverKind::Auto {
         return None;
     }
