@@ -1,6 +1,6 @@
 //! The strength of a criterion that gives a body its tensile strength.
 
-use fractum_dem::Criterion;
+use fractum_dem::FractureCriterion;
 use fractum_dem::criterion::{BeamRankine, EndMoments, Hydrostatic, Level, Principal};
 use fractum_pack::{Convention, Domain, PackSpec, pack};
 use serde::Serialize;
@@ -22,15 +22,17 @@ pub enum StrengthCriterion {
 
 impl StrengthCriterion {
     /// The criterion with a strength [Pa].
-    pub fn with(self, strength: f64) -> Criterion {
+    pub fn with(self, strength: f64) -> FractureCriterion {
         match self {
-            StrengthCriterion::Principal => Criterion::Principal(Principal {
+            StrengthCriterion::Principal => FractureCriterion::Principal(Principal {
                 tensile_strength: strength,
                 compressive_strength: None,
                 level: Level::Neighbours,
             }),
-            StrengthCriterion::Beam => Criterion::BeamRankine(BeamRankine { strength, moments: EndMoments::default() }),
-            StrengthCriterion::Hydrostatic => Criterion::Hydrostatic(Hydrostatic { strength }),
+            StrengthCriterion::Beam => {
+                FractureCriterion::BeamRankine(BeamRankine { strength, moments: EndMoments::default() })
+            }
+            StrengthCriterion::Hydrostatic => FractureCriterion::Hydrostatic(Hydrostatic { strength }),
         }
     }
 }
@@ -86,7 +88,7 @@ pub fn calibrate(samples: &[&Sample], asked: f64, criterion: StrengthCriterion) 
 }
 
 /// A tension test to the load peak.
-pub(crate) fn pull(sample: &Sample, asked: f64, criterion: Criterion) -> Result<lab::Broken, CalibrateError> {
+pub(crate) fn pull(sample: &Sample, asked: f64, criterion: FractureCriterion) -> Result<lab::Broken, CalibrateError> {
     if !(asked.is_finite() && asked > 0.0) {
         let expected = "a positive number of pascals";
         return Err(CalibrateError::Material { what: "tensile strength", value: asked, expected });
@@ -118,7 +120,7 @@ const STRENGTH_BOXES: (usize, u64) = (5_000, 2);
 ///
 /// # Errors
 /// Those of packing, bonding and breaking.
-pub fn strength_factor(bonds: &BondKind, asked: f64, criterion: Criterion) -> Result<f64, CalibrateError> {
+pub fn strength_factor(bonds: &BondKind, asked: f64, criterion: FractureCriterion) -> Result<f64, CalibrateError> {
     let (particles, packings) = STRENGTH_BOXES;
     let mut factor = 0.0;
     for seed in 1..=packings {

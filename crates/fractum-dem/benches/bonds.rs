@@ -3,7 +3,7 @@
 //! The body is a jittered cubic lattice in Morton-like order with about five bonds per particle (coordination 10),
 //! as a packing gives it.
 
-use fractum_dem::criterion::{Criterion, Level, Principal};
+use fractum_dem::criterion::{FractureCriterion, Level, Principal};
 use fractum_dem::{BeamNetwork, BeamSection, CrackFaces, Dof6, Fracture, Integrator, Lattice, Occasion, Particles};
 use fractum_math::Vec3;
 
@@ -80,7 +80,8 @@ fn watched(side: usize) -> Option<(BeamNetwork, Particles, Fracture)> {
     let mut particles = Particles::at_rest(position, vec![0.5; n], n as f64).ok()?;
     let principal = Principal { tensile_strength: 1e12, compressive_strength: None, level: Level::Neighbours };
     let faces = CrackFaces::default();
-    let fracture = Fracture::new(&bonds, &particles, Criterion::Principal(principal), faces, 0.52, n as f64).ok()?;
+    let fracture =
+        Fracture::new(&bonds, &particles, FractureCriterion::Principal(principal), faces, 0.52, n as f64).ok()?;
     particles.position.iter_mut().enumerate().for_each(|(i, x)| x.x += 1e-4 * (i as f64).sin());
     Some((bonds, particles, fracture))
 }

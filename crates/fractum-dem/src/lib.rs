@@ -5,13 +5,13 @@
 //! displacements in one solve. [`stress`] and [`strain`] turn its state into macroscopic fields.
 //!
 //! ```
-//! use fractum_dem::{BeamSection, Lattice, Supports, Tolerance};
+//! use fractum_dem::{BeamSection, Lattice, LatticeSupports, Tolerance};
 //! use fractum_math::Vec3;
 //! // Two particles one metre apart, pulled by 1 µm: the force is E S u/l.
 //! let position = [Vec3::zeros(), Vec3::x()];
 //! let section = BeamSection::new(70e9, 0.1)?;
 //! let lattice = Lattice::new(&position, &[[0, 1]], section, 0.5)?;
-//! let mut supports = Supports::none(2);
+//! let mut supports = LatticeSupports::none(2);
 //! for dof in 0..6 {
 //!     supports.set(0, dof, 0.0);
 //!     supports.set(1, dof, if dof == 0 { 1e-6 } else { 0.0 });
@@ -22,33 +22,24 @@
 //! ```
 
 mod bond;
-mod breaking;
-mod conjugate;
-pub mod crack_shape;
-pub mod criterion;
 mod error;
-mod face;
 mod fracture;
-mod graph;
-mod lattice;
-mod leapfrog;
+mod measure;
 mod particles;
-mod piece;
-mod static_body;
-pub mod strain;
-pub mod stress;
-mod watch;
+mod statics;
 
-pub use bond::{BeamEnergy, BeamForces, BeamNetwork, BeamSection, BondedPair, cohesive_beam, cohesive_beam_energy};
-pub use breaking::{Batch, Breaking, Crack, LoadPoint, Outcome, Point, QuasiStatic, Stage, quasi_static};
-pub use criterion::Criterion;
+pub use bond::{
+    BeamEnergy, BeamForces, BeamNetwork, BeamSection, BondGraph, BondedPair, HalfEdge, Parts, cohesive_beam,
+    cohesive_beam_energy,
+};
 pub use error::DemError;
-pub use face::{CrackFaces, FaceWork};
-pub use fracture::{Fracture, FractureState, Occasion};
-pub use graph::{BondGraph, HalfEdge, Parts};
-pub use lattice::{Dof6, Equilibrium, Lattice, Supports, Tolerance};
-pub use leapfrog::{Leap, LeapWork, ParticleDamping, PastForces};
-pub use particles::{Integrator, Particles};
-pub use piece::{Piece, pieces};
-pub use static_body::StaticBody;
-pub use watch::{Bonded, Break, Site, Watch};
+pub use fracture::{
+    Break, Crack, CrackFaces, FaceWork, FailureSearch, FailureSite, Fracture, FractureCriterion, FractureState,
+    LoadedBonds, Occasion, criterion,
+};
+pub use measure::{Piece, crack_shape, pieces, strain, stress};
+pub use particles::{Integrator, Leap, LeapWork, ParticleDamping, Particles, PastForces};
+pub use statics::{
+    Batch, Breaking, BreakingOutcome, CriticalLoad, Dof6, Equilibrium, Lattice, LatticeSupports, LoadPoint, LoadStage,
+    QuasiStatic, StaticBody, Tolerance, highest_frequency, quasi_static,
+};

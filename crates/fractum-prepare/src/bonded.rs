@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use fractum_calibrate::strength::{BondKind, strength_factor};
 use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Micro, Sample, prepare, suitable_coordination};
-use fractum_dem::{CrackFaces, Criterion};
+use fractum_dem::{CrackFaces, FractureCriterion};
 use fractum_io::assemble::PreparedBody;
 use fractum_io::case::model::{
     self, BodyKind, BondFailure, BondedBody, BondedShape, Case, PackingSource, ParticleSize,
@@ -65,7 +65,7 @@ pub struct BondedReport {
     /// Names and sizes of the wall sets.
     pub walls: Vec<(String, usize)>,
     /// When its bonds break, with where the strengths came from.
-    pub fracture: Option<(Criterion, Origin)>,
+    pub fracture: Option<(FractureCriterion, Origin)>,
 }
 
 /// All bodies of particles of a case.
@@ -134,7 +134,7 @@ struct BeamsKey {
 struct StrengthKey {
     bonds: BondKind,
     asked: f64,
-    criterion: Criterion,
+    criterion: FractureCriterion,
 }
 
 /// Beams as they are kept: with a checksum, so that a damaged entry is not believed.
@@ -253,7 +253,7 @@ impl Maker<'_> {
         sample: &Sample,
         micro: Micro,
         coordination: f64,
-    ) -> Result<(Criterion, Origin), Box<Diagnostic>> {
+    ) -> Result<(FractureCriterion, Origin), Box<Diagnostic>> {
         let Some(asked) = failure.tensile_strength else { return Ok((failure.criterion, Origin::Given)) };
         let (convention, dispersion) = (convention(self.bonded.convention), sample.packing.dispersion);
         let criterion = failure.criterion;

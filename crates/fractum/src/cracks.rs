@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use fractum_dem::Crack;
-use fractum_dem::criterion::Mode;
+use fractum_dem::criterion::BreakMode;
 use fractum_io::vtk::{Field, PolyCells, PolyData};
 use fractum_io::{Compression, atomic};
 
@@ -73,7 +73,7 @@ pub fn write_lines<'a>(
     cracks: impl Iterator<Item = &'a Crack> + Clone,
 ) -> Result<(), Failure> {
     let lines: Vec<[u32; 2]> = cracks.clone().map(|c| c.pair).collect();
-    let code = |mode: Mode| Mode::ALL.iter().position(|&m| m == mode).unwrap_or_default() as i32;
+    let code = |mode: BreakMode| BreakMode::ALL.iter().position(|&m| m == mode).unwrap_or_default() as i32;
     let modes: Vec<i32> = cracks.clone().map(|c| code(c.mode)).collect();
     let events: Vec<i32> = cracks.clone().map(|c| c.event as i32).collect();
     let column = |f: &dyn Fn(&Crack) -> f64| cracks.clone().map(f).collect::<Vec<f64>>();

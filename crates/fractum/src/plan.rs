@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fractum_dem::Criterion as BondCriterion;
+use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::Level;
 use fractum_fem::{Formulation, Kinematics, Plane, Shape};
 use fractum_io::assemble::{Assembly, TieReport};

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use fractum_dem::{Dof6, Equilibrium, Supports, Tolerance};
+use fractum_dem::{Dof6, Equilibrium, LatticeSupports, Tolerance};
 use fractum_math::Vec3;
 use fractum_pack::Domain;
 use serde::Serialize;
@@ -33,7 +33,7 @@ pub struct Torsion {
 /// The free face of a cantilever, and its supports: the set `x-` held fast.
 struct Cantilever<'a> {
     face: &'a [u32],
-    supports: Supports,
+    supports: LatticeSupports,
     axis: Vec3,
     length: f64,
     radius: f64,
@@ -47,7 +47,7 @@ fn cantilever<'a>(sample: &'a Sample, test: &'static str) -> Result<Cantilever<'
     else {
         return Err(shape);
     };
-    let mut supports = Supports::none(sample.packing.len());
+    let mut supports = LatticeSupports::none(sample.packing.len());
     held.iter().for_each(|&i| (0..6).for_each(|d| supports.set(i, d, 0.0)));
     Ok(Cantilever { face, supports, axis: start, length, radius })
 }

@@ -4,7 +4,7 @@ use fractum_dem::{BeamNetwork, BeamSection, Integrator, Particles};
 use fractum_math::Vec3;
 
 use super::vibration::{SAFETY, follow};
-use super::{Mode, Vibration};
+use super::{Vibration, VibrationMode};
 use crate::CalibrateError;
 
 /// Length of the chain from its first to its last particle [m].
@@ -27,7 +27,7 @@ const CLAMPED_FREE: (f64, f64) = (1.875_104_068_7, 0.734_095_514);
 ///
 /// # Errors
 /// Fewer than two particles.
-pub fn chain(mode: Mode, particles: usize) -> Result<Vibration, CalibrateError> {
+pub fn chain(mode: VibrationMode, particles: usize) -> Result<Vibration, CalibrateError> {
     if !(2..=100_000).contains(&particles) {
         return Err(CalibrateError::Shape { test: "chain", shape: "a row of 2 to 100,000 particles" });
     }
@@ -48,9 +48,9 @@ pub fn chain(mode: Mode, particles: usize) -> Result<Vibration, CalibrateError> 
         let place = body.position[i].x / length;
         let quarter = (0.5 * PI * place).sin();
         match mode {
-            Mode::Tension => body.velocity[i].x = speed * quarter,
-            Mode::Torsion => body.spin[i].x = speed / length * quarter,
-            Mode::Bending => {
+            VibrationMode::Tension => body.velocity[i].x = speed * quarter,
+            VibrationMode::Torsion => body.spin[i].x = speed / length * quarter,
+            VibrationMode::Bending => {
                 let (beta, sigma) = CLAMPED_FREE;
                 let b = beta * place;
                 body.velocity[i].y = 0.5 * speed * (b.cosh() - b.cos() - sigma * (b.sinh() - b.sin()));
@@ -60,15 +60,15 @@ pub fn chain(mode: Mode, particles: usize) -> Result<Vibration, CalibrateError> 
         }
     }
     let signal = |body: &Particles| match mode {
-        Mode::Tension => body.position[particles].x - LENGTH,
-        Mode::Bending => body.position[particles].y,
-        Mode::Torsion => body.orientation[particles].i,
+        VibrationMode::Tension => body.position[particles].x - LENGTH,
+        VibrationMode::Bending => body.position[particles].y,
+        VibrationMode::Torsion => body.orientation[particles].i,
     };
     let theory = match mode {
-        Mode::Tension => 4.0 * length * wave,
+        VibrationMode::Tension => 4.0 * length * wave,
         // √(S/I) = 2/R.
-        Mode::Bending => 2.0 * PI / CLAMPED_FREE.0.powi(2) * length * length * wave * 2.0 / RADIUS,
-        Mode::Torsion => 0.8f64.sqrt() * 4.0 * length * wave * (2.0 * (1.0 + poisson)).sqrt(),
+        VibrationMode::Bending => 2.0 * PI / CLAMPED_FREE.0.powi(2) * length * length * wave * 2.0 / RADIUS,
+        VibrationMode::Torsion => 0.8f64.sqrt() * 4.0 * length * wave * (2.0 * (1.0 + poisson)).sqrt(),
     };
     let dt = bonds.stable_step(&body, SAFETY);
     let (period, steps) = follow(dt, theory, 0.0, || {
@@ -87,11 +87,13 @@ mod tests {
 
     #[test]
     fn chains_vibrate_with_the_periods_of_a_clamped_bar() {
-        for (mode, allowed) in [(Mode::Tension, 2e-3), (Mode::Bending, 1e-2), (Mode::Torsion, 2e-3)] {
+        for (mode, allowed) in
+            [(VibrationMode::Tension, 2e-3), (VibrationMode::Bending, 1e-2), (VibrationMode::Torsion, 2e-3)]
+        {
             let found = chain(mode, 40).unwrap();
             let difference = found.period / found.theory - 1.0;
             assert!(difference.abs() < allowed, "{mode:?}: {difference}");
         }
-        assert!(chain(Mode::Tension, 1).is_err());
+        assert!(chain(VibrationMode::Tension, 1).is_err());
     }
 }

@@ -23,12 +23,12 @@ impl Gauge {
         if set.len() < 30 {
             return None;
         }
-        let dyads = stress::particle_dyads(position.len(), |visit| {
+        let virials = stress::particle_virials(position.len(), |visit| {
             sample.lattice.bond_forces(&rest.state, |i, j, force| visit(i, j, position[j] - position[i], force));
         });
         let sphere = |r: &f64| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3);
         let volume: Vec<f64> = sample.packing.radius.iter().map(sphere).collect();
-        let stress = stress::mean_stress(&dyads, &volume, sample.fraction, set.iter().copied());
+        let stress = stress::mean_stress(&virials, &volume, sample.fraction, set.iter().copied());
         let displacement = |i: usize| Vec3::new(rest.state[i][0], rest.state[i][1], rest.state[i][2]);
         let strain = strain::best_fit(set.iter().map(|&i| (position[i], displacement(i))))?;
         Some(Gauge { particles: set.len(), stress: stress.0, strain: strain.0 })

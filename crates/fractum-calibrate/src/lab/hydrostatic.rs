@@ -1,4 +1,4 @@
-use fractum_dem::{Dof6, Equilibrium, Supports, Tolerance};
+use fractum_dem::{Dof6, Equilibrium, LatticeSupports, Tolerance};
 use fractum_pack::Domain;
 use serde::Serialize;
 
@@ -30,7 +30,7 @@ pub fn hydrostatic(sample: &Sample, tolerance: Tolerance) -> Result<(Hydrostatic
     let (pressure, rest) = match &sample.packing.domain {
         Domain::Box { .. } => {
             let extents = sample.box_extents().unwrap_or(upper - lower);
-            let mut supports = Supports::none(position.len());
+            let mut supports = LatticeSupports::none(position.len());
             for (axis, (low, high)) in [("x-", "x+"), ("y-", "y+"), ("z-", "z+")].into_iter().enumerate() {
                 for (wall, sign) in [(low, 1.0), (high, -1.0)] {
                     let set = sample.packing.wall(wall).unwrap_or_default();
@@ -43,7 +43,7 @@ pub fn hydrostatic(sample: &Sample, tolerance: Tolerance) -> Result<(Hydrostatic
         }
         Domain::Sphere { .. } => {
             let radius = sample.sphere_radius().unwrap_or(0.5 * (upper.x - lower.x));
-            let mut supports = Supports::none(position.len());
+            let mut supports = LatticeSupports::none(position.len());
             for &i in sample.packing.wall("radius").unwrap_or_default() {
                 let inward = (centre - position[i as usize]).normalize() * (STRAIN * radius);
                 (0..3).for_each(|axis| supports.set(i, axis, inward[axis]));

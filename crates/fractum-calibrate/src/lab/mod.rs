@@ -20,7 +20,7 @@ pub use gauge::Gauge;
 pub use hydrostatic::{Hydrostatic, hydrostatic};
 pub use shear::{Shear, shear};
 pub use tension::{Tension, tension};
-pub use vibration::{Impact, Mode, Vibration, impact, vibration};
+pub use vibration::{Impact, Vibration, VibrationMode, impact, vibration};
 
 use fractum_dem::Dof6;
 use fractum_math::Vec3;

@@ -1,4 +1,4 @@
-use fractum_dem::{Dof6, Equilibrium, Supports, Tolerance};
+use fractum_dem::{Dof6, Equilibrium, LatticeSupports, Tolerance};
 use fractum_math::Vec3;
 use fractum_pack::Domain;
 use serde::Serialize;
@@ -34,7 +34,7 @@ pub fn shear(sample: &Sample, tolerance: Tolerance) -> Result<(Shear, Equilibriu
     let (fx, fy) = (outside(0), outside(1));
     let field = |x: &Vec3| Vec3::new((x.y - centre.y) * fy, (x.x - centre.x) * fx, 0.0) * (0.5 * STRAIN);
     let affine: Vec<Dof6> = position.iter().map(|x| translation(field(x))).collect();
-    let mut supports = Supports::none(position.len());
+    let mut supports = LatticeSupports::none(position.len());
     for wall in ["x-", "x+", "y-", "y+"] {
         for &i in sample.packing.wall(wall).unwrap_or_default() {
             let u = field(&position[i as usize]);

@@ -1,4 +1,4 @@
-use fractum_dem::{Equilibrium, Supports, Tolerance};
+use fractum_dem::{Equilibrium, LatticeSupports, Tolerance};
 use fractum_math::Vec3;
 use fractum_pack::Domain;
 use serde::Serialize;
@@ -48,7 +48,7 @@ pub fn tension(
     };
     // Opposite displacements that strain the measured length by STRAIN.
     let half = 0.5 * STRAIN * length;
-    let mut supports = Supports::none(position.len());
+    let mut supports = LatticeSupports::none(position.len());
     first.iter().for_each(|&i| supports.set(i, axis, -half));
     last.iter().for_each(|&i| supports.set(i, axis, half));
     let rest = match guess {

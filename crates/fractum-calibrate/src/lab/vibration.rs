@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use fractum_dem::{BeamNetwork, Integrator, Particles, Supports, Tolerance};
+use fractum_dem::{BeamNetwork, Integrator, LatticeSupports, Particles, Tolerance};
 use fractum_math::{Rotation, Vec3};
 use fractum_pack::Domain;
 use serde::Serialize;
@@ -12,7 +12,7 @@ use crate::{CalibrateError, Sample};
 /// How a cylinder held at `x-` vibrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Mode {
+pub enum VibrationMode {
     /// Along its axis.
     Tension,
     /// Across its axis.
@@ -91,7 +91,7 @@ impl Body {
 /// Another shape; a static solve that does not converge.
 pub fn vibration(
     sample: &Sample,
-    mode: Mode,
+    mode: VibrationMode,
     density: f64,
     young_modulus: f64,
     poisson_ratio: f64,
@@ -102,10 +102,10 @@ pub fn vibration(
     };
     let tolerance = Tolerance::default();
     let rest = match mode {
-        Mode::Bending => bending(sample, tolerance)?.1,
-        Mode::Torsion => torsion(sample, tolerance)?.1,
-        Mode::Tension => {
-            let mut supports = Supports::none(sample.packing.len());
+        VibrationMode::Bending => bending(sample, tolerance)?.1,
+        VibrationMode::Torsion => torsion(sample, tolerance)?.1,
+        VibrationMode::Tension => {
+            let mut supports = LatticeSupports::none(sample.packing.len());
             held.iter().for_each(|&i| (0..6).for_each(|d| supports.set(i, d, 0.0)));
             face.iter().for_each(|&i| supports.set(i, 0, STRAIN * body.length));
             let stretch = |x: &Vec3| translation(Vec3::x() * (STRAIN * (x.x - body.axis.x)));
@@ -125,19 +125,19 @@ pub fn vibration(
         let of = |(&i, x0): (&u32, &Vec3)| {
             let u = particles.position[i as usize] - x0;
             match mode {
-                Mode::Tension => u.x,
-                Mode::Bending => u.y,
-                Mode::Torsion => (x0.y - axis.y) * u.z - (x0.z - axis.z) * u.y,
+                VibrationMode::Tension => u.x,
+                VibrationMode::Bending => u.y,
+                VibrationMode::Torsion => (x0.y - axis.y) * u.z - (x0.z - axis.z) * u.y,
             }
         };
         face.iter().zip(&start).map(of).sum()
     };
     let wave = (density / young_modulus).sqrt();
     let theory = match mode {
-        Mode::Tension => 4.0 * body.length * wave,
+        VibrationMode::Tension => 4.0 * body.length * wave,
         // 2π/1.8751² = 1.787; √(S/I) = 2/R.
-        Mode::Bending => 2.0 * PI / 1.875_104_f64.powi(2) * body.length.powi(2) * wave * 2.0 / body.radius,
-        Mode::Torsion => 4.0 * body.length * wave * (2.0 * (1.0 + poisson_ratio)).sqrt(),
+        VibrationMode::Bending => 2.0 * PI / 1.875_104_f64.powi(2) * body.length.powi(2) * wave * 2.0 / body.radius,
+        VibrationMode::Torsion => 4.0 * body.length * wave * (2.0 * (1.0 + poisson_ratio)).sqrt(),
     };
     let dt = body.dt;
     let first = signal(&body.particles);

@@ -1,20 +1,18 @@
 use std::ops::Add;
 
-use fractum_math::{Rotation, Sym3, Vec3, largest_eigenvalue};
-use nalgebra::{Matrix6, Vector6};
+use fractum_math::{Rotation, Sym3, Vec3};
+use nalgebra::Matrix6;
 use rayon::prelude::*;
 
-use super::cohesive_beam::{BeamEnergy, BondedPair, beam, cohesive_beam_energy};
 use super::lanes::{Lanes, Vector, dot};
-use super::{BeamSection, cohesive_beam};
-use crate::{DemError, Lattice, Particles};
+use super::law::{BeamEnergy, BeamForces, BeamSection, BondedPair, beam, cohesive_beam, cohesive_beam_energy};
+use crate::DemError;
+use crate::particles::Particles;
 
 /// Bonds computed side by side.
 const WIDTH: usize = 8;
 /// Particles whose bonds form one block of parallel work.
 const BLOCK: usize = 2048;
-/// Products of the Lanczos process for the highest frequency.
-const LANCZOS_STEPS: usize = 48;
 
 /// The cohesive beams of a body, ready for many time steps.
 ///
@@ -44,10 +42,10 @@ struct Block {
     partners: Vec<u32>,
     /// Sums of forces and moments: own particles, then partners.
     sums: Vec<[f64; 6]>,
-    /// Sums of the dyads of forces and arms, where they are wanted.
-    dyads: Vec<[f64; 6]>,
-    /// Sums of the bounds of these dyads, where they are wanted.
-    pulls: Vec<[f64; 2]>,
+    /// Sums of the virials of forces and arms, where they are wanted.
+    virials: Vec<[f64; 6]>,
+    /// Sums of the bounds of these virials, where they are wanted.
+    virial_bounds: Vec<[f64; 2]>,
     /// Sums that other blocks hold for particles of this one: (block, slot, own particle).
     incoming: Vec<(u32, u32, u32)>,
 }
@@ -66,8 +64,8 @@ struct Group {
 
 /// What a pass over the bonds sums beside forces.
 const NOTHING: u8 = 0;
-const DYADS: u8 = 1;
-const PULLS: u8 = 2;
+const VIRIALS: u8 = 1;
+const BOUNDS: u8 = 2;
 
 impl BeamNetwork {
     /// Bonds particles at their present distances; their orientations count from now on.
@@ -159,34 +157,34 @@ impl BeamNetwork {
         self.add_forces_of::<NOTHING>(particles);
     }
 
-    /// [`BeamNetwork::add_forces`], which also keeps what [`BeamNetwork::dyads`] tells of these forces.
-    pub fn add_forces_and_dyads(&mut self, particles: &mut Particles) {
-        self.add_forces_of::<DYADS>(particles);
+    /// [`BeamNetwork::add_forces`], which also keeps what [`BeamNetwork::virials`] tells of these forces.
+    pub fn add_forces_and_virials(&mut self, particles: &mut Particles) {
+        self.add_forces_of::<VIRIALS>(particles);
     }
 
-    /// [`BeamNetwork::add_forces`], which also keeps what [`BeamNetwork::pulls`] tells of these forces: a third of the work
-    /// that dyads are.
-    pub fn add_forces_and_pulls(&mut self, particles: &mut Particles) {
-        self.add_forces_of::<PULLS>(particles);
+    /// [`BeamNetwork::add_forces`], which also keeps what [`BeamNetwork::virial_bounds`] tells of these forces: a third of the work
+    /// that virials are.
+    pub fn add_forces_and_virial_bounds(&mut self, particles: &mut Particles) {
+        self.add_forces_of::<BOUNDS>(particles);
     }
 
-    /// Finds the dyads at the present positions, and leaves forces as they are.
-    pub fn find_dyads(&mut self, particles: &Particles) {
+    /// Finds the virials at the present positions, and leaves forces as they are.
+    pub fn find_virials(&mut self, particles: &Particles) {
         let Particles { position, orientation, .. } = particles;
         let section = self.section;
-        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<false, DYADS>(position, orientation, &section));
+        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<false, VIRIALS>(position, orientation, &section));
     }
 
-    /// Bounds of the principal values of the dyads [N m], as at the last [`BeamNetwork::add_forces_and_pulls`]: the sums of
+    /// Bounds of the principal values of the virials [N m], as at the last [`BeamNetwork::add_forces_and_virial_bounds`]: the sums of
     /// the largest ones of each bond, and of the smallest ones with their sign changed. ½ sym(r ⊗ f) has the principal
     /// values ¼ (r·f ± |r| |f|) and 0, and the largest one of a sum is at most the sum of the largest ones.
-    pub fn pulls(&self, out: &mut [[f64; 2]]) {
+    pub fn virial_bounds(&self, out: &mut [[f64; 2]]) {
         let blocks = &self.blocks;
         out.par_chunks_mut(BLOCK).zip(blocks).for_each(|(out, block)| {
             out.fill([0.0; 2]);
-            out.iter_mut().zip(&block.pulls).for_each(|(out, sum)| *out = *sum);
+            out.iter_mut().zip(&block.virial_bounds).for_each(|(out, sum)| *out = *sum);
             for &(from, slot, own) in &block.incoming {
-                if let Some(sum) = blocks[from as usize].pulls.get(slot as usize) {
+                if let Some(sum) = blocks[from as usize].virial_bounds.get(slot as usize) {
                     (0..2).for_each(|k| out[own as usize][k] += sum[k]);
                 }
             }
@@ -194,15 +192,15 @@ impl BeamNetwork {
     }
 
     /// Half the sums of sym(r_ij ⊗ f_ij) over the bonds of each particle [N m], as at the last
-    /// [`BeamNetwork::add_forces_and_dyads`] or [`BeamNetwork::find_dyads`]; zero before it.
-    pub fn dyads(&self, out: &mut [Sym3]) {
+    /// [`BeamNetwork::add_forces_and_virials`] or [`BeamNetwork::find_virials`]; zero before it.
+    pub fn virials(&self, out: &mut [Sym3]) {
         let blocks = &self.blocks;
         out.par_chunks_mut(BLOCK).zip(blocks).for_each(|(out, block)| {
             out.fill(Sym3::ZERO);
             // Components of Voigt order xx yy zz xy yz zx; the sums hold them so.
-            out.iter_mut().zip(&block.dyads).for_each(|(out, sum)| *out = Sym3(*sum));
+            out.iter_mut().zip(&block.virials).for_each(|(out, sum)| *out = Sym3(*sum));
             for &(from, slot, own) in &block.incoming {
-                if let Some(sum) = blocks[from as usize].dyads.get(slot as usize) {
+                if let Some(sum) = blocks[from as usize].virials.get(slot as usize) {
                     out[own as usize] += Sym3(*sum);
                 }
             }
@@ -246,7 +244,7 @@ impl BeamNetwork {
     }
 
     /// Force of a live bond on its second particle and the moments on both; see [`cohesive_beam`].
-    pub fn forces_of(&self, bond: usize, particles: &Particles) -> super::BeamForces {
+    pub fn forces_of(&self, bond: usize, particles: &Particles) -> BeamForces {
         cohesive_beam(&self.pair(bond, particles), &self.section)
     }
 
@@ -265,35 +263,6 @@ impl BeamNetwork {
             .map(|c| chunk(c * BLOCK..((c + 1) * BLOCK).min(self.len())))
             .collect();
         parts.into_iter().fold(BeamEnergy::default(), BeamEnergy::add)
-    }
-
-    /// Highest natural frequency ω [rad/s] of particles `range`, which hold all ends of these bonds, by the Lanczos process
-    /// on the linear stiffness of the live ones; it converges from below, and the value carries a margin of 2 %. Breaking
-    /// bonds only lowers it.
-    pub fn highest_frequency(&self, particles: &Particles, range: std::ops::Range<usize>) -> Result<f64, DemError> {
-        let own = |i: u32| i - range.start as u32;
-        let live = self.pairs.iter().zip(&self.live).filter(|(_, live)| **live);
-        let pairs: Vec<[u32; 2]> = live.map(|(pair, _)| pair.map(own)).collect();
-        let position = &particles.position[range.clone()];
-        // Rotations times this length have the inertia of a displacement of the largest particle.
-        let scale = particles.radius[range.clone()].iter().copied().fold(0.0, f64::max);
-        let lattice = Lattice::new(position, &pairs, self.section, scale)?;
-        let root = |i: usize| {
-            let (mass, inertia) = (particles.mass[range.start + i], particles.inertia[range.start + i]);
-            (1.0 / mass.sqrt(), scale / inertia.sqrt())
-        };
-        let scaled = |i: usize, v: &[f64; 6]| -> [f64; 6] {
-            let (move_by, turn_by) = root(i);
-            std::array::from_fn(|a| v[a] * if a < 3 { move_by } else { turn_by })
-        };
-        let free = vec![0; position.len()];
-        let (mut x, mut force) = (vec![[0.0; 6]; position.len()], vec![[0.0; 6]; position.len()]);
-        let square = largest_eigenvalue(position.len(), LANCZOS_STEPS, |q: &[Vector6<f64>]| {
-            x.iter_mut().zip(q).enumerate().for_each(|(i, (x, q))| *x = scaled(i, &q.data.0[0]));
-            lattice.apply(&x, &free, &mut force);
-            force.iter().enumerate().map(|(i, f)| Vector6::from(scaled(i, f))).collect()
-        });
-        Ok(1.02 * square.sqrt())
     }
 
     /// A time step that is certainly stable, 2/ω with a bound on ω from the assembled stiffness, times `safety`
@@ -377,7 +346,16 @@ impl Block {
             })
             .collect();
         let sums = vec![[0.0; 6]; count + partners.len()];
-        Block { start, count, groups, partners, sums, dyads: Vec::new(), pulls: Vec::new(), incoming: Vec::new() }
+        Block {
+            start,
+            count,
+            groups,
+            partners,
+            sums,
+            virials: Vec::new(),
+            virial_bounds: Vec::new(),
+            incoming: Vec::new(),
+        }
     }
 
     /// Sums what is wanted of the bonds.
@@ -388,20 +366,20 @@ impl Block {
         section: &BeamSection,
     ) {
         debug_assert!(self.start + self.count <= position.len());
-        let Block { groups, sums, dyads, pulls, .. } = self;
+        let Block { groups, sums, virials, virial_bounds, .. } = self;
         if FORCES {
             sums.fill([0.0; 6]);
         }
         if BESIDE != NOTHING {
             // Both at once, so that no later step allocates.
-            dyads.resize(sums.len(), [0.0; 6]);
-            pulls.resize(sums.len(), [0.0; 2]);
+            virials.resize(sums.len(), [0.0; 6]);
+            virial_bounds.resize(sums.len(), [0.0; 2]);
         }
-        if BESIDE == DYADS {
-            dyads.fill([0.0; 6]);
+        if BESIDE == VIRIALS {
+            virials.fill([0.0; 6]);
         }
-        if BESIDE == PULLS {
-            pulls.fill([0.0; 2]);
+        if BESIDE == BOUNDS {
+            virial_bounds.fill([0.0; 2]);
         }
         for group in groups {
             let (mut gap, mut turns) = ([[0.0; WIDTH]; 3], [[[0.0; WIDTH]; 4]; 2]);
@@ -436,7 +414,7 @@ impl Block {
                     other[a + 3] += second[a].0[k];
                 }
             }
-            if BESIDE == PULLS {
+            if BESIDE == BOUNDS {
                 let quarter = Lanes::splat(0.25);
                 // The force on the first particle is the opposite of `force`.
                 let along = dot(arm, force) * quarter;
@@ -444,21 +422,21 @@ impl Block {
                 let (most, least) = (size - along, size + along);
                 for k in 0..WIDTH {
                     for end in 0..2 {
-                        let sum = &mut pulls[group.slots[end][k] as usize];
+                        let sum = &mut virial_bounds[group.slots[end][k] as usize];
                         sum[0] += most.0[k];
                         sum[1] += least.0[k];
                     }
                 }
             }
-            if BESIDE == DYADS {
+            if BESIDE == VIRIALS {
                 // ½ sym(r ⊗ f) is the same at both ends; the force on the first particle is the opposite of `force`.
                 let quarter = Lanes::splat(-0.25);
                 let part = |a: usize, b: usize| (arm[a] * force[b] + arm[b] * force[a]) * quarter;
-                let dyad = [part(0, 0), part(1, 1), part(2, 2), part(0, 1), part(1, 2), part(2, 0)];
+                let virial = [part(0, 0), part(1, 1), part(2, 2), part(0, 1), part(1, 2), part(2, 0)];
                 for k in 0..WIDTH {
                     for end in 0..2 {
-                        let sum = &mut dyads[group.slots[end][k] as usize];
-                        (0..6).for_each(|c| sum[c] += dyad[c].0[k]);
+                        let sum = &mut virials[group.slots[end][k] as usize];
+                        (0..6).for_each(|c| sum[c] += virial[c].0[k]);
                     }
                 }
             }

@@ -1,7 +1,7 @@
 //! Bonded bodies at rest: the load rises from break to break, see [`fractum_dem::QuasiStatic`].
 
-use fractum_dem::criterion::{BeamRankine, Criterion, EndMoments};
-use fractum_dem::{Batch, BeamEnergy, Breaking, Crack, Lattice, QuasiStatic, Stage, Supports, Tolerance};
+use fractum_dem::criterion::{BeamRankine, EndMoments, FractureCriterion};
+use fractum_dem::{Batch, BeamEnergy, Breaking, Crack, Lattice, LatticeSupports, LoadStage, QuasiStatic, Tolerance};
 use fractum_math::{Rotation, Vec3};
 
 use super::{Bonded, BondedBody, Closest};
@@ -32,7 +32,7 @@ pub struct BondedStatics {
     settings: BondedStaticSettings,
     /// Particle, axis and displacement of what moves, at the end.
     prescribed: Vec<(u32, usize, f64)>,
-    stage: Stage,
+    stage: LoadStage,
     /// Work of the supports from none to all of their way, were nothing to break, times two [J].
     push: f64,
     /// Work of the supports so far [J].
@@ -42,7 +42,8 @@ pub struct BondedStatics {
 }
 
 /// A criterion that nothing meets, for bodies without one.
-const UNBREAKABLE: Criterion = Criterion::BeamRankine(BeamRankine { strength: f64::MAX, moments: EndMoments::Mean });
+const UNBREAKABLE: FractureCriterion =
+    FractureCriterion::BeamRankine(BeamRankine { strength: f64::MAX, moments: EndMoments::Mean });
 
 impl BondedStatics {
     /// Brings the body to its first equilibrium.
@@ -56,7 +57,7 @@ impl BondedStatics {
         let all = &bonded.particles;
         let mean_radius = all.radius.iter().sum::<f64>() / all.len().max(1) as f64;
         let lattice = Lattice::new(&bonded.reference, body.bonds.pairs(), body.bonds.section(), mean_radius)?;
-        let mut supports = Supports::none(all.len());
+        let mut supports = LatticeSupports::none(all.len());
         for (i, held) in (0..).zip(&all.held) {
             (0..6).filter(|d| held >> d & 1 == 1).for_each(|d| supports.set(i, d, 0.0));
         }
@@ -79,14 +80,14 @@ impl BondedStatics {
         };
         let run = QuasiStatic::new(lattice, supports, &guess, &what)?;
         let mut statics =
-            BondedStatics { run, settings, prescribed, stage: Stage::Failing, push: 0.0, work: 0.0, sudden: 0.0 };
+            BondedStatics { run, settings, prescribed, stage: LoadStage::Failing, push: 0.0, work: 0.0, sudden: 0.0 };
         statics.push = statics.push_of_supports();
         Ok(statics)
     }
 
     /// Whether the body has come apart, holds at the end, or has used up its steps.
     pub fn is_finished(&self, scene: &Scene) -> bool {
-        self.stage != Stage::Failing || scene.clock.step >= self.settings.most_steps
+        self.stage != LoadStage::Failing || scene.clock.step >= self.settings.most_steps
     }
 
     /// Equilibria found, and iterations for all of them.
@@ -102,7 +103,7 @@ impl BondedStatics {
     /// Moves the supports on to the next failure and brings the scene there.
     pub fn rise(&mut self, scene: &mut Scene) {
         let before = self.run.factor();
-        let (point, stage) = self.run.rise(|_| false);
+        let (point, stage) = self.run.load_to_next_failure(|_| false);
         self.stage = stage;
         self.work += 0.5 * self.push * (self.run.factor().powi(2) - before.powi(2));
         let time = point.displacement * self.settings.end;
@@ -139,13 +140,13 @@ impl BondedStatics {
     /// # Errors
     /// [`StepError::NoBondedEquilibrium`].
     pub fn release(&mut self, scene: &mut Scene) -> Result<(), StepError> {
-        if self.stage != Stage::Failing {
+        if self.stage != LoadStage::Failing {
             return Ok(());
         }
         let before = self.run.cracks().len();
         let square = self.run.factor().powi(2);
         let elastic = square * self.run.body().energy();
-        self.run.release().map_err(|error| StepError::NoBondedEquilibrium {
+        self.run.break_and_rebalance().map_err(|error| StepError::NoBondedEquilibrium {
             step: scene.clock.step,
             time: scene.clock.time,
             error,
@@ -167,6 +168,6 @@ impl BondedStatics {
 fn note_closest(body: &mut BondedBody, run: &QuasiStatic, reference: &[Vec3], time: f64) {
     let Some((fracture, site)) = body.fracture.as_ref().zip(run.closest()) else { return };
     if body.closest.is_none_or(|known| site.ratio > known.ratio) {
-        body.closest = Some(Closest { ratio: site.ratio, place: fracture.place(&site, reference), time });
+        body.closest = Some(Closest { ratio: site.ratio, place: fracture.position_of(&site, reference), time });
     }
 }

@@ -9,8 +9,8 @@ use std::ops::Range;
 
 use fractum_contact::ContactWork;
 use fractum_dem::{
-    BeamEnergy, BeamNetwork, BeamSection, Crack, CrackFaces, Criterion, Fracture, FractureState, Leap, LeapWork,
-    Occasion, ParticleDamping, Particles, PastForces,
+    BeamEnergy, BeamNetwork, BeamSection, Crack, CrackFaces, Fracture, FractureCriterion, FractureState, Leap,
+    LeapWork, Occasion, ParticleDamping, Particles, PastForces, highest_frequency,
 };
 use fractum_fem::LocalDamping;
 use fractum_math::{Rotation, Vec3};
@@ -47,7 +47,7 @@ pub struct BondedPart {
 #[derive(Clone, Copy, Debug)]
 pub struct BondFracture {
     /// The criterion, with its own strengths.
-    pub criterion: Criterion,
+    pub criterion: FractureCriterion,
     /// What crack faces do.
     pub faces: CrackFaces,
     /// Volume fraction of the interior of the packing.
@@ -212,7 +212,7 @@ impl Bonded {
             highest = highest.max(if body.can_break() {
                 body.bound(&self.particles)
             } else {
-                body.bonds.highest_frequency(&self.particles, body.range.clone())?
+                highest_frequency(&body.bonds, &self.particles, body.range.clone())?
             });
         }
         self.frequency = self.frequency.min(highest);
@@ -361,10 +361,10 @@ impl Bonded {
         for BondedBody { bonds, fracture, closest, range, .. } in bodies {
             let Some(fracture) = fracture else { continue };
             if step.is_multiple_of(STEPS_BETWEEN_SEARCHES) {
-                fracture.meet_strangers(bonds, particles, range.clone());
+                fracture.find_new_pairs(bonds, particles, range.clone());
             }
             if measure && let Some(site) = fracture.closest(bonds, particles) {
-                let place = fracture.place(&site, reference);
+                let place = fracture.position_of(&site, reference);
                 if closest.is_none_or(|known| site.ratio > known.ratio) {
                     *closest = Some(Closest { ratio: site.ratio, place, time });
                 }

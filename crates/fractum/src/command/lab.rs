@@ -141,9 +141,9 @@ fn test(arguments: &TestArguments) -> Result<(), Failure> {
                 let tension = lab::tension(&sample, 0, None, tolerance)?.0;
                 let (young, poisson) = (tension.young_modulus, tension.poisson_ratio);
                 let mode = match timed {
-                    Test::TensionPeriod => lab::Mode::Tension,
-                    Test::BendingPeriod => lab::Mode::Bending,
-                    Test::TorsionPeriod => lab::Mode::Torsion,
+                    Test::TensionPeriod => lab::VibrationMode::Tension,
+                    Test::BendingPeriod => lab::VibrationMode::Bending,
+                    Test::TorsionPeriod => lab::VibrationMode::Torsion,
                     _ => return Ok(serde_json::to_value(lab::impact(&sample, density, young)?).unwrap_or_default()),
                 };
                 serde_json::to_value(lab::vibration(&sample, mode, density, young, poisson)?)
@@ -158,7 +158,7 @@ fn test(arguments: &TestArguments) -> Result<(), Failure> {
 
 fn chain(particles: usize) -> Result<(), CalibrateError> {
     say!("mode     period [s]   of theory [s]   difference");
-    for mode in [lab::Mode::Tension, lab::Mode::Bending, lab::Mode::Torsion] {
+    for mode in [lab::VibrationMode::Tension, lab::VibrationMode::Bending, lab::VibrationMode::Torsion] {
         let lab::Vibration { period, theory, .. } = lab::chain(mode, particles)?;
         let name = format!("{mode:?}").to_lowercase();
         say!("{name:8} {period:.6e} {theory:.6e}    {:+.3} %", 100.0 * (period / theory - 1.0));

@@ -9,7 +9,7 @@ use fractum::cracks::{self, Columns};
 use fractum::{Failure, say};
 use fractum_calibrate::{Micro, Sample, lab, published};
 use fractum_dem::criterion::{
-    BeamRankine, Criterion, DruckerPrager, EndMoments, Hydrostatic, Level, Mode, MohrCoulomb, Principal,
+    BeamRankine, BreakMode, DruckerPrager, EndMoments, FractureCriterion, Hydrostatic, Level, MohrCoulomb, Principal,
 };
 use fractum_dem::{Batch, CrackFaces, Dof6, LoadPoint, Particles, Piece, pieces};
 use fractum_io::case::{Dimension, parse_quantity};
@@ -148,7 +148,7 @@ impl From<Test> for lab::Failure {
 const DEFAULT_STRENGTH: f64 = 50e6;
 
 impl BreakArguments {
-    fn criterion(&self, sample: &Sample) -> Result<Criterion, Failure> {
+    fn criterion(&self, sample: &Sample) -> Result<FractureCriterion, Failure> {
         let tensile_strength = match &self.strength {
             Some(text) => pressure(text)?,
             None => DEFAULT_STRENGTH / published::strength_ratio(self.radius_ratio, sample.network.coordination_all),
@@ -162,22 +162,26 @@ impl BreakArguments {
                     Moments::Mean => EndMoments::Mean,
                     Moments::Largest => EndMoments::Largest,
                 };
-                Criterion::BeamRankine(BeamRankine { strength: tensile_strength, moments })
+                FractureCriterion::BeamRankine(BeamRankine { strength: tensile_strength, moments })
             }
-            Kind::Hydrostatic => Criterion::Hydrostatic(Hydrostatic { strength: tensile_strength }),
+            Kind::Hydrostatic => FractureCriterion::Hydrostatic(Hydrostatic { strength: tensile_strength }),
             Kind::Principal => {
                 // Pressed samples need a strength in compression; elsewhere it is there when asked for.
                 let pressed = matches!(self.test, Test::Compression).then_some(compressive_strength);
-                Criterion::Principal(Principal { tensile_strength, compressive_strength: given.or(pressed), level })
+                FractureCriterion::Principal(Principal {
+                    tensile_strength,
+                    compressive_strength: given.or(pressed),
+                    level,
+                })
             }
-            Kind::MohrCoulomb => Criterion::MohrCoulomb(MohrCoulomb {
+            Kind::MohrCoulomb => FractureCriterion::MohrCoulomb(MohrCoulomb {
                 tensile_strength,
                 compressive_strength,
                 friction_angle: self.friction_angle.to_radians(),
                 level,
             }),
             Kind::DruckerPrager => {
-                Criterion::DruckerPrager(DruckerPrager { tensile_strength, compressive_strength, level })
+                FractureCriterion::DruckerPrager(DruckerPrager { tensile_strength, compressive_strength, level })
             }
         })
     }
@@ -236,7 +240,7 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
 }
 
 /// What the terminal shows.
-fn show(sample: &Sample, test: lab::Failure, criterion: &Criterion, broken: &lab::Broken) {
+fn show(sample: &Sample, test: lab::Failure, criterion: &FractureCriterion, broken: &lab::Broken) {
     let outcome = &broken.outcome;
     match (broken.first_break, outcome.closest) {
         (Some(first), _) => {
@@ -266,7 +270,7 @@ fn show(sample: &Sample, test: lab::Failure, criterion: &Criterion, broken: &lab
 fn summary(
     sample: &Sample,
     test: lab::Failure,
-    criterion: &Criterion,
+    criterion: &FractureCriterion,
     broken: &lab::Broken,
     seconds: f64,
 ) -> serde_json::Value {
@@ -277,7 +281,7 @@ fn summary(
     sizes.sort_unstable_by(|a, b| b.cmp(a));
     sizes.truncate(10);
     let mut modes = serde_json::Map::new();
-    for mode in Mode::ALL {
+    for mode in BreakMode::ALL {
         let count = outcome.cracks.iter().filter(|c| c.mode == mode).count();
         modes.insert(mode.word().into(), count.into());
     }

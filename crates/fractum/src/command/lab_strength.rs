@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use fractum::{Failure, say};
 use fractum_calibrate::{CalibrateError, Micro, Sample, lab, published};
-use fractum_dem::Criterion;
+use fractum_dem::FractureCriterion;
 use fractum_dem::criterion::{BeamRankine, EndMoments, Hydrostatic, Level, Principal};
 use fractum_pack::{Convention, Domain, PackSpec, Packing, pack};
 
@@ -54,12 +54,12 @@ pub(crate) fn run(arguments: &StrengthArguments) -> Result<(), Failure> {
         Table::Torsion => rows(Domain::cylinder(100e-3, 2e-3), 10_000, lab::Failure::Torsion),
         Table::Compression => rows(Domain::cuboid(2e-3, 2e-3, 2e-3), 10_000, lab::Failure::Compression),
         Table::Beam => {
-            let criterion = |moments| Criterion::BeamRankine(BeamRankine { strength: 292e6, moments });
+            let criterion = |moments| FractureCriterion::BeamRankine(BeamRankine { strength: 292e6, moments });
             silica(count.unwrap_or(10_000), *seeds, criterion(EndMoments::Mean))
                 .and_then(|()| silica(count.unwrap_or(10_000), *seeds, criterion(EndMoments::Largest)))
         }
         Table::Hydrostatic => {
-            silica(count.unwrap_or(10_000), *seeds, Criterion::Hydrostatic(Hydrostatic { strength: 64e6 }))
+            silica(count.unwrap_or(10_000), *seeds, FractureCriterion::Hydrostatic(Hydrostatic { strength: 64e6 }))
         }
     };
     done.map_err(|error| Failure::input(error.to_string()))
@@ -94,8 +94,11 @@ fn published_rows(
         let (name, target) = if a.young_modulus < 100e9 { ("glass", 50e6) } else { ("alumina", 380e6) };
         let tensile_strength = target / published::strength_ratio(a.radius_ratio, a.coordination);
         let compressive_strength = (crush > 1.0).then_some(crush * tensile_strength);
-        let criterion =
-            Criterion::Principal(Principal { tensile_strength, compressive_strength, level: Level::Neighbours });
+        let criterion = FractureCriterion::Principal(Principal {
+            tensile_strength,
+            compressive_strength,
+            level: Level::Neighbours,
+        });
         let (mut first, mut peak) = (Vec::new(), Vec::new());
         let (mut start, mut early, mut angle, mut profile) = (0.0, 0.0, 0.0, vec![(0.0, 0.0); 6]);
         for packing in &packings {
@@ -140,7 +143,7 @@ fn published_rows(
 }
 
 /// Tension and torsion of a cylinder and bending of a prism of silica glass with the beams of Jebahi et al. (2015).
-fn silica(count: usize, seeds: u64, criterion: Criterion) -> Result<(), CalibrateError> {
+fn silica(count: usize, seeds: u64, criterion: FractureCriterion) -> Result<(), CalibrateError> {
     let tests = [
         ("tension", lab::Failure::Tension, Domain::cylinder(5e-3, 1e-3)),
         ("bending", lab::Failure::Bending, Domain::cuboid(5e-3, 1.772e-3, 1.772e-3)),

@@ -35,7 +35,7 @@ pub struct Diameter {
 pub fn diameter(sample: &Sample, state: &[Dof6], load: f64) -> Vec<Diameter> {
     let Some((thickness, radius)) = sample.cylinder_extents() else { return Vec::new() };
     let position = &sample.packing.position;
-    let dyads = stress::particle_dyads(position.len(), |visit| {
+    let virials = stress::particle_virials(position.len(), |visit| {
         sample.lattice.bond_forces(state, |i, j, force| visit(i, j, position[j] - position[i], force));
     });
     let volume: Vec<f64> = sample.packing.radius.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).collect();
@@ -49,7 +49,7 @@ pub fn diameter(sample: &Sample, state: &[Dof6], load: f64) -> Vec<Diameter> {
             ((d.y.abs() * SLICES as f64) as usize) == k && d.z.abs() < 0.1
         };
         let set: Vec<usize> = (0..position.len()).filter(|&i| inside(&position[i])).collect();
-        let measured = stress::mean_stress(&dyads, &volume, sample.fraction, set.iter().copied()).0[2] / pressure;
+        let measured = stress::mean_stress(&virials, &volume, sample.fraction, set.iter().copied()).0[2] / pressure;
         let theory = (0..20).map(|j| hondros((k as f64 + (f64::from(j) + 0.5) / 20.0) / SLICES as f64)).sum::<f64>();
         Diameter { share: (k as f64 + 0.5) / SLICES as f64, measured, theory: theory / 20.0, particles: set.len() }
     };

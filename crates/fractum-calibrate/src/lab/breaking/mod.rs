@@ -9,7 +9,7 @@ pub use brazilian::{Diameter, diameter, hondros};
 pub use geometry::{Geometry, geometry};
 pub use motion::{BrokenInMotion, MotionEnergy, MotionOptions, break_in_motion};
 
-use fractum_dem::{Batch, Breaking, Criterion, Outcome, Point, Tolerance, quasi_static};
+use fractum_dem::{Batch, Breaking, BreakingOutcome, CriticalLoad, FractureCriterion, Tolerance, quasi_static};
 use serde::Serialize;
 
 use super::STRAIN;
@@ -36,7 +36,7 @@ pub enum Failure {
 #[derive(Clone, Copy, Debug)]
 pub struct FailureOptions {
     /// When bonds break.
-    pub criterion: Criterion,
+    pub criterion: FractureCriterion,
     /// How many bonds break between two equilibria.
     pub batch: Batch,
     /// Largest nominal strain, for samples that shall not break.
@@ -51,7 +51,7 @@ impl FailureOptions {
     /// The usual way for a test. Only in tension does a crack take all of the load away; the halves of a split disc and the
     /// pressed side of a bent prism go on bearing. There the run ends when the crack that brought the load down by a
     /// tenth, in bending by 3 %, has come to rest.
-    pub fn new(test: Failure, criterion: Criterion) -> Self {
+    pub fn new(test: Failure, criterion: FractureCriterion) -> Self {
         let stop = match test {
             Failure::Tension => 0.02,
             // Past its crack the compressed side of a prism is a hinge, whose moment grows with the rotation for ever.
@@ -77,12 +77,12 @@ pub struct Broken {
     /// Displacement (or rotation) of the supports at load factor one.
     pub displacement: f64,
     /// All of it.
-    pub outcome: Outcome,
+    pub outcome: BreakingOutcome,
 }
 
 impl Broken {
     /// Nominal stress [Pa] at a point.
-    pub fn stress(&self, point: &Point) -> f64 {
+    pub fn stress(&self, point: &CriticalLoad) -> f64 {
         point.load * self.stress_per_load
     }
 }
@@ -138,7 +138,7 @@ mod tests {
         // Eq. (22) of Nguyen et al. (2019) for a material of 50 MPa.
         let tensile_strength = 60.06e6;
         let level = Level::Neighbours;
-        let criterion = Criterion::Principal(Principal { tensile_strength, compressive_strength, level });
+        let criterion = FractureCriterion::Principal(Principal { tensile_strength, compressive_strength, level });
         let result = break_sample(&sample, test, &FailureOptions::new(test, criterion)).unwrap();
         (sample, result)
     }
@@ -167,7 +167,7 @@ mod tests {
         let (sample, rest) = broken(Domain::cuboid(2e-3, 2e-3, 2e-3), 500, Failure::Tension, None);
         let level = Level::Neighbours;
         let criterion =
-            Criterion::Principal(Principal { tensile_strength: 60.06e6, compressive_strength: None, level });
+            FractureCriterion::Principal(Principal { tensile_strength: 60.06e6, compressive_strength: None, level });
         let options = FailureOptions::new(Failure::Tension, criterion);
         let faces = fractum_dem::CrackFaces::default();
         let motion = MotionOptions { density: 2500.0, transits: 40.0, start: 0.9, faces, safety: 0.5 };

@@ -1,5 +1,6 @@
 use fractum_dem::{
-    BeamNetwork, CrackFaces, Fracture, Integrator, LoadPoint, Occasion, Particles, Piece, Point, StaticBody, pieces,
+    BeamNetwork, CrackFaces, CriticalLoad, Fracture, Integrator, LoadPoint, Occasion, Particles, Piece, StaticBody,
+    pieces,
 };
 use fractum_math::{Rotation, Vec3};
 use serde::Serialize;
@@ -31,7 +32,7 @@ pub struct BrokenInMotion {
     /// Largest nominal stress [Pa].
     pub strength: f64,
     /// The largest load.
-    pub peak: Point,
+    pub peak: CriticalLoad,
     /// Broken bonds.
     pub broken: usize,
     /// Whether the sample came apart or lost its strength.
@@ -130,7 +131,7 @@ pub fn break_in_motion(
     fracture.add_bond_forces(&mut bonds, &mut particles);
     let mut energy =
         MotionEnergy { external: particles.kinetic_energy() + bonds.energy(&particles).total(), ..Default::default() };
-    let (mut peak, mut first_break) = (Point { displacement: 0.0, load: 0.0, broken: 0 }, None);
+    let (mut peak, mut first_break) = (CriticalLoad { displacement: 0.0, load: 0.0, broken: 0 }, None);
     let (mut curve, mut separated, mut steps) = (Vec::new(), false, 0);
     let mut last_broken = 0;
     while factor < BEYOND * first_factor {
@@ -152,7 +153,7 @@ pub fn break_in_motion(
         let load = after / displacement;
         let broken = fracture.cracks().len();
         if load > peak.load {
-            peak = Point { displacement: factor * displacement, load, broken };
+            peak = CriticalLoad { displacement: factor * displacement, load, broken };
         }
         let occasion = Occasion { time: steps as f64 * dt, event: steps, load };
         if fracture.break_overloaded(&mut bonds, &particles, occasion) > 0 {

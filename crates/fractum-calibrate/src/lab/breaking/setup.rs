@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use fractum_dem::{Dof6, Supports};
+use fractum_dem::{Dof6, LatticeSupports};
 use fractum_math::Vec3;
 use fractum_pack::Domain;
 
@@ -14,7 +14,7 @@ const GUESS: f64 = 0.25;
 
 /// A test to failure: what is held, what is measured, and when the sample is in two.
 pub(super) struct Setup {
-    pub(super) supports: Supports,
+    pub(super) supports: LatticeSupports,
     pub(super) guess: Vec<Dof6>,
     /// What the load does work on, at load factor one.
     pub(super) displacement: f64,
@@ -59,7 +59,7 @@ fn axial(sample: &Sample, sign: f64) -> Result<Setup, CalibrateError> {
     };
     let ends = ends(sample, shape())?;
     let displacement = STRAIN * length;
-    let mut supports = Supports::none(sample.packing.len());
+    let mut supports = LatticeSupports::none(sample.packing.len());
     ends[0].iter().for_each(|&i| supports.set(i, 0, -0.5 * sign * displacement));
     ends[1].iter().for_each(|&i| supports.set(i, 0, 0.5 * sign * displacement));
     let centre = middle(sample);
@@ -86,7 +86,7 @@ fn bending(sample: &Sample) -> Result<Setup, CalibrateError> {
     // Rotation of each end for a strain STRAIN at the surfaces.
     let curvature = 2.0 * STRAIN / size.y;
     let rotation = 0.5 * curvature * size.x;
-    let mut supports = Supports::none(sample.packing.len());
+    let mut supports = LatticeSupports::none(sample.packing.len());
     for (end, sign) in ends.iter().zip([1.0, -1.0]) {
         for &i in end {
             supports.set(i, 0, sign * rotation * (sample.packing.position[i as usize].y - centre.y));
@@ -116,7 +116,7 @@ fn torsion(sample: &Sample) -> Result<Setup, CalibrateError> {
     let centre = middle(sample);
     let twist = STRAIN / radius;
     let turn = |x: &Vec3, angle: f64| [0.0, -angle * (x.z - centre.z), angle * (x.y - centre.y), angle, 0.0, 0.0];
-    let mut supports = Supports::none(sample.packing.len());
+    let mut supports = LatticeSupports::none(sample.packing.len());
     for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
         for &i in end {
             let u = turn(&sample.packing.position[i as usize], sign * 0.5 * twist * length);
@@ -142,7 +142,7 @@ fn brazilian(sample: &Sample) -> Result<Setup, CalibrateError> {
     let rim = sample.packing.wall("radius").ok_or_else(shape)?;
     let centre = middle(sample);
     let half = STRAIN * radius;
-    let mut supports = Supports::none(sample.packing.len());
+    let mut supports = LatticeSupports::none(sample.packing.len());
     let mut held = [0; 2];
     for &i in rim {
         let d = sample.packing.position[i as usize] - centre;

@@ -127,7 +127,7 @@ pub struct Bonds {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondFailure {
     /// The criterion with the strengths of the case.
-    pub criterion: fractum_dem::Criterion,
+    pub criterion: fractum_dem::FractureCriterion,
     /// Tensile strength of the material [Pa], > 0, to which the criterion's own strengths are found; `None` = the case gives
     /// those.
     pub tensile_strength: Option<f64>,

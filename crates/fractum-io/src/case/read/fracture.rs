@@ -1,6 +1,6 @@
 //! `[materials.NAME.fracture]`: when bonds break.
 
-use fractum_dem::Criterion;
+use fractum_dem::FractureCriterion;
 use fractum_dem::criterion::{BeamRankine, DruckerPrager, EndMoments, Hydrostatic, Level, MohrCoulomb, Principal};
 
 use super::materials::{STRENGTH_RATIO, read_friction_angle};
@@ -57,18 +57,20 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
     let tensile_strength = strength?;
     let compressed = compressive_strength.unwrap_or(STRENGTH_RATIO * tensile_strength);
     let criterion = match kind {
-        C::Principal => Criterion::Principal(Principal { tensile_strength, compressive_strength, level }),
-        C::Beam => Criterion::BeamRankine(BeamRankine { strength: tensile_strength, moments }),
-        C::Hydrostatic => Criterion::Hydrostatic(Hydrostatic { strength: tensile_strength }),
-        C::MohrCoulomb => Criterion::MohrCoulomb(MohrCoulomb {
+        C::Principal => FractureCriterion::Principal(Principal { tensile_strength, compressive_strength, level }),
+        C::Beam => FractureCriterion::BeamRankine(BeamRankine { strength: tensile_strength, moments }),
+        C::Hydrostatic => FractureCriterion::Hydrostatic(Hydrostatic { strength: tensile_strength }),
+        C::MohrCoulomb => FractureCriterion::MohrCoulomb(MohrCoulomb {
             tensile_strength,
             compressive_strength: compressed,
             friction_angle,
             level,
         }),
-        C::DruckerPrager => {
-            Criterion::DruckerPrager(DruckerPrager { tensile_strength, compressive_strength: compressed, level })
-        }
+        C::DruckerPrager => FractureCriterion::DruckerPrager(DruckerPrager {
+            tensile_strength,
+            compressive_strength: compressed,
+            level,
+        }),
     };
     Some(BondFailure { criterion, tensile_strength: (!own).then_some(tensile_strength) })
 }

@@ -6,12 +6,13 @@ use fractum_contact::close_pairs;
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::breaking::{Crack, facet_area};
-use crate::criterion::{BondLoad, Criterion};
-use crate::face::{CrackFaces, Face, FaceWork};
-use crate::graph::BondGraph;
-use crate::watch::{Bonded, Break, Site, Watch};
-use crate::{BeamForces, BeamNetwork, BeamSection, DemError, Particles};
+use super::crack::{Crack, facet_area};
+use super::criterion::{BondLoad, FractureCriterion};
+use super::faces::{CrackFaces, Face, FaceWork};
+use super::search::{Break, FailureSearch, FailureSite, LoadedBonds};
+use crate::DemError;
+use crate::bond::{BeamForces, BeamNetwork, BeamSection, BondGraph};
+use crate::particles::Particles;
 
 /// Gap up to which strangers are listed, over the smallest radius.
 const SKIN: f64 = 0.5;
@@ -24,7 +25,7 @@ const SKIN: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct Fracture {
     graph: BondGraph,
-    watch: Watch,
+    search: FailureSearch,
     reference: Vec<Vec3>,
     area: f64,
     faces: CrackFaces,
@@ -33,24 +34,24 @@ pub struct Fracture {
     released: f64,
     /// What the bonds that broke last still exert, with the index of their crack.
     acting: Vec<(usize, BeamForces)>,
-    sites: Vec<Site>,
+    sites: Vec<FailureSite>,
     breaks: Vec<Break>,
-    /// What was summed beside the last forces.
-    beside: Beside,
-    /// Steps for which dyads are summed with the forces, since bounds without them did not suffice.
-    wary: u32,
+    /// What was summed of virials with the last forces.
+    detail: VirialDetail,
+    /// Steps for which whole virials are summed with the forces, since their bounds did not suffice.
+    steps_with_tensor: u32,
 }
 
-/// What was summed beside forces.
+/// What is summed of virials with the forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Beside {
+enum VirialDetail {
     Nothing,
-    Pulls,
-    Dyads,
+    Bounds,
+    Tensor,
 }
 
-/// Steps with dyads after a step in which the bound without them was passed. What breaks does not depend on it.
-const WARY: u32 = 100;
+/// Steps with whole virials after a step in which their bounds were passed. What breaks does not depend on it.
+const STEPS_WITH_TENSOR: u32 = 100;
 
 /// Everything that changes in a [`Fracture`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -77,9 +78,9 @@ struct Moving<'a> {
     particles: &'a Particles,
 }
 
-impl Bonded for Moving<'_> {
-    fn dyads(&self, out: &mut [Sym3]) {
-        self.bonds.dyads(out);
+impl LoadedBonds for Moving<'_> {
+    fn virials(&self, out: &mut [Sym3]) {
+        self.bonds.virials(out);
     }
 
     fn load(&self, bond: u32) -> BondLoad {
@@ -111,17 +112,17 @@ impl Fracture {
     pub fn new(
         bonds: &BeamNetwork,
         particles: &Particles,
-        criterion: Criterion,
+        criterion: FractureCriterion,
         faces: CrackFaces,
         fraction: f64,
         volume: f64,
     ) -> Result<Self, DemError> {
         let graph = BondGraph::new(particles.len(), bonds.pairs());
-        let watch = Watch::new(criterion, &graph, &particles.radius, fraction)?;
+        let search = FailureSearch::new(criterion, &graph, &particles.radius, fraction)?;
         let area = facet_area(volume, &particles.position, bonds.pairs());
         Ok(Fracture {
             graph,
-            watch,
+            search,
             reference: particles.position.clone(),
             area,
             faces,
@@ -131,8 +132,8 @@ impl Fracture {
             acting: Vec::new(),
             sites: Vec::new(),
             breaks: Vec::new(),
-            beside: Beside::Nothing,
-            wary: 0,
+            detail: VirialDetail::Nothing,
+            steps_with_tensor: 0,
         })
     }
 
@@ -156,40 +157,40 @@ impl Fracture {
         self.released
     }
 
-    /// Adds the forces of the bonds, and sums beside them what the criterion needs: far from failure a bound.
+    /// Adds the forces of the bonds, and sums with them what the criterion needs: far from failure bounds of the virials.
     pub fn add_bond_forces(&mut self, bonds: &mut BeamNetwork, particles: &mut Particles) {
-        self.beside = match self.watch.criterion() {
-            Criterion::BeamRankine(_) => Beside::Nothing,
-            _ if self.wary > 0 => Beside::Dyads,
-            _ => Beside::Pulls,
+        self.detail = match self.search.criterion() {
+            FractureCriterion::BeamRankine(_) => VirialDetail::Nothing,
+            _ if self.steps_with_tensor > 0 => VirialDetail::Tensor,
+            _ => VirialDetail::Bounds,
         };
-        match self.beside {
-            Beside::Nothing => bonds.add_forces(particles),
-            Beside::Pulls => bonds.add_forces_and_pulls(particles),
-            Beside::Dyads => bonds.add_forces_and_dyads(particles),
+        match self.detail {
+            VirialDetail::Nothing => bonds.add_forces(particles),
+            VirialDetail::Bounds => bonds.add_forces_and_virial_bounds(particles),
+            VirialDetail::Tensor => bonds.add_forces_and_virials(particles),
         }
     }
 
-    /// Sums the dyads of the present positions unless that was done with the forces.
-    fn need_dyads(&mut self, bonds: &mut BeamNetwork, particles: &Particles) {
-        if self.beside == Beside::Pulls {
-            bonds.find_dyads(particles);
-            self.beside = Beside::Dyads;
+    /// Sums the virials at the present positions unless that was done with the forces.
+    fn need_virials(&mut self, bonds: &mut BeamNetwork, particles: &Particles) {
+        if self.detail == VirialDetail::Bounds {
+            bonds.find_virials(particles);
+            self.detail = VirialDetail::Tensor;
         }
     }
 
     /// The site that is nearest to failure; none where nothing bears anything.
     ///
     /// The forces must be those that [`Fracture::add_bond_forces`] found at these positions.
-    pub fn closest(&mut self, bonds: &mut BeamNetwork, particles: &Particles) -> Option<Site> {
-        self.need_dyads(bonds, particles);
-        self.watch.look(&Moving { bonds, particles }, &self.graph, f64::INFINITY);
-        self.watch.worst()
+    pub fn closest(&mut self, bonds: &mut BeamNetwork, particles: &Particles) -> Option<FailureSite> {
+        self.need_virials(bonds, particles);
+        self.search.search(&Moving { bonds, particles }, &self.graph, f64::INFINITY);
+        self.search.worst()
     }
 
-    /// Where a site is: a particle, or the middle of a bond.
-    pub fn place(&self, site: &Site, position: &[Vec3]) -> Vec3 {
-        match self.watch.criterion().level() {
+    /// Position of a site: of a particle, or of the middle of a bond.
+    pub fn position_of(&self, site: &FailureSite, position: &[Vec3]) -> Vec3 {
+        match self.search.criterion().level() {
             Some(_) => position[site.index as usize],
             None => {
                 let [i, j] = self.graph.pairs()[site.index as usize].map(|i| position[i as usize]);
@@ -204,28 +205,28 @@ impl Fracture {
     /// are and act on the kick that follows: taken away at once, a force would cost the balance its square, whatever the
     /// motion. [`Fracture::book_last_work`] takes what they do in it off the energies of the cracks.
     pub fn break_overloaded(&mut self, bonds: &mut BeamNetwork, particles: &Particles, occasion: Occasion) -> usize {
-        if self.beside == Beside::Pulls {
-            if !self.watch.pulls_may_fail(bonds, 1.0) {
+        if self.detail == VirialDetail::Bounds {
+            if !self.search.virial_bounds_may_fail(bonds, 1.0) {
                 return 0;
             }
-            self.wary = WARY;
-            self.need_dyads(bonds, particles);
+            self.steps_with_tensor = STEPS_WITH_TENSOR;
+            self.need_virials(bonds, particles);
         } else {
-            self.wary = self.wary.saturating_sub(1);
+            self.steps_with_tensor = self.steps_with_tensor.saturating_sub(1);
         }
-        let Fracture { graph, watch, sites, breaks, .. } = self;
-        if !watch.may_fail(&Moving { bonds, particles }, 1.0) {
+        let Fracture { graph, search, sites, breaks, .. } = self;
+        if !search.may_fail(&Moving { bonds, particles }, 1.0) {
             return 0;
         }
-        watch.look(&Moving { bonds, particles }, graph, 1.0);
-        if watch.over().is_empty() {
+        search.search(&Moving { bonds, particles }, graph, 1.0);
+        if search.overloaded().is_empty() {
             return 0;
         }
         sites.clear();
-        sites.extend_from_slice(watch.over());
+        sites.extend_from_slice(search.overloaded());
         breaks.clear();
         for site in sites.iter() {
-            watch.breaks(site, &Moving { bonds, particles }, graph, breaks);
+            search.breaks(site, &Moving { bonds, particles }, graph, breaks);
         }
         let before = self.cracks.len();
         for k in 0..self.breaks.len() {
@@ -240,7 +241,7 @@ impl Fracture {
             let rest = bonds.length(bond as usize);
             self.pairs.push(Face::new(bonds.section(), particles, pair, rest, self.faces, false));
             bonds.break_bond(bond as usize);
-            self.watch.bond_broken(bond, &self.graph);
+            self.search.bond_broken(bond, &self.graph);
             self.released += energy;
             let (a, b) = (self.reference[i], self.reference[j]);
             let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
@@ -288,7 +289,7 @@ impl Fracture {
             self.graph.break_bond(crack.bond);
             bonds.break_bond(crack.bond as usize);
         }
-        self.watch.gather_all(&self.graph);
+        self.search.gather_all(&self.graph);
     }
 
     /// Adds the forces of crack faces and of strangers that touch; one call per step.
@@ -300,12 +301,12 @@ impl Fracture {
         work
     }
 
-    /// Looks for particles that were never bonded to each other and have come close, one of which has lost bonds: they
-    /// touch from now on as crack faces do. A call every few steps is enough, but must come at the same steps in a run
+    /// Finds pairs of particles that were never bonded to each other and have come close, one of which has lost bonds: they
+    /// are in contact from now on as crack faces are. A call every few steps is enough, but must come at the same steps in a run
     /// that goes on from a saved state.
     ///
     /// - `range`: the particles of the body
-    pub fn meet_strangers(&mut self, bonds: &BeamNetwork, particles: &Particles, range: Range<usize>) {
+    pub fn find_new_pairs(&mut self, bonds: &BeamNetwork, particles: &Particles, range: Range<usize>) {
         let Fracture { graph, pairs, cracks, .. } = self;
         if cracks.is_empty() {
             return;
@@ -344,8 +345,8 @@ mod tests {
         (particles, bonds)
     }
 
-    fn beam(strength: f64) -> Criterion {
-        Criterion::BeamRankine(BeamRankine { strength, moments: Default::default() })
+    fn beam(strength: f64) -> FractureCriterion {
+        FractureCriterion::BeamRankine(BeamRankine { strength, moments: Default::default() })
     }
 
     /// Total energy of a pair that is stretched, breaks at once or not, and moves freely; largest drift, and the
@@ -430,7 +431,7 @@ mod tests {
             work = fracture.add_contact_forces(&mut particles, dt);
             particles.kick(dt, Integrator::VelocityVerlet);
             if step % 20 == 0 {
-                fracture.meet_strangers(&bonds, &particles, 0..4);
+                fracture.find_new_pairs(&bonds, &particles, 0..4);
             }
         }
         let momentum: f64 = particles.velocity.iter().map(|v| v.x).sum();
@@ -478,17 +479,17 @@ mod tests {
         particles.position.iter_mut().enumerate().for_each(|(i, x)| x.x *= 1.0 + 1e-3 * (i as f64).sin());
         for level in [Level::Own, Level::Neighbours, Level::Second] {
             let principal = Principal { tensile_strength: 1.0, compressive_strength: Some(3.0), level };
-            let criterion = Criterion::Principal(principal);
+            let criterion = FractureCriterion::Principal(principal);
             let faces = CrackFaces::default();
             let mut fracture = Fracture::new(&bonds, &particles, criterion, faces, 0.6, 60.0).unwrap();
             particles.clear_forces();
             fracture.add_bond_forces(&mut bonds, &mut particles);
             let worst = fracture.closest(&mut bonds, &particles).unwrap().ratio;
             let body = Moving { bonds: &bonds, particles: &particles };
-            assert!(fracture.watch.may_fail(&body, worst));
-            assert!(!fracture.watch.may_fail(&body, 100.0 * worst));
-            assert!(fracture.watch.pulls_may_fail(&bonds, worst));
-            assert!(!fracture.watch.pulls_may_fail(&bonds, 100.0 * worst));
+            assert!(fracture.search.may_fail(&body, worst));
+            assert!(!fracture.search.may_fail(&body, 100.0 * worst));
+            assert!(fracture.search.virial_bounds_may_fail(&bonds, worst));
+            assert!(!fracture.search.virial_bounds_may_fail(&bonds, 100.0 * worst));
         }
     }
 }

@@ -9,24 +9,24 @@ use fractum_math::{Sym3, Vec3};
 ///
 /// Dividing by a volume Ω = ΣV/f_v gives the virial stress: Nguyen et al. (2019), eq. (5), with f_v the volume
 /// fraction of the interior.
-pub fn particle_dyads(count: usize, bonds: impl FnOnce(&mut dyn FnMut(usize, usize, Vec3, Vec3))) -> Vec<Sym3> {
-    let mut dyads = vec![Sym3::ZERO; count];
+pub fn particle_virials(count: usize, bonds: impl FnOnce(&mut dyn FnMut(usize, usize, Vec3, Vec3))) -> Vec<Sym3> {
+    let mut virials = vec![Sym3::ZERO; count];
     bonds(&mut |i, j, arm, force| {
-        let dyad = Sym3::symmetric_part(&(arm * force.transpose())) * 0.5;
-        dyads[i] += dyad;
-        dyads[j] += dyad;
+        let virial = Sym3::symmetric_part(&(arm * force.transpose())) * 0.5;
+        virials[i] += virial;
+        virials[j] += virial;
     });
-    dyads
+    virials
 }
 
-/// Mean stress [Pa] of a set of particles: their dyads over ΣV/f_v.
+/// Mean stress [Pa] of a set of particles: their virials over ΣV/f_v.
 ///
 /// - `volume`: sphere volumes [m³]
 /// - `fraction`: interior volume fraction f_v of the packing
-pub fn mean_stress(dyads: &[Sym3], volume: &[f64], fraction: f64, set: impl Iterator<Item = usize>) -> Sym3 {
+pub fn mean_stress(virials: &[Sym3], volume: &[f64], fraction: f64, set: impl Iterator<Item = usize>) -> Sym3 {
     let (mut sum, mut space) = (Sym3::ZERO, 0.0);
     for i in set {
-        sum += dyads[i];
+        sum += virials[i];
         space += volume[i];
     }
     sum * (fraction / space)

@@ -3,8 +3,9 @@
 use fractum_math::Vec3;
 use rayon::prelude::*;
 
-use crate::conjugate::Iterate;
-use crate::{BeamSection, DemError};
+use super::conjugate_gradients::Iterate;
+use crate::DemError;
+use crate::bond::BeamSection;
 
 /// Displacement (x, y, z) [m] and rotation (x, y, z) of a particle; or the force [N] and moment [N m] conjugate to it.
 pub type Dof6 = [f64; 6];
@@ -22,7 +23,7 @@ pub struct Lattice {
     position: Vec<Vec3>,
     offsets: Vec<u32>,
     ends: Vec<HalfBond>,
-    /// Where each bond stands in `ends`.
+    /// Slots of each bond in `ends`.
     halves: Vec<[u32; 2]>,
     /// Length that turns rotations into displacements [m].
     scale: f64,
@@ -39,17 +40,17 @@ pub(crate) struct HalfBond {
     pub(crate) inverse: f64,
 }
 
-/// What holds the particles: a bit per fixed degree of freedom, and the value it is fixed to.
+/// Prescribed degrees of freedom of the particles: a bit per fixed degree of freedom, and the value it is fixed to.
 #[derive(Clone, Debug)]
-pub struct Supports {
+pub struct LatticeSupports {
     pub(crate) fixed: Vec<u8>,
     pub(crate) value: Vec<Dof6>,
 }
 
-impl Supports {
+impl LatticeSupports {
     /// No supports on `count` particles.
     pub fn none(count: usize) -> Self {
-        Supports { fixed: vec![0; count], value: vec![[0.0; 6]; count] }
+        LatticeSupports { fixed: vec![0; count], value: vec![[0.0; 6]; count] }
     }
 
     /// Prescribes one degree of freedom (0–2 displacement [m], 3–5 rotation) of a particle.
@@ -127,10 +128,10 @@ impl Lattice {
             let length = d.norm();
             halves.push([(first, second, 1.0), (second, first, -1.0)].map(|(own, other, sign)| {
                 let axis = (d * (sign / length)).into();
-                let place = next[own as usize];
-                ends[place as usize] = HalfBond { other, bond: bond as u32, axis, inverse: 1.0 / length };
+                let slot = next[own as usize];
+                ends[slot as usize] = HalfBond { other, bond: bond as u32, axis, inverse: 1.0 / length };
                 next[own as usize] += 1;
-                place
+                slot
             }));
         }
         Ok(Lattice { section, position: position.to_vec(), offsets, ends, halves, scale })
@@ -278,8 +279,8 @@ impl Lattice {
 
     /// Breaks a bond for ever: it has no stiffness any more.
     pub fn break_bond(&mut self, bond: u32) {
-        for place in self.halves[bond as usize] {
-            self.ends[place as usize].inverse = 0.0;
+        for slot in self.halves[bond as usize] {
+            self.ends[slot as usize].inverse = 0.0;
         }
     }
 
@@ -292,7 +293,7 @@ impl Lattice {
 
     /// The ends of a bond, at its first and at its second particle.
     pub(crate) fn bond(&self, bond: u32) -> [&HalfBond; 2] {
-        self.halves[bond as usize].map(|place| &self.ends[place as usize])
+        self.halves[bond as usize].map(|slot| &self.ends[slot as usize])
     }
 
     /// Solves K u = loads under supports by preconditioned conjugate gradients, from a first guess.
@@ -306,7 +307,7 @@ impl Lattice {
     /// Array lengths; [`DemError::NotConverged`].
     pub fn solve(
         &self,
-        supports: &Supports,
+        supports: &LatticeSupports,
         loads: Option<&[Dof6]>,
         guess: &[Dof6],
         tolerance: Tolerance,
@@ -503,7 +504,7 @@ mod tests {
         let pairs: Vec<[u32; 2]> = (1..n as u32).map(|i| [i - 1, i]).collect();
         let section = BeamSection::new(1e9, 0.03).unwrap();
         let lattice = Lattice::new(&position, &pairs, section, 0.05).unwrap();
-        let mut supports = Supports::none(n);
+        let mut supports = LatticeSupports::none(n);
         (0..6).for_each(|d| supports.set(0, d, 0.0));
         let mut loads = vec![[0.0; 6]; n];
         loads[n - 1][1] = 5.0;
@@ -521,10 +522,10 @@ mod tests {
         let position = [Vec3::zeros(), Vec3::x()];
         let lattice = Lattice::new(&position, &[[0, 1]], BeamSection::new(1.0, 0.3).unwrap(), 0.2).unwrap();
         let loads = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0; 6]];
-        let solved = lattice.solve(&Supports::none(2), Some(&loads), &[[0.0; 6]; 2], Tolerance::default());
+        let solved = lattice.solve(&LatticeSupports::none(2), Some(&loads), &[[0.0; 6]; 2], Tolerance::default());
         assert!(matches!(solved, Err(DemError::NotConverged { .. })), "{solved:?}");
         assert!(matches!(
-            lattice.solve(&Supports::none(3), None, &[[0.0; 6]; 2], Tolerance::default()),
+            lattice.solve(&LatticeSupports::none(3), None, &[[0.0; 6]; 2], Tolerance::default()),
             Err(DemError::Length { .. })
         ));
         assert!(matches!(Lattice::new(&position, &[[0, 2]], lattice.section(), 0.2), Err(DemError::BadBond { .. })));

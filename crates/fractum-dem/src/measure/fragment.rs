@@ -2,7 +2,7 @@
 
 use fractum_math::{Vec3, connected};
 
-use crate::Particles;
+use crate::particles::Particles;
 
 /// A connected piece.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,11 +36,11 @@ pub fn pieces(
     let mut bonds = vec![0usize; part.len()];
     live.for_each(|[first, _]| bonds[part[first as usize] as usize] += 1);
     let mut members: Vec<Vec<u32>> = vec![Vec::new(); part.len()];
-    for (particle, &place) in (0..).zip(&part) {
-        members[place as usize].push(particle);
+    for (particle, &own) in (0..).zip(&part) {
+        members[own as usize].push(particle);
     }
     let whole = members.into_iter().enumerate().filter(|(_, own)| !own.is_empty());
-    whole.map(|(place, own)| piece(particles, own, bonds[place], &own_mass)).collect()
+    whole.map(|(first, own)| piece(particles, own, bonds[first], &own_mass)).collect()
 }
 
 fn piece(all: &Particles, particles: Vec<u32>, bonds: usize, own_mass: impl Fn(usize) -> f64) -> Piece {

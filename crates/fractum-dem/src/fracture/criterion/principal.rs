@@ -1,7 +1,7 @@
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use super::{Level, Mode, Release, StressCriterion, first_bound, last_bound};
+use super::{BreakMode, Level, Release, StressCriterion, first_bound, last_bound};
 
 /// Largest principal virial stress against a strength; the bond of the particle nearest to that principal direction
 /// breaks (Nguyen et al. 2019, eqs. 5–8). With a compressive strength also the smallest principal stress (4.5).
@@ -30,8 +30,8 @@ impl StressCriterion for Principal {
     }
 
     #[inline]
-    fn bound_between(&self, pulled: f64, pressed: f64) -> f64 {
-        (pulled / self.tensile_strength).max(self.crushing(-pressed))
+    fn bound_between(&self, tension: f64, compression: f64) -> f64 {
+        (tension / self.tensile_strength).max(self.crushing(-compression))
     }
 
     #[inline]
@@ -43,9 +43,9 @@ impl StressCriterion for Principal {
     fn release(&self, stress: &Sym3) -> Release {
         let ([first, _, last], axes) = stress.eigen();
         let (direction, mode) = if first / self.tensile_strength >= self.crushing(last) {
-            (axes.column(0).into_owned(), Mode::Tension)
+            (axes.column(0).into_owned(), BreakMode::Tension)
         } else {
-            (axes.column(2).into_owned(), Mode::Compression)
+            (axes.column(2).into_owned(), BreakMode::Compression)
         };
         Release::Nearest([direction; 2], mode)
     }
@@ -60,10 +60,10 @@ mod tests {
     fn the_direction_is_that_of_the_stress_that_fails() {
         let criterion = Principal { tensile_strength: 1.0, compressive_strength: Some(10.0), level: Level::Neighbours };
         let pulled = criterion.release(&Sym3::new(0.1, 2.0, 0.0, 0.0, 0.0, 0.0));
-        let Release::Nearest([d, _], Mode::Tension) = pulled else { panic!("{pulled:?}") };
+        let Release::Nearest([d, _], BreakMode::Tension) = pulled else { panic!("{pulled:?}") };
         assert!((d.dot(&Vec3::y()).abs() - 1.0).abs() < 1e-12);
         let crushed = criterion.release(&Sym3::new(0.1, 0.0, -12.0, 0.0, 0.0, 0.0));
-        let Release::Nearest([d, _], Mode::Compression) = crushed else { panic!("{crushed:?}") };
+        let Release::Nearest([d, _], BreakMode::Compression) = crushed else { panic!("{crushed:?}") };
         assert!((d.dot(&Vec3::z()).abs() - 1.0).abs() < 1e-12);
     }
 }

@@ -4,8 +4,7 @@
 use fractum_math::Vec3;
 use rayon::prelude::*;
 
-use crate::Particles;
-use crate::particles::{BLOCK, free, turned};
+use super::{BLOCK, Particles, free, turned};
 
 /// Damping that acts on particles, on their motion and their rotation alike.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,11 +3,12 @@
 use fractum_math::{Sym3, Vec3};
 use rayon::prelude::*;
 
-use crate::conjugate::Iterate;
-use crate::criterion::BondLoad;
-use crate::lattice::{BLOCK, Dof6, HalfBond, Lattice, Stiffness, Supports, clear, dot};
-use crate::watch::Bonded;
-use crate::{BeamSection, DemError, Tolerance};
+use super::conjugate_gradients::Iterate;
+use super::lattice::{BLOCK, Dof6, HalfBond, Lattice, LatticeSupports, Stiffness, Tolerance, clear, dot};
+use crate::DemError;
+use crate::bond::BeamSection;
+use crate::fracture::LoadedBonds;
+use crate::fracture::criterion::BondLoad;
 
 /// Solves after which the unbalanced forces are computed afresh, so that round-off does not add up.
 const REFRESH: usize = 32;
@@ -21,7 +22,7 @@ const FIRST: f64 = 0.01;
 #[derive(Clone, Debug)]
 pub struct StaticBody {
     lattice: Lattice,
-    supports: Supports,
+    supports: LatticeSupports,
     iterate: Iterate,
     tolerance: Tolerance,
     /// Square of the support reactions at the first equilibrium: what unbalanced forces are compared with.
@@ -37,7 +38,12 @@ impl StaticBody {
     ///
     /// # Errors
     /// Array lengths; [`DemError::NotConverged`].
-    pub fn new(lattice: Lattice, supports: Supports, guess: &[Dof6], tolerance: Tolerance) -> Result<Self, DemError> {
+    pub fn new(
+        lattice: Lattice,
+        supports: LatticeSupports,
+        guess: &[Dof6],
+        tolerance: Tolerance,
+    ) -> Result<Self, DemError> {
         // The first equilibrium tells the first break, and is compared with theory.
         let first = Tolerance { residual: FIRST * tolerance.residual, ..tolerance };
         let rest = lattice.solve(&supports, None, guess, first)?;
@@ -201,8 +207,8 @@ impl Strained {
     }
 }
 
-impl Bonded for StaticBody {
-    fn dyads(&self, out: &mut [Sym3]) {
+impl LoadedBonds for StaticBody {
+    fn virials(&self, out: &mut [Sym3]) {
         let k = self.lattice.stiffness();
         let x = &self.iterate.x;
         out.par_chunks_mut(BLOCK).enumerate().for_each(|(block, out)| {

@@ -1,3 +1,9 @@
+//! Discrete elements and their motion.
+
+mod central_difference;
+
+pub use central_difference::{Leap, LeapWork, ParticleDamping, PastForces};
+
 use fractum_math::{Rotation, Vec3};
 use rayon::prelude::*;
 

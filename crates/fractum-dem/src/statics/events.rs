@@ -1,12 +1,11 @@
 //! Quasi-static breaking, event by event.
 
-use fractum_math::Vec3;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use crate::criterion::{Criterion, Mode};
-use crate::graph::BondGraph;
-use crate::watch::{Break, Site, Watch};
-use crate::{DemError, Dof6, Lattice, StaticBody, Supports, Tolerance};
+use super::{Dof6, Lattice, LatticeSupports, StaticBody, Tolerance};
+use crate::DemError;
+use crate::bond::BondGraph;
+use crate::fracture::{Break, Crack, FailureSearch, FailureSite, FractureCriterion, facet_area};
 
 /// How many bonds break between two equilibria.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -23,7 +22,7 @@ pub enum Batch {
 #[derive(Clone, Debug)]
 pub struct Breaking<'a> {
     /// When bonds break.
-    pub criterion: Criterion,
+    pub criterion: FractureCriterion,
     /// The bonds, in the order of the lattice.
     pub pairs: &'a [[u32; 2]],
     /// Particle radii [m].
@@ -59,34 +58,9 @@ pub struct LoadPoint {
     pub broken: usize,
 }
 
-/// A bond that broke.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Crack {
-    /// The bond.
-    pub bond: u32,
-    /// Its particles.
-    pub pair: [u32; 2],
-    /// Number of the equilibrium after which it broke.
-    pub event: usize,
-    /// Time [s] in dynamics, load factor at rest.
-    pub time: f64,
-    /// Load then.
-    pub load: f64,
-    /// Middle of the bond in the undeformed body [m].
-    pub position: Vec3,
-    /// Direction of the bond.
-    pub normal: Vec3,
-    /// Facet that the bond stands for: the facets of all bonds and their particles' centres fill the body [m²].
-    pub area: f64,
-    /// How it broke.
-    pub mode: Mode,
-    /// Its elastic energy when it broke [J].
-    pub energy: f64,
-}
-
 /// A point of the load curve that matters.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Point {
+pub struct CriticalLoad {
     /// Displacement (or rotation) of the supports.
     pub displacement: f64,
     /// Force (or moment).
@@ -97,11 +71,11 @@ pub struct Point {
 
 /// How a body broke.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct BreakingOutcome {
     /// The load when the first bond broke; none when nothing did.
-    pub first: Option<Point>,
+    pub first: Option<CriticalLoad>,
     /// The largest load.
-    pub peak: Point,
+    pub peak: CriticalLoad,
     /// The load curve: a point before every breaking, and the last state.
     pub curve: Vec<LoadPoint>,
     /// What broke, in order.
@@ -109,7 +83,7 @@ pub struct Outcome {
     /// Whether the body came apart or lost its strength; otherwise the largest load factor was reached.
     pub separated: bool,
     /// The site nearest to failure in the last state, with its ratio there.
-    pub closest: Option<Site>,
+    pub closest: Option<FailureSite>,
     /// The bonds that are left.
     pub graph: BondGraph,
     /// Displacements [m] and rotations before the first bond broke, at load factor one.
@@ -122,21 +96,15 @@ pub struct Outcome {
     pub effort_to_peak: (usize, usize),
 }
 
-/// Facet area of every bond: bonds and facets fill the body, V = Σ A l/3.
-pub(crate) fn facet_area(volume: f64, position: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
-    let length: f64 = pairs.iter().map(|p| (position[p[1] as usize] - position[p[0] as usize]).norm()).sum();
-    3.0 * volume / length
-}
-
-/// What a rise of the load ended with.
+/// What the search for the next failure ended with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// A site fails: [`QuasiStatic::release`] is next.
+pub enum LoadStage {
+    /// A site fails: [`QuasiStatic::break_and_rebalance`] is next.
     Failing,
     /// The body has come apart or lost its strength.
-    Apart,
+    Separated,
     /// The largest load factor is reached, and the body holds.
-    Held,
+    LimitReached,
 }
 
 /// A body under supports that move in proportion: they rise to the first failure, bonds break and equilibrium is found
@@ -146,7 +114,7 @@ pub enum Stage {
 #[derive(Clone, Debug)]
 pub struct QuasiStatic {
     graph: BondGraph,
-    watch: Watch,
+    search: FailureSearch,
     body: StaticBody,
     area: f64,
     displacement: f64,
@@ -155,15 +123,15 @@ pub struct QuasiStatic {
     stop: f64,
     factor: f64,
     last: Option<LoadPoint>,
-    first: Option<Point>,
-    peak: Point,
+    first: Option<CriticalLoad>,
+    peak: CriticalLoad,
     effort_to_peak: (usize, usize),
     event: usize,
     /// Whether sites fail at the present load already.
     cascade: bool,
     cracks: Vec<Crack>,
     breaks: Vec<Break>,
-    sites: Vec<Site>,
+    sites: Vec<FailureSite>,
 }
 
 impl QuasiStatic {
@@ -173,13 +141,18 @@ impl QuasiStatic {
     ///
     /// # Errors
     /// An impossible criterion; [`DemError::NotConverged`].
-    pub fn new(lattice: Lattice, supports: Supports, guess: &[Dof6], what: &Breaking<'_>) -> Result<Self, DemError> {
+    pub fn new(
+        lattice: Lattice,
+        supports: LatticeSupports,
+        guess: &[Dof6],
+        what: &Breaking<'_>,
+    ) -> Result<Self, DemError> {
         let graph = BondGraph::new(lattice.len(), what.pairs);
-        let watch = Watch::new(what.criterion, &graph, what.radius, what.fraction)?;
+        let search = FailureSearch::new(what.criterion, &graph, what.radius, what.fraction)?;
         let area = facet_area(what.volume, lattice.position(), what.pairs);
         Ok(QuasiStatic {
             graph,
-            watch,
+            search,
             body: StaticBody::new(lattice, supports, guess, what.tolerance)?,
             area,
             displacement: what.displacement,
@@ -189,7 +162,7 @@ impl QuasiStatic {
             factor: 0.0,
             last: None,
             first: None,
-            peak: Point { displacement: 0.0, load: 0.0, broken: 0 },
+            peak: CriticalLoad { displacement: 0.0, load: 0.0, broken: 0 },
             effort_to_peak: (0, 0),
             event: 0,
             cascade: false,
@@ -215,23 +188,23 @@ impl QuasiStatic {
     }
 
     /// The site nearest to failure, with its ratio at the present load.
-    pub fn closest(&self) -> Option<Site> {
-        self.watch.worst().map(|site| Site { ratio: site.ratio * self.factor, ..site })
+    pub fn closest(&self) -> Option<FailureSite> {
+        self.search.worst().map(|site| FailureSite { ratio: site.ratio * self.factor, ..site })
     }
 
     /// Moves the supports on to the next failure, unless sites fail where they are.
     ///
     /// - `separated`: whether the body has come apart; asked once something has broken
-    pub fn rise(&mut self, separated: impl Fn(&BondGraph) -> bool) -> (LoadPoint, Stage) {
+    pub fn load_to_next_failure(&mut self, separated: impl Fn(&BondGraph) -> bool) -> (LoadPoint, LoadStage) {
         self.event += 1;
         let energy = self.body.energy();
         let overload = if self.factor > 0.0 { 1.0 / self.factor } else { f64::INFINITY };
-        self.watch.look(&self.body, &self.graph, overload);
-        let worst = self.watch.worst();
+        self.search.search(&self.body, &self.graph, overload);
+        let worst = self.search.worst();
         let load_at = |factor: f64| factor * 2.0 * energy / self.displacement;
         let held = load_at(self.factor);
         // Where nothing is over at this load, the load rises to the next failure.
-        self.cascade = worst.is_some() && !self.watch.over().is_empty();
+        self.cascade = worst.is_some() && !self.search.overloaded().is_empty();
         let weak = !self.cascade && held < self.stop * self.peak.load;
         let apart = !self.cracks.is_empty() && (weak || separated(&self.graph));
         let before = self.factor;
@@ -248,17 +221,17 @@ impl QuasiStatic {
         let point = LoadPoint { displacement, load, elastic, work, broken };
         self.last = Some(point);
         if load > self.peak.load {
-            self.peak = Point { displacement, load, broken };
+            self.peak = CriticalLoad { displacement, load, broken };
             self.effort_to_peak = self.body.effort();
         }
         let holds = !self.cascade && worst.is_none_or(|w| w.ratio * self.limit < 1.0);
         let stage = match (apart, holds) {
-            (true, _) => Stage::Apart,
-            (false, true) => Stage::Held,
-            (false, false) => Stage::Failing,
+            (true, _) => LoadStage::Separated,
+            (false, true) => LoadStage::LimitReached,
+            (false, false) => LoadStage::Failing,
         };
-        if stage == Stage::Failing {
-            self.first.get_or_insert(Point { displacement, load, broken: 0 });
+        if stage == LoadStage::Failing {
+            self.first.get_or_insert(CriticalLoad { displacement, load, broken: 0 });
         }
         (point, stage)
     }
@@ -267,15 +240,15 @@ impl QuasiStatic {
     ///
     /// # Errors
     /// [`DemError::NotConverged`].
-    pub fn release(&mut self) -> Result<(), DemError> {
-        let QuasiStatic { graph, watch, body, sites, breaks, factor, .. } = self;
+    pub fn break_and_rebalance(&mut self) -> Result<(), DemError> {
+        let QuasiStatic { graph, search, body, sites, breaks, factor, .. } = self;
         sites.clear();
         match (self.cascade, self.batch) {
-            (true, Batch::PerSite) => sites.extend_from_slice(watch.over()),
-            _ => sites.extend(watch.worst()),
+            (true, Batch::PerSite) => sites.extend_from_slice(search.overloaded()),
+            _ => sites.extend(search.worst()),
         }
         breaks.clear();
-        sites.iter().for_each(|site| watch.breaks(site, body, graph, breaks));
+        sites.iter().for_each(|site| search.breaks(site, body, graph, breaks));
         let load = self.last.map_or(0.0, |l| l.load);
         for &Break { bond, mode } in breaks.iter() {
             let energy = *factor * *factor * body.bond_energy(bond);
@@ -286,7 +259,7 @@ impl QuasiStatic {
                 let (event, area, time) = (self.event, self.area, *factor);
                 self.cracks.push(Crack { bond, pair, event, time, load, position, normal, area, mode, energy });
                 body.break_bond(bond);
-                watch.bond_broken(bond, graph);
+                search.bond_broken(bond, graph);
             }
         }
         body.solve()?;
@@ -303,27 +276,27 @@ impl QuasiStatic {
 /// An impossible criterion; [`DemError::NotConverged`].
 pub fn quasi_static(
     lattice: Lattice,
-    supports: Supports,
+    supports: LatticeSupports,
     guess: &[Dof6],
     what: &Breaking<'_>,
     separated: impl Fn(&BondGraph) -> bool,
-) -> Result<Outcome, DemError> {
+) -> Result<BreakingOutcome, DemError> {
     let mut run = QuasiStatic::new(lattice, supports, guess, what)?;
     let first_state = run.body.state();
     let mut curve = Vec::new();
     let stage = loop {
-        let (point, stage) = run.rise(&separated);
+        let (point, stage) = run.load_to_next_failure(&separated);
         curve.push(point);
-        if stage != Stage::Failing {
+        if stage != LoadStage::Failing {
             break stage;
         }
-        run.release()?;
+        run.break_and_rebalance()?;
     };
-    Ok(Outcome {
+    Ok(BreakingOutcome {
         first: run.first,
         peak: run.peak,
         curve,
-        separated: stage == Stage::Apart,
+        separated: stage == LoadStage::Separated,
         closest: run.closest(),
         first_state,
         last_state: run.body.state(),
@@ -339,8 +312,8 @@ mod tests {
     use super::*;
     use crate::BeamSection;
     use crate::criterion::{BeamRankine, Level, Principal};
-    use crate::watch::Bonded;
-    use fractum_math::Sym3;
+    use crate::fracture::LoadedBonds;
+    use fractum_math::{Sym3, Vec3};
 
     /// A jittered cubic bar along x, bonded to nearest neighbours and along one diagonal.
     fn bar(size: [usize; 3]) -> (Vec<Vec3>, Vec<[u32; 2]>) {
@@ -364,12 +337,12 @@ mod tests {
         (position, pairs)
     }
 
-    fn pull(size: [usize; 3], criterion: Criterion, limit: f64, residual: f64) -> Outcome {
+    fn pull(size: [usize; 3], criterion: FractureCriterion, limit: f64, residual: f64) -> BreakingOutcome {
         let (position, pairs) = bar(size);
         let n = position.len();
         let face = size[1] * size[2];
         let lattice = Lattice::new(&position, &pairs, BeamSection::new(1e9, 0.3).unwrap(), 0.5).unwrap();
-        let mut supports = Supports::none(n);
+        let mut supports = LatticeSupports::none(n);
         (0..face).for_each(|i| supports.set(i as u32, 0, 0.0));
         (n - face..n).for_each(|i| supports.set(i as u32, 0, 1e-3));
         let last = (size[0] - 1) as f64;
@@ -392,8 +365,8 @@ mod tests {
         quasi_static(lattice, supports, &guess, &what, |graph| graph.parts().separate(&low, &high)).unwrap()
     }
 
-    fn principal(level: Level) -> Criterion {
-        Criterion::Principal(Principal { tensile_strength: 1e5, compressive_strength: None, level })
+    fn principal(level: Level) -> FractureCriterion {
+        FractureCriterion::Principal(Principal { tensile_strength: 1e5, compressive_strength: None, level })
     }
 
     #[test]
@@ -402,11 +375,11 @@ mod tests {
         let pairs = [[0, 1], [1, 2], [2, 3]];
         let section = BeamSection::new(1e9, 0.3).unwrap();
         let lattice = Lattice::new(&position, &pairs, section, 0.5).unwrap();
-        let mut supports = Supports::none(4);
+        let mut supports = LatticeSupports::none(4);
         (0..6).for_each(|d| supports.set(0, d, 0.0));
         supports.set(3, 0, 1e-3);
         let what = Breaking {
-            criterion: Criterion::BeamRankine(BeamRankine { strength: 2e5, moments: Default::default() }),
+            criterion: FractureCriterion::BeamRankine(BeamRankine { strength: 2e5, moments: Default::default() }),
             pairs: &pairs,
             radius: &[0.5; 4],
             fraction: 0.5,
@@ -471,7 +444,7 @@ mod tests {
         let n = position.len();
         let section = BeamSection::new(1e9, 0.3).unwrap();
         let lattice = Lattice::new(&position, &pairs, section, 0.5).unwrap();
-        let mut supports = Supports::none(n);
+        let mut supports = LatticeSupports::none(n);
         (0..16).for_each(|i| supports.set(i, 0, 0.0));
         (n as u32 - 16..n as u32).for_each(|i| supports.set(i, 0, 1e-3));
         let tolerance = Tolerance { residual: 1e-10, ..Tolerance::default() };
@@ -480,30 +453,30 @@ mod tests {
             let radius: Vec<f64> = (0..n).map(|i| 0.4 + 0.1 * (i as f64).sin().abs()).collect();
             let mut graph = BondGraph::new(n, &pairs);
             let mut body = StaticBody::new(lattice.clone(), supports.clone(), &guess, tolerance).unwrap();
-            let mut watch = Watch::new(principal(level), &graph, &radius, 0.6).unwrap();
+            let mut search = FailureSearch::new(principal(level), &graph, &radius, 0.6).unwrap();
             for bond in (0..pairs.len() as u32).filter(|b| b % 5 == 2) {
                 graph.break_bond(bond);
                 body.break_bond(bond);
-                watch.bond_broken(bond, &graph);
+                search.bond_broken(bond, &graph);
             }
             body.solve().unwrap();
-            watch.look(&body, &graph, f64::INFINITY);
+            search.search(&body, &graph, f64::INFINITY);
             // From scratch, with the bonds that are left.
             let left: Vec<[u32; 2]> = (0..pairs.len()).filter(|b| b % 5 != 2).map(|b| pairs[b]).collect();
             let fresh = Lattice::new(&position, &left, section, 0.5).unwrap();
             let body2 = StaticBody::new(fresh, supports.clone(), &guess, tolerance).unwrap();
             let graph2 = BondGraph::new(n, &left);
-            let mut watch2 = Watch::new(principal(level), &graph2, &radius, 0.6).unwrap();
-            watch2.look(&body2, &graph2, f64::INFINITY);
+            let mut search2 = FailureSearch::new(principal(level), &graph2, &radius, 0.6).unwrap();
+            search2.search(&body2, &graph2, f64::INFINITY);
             assert!((body.energy() / body2.energy() - 1.0).abs() < 1e-8);
-            let size = watch2.stress().iter().map(|s| s.0[0].abs()).fold(0.0, f64::max);
-            for (a, b) in watch.stress().iter().zip(watch2.stress()) {
+            let size = search2.stress().iter().map(|s| s.0[0].abs()).fold(0.0, f64::max);
+            for (a, b) in search.stress().iter().zip(search2.stress()) {
                 assert!((*a - *b).0.iter().all(|d| d.abs() < 1e-6 * size), "{a:?} {b:?}");
             }
-            // The dyads of a bar under tension add up to its load times its length.
-            let mut dyads = vec![Sym3::ZERO; n];
-            body.dyads(&mut dyads);
-            let virial: f64 = dyads.iter().map(|d| d.0[0]).sum();
+            // The virials of a bar under tension add up to its load times its length.
+            let mut virials = vec![Sym3::ZERO; n];
+            body.virials(&mut virials);
+            let virial: f64 = virials.iter().map(|d| d.0[0]).sum();
             let reach = |i: u32| body.reaction(i)[0] * position[i as usize].x;
             let held: f64 = (0..16).chain(n as u32 - 16..n as u32).map(reach).sum();
             assert!((virial / held - 1.0).abs() < 1e-6, "{virial} {held}");

@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
-use crate::lattice::{BLOCK, Dof6, Lattice, dot};
-use crate::{DemError, Tolerance};
+use super::Tolerance;
+use super::lattice::{BLOCK, Dof6, Lattice, dot};
+use crate::DemError;
 
 /// Unknowns and working arrays of a solve, in scaled variables (rotations times a length of the lattice).
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use super::{Level, Mode, Release, StressCriterion};
+use super::{BreakMode, Level, Release, StressCriterion};
 
 /// Drucker–Prager on the virial stress: (α I₁ + √J₂)/k with α = (f_c − f_t)/(√3 (f_c + f_t)) and
 /// k = 2 f_c f_t/(√3 (f_c + f_t)), which has both uniaxial strengths. The bond nearest to the first principal
@@ -24,11 +24,11 @@ impl StressCriterion for DruckerPrager {
     }
 
     #[inline]
-    fn bound_between(&self, pulled: f64, pressed: f64) -> f64 {
+    fn bound_between(&self, tension: f64, compression: f64) -> f64 {
         // The ratio is convex in the stress: over the cube of principal values it is largest at a corner, where some of
-        // them are pulled and the others pressed.
+        // them are tensions and the others compressions.
         let corner = |values: [f64; 3]| self.ratio(&Sym3::new(values[0], values[1], values[2], 0.0, 0.0, 0.0));
-        let (high, low) = (pulled, -pressed);
+        let (high, low) = (tension, -compression);
         corner([high, low, low]).max(corner([high, high, low])).max(corner([high; 3])).max(corner([low; 3]))
     }
 
@@ -43,7 +43,7 @@ impl StressCriterion for DruckerPrager {
 
     fn release(&self, stress: &Sym3) -> Release {
         let (values, axes) = stress.eigen();
-        let mode = if values[0] + values[2] > 0.0 { Mode::Tension } else { Mode::Shear };
+        let mode = if values[0] + values[2] > 0.0 { BreakMode::Tension } else { BreakMode::Shear };
         Release::Nearest([axes.column(0).into_owned(); 2], mode)
     }
 }

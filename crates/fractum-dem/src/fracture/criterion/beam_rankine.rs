@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 
-use super::{BondLoad, Mode};
-use crate::BeamSection;
+use super::{BondLoad, BreakMode};
+use crate::bond::BeamSection;
 
 /// Largest principal stress in a cohesive beam against its strength (Jebahi et al. 2015, eqs. 4.1–4.3):
 /// σ = ½ (σ_n + √(σ_n² + 4 τ²)) with σ_n = N/S + M r/I and τ = r M_x/I₀.
@@ -35,14 +35,14 @@ impl BeamRankine {
     }
 
     /// What contributes most.
-    pub fn mode(&self, load: &BondLoad, section: &BeamSection) -> Mode {
+    pub fn mode(&self, load: &BondLoad, section: &BeamSection) -> BreakMode {
         let (normal, bending, shear) = self.stresses(load, section);
         if normal >= bending && normal >= shear {
-            Mode::Tension
+            BreakMode::Tension
         } else if bending >= shear {
-            Mode::Bending
+            BreakMode::Bending
         } else {
-            Mode::Torsion
+            BreakMode::Torsion
         }
     }
 
@@ -81,6 +81,9 @@ mod tests {
         let bend = BondLoad { bending: [Vec3::y() * 2.0, Vec3::y() * -2.0], ..BondLoad::default() };
         assert!((beam.ratio(&bend, &section) - 2.0 * 0.5 / i).abs() < 1e-12);
         assert_eq!(BeamRankine { moments: EndMoments::Mean, ..beam }.ratio(&bend, &section), 0.0);
-        assert_eq!([pull, bend, twist].map(|l| beam.mode(&l, &section)), [Mode::Tension, Mode::Bending, Mode::Torsion]);
+        assert_eq!(
+            [pull, bend, twist].map(|l| beam.mode(&l, &section)),
+            [BreakMode::Tension, BreakMode::Bending, BreakMode::Torsion]
+        );
     }
 }

@@ -1,20 +1,20 @@
-//! Looks for bonds that must break, in a state at rest or in motion.
+//! The search for bonds that must break, in a state at rest or in motion.
 
 use fractum_math::{Sym3, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::criterion::{BondLoad, Criterion, Level, Mode, Release, StressCriterion};
-use crate::graph::BondGraph;
-use crate::{BeamNetwork, BeamSection, DemError};
+use super::criterion::{BondLoad, BreakMode, FractureCriterion, Level, Release, StressCriterion};
+use crate::DemError;
+use crate::bond::{BeamNetwork, BeamSection, BondGraph};
 
 /// Particles or bonds handled as one block by the parallel loops.
 const BLOCK: usize = 1024;
 
 /// What a criterion needs to know of a bonded body.
-pub trait Bonded: Sync {
+pub trait LoadedBonds: Sync {
     /// Half the sums of sym(r_ij ⊗ f_ij) over the bonds of each particle [N m]; see [`crate::stress`].
-    fn dyads(&self, out: &mut [Sym3]);
+    fn virials(&self, out: &mut [Sym3]);
 
     /// What a live bond bears.
     fn load(&self, bond: u32) -> BondLoad;
@@ -26,9 +26,9 @@ pub trait Bonded: Sync {
     fn section(&self) -> BeamSection;
 }
 
-/// A place that a criterion looks at: a particle, or a bond for a criterion of beams.
+/// What a criterion looks at: a particle, or a bond for a criterion of beams.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Site {
+pub struct FailureSite {
     /// Particle or bond.
     pub index: u32,
     /// What it bears over what it can bear.
@@ -41,13 +41,13 @@ pub struct Break {
     /// The bond.
     pub bond: u32,
     /// How.
-    pub mode: Mode,
+    pub mode: BreakMode,
 }
 
 /// A criterion with the volumes of its neighbourhoods, which follow the bonds that break.
 #[derive(Clone, Debug)]
-pub struct Watch {
-    criterion: Criterion,
+pub struct FailureSearch {
+    criterion: FractureCriterion,
     /// Volume of each particle [m³].
     volume: Vec<f64>,
     /// 1/Ω of each neighbourhood [1/m³].
@@ -56,15 +56,15 @@ pub struct Watch {
     fraction: f64,
     /// Members of each neighbourhood, for level 2 only.
     members: Vec<Vec<u32>>,
-    dyads: Vec<Sym3>,
-    pulls: Vec<[f64; 2]>,
+    virials: Vec<Sym3>,
+    virial_bounds: Vec<[f64; 2]>,
     stress: Vec<Sym3>,
-    /// Sites over the limit at the last look, by index.
-    over: Vec<Site>,
-    worst: Option<Site>,
+    /// Sites over the limit at the last search, by index.
+    overloaded: Vec<FailureSite>,
+    worst: Option<FailureSite>,
 }
 
-impl Watch {
+impl FailureSearch {
     /// Watches a body.
     ///
     /// - `radius`: of the particles [m]
@@ -72,7 +72,12 @@ impl Watch {
     ///
     /// # Errors
     /// Strengths that are none; a volume fraction outside 0 to 1; array lengths.
-    pub fn new(criterion: Criterion, graph: &BondGraph, radius: &[f64], fraction: f64) -> Result<Self, DemError> {
+    pub fn new(
+        criterion: FractureCriterion,
+        graph: &BondGraph,
+        radius: &[f64],
+        fraction: f64,
+    ) -> Result<Self, DemError> {
         criterion.check()?;
         let n = graph.particles();
         if radius.len() != n {
@@ -82,27 +87,27 @@ impl Watch {
             let expected = "above 0 and at most 1";
             return Err(DemError::BadCriterion { what: "volume fraction", value: fraction, expected });
         }
-        let fraction = if matches!(criterion, Criterion::Hydrostatic(_)) { 1.0 } else { fraction };
+        let fraction = if matches!(criterion, FractureCriterion::Hydrostatic(_)) { 1.0 } else { fraction };
         let volume = radius.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).collect();
         let (stressed, listed) = match criterion.level() {
             None => (0, 0),
             Some(Level::Second) => (n, n),
             Some(_) => (n, 0),
         };
-        let mut watch = Watch {
+        let mut search = FailureSearch {
             criterion,
             volume,
             inverse: vec![0.0; stressed],
             fraction,
             members: vec![Vec::new(); listed],
-            dyads: vec![Sym3::ZERO; stressed],
-            pulls: vec![[0.0; 2]; stressed],
+            virials: vec![Sym3::ZERO; stressed],
+            virial_bounds: vec![[0.0; 2]; stressed],
             stress: vec![Sym3::ZERO; stressed],
-            over: Vec::new(),
+            overloaded: Vec::new(),
             worst: None,
         };
-        watch.gather_all(graph);
-        Ok(watch)
+        search.gather_all(graph);
+        Ok(search)
     }
 
     /// Members and volumes of all neighbourhoods anew.
@@ -111,21 +116,21 @@ impl Watch {
     }
 
     /// The criterion.
-    pub fn criterion(&self) -> &Criterion {
+    pub fn criterion(&self) -> &FractureCriterion {
         &self.criterion
     }
 
-    /// The site nearest to failure at the last look; none where nothing bears anything.
-    pub fn worst(&self) -> Option<Site> {
+    /// The site nearest to failure at the last search; none where nothing bears anything.
+    pub fn worst(&self) -> Option<FailureSite> {
         self.worst
     }
 
-    /// Sites whose ratio was at least the limit at the last look, by index.
-    pub fn over(&self) -> &[Site] {
-        &self.over
+    /// Sites whose ratio was at least the limit at the last search, by index.
+    pub fn overloaded(&self) -> &[FailureSite] {
+        &self.overloaded
     }
 
-    /// Stress of each neighbourhood at the last look [Pa]; empty for a criterion of beams.
+    /// Stress of each neighbourhood at the last search [Pa]; empty for a criterion of beams.
     pub fn stress(&self) -> &[Sym3] {
         &self.stress
     }
@@ -171,111 +176,114 @@ impl Watch {
     /// Whether any site can have a ratio of at least `limit`: a cheap answer for bodies far from failure. The stress of a
     /// neighbourhood is a mean of its members' own, and bounds are convex, so that no neighbourhood exceeds the largest
     /// bound of a particle alone.
-    pub fn may_fail(&mut self, body: &impl Bonded, limit: f64) -> bool {
+    pub fn may_fail(&mut self, body: &impl LoadedBonds, limit: f64) -> bool {
         match self.criterion {
-            Criterion::BeamRankine(_) => true,
-            Criterion::Hydrostatic(c) => self.own_bound_reaches(&c, body, limit),
-            Criterion::Principal(c) => self.own_bound_reaches(&c, body, limit),
-            Criterion::MohrCoulomb(c) => self.own_bound_reaches(&c, body, limit),
-            Criterion::DruckerPrager(c) => self.own_bound_reaches(&c, body, limit),
+            FractureCriterion::BeamRankine(_) => true,
+            FractureCriterion::Hydrostatic(c) => self.own_bound_reaches(&c, body, limit),
+            FractureCriterion::Principal(c) => self.own_bound_reaches(&c, body, limit),
+            FractureCriterion::MohrCoulomb(c) => self.own_bound_reaches(&c, body, limit),
+            FractureCriterion::DruckerPrager(c) => self.own_bound_reaches(&c, body, limit),
         }
     }
 
-    /// The same from [`BeamNetwork::pulls`], without a tensor: still cheaper, and farther from what is there.
-    pub fn pulls_may_fail(&mut self, bonds: &BeamNetwork, limit: f64) -> bool {
+    /// The same from [`BeamNetwork::virial_bounds`], without a tensor: still cheaper, and farther from what is there.
+    pub fn virial_bounds_may_fail(&mut self, bonds: &BeamNetwork, limit: f64) -> bool {
         match self.criterion {
-            Criterion::BeamRankine(_) => true,
-            Criterion::Hydrostatic(c) => self.pulls_reach(&c, bonds, limit),
-            Criterion::Principal(c) => self.pulls_reach(&c, bonds, limit),
-            Criterion::MohrCoulomb(c) => self.pulls_reach(&c, bonds, limit),
-            Criterion::DruckerPrager(c) => self.pulls_reach(&c, bonds, limit),
+            FractureCriterion::BeamRankine(_) => true,
+            FractureCriterion::Hydrostatic(c) => self.virial_bounds_reach(&c, bonds, limit),
+            FractureCriterion::Principal(c) => self.virial_bounds_reach(&c, bonds, limit),
+            FractureCriterion::MohrCoulomb(c) => self.virial_bounds_reach(&c, bonds, limit),
+            FractureCriterion::DruckerPrager(c) => self.virial_bounds_reach(&c, bonds, limit),
         }
     }
 
-    fn pulls_reach(&mut self, criterion: &impl StressCriterion, bonds: &BeamNetwork, limit: f64) -> bool {
-        bonds.pulls(&mut self.pulls);
+    fn virial_bounds_reach(&mut self, criterion: &impl StressCriterion, bonds: &BeamNetwork, limit: f64) -> bool {
+        bonds.virial_bounds(&mut self.virial_bounds);
         let fraction = self.fraction;
-        let reaches = |(pulls, volume): (&[[f64; 2]], &[f64])| {
-            let over = |(&[pulled, pressed], volume): (&[f64; 2], &f64)| {
-                criterion.bound_between(pulled, pressed) * fraction >= limit * volume
+        let reaches = |(virial_bounds, volume): (&[[f64; 2]], &[f64])| {
+            let over = |(&[tension, compression], volume): (&[f64; 2], &f64)| {
+                criterion.bound_between(tension, compression) * fraction >= limit * volume
             };
-            pulls.iter().zip(volume).any(over)
+            virial_bounds.iter().zip(volume).any(over)
         };
-        self.pulls.par_chunks(BLOCK).zip(self.volume.par_chunks(BLOCK)).any(reaches)
+        self.virial_bounds.par_chunks(BLOCK).zip(self.volume.par_chunks(BLOCK)).any(reaches)
     }
 
-    fn own_bound_reaches(&mut self, criterion: &impl StressCriterion, body: &impl Bonded, limit: f64) -> bool {
-        body.dyads(&mut self.dyads);
+    fn own_bound_reaches(&mut self, criterion: &impl StressCriterion, body: &impl LoadedBonds, limit: f64) -> bool {
+        body.virials(&mut self.virials);
         let fraction = self.fraction;
-        let reaches = |(dyads, volume): (&[Sym3], &[f64])| {
-            dyads.iter().zip(volume).any(|(dyad, volume)| criterion.bound(&(*dyad * (fraction / volume))) >= limit)
+        let reaches = |(virials, volume): (&[Sym3], &[f64])| {
+            virials
+                .iter()
+                .zip(volume)
+                .any(|(virial, volume)| criterion.bound(&(*virial * (fraction / volume))) >= limit)
         };
-        self.dyads.par_chunks(BLOCK).zip(self.volume.par_chunks(BLOCK)).any(reaches)
+        self.virials.par_chunks(BLOCK).zip(self.volume.par_chunks(BLOCK)).any(reaches)
     }
 
     /// Looks at every site: finds the one nearest to failure, and those with a ratio of at least `limit`.
-    pub fn look(&mut self, body: &impl Bonded, graph: &BondGraph, limit: f64) {
-        if let Criterion::BeamRankine(beam) = self.criterion {
+    pub fn search(&mut self, body: &impl LoadedBonds, graph: &BondGraph, limit: f64) {
+        if let FractureCriterion::BeamRankine(beam) = self.criterion {
             let section = body.section();
             let ratio = |bond: usize| {
                 let live = graph.is_live(bond as u32);
                 if live { beam.ratio(&body.load(bond as u32), &section) } else { 0.0 }
             };
-            let looks = (0..graph.pairs().len().div_ceil(BLOCK)).into_par_iter().map(|block| {
-                let mut look = Look::default();
+            let found = (0..graph.pairs().len().div_ceil(BLOCK)).into_par_iter().map(|block| {
+                let mut found = BlockSearch::default();
                 for bond in block * BLOCK..((block + 1) * BLOCK).min(graph.pairs().len()) {
-                    look.take(bond, ratio(bond), limit);
+                    found.take(bond, ratio(bond), limit);
                 }
-                look
+                found
             });
-            let looks: Vec<Look> = looks.collect();
-            self.merge(looks);
+            let found: Vec<BlockSearch> = found.collect();
+            self.merge(found);
             return;
         }
-        body.dyads(&mut self.dyads);
-        let looks = match self.criterion {
-            Criterion::Hydrostatic(c) => self.scan(&c, graph, limit),
-            Criterion::Principal(c) => self.scan(&c, graph, limit),
-            Criterion::MohrCoulomb(c) => self.scan(&c, graph, limit),
-            Criterion::DruckerPrager(c) => self.scan(&c, graph, limit),
-            Criterion::BeamRankine(_) => Vec::new(),
+        body.virials(&mut self.virials);
+        let found = match self.criterion {
+            FractureCriterion::Hydrostatic(c) => self.scan(&c, graph, limit),
+            FractureCriterion::Principal(c) => self.scan(&c, graph, limit),
+            FractureCriterion::MohrCoulomb(c) => self.scan(&c, graph, limit),
+            FractureCriterion::DruckerPrager(c) => self.scan(&c, graph, limit),
+            FractureCriterion::BeamRankine(_) => Vec::new(),
         };
-        self.merge(looks);
+        self.merge(found);
     }
 
     /// Stresses of all neighbourhoods, and what the criterion says of them.
-    fn scan(&mut self, criterion: &impl StressCriterion, graph: &BondGraph, limit: f64) -> Vec<Look> {
-        let Watch { dyads, members, inverse, stress, .. } = self;
-        let (dyads, members, inverse): (&[Sym3], &[Vec<u32>], &[f64]) = (dyads, members, inverse);
+    fn scan(&mut self, criterion: &impl StressCriterion, graph: &BondGraph, limit: f64) -> Vec<BlockSearch> {
+        let FailureSearch { virials, members, inverse, stress, .. } = self;
+        let (virials, members, inverse): (&[Sym3], &[Vec<u32>], &[f64]) = (virials, members, inverse);
         let level = self.criterion.level();
         let block = |(block, stress): (usize, &mut [Sym3])| {
-            let mut look = Look::default();
+            let mut found = BlockSearch::default();
             for (slot, stress) in stress.iter_mut().enumerate() {
                 let i = block * BLOCK + slot;
-                let mut sum = dyads[i];
+                let mut sum = virials[i];
                 match level {
-                    Some(Level::Neighbours) => graph.neighbours(i).for_each(|h| sum += dyads[h.other as usize]),
-                    Some(Level::Second) => members[i].iter().for_each(|&j| sum += dyads[j as usize]),
+                    Some(Level::Neighbours) => graph.neighbours(i).for_each(|h| sum += virials[h.other as usize]),
+                    Some(Level::Second) => members[i].iter().for_each(|&j| sum += virials[j as usize]),
                     _ => {}
                 }
                 *stress = sum * inverse[i];
                 // Eigenvalues only where they could matter.
-                if criterion.bound(stress) >= limit.min(look.best()) {
-                    look.take(i, criterion.ratio(stress), limit);
+                if criterion.bound(stress) >= limit.min(found.best()) {
+                    found.take(i, criterion.ratio(stress), limit);
                 }
             }
-            look
+            found
         };
         stress.par_chunks_mut(BLOCK).enumerate().map(block).collect()
     }
 
     /// Joins what blocks found, in their order.
-    fn merge(&mut self, looks: Vec<Look>) {
-        self.over.clear();
+    fn merge(&mut self, found: Vec<BlockSearch>) {
+        self.overloaded.clear();
         self.worst = None;
-        for look in looks {
-            self.over.extend_from_slice(&look.over);
-            if let Some(site) = look.worst
+        for found in found {
+            self.overloaded.extend_from_slice(&found.overloaded);
+            if let Some(site) = found.worst
                 && self.worst.is_none_or(|w| site.ratio > w.ratio)
             {
                 self.worst = Some(site);
@@ -284,17 +292,17 @@ impl Watch {
     }
 
     /// The bonds that break when a site fails.
-    pub fn breaks(&self, site: &Site, body: &impl Bonded, graph: &BondGraph, out: &mut Vec<Break>) {
+    pub fn breaks(&self, site: &FailureSite, body: &impl LoadedBonds, graph: &BondGraph, out: &mut Vec<Break>) {
         let i = site.index as usize;
         let release = match self.criterion {
-            Criterion::BeamRankine(beam) => {
+            FractureCriterion::BeamRankine(beam) => {
                 let mode = beam.mode(&body.load(site.index), &body.section());
                 return out.push(Break { bond: site.index, mode });
             }
-            Criterion::Hydrostatic(c) => c.release(&self.stress[i]),
-            Criterion::Principal(c) => c.release(&self.stress[i]),
-            Criterion::MohrCoulomb(c) => c.release(&self.stress[i]),
-            Criterion::DruckerPrager(c) => c.release(&self.stress[i]),
+            FractureCriterion::Hydrostatic(c) => c.release(&self.stress[i]),
+            FractureCriterion::Principal(c) => c.release(&self.stress[i]),
+            FractureCriterion::MohrCoulomb(c) => c.release(&self.stress[i]),
+            FractureCriterion::DruckerPrager(c) => c.release(&self.stress[i]),
         };
         match release {
             Release::All(mode) => out.extend(graph.neighbours(i).map(|h| Break { bond: h.bond, mode })),
@@ -315,24 +323,24 @@ impl Watch {
 
 /// What a block of sites shows.
 #[derive(Default)]
-struct Look {
-    worst: Option<Site>,
-    over: Vec<Site>,
+struct BlockSearch {
+    worst: Option<FailureSite>,
+    overloaded: Vec<FailureSite>,
 }
 
-impl Look {
+impl BlockSearch {
     fn best(&self) -> f64 {
         self.worst.map_or(0.0, |w| w.ratio)
     }
 
     #[inline]
     fn take(&mut self, index: usize, ratio: f64, limit: f64) {
-        let site = Site { index: index as u32, ratio };
+        let site = FailureSite { index: index as u32, ratio };
         if ratio > self.best() {
             self.worst = Some(site);
         }
         if ratio >= limit {
-            self.over.push(site);
+            self.overloaded.push(site);
         }
     }
 }

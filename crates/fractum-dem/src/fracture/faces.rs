@@ -3,7 +3,8 @@
 use fractum_contact::law::{ContactMemory, Linear, PairMotion, Rolling};
 use serde::{Deserialize, Serialize};
 
-use crate::{BeamSection, Particles};
+use crate::bond::BeamSection;
+use crate::particles::Particles;
 
 /// The faces of a crack against one another.
 #[derive(Clone, Copy, Debug, PartialEq)]

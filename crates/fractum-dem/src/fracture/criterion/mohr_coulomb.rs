@@ -1,7 +1,7 @@
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::{Level, Mode, Release, StressCriterion, first_bound, last_bound};
+use super::{BreakMode, Level, Release, StressCriterion, first_bound, last_bound};
 
 /// Mohr–Coulomb with tension cut-off on the virial stress: max(σ₁/f_t, (N σ₁ − σ₃)/f_c) with
 /// N = (1 + sin φ)/(1 − sin φ), tension positive.
@@ -37,8 +37,8 @@ impl StressCriterion for MohrCoulomb {
     }
 
     #[inline]
-    fn bound_between(&self, pulled: f64, pressed: f64) -> f64 {
-        (pulled / self.tensile_strength).max(self.shear(pulled, -pressed))
+    fn bound_between(&self, tension: f64, compression: f64) -> f64 {
+        (tension / self.tensile_strength).max(self.shear(tension, -compression))
     }
 
     #[inline]
@@ -51,11 +51,11 @@ impl StressCriterion for MohrCoulomb {
         let ([first, _, last], axes) = stress.eigen();
         let (along, across): (Vec3, Vec3) = (axes.column(0).into_owned(), axes.column(2).into_owned());
         if first / self.tensile_strength >= self.shear(first, last) {
-            return Release::Nearest([along; 2], Mode::Tension);
+            return Release::Nearest([along; 2], BreakMode::Tension);
         }
         let angle = std::f64::consts::FRAC_PI_4 - 0.5 * self.friction_angle;
         let normal = |sign: f64| along * angle.cos() + across * (sign * angle.sin());
-        Release::Nearest([normal(1.0), normal(-1.0)], Mode::Shear)
+        Release::Nearest([normal(1.0), normal(-1.0)], BreakMode::Shear)
     }
 }
 
@@ -68,7 +68,7 @@ mod tests {
         let friction_angle = 0.6;
         let criterion =
             MohrCoulomb { tensile_strength: 1.0, compressive_strength: 10.0, friction_angle, level: Level::Neighbours };
-        let Release::Nearest(normals, Mode::Shear) = criterion.release(&Sym3::new(0.0, 0.1, -20.0, 0.0, 0.0, 0.0))
+        let Release::Nearest(normals, BreakMode::Shear) = criterion.release(&Sym3::new(0.0, 0.1, -20.0, 0.0, 0.0, 0.0))
         else {
             panic!("compression does not slip");
         };

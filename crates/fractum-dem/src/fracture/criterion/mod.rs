@@ -35,7 +35,7 @@ pub struct BondLoad {
 /// How a bond broke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Mode {
+pub enum BreakMode {
     /// Pulled apart.
     Tension,
     /// Crushed.
@@ -48,18 +48,19 @@ pub enum Mode {
     Torsion,
 }
 
-impl Mode {
+impl BreakMode {
     /// All modes, in the order of their codes in result files.
-    pub const ALL: [Mode; 5] = [Mode::Tension, Mode::Compression, Mode::Shear, Mode::Bending, Mode::Torsion];
+    pub const ALL: [BreakMode; 5] =
+        [BreakMode::Tension, BreakMode::Compression, BreakMode::Shear, BreakMode::Bending, BreakMode::Torsion];
 
     /// The word for it.
     pub fn word(self) -> &'static str {
         match self {
-            Mode::Tension => "tension",
-            Mode::Compression => "compression",
-            Mode::Shear => "shear",
-            Mode::Bending => "bending",
-            Mode::Torsion => "torsion",
+            BreakMode::Tension => "tension",
+            BreakMode::Compression => "compression",
+            BreakMode::Shear => "shear",
+            BreakMode::Bending => "bending",
+            BreakMode::Torsion => "torsion",
         }
     }
 }
@@ -87,9 +88,9 @@ impl Level {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Release {
     /// All of them.
-    All(Mode),
+    All(BreakMode),
     /// The one nearest to one of these directions (unit vectors; both senses).
-    Nearest([Vec3; 2], Mode),
+    Nearest([Vec3; 2], BreakMode),
 }
 
 /// A criterion on the stress of a particle. It sees one tensor, never the body.
@@ -97,9 +98,9 @@ pub trait StressCriterion: Sync {
     /// Largest value that [`StressCriterion::ratio`] can have for this stress, cheaply: without eigenvalues.
     fn bound(&self, stress: &Sym3) -> f64;
 
-    /// Largest value that [`StressCriterion::ratio`] can have for any stress with principal values from −`pressed` to
-    /// `pulled`, neither below zero.
-    fn bound_between(&self, pulled: f64, pressed: f64) -> f64;
+    /// Largest value that [`StressCriterion::ratio`] can have for any stress with principal values from −`compression` to
+    /// `tension`, neither below zero.
+    fn bound_between(&self, tension: f64, compression: f64) -> f64;
 
     /// Stress over strength: one where the particle fails, proportional to the stress.
     fn ratio(&self, stress: &Sym3) -> f64;
@@ -111,7 +112,7 @@ pub trait StressCriterion: Sync {
 /// When bonds break.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Criterion {
+pub enum FractureCriterion {
     /// Largest principal stress in the beam itself.
     BeamRankine(BeamRankine),
     /// Mean stress of a particle; all its bonds go.
@@ -124,7 +125,7 @@ pub enum Criterion {
     DruckerPrager(DruckerPrager),
 }
 
-impl Criterion {
+impl FractureCriterion {
     /// Refuses strengths that are not positive.
     ///
     /// # Errors
@@ -135,20 +136,20 @@ impl Criterion {
             if fine { Ok(()) } else { Err(DemError::BadCriterion { what, value, expected: "a positive number" }) }
         };
         match self {
-            Criterion::BeamRankine(c) => positive("strength of the beams", c.strength),
-            Criterion::Hydrostatic(c) => positive("hydrostatic strength", c.strength),
-            Criterion::Principal(c) => {
+            FractureCriterion::BeamRankine(c) => positive("strength of the beams", c.strength),
+            FractureCriterion::Hydrostatic(c) => positive("hydrostatic strength", c.strength),
+            FractureCriterion::Principal(c) => {
                 positive("tensile strength", c.tensile_strength)?;
                 c.compressive_strength.map_or(Ok(()), |s| positive("compressive strength", s))
             }
-            Criterion::MohrCoulomb(c) => {
+            FractureCriterion::MohrCoulomb(c) => {
                 positive("tensile strength", c.tensile_strength)?;
                 positive("compressive strength", c.compressive_strength)?;
                 let fine = (0.0..std::f64::consts::FRAC_PI_2).contains(&c.friction_angle);
                 let (what, expected) = ("friction angle in radians", "0 to below pi/2");
                 if fine { Ok(()) } else { Err(DemError::BadCriterion { what, value: c.friction_angle, expected }) }
             }
-            Criterion::DruckerPrager(c) => {
+            FractureCriterion::DruckerPrager(c) => {
                 positive("tensile strength", c.tensile_strength)?;
                 positive("compressive strength", c.compressive_strength)
             }
@@ -158,19 +159,23 @@ impl Criterion {
     /// The same criterion with all its strengths multiplied.
     pub fn scaled(self, factor: f64) -> Self {
         match self {
-            Criterion::BeamRankine(c) => Criterion::BeamRankine(BeamRankine { strength: c.strength * factor, ..c }),
-            Criterion::Hydrostatic(c) => Criterion::Hydrostatic(Hydrostatic { strength: c.strength * factor }),
-            Criterion::Principal(c) => Criterion::Principal(Principal {
+            FractureCriterion::BeamRankine(c) => {
+                FractureCriterion::BeamRankine(BeamRankine { strength: c.strength * factor, ..c })
+            }
+            FractureCriterion::Hydrostatic(c) => {
+                FractureCriterion::Hydrostatic(Hydrostatic { strength: c.strength * factor })
+            }
+            FractureCriterion::Principal(c) => FractureCriterion::Principal(Principal {
                 tensile_strength: c.tensile_strength * factor,
                 compressive_strength: c.compressive_strength.map(|s| s * factor),
                 ..c
             }),
-            Criterion::MohrCoulomb(c) => Criterion::MohrCoulomb(MohrCoulomb {
+            FractureCriterion::MohrCoulomb(c) => FractureCriterion::MohrCoulomb(MohrCoulomb {
                 tensile_strength: c.tensile_strength * factor,
                 compressive_strength: c.compressive_strength * factor,
                 ..c
             }),
-            Criterion::DruckerPrager(c) => Criterion::DruckerPrager(DruckerPrager {
+            FractureCriterion::DruckerPrager(c) => FractureCriterion::DruckerPrager(DruckerPrager {
                 tensile_strength: c.tensile_strength * factor,
                 compressive_strength: c.compressive_strength * factor,
                 ..c
@@ -181,11 +186,11 @@ impl Criterion {
     /// Over which particles stress is taken; none for a criterion of beams.
     pub fn level(&self) -> Option<Level> {
         match self {
-            Criterion::BeamRankine(_) => None,
-            Criterion::Hydrostatic(_) => Some(Level::Own),
-            Criterion::Principal(c) => Some(c.level),
-            Criterion::MohrCoulomb(c) => Some(c.level),
-            Criterion::DruckerPrager(c) => Some(c.level),
+            FractureCriterion::BeamRankine(_) => None,
+            FractureCriterion::Hydrostatic(_) => Some(Level::Own),
+            FractureCriterion::Principal(c) => Some(c.level),
+            FractureCriterion::MohrCoulomb(c) => Some(c.level),
+            FractureCriterion::DruckerPrager(c) => Some(c.level),
         }
     }
 }
@@ -266,10 +271,10 @@ mod tests {
     #[test]
     fn strengths_that_are_none_are_refused() {
         let level = Level::Own;
-        let bad = Criterion::Principal(Principal { tensile_strength: -1.0, compressive_strength: None, level });
+        let bad = FractureCriterion::Principal(Principal { tensile_strength: -1.0, compressive_strength: None, level });
         assert!(matches!(bad.check(), Err(DemError::BadCriterion { .. })));
         let steep = MohrCoulomb { tensile_strength: 1.0, compressive_strength: 9.0, friction_angle: 2.0, level };
-        assert!(Criterion::MohrCoulomb(steep).check().is_err());
-        assert!(Criterion::Hydrostatic(Hydrostatic { strength: f64::NAN }).check().is_err());
+        assert!(FractureCriterion::MohrCoulomb(steep).check().is_err());
+        assert!(FractureCriterion::Hydrostatic(Hydrostatic { strength: f64::NAN }).check().is_err());
     }
 }

@@ -1,7 +1,7 @@
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use super::{Mode, Release, StressCriterion};
+use super::{BreakMode, Release, StressCriterion};
 
 /// Mean virial stress of a particle against a strength; the particle loses all its bonds (Jebahi et al. 2015, eqs.
 /// 4.23–4.24, with the sphere's own volume).
@@ -18,8 +18,8 @@ impl StressCriterion for Hydrostatic {
     }
 
     #[inline]
-    fn bound_between(&self, pulled: f64, _: f64) -> f64 {
-        pulled / self.strength
+    fn bound_between(&self, tension: f64, _: f64) -> f64 {
+        tension / self.strength
     }
 
     #[inline]
@@ -28,6 +28,6 @@ impl StressCriterion for Hydrostatic {
     }
 
     fn release(&self, _: &Sym3) -> Release {
-        Release::All(Mode::Tension)
+        Release::All(BreakMode::Tension)
     }
 }

@@ -1,0 +1,14 @@
+//! Bonds that break: criteria, the search for what they overload, and the contact of what has broken.
+
+mod crack;
+pub mod criterion;
+mod faces;
+mod moving;
+mod search;
+
+pub use crack::Crack;
+pub(crate) use crack::facet_area;
+pub use criterion::FractureCriterion;
+pub use faces::{CrackFaces, FaceWork};
+pub use moving::{Fracture, FractureState, Occasion};
+pub use search::{Break, FailureSearch, FailureSite, LoadedBonds};
