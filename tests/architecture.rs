@@ -15,7 +15,7 @@ const ARROWS: [(&str, &[&str]); 12] = [
     ("fractum-fem", &["math", "mesh"]),
     ("fractum-sparse", &["math"]),
     ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse"]),
-    ("fractum-io", &["math", "mesh", "fem", "dem", "scene"]),
+    ("fractum-io", &["math", "mesh", "fem", "dem", "pack", "scene"]),
     ("fractum-prepare", &["math", "mesh", "dem", "pack", "calibrate", "scene", "io"]),
     ("fractum", &["math", "mesh", "fem", "dem", "pack", "calibrate", "scene", "io", "prepare"]),
 ];

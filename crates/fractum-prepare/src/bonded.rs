@@ -6,9 +6,7 @@ use fractum_calibrate::strength::{BondKind, strength_factor};
 use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Micro, Sample, prepare, suitable_coordination};
 use fractum_dem::{CrackFaces, FractureCriterion};
 use fractum_io::assemble::PreparedBody;
-use fractum_io::case::model::{
-    self, BodyKind, BondFailure, BondedBody, BondedShape, Case, PackingSource, ParticleSize,
-};
+use fractum_io::case::model::{BodyKind, BondFailure, BondedBody, BondedShape, Case, PackingSource, ParticleSize};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
 use fractum_mesh::{Mesh, topology};
 use fractum_pack::{
@@ -167,7 +165,7 @@ impl Maker<'_> {
             all.warnings.push(warning.remedy("fractum pack shows the whole certificate"));
         }
         let material = &self.case.materials[self.bonded.material];
-        let convention = convention(self.bonded.convention);
+        let convention = self.bonded.convention;
         let coordination = match &self.bonded.coordination {
             Some(coordination) => coordination.value,
             None => suitable_coordination(material.poisson_ratio, convention).map_err(|e| self.wrong(&e))?,
@@ -255,7 +253,7 @@ impl Maker<'_> {
         coordination: f64,
     ) -> Result<(FractureCriterion, Origin), Box<Diagnostic>> {
         let Some(asked) = failure.tensile_strength else { return Ok((failure.criterion, Origin::Given)) };
-        let (convention, dispersion) = (convention(self.bonded.convention), sample.packing.dispersion);
+        let (convention, dispersion) = (self.bonded.convention, sample.packing.dispersion);
         let criterion = failure.criterion;
         let bonds = BondKind { micro, coordination, convention, dispersion };
         let strength_key = key(&StrengthKey { bonds, asked, criterion });
@@ -354,13 +352,6 @@ impl Maker<'_> {
             _ => &self.name.place,
         };
         self.refuse(place, format!(": {error}"))
-    }
-}
-
-fn convention(convention: model::Convention) -> Convention {
-    match convention {
-        model::Convention::All => Convention::All,
-        model::Convention::Interior => Convention::Interior,
     }
 }
 

@@ -256,7 +256,8 @@ impl Plan {
         );
         if let Some(damage) = material.damage.as_ref().filter(|_| solid.damage) {
             let d = &damage.value;
-            let zone = material.young_modulus * d.fracture_energy / (d.tensile_strength * d.tensile_strength);
+            let law = &d.law;
+            let zone = material.young_modulus * law.fracture_energy / (law.tensile_strength * law.tensile_strength);
             let (_, ratio) = scene.solid.length_report(index);
             self.add(
                 "",

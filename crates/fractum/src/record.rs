@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use fractum_io::Compression;
-use fractum_io::case::model::{Case, NoEquilibrium, ProbeExpression, ProbeInput, ProbeKind, Take};
+use fractum_io::case::model::{Case, ProbeExpression, ProbeInput, ProbeKind, Take};
 use fractum_io::history::{Column, History};
 use fractum_io::vtk::{CellBlock, CellKind, Collection, Field, PolyCells, PolyData, UnstructuredGrid, Values};
 use fractum_scene::Scene;
+use fractum_scene::statics::NoEquilibrium;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;

@@ -2,7 +2,7 @@ use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
 /// The equivalent stress of a criterion, scaled so that uniaxial tension σ gives q = σ.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CriterionKind {
     /// Largest principal stress, max(σ₁, 0).
     Rankine,
@@ -16,6 +16,29 @@ pub enum CriterionKind {
     Mazars,
     /// Modified Mohr-Coulomb of Oller with independent tensile and compressive strength.
     ModifiedMohrCoulomb,
+}
+
+impl CriterionKind {
+    /// Whether the angle of internal friction enters.
+    pub fn uses_friction_angle(self) -> bool {
+        matches!(self, Self::MohrCoulomb | Self::PureMohrCoulomb | Self::ModifiedMohrCoulomb)
+    }
+
+    /// Whether the uniaxial compressive strength enters.
+    pub fn uses_compressive_strength(self) -> bool {
+        matches!(self, Self::MohrCoulomb | Self::DruckerPrager | Self::ModifiedMohrCoulomb)
+    }
+
+    /// The strength ratio f_c/f_t below which the criterion would fail in uniaxial tension before f_t.
+    ///
+    /// - `friction_angle` φ [rad]
+    pub fn least_strength_ratio(self, friction_angle: f64) -> f64 {
+        match self {
+            // The shear plane cuts off uniaxial tension.
+            Self::MohrCoulomb => (1.0 + friction_angle.sin()) / (1.0 - friction_angle.sin()),
+            _ => 1.0,
+        }
+    }
 }
 
 /// A criterion with the constants that its evaluation needs.

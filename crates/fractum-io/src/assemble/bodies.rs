@@ -1,7 +1,7 @@
 //! Solid bodies: elements, nodes, materials, strength.
 
 use fractum_fem as fem;
-use fractum_fem::{CriterionKind, DamageLaw, DamageZone, Elastic, Region, Solid};
+use fractum_fem::{DamageZone, Elastic, Formulation, Plane, Region, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::renumber::hilbert_order;
 use fractum_mesh::topology;
@@ -10,10 +10,7 @@ use rand_distr::{Distribution as _, Uniform, Weibull};
 use rand_pcg::Pcg64Mcg;
 
 use super::{Context, use_in_words};
-use crate::case::model::{
-    BodyKind, Criterion, Damage, Distribution, Formulation, GroupUse, Kinematics, Material, Plane, Scatter, Softening,
-    SolidBody,
-};
+use crate::case::model::{BodyKind, Damage, Distribution, GroupUse, Scatter, SolidBody};
 use crate::case::{Diagnostic, Place};
 
 /// A solid body of the case with its elements in the mesh.
@@ -177,49 +174,33 @@ impl<'a> Context<'a> {
             let elements: Vec<[u32; 4]> =
                 elements.iter().map(|e| e.map(|n| numbering.scene_node[n as usize])).collect();
             let mut body = fem::Body::new(part.name, part.shape, elements, elastic);
-            body.formulation = match part.body.formulation {
-                Formulation::Smoothed => fem::Formulation::Smoothed,
-                Formulation::Standard => fem::Formulation::Standard,
-            };
-            body.kinematics = match part.body.kinematics {
-                Kinematics::Small => fem::Kinematics::Small,
-                Kinematics::Corotational => fem::Kinematics::Corotational,
-            };
-            body.plane = match part.body.plane.as_ref().map(|p| p.value) {
-                Some(Plane::Stress) => fem::Plane::Stress,
-                _ => fem::Plane::Strain,
-            };
+            body.formulation = part.body.formulation;
+            body.kinematics = part.body.kinematics;
+            body.plane = part.body.plane.as_ref().map_or(Plane::Strain, |plane| plane.value);
             body.thickness = part.body.thickness.as_ref().map_or(1.0, |t| t.value);
             if let Some(damage) = material.damage.as_ref().filter(|_| part.body.damage) {
-                if damage.value.unilateral && body.formulation == fem::Formulation::Standard {
+                if damage.value.law.unilateral && body.formulation == Formulation::Standard {
                     self.error(
                         &damage.place,
                         ".unilateral = true with the standard formulation",
                         "the smoothed formulation, which alone can close cracks; remove one of the two",
                     );
                 }
-                if damage.value.crack_plane_gate && body.formulation == fem::Formulation::Standard {
+                if damage.value.crack_plane_gate && body.formulation == Formulation::Standard {
                     self.error(
                         &damage.place,
                         ".crack_plane_gate = true with the standard formulation",
                         "the smoothed formulation, on whose edges the gate acts; remove one of the two",
                     );
                 }
-                body.damage = Some(self.damage_zone(part, &body, material, &damage.value, numbering));
+                body.damage = Some(self.damage_zone(part, &body, &damage.value, numbering));
             }
             bodies.push(body);
         }
         self.diagnostics.is_empty().then_some(bodies)
     }
 
-    fn damage_zone(
-        &mut self,
-        part: &Part,
-        body: &fem::Body,
-        material: &Material,
-        damage: &Damage,
-        numbering: &Numbering,
-    ) -> DamageZone {
+    fn damage_zone(&mut self, part: &Part, body: &fem::Body, damage: &Damage, numbering: &Numbering) -> DamageZone {
         let midpoints = body.edge_midpoints(&numbering.positions);
         let region = match &part.body.damage_where {
             None => Region::Everywhere,
@@ -255,7 +236,7 @@ impl<'a> Context<'a> {
             }
         }
         DamageZone {
-            law: damage_law(material, damage),
+            law: damage.law.clone(),
             region,
             strength_factor,
             reduce_strength_to_fit: damage.reduce_strength_to_fit,
@@ -316,35 +297,6 @@ impl<'a> Context<'a> {
             let edges = topology::boundary_of_triangles(&triangles);
             edges.iter().map(|e| [scene(e.nodes[0]), scene(e.nodes[1]), scene(e.nodes[1])]).collect()
         }
-    }
-}
-
-fn damage_law(material: &Material, damage: &Damage) -> DamageLaw {
-    let kind = match damage.criterion {
-        Criterion::Rankine => CriterionKind::Rankine,
-        Criterion::MohrCoulomb => CriterionKind::MohrCoulomb,
-        Criterion::MohrCoulombPure => CriterionKind::PureMohrCoulomb,
-        Criterion::DruckerPrager => CriterionKind::DruckerPrager,
-        Criterion::Mazars => CriterionKind::Mazars,
-        Criterion::ModifiedMohrCoulomb => CriterionKind::ModifiedMohrCoulomb,
-    };
-    let ratio = damage.compressive_strength / damage.tensile_strength;
-    DamageLaw {
-        criterion: fem::Criterion::new(kind, damage.friction_angle, ratio, material.poisson_ratio),
-        tensile_strength: damage.tensile_strength,
-        fracture_energy: damage.fracture_energy,
-        softening: match damage.softening {
-            Softening::Exponential => fem::Softening::Exponential,
-            Softening::Linear => fem::Softening::Linear,
-            // The case gives the kink's opening as a fraction of the last one, 2 G_f/(f_t (stress + fraction)).
-            Softening::Bilinear { kink_stress, kink_opening } => fem::Softening::Bilinear {
-                stress: kink_stress,
-                opening: 2.0 * kink_opening / (kink_stress + kink_opening),
-            },
-        },
-        residual: damage.residual,
-        unilateral: damage.unilateral,
-        rate_time: damage.rate_time,
     }
 }
 

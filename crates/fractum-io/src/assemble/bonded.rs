@@ -168,7 +168,7 @@ impl Context<'_> {
                     for (axis, value) in force.iter().enumerate() {
                         if let Some(value) = value {
                             let particles = shares.clone();
-                            loads.push(ParticleLoad::Force { particles, axis, value: function(value) });
+                            loads.push(ParticleLoad::Force { particles, axis, value: function(&value.value) });
                         }
                     }
                 }
@@ -180,7 +180,7 @@ impl Context<'_> {
                 LoadKind::Gravity { acceleration } => {
                     for (axis, value) in acceleration.iter().enumerate() {
                         if let Some(value) = value {
-                            loads.push(ParticleLoad::Gravity { axis, value: function(value) });
+                            loads.push(ParticleLoad::Gravity { axis, value: function(&value.value) });
                         }
                     }
                 }

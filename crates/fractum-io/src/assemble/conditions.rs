@@ -8,9 +8,7 @@ use fractum_scene::{Load, Motion, Support};
 use super::bodies::{Numbering, Part};
 use super::{Context, function, use_in_words};
 use crate::case::model::{self, Components, GroupUse, LoadKind};
-use crate::case::{Place, Spanned};
-
-const AXES: [char; 3] = ['x', 'y', 'z'];
+use crate::case::{Spanned, TimeFunction};
 
 impl Context<'_> {
     pub(super) fn supports(&mut self, numbering: &Numbering) -> Vec<Support> {
@@ -55,13 +53,13 @@ impl Context<'_> {
                 }
                 LoadKind::Pressure { group, pressure } => {
                     let facets = self.group_facets(group, numbering, &surface);
-                    loads.push(Load::Pressure { facets, thickness, value: function(pressure) });
+                    loads.push(Load::Pressure { facets, thickness, value: function(&pressure.value) });
                 }
                 LoadKind::Gravity { acceleration } => {
                     for (axis, value) in acceleration.iter().enumerate() {
                         let Some(value) = value else { continue };
-                        self.refuse_position(&load.name.as_ref().map(|n| n.place.clone()), value, AXES[axis]);
-                        loads.push(Load::Gravity { axis, value: function(value) });
+                        self.refuse_position(value);
+                        loads.push(Load::Gravity { axis, value: function(&value.value) });
                     }
                 }
             }
@@ -69,10 +67,9 @@ impl Context<'_> {
         loads
     }
 
-    fn refuse_position(&mut self, place: &Option<Place>, value: &crate::case::TimeFunction, axis: char) {
-        if value.depends_on_position() {
-            let place = place.clone().unwrap_or_else(|| self.whole_case());
-            self.error(&place, format!(": gravity along {axis} depends on the position"), "a function of time only");
+    fn refuse_position(&mut self, gravity: &Spanned<TimeFunction>) {
+        if gravity.value.depends_on_position() {
+            self.error(&gravity.place, "depends on the position", "a function of time only");
         }
     }
 
@@ -127,7 +124,7 @@ pub(super) fn motion_of(motion: &model::Motion) -> Motion {
 fn push_nodal(loads: &mut Vec<Load>, nodes: &[(u32, f64)], components: &Components) {
     for (axis, value) in components.iter().enumerate() {
         if let Some(value) = value {
-            loads.push(Load::Nodal { nodes: nodes.to_vec(), axis, value: function(value) });
+            loads.push(Load::Nodal { nodes: nodes.to_vec(), axis, value: function(&value.value) });
         }
     }
 }

@@ -98,7 +98,9 @@ impl Context<'_> {
         for load in &case.loads {
             if let LoadKind::Gravity { acceleration } = &load.kind {
                 let axes = acceleration.iter().enumerate();
-                gravity.extend(axes.filter_map(|(axis, value)| value.as_ref().map(|value| (axis, function(value)))));
+                gravity.extend(
+                    axes.filter_map(|(axis, value)| value.as_ref().map(|value| (axis, function(&value.value)))),
+                );
             }
         }
         let mut contacts = Contacts::new(&scene.bonded, materials, tools, solids, gravity);
@@ -309,13 +311,13 @@ fn elastic(young_modulus: f64, poisson_ratio: f64) -> ElasticMaterial {
 fn drive(tool: &mut Tool, rigid: &RigidBody) {
     for axis in 0..3 {
         tool.along[axis] = match (&rigid.velocity[axis], rigid.free[axis], &rigid.force[axis]) {
-            (Some(velocity), ..) => Drive::Velocity(function(velocity)),
-            (None, true, Some(force)) => Drive::Force(function(force)),
+            (Some(velocity), ..) => Drive::Velocity(function(&velocity.value)),
+            (None, true, Some(force)) => Drive::Force(function(&force.value)),
             (None, true, None) => Drive::Free,
             _ => Drive::Fixed,
         };
         tool.about[axis] = match &rigid.spin[axis] {
-            Some(spin) => Drive::Velocity(function(spin)),
+            Some(spin) => Drive::Velocity(function(&spin.value)),
             None if rigid.free_rotation => Drive::Free,
             None => Drive::Fixed,
         };

@@ -2,13 +2,13 @@
 
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
-use fractum_scene::{Bonded, BondedBody, CountKind, CrackMeasure, EnergyKind, InsideCracks, Probe, Supports};
+use fractum_scene::{Bonded, BondedBody, InsideCracks, Probe, Supports};
 
 use super::Context;
 use super::bodies::{Numbering, Part};
 use super::use_in_words;
 use crate::case::Field;
-use crate::case::model::{self, GroupUse, ProbeKind};
+use crate::case::model::{GroupUse, ProbeKind};
 
 impl Context<'_> {
     /// The measured probes of the case; none for expressions.
@@ -81,31 +81,8 @@ impl Context<'_> {
                 }
                 Probe::Stress { elements, component: *component as usize }
             }
-            ProbeKind::Energy(kind) => Probe::Energy(match kind {
-                model::EnergyKind::External => EnergyKind::External,
-                model::EnergyKind::Kinetic => EnergyKind::Kinetic,
-                model::EnergyKind::Elastic => EnergyKind::Elastic,
-                model::EnergyKind::BondTension => EnergyKind::BondTension,
-                model::EnergyKind::BondBending => EnergyKind::BondBending,
-                model::EnergyKind::BondTorsion => EnergyKind::BondTorsion,
-                model::EnergyKind::Damage => EnergyKind::Damage,
-                model::EnergyKind::Removed => EnergyKind::Removed,
-                model::EnergyKind::Contact => EnergyKind::Contact,
-                model::EnergyKind::Friction => EnergyKind::Friction,
-                model::EnergyKind::Damping => EnergyKind::Damping,
-                model::EnergyKind::Absorbed => EnergyKind::Absorbed,
-                model::EnergyKind::Residual => EnergyKind::Residual,
-            }),
-            ProbeKind::Count(kind) => Probe::Count(match kind {
-                model::CountKind::RemovedElements => CountKind::RemovedElements,
-                model::CountKind::BrokenEdges => CountKind::BrokenEdges,
-                model::CountKind::DamagedEdges => CountKind::DamagedEdges,
-                model::CountKind::Particles => CountKind::Particles,
-                model::CountKind::Fragments => CountKind::Fragments,
-                model::CountKind::Contacts => CountKind::Contacts,
-                model::CountKind::Bonds => CountKind::Bonds,
-                model::CountKind::BrokenBonds => CountKind::BrokenBonds,
-            }),
+            ProbeKind::Energy(kind) => Probe::Energy(*kind),
+            ProbeKind::Count(kind) => Probe::Count(*kind),
             ProbeKind::Momentum { along } => Probe::Momentum(*along),
             ProbeKind::AngularMomentum { along } => Probe::AngularMomentum(*along),
             ProbeKind::CrackArea => Probe::CrackArea,
@@ -121,15 +98,7 @@ impl Context<'_> {
                         ": no edge of a body that may be damaged and no bond that may break fulfils the condition";
                     self.error(&within.place, found, "a condition that holds where a crack is expected");
                 }
-                let measure = match measure {
-                    model::CrackMeasure::Angle => CrackMeasure::Angle,
-                    model::CrackMeasure::Centre => CrackMeasure::Centre,
-                    model::CrackMeasure::Front => CrackMeasure::Front,
-                    model::CrackMeasure::Helix => CrackMeasure::Helix,
-                    model::CrackMeasure::Cone => CrackMeasure::Cone,
-                    model::CrackMeasure::ConeShare => CrackMeasure::ConeShare,
-                };
-                Probe::Crack { measure, axis: Axis { point: *point, direction: *along }, inside }
+                Probe::Crack { measure: *measure, axis: Axis { point: *point, direction: *along }, inside }
             }
             ProbeKind::Expression(_) => return None,
         })

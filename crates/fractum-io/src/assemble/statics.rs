@@ -1,6 +1,5 @@
 //! What a quasi-static run needs, and what it cannot do.
 
-use fractum_dem::Batch;
 use fractum_fem::{LocalDamping, NotSecant, Solid};
 use fractum_scene::statics::{self, StaticSettings};
 use fractum_scene::{Bonded, BondedStaticSettings, Scene};
@@ -8,7 +7,7 @@ use fractum_scene::{Bonded, BondedStaticSettings, Scene};
 use super::Context;
 use super::bodies::Numbering;
 use crate::case::Place;
-use crate::case::model::{Body, BodyKind, BondBatch, Control, Damping, LinearSolver, NoEquilibrium, SolverKind};
+use crate::case::model::{Body, BodyKind, Control, Damping, SolverKind};
 
 /// Relative residual of iterative linear solutions.
 const LINEAR_TOLERANCE: f64 = 1e-8;
@@ -86,16 +85,9 @@ impl Context<'_> {
             most_steps: options.most_steps,
             tolerance: options.tolerance,
             linear_tolerance: LINEAR_TOLERANCE,
-            linear: match options.linear_solver {
-                LinearSolver::Auto => statics::LinearSolver::Auto,
-                LinearSolver::Direct => statics::LinearSolver::Direct,
-                LinearSolver::Iterative => statics::LinearSolver::Iterative,
-            },
+            linear: options.linear_solver,
             damping: given.then_some(LocalDamping { local, mass_rate: mass }),
-            no_equilibrium: match options.no_equilibrium {
-                NoEquilibrium::Stop => statics::NoEquilibrium::Stop,
-                NoEquilibrium::Motion => statics::NoEquilibrium::Motion,
-            },
+            no_equilibrium: options.no_equilibrium,
         })
     }
 
@@ -127,10 +119,7 @@ impl Context<'_> {
         Some(BondedStaticSettings {
             end: solver.end,
             tolerance: options.tolerance,
-            batch: match options.batch {
-                BondBatch::Site => Batch::PerSite,
-                BondBatch::One => Batch::One,
-            },
+            batch: options.batch,
             most_steps: options.most_steps,
         })
     }

@@ -2,6 +2,13 @@
 //!
 //! The reader takes dimensions from here, so that the documentation, `explain`, the schema and the reading agree.
 
+use fractum_dem::Batch;
+use fractum_dem::criterion::EndMoments;
+use fractum_fem::{CriterionKind, Formulation, Kinematics, Plane};
+use fractum_pack::Convention;
+use fractum_scene::statics::{LinearSolver, NoEquilibrium};
+use fractum_scene::{CountKind, CrackMeasure, EnergyKind};
+
 use super::model::*;
 use super::tree::{Node, Value, join};
 use super::unit::Dimension;
@@ -263,7 +270,7 @@ static KEYS: &[KeyDoc] = &[
     key("materials.NAME.young_modulus", K::Quantity(D::PRESSURE), "required", "Young's modulus, > 0"),
     key("materials.NAME.poisson_ratio", K::Quantity(D::NONE), "required", "Poisson's ratio, between -1 and 0.5, both excluded"),
     key("materials.NAME.damage", K::Table, "", "Softening damage; without this table the material stays elastic"),
-    key("materials.NAME.damage.criterion", K::Choice(names::<Criterion>), "\"rankine\"", "Equivalent stress that damage answers to"),
+    key("materials.NAME.damage.criterion", K::Choice(names::<CriterionKind>), "\"rankine\"", "Equivalent stress that damage answers to"),
     key("materials.NAME.damage.tension_cutoff", K::Flag, "true", "Mohr-Coulomb only: cut off by the largest principal stress; false loses about a fifth of the Brazilian strength"),
     key("materials.NAME.damage.tensile_strength", K::Quantity(D::PRESSURE), "required", "Uniaxial tensile strength ft, > 0"),
     key("materials.NAME.damage.fracture_energy", K::Quantity(D::FRACTURE_ENERGY), "required", "Energy per area of a full crack Gf, > 0"),
@@ -295,7 +302,7 @@ static KEYS: &[KeyDoc] = &[
     key("materials.NAME.fracture.compressive_strength", K::Quantity(D::PRESSURE), "none with principal, else 10 times that in tension", "In compression, above that in tension and of the same kind; for principal, mohr-coulomb, drucker-prager"),
     key("materials.NAME.fracture.friction_angle", K::Angle, "\"35 deg\"", "mohr-coulomb only: angle of internal friction, from 0 to below 90 deg"),
     key("materials.NAME.fracture.level", K::Integer, "1", "Over which particles stress is taken: 0 the particle, 1 those bonded to it too, 2 their partners too; not for beam and hydrostatic"),
-    key("materials.NAME.fracture.moments", K::Choice(names::<BeamMoments>), "\"mean\"", "beam only: which bending moment counts"),
+    key("materials.NAME.fracture.moments", K::Choice(names::<EndMoments>), "\"mean\"", "beam only: which bending moment counts"),
     key("materials.NAME.contact", K::Table, "", "Contact of particles of this material, and of the discrete elements it leaves behind"),
     key("materials.NAME.contact.friction", K::Quantity(D::NONE), "0.5", "Coulomb friction coefficient, ≥ 0"),
     key("materials.NAME.contact.rolling_friction", K::Quantity(D::NONE), "0", "Coefficient of rolling friction, ≥ 0: couple over normal force and reduced radius"),
@@ -420,7 +427,7 @@ static KEYS: &[KeyDoc] = &[
     key("solver.opening.end", K::Quantity(D::LENGTH), "required", "Opening at which the run ends, > 0"),
     key("solver.linear_solver", K::Choice(names::<LinearSolver>), "\"auto\"", "Static with a solid: Cholesky factorisation, conjugate gradients, or by size and reuse"),
     key("solver.tolerance", K::Quantity(D::NONE), "1e-4", "Static only: unbalanced force over the internal forces at which a step is accepted, > 0"),
-    key("solver.batch", K::Choice(names::<BondBatch>), "\"site\"", "Static with a bonded body: what breaks between two equilibria, the bonds that every overloaded particle releases, or those of the most overloaded one"),
+    key("solver.batch", K::Choice(names::<Batch>), "\"site\"", "Static with a bonded body: what breaks between two equilibria, the bonds that every overloaded particle releases, or those of the most overloaded one"),
     key("solver.no_equilibrium", K::Choice(names::<NoEquilibrium>), "\"stop\"", "Static only: what happens where a step has no equilibrium: the run ends, or the scene moves until it has come to rest"),
     key("solver.max_steps", K::Integer, "10000", "Static only: steps after which the run ends in any case"),
     key("solver.stop_when", K::Table, "", "Ends the run once a probe has fallen below a fraction of its largest value so far"),

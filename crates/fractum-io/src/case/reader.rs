@@ -133,7 +133,11 @@ pub(super) struct ParameterNames<'a> {
 
 impl Names for ParameterNames<'_> {
     fn contains(&self, name: &str) -> bool {
-        self.variables.iter().any(|(known, _)| *known == name) || self.reader.parameters.borrow().contains_key(name)
+        self.is_variable(name) || self.reader.parameters.borrow().contains_key(name)
+    }
+
+    fn is_variable(&self, name: &str) -> bool {
+        self.variables.iter().any(|(known, _)| *known == name)
     }
 
     fn find(&mut self, name: &str) -> Option<Result<Named, String>> {
@@ -209,6 +213,13 @@ impl<'a> Table<'a> {
         Some(&entry.node)
     }
 
+    /// Takes keys without reading them: whether they belong here is not known, since another key is wrong.
+    pub(super) fn pass_over(&self, names: &[&str]) {
+        for name in names {
+            self.node(name);
+        }
+    }
+
     /// Takes a table.
     pub(super) fn table(&self, name: &str) -> Option<Table<'a>> {
         Some(Table::new(self.reader, self.node(name)?, join(&self.pattern, name)))
@@ -236,6 +247,19 @@ impl<'a> Table<'a> {
     /// Place for a key that is not there.
     pub(super) fn place_of(&self, name: &str) -> Place {
         Place { key: join(&self.place.key, name), ..self.place.clone() }
+    }
+
+    /// Place of the value at a dotted path below this table; that of the table where there is none.
+    pub(super) fn place_below(&self, path: &str) -> Place {
+        let mut parts = path.split('.');
+        let mut node = parts.next().and_then(|name| self.peek(name));
+        for part in parts {
+            node = node.and_then(|node| match &node.value {
+                Value::Table(entries) => entries.iter().find(|entry| entry.name == part).map(|entry| &entry.node),
+                _ => None,
+            });
+        }
+        node.map_or_else(|| self.place_of(path), |node| node.place.clone())
     }
 
     /// What the list of keys says a key holds.

@@ -1,6 +1,7 @@
 //! `--set`, and the identity of a case.
 
-use fractum_io::case::model::{BodyKind, Criterion, Formulation};
+use fractum_fem::{CriterionKind, Formulation};
+use fractum_io::case::model::BodyKind;
 use fractum_io::case::read_case;
 
 use crate::{SMALL, every_key, folder, good, parse};
@@ -16,7 +17,7 @@ fn overrides_set_parameters_and_keys() {
     assert!(matches!(&standard.bodies[1].kind, BodyKind::Solid(solid) if solid.formulation == Formulation::Standard));
     let without_strength = text.replace("compressive_strength = \"30 MPa\"", "");
     let pure = good(&without_strength, &[("materials.concrete.damage.tension_cutoff", "false")]);
-    assert_eq!(pure.materials[0].damage.as_ref().unwrap().value.criterion, Criterion::MohrCoulombPure);
+    assert_eq!(pure.materials[0].damage.as_ref().unwrap().value.law.criterion.kind(), CriterionKind::PureMohrCoulomb);
     assert_eq!(pure.warnings().len(), 1);
 
     for (name, value, expected) in [

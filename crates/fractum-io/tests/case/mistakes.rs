@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use fractum_io::case::model::Motion;
 use fractum_io::case::read_case;
 
 use crate::{SMALL, folder, parse};
@@ -321,6 +322,51 @@ fn each_mistake_has_one_clear_message() {
         let found: Vec<_> = found.iter().map(|message| message.trim_start_matches(' ').to_string()).collect();
         assert_eq!(found, [expected.to_string()], "{new}");
     }
+}
+
+#[test]
+fn a_parameter_named_like_a_unit_never_changes_a_quantity() {
+    let with = |text: &str| SMALL.replace("[mesh]", "[parameters]\nm = \"3 m\"\n[mesh]").replace("end = 1e-3", text);
+    let use_of_unit = "end = 1e-3\n[[loads]]\ngroup = \"a\"\nforce.x = ";
+    for quantity in ["\"2 kN m/m\"", "\"2 kN*m/m\"", "\"2 kN/(m/m)\""] {
+        let [found] = &mistakes(&with(&format!("{use_of_unit}{quantity}")))[..] else { panic!("{quantity}") };
+        assert!(found.contains("\"m\" is a unit and also a name of this case; rename"), "{found}");
+    }
+    let rate = mistakes(&with("end = 1e-3\n[damping]\nmass = \"1/m*1 m/s\""));
+    assert!(rate[0].contains("\"m\" is a unit and also a name of this case"), "{rate:?}");
+    let case = parse(&with("end = 1e-3\n[[supports]]\ngroup = \"a\"\ndisplacement.x = \"2*m*t/1 s\""), &[]).unwrap();
+    let Some(Motion::Displacement(moved)) = case.supports[0].motion[0].as_ref().map(|motion| &motion.value) else {
+        panic!()
+    };
+    assert_eq!(moved.value(1.0, fractum_math::Vec3::zeros()), 6.0, "outside of quantities it is the parameter");
+}
+
+#[test]
+fn a_wrong_key_of_a_body_has_no_second_message() {
+    let particles = "kind = \"particles\"\nmaterial = \"steel\"\nshape = \"box\"\nsize = [1, 1, 1]\nparticle_radius = 0.1\n\
+                     initial_velocity.x = 1\nparticles = 10\ndispersion = 0.1\nseed = 3";
+    let rigid = "kind = \"rigid\"\nshape = \"box\"\nsize = [1, 1, 1]\npoint = [0, 0, 0]\nfree = \"x\"\nmass = 1\ninitial_velocity.x = 1";
+    for body in [particles, rigid] {
+        let text = SMALL.replace("kind = \"solid\"\ngroup = \"bar\"\nmaterial = \"steel\"", body);
+        for line in body.lines().filter(|line| !line.starts_with("kind")) {
+            let key = line.split(' ').next().unwrap();
+            let found = mistakes(&text.replacen(line, &format!("{key} = \"?\""), 1));
+            assert!(
+                found.len() == 1 && found[0].contains(&format!("bodies[0].{}", key.trim_end_matches(".x"))),
+                "{key}: {found:#?}"
+            );
+        }
+    }
+    let both = rigid.replace("point = [0, 0, 0]", "point = [0, 0, 0]\nvelocity.x = 1\nforce.y = 2");
+    let found = mistakes(&SMALL.replace("kind = \"solid\"\ngroup = \"bar\"\nmaterial = \"steel\"", &both));
+    assert!(
+        found.iter().any(|found| found.contains("bodies[0].velocity.x prescribes what free releases")),
+        "{found:#?}"
+    );
+    assert!(
+        found.iter().any(|found| found.contains("bodies[0].force.y acts along an axis that is held")),
+        "{found:#?}"
+    );
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! A case with every key, read into SI.
 
-use fractum_io::case::model::{
-    BodyKind, BondedShape, Bound, Convention, CrackMeasure, Criterion, Formulation, LoadKind, Motion, PackingSource,
-    ParticleSize, ProbeKind, Softening,
-};
+use fractum_fem::{Criterion, CriterionKind, Formulation, Softening};
+use fractum_io::case::model::{BodyKind, BondedShape, Bound, LoadKind, Motion, PackingSource, ParticleSize, ProbeKind};
 use fractum_io::case::{Severity, Spanned, TimeFunction, read_case};
 use fractum_math::Vec3;
+use fractum_pack::Convention;
+use fractum_scene::CrackMeasure;
 
 use crate::{SMALL, folder, good};
 
@@ -22,15 +22,15 @@ fn a_case_with_every_key_is_read_into_si() {
     let [concrete, mortar] = &case.materials[..] else { panic!() };
     assert_eq!((concrete.density, concrete.young_modulus, concrete.poisson_ratio), (2400.0, 21e9, 0.2));
     let damage = &concrete.damage.as_ref().unwrap().value;
-    assert_eq!(
-        (damage.criterion, damage.tensile_strength, damage.fracture_energy),
-        (Criterion::MohrCoulomb, 3e6, 100.0)
-    );
-    assert_eq!(damage.friction_angle, 32.0 * (std::f64::consts::PI / 180.0));
-    assert_eq!(damage.softening, Softening::Bilinear { kink_stress: 0.25, kink_opening: 0.15 });
-    let soft = &mortar.damage.as_ref().unwrap().value;
-    assert_eq!((mortar.young_modulus, soft.compressive_strength), (14e9, 20e6));
-    assert_eq!(soft.friction_angle, 35f64.to_radians());
+    let law = &damage.law;
+    assert_eq!((law.tensile_strength, law.fracture_energy), (3e6, 100.0));
+    let angle = 32.0 * (std::f64::consts::PI / 180.0);
+    assert_eq!(law.criterion, Criterion::new(CriterionKind::MohrCoulomb, angle, 10.0, 0.2));
+    assert_eq!(law.softening, Softening::Bilinear { stress: 0.25, opening: 2.0 * 0.15 / (0.25 + 0.15) });
+    let soft = &mortar.damage.as_ref().unwrap().value.law;
+    assert_eq!((mortar.young_modulus, soft.tensile_strength), (14e9, 2e6));
+    let angle = 35f64.to_radians();
+    assert_eq!(soft.criterion, Criterion::new(soft.criterion.kind(), angle, 10.0, mortar.poisson_ratio));
 
     let BodyKind::Solid(block) = &case.bodies[0].kind else { panic!() };
     let here = Vec3::new(0.05, -0.07, 0.0);
@@ -72,9 +72,9 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!(case.particle_group("block.x+"), None);
 
     let LoadKind::Pressure { pressure, .. } = &case.loads[2].kind else { panic!() };
-    assert!((pressure.value(3e-6, Vec3::zeros()) / 100e6 - 1.0).abs() < 1e-12);
+    assert!((pressure.value.value(3e-6, Vec3::zeros()) / 100e6 - 1.0).abs() < 1e-12);
     let LoadKind::Gravity { acceleration } = &case.loads[4].kind else { panic!() };
-    assert_eq!(acceleration[1], Some(TimeFunction::Constant(-9.81)));
+    assert_eq!(acceleration[1].as_ref().unwrap().value, TimeFunction::Constant(-9.81));
 
     assert_eq!(case.damping.mass, 50.0);
     assert_eq!((case.solver.end, case.solver.stop_when.as_ref().unwrap().probe), (2e-3, 0));

@@ -342,6 +342,10 @@ mod tests {
             self.all().iter().any(|known| known == name)
         }
 
+        fn is_variable(&self, name: &str) -> bool {
+            name == "x" || name == "t"
+        }
+
         fn find(&mut self, name: &str) -> Option<Result<Named, String>> {
             let dimension = [Dimension::LENGTH, Dimension::TIME, Dimension::PRESSURE, Dimension::NONE];
             let index = self.all().iter().position(|known| known == name)?;

@@ -81,6 +81,11 @@ pub(crate) trait Names {
     /// Whether there is such a name.
     fn contains(&self, name: &str) -> bool;
 
+    /// Whether the name is a variable, such as the time t; other names are those of the case.
+    fn is_variable(&self, _name: &str) -> bool {
+        false
+    }
+
     /// Its meaning, for use; `None` where there is no such name.
     fn find(&mut self, name: &str) -> Option<Result<Named, String>>;
 

@@ -25,8 +25,8 @@ pub(crate) fn parse_unit(text: &str) -> Result<Unit, ExpressionError> {
 
 /// Reads the unit at `at`, just behind a number, and moves `at` past it; the pure number where there is none.
 ///
-/// A name directly behind the number must be a unit. Behind `*` or `/` it is one unless the expression uses that name
-/// for something else.
+/// A name directly behind the number is a unit. So is one behind `*` or `/`, unless it is a variable of the expression;
+/// a parameter or probe of that name is refused there, since it would change the quantity.
 pub(super) fn unit_after_number(
     tokens: &[Token<'_>],
     at: &mut usize,
@@ -37,7 +37,7 @@ pub(super) fn unit_after_number(
             let first = factor(tokens, at, Unit::ONE, 1.0)?;
             product(tokens, at, first, names)
         }
-        Kind::Number("1") if divides_unit(tokens, *at + 1, names) => {
+        Kind::Number("1") if divides_unit(tokens, *at + 1, names)? => {
             *at += 1;
             product(tokens, at, Unit::ONE, names)
         }
@@ -50,11 +50,11 @@ fn product(tokens: &[Token<'_>], at: &mut usize, mut unit: Unit, names: &dyn Nam
     loop {
         match tokens[*at].kind {
             Kind::Name(_) => unit = factor(tokens, at, unit, 1.0)?,
-            Kind::Symbol(symbol @ ("*" | "/")) if is_unit(tokens, *at + 1, names) => {
+            Kind::Symbol(symbol @ ("*" | "/")) if is_unit(tokens, *at + 1, names)? => {
                 *at += 1;
                 unit = factor(tokens, at, unit, if symbol == "/" { -1.0 } else { 1.0 })?;
             }
-            Kind::Symbol("/") => match bracket(tokens, *at + 1, names) {
+            Kind::Symbol("/") => match bracket(tokens, *at + 1, names)? {
                 Some((below, end)) => {
                     unit = times(unit, below, -1.0, tokens[*at].offset)?;
                     *at = end;
@@ -67,30 +67,38 @@ fn product(tokens: &[Token<'_>], at: &mut usize, mut unit: Unit, names: &dyn Nam
 }
 
 /// A bracket of units alone, with the index behind it.
-fn bracket(tokens: &[Token<'_>], at: usize, names: &dyn Names) -> Option<(Unit, usize)> {
-    let opens = tokens.get(at)?.kind == Kind::Symbol("(");
-    if !opens || !is_unit(tokens, at + 1, names) {
-        return None;
+fn bracket(tokens: &[Token<'_>], at: usize, names: &dyn Names) -> Result<Option<(Unit, usize)>, ExpressionError> {
+    let opens = tokens.get(at).is_some_and(|token| token.kind == Kind::Symbol("("));
+    if !opens || !is_unit(tokens, at + 1, names)? {
+        return Ok(None);
     }
     let mut end = at + 1;
-    let first = factor(tokens, &mut end, Unit::ONE, 1.0).ok()?;
-    let unit = product(tokens, &mut end, first, names).ok()?;
-    (tokens[end].kind == Kind::Symbol(")")).then_some((unit, end + 1))
+    let inside = factor(tokens, &mut end, Unit::ONE, 1.0).and_then(|first| product(tokens, &mut end, first, names));
+    let closes = tokens[end].kind == Kind::Symbol(")");
+    Ok(inside.ok().filter(|_| closes).map(|unit| (unit, end + 1)))
 }
 
 /// Whether a division by a unit stands at `at`.
-fn divides_unit(tokens: &[Token<'_>], at: usize, names: &dyn Names) -> bool {
-    tokens.get(at).is_some_and(|token| token.kind == Kind::Symbol("/"))
-        && (is_unit(tokens, at + 1, names) || bracket(tokens, at + 1, names).is_some())
+fn divides_unit(tokens: &[Token<'_>], at: usize, names: &dyn Names) -> Result<bool, ExpressionError> {
+    let divides = tokens.get(at).is_some_and(|token| token.kind == Kind::Symbol("/"));
+    Ok(divides && (is_unit(tokens, at + 1, names)? || bracket(tokens, at + 1, names)?.is_some()))
 }
 
-/// Whether the token at `at` is a unit and nothing else.
-fn is_unit(tokens: &[Token<'_>], at: usize, names: &dyn Names) -> bool {
+/// Whether the token at `at` is a unit and no variable or function.
+///
+/// # Errors
+/// It is a name of the case as well.
+fn is_unit(tokens: &[Token<'_>], at: usize, names: &dyn Names) -> Result<bool, ExpressionError> {
     let called = tokens.get(at + 1).is_some_and(|token| token.kind == Kind::Symbol("("));
-    match tokens.get(at).map(|token| token.kind) {
-        Some(Kind::Name(name)) => !called && !names.contains(name) && Unit::find(name).is_some(),
-        _ => false,
+    let Some(&Token { kind: Kind::Name(name), offset }) = tokens.get(at) else { return Ok(false) };
+    if called || names.is_variable(name) || Unit::find(name).is_none() {
+        return Ok(false);
     }
+    if names.contains(name) {
+        let error = ExpressionError::new(offset, format!("\"{name}\" is a unit and also a name of this case"));
+        return Err(error.remedy(format!("rename the parameter or probe \"{name}\"")));
+    }
+    Ok(true)
 }
 
 /// Multiplies `unit` by the unit at `at` raised to `sign` times the exponent that follows it.

@@ -1,5 +1,7 @@
 //! Bodies: meshed solids, bonded and loose particles, rigid bodies.
 
+use fractum_fem::{Formulation, Kinematics, Plane};
+
 use super::{BondedBody, LooseBody, RigidBody};
 use crate::case::choice::choice;
 use crate::case::{Field, Spanned};
@@ -52,35 +54,6 @@ pub struct SolidBody {
     pub strength_factor: Option<Spanned<Field>>,
 }
 
-/// Element formulation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Formulation {
-    /// Strain, stress and damage on the edges.
-    Smoothed,
-    /// Plain constant-gradient element.
-    Standard,
-}
-
 choice!(Formulation { "smoothed" => Smoothed, "standard" => Standard });
-
-/// Measure of deformation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kinematics {
-    /// Small strains and rotations.
-    Small,
-    /// Small strains in a frame that rotates with the element.
-    Corotational,
-}
-
 choice!(Kinematics { "small" => Small, "corotational" => Corotational });
-
-/// State of a two-dimensional body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Plane {
-    /// No strain out of the plane.
-    Strain,
-    /// No stress out of the plane.
-    Stress,
-}
-
 choice!(Plane { "strain" => Strain, "stress" => Stress });

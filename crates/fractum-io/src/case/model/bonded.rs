@@ -1,6 +1,8 @@
 //! Bonded bodies: particles that fill a shape, joined by beams.
 
+use fractum_dem::criterion::EndMoments;
 use fractum_math::Vec3;
+use fractum_pack::Convention;
 
 use crate::case::choice::choice;
 use crate::case::{Field, Spanned};
@@ -99,15 +101,6 @@ pub enum ParticleSize {
     Radius(f64),
 }
 
-/// Which particles a coordination counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Convention {
-    /// 2 × bonds / particles.
-    All,
-    /// Mean over the particles that touch no wall.
-    Interior,
-}
-
 choice!(Convention { "interior" => Interior, "all" => All });
 
 /// Beams of a material, as `fractum calibrate` writes them.
@@ -153,13 +146,4 @@ choice!(BondCriterion {
     "drucker-prager" => DruckerPrager,
 });
 
-/// Which bending moment of a beam counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BeamMoments {
-    /// The mean of both ends, as printed.
-    Mean,
-    /// The larger one.
-    Largest,
-}
-
-choice!(BeamMoments { "mean" => Mean, "largest" => Largest });
+choice!(EndMoments { "mean" => Mean, "largest" => Largest });

@@ -35,8 +35,8 @@ pub struct Load {
     pub kind: LoadKind,
 }
 
-/// Components along x, y, z; `None` = zero. At least one is given.
-pub type Components = [Option<TimeFunction>; 3];
+/// Components along x, y, z; `None` = zero.
+pub type Components = [Option<Spanned<TimeFunction>>; 3];
 
 /// Kinds of loads.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +60,7 @@ pub enum LoadKind {
         /// Mesh group of facets.
         group: Spanned<String>,
         /// Pressure [Pa].
-        pressure: TimeFunction,
+        pressure: Spanned<TimeFunction>,
     },
     /// Acceleration of the whole scene [m/s²].
     Gravity {

@@ -1,5 +1,6 @@
 //! Materials: elasticity, damage, contact.
 
+use fractum_fem::{CriterionKind, DamageLaw};
 use fractum_scene::Surface;
 
 use super::{BondFailure, Bonds};
@@ -32,82 +33,20 @@ pub struct Material {
 /// Softening damage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Damage {
-    /// Equivalent stress that damage answers to.
-    pub criterion: Criterion,
-    /// Uniaxial tensile strength [Pa], > 0.
-    pub tensile_strength: f64,
-    /// Energy per area of a full crack [J/m²], > 0.
-    pub fracture_energy: f64,
-    /// Uniaxial compressive strength [Pa], above the tensile one, with Mohr-Coulomb by (1 + sin φ)/(1 - sin φ) or more;
-    /// 10 times the tensile one where not given.
-    pub compressive_strength: f64,
-    /// Friction angle [rad], within 0..π/2; 35° where not given.
-    pub friction_angle: f64,
-    /// Stress against crack opening.
-    pub softening: Softening,
-    /// Ratio of residual stress to strength at which an edge counts as broken [-].
-    pub residual: f64,
+    /// When damage begins, and how stress falls with crack opening.
+    pub law: DamageLaw,
     /// Random scatter of the strength.
     pub scatter: Option<Scatter>,
     /// Lower the strength where an element is too large for its fracture energy, instead of refusing it.
     pub reduce_strength_to_fit: bool,
     /// Near a crack, damage begins only where the plane of the crack goes on.
     pub crack_plane_gate: bool,
-    /// Stiffness recovers in compression.
-    pub unilateral: bool,
-    /// Time constant of the damage-rate limiter [s]; 0 = off.
-    pub rate_time: f64,
 }
 
-/// Equivalent stress of the damage law.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Criterion {
-    /// Largest principal stress.
-    Rankine,
-    /// Mohr-Coulomb with the largest principal stress as tension cut-off.
-    MohrCoulomb,
-    /// Mohr-Coulomb alone (`tension_cutoff = false`), scaled to the tensile strength.
-    MohrCoulombPure,
-    /// Drucker-Prager through both uniaxial strengths.
-    DruckerPrager,
-    /// Mazars' equivalent strain, times Young's modulus.
-    Mazars,
-    /// Modified Mohr-Coulomb (Oller).
-    ModifiedMohrCoulomb,
-}
-
-impl Criterion {
-    /// Whether the friction angle enters.
-    pub fn uses_friction_angle(self) -> bool {
-        matches!(self, Self::MohrCoulomb | Self::MohrCoulombPure | Self::ModifiedMohrCoulomb)
-    }
-
-    /// Whether the compressive strength enters.
-    pub fn uses_compressive_strength(self) -> bool {
-        matches!(self, Self::MohrCoulomb | Self::DruckerPrager | Self::ModifiedMohrCoulomb)
-    }
-}
-
-choice!(Criterion {
+choice!(CriterionKind {
     "rankine" => Rankine, "mohr-coulomb" => MohrCoulomb, "drucker-prager" => DruckerPrager, "mazars" => Mazars,
     "modified-mohr-coulomb" => ModifiedMohrCoulomb,
 });
-
-/// Decrease of stress with crack opening.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Softening {
-    /// Exponential.
-    Exponential,
-    /// Linear to zero at the opening 2 Gf/ft.
-    Linear,
-    /// Two straight lines; the last opening is 2 Gf / (ft (kink_stress + kink_opening)).
-    Bilinear {
-        /// Stress at the kink over tensile strength [-], within 0..1; 1/3 after Petersson (1981).
-        kink_stress: f64,
-        /// Opening at the kink over the last opening [-], within 0..1; 2/9 after Petersson (1981).
-        kink_opening: f64,
-    },
-}
 
 /// Random scatter of the tensile strength, drawn per edge.
 #[derive(Debug, Clone, Copy, PartialEq)]

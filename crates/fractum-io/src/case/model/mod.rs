@@ -12,19 +12,18 @@ mod tie;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use fractum_dem::Batch;
 use fractum_math::Vec3;
+use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
-pub use body::{Body, BodyKind, Formulation, Kinematics, Plane, SolidBody};
+pub use body::{Body, BodyKind, SolidBody};
 pub use bonded::{
-    BeamMoments, BondCriterion, BondFailure, BondedBody, BondedShape, Bonds, Convention, FileContent, PackingSource,
-    ParticleSize,
+    BondCriterion, BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource, ParticleSize,
 };
 pub use boundary::{Components, Load, LoadKind, Motion, Support};
 pub use loose::{LooseBody, LooseSource, Region};
-pub use material::{Criterion, Damage, Distribution, Material, Scatter, Softening};
-pub use probe::{
-    CountKind, CrackMeasure, EnergyKind, Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take,
-};
+pub use material::{Damage, Distribution, Material, Scatter};
+pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
 pub use rigid::{RigidBody, RigidShape};
 pub use tie::Tie;
 
@@ -161,32 +160,14 @@ pub struct StaticOptions {
     /// Steps after which the run ends in any case, ≥ 1.
     pub most_steps: u64,
     /// How many bonds of a bonded body break between two equilibria.
-    pub batch: BondBatch,
+    pub batch: Batch,
     /// What happens where a step has no equilibrium.
     pub no_equilibrium: NoEquilibrium,
 }
 
-/// What happens where a step has no equilibrium.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NoEquilibrium {
-    /// The run ends.
-    Stop,
-    /// The scene moves until it has come to rest.
-    Motion,
-}
-
 choice!(NoEquilibrium { "stop" => Stop, "motion" => Motion });
 
-/// How many bonds break between two equilibria.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BondBatch {
-    /// What every overloaded particle releases.
-    Site,
-    /// What the most overloaded one releases.
-    One,
-}
-
-choice!(BondBatch { "site" => Site, "one" => One });
+choice!(Batch { "site" => PerSite, "one" => One });
 
 /// How the load parameter of a static run proceeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -214,17 +195,6 @@ pub struct Opening {
     pub step: f64,
     /// Opening at which the run ends [m], > 0.
     pub end: f64,
-}
-
-/// How linear systems of a static run are solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LinearSolver {
-    /// By size and reuse.
-    Auto,
-    /// Sparse Cholesky factorisation.
-    Direct,
-    /// Conjugate gradients.
-    Iterative,
 }
 
 choice!(LinearSolver { "auto" => Auto, "direct" => Direct, "iterative" => Iterative });

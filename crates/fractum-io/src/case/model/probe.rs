@@ -1,6 +1,7 @@
 //! Probes: the numbers a run records.
 
 use fractum_math::Vec3;
+use fractum_scene::{CountKind, CrackMeasure, EnergyKind};
 
 use crate::case::choice::choice;
 use crate::case::expression::Program;
@@ -145,23 +146,6 @@ pub enum Take {
     At(f64),
 }
 
-/// What is measured of a crack.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CrackMeasure {
-    /// Angle between a direction and its plane, or its line in the plane [rad].
-    Angle,
-    /// Position of its centre along a direction [m].
-    Centre,
-    /// Position of its foremost edge or bond along a direction [m].
-    Front,
-    /// Angle between an axis and the helix on the surface about it [rad].
-    Helix,
-    /// Angle between the flank of a cone about an axis and the plane across the axis [rad].
-    Cone,
-    /// Part of the crack that lies on that cone [-].
-    ConeShare,
-}
-
 choice!(CrackMeasure {
     "angle" => Angle, "centre" => Centre, "front" => Front, "helix" => Helix, "cone" => Cone,
     "cone_share" => ConeShare,
@@ -186,63 +170,11 @@ pub enum StressComponent {
 
 choice!(StressComponent { "xx" => Xx, "yy" => Yy, "zz" => Zz, "xy" => Xy, "yz" => Yz, "zx" => Zx });
 
-/// Entries of the energy ledger.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EnergyKind {
-    /// Work of loads and supports.
-    External,
-    /// Kinetic.
-    Kinetic,
-    /// Elastic.
-    Elastic,
-    /// Elastic, in tension and compression of bonds.
-    BondTension,
-    /// Elastic, in bending of bonds.
-    BondBending,
-    /// Elastic, in torsion of bonds.
-    BondTorsion,
-    /// Dissipated by damage.
-    Damage,
-    /// Lost with removed elements.
-    Removed,
-    /// Stored in contacts.
-    Contact,
-    /// Dissipated by friction.
-    Friction,
-    /// Dissipated by damping.
-    Damping,
-    /// Absorbed by boundaries.
-    Absorbed,
-    /// What does not add up.
-    Residual,
-}
-
 choice!(EnergyKind {
     "external" => External, "kinetic" => Kinetic, "elastic" => Elastic, "damage" => Damage, "removed" => Removed,
     "bond_tension" => BondTension, "bond_bending" => BondBending, "bond_torsion" => BondTorsion,
     "contact" => Contact, "friction" => Friction, "damping" => Damping, "absorbed" => Absorbed, "residual" => Residual,
 });
-
-/// Things that are counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CountKind {
-    /// Elements removed so far.
-    RemovedElements,
-    /// Edges broken so far.
-    BrokenEdges,
-    /// Edges with damage.
-    DamagedEdges,
-    /// Discrete elements.
-    Particles,
-    /// Pieces by connectivity.
-    Fragments,
-    /// Touching pairs.
-    Contacts,
-    /// Bonds at the start.
-    Bonds,
-    /// Bonds that broke.
-    BrokenBonds,
-}
 
 choice!(CountKind {
     "removed_elements" => RemovedElements, "broken_edges" => BrokenEdges, "damaged_edges" => DamagedEdges,

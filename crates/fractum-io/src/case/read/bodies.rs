@@ -3,10 +3,11 @@
 use super::bonded::bonded;
 use super::loose::loose;
 use super::rigid::rigid;
-use super::vectors::{components, condition, field};
-use crate::case::model::{Body, BodyKind, Formulation, Kinematics, Material, Plane, SolidBody};
+use super::vectors::{condition, field, initial_velocity};
+use crate::case::model::{Body, BodyKind, Material, SolidBody};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, nearest};
+use fractum_fem::{Formulation, Kinematics, Plane};
 
 /// Reads all bodies against the materials read before; nothing where one of them is wrong.
 pub(super) fn read(root: &Table<'_>, materials: &[(String, Option<Material>)]) -> Option<Vec<Body>> {
@@ -111,8 +112,7 @@ fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut
     let kinematics = table.choice("kinematics").or(Kinematics::Small);
     let plane = table.choice::<Plane>("plane").spanned().given();
     let thickness = table.quantity("thickness").positive().spanned().given();
-    let initial_velocity =
-        optional(table, "initial_velocity", |name| components(table, name, |table, axis| field(table, axis).given()));
+    let initial_velocity = initial_velocity(table);
     Some(SolidBody {
         group: group?,
         material: material?,
@@ -120,7 +120,7 @@ fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut
         kinematics,
         plane,
         thickness,
-        initial_velocity: initial_velocity?.unwrap_or([None, None, None]),
+        initial_velocity: initial_velocity?,
         damage,
         damage_where: damage_where?,
         strength_factor: strength_factor?,

@@ -1,14 +1,14 @@
 //! `[[bodies]]` of the kind `bonded`, and the beams of a material.
 
-use super::vectors::{components, condition_of, field, point};
+use super::bodies::optional;
+use super::vectors::{condition_of, initial_velocity, point};
 use super::{read_file, table_path, unit};
-use crate::case::model::{
-    BondedBody, BondedShape, Bonds, Convention, FileContent, Material, PackingSource, ParticleSize,
-};
+use crate::case::model::{BondedBody, BondedShape, Bonds, FileContent, Material, PackingSource, ParticleSize};
 use crate::case::reader::Table;
 use crate::case::unit::Dimension;
 use crate::case::{Diagnostic, Field, Spanned};
 use fractum_math::Vec3;
+use fractum_pack::Convention;
 
 /// Particles where nothing is said.
 const PARTICLES: u64 = 10_000;
@@ -51,10 +51,7 @@ pub(super) fn bonded(table: &Table<'_>, material: Option<usize>, here: Option<&M
         }
     };
     let groups = groups(table);
-    let initial_velocity = match table.has("initial_velocity") {
-        true => components(table, "initial_velocity", |table, axis| field(table, axis).given())?,
-        false => [None, None, None],
-    };
+    let initial_velocity = initial_velocity(table);
     Some(BondedBody {
         material: material?,
         packing: packing?,
@@ -62,7 +59,7 @@ pub(super) fn bonded(table: &Table<'_>, material: Option<usize>, here: Option<&M
         coordination,
         convention,
         groups: groups?,
-        initial_velocity,
+        initial_velocity: initial_velocity?,
     })
 }
 
@@ -84,9 +81,7 @@ fn packing(table: &Table<'_>) -> Option<PackingSource> {
     let shape = match &kind {
         Some(kind) => shape(table, kind.value).map(|shape| Spanned::new(shape, kind.place.clone())),
         None => {
-            for key in ["point", "size", "length", "radius", "group", "file", "unit"] {
-                table.node(key);
-            }
+            table.pass_over(&["point", "size", "length", "radius", "group", "file", "unit"]);
             None
         }
     };
@@ -113,29 +108,26 @@ fn shape(table: &Table<'_>, kind: Kind) -> Option<BondedShape> {
             table.refuse(key, &format!("on the shape \"{name}\""));
         }
     }
-    let place = || point(table, "point").or_if_absent(Vec3::zeros());
+    let start = if takes.contains(&"point") { point(table, "point").or_if_absent(Vec3::zeros()) } else { None };
     let length = |key: &'static str| table.quantity(key).positive().required();
     Some(match kind {
         Kind::Box => {
             let size = point(table, "size").check(|size| size.min() > 0.0, "three lengths above 0").required();
-            BondedShape::Box { point: place()?, size: size? }
+            BondedShape::Box { point: start?, size: size? }
         }
         Kind::Cylinder => {
             let (length, radius) = (length("length"), length("radius"));
-            BondedShape::Cylinder { point: place()?, length: length?, radius: radius? }
+            BondedShape::Cylinder { point: start?, length: length?, radius: radius? }
         }
         Kind::Sphere => {
             let radius = length("radius");
-            BondedShape::Sphere { point: place()?, radius: radius? }
+            BondedShape::Sphere { point: start?, radius: radius? }
         }
         Kind::Group => BondedShape::Group(table.text("group").spanned().required()?),
         Kind::Stl => {
             let file = file(table, "file");
-            let given = unit(table, "unit", Dimension::LENGTH);
-            if table.has("unit") && given.is_none() {
-                return None;
-            }
-            BondedShape::Stl { file: file?, unit: given.unwrap_or(1.0) }
+            let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
+            BondedShape::Stl { file: file?, unit: unit?.unwrap_or(1.0) }
         }
     })
 }

@@ -139,13 +139,13 @@ fn load(table: Table<'_>) -> Option<Load> {
     } else {
         table.text("group").spanned().required()
     };
-    let by_components = || components(&table, kind, |table, axis| time_function(table, axis).given());
+    let by_components = || components(&table, kind, |table, axis| time_function(table, axis).spanned().given());
     let kind = match kind {
         "force" => by_components().and_then(|force| Some(LoadKind::Force { group: group?, force })),
         "traction" => by_components().and_then(|traction| Some(LoadKind::Traction { group: group?, traction })),
         "gravity" => by_components().map(|acceleration| LoadKind::Gravity { acceleration }),
         _ => {
-            let pressure = time_function(&table, "pressure").required();
+            let pressure = time_function(&table, "pressure").spanned().required();
             pressure.and_then(|pressure| Some(LoadKind::Pressure { group: group?, pressure }))
         }
     };

@@ -4,7 +4,7 @@ use fractum_dem::FractureCriterion;
 use fractum_dem::criterion::{BeamRankine, DruckerPrager, EndMoments, Hydrostatic, Level, MohrCoulomb, Principal};
 
 use super::materials::{STRENGTH_RATIO, read_friction_angle};
-use crate::case::model::{BeamMoments, BondCriterion, BondFailure};
+use crate::case::model::{BondCriterion, BondFailure};
 use crate::case::reader::Table;
 
 /// Reads the table.
@@ -45,10 +45,7 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
         0.0
     };
     let moments = if kind == C::Beam {
-        match table.choice("moments").or(BeamMoments::Mean) {
-            BeamMoments::Mean => EndMoments::Mean,
-            BeamMoments::Largest => EndMoments::Largest,
-        }
+        table.choice("moments").or(EndMoments::Mean)
     } else {
         refuse("moments");
         EndMoments::Mean

@@ -1,8 +1,9 @@
 //! `[[bodies]]` of the kind `particles`.
 
+use super::bodies::optional;
 use super::bonded::{DISPERSION_RANGE, file, groups};
 use super::unit;
-use super::vectors::{components, direction, field, point};
+use super::vectors::{direction, initial_velocity, point};
 use crate::case::model::{LooseBody, LooseSource, Region};
 use crate::case::reader::Table;
 use crate::case::unit::Dimension;
@@ -20,11 +21,8 @@ enum Kind {
 pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseBody> {
     let source = if table.has("file") { from_table(table) } else { cloud(table) };
     let groups = groups(table);
-    let initial_velocity = match table.has("initial_velocity") {
-        true => components(table, "initial_velocity", |table, axis| field(table, axis).given())?,
-        false => [None, None, None],
-    };
-    Some(LooseBody { material: material?, source: source?, groups: groups?, initial_velocity })
+    let initial_velocity = initial_velocity(table);
+    Some(LooseBody { material: material?, source: source?, groups: groups?, initial_velocity: initial_velocity? })
 }
 
 fn from_table(table: &Table<'_>) -> Option<LooseSource> {
@@ -33,31 +31,41 @@ fn from_table(table: &Table<'_>) -> Option<LooseSource> {
     {
         table.refuse(key, "beside a file of particles");
     }
-    let given = unit(table, "unit", Dimension::LENGTH);
-    if table.has("unit") && given.is_none() {
-        return None;
-    }
-    Some(LooseSource::Table { file: file(table, "file")?, unit: given.unwrap_or(1.0) })
+    let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
+    let file = file(table, "file");
+    Some(LooseSource::Table { file: file?, unit: unit?.unwrap_or(1.0) })
 }
 
 fn cloud(table: &Table<'_>) -> Option<LooseSource> {
     if !table.has("shape") {
         let note = Diagnostic::error(&table.place, "has neither shape nor file");
         table.reader.note(note.expected("a shape to fill with particles, or a file of x, y, z, radius"));
-        return None;
     }
     let kinds = [("box", Kind::Box), ("cylinder", Kind::Cylinder), ("sphere", Kind::Sphere)];
-    let kind = table.one_of("shape", &kinds).spanned().required();
-    let radius = table.quantity("particle_radius").positive().required();
-    let count = table.integer("particles").check(|count| (1..=20_000_000).contains(count), "1 to 20 million");
-    let count = if table.has("particles") { Some(count.spanned().given()?) } else { None };
+    let kind = table.one_of("shape", &kinds).spanned().given();
+    let radius = table.quantity("particle_radius").positive();
+    let radius = if table.has("shape") { radius.required() } else { radius.given() };
+    let count = optional(table, "particles", |name| {
+        let count = table.integer(name).check(|count| (1..=20_000_000).contains(count), "1 to 20 million");
+        count.spanned().given()
+    });
     let dispersion = table.quantity("dispersion").check(|kappa| (0.0..=1.0).contains(kappa), DISPERSION_RANGE);
     let dispersion = dispersion.or_if_absent(0.0);
     let seed = table.integer("seed").or_if_absent(1);
-    let Spanned { value: kind, place } = kind?;
+    let region = match &kind {
+        Some(kind) => region(table, kind.value).map(|region| Spanned::new(region, kind.place.clone())),
+        None => {
+            table.pass_over(&["point", "size", "axis", "length", "radius", "unit"]);
+            None
+        }
+    };
+    Some(LooseSource::Cloud { region: region?, radius: radius?, dispersion: dispersion?, count: count?, seed: seed? })
+}
+
+fn region(table: &Table<'_>, kind: Kind) -> Option<Region> {
     let start = point(table, "point").or_if_absent(Vec3::zeros());
     let length = |key: &'static str| table.quantity(key).positive().required();
-    let region = match kind {
+    Some(match kind {
         Kind::Box => {
             let size = point(table, "size").check(|size| size.min() > 0.0, "three lengths above 0").required();
             Region::Box { point: start?, size: size? }
@@ -67,13 +75,9 @@ fn cloud(table: &Table<'_>) -> Option<LooseSource> {
             let (long, wide) = (length("length"), length("radius"));
             Region::Cylinder { point: start?, axis: axis?, length: long?, radius: wide? }
         }
-        Kind::Sphere => Region::Sphere { point: start?, radius: length("radius")? },
-    };
-    Some(LooseSource::Cloud {
-        region: Spanned::new(region, place),
-        radius: radius?,
-        dispersion: dispersion?,
-        count,
-        seed: seed?,
+        Kind::Sphere => {
+            let wide = length("radius");
+            Region::Sphere { point: start?, radius: wide? }
+        }
     })
 }

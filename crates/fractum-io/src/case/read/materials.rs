@@ -1,8 +1,9 @@
 //! `[materials.NAME]`.
 
-use crate::case::model::{Criterion, Damage, Distribution, Material, Scatter, Softening};
+use crate::case::model::{Damage, Distribution, Material, Scatter};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned};
+use fractum_fem::{Criterion, CriterionKind, DamageLaw, Softening};
 use fractum_scene::{Surface, damping_of_restitution};
 
 /// Reads all materials: each with its name, and itself where nothing is wrong with it.
@@ -23,7 +24,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
     let poisson_ratio = table.quantity("poisson_ratio").between(-1.0, 0.5).required();
     let damage = table.table("damage").map(|table| {
         let place = table.place.clone();
-        damage(table).map(|damage| Spanned::new(damage, place))
+        damage(table, poisson_ratio).map(|damage| Spanned::new(damage, place))
     });
     let bonds = table.table("bonds").map(|table| {
         let place = table.place.clone();
@@ -49,17 +50,17 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
     })
 }
 
-fn damage(table: Table<'_>) -> Option<Damage> {
-    let criterion = table.choice::<Criterion>("criterion").or(Criterion::Rankine);
+fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
+    let criterion = table.choice("criterion").or(CriterionKind::Rankine);
     let criterion = match criterion {
-        Criterion::MohrCoulomb if !table.flag("tension_cutoff").or(true) => Criterion::MohrCoulombPure,
-        Criterion::MohrCoulomb => Criterion::MohrCoulomb,
+        CriterionKind::MohrCoulomb if !table.flag("tension_cutoff").or(true) => CriterionKind::PureMohrCoulomb,
+        CriterionKind::MohrCoulomb => CriterionKind::MohrCoulomb,
         _ => {
             table.refuse("tension_cutoff", "with this criterion, only with mohr-coulomb");
             criterion
         }
     };
-    if criterion == Criterion::MohrCoulombPure
+    if criterion == CriterionKind::PureMohrCoulomb
         && let Some(node) = table.node("tension_cutoff")
     {
         let note = Diagnostic::warning(&node.place, node.found());
@@ -82,19 +83,21 @@ fn damage(table: Table<'_>) -> Option<Damage> {
     let unilateral = table.flag("unilateral").or(false);
     let rate_time = table.quantity("rate_time").not_negative().or(0.0);
     table.finish("here");
+    let tensile_strength = tensile_strength?;
+    let strength_ratio = compressive_strength? / tensile_strength;
     Some(Damage {
-        criterion,
-        tensile_strength: tensile_strength?,
-        fracture_energy: fracture_energy?,
-        compressive_strength: compressive_strength?,
-        friction_angle,
-        softening: softening?,
-        residual,
+        law: DamageLaw {
+            criterion: Criterion::new(criterion, friction_angle, strength_ratio, poisson_ratio?),
+            tensile_strength,
+            fracture_energy: fracture_energy?,
+            softening: softening?,
+            residual,
+            unilateral,
+            rate_time,
+        },
         scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,
         reduce_strength_to_fit,
         crack_plane_gate,
-        unilateral,
-        rate_time,
     })
 }
 
@@ -115,7 +118,7 @@ pub(super) const STRENGTH_RATIO: f64 = 10.0;
 /// The compressive strength, high enough for the criterion to give the tensile strength in tension.
 fn compressive_strength(
     table: &Table<'_>,
-    criterion: Criterion,
+    criterion: CriterionKind,
     friction_angle: f64,
     tensile_strength: Option<f64>,
 ) -> Option<f64> {
@@ -127,9 +130,8 @@ fn compressive_strength(
     let tensile_strength = tensile_strength?;
     let given = given.check(|strength| *strength > tensile_strength, "more than the tensile strength");
     let strength = given.or_if_absent(STRENGTH_RATIO * tensile_strength)?;
-    // Below this the shear plane would cut off uniaxial tension before its strength.
-    let least = tensile_strength * (1.0 + friction_angle.sin()) / (1.0 - friction_angle.sin());
-    if criterion == Criterion::MohrCoulomb && strength < least {
+    let least = tensile_strength * criterion.least_strength_ratio(friction_angle);
+    if strength < least {
         let place = table.peek("compressive_strength").map_or_else(|| table.place.clone(), |node| node.place.clone());
         let found = format!("is {strength} Pa as compressive strength, too low for its friction angle");
         let note = Diagnostic::error(&place, found).expected(format!("at least {least} Pa"));
@@ -139,11 +141,17 @@ fn compressive_strength(
     Some(strength)
 }
 
-/// The bilinear law of Petersson (1981): the kink stands at ft/3, where the opening is 0.8 Gf/ft of 3.6 Gf/ft.
-const PETERSSON: Softening = Softening::Bilinear { kink_stress: 1.0 / 3.0, kink_opening: 2.0 / 9.0 };
+/// The curves by name; the bilinear one is that of Petersson (1981).
+static SOFTENINGS: &[(&str, Softening)] = &[
+    ("exponential", Softening::Exponential),
+    ("linear", Softening::Linear),
+    ("bilinear", bilinear(1.0 / 3.0, 2.0 / 9.0)),
+];
 
-static SOFTENINGS: &[(&str, Softening)] =
-    &[("exponential", Softening::Exponential), ("linear", Softening::Linear), ("bilinear", PETERSSON)];
+/// The bilinear curve from the opening at the kink as a fraction of the last one, 2 Gf/(ft (stress + fraction)).
+const fn bilinear(stress: f64, fraction: f64) -> Softening {
+    Softening::Bilinear { stress, opening: 2.0 * fraction / (stress + fraction) }
+}
 
 /// By name, or as a table with parameters.
 fn softening(damage: &Table<'_>) -> Option<Softening> {
@@ -153,10 +161,10 @@ fn softening(damage: &Table<'_>) -> Option<Softening> {
     let table = damage.table("softening")?;
     let softening = table.one_of("kind", SOFTENINGS).required();
     let softening = match softening {
-        Some(Softening::Bilinear { kink_stress, kink_opening }) => Some(Softening::Bilinear {
-            kink_stress: table.quantity("kink_stress").between(0.0, 1.0).or(kink_stress),
-            kink_opening: table.quantity("kink_opening").between(0.0, 1.0).or(kink_opening),
-        }),
+        Some(Softening::Bilinear { .. }) => Some(bilinear(
+            table.quantity("kink_stress").between(0.0, 1.0).or(1.0 / 3.0),
+            table.quantity("kink_opening").between(0.0, 1.0).or(2.0 / 9.0),
+        )),
         _ => {
             table.refuse("kink_stress", "with this softening, only with bilinear");
             table.refuse("kink_opening", "with this softening, only with bilinear");
@@ -184,8 +192,7 @@ fn scatter(table: Table<'_>) -> Option<Scatter> {
             table.quantity("width").between(0.0, 1.0).required().map(|width| Distribution::Uniform { width })
         }
         None => {
-            table.node("modulus");
-            table.node("width");
+            table.pass_over(&["modulus", "width"]);
             None
         }
     };

@@ -7,11 +7,12 @@ use super::boundary::exactly_one;
 use super::parameters::check_name;
 use super::vectors::{condition, direction, point};
 use crate::case::expression::{Named, Names, Op, Type, parse_unit};
-use crate::case::model::{CrackMeasure, Probe, ProbeExpression, ProbeInput, ProbeKind, Take};
+use crate::case::model::{Probe, ProbeExpression, ProbeInput, ProbeKind, Take};
 use crate::case::reader::{ParameterNames, Table};
 use crate::case::tree::{Node, Value};
 use crate::case::unit::Dimension;
 use crate::case::{Diagnostic, Spanned};
+use fractum_scene::CrackMeasure;
 
 /// A probe as far as it could be read.
 pub(super) struct ReadProbe {
@@ -268,6 +269,10 @@ impl ProbeNames<'_> {
 impl Names for ProbeNames<'_> {
     fn contains(&self, name: &str) -> bool {
         name == "t" || self.names.iter().any(|known| known == name) || self.parameters.contains(name)
+    }
+
+    fn is_variable(&self, name: &str) -> bool {
+        name == "t"
     }
 
     fn find(&mut self, name: &str) -> Option<Result<Named, String>> {

@@ -1,12 +1,13 @@
 //! `[[bodies]]` of the kind `rigid`.
 
+use super::bodies::optional;
 use super::bonded::file;
 use super::boundary::fixed_axes;
 use super::time_functions::time_function;
-use super::vectors::{AXES, components, direction, field, point};
+use super::vectors::{AXES, components, direction, initial_velocity, point};
 use super::{materials, unit};
 use crate::case::Diagnostic;
-use crate::case::model::{Components, RigidBody, RigidShape};
+use crate::case::model::{RigidBody, RigidShape};
 use crate::case::reader::Table;
 use crate::case::unit::Dimension;
 use fractum_math::Vec3;
@@ -30,18 +31,6 @@ pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>) -> Optio
     let kinds: Vec<(&'static str, Kind)> = SHAPES.into_iter().zip(KINDS).collect();
     let kind = table.one_of("shape", &kinds).required();
     let contact = materials::contact(table);
-    let free = if table.has("free") {
-        fixed_axes(table, "free").map(|axes| axes.map(|axis| axis.is_some()))
-    } else {
-        Some([false; 3])
-    };
-    let by_components = |key: &'static str| -> Option<Components> {
-        if !table.has(key) {
-            return Some([None, None, None]);
-        }
-        components(table, key, |table, axis| time_function(table, axis).given())
-    };
-    let (velocity, spin, force) = (by_components("velocity"), by_components("spin"), by_components("force"));
     let solid_shape = matches!(kind, Some(Kind::Box | Kind::Cylinder | Kind::Sphere));
     if kind.is_some() && !solid_shape {
         table.refuse("inside", "but on a box, cylinder or sphere");
@@ -49,59 +38,67 @@ pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>) -> Optio
     }
     let inside = table.flag("inside").or(false);
     let free_rotation = table.flag("free_rotation").or(false);
-    let moves = free.is_some_and(|free| free.contains(&true)) || free_rotation;
+    let free = optional(table, "free", |name| fixed_axes(table, name));
+    let free = free.map(|axes| axes.map_or([false; 3], |axes| axes.map(|axis| axis.is_some())));
+    let by_components = |key| {
+        let function = |table: &Table<'_>, axis| time_function(table, axis).spanned().given();
+        optional(table, key, |name| components(table, name, function)).map(Option::unwrap_or_default)
+    };
+    let (velocity, spin, force) = (by_components("velocity"), by_components("spin"), by_components("force"));
+    let moves = free.is_none_or(|free| free.contains(&true)) || free_rotation;
     let mass = if moves {
-        table.quantity("mass").positive().required().map(Some)
+        let mass = table.quantity("mass").positive();
+        if free.is_some() { mass.required().map(Some) } else { Some(mass.given()) }
     } else {
         table.refuse("mass", "on a body that is not free");
         Some(None)
     };
-    let shape = shape(table, kind?);
-    let initial_velocity = match table.has("initial_velocity") {
-        true => components(table, "initial_velocity", |table, axis| field(table, axis).given()),
-        false => Some([None, None, None]),
+    let shape = match kind {
+        Some(kind) => shape(table, kind),
+        None => {
+            table.pass_over(&["point", "normal", "axis", "size", "length", "radius", "group", "file", "unit"]);
+            None
+        }
     };
-    let (velocity, spin, force, free, initial_velocity) = (velocity?, spin?, force?, free?, initial_velocity?);
-    let mut fits = true;
-    for axis in 0..3 {
-        let mut clash = |found: String, expected: &str| {
-            table.reader.note(Diagnostic::error(&table.place, found).expected(expected));
-            fits = false;
-        };
-        if free[axis] && velocity[axis].is_some() {
-            clash(format!("prescribes the velocity along {} and frees it", AXES[axis]), "one of the two");
-        }
-        if !free[axis] && force[axis].is_some() {
-            clash(format!("has a force along {}, which is held", AXES[axis]), "a force along a free axis");
-        }
-        if !free[axis] && initial_velocity[axis].is_some() {
-            clash(format!("has an initial velocity along {}, which is held", AXES[axis]), "one along a free axis");
-        }
-    }
-    if free_rotation && spin.iter().any(Option::is_some) {
-        table
-            .reader
-            .note(Diagnostic::error(&table.place, "prescribes its spin and frees it").expected("one of the two"));
-        fits = false;
-    }
-    let material = match material {
-        Some(material) => Some(material?),
-        None => None,
-    };
-    let (shape, mass) = (shape?, mass?);
-    fits.then_some(RigidBody {
-        shape,
+    let initial_velocity = initial_velocity(table);
+    let rigid = RigidBody {
+        shape: shape?,
         inside,
-        material,
+        material: material.map_or(Some(None), |index| index.map(Some))?,
         contact,
-        velocity,
-        spin,
-        free,
+        velocity: velocity?,
+        spin: spin?,
+        free: free?,
         free_rotation,
-        mass,
-        force,
-        initial_velocity,
-    })
+        mass: mass?,
+        force: force?,
+        initial_velocity: initial_velocity?,
+    };
+    moves_one_way(table, &rigid).then_some(rigid)
+}
+
+/// Whether every axis is held, prescribed or free, and no more than one of these; notes where it is not.
+fn moves_one_way(table: &Table<'_>, rigid: &RigidBody) -> bool {
+    let mut fits = true;
+    let mut clash = |key: String, found: &str, expected: &str| {
+        table.reader.note(Diagnostic::error(&table.place_below(&key), found).expected(expected));
+        fits = false;
+    };
+    for (axis, name) in AXES.iter().enumerate() {
+        if rigid.free[axis] && rigid.velocity[axis].is_some() {
+            clash(format!("velocity.{name}"), "prescribes what free releases", "one of the two");
+        }
+        if !rigid.free[axis] && rigid.force[axis].is_some() {
+            clash(format!("force.{name}"), "acts along an axis that is held", "a force along a free axis");
+        }
+        if !rigid.free[axis] && rigid.initial_velocity[axis].is_some() {
+            clash(format!("initial_velocity.{name}"), "is along an axis that is held", "one along a free axis");
+        }
+        if rigid.free_rotation && rigid.spin[axis].is_some() {
+            clash(format!("spin.{name}"), "prescribes what free_rotation releases", "one of the two");
+        }
+    }
+    fits
 }
 
 fn shape(table: &Table<'_>, kind: Kind) -> Option<RigidShape> {
@@ -131,11 +128,8 @@ fn shape(table: &Table<'_>, kind: Kind) -> Option<RigidShape> {
         }
         Kind::Stl => {
             let file = file(table, "file");
-            let given = unit(table, "unit", Dimension::LENGTH);
-            if table.has("unit") && given.is_none() {
-                return None;
-            }
-            RigidShape::Stl { file: file?, unit: given.unwrap_or(1.0), point: start? }
+            let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
+            RigidShape::Stl { file: file?, unit: unit?.unwrap_or(1.0), point: start? }
         }
     })
 }

@@ -3,12 +3,14 @@
 use super::probes::ReadProbe;
 use super::vectors::direction;
 use crate::case::model::{
-    Body, BodyKind, BondBatch, Control, Damping, InitialOverlap, LinearSolver, NoEquilibrium, Opening, Output, Solver,
-    SolverKind, StaticOptions, StopWhen, TimeStep,
+    Body, BodyKind, Control, Damping, InitialOverlap, Opening, Output, Solver, SolverKind, StaticOptions, StopWhen,
+    TimeStep,
 };
 use crate::case::reader::Table;
 use crate::case::tree::Value;
 use crate::case::{Diagnostic, nearest};
+use fractum_dem::Batch;
+use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
 /// Reads the damping; which keys have an effect depends on the solver, and on the bodies where they are known.
 pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>) -> Damping {
@@ -135,7 +137,7 @@ fn statics(table: &Table<'_>, bodies: Option<&[Body]>) -> Option<StaticOptions> 
         linear_solver: table.choice("linear_solver").or(LinearSolver::Auto),
         tolerance: table.quantity("tolerance").positive().or(1e-4),
         most_steps: table.integer("max_steps").check(|&steps| steps > 0, "at least 1").or(10_000),
-        batch: table.choice("batch").or(BondBatch::Site),
+        batch: table.choice("batch").or(Batch::PerSite),
         no_equilibrium: table.choice("no_equilibrium").or(NoEquilibrium::Stop),
     })
 }

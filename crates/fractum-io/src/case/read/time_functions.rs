@@ -135,9 +135,7 @@ fn pulse(table: &Table<'_>, dimension: Dimension) -> Option<TimeFunction> {
             function
         }
         None => {
-            for name in ["duration", "rise", "rise_time", "decay_time"] {
-                table.node(name); // which of them belong here is not known
-            }
+            table.pass_over(&["duration", "rise", "rise_time", "decay_time"]);
             None
         }
     }

@@ -79,6 +79,14 @@ pub(super) fn components<T>(
     complete.then_some(components)
 }
 
+/// Takes the velocity at the start by components; none where the key is absent.
+pub(super) fn initial_velocity(body: &Table<'_>) -> Option<[Option<Field>; 3]> {
+    if !body.has("initial_velocity") {
+        return Some([None, None, None]);
+    }
+    components(body, "initial_velocity", |table, axis| field(table, axis).given())
+}
+
 /// Takes an expression of x, y, z.
 pub(super) fn field<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Field> {
     table.read(name, |node| {
