@@ -66,7 +66,7 @@ impl Diagnostic {
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(place) = &self.place {
-            write!(f, "{place}: ")?;
+            write!(f, "{}: ", printable(&place.to_string()))?;
         }
         if self.severity == Severity::Warning {
             write!(f, "warning: ")?;
@@ -76,21 +76,21 @@ impl fmt::Display for Diagnostic {
         {
             // What begins with a stop belongs to the key: `mesh.file: cannot be read`.
             let gap = if self.found.starts_with([':', ',', '.']) { "" } else { " " };
-            write!(f, "{}{gap}", one_line(&place.key))?;
+            write!(f, "{}{gap}", printable(&place.key))?;
         }
-        write!(f, "{}", one_line(&self.found))?;
+        write!(f, "{}", printable(&self.found))?;
         if !self.expected.is_empty() {
-            write!(f, "; expected {}", one_line(&self.expected))?;
+            write!(f, "; expected {}", printable(&self.expected))?;
         }
         if !self.remedy.is_empty() {
-            write!(f, "; {}", one_line(&self.remedy))?;
+            write!(f, "; {}", printable(&self.remedy))?;
         }
         Ok(())
     }
 }
 
-/// Text with control characters escaped, so that a diagnostic stays on its line.
-fn one_line(text: &str) -> String {
+/// Text with control characters escaped, so that it stays on its line and no terminal obeys it.
+pub fn printable(text: &str) -> String {
     text.chars().flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] }).collect()
 }
 
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_diagnostic_reads_as_one_line() {
+    fn a_diagnostic_reads_as_printable() {
         let key = "materials.concrete.poisson_ratio".to_string();
         let place = Place { file: "cases/beam.toml".to_string(), line: 14, column: 17, key };
         let diagnostic = Diagnostic::error(&place, "= 0.62").expected("between -1 and 0.5");

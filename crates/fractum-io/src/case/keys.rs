@@ -2,6 +2,9 @@
 //!
 //! The reader takes dimensions from here, so that the documentation, `explain`, the schema and the reading agree.
 
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
 use fractum_dem::Batch;
 use fractum_dem::criterion::EndMoments;
 use fractum_fem::{CriterionKind, Formulation, Kinematics, Plane};
@@ -189,7 +192,9 @@ fn without_indices(path: &str) -> String {
 
 /// The description of a key by its pattern.
 pub(super) fn describe(pattern: &str) -> Option<&'static KeyDoc> {
-    KEYS.iter().find(|key| key.path == pattern)
+    static BY_PATH: LazyLock<HashMap<&str, &KeyDoc>> =
+        LazyLock::new(|| KEYS.iter().map(|key| (key.path, key)).collect());
+    BY_PATH.get(pattern).copied()
 }
 
 /// Names of the keys directly below a pattern.

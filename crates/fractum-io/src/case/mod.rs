@@ -50,7 +50,7 @@ mod tree;
 mod unit;
 
 pub use choice::Choice;
-pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use diagnostic::{Diagnostic, Diagnostics, Severity, printable};
 pub use keys::{KeyDoc, KeyKind, explain, keys};
 pub use model::Case;
 pub use nearest::nearest;

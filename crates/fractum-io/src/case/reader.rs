@@ -10,6 +10,11 @@ use super::tree::{Entry, Node, Value, join};
 use super::unit::Dimension;
 use super::{Choice, Diagnostic, Place, Spanned, nearest};
 
+/// Mistakes that are listed, and to which suggestions are looked for; beyond them a file is probably of another kind.
+pub(super) const MOST_MISTAKES: usize = 100;
+/// Names that a list of valid ones shows at most.
+const MOST_NAMES: usize = 20;
+
 /// What the whole reading shares.
 pub(super) struct Reader {
     /// Folder of the case file.
@@ -59,6 +64,30 @@ impl Reader {
         if !self.meant.borrow().contains(&place.key) {
             self.note(Diagnostic::error(place, "is missing").expected(expected));
         }
+    }
+
+    /// Whether so much is wrong that suggestions help no more.
+    pub(super) fn has_many_mistakes(&self) -> bool {
+        self.diagnostics.borrow().len() > MOST_MISTAKES
+    }
+
+    /// Adds the nearest valid name to a mistake, or what the valid names are: `kind: a, b, c`.
+    pub(super) fn suggest<'n>(
+        &self,
+        note: Diagnostic,
+        name: &str,
+        valid: impl Iterator<Item = &'n str> + Clone,
+        kind: &str,
+    ) -> Diagnostic {
+        if self.has_many_mistakes() {
+            return note;
+        }
+        if let Some(near) = nearest(name, valid.clone()) {
+            return note.remedy(format!("did you mean \"{near}\"?"));
+        }
+        let shown: Vec<&str> = valid.clone().take(MOST_NAMES).collect();
+        let more = if valid.count() > MOST_NAMES { ", ..." } else { "" };
+        if shown.is_empty() { note } else { note.remedy(format!("{kind}: {}{more}", shown.join(", "))) }
     }
 
     /// Everything noted.
@@ -127,7 +156,7 @@ impl Reader {
 
 /// Parameters and variables as names of an expression.
 pub(super) struct ParameterNames<'a> {
-    reader: &'a Reader,
+    pub(super) reader: &'a Reader,
     variables: &'a [(&'a str, Dimension)],
 }
 
@@ -151,6 +180,9 @@ impl Names for ParameterNames<'_> {
     }
 
     fn all(&self) -> Vec<String> {
+        if self.reader.has_many_mistakes() {
+            return Vec::new();
+        }
         let variables = self.variables.iter().map(|(name, _)| name.to_string());
         variables.chain(self.reader.parameters.borrow().keys().cloned()).collect()
     }
@@ -178,10 +210,13 @@ impl<'a> Table<'a> {
         Self { reader, place: node.place.clone(), pattern: pattern.into(), entries }
     }
 
-    /// The entries of a table with names of the user's, in the order of the file.
+    /// The entries of a table with names of the user's, in the order of the file; notes names with control characters.
     pub(super) fn entries(&self) -> impl Iterator<Item = &'a Entry> {
         self.entries.iter().map(|(entry, used)| {
             used.set(true);
+            if entry.name.contains(char::is_control) {
+                self.reader.note(Diagnostic::error(&entry.key_place, "is a name with control characters"));
+            }
             *entry
         })
     }
@@ -289,12 +324,14 @@ impl<'a> Table<'a> {
 
     /// Takes a text.
     pub(super) fn text(&self, name: &'static str) -> Reading<'_, 'a, String> {
-        self.read(name, |node| match &node.value {
-            Value::Text(text) if !text.trim().is_empty() => Some(text.clone()),
-            _ => {
-                self.reader.note(Diagnostic::error(&node.place, node.found()).expected("a text that is not empty"));
-                None
-            }
+        self.read(name, |node| {
+            let expected = match &node.value {
+                Value::Text(text) if text.contains(char::is_control) => "a text of one line without control characters",
+                Value::Text(text) if !text.trim().is_empty() => return Some(text.clone()),
+                _ => "a text that is not empty",
+            };
+            self.reader.note(Diagnostic::error(&node.place, node.found()).expected(expected));
+            None
         })
     }
 

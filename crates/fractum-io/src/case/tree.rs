@@ -1,5 +1,7 @@
 //! The parsed TOML document with the place and the text of every value.
 
+use std::collections::BTreeSet;
+
 use toml::de::{DeTable, DeValue};
 
 use super::{Diagnostic, Place};
@@ -64,10 +66,11 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Node, Vec<Diagnostic>> {
     let (table, errors) = DeTable::parse_recoverable(text);
     if !errors.is_empty() {
         let mut diagnostics: Vec<Diagnostic> = Vec::new();
+        let mut lines = BTreeSet::new();
         for error in &errors {
             let place = source.place(error.span().map_or(text.len(), |span| span.start), String::new());
             // what follows the first error of a line is most often its echo
-            if !diagnostics.iter().any(|known| known.place.as_ref().is_some_and(|known| known.line == place.line)) {
+            if lines.insert(place.line) {
                 diagnostics.push(Diagnostic::error(&place, format!("not TOML: {}", error.message())));
             }
         }

@@ -9,6 +9,8 @@ use super::units::unit_after_number;
 use crate::case::unit::{Dimension, Unit};
 use crate::case::{Choice, nearest};
 
+/// Names up to which all are told where one is unknown.
+const MOST_NAMES: usize = 20;
 /// Deepest nesting of brackets and signs.
 const DEEPEST: u32 = 40;
 
@@ -204,6 +206,7 @@ impl<'t> Compiler<'t, '_> {
             {
                 error.remedy(format!("did you mean \"{near}\"?"))
             }
+            None if all.len() > MOST_NAMES => error,
             None => error.remedy(format!("names here: {}", all.join(", "))),
         }
     }

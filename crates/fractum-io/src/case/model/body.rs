@@ -25,7 +25,7 @@ pub enum BodyKind {
     /// Loose particles.
     Particles(LooseBody),
     /// A rigid body.
-    Rigid(RigidBody),
+    Rigid(Box<RigidBody>),
 }
 
 /// Finite elements with one material.

@@ -368,8 +368,11 @@ impl Case {
                 }
                 _ => None,
             },
-            BodyKind::Rigid(RigidBody { shape: RigidShape::Group { group, .. }, .. }) => Some((group, GroupUse::Tool)),
-            BodyKind::Rigid(_) | BodyKind::Particles(_) => None,
+            BodyKind::Rigid(rigid) => match &rigid.shape {
+                RigidShape::Group { group, .. } => Some((group, GroupUse::Tool)),
+                _ => None,
+            },
+            BodyKind::Particles(_) => None,
         });
         let is_body = |name: &str| self.bodies.iter().any(|body| body.name.value == name);
         let ties = self.ties.iter().map(|tie| (&tie.solid, GroupUse::Facets));

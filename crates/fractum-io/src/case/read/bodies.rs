@@ -1,12 +1,14 @@
 //! `[[bodies]]`.
 
+use std::collections::HashMap;
+
 use super::bonded::bonded;
 use super::loose::loose;
 use super::rigid::rigid;
 use super::vectors::{condition, field, initial_velocity};
+use crate::case::Diagnostic;
 use crate::case::model::{Body, BodyKind, Material, SolidBody};
 use crate::case::reader::Table;
-use crate::case::{Diagnostic, nearest};
 use fractum_fem::{Formulation, Kinematics, Plane};
 
 /// Reads all bodies against the materials read before; nothing where one of them is wrong.
@@ -14,6 +16,7 @@ pub(super) fn read(root: &Table<'_>, materials: &[(String, Option<Material>)]) -
     let mut used = vec![false; materials.len()];
     let mut complete = true;
     let mut bodies: Vec<Body> = Vec::new();
+    let mut taken = Taken::default();
     let tables = root.tables("bodies");
     if !root.has("bodies") || (tables.is_empty() && root.holds_array("bodies")) {
         root.reader.note_missing(&root.place_of("bodies"), "at least one body in [[bodies]]");
@@ -23,7 +26,7 @@ pub(super) fn read(root: &Table<'_>, materials: &[(String, Option<Material>)]) -
             complete = false;
             continue;
         };
-        complete &= unlike(root, &bodies, &body);
+        complete &= taken.add(root, &body);
         bodies.push(body);
     }
     for ((_, material), _) in materials.iter().zip(used).filter(|(_, used)| !used) {
@@ -36,22 +39,35 @@ pub(super) fn read(root: &Table<'_>, materials: &[(String, Option<Material>)]) -
     (complete && !bodies.is_empty()).then_some(bodies)
 }
 
-/// Whether a body shares neither name nor group with an earlier one; notes it where it does.
-fn unlike(root: &Table<'_>, earlier: &[Body], body: &Body) -> bool {
-    if let Some(other) = earlier.iter().find(|other| other.name.value == body.name.value) {
-        let found = format!("= \"{}\" is taken by the body at line {}", body.name.value, other.name.place.line);
-        root.reader.note(Diagnostic::error(&body.name.place, found).remedy("names of bodies are unique"));
-        return false;
+/// Names and mesh groups that bodies have taken.
+#[derive(Default)]
+struct Taken {
+    /// Line of each name.
+    names: HashMap<String, u32>,
+    /// Body of each mesh group.
+    groups: HashMap<String, String>,
+}
+
+impl Taken {
+    /// Adds a body; notes it where an earlier one has its name or its group, and gives false.
+    fn add(&mut self, root: &Table<'_>, body: &Body) -> bool {
+        let name = &body.name;
+        if let Some(line) = self.names.get(&name.value) {
+            let found = format!("= \"{}\" is taken by the body at line {line}", name.value);
+            root.reader.note(Diagnostic::error(&name.place, found).remedy("names of bodies are unique"));
+            return false;
+        }
+        self.names.insert(name.value.clone(), name.place.line);
+        let BodyKind::Solid(solid) = &body.kind else { return true };
+        let group = &solid.group;
+        if let Some(other) = self.groups.get(&group.value) {
+            let found = format!("= \"{}\" is already the body \"{other}\"", group.value);
+            root.reader.note(Diagnostic::error(&group.place, found).remedy("an element belongs to one body"));
+            return false;
+        }
+        self.groups.insert(group.value.clone(), name.value.clone());
+        true
     }
-    let BodyKind::Solid(solid) = &body.kind else { return true };
-    let same = earlier
-        .iter()
-        .find(|other| matches!(&other.kind, BodyKind::Solid(other) if other.group.value == solid.group.value));
-    if let Some(other) = same {
-        let found = format!("= \"{}\" is already the body \"{}\"", solid.group.value, other.name.value);
-        root.reader.note(Diagnostic::error(&solid.group.place, found).remedy("an element belongs to one body"));
-    }
-    same.is_none()
 }
 
 fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [bool]) -> Option<Body> {
@@ -79,7 +95,7 @@ fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [
         }
         Some(Kind::Rigid) => {
             let material = table.has("material").then(|| material_of(&table, materials, used));
-            (rigid(&table, material).map(BodyKind::Rigid), "on a rigid body")
+            (rigid(&table, material).map(Box::new).map(BodyKind::Rigid), "on a rigid body")
         }
         None => return None, // which keys belong here is not known
     };
@@ -134,10 +150,9 @@ fn material_of(table: &Table<'_>, materials: &[(String, Option<Material>)], used
         if found.is_none() {
             let known = materials.iter().map(|(name, _)| name.as_str());
             let note = Diagnostic::error(&name.place, format!("= \"{}\" is not a material of this case", name.value));
-            table.reader.note(match nearest(&name.value, known.clone()) {
-                Some(near) => note.remedy(format!("did you mean \"{near}\"?")),
-                None if materials.is_empty() => note.remedy("it has no [materials.NAME]"),
-                None => note.remedy(format!("materials here: {}", known.collect::<Vec<_>>().join(", "))),
+            table.reader.note(match materials {
+                [] => note.remedy("it has no [materials.NAME]"),
+                _ => table.reader.suggest(note, &name.value, known, "materials here"),
             });
         }
         found

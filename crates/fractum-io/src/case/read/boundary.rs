@@ -1,5 +1,7 @@
 //! `[[supports]]` and `[[loads]]`.
 
+use std::collections::HashMap;
+
 use super::time_functions::time_function;
 use super::vectors::{AXES, components};
 use crate::case::model::{Load, LoadKind, Motion, Support};
@@ -11,20 +13,22 @@ use fractum_math::Vec3;
 pub(super) fn supports(root: &Table<'_>) -> Option<Vec<Support>> {
     let mut complete = true;
     let mut supports: Vec<Support> = Vec::new();
-    for table in root.tables("supports") {
+    // The support that moves a group along an axis, with its line.
+    let mut moved: HashMap<(String, usize), (usize, u32)> = HashMap::new();
+    for (index, table) in root.tables("supports").into_iter().enumerate() {
         let Some(support) = support(table) else {
             complete = false;
             continue;
         };
-        for other in supports.iter().filter(|other| other.group.value == support.group.value) {
-            for (axis, (motion, taken)) in support.motion.iter().zip(&other.motion).enumerate() {
-                if let (Some(motion), Some(taken)) = (motion, taken) {
-                    let line = taken.place.line;
-                    let found = format!("moves group \"{}\" along {} too", support.group.value, AXES[axis]);
-                    let note = Diagnostic::error(&motion.place, found);
-                    root.reader.note(note.remedy(format!("the support at line {line} already does")));
-                    complete = false;
-                }
+        for (axis, motion) in support.motion.iter().enumerate() {
+            let Some(motion) = motion else { continue };
+            let key = (support.group.value.clone(), axis);
+            let &mut (other, line) = moved.entry(key).or_insert((index, motion.place.line));
+            if other != index {
+                let found = format!("moves group \"{}\" along {} too", support.group.value, AXES[axis]);
+                let note = Diagnostic::error(&motion.place, found);
+                root.reader.note(note.remedy(format!("the support at line {line} already does")));
+                complete = false;
             }
         }
         supports.push(support);
@@ -35,15 +39,16 @@ pub(super) fn supports(root: &Table<'_>) -> Option<Vec<Support>> {
 
 /// Whether no two names are the same; notes those that are.
 fn unique<'s>(root: &Table<'_>, names: impl Iterator<Item = &'s Spanned<String>>) -> bool {
-    let mut seen: Vec<&Spanned<String>> = Vec::new();
+    let mut seen: HashMap<&str, u32> = HashMap::new();
     let mut unique = true;
     for name in names {
-        if let Some(other) = seen.iter().find(|other| other.value == name.value) {
-            let found = format!("= \"{}\" is taken at line {}", name.value, other.place.line);
+        if let Some(line) = seen.get(name.value.as_str()) {
+            let found = format!("= \"{}\" is taken at line {line}", name.value);
             root.reader.note(Diagnostic::error(&name.place, found).remedy("names are unique"));
             unique = false;
+        } else {
+            seen.insert(&name.value, name.place.line);
         }
-        seen.push(name);
     }
     unique
 }

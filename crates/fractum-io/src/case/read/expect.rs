@@ -1,6 +1,6 @@
 //! `[[expect]]`.
 
-use super::probes::ReadProbe;
+use super::probes::{ReadProbe, ReadProbes};
 use crate::case::model::{Bound, Expect, SUMMARY_QUANTITIES};
 use crate::case::reader::Table;
 use crate::case::tree::Value;
@@ -8,13 +8,13 @@ use crate::case::unit::Dimension;
 use crate::case::{Diagnostic, Spanned, nearest};
 
 /// Reads all reference values; nothing where one of them is wrong.
-pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe]) -> Option<Vec<Expect>> {
+pub(super) fn read(root: &Table<'_>, probes: &ReadProbes) -> Option<Vec<Expect>> {
     let tables = root.tables("expect");
     let expects: Vec<_> = tables.into_iter().map(|table| expect(table, probes)).collect();
     expects.into_iter().collect()
 }
 
-fn expect(table: Table<'_>, probes: &[ReadProbe]) -> Option<Expect> {
+fn expect(table: Table<'_>, probes: &ReadProbes) -> Option<Expect> {
     let quantity = table.text("quantity").spanned().required();
     let found = quantity.as_ref().map(|quantity| find(&table, quantity, probes));
     // Where the quantity is wrong, its values are taken without a look at their dimension.
@@ -35,17 +35,17 @@ enum Found {
 }
 
 /// Dimension of the value a quantity names; notes a name that does not exist.
-fn find(table: &Table<'_>, quantity: &Spanned<String>, probes: &[ReadProbe]) -> Found {
+fn find(table: &Table<'_>, quantity: &Spanned<String>, probes: &ReadProbes) -> Found {
     let of_probe = |probe: &ReadProbe| probe.dimension.map_or(Found::Wrong, Found::Dimension);
     let name = quantity.value.as_str();
-    if let Some(probe) = probes.iter().find(|probe| probe.name == name) {
+    if let Some(probe) = probes.find(name) {
         return of_probe(probe);
     }
     if let Some((_, dimension)) = SUMMARY_QUANTITIES.iter().find(|(path, _)| *path == name) {
         return Found::Dimension(*dimension);
     }
     if let Some((probe, field)) = name.strip_prefix("probes.").and_then(|rest| rest.rsplit_once('.'))
-        && let Some(probe) = probes.iter().find(|known| known.name == probe)
+        && let Some(probe) = probes.find(probe)
     {
         match field {
             "final" => return of_probe(probe),
@@ -54,14 +54,18 @@ fn find(table: &Table<'_>, quantity: &Spanned<String>, probes: &[ReadProbe]) -> 
             _ => {}
         }
     }
-    let paths = probes.iter().filter(|probe| !probe.name.is_empty()).flat_map(|probe| {
+    let note =
+        Diagnostic::error(&quantity.place, format!("= \"{name}\" is neither a probe nor a path of summary.json"));
+    if table.reader.has_many_mistakes() {
+        table.reader.note(note);
+        return Found::Wrong;
+    }
+    let paths = probes.list.iter().filter(|probe| !probe.name.is_empty()).flat_map(|probe| {
         let fields: &[&str] = if probe.scalar { &["final"] } else { &["final", "max", "min", "time_of_max"] };
         let paths = fields.iter().map(|field| format!("probes.{}.{field}", probe.name));
         std::iter::once(probe.name.clone()).chain(paths)
     });
     let known: Vec<String> = paths.chain(SUMMARY_QUANTITIES.iter().map(|(path, _)| path.to_string())).collect();
-    let note =
-        Diagnostic::error(&quantity.place, format!("= \"{name}\" is neither a probe nor a path of summary.json"));
     table.reader.note(match nearest(name, known.iter().map(String::as_str)) {
         Some(near) => note.remedy(format!("did you mean \"{near}\"?")),
         None => note,

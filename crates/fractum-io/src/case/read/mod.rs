@@ -23,7 +23,7 @@ use std::path::Path;
 use super::expression::parse_unit;
 use super::keys::remove_unknown;
 use super::model::{Body, BodyKind, BondedShape, Case, CaseSource, MeshSource, PackingSource, RigidShape};
-use super::reader::{Reader, Table};
+use super::reader::{MOST_MISTAKES, Reader, Table};
 use super::tree::{self, Node, Value};
 use super::unit::Dimension;
 use super::{Diagnostic, Diagnostics, Place, Severity, Spanned};
@@ -108,7 +108,8 @@ fn override_value(root: &mut Node, name: &str, node: Node) -> Result<(), Box<Dia
     }))
 }
 
-/// Errors and warnings in the order of the file, the command line first, each once.
+/// Errors and warnings in the order of the file, the command line first, each once; of very many the first, with a count
+/// of the others.
 fn sorted(mut diagnostics: Vec<Diagnostic>, file: &str) -> Diagnostics {
     let rank = |diagnostic: &Diagnostic| {
         let place = diagnostic.place.as_ref();
@@ -116,6 +117,12 @@ fn sorted(mut diagnostics: Vec<Diagnostic>, file: &str) -> Diagnostics {
     };
     diagnostics.sort_by_key(rank);
     diagnostics.dedup();
+    let more = diagnostics.len().saturating_sub(MOST_MISTAKES);
+    if more > 1 {
+        diagnostics.truncate(MOST_MISTAKES);
+        let whole = Place { file: file.to_string(), line: 0, column: 0, key: String::new() };
+        diagnostics.push(Diagnostic::error(&whole, format!("{more} further mistakes are not listed")));
+    }
     Diagnostics(diagnostics)
 }
 
@@ -134,7 +141,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
     let loads = boundary::loads(&table);
     let damping = solver::damping(&table, bodies.as_deref());
     let probes = probes::read(&table);
-    let solver = solver::read(&table, &probes, bodies.as_deref());
+    let solver = solver::read(&table, &probes.list, bodies.as_deref());
     let output = solver::output(&table, solver.as_ref().map(|solver| solver.end));
     let expect = expect::read(&table, &probes);
     let verify = table.table_or_empty("verify");
@@ -154,7 +161,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
         loads: loads?,
         damping,
         solver: solver?,
-        probes: probes.into_iter().map(|probe| probe.probe).collect::<Option<_>>()?,
+        probes: probes.list.into_iter().map(|probe| probe.probe).collect::<Option<_>>()?,
         output: output?,
         expect: expect?,
         verify_quick,

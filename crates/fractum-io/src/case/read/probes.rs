@@ -1,5 +1,7 @@
 //! `[[probes]]`.
 
+use std::collections::HashMap;
+
 use fractum_math::Vec3;
 
 use super::bodies::optional;
@@ -23,6 +25,21 @@ pub(super) struct ReadProbe {
     pub(super) probe: Option<Probe>,
 }
 
+/// All probes of a case.
+pub(super) struct ReadProbes {
+    /// In the order of the file.
+    pub(super) list: Vec<ReadProbe>,
+    /// Index of the first probe of each name.
+    by_name: HashMap<String, usize>,
+}
+
+impl ReadProbes {
+    /// The probe of this name.
+    pub(super) fn find(&self, name: &str) -> Option<&ReadProbe> {
+        self.list.get(*self.by_name.get(name)?)
+    }
+}
+
 /// Functions that reduce the history of a probe to a number.
 const REDUCTIONS: [(&str, Take); 6] = [
     ("max", Take::Max),
@@ -34,24 +51,28 @@ const REDUCTIONS: [(&str, Take); 6] = [
 ];
 
 /// Reads all probes in order.
-pub(super) fn read(root: &Table<'_>) -> Vec<ReadProbe> {
+pub(super) fn read(root: &Table<'_>) -> ReadProbes {
     let tables = root.tables("probes");
     let name = |table: &Table<'_>| match table.peek("name").map(|node| &node.value) {
         Some(Value::Text(name)) => name.clone(),
         _ => String::new(),
     };
     let names: Vec<String> = tables.iter().map(name).collect();
-    let mut probes = Vec::new();
-    for table in tables {
-        let probe = probe(table, &probes, &names);
-        probes.push(probe);
+    let mut by_name = HashMap::new();
+    for (index, name) in names.iter().enumerate().filter(|(_, name)| !name.is_empty()) {
+        by_name.entry(name.clone()).or_insert(index);
     }
-    probes
+    let mut list = Vec::new();
+    for (table, own_name) in tables.into_iter().zip(names) {
+        let probe = probe(table, own_name, &list, &by_name);
+        list.push(probe);
+    }
+    ReadProbes { list, by_name }
 }
 
-fn probe(table: Table<'_>, earlier: &[ReadProbe], names: &[String]) -> ReadProbe {
-    let name = table.text("name").spanned().required().filter(|name| good_name(&table, name, earlier));
-    let own_name = names.get(earlier.len()).cloned().unwrap_or_default();
+fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &HashMap<String, usize>) -> ReadProbe {
+    let is_first = by_name.get(&own_name).is_none_or(|first| *first == earlier.len());
+    let name = table.text("name").spanned().required().filter(|name| good_name(&table, name, is_first));
     let mut read = ReadProbe { name: own_name, dimension: None, scalar: false, probe: None };
     const KINDS: [&str; 12] = [
         "reaction",
@@ -70,7 +91,7 @@ fn probe(table: Table<'_>, earlier: &[ReadProbe], names: &[String]) -> ReadProbe
     let Some(key) = exactly_one(&table, &KINDS) else { return read };
     let mut unit = None;
     let measured = match key {
-        "expression" => expression(&table, earlier, names).map(|expression| {
+        "expression" => expression(&table, earlier, by_name).map(|expression| {
             unit = expression.unit;
             read.scalar = expression.probe.scalar;
             (ProbeKind::Expression(expression.probe), expression.dimension)
@@ -87,10 +108,10 @@ fn probe(table: Table<'_>, earlier: &[ReadProbe], names: &[String]) -> ReadProbe
 }
 
 /// Whether expressions can use the name, and no other probe or parameter has it.
-fn good_name(table: &Table<'_>, name: &Spanned<String>, earlier: &[ReadProbe]) -> bool {
+fn good_name(table: &Table<'_>, name: &Spanned<String>, is_first: bool) -> bool {
     let reader = table.reader;
     check_name(reader, &name.value, &name.place);
-    let taken = if earlier.iter().any(|other| other.name == name.value) {
+    let taken = if !is_first {
         "is the name of an earlier probe"
     } else if reader.parameters.borrow().contains_key(&name.value) {
         "is the name of a parameter"
@@ -172,7 +193,7 @@ struct ReadExpression {
     unit: Option<String>,
 }
 
-fn expression(table: &Table<'_>, earlier: &[ReadProbe], names: &[String]) -> Option<ReadExpression> {
+fn expression(table: &Table<'_>, earlier: &[ReadProbe], by_name: &HashMap<String, usize>) -> Option<ReadExpression> {
     let reader = table.reader;
     let unit = table.has("unit").then(|| si_unit(table));
     let node = table.node("expression")?;
@@ -181,7 +202,7 @@ fn expression(table: &Table<'_>, earlier: &[ReadProbe], names: &[String]) -> Opt
         return None;
     };
     let parameters = reader.names(&[]);
-    let mut names = ProbeNames { parameters, earlier, names, inputs: Vec::new(), scalar: false, broken: false };
+    let mut names = ProbeNames { parameters, earlier, by_name, inputs: Vec::new(), scalar: false, broken: false };
     let compiled = reader.compile(node, text, &mut names, true)?;
     let Type::Number { dimension, bare, loose } = compiled.kind else {
         let note = Diagnostic::error(&node.place, format!("{}, which is a condition", node.found()));
@@ -234,8 +255,8 @@ fn si_unit(table: &Table<'_>) -> Option<(String, Dimension)> {
 struct ProbeNames<'a> {
     parameters: ParameterNames<'a>,
     earlier: &'a [ReadProbe],
-    /// Names of all probes.
-    names: &'a [String],
+    /// Index of the first probe of each name, later ones among them.
+    by_name: &'a HashMap<String, usize>,
     inputs: Vec<ProbeInput>,
     scalar: bool,
     /// Whether it reads a probe that is wrong itself.
@@ -255,7 +276,7 @@ impl ProbeNames<'_> {
 
     /// Index of an earlier probe with the type of its values.
     fn probe(&mut self, name: &str) -> Result<(usize, Type), String> {
-        let index = self.earlier.iter().position(|probe| probe.name == name);
+        let index = self.by_name.get(name).copied().filter(|index| *index < self.earlier.len());
         let index = index.ok_or_else(|| format!("probe \"{name}\" must be declared above this one"))?;
         self.broken |= self.earlier[index].dimension.is_none();
         Ok((index, self.earlier[index].dimension.map_or(Type::BARE, Type::number)))
@@ -268,7 +289,7 @@ impl ProbeNames<'_> {
 
 impl Names for ProbeNames<'_> {
     fn contains(&self, name: &str) -> bool {
-        name == "t" || self.names.iter().any(|known| known == name) || self.parameters.contains(name)
+        name == "t" || self.by_name.contains_key(name) || self.parameters.contains(name)
     }
 
     fn is_variable(&self, name: &str) -> bool {
@@ -279,7 +300,7 @@ impl Names for ProbeNames<'_> {
         if name == "t" {
             return Some(self.input(ProbeInput::Time, Type::number(Dimension::TIME)));
         }
-        if !self.names.iter().any(|known| known == name) {
+        if !self.by_name.contains_key(name) {
             return self.parameters.find(name);
         }
         Some(self.probe(name).and_then(|(index, kind)| {
@@ -289,7 +310,12 @@ impl Names for ProbeNames<'_> {
     }
 
     fn all(&self) -> Vec<String> {
-        let probes = self.names.iter().filter(|name| !name.is_empty()).cloned();
+        if self.parameters.reader.has_many_mistakes() {
+            return Vec::new();
+        }
+        let mut probes: Vec<(&usize, &String)> = self.by_name.iter().map(|(name, index)| (index, name)).collect();
+        probes.sort_unstable();
+        let probes = probes.into_iter().map(|(_, name)| name.clone());
         probes.chain(["t".to_string()]).chain(self.parameters.all()).collect()
     }
 
@@ -298,7 +324,7 @@ impl Names for ProbeNames<'_> {
     }
 
     fn reduce(&mut self, function: &str, name: &str, at: Option<f64>) -> Result<Named, String> {
-        if !self.names.iter().any(|known| known == name) {
+        if !self.by_name.contains_key(name) {
             return Err(format!("{function}() needs a probe; \"{name}\" is none"));
         }
         let (probe, kind) = self.probe(name)?;

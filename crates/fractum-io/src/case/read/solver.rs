@@ -2,13 +2,13 @@
 
 use super::probes::ReadProbe;
 use super::vectors::direction;
+use crate::case::Diagnostic;
 use crate::case::model::{
     Body, BodyKind, Control, Damping, InitialOverlap, Opening, Output, Solver, SolverKind, StaticOptions, StopWhen,
     TimeStep,
 };
 use crate::case::reader::Table;
 use crate::case::tree::Value;
-use crate::case::{Diagnostic, nearest};
 use fractum_dem::Batch;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
@@ -165,10 +165,7 @@ fn stop_when(solver: &Table<'_>, probes: &[ReadProbe]) -> Option<StopWhen> {
         let found = probes.iter().position(|probe| probe.name == name.value && !probe.scalar);
         if found.is_none() {
             let note = Diagnostic::error(&name.place, format!("= \"{}\" is not a probe with a history", name.value));
-            table.reader.note(match nearest(&name.value, columns.clone()) {
-                Some(near) => note.remedy(format!("did you mean \"{near}\"?")),
-                None => note.remedy(format!("there are: {}", columns.collect::<Vec<_>>().join(", "))),
-            });
+            table.reader.note(table.reader.suggest(note, &name.value, columns, "there are"));
         }
         found
     });
