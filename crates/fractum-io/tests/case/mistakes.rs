@@ -329,11 +329,12 @@ fn a_parameter_named_like_a_unit_never_changes_a_quantity() {
     let with = |text: &str| SMALL.replace("[mesh]", "[parameters]\nm = \"3 m\"\n[mesh]").replace("end = 1e-3", text);
     let use_of_unit = "end = 1e-3\n[[loads]]\ngroup = \"a\"\nforce.x = ";
     for quantity in ["\"2 kN m/m\"", "\"2 kN*m/m\"", "\"2 kN/(m/m)\""] {
-        let [found] = &mistakes(&with(&format!("{use_of_unit}{quantity}")))[..] else { panic!("{quantity}") };
-        assert!(found.contains("\"m\" is a unit and also a name of this case; rename"), "{found}");
+        let found = mistakes(&with(&format!("{use_of_unit}{quantity}")));
+        let refused = |found: &String| found.contains("\"m\" is a unit and also a name of this case; rename");
+        assert!(found.iter().any(refused), "{found:?}");
     }
-    let rate = mistakes(&with("end = 1e-3\n[damping]\nmass = \"1/m*1 m/s\""));
-    assert!(rate[0].contains("\"m\" is a unit and also a name of this case"), "{rate:?}");
+    let rate = mistakes(&with("end = 1e-3\n[damping]\nmass = \"50 1/m\""));
+    assert!(rate.iter().any(|found| found.contains("\"m\" is a unit and also a name of this case")), "{rate:?}");
     let case = parse(&with("end = 1e-3\n[[supports]]\ngroup = \"a\"\ndisplacement.x = \"2*m*t/1 s\""), &[]).unwrap();
     let Some(Motion::Displacement(moved)) = case.supports[0].motion[0].as_ref().map(|motion| &motion.value) else {
         panic!()
