@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use fractum_scene::{EnergyKind, Ledger};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::atomic;
 use crate::error::{ReadError, WriteError};
@@ -100,48 +101,39 @@ pub struct Fracture {
     pub largest_time: f64,
 }
 
-/// The energy ledger [J].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// The energy ledger: every entry under its name [J], and the largest imbalance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Work of loads and supports.
-    #[serde(with = "number")]
-    pub external: f64,
-    /// Kinetic energy.
-    #[serde(with = "number")]
-    pub kinetic: f64,
-    /// Recoverable strain energy.
-    #[serde(with = "number")]
-    pub elastic: f64,
-    /// Part of `elastic` in tension and compression of bonds.
-    #[serde(with = "number", default)]
-    pub bond_tension: f64,
-    /// Part of `elastic` in bending of bonds.
-    #[serde(with = "number", default)]
-    pub bond_bending: f64,
-    /// Part of `elastic` in torsion of bonds.
-    #[serde(with = "number", default)]
-    pub bond_torsion: f64,
-    /// Dissipated by damage.
-    #[serde(with = "number")]
-    pub damage: f64,
-    /// Strain energy that left with removed elements and broken bonds.
-    #[serde(with = "number")]
-    pub removed: f64,
-    /// Stored in contacts.
-    #[serde(with = "number")]
-    pub contact: f64,
-    /// Dissipated by friction.
-    #[serde(with = "number")]
-    pub friction: f64,
-    /// Dissipated by damping.
-    #[serde(with = "number")]
-    pub damping: f64,
-    /// Let out by absorbing boundaries.
-    #[serde(with = "number")]
-    pub absorbed: f64,
+    /// The entries, in the order of [`EnergyKind::ALL`].
+    pub entries: [f64; EnergyKind::COUNT],
     /// Largest |imbalance| of the ledger over the run, relative to the largest external work [-].
-    #[serde(with = "number")]
     pub residual_max_relative: f64,
+}
+
+const RESIDUAL: &str = "residual_max_relative";
+
+impl From<&Ledger> for Energy {
+    fn from(ledger: &Ledger) -> Self {
+        let entries = EnergyKind::ALL.map(|kind| ledger[kind]);
+        Self { entries, residual_max_relative: ledger.residual_max_relative }
+    }
+}
+
+impl Serialize for Energy {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let names = EnergyKind::ALL.iter().map(|kind| kind.name()).chain([RESIDUAL]);
+        let values = self.entries.iter().chain([&self.residual_max_relative]);
+        serializer.collect_map(names.zip(values.map(|&value| value.is_finite().then_some(value))))
+    }
+}
+
+impl<'de> Deserialize<'de> for Energy {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let found = BTreeMap::<String, Option<f64>>::deserialize(deserializer)?;
+        // An entry that an older program did not have yet is zero.
+        let value = |name: &str| found.get(name).map_or(0.0, |value| value.unwrap_or(f64::NAN));
+        Ok(Self { entries: EnergyKind::ALL.map(|kind| value(kind.name())), residual_max_relative: value(RESIDUAL) })
+    }
 }
 
 /// Sizes at the end of the run.
@@ -301,15 +293,6 @@ mod tests {
             "pass",
             "source",
             "energy",
-            "external",
-            "kinetic",
-            "elastic",
-            "damage",
-            "removed",
-            "contact",
-            "friction",
-            "damping",
-            "absorbed",
             "residual_max_relative",
             "counts",
             "nodes",
@@ -334,6 +317,21 @@ mod tests {
             rest = &rest[at + key.len()..];
         }
         assert!(text.contains("\"status\": \"completed\"") && text.contains(&format!("\"{:0>32}\"", "ff")));
+    }
+
+    #[test]
+    fn every_entry_of_the_ledger_has_its_key_and_comes_back() {
+        let mut energy = Energy { residual_max_relative: f64::NAN, ..Energy::default() };
+        energy.entries.iter_mut().zip(1u8..).for_each(|(entry, value)| *entry = value.into());
+        let json = serde_json::to_value(energy).unwrap();
+        let keys = json.as_object().unwrap();
+        assert_eq!(keys.len(), EnergyKind::COUNT + 1);
+        assert!(EnergyKind::ALL.iter().all(|&kind| keys[kind.name()] == energy.entries[kind as usize]), "{json}");
+        for name in "external kinetic elastic damage removed contact friction damping absorbed".split(' ') {
+            assert!(keys.contains_key(name), "the contract of summary.json: {name}");
+        }
+        let back: Energy = serde_json::from_value(json).unwrap();
+        assert!(back.entries == energy.entries && back.residual_max_relative.is_nan());
     }
 
     #[test]

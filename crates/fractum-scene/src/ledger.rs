@@ -1,34 +1,181 @@
+//! The energies of a run: one list, from which summary, report, charts, history, probes and `expect` paths are made.
+//!
+//! To add an entry: a variant of [`EnergyKind`] and its row in [`EnergyKind::TABLE`], in the same order, and whoever writes
+//! it. Nothing else lists the entries; `docs/case-file.md` gets its row of `probes[].energy` anew.
+
+use std::ops::{Index, IndexMut};
+
 use serde::{Deserialize, Serialize};
 
-/// Where the energy of a run is, all in joule.
+/// An entry of the energy ledger [J].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnergyKind {
+    /// Work of supports and loads.
+    External,
+    /// Kinetic energy, rotation of particles included.
+    Kinetic,
+    /// Energy stored in elements and bonds.
+    Elastic,
+    /// Part of `Elastic` in tension and compression of bonds.
+    BondTension,
+    /// Part of `Elastic` in bending of bonds.
+    BondBending,
+    /// Part of `Elastic` in torsion of bonds.
+    BondTorsion,
+    /// Energy dissipated by damage.
+    Damage,
+    /// Energy that went with removed elements and broken bonds.
+    Removed,
+    /// Energy taken by damping of every kind.
+    Damping,
+    /// Energy stored in contact springs.
+    Contact,
+    /// Energy taken by friction.
+    Friction,
+    /// Energy that left through absorbing boundaries.
+    Absorbed,
+}
+
+/// What an entry is to the energy balance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnergyRole {
+    /// Put in from outside: counts positive.
+    Supplied,
+    /// Can be given back: counts negative.
+    Stored,
+    /// Cannot be given back: counts negative.
+    Spent,
+    /// Part of the elastic energy that only bonds have: does not count again.
+    PartOfBonds,
+}
+
+/// A row of the list of energies.
+struct Entry {
+    kind: EnergyKind,
+    /// As it is called in case files and results.
+    name: &'static str,
+    /// As it is called in the report.
+    label: &'static str,
+    role: EnergyRole,
+    /// Whether some scene can write it. The others stand in `summary.json` as zero and are not offered elsewhere.
+    written: bool,
+}
+
+const fn entry(kind: EnergyKind, name: &'static str, label: &'static str, role: EnergyRole) -> Entry {
+    Entry { kind, name, label, role, written: true }
+}
+
+impl EnergyKind {
+    /// Number of entries.
+    pub const COUNT: usize = Self::TABLE.len();
+
+    /// Every entry, in the order in which the balance sums them.
+    pub const ALL: [EnergyKind; Self::COUNT] = {
+        let mut all = [EnergyKind::External; Self::COUNT];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = Self::TABLE[i].kind;
+            assert!(all[i] as usize == i, "rows of the table come in the order of the variants");
+            i += 1;
+        }
+        all
+    };
+
+    const TABLE: [Entry; 12] = [
+        entry(EnergyKind::External, "external", "External work", EnergyRole::Supplied),
+        entry(EnergyKind::Kinetic, "kinetic", "Kinetic", EnergyRole::Stored),
+        entry(EnergyKind::Elastic, "elastic", "Elastic", EnergyRole::Stored),
+        entry(EnergyKind::BondTension, "bond_tension", "Elastic: tension of bonds", EnergyRole::PartOfBonds),
+        entry(EnergyKind::BondBending, "bond_bending", "Elastic: bending of bonds", EnergyRole::PartOfBonds),
+        entry(EnergyKind::BondTorsion, "bond_torsion", "Elastic: torsion of bonds", EnergyRole::PartOfBonds),
+        entry(EnergyKind::Damage, "damage", "Damage", EnergyRole::Spent),
+        entry(EnergyKind::Removed, "removed", "Removed with elements and bonds", EnergyRole::Spent),
+        entry(EnergyKind::Damping, "damping", "Damping", EnergyRole::Spent),
+        entry(EnergyKind::Contact, "contact", "Contact", EnergyRole::Stored),
+        entry(EnergyKind::Friction, "friction", "Friction", EnergyRole::Spent),
+        Entry { written: false, ..entry(EnergyKind::Absorbed, "absorbed", "Absorbed", EnergyRole::Spent) },
+    ];
+
+    const fn entry(self) -> &'static Entry {
+        &Self::TABLE[self as usize]
+    }
+
+    /// As it is called in case files and results.
+    pub const fn name(self) -> &'static str {
+        self.entry().name
+    }
+
+    /// As it is called in the report.
+    pub const fn label(self) -> &'static str {
+        self.entry().label
+    }
+
+    /// What it is to the balance.
+    pub const fn role(self) -> EnergyRole {
+        self.entry().role
+    }
+
+    /// Sign in the balance: 1 for what is put in, -1 for where it went, 0 for a part of another entry.
+    pub const fn sign(self) -> i8 {
+        match self.role() {
+            EnergyRole::Supplied => 1,
+            EnergyRole::Stored | EnergyRole::Spent => -1,
+            EnergyRole::PartOfBonds => 0,
+        }
+    }
+
+    /// Whether some scene can write it.
+    pub const fn is_written(self) -> bool {
+        self.entry().written
+    }
+
+    /// Every entry that some scene can write.
+    pub fn written() -> impl Iterator<Item = EnergyKind> {
+        Self::ALL.into_iter().filter(|kind| kind.is_written())
+    }
+}
+
+/// What a probe of energies shows: an entry of the ledger, or what does not add up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnergyProbe {
+    /// An entry.
+    Entry(EnergyKind),
+    /// [`Ledger::residual`].
+    Residual,
+}
+
+impl EnergyProbe {
+    /// Every entry that some scene can write, and the residual, with their names.
+    pub const NAMES: [(&'static str, EnergyProbe); 1 + WRITTEN] = {
+        let mut names = [("residual", EnergyProbe::Residual); 1 + WRITTEN];
+        let (mut i, mut next) = (0, 0);
+        while i < EnergyKind::COUNT {
+            let kind = EnergyKind::ALL[i];
+            if kind.is_written() {
+                names[next] = (kind.name(), EnergyProbe::Entry(kind));
+                next += 1;
+            }
+            i += 1;
+        }
+        names
+    };
+}
+
+const WRITTEN: usize = {
+    let (mut i, mut count) = (0, 0);
+    while i < EnergyKind::COUNT {
+        count += EnergyKind::ALL[i].is_written() as usize;
+        i += 1;
+    }
+    count
+};
+
+/// Where the energy of a run is, all in joule; `ledger[EnergyKind::Damage]` is one entry.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     /// Energy at the start, kinetic and elastic.
     pub initial: f64,
-    /// Work of supports and loads.
-    pub external: f64,
-    /// Kinetic energy, rotation of particles included.
-    pub kinetic: f64,
-    /// Energy stored in elements and bonds.
-    pub elastic: f64,
-    /// Part of `elastic` that tension and compression of bonds hold.
-    pub bond_tension: f64,
-    /// Part of `elastic` that bending of bonds holds.
-    pub bond_bending: f64,
-    /// Part of `elastic` that torsion of bonds holds.
-    pub bond_torsion: f64,
-    /// Energy dissipated by damage.
-    pub damage: f64,
-    /// Energy that went with removed elements and broken bonds.
-    pub removed: f64,
-    /// Energy taken by damping of every kind.
-    pub damping: f64,
-    /// Energy stored in contact springs.
-    pub contact: f64,
-    /// Energy taken by friction.
-    pub friction: f64,
-    /// Energy that left through absorbing boundaries.
-    pub absorbed: f64,
+    entries: [f64; EnergyKind::COUNT],
     /// Largest |residual| over [`Ledger::scale`] so far.
     pub residual_max_relative: f64,
     /// Largest amount of energy that was in play so far.
@@ -44,55 +191,37 @@ pub(crate) struct Books {
     pub(crate) friction: f64,
 }
 
-/// A column of the ledger.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // the names are those of the ledger's fields
-pub enum EnergyKind {
-    External,
-    Kinetic,
-    Elastic,
-    BondTension,
-    BondBending,
-    BondTorsion,
-    Damage,
-    Removed,
-    Damping,
-    Contact,
-    Friction,
-    Absorbed,
-    Residual,
+impl Index<EnergyKind> for Ledger {
+    type Output = f64;
+
+    fn index(&self, kind: EnergyKind) -> &f64 {
+        &self.entries[kind as usize]
+    }
+}
+
+impl IndexMut<EnergyKind> for Ledger {
+    fn index_mut(&mut self, kind: EnergyKind) -> &mut f64 {
+        &mut self.entries[kind as usize]
+    }
 }
 
 impl Ledger {
     /// What is missing: initial + external work - everything accounted for [J].
     pub fn residual(&self) -> f64 {
-        self.initial + self.external
-            - (self.kinetic
-                + self.elastic
-                + self.damage
-                + self.removed
-                + self.damping
-                + self.contact
-                + self.friction
-                + self.absorbed)
+        let sum = |sign| EnergyKind::ALL.iter().filter(|kind| kind.sign() == sign).map(|&kind| self[kind]).sum::<f64>();
+        self.initial + sum(1) - sum(-1)
     }
 
-    /// One column.
-    pub fn value(&self, kind: EnergyKind) -> f64 {
-        match kind {
-            EnergyKind::External => self.external,
-            EnergyKind::Kinetic => self.kinetic,
-            EnergyKind::Elastic => self.elastic,
-            EnergyKind::BondTension => self.bond_tension,
-            EnergyKind::BondBending => self.bond_bending,
-            EnergyKind::BondTorsion => self.bond_torsion,
-            EnergyKind::Damage => self.damage,
-            EnergyKind::Removed => self.removed,
-            EnergyKind::Damping => self.damping,
-            EnergyKind::Contact => self.contact,
-            EnergyKind::Friction => self.friction,
-            EnergyKind::Absorbed => self.absorbed,
-            EnergyKind::Residual => self.residual(),
+    /// What cannot be given back: sum of all entries of [`EnergyRole::Spent`] [J].
+    pub fn spent(&self) -> f64 {
+        EnergyKind::ALL.iter().filter(|kind| kind.role() == EnergyRole::Spent).map(|&kind| self[kind]).sum()
+    }
+
+    /// What a probe shows [J].
+    pub fn probe(&self, probe: EnergyProbe) -> f64 {
+        match probe {
+            EnergyProbe::Entry(kind) => self[kind],
+            EnergyProbe::Residual => self.residual(),
         }
     }
 
@@ -103,7 +232,29 @@ impl Ledger {
 
     /// Takes the present values into the running maxima.
     pub(crate) fn update_maxima(&mut self) {
-        self.scale = self.scale.max(self.initial).max(self.external.abs());
+        self.scale = self.scale.max(self.initial).max(self[EnergyKind::External].abs());
         self.residual_max_relative = self.residual_max_relative.max(self.relative_residual());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_entry_counts_in_the_balance_as_its_role_says() {
+        for kind in EnergyKind::ALL {
+            let mut ledger = Ledger { initial: 3.0, ..Ledger::default() };
+            ledger[kind] = 2.0;
+            assert_eq!(ledger.residual(), 3.0 + 2.0 * f64::from(kind.sign()), "{}", kind.name());
+            assert_eq!(ledger.spent(), if kind.role() == EnergyRole::Spent { 2.0 } else { 0.0 }, "{}", kind.name());
+        }
+    }
+
+    #[test]
+    fn names_are_unique_and_probes_offer_what_can_be_written() {
+        let names: Vec<&str> = EnergyProbe::NAMES.iter().map(|(name, _)| *name).collect();
+        assert!(names.iter().enumerate().all(|(i, name)| !names[..i].contains(name)), "{names:?}");
+        assert!(EnergyKind::ALL.iter().all(|kind| kind.is_written() == names.contains(&kind.name())));
     }
 }

@@ -31,7 +31,7 @@ pub use error::{SceneError, StepError};
 pub use fractum_contact::law::{ElasticMaterial, Surface, damping_of_restitution};
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fragment::{Fragment, fragments};
-pub use ledger::{EnergyKind, Ledger};
+pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use probe::{CountKind, Probe};
 pub use rigid::RigidGround;
 pub use scene::{Counts, Scene, SceneSettings, SceneState};

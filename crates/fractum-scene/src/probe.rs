@@ -3,7 +3,7 @@ use fractum_math::Vec3;
 
 use crate::bonded::ParticleProbe;
 use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
-use crate::ledger::EnergyKind;
+use crate::ledger::EnergyProbe;
 use crate::scene::Scene;
 
 /// What a probe counts.
@@ -44,8 +44,8 @@ pub enum Probe {
         /// Unit direction.
         direction: Vec3,
     },
-    /// A column of the energy ledger [J].
-    Energy(EnergyKind),
+    /// An entry of the energy ledger, or its residual [J].
+    Energy(EnergyProbe),
     /// A count.
     Count(CountKind),
     /// Volume mean of a stress component (xx yy zz xy yz zx) over elements [Pa].
@@ -115,7 +115,7 @@ impl Probe {
                 (solid.displacement[n] - solid.velocity[n] * dt).dot(direction)
             }),
             Probe::Velocity { nodes, direction } => mean(nodes, &|n| solid.velocity[n].dot(direction)),
-            Probe::Energy(kind) => scene.ledger().value(*kind),
+            Probe::Energy(kind) => scene.ledger().probe(*kind),
             Probe::Count(kind) => scene.count(*kind) as f64,
             Probe::Stress { elements, component } => {
                 let fields: Vec<_> = (0..solid.body_count()).map(|body| solid.element_fields(body)).collect();

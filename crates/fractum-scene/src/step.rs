@@ -4,6 +4,7 @@ use fractum_math::Vec3;
 
 use crate::bonded::BondedWork;
 use crate::error::StepError;
+use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 
 /// Elastic energy over all energy put in, above which a run is unstable: a mode of the highest frequency at 0.95 of the
@@ -93,8 +94,9 @@ impl Scene {
             books.damping += motion.damped_before + bonded.damped_before;
         }
         if measure {
-            self.ledger.kinetic = motion.kinetic + support.kinetic + turning + bonded.kinetic + tools.kinetic;
-            self.ledger.contact = contact.stored;
+            self.ledger[EnergyKind::Kinetic] =
+                motion.kinetic + support.kinetic + turning + bonded.kinetic + tools.kinetic;
+            self.ledger[EnergyKind::Contact] = contact.stored;
             self.close_balance()?;
         }
         self.books.external += support.after + bonded.external_after + tools.external_after + load_after;
@@ -203,16 +205,18 @@ impl Scene {
     fn close_balance(&mut self) -> Result<(), StepError> {
         let Scene { ledger, solid, bonded, books, contacts, .. } = self;
         let bonds = bonded.energy();
-        (ledger.bond_tension, ledger.bond_bending, ledger.bond_torsion) = (bonds.tension, bonds.bending, bonds.torsion);
-        ledger.elastic = solid.elastic_energy() + bonds.total();
+        ledger[EnergyKind::BondTension] = bonds.tension;
+        ledger[EnergyKind::BondBending] = bonds.bending;
+        ledger[EnergyKind::BondTorsion] = bonds.torsion;
+        ledger[EnergyKind::Elastic] = solid.elastic_energy() + bonds.total();
         // The sum over no block at all is -0.
-        ledger.damage = solid.dissipated_energy() + 0.0;
-        ledger.external = books.external;
-        ledger.removed = books.removed + bonded.released_energy();
-        ledger.friction = books.friction;
-        ledger.damping = books.damping + solid.viscous_dissipation();
+        ledger[EnergyKind::Damage] = solid.dissipated_energy() + 0.0;
+        ledger[EnergyKind::External] = books.external;
+        ledger[EnergyKind::Removed] = books.removed + bonded.released_energy();
+        ledger[EnergyKind::Friction] = books.friction;
+        ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
         if self.clock.step == 0 {
-            ledger.initial = ledger.kinetic + ledger.elastic + ledger.contact;
+            ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];
             // Less than this is no energy: bodies that wait for a tool move by what rounding leaves.
             ledger.scale = bonded.round_off_energy(self.clock.dt_after);
         }
@@ -226,7 +230,7 @@ impl Scene {
             return Err(StepError::NotFinite { step, time, dt, limit, culprit: self.culprit() });
         }
         // An unstable run keeps the discrete balance while it blows up: its energies grow with opposite signs.
-        let ratio = self.ledger.elastic / self.ledger.scale;
+        let ratio = self.ledger[EnergyKind::Elastic] / self.ledger.scale;
         if ratio > UNSTABLE_RATIO {
             return Err(StepError::Unstable { step, time, ratio, dt, limit, culprit: self.culprit() });
         }
@@ -240,12 +244,12 @@ impl Scene {
     /// The ledger of a state of equilibrium.
     pub(crate) fn book_equilibrium(&mut self) -> Result<(), StepError> {
         let Scene { ledger, solid, books, .. } = self;
-        ledger.elastic = solid.elastic_energy();
-        ledger.damage = solid.dissipated_energy();
-        ledger.external = books.external;
-        ledger.removed = books.removed;
-        ledger.friction = books.friction;
-        ledger.damping = books.damping + solid.viscous_dissipation();
+        ledger[EnergyKind::Elastic] = solid.elastic_energy();
+        ledger[EnergyKind::Damage] = solid.dissipated_energy();
+        ledger[EnergyKind::External] = books.external;
+        ledger[EnergyKind::Removed] = books.removed;
+        ledger[EnergyKind::Friction] = books.friction;
+        ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
         ledger.update_maxima();
         if ledger.residual().is_finite() {
             return Ok(());

@@ -6,40 +6,40 @@ use fractum_io::Compression;
 use fractum_io::case::model::{Case, ProbeExpression, ProbeInput, ProbeKind, Take};
 use fractum_io::history::{Column, History};
 use fractum_io::vtk::{CellBlock, CellKind, Collection, Field, PolyCells, PolyData, UnstructuredGrid, Values};
-use fractum_scene::Scene;
 use fractum_scene::statics::NoEquilibrium;
+use fractum_scene::{EnergyKind, EnergyRole, Scene};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
 use crate::record_bonded as bonds;
 
 /// Columns of the history before the probes: name and unit.
-const LEDGER_COLUMNS: [(&str, &str); 13] = [
-    ("time", "s"),
-    ("dt", "s"),
-    ("external", "J"),
-    ("kinetic", "J"),
-    ("elastic", "J"),
-    ("damage", "J"),
-    ("removed", "J"),
-    ("contact", "J"),
-    ("friction", "J"),
-    ("damping", "J"),
-    ("residual", "J"),
-    ("removed_elements", "1"),
-    ("particles", "1"),
-];
+fn ledger_columns(bonded: bool) -> Vec<(&'static str, &'static str)> {
+    let mut columns = vec![("time", "s"), ("dt", "s")];
+    columns.extend(balance().map(|kind| (kind.name(), "J")));
+    columns.extend([("residual", "J"), ("removed_elements", "1"), ("particles", "1")]);
+    if bonded {
+        columns.extend(parts_of_bonds().map(|kind| (kind.name(), "J")));
+        columns.push(("broken_bonds", "1"));
+    }
+    columns
+}
 
-/// Further columns where there are bonded bodies.
-const BOND_COLUMNS: [(&str, &str); 4] =
-    [("bond_tension", "J"), ("bond_bending", "J"), ("bond_torsion", "J"), ("broken_bonds", "1")];
+/// Entries of the ledger that count in its balance.
+fn balance() -> impl Iterator<Item = EnergyKind> {
+    EnergyKind::written().filter(|kind| kind.sign() != 0)
+}
+
+fn parts_of_bonds() -> impl Iterator<Item = EnergyKind> {
+    EnergyKind::written().filter(|kind| kind.role() == EnergyRole::PartOfBonds)
+}
 
 /// Further column where equilibrium may give way to motion: 1 while the scene moves.
 const IN_MOTION: (&str, &str) = ("in_motion", "1");
 
 /// How many columns of a history, which these names begin, belong to the ledger and not to probes.
-pub(crate) fn ledger_columns(names: &[&str]) -> usize {
-    let known = LEDGER_COLUMNS.iter().chain(&BOND_COLUMNS);
+pub(crate) fn count_ledger_columns(names: &[&str]) -> usize {
+    let known = ledger_columns(true);
     let count = names.iter().zip(known).take_while(|(name, (column, _))| *name == column).count();
     count + usize::from(names.get(count) == Some(&IN_MOTION.0))
 }
@@ -56,8 +56,6 @@ pub(crate) struct RecordState {
     pub(crate) times: Vec<f64>,
     /// Values of each probe that is a column, row by row.
     pub(crate) series: Vec<Vec<f64>>,
-    /// The ledger at each row: external, kinetic, elastic, damage, removed, contact, friction, damping.
-    pub(crate) energies: Vec<[f64; 8]>,
 }
 
 /// Writes the results of a run while it goes.
@@ -110,13 +108,11 @@ impl<'a> Recorder<'a> {
         folder: &Path,
         resumed: Option<RecordState>,
     ) -> Result<Self, Failure> {
-        let bonds: &[(&str, &str)] = if scene.bonded.is_empty() { &[] } else { &BOND_COLUMNS };
         let hands_over = case.solver.statics.as_ref().is_some_and(|s| s.no_equilibrium == NoEquilibrium::Motion);
-        let columns: Vec<Column> = LEDGER_COLUMNS
-            .iter()
-            .chain(bonds)
-            .chain(hands_over.then_some(&IN_MOTION))
-            .map(|(name, unit)| Column::new(*name, *unit))
+        let columns: Vec<Column> = ledger_columns(!scene.bonded.is_empty())
+            .into_iter()
+            .chain(hands_over.then_some(IN_MOTION))
+            .map(|(name, unit)| Column::new(name, unit))
             .chain(
                 case.probes
                     .iter()
@@ -174,25 +170,15 @@ impl<'a> Recorder<'a> {
     pub(crate) fn row(&mut self, scene: &Scene, time: f64, dt: f64) -> Result<(), Failure> {
         let ledger = scene.ledger();
         let counts = scene.counts();
-        let energies = [
-            ledger.external,
-            ledger.kinetic,
-            ledger.elastic,
-            ledger.damage,
-            ledger.removed,
-            ledger.contact,
-            ledger.friction,
-            ledger.damping,
-        ];
         let mut row = vec![time, dt];
-        row.extend(energies);
+        row.extend(balance().map(|kind| ledger[kind]));
         row.extend([ledger.residual(), counts.removed_elements as f64, counts.particles as f64]);
         if !scene.bonded.is_empty() {
-            row.extend([ledger.bond_tension, ledger.bond_bending, ledger.bond_torsion, counts.broken_bonds as f64]);
+            row.extend(parts_of_bonds().map(|kind| ledger[kind]));
+            row.push(counts.broken_bonds as f64);
         }
         row.extend(self.in_motion.map(|moves| f64::from(u8::from(moves))));
         self.state.times.push(time);
-        self.state.energies.push(energies);
         for index in 0..self.case.probes.len() {
             let value = match (&self.case.probes[index].kind, &self.probes[index]) {
                 (_, Some(probe)) => probe.value(scene),

@@ -8,6 +8,7 @@ use fractum_io::history::{self, Table};
 use fractum_io::picture::ColourMap;
 use fractum_io::report::{self, ColourBar, Curve, EnergyColumns, Figure, ReportData};
 use fractum_io::summary::Summary;
+use fractum_scene::EnergyKind;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
@@ -77,10 +78,8 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
     let data = ReportData {
         curves: curves(&history),
         energy: Some(EnergyColumns {
-            external: "external".into(),
-            parts: ["kinetic", "elastic", "damage", "removed", "contact", "friction", "damping"]
-                .map(String::from)
-                .into(),
+            external: EnergyKind::External.name().into(),
+            parts: EnergyKind::written().filter(|kind| kind.sign() < 0).map(|kind| kind.name().into()).collect(),
         }),
         cracks: ["removed_elements", "particles", "broken_bonds"].map(String::from).into(),
         fragments,
@@ -108,7 +107,7 @@ fn figure(folder: &Path, note: &PictureNote) -> Option<Figure> {
 /// The load curve (first force against first displacement), then the probes over time, one chart per unit.
 fn curves(history: &Table) -> Vec<Curve> {
     let names: Vec<&str> = history.columns.iter().map(|c| c.name.as_str()).collect();
-    let probes = &history.columns[crate::record::ledger_columns(&names)..];
+    let probes = &history.columns[crate::record::count_ledger_columns(&names)..];
     let of_unit = |unit: &str| probes.iter().find(|c| c.unit == unit).map(|c| c.name.clone());
     let mut curves = Vec::new();
     if let (Some(load), Some(displacement)) = (of_unit("N"), of_unit("m")) {

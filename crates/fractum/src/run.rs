@@ -13,7 +13,7 @@ use fractum_io::log::{Progress, RunLog, Snapshot};
 use fractum_io::summary::{self, Status, Summary, hash_text};
 use fractum_io::{Compression, WriteError};
 use fractum_scene::statics::StaticSolver;
-use fractum_scene::{BondedBody, CountKind, Phase, Scene, SceneState, StepError};
+use fractum_scene::{BondedBody, CountKind, EnergyKind, Phase, Scene, SceneState, StepError};
 use serde::{Deserialize, Serialize};
 
 use crate::cracks::{self, Columns};
@@ -291,9 +291,9 @@ impl Run<'_> {
             time: scene.clock.time,
             end: self.case.solver.end,
             dt: scene.clock.dt_before,
-            kinetic: ledger.kinetic,
-            elastic: ledger.elastic,
-            dissipated: ledger.damage + ledger.removed + ledger.friction + ledger.damping,
+            kinetic: ledger[EnergyKind::Kinetic],
+            elastic: ledger[EnergyKind::Elastic],
+            dissipated: ledger.spent(),
             balance_error: ledger.relative_residual(),
             broken_edges: counts.broken_edges as u64,
             broken_bonds: counts.broken_bonds as u64,
@@ -370,7 +370,6 @@ impl Run<'_> {
     }
 
     fn summary(&self, scene: &Scene, status: Status, threads: usize) -> Summary {
-        let ledger = scene.ledger();
         let counts = scene.counts();
         let record = self.recorder.state();
         let mut probes = BTreeMap::new();
@@ -403,21 +402,7 @@ impl Run<'_> {
             threads,
             case_hash: hash_text(self.identity.case_hash),
             probes,
-            energy: summary::Energy {
-                external: ledger.external,
-                kinetic: ledger.kinetic,
-                elastic: ledger.elastic,
-                bond_tension: ledger.bond_tension,
-                bond_bending: ledger.bond_bending,
-                bond_torsion: ledger.bond_torsion,
-                damage: ledger.damage,
-                removed: ledger.removed,
-                contact: ledger.contact,
-                friction: ledger.friction,
-                damping: ledger.damping,
-                absorbed: ledger.absorbed,
-                residual_max_relative: ledger.residual_max_relative,
-            },
+            energy: scene.ledger().into(),
             counts: summary::Counts {
                 nodes: counts.nodes as u64,
                 elements: counts.elements as u64,

@@ -10,7 +10,7 @@ use fractum_dem::criterion::EndMoments;
 use fractum_fem::{CriterionKind, Formulation, Kinematics, Plane};
 use fractum_pack::Convention;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
-use fractum_scene::{CountKind, CrackMeasure, EnergyKind};
+use fractum_scene::{CountKind, CrackMeasure, EnergyProbe};
 
 use super::model::*;
 use super::tree::{Node, Value, join};
@@ -459,7 +459,7 @@ static KEYS: &[KeyDoc] = &[
     key("probes[].stress", K::Table, "", "Volume mean of a stress component, in Pa"),
     key("probes[].stress.group", K::Text, "required", "Mesh group of elements"),
     key("probes[].stress.component", K::Choice(names::<StressComponent>), "required", "Component; tension is positive"),
-    key("probes[].energy", K::Choice(names::<EnergyKind>), "", "An entry of the energy ledger, in J"),
+    key("probes[].energy", K::Choice(names::<EnergyProbe>), "", "An entry of the energy ledger, in J"),
     key("probes[].count", K::Choice(names::<CountKind>), "", "A count"),
     key("probes[].momentum", K::Table, "", "Linear momentum of the scene, in kg m/s"),
     key("probes[].momentum.along", K::Direction, "required", "Direction"),

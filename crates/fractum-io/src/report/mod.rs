@@ -5,6 +5,7 @@ mod figure;
 
 use std::path::Path;
 
+use fractum_scene::{EnergyKind, EnergyRole};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 pub use figure::ColourBar;
@@ -266,17 +267,9 @@ fn fragments(fragments: &[Fragment]) -> Markup {
 fn energies(summary: &Summary) -> Markup {
     let energy = &summary.energy;
     let counts = &summary.counts;
-    let ledger = [
-        ("External work", energy.external),
-        ("Kinetic", energy.kinetic),
-        ("Elastic", energy.elastic),
-        ("Damage", energy.damage),
-        ("Removed with elements", energy.removed),
-        ("Contact", energy.contact),
-        ("Friction", energy.friction),
-        ("Damping", energy.damping),
-        ("Absorbed", energy.absorbed),
-    ];
+    // The work stands even when it is zero; other zeros are what is not part of the run.
+    let ledger = EnergyKind::ALL.map(|kind| (kind, energy.entries[kind as usize]));
+    let ledger = ledger.iter().filter(|(kind, value)| *value != 0.0 || kind.role() == EnergyRole::Supplied);
     let sizes = [
         ("Nodes", counts.nodes),
         ("Elements", counts.elements),
@@ -292,9 +285,8 @@ fn energies(summary: &Summary) -> Markup {
             section.keep {
                 h2 { "Energy at the end" }
                 table {
-                    // The work stands even when it is zero; other zeros are what is not part of the run.
-                    @for (name, value) in ledger.iter().filter(|(name, value)| *value != 0.0 || *name == "External work") {
-                        tr { td { (name) } td.number { (quantity(*value, "J")) } }
+                    @for (kind, value) in ledger {
+                        tr { td { (kind.label()) } td.number { (quantity(*value, "J")) } }
                     }
                     tr { td { "Largest imbalance" } td.number { (percent(energy.residual_max_relative)) " of the work" } }
                 }

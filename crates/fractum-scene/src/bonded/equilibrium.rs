@@ -6,6 +6,7 @@ use fractum_math::{Rotation, Vec3};
 
 use super::{Bonded, BondedBody, Closest};
 use crate::error::{SceneError, StepError};
+use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 
 /// How a bonded body is brought from break to break.
@@ -127,11 +128,13 @@ impl BondedStatics {
         let [tension, bending, torsion] = [parts.tension, parts.bending, parts.torsion].map(|part| part * scale);
         *energy = BeamEnergy { tension, bending, torsion };
         let broken: f64 = self.run.cracks().iter().map(|crack| crack.energy).sum();
-        scene.ledger.external = self.work;
-        scene.ledger.elastic = point.elastic;
-        (scene.ledger.bond_tension, scene.ledger.bond_bending, scene.ledger.bond_torsion) = (tension, bending, torsion);
-        scene.ledger.removed = broken;
-        scene.ledger.damping = self.sudden;
+        scene.ledger[EnergyKind::External] = self.work;
+        scene.ledger[EnergyKind::Elastic] = point.elastic;
+        scene.ledger[EnergyKind::BondTension] = tension;
+        scene.ledger[EnergyKind::BondBending] = bending;
+        scene.ledger[EnergyKind::BondTorsion] = torsion;
+        scene.ledger[EnergyKind::Removed] = broken;
+        scene.ledger[EnergyKind::Damping] = self.sudden;
         scene.ledger.update_maxima();
     }
 

@@ -10,6 +10,7 @@ use crate::boundary::integral;
 use crate::contacts::{Drive, Tool};
 use crate::coupling::Push;
 use crate::error::SceneError;
+use crate::ledger::EnergyKind;
 use crate::rigid::{Candidate, RigidGround};
 use crate::scene::Scene;
 use crate::statics::check_supports;
@@ -167,7 +168,7 @@ impl Scene {
             self.accept_grounds(before, present, time);
         }
         let on_grounds: f64 = self.grounds.iter().flat_map(|ground| &ground.candidates).map(|c| c.stored).sum();
-        self.ledger.contact = on_grounds + self.debris.stored();
+        self.ledger[EnergyKind::Contact] = on_grounds + self.debris.stored();
     }
 
     /// Whether anything can touch at equilibrium.

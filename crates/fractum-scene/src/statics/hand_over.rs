@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Stiffness;
 use crate::error::StepError;
+use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 
 /// Kinetic over elastic energy below which motion has died, with a small part of all energy put in beside the elastic one: a
@@ -102,11 +103,14 @@ impl Scene {
         let (clock, displacement) = (self.clock, self.solid.displacement.clone());
         let frames: Vec<Frame> = self.contacts.tools().iter().map(|tool| tool.frame).collect();
         let report = self.step(true)?;
-        let kinetic = self.ledger.kinetic;
+        let kinetic = self.ledger[EnergyKind::Kinetic];
         interlude.next_look = self.clock.time + interlude.period / LOOKS;
         interlude.most_kinetic = interlude.most_kinetic.max(kinetic);
         let early = clock.time < interlude.begin + interlude.least;
-        if early || report.removed > 0 || kinetic > AT_REST * (self.ledger.elastic + SMALL * self.ledger.scale) {
+        if early
+            || report.removed > 0
+            || kinetic > AT_REST * (self.ledger[EnergyKind::Elastic] + SMALL * self.ledger.scale)
+        {
             return Ok(false);
         }
         // What the step did after its energies were taken is taken back.
@@ -117,10 +121,10 @@ impl Scene {
         for (tool, frame) in self.contacts.tools_mut().iter_mut().zip(frames) {
             tool.frame = Frame { velocity: Vec3::zeros(), ..frame };
         }
-        self.books.external = self.ledger.external;
-        self.books.damping = self.ledger.damping - self.solid.viscous_dissipation() + kinetic;
-        self.ledger.damping += kinetic;
-        self.ledger.kinetic = 0.0;
+        self.books.external = self.ledger[EnergyKind::External];
+        self.books.damping = self.ledger[EnergyKind::Damping] - self.solid.viscous_dissipation() + kinetic;
+        self.ledger[EnergyKind::Damping] += kinetic;
+        self.ledger[EnergyKind::Kinetic] = 0.0;
         Ok(true)
     }
 }

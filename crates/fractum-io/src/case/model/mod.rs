@@ -14,6 +14,7 @@ use std::path::PathBuf;
 
 use fractum_dem::Batch;
 use fractum_math::Vec3;
+use fractum_scene::EnergyKind;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
 pub use body::{Body, BodyKind, SolidBody};
@@ -280,16 +281,12 @@ pub enum Bound {
 }
 
 /// Paths of `summary.json` that a reference value may name, besides `probes.NAME.(final|max|min|time_of_max)`.
-pub const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
-    ("energy.external", Dimension::ENERGY),
-    ("energy.kinetic", Dimension::ENERGY),
-    ("energy.elastic", Dimension::ENERGY),
-    ("energy.damage", Dimension::ENERGY),
-    ("energy.removed", Dimension::ENERGY),
-    ("energy.contact", Dimension::ENERGY),
-    ("energy.friction", Dimension::ENERGY),
-    ("energy.damping", Dimension::ENERGY),
-    ("energy.absorbed", Dimension::ENERGY),
+pub fn summary_quantities() -> impl Iterator<Item = (String, Dimension)> {
+    let energies = EnergyKind::written().map(|kind| (format!("energy.{}", kind.name()), Dimension::ENERGY));
+    energies.chain(SUMMARY_QUANTITIES.iter().map(|(path, dimension)| ((*path).to_owned(), *dimension)))
+}
+
+const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
     ("energy.residual_max_relative", Dimension::NONE),
     ("counts.nodes", Dimension::NONE),
     ("counts.elements", Dimension::NONE),
@@ -300,9 +297,6 @@ pub const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
     ("counts.contacts", Dimension::NONE),
     ("counts.bonds", Dimension::NONE),
     ("counts.broken_bonds", Dimension::NONE),
-    ("energy.bond_tension", Dimension::ENERGY),
-    ("energy.bond_bending", Dimension::ENERGY),
-    ("energy.bond_torsion", Dimension::ENERGY),
     ("counts.fragments", Dimension::NONE),
     ("time.steps", Dimension::NONE),
     ("time.dt", Dimension::TIME),

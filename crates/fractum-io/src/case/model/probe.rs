@@ -1,11 +1,11 @@
 //! Probes: the numbers a run records.
 
 use fractum_math::Vec3;
-use fractum_scene::{CountKind, CrackMeasure, EnergyKind};
+use fractum_scene::{CountKind, CrackMeasure, EnergyProbe};
 
 use crate::case::choice::choice;
 use crate::case::expression::Program;
-use crate::case::{Field, Spanned};
+use crate::case::{Choice, Field, Spanned};
 
 /// A named number recorded in the history, or computed from it at the end of the run.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,8 +63,8 @@ pub enum ProbeKind {
         /// Component.
         component: StressComponent,
     },
-    /// An entry of the energy ledger [J].
-    Energy(EnergyKind),
+    /// An entry of the energy ledger, or its residual [J].
+    Energy(EnergyProbe),
     /// A count [-].
     Count(CountKind),
     /// Linear momentum of the scene along a unit vector [kg m/s].
@@ -170,11 +170,9 @@ pub enum StressComponent {
 
 choice!(StressComponent { "xx" => Xx, "yy" => Yy, "zz" => Zz, "xy" => Xy, "yz" => Yz, "zx" => Zx });
 
-choice!(EnergyKind {
-    "external" => External, "kinetic" => Kinetic, "elastic" => Elastic, "damage" => Damage, "removed" => Removed,
-    "bond_tension" => BondTension, "bond_bending" => BondBending, "bond_torsion" => BondTorsion,
-    "contact" => Contact, "friction" => Friction, "damping" => Damping, "absorbed" => Absorbed, "residual" => Residual,
-});
+impl Choice for EnergyProbe {
+    const NAMES: &'static [(&'static str, Self)] = &EnergyProbe::NAMES;
+}
 
 choice!(CountKind {
     "removed_elements" => RemovedElements, "broken_edges" => BrokenEdges, "damaged_edges" => DamagedEdges,

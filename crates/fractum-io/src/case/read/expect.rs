@@ -1,7 +1,7 @@
 //! `[[expect]]`.
 
 use super::probes::{ReadProbe, ReadProbes};
-use crate::case::model::{Bound, Expect, SUMMARY_QUANTITIES};
+use crate::case::model::{Bound, Expect, summary_quantities};
 use crate::case::reader::Table;
 use crate::case::tree::Value;
 use crate::case::unit::Dimension;
@@ -41,8 +41,8 @@ fn find(table: &Table<'_>, quantity: &Spanned<String>, probes: &ReadProbes) -> F
     if let Some(probe) = probes.find(name) {
         return of_probe(probe);
     }
-    if let Some((_, dimension)) = SUMMARY_QUANTITIES.iter().find(|(path, _)| *path == name) {
-        return Found::Dimension(*dimension);
+    if let Some((_, dimension)) = summary_quantities().find(|(path, _)| path == name) {
+        return Found::Dimension(dimension);
     }
     if let Some((probe, field)) = name.strip_prefix("probes.").and_then(|rest| rest.rsplit_once('.'))
         && let Some(probe) = probes.find(probe)
@@ -65,7 +65,7 @@ fn find(table: &Table<'_>, quantity: &Spanned<String>, probes: &ReadProbes) -> F
         let paths = fields.iter().map(|field| format!("probes.{}.{field}", probe.name));
         std::iter::once(probe.name.clone()).chain(paths)
     });
-    let known: Vec<String> = paths.chain(SUMMARY_QUANTITIES.iter().map(|(path, _)| path.to_string())).collect();
+    let known: Vec<String> = paths.chain(summary_quantities().map(|(path, _)| path)).collect();
     table.reader.note(match nearest(name, known.iter().map(String::as_str)) {
         Some(near) => note.remedy(format!("did you mean \"{near}\"?")),
         None => note,
