@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use fractum_math::Vec3;
+use fractum_math::{Vec3, Work};
 
 use crate::hierarchy::{DoubleHierarchy, Foot};
 use crate::inside::foot_from_inside;
 use crate::law::{ContactLaw, PairMotion};
-use crate::sphere_facet::{ContactWork, Ground, Spheres, Touch};
+use crate::sphere_facet::{Ground, Spheres, Touch};
 use crate::surface::FacetMesh;
 
 /// Cosine of the angle between the normals of two steps beyond which a contact is a new one.
@@ -28,7 +28,7 @@ pub(crate) struct Block<L: ContactLaw> {
     origin: Vec<Option<usize>>,
     /// Whether each contact of the last step goes on.
     taken: Vec<bool>,
-    pub(crate) ended: ContactWork,
+    pub(crate) ended: Work,
 }
 
 impl<L: ContactLaw> Block<L> {
@@ -43,7 +43,7 @@ impl<L: ContactLaw> Block<L> {
             feet: Vec::new(),
             origin: Vec::new(),
             taken: Vec::new(),
-            ended: ContactWork::default(),
+            ended: Work::default(),
         }
     }
 
@@ -57,7 +57,7 @@ impl<L: ContactLaw> Block<L> {
     ) {
         std::mem::swap(&mut self.touches, &mut self.before);
         self.touches.clear();
-        self.ended = ContactWork::default();
+        self.ended = Work::default();
         let mut next_old = 0;
         for k in 0..self.spheres.len() {
             let sphere = self.spheres[k];
@@ -222,12 +222,12 @@ impl<L: ContactLaw> Block<L> {
 }
 
 /// What is left of a contact that ended: its springs relax.
-fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L) -> ContactWork {
+fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L) -> Work {
     let mut memory = touch.memory;
     let still = Vec3::zeros();
     let motion = PairMotion { normal: touch.normal, overlap: 0.0, velocity: still, spin: still, dt: 0.0 };
     let force = law.force(&motion, &mut memory);
-    ContactWork { stored: 0.0, friction: force.friction * touch.weight, damping: force.damping * touch.weight }
+    Work::contact(0.0, force.friction * touch.weight, force.damping * touch.weight)
 }
 
 impl Ground<'_> {

@@ -34,6 +34,6 @@ pub use frame::Frame;
 pub use hierarchy::{DoubleHierarchy, Foot};
 pub use nearest::{Nearest, nearest_facets};
 pub use shape::{Outside, Shape};
-pub use sphere_facet::{ContactWork, Ground, GroundContacts, Spheres, Touch};
+pub use sphere_facet::{Ground, GroundContacts, Spheres, Touch};
 pub use sphere_sphere::SphereContacts;
 pub use surface::FacetMesh;

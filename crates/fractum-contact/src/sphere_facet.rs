@@ -1,6 +1,6 @@
 //! Spheres on a ground of facets or a rigid shape, through time.
 
-use fractum_math::Vec3;
+use fractum_math::{Vec3, Work};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
@@ -86,25 +86,6 @@ pub struct Touch<M> {
     pub(crate) stored: f64,
     pub(crate) friction: f64,
     pub(crate) damping: f64,
-}
-
-/// Energies of contacts in one step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ContactWork {
-    /// Energy in springs [J].
-    pub stored: f64,
-    /// Energy taken by friction in the step [J].
-    pub friction: f64,
-    /// Energy taken by dampers in the step [J].
-    pub damping: f64,
-}
-
-impl std::ops::AddAssign for ContactWork {
-    fn add_assign(&mut self, other: Self) {
-        self.stored += other.stored;
-        self.friction += other.friction;
-        self.damping += other.damping;
-    }
 }
 
 /// Contacts of a population of spheres with one ground, with their memories.
@@ -237,22 +218,14 @@ impl<L: ContactLaw> GroundContacts<L> {
     ///
     /// - `law`: law of a sphere on this ground, where its mean curvature is the second argument [1/m]
     /// - `dt` [s]: the step that led here
-    pub fn update(
-        &mut self,
-        ground: &Ground,
-        spheres: &Spheres,
-        law: impl Fn(u32, f64) -> L + Sync,
-        dt: f64,
-    ) -> ContactWork {
+    pub fn update(&mut self, ground: &Ground, spheres: &Spheres, law: impl Fn(u32, f64) -> L + Sync, dt: f64) -> Work {
         let depth = self.depth;
         self.blocks.par_iter_mut().for_each(|block| block.update(ground, spheres, depth, &law, dt));
-        let mut work = ContactWork::default();
+        let mut work = Work::default();
         for block in &self.blocks {
             work += block.ended;
             for touch in &block.touches {
-                work.stored += touch.stored;
-                work.friction += touch.friction;
-                work.damping += touch.damping;
+                work += Work::contact(touch.stored, touch.friction, touch.damping);
             }
         }
         work

@@ -1,11 +1,11 @@
 //! Spheres on spheres, through time.
 
-use fractum_math::Vec3;
+use fractum_math::{Vec3, Work};
 use rayon::prelude::*;
 
 use crate::broad_phase::close_pairs;
 use crate::law::{ContactLaw, PairMotion};
-use crate::sphere_facet::{ContactWork, Spheres};
+use crate::sphere_facet::Spheres;
 
 /// Pairs handled as one piece of parallel work.
 const BLOCK: usize = 1024;
@@ -38,7 +38,7 @@ struct PairLoad {
     force: Vec3,
     /// Moments on i and on j [N m].
     moments: [Vec3; 2],
-    work: ContactWork,
+    work: Work,
 }
 
 impl<L: ContactLaw> SphereContacts<L> {
@@ -114,7 +114,7 @@ impl<L: ContactLaw> SphereContacts<L> {
     /// Adds forces [N] and moments about the centres [N m] of all contacts.
     ///
     /// - `dt` [s]: the step that led here
-    pub fn add_forces(&mut self, spheres: &Spheres, force: &mut [Vec3], moment: &mut [Vec3], dt: f64) -> ContactWork {
+    pub fn add_forces(&mut self, spheres: &Spheres, force: &mut [Vec3], moment: &mut [Vec3], dt: f64) -> Work {
         if rayon::current_num_threads() == 1 || self.pairs.len() < 2 * BLOCK {
             return self.add_one_by_one(spheres, force, moment, dt);
         }
@@ -139,14 +139,14 @@ impl<L: ContactLaw> SphereContacts<L> {
                 }
             },
         );
-        let mut work = ContactWork::default();
+        let mut work = Work::default();
         loads.iter().for_each(|load| work += load.work);
         work
     }
 
-    fn add_one_by_one(&mut self, spheres: &Spheres, force: &mut [Vec3], moment: &mut [Vec3], dt: f64) -> ContactWork {
+    fn add_one_by_one(&mut self, spheres: &Spheres, force: &mut [Vec3], moment: &mut [Vec3], dt: f64) -> Work {
         let SphereContacts { pairs, laws, memories, touching, .. } = self;
-        let mut work = ContactWork::default();
+        let mut work = Work::default();
         for k in 0..pairs.len() {
             let load = pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, dt);
             if let Some(load) = load {
@@ -248,6 +248,6 @@ fn pair_load<L: ContactLaw>(
     Some(PairLoad {
         force: force.on_second,
         moments: [twist * -arm_i - couple, twist * -arm_j + couple],
-        work: ContactWork { stored: force.stored, friction: force.friction, damping: force.damping },
+        work: force.work(),
     })
 }

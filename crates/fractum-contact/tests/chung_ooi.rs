@@ -39,7 +39,7 @@ fn bounce(
     spheres: &mut [Sphere],
     dt: f64,
     gap: impl Fn(&[Sphere]) -> f64,
-    mut forces: impl FnMut(&Spheres) -> (Vec<Vec3>, Vec<Vec3>, fractum_contact::ContactWork),
+    mut forces: impl FnMut(&Spheres) -> (Vec<Vec3>, Vec<Vec3>, fractum_math::Work),
 ) -> Impact {
     let energy = |s: &[Sphere]| -> f64 {
         s.iter()

@@ -48,7 +48,7 @@ pub use element::CUT_MODES;
 pub use error::SolidError;
 pub use gate::GateState;
 pub use material::{Criterion, CriterionKind, DamageLaw, Elastic, Softening};
-pub use nodes::{LocalDamping, StepWork};
+pub use nodes::LocalDamping;
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::{BodyState, Fracture, Solid, SolidState};
 pub use time_step::StableStep;

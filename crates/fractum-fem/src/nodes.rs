@@ -1,6 +1,6 @@
 //! Motion of the nodes: central differences with the velocity at half steps.
 
-use fractum_math::{CHUNK, Vec3};
+use fractum_math::{CHUNK, HalfSteps, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -21,24 +21,15 @@ impl LocalDamping {
     }
 }
 
-/// Energies of one step, for the ledger.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StepWork {
-    /// Kinetic energy at tⁿ, ½ Σ m vⁿ⁻½ · (vⁿ⁻½ + Δt aⁿ) [J], which is ½ Σ m vⁿ⁻½ · vⁿ⁺½ for equal steps: with this
-    /// product central differences conserve the energy of a linear body exactly.
-    pub kinetic: f64,
-    /// Energy taken by damping in the half step before tⁿ [J].
-    pub damped_before: f64,
-    /// Energy taken by damping in the half step after tⁿ [J].
-    pub damped_after: f64,
-}
-
 impl Solid {
     /// Advances vⁿ⁻½ → vⁿ⁺½ and uⁿ → uⁿ⁺¹ with the forces of tⁿ.
     ///
     /// - `dt_before`, `dt_after`: the steps on both sides of tⁿ [s]
     /// - `held`: bit a is set where axis a of a node is prescribed (it feels no damping); empty if none is
     /// - `measure`: whether to sum the kinetic energy
+    /// - returns what damping takes, and the kinetic energy at tⁿ as ½ Σ m vⁿ⁻½ · (vⁿ⁻½ + Δt aⁿ), which is
+    ///   ½ Σ m vⁿ⁻½ · vⁿ⁺½ for equal steps: with this product central differences conserve the energy of a linear body
+    ///   exactly
     pub fn kick_and_drift(
         &mut self,
         dt_before: f64,
@@ -46,7 +37,7 @@ impl Solid {
         damping: LocalDamping,
         held: &[u8],
         measure: bool,
-    ) -> StepWork {
+    ) -> HalfSteps {
         let dt_kick = 0.5 * (dt_before + dt_after);
         let Solid { displacement, velocity, force, inverse_mass, chunk_work, .. } = self;
         let plain = damping.is_off() && !measure;
@@ -58,7 +49,7 @@ impl Solid {
             .for_each(|(chunk, ((displacement, velocity), work))| {
                 let first = chunk * CHUNK;
                 let (force, inverse_mass) = (&force[first..], &inverse_mass[first..]);
-                *work = StepWork::default();
+                *work = HalfSteps::default();
                 if plain {
                     for i in 0..velocity.len() {
                         velocity[i] += force[i] * (inverse_mass[i] * dt_kick);
@@ -84,16 +75,12 @@ impl Solid {
                     velocity[i] = after;
                     displacement[i] += after * dt_after;
                     let mirrored = before + total * (inverse_mass[i] * dt_before);
-                    work.kinetic += 0.5 / inverse_mass[i] * before.dot(&mirrored);
-                    work.damped_before -= 0.5 * dt_before * resist.dot(&before);
-                    work.damped_after -= 0.5 * dt_after * resist.dot(&after);
+                    work.before.kinetic += 0.5 / inverse_mass[i] * before.dot(&mirrored);
+                    work.before.damping -= 0.5 * dt_before * resist.dot(&before);
+                    work.after.damping -= 0.5 * dt_after * resist.dot(&after);
                 }
             });
-        chunk_work.iter().fold(StepWork::default(), |sum, part| StepWork {
-            kinetic: sum.kinetic + part.kinetic,
-            damped_before: sum.damped_before + part.damped_before,
-            damped_after: sum.damped_after + part.damped_after,
-        })
+        chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
     }
 }
 

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use fractum_math::{CHUNK, Ragged, Sym3, Vec3};
+use fractum_math::{CHUNK, HalfSteps, Ragged, Sym3, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,6 @@ use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::gate::{Gate, GateState};
 use crate::kernel::{self, Hooke};
-use crate::nodes::StepWork;
 use crate::standard::{StandardCells, StandardDamage};
 use crate::threshold::Threshold;
 use crate::viscosity::{BodyViscosity, Viscosity};
@@ -56,7 +55,7 @@ pub struct Solid {
     pub(crate) bodies: Vec<BodyModel>,
     pub(crate) blocks: Vec<Block>,
     pub(crate) slots: NodeSlots,
-    pub(crate) chunk_work: Vec<StepWork>,
+    pub(crate) chunk_work: Vec<HalfSteps>,
     pub(crate) viscous_dissipation: f64,
 }
 
@@ -135,7 +134,7 @@ impl Solid {
             velocity: zero.clone(),
             force: zero,
             inverse_mass: mass.iter().map(|m| 1.0 / m).collect(),
-            chunk_work: vec![StepWork::default(); nodes.len().div_ceil(CHUNK)],
+            chunk_work: vec![HalfSteps::default(); nodes.len().div_ceil(CHUNK)],
             reference: nodes,
             mass,
             bodies: models,

@@ -2,7 +2,7 @@
 //!
 //! Vectors and matrices are nalgebra's; this crate adds what the mechanics needs on top: symmetric tensors in Voigt
 //! order xx yy zz xy yz zx with their principal values, ragged tables, connected parts, parallel sums whose result does
-//! not depend on the number of threads, and the largest eigenvalue of an operator.
+//! not depend on the number of threads, the largest eigenvalue of an operator, and the account of a step's work.
 //!
 //! ```
 //! use fractum_math::{Sym3, Vec3};
@@ -16,12 +16,14 @@ mod lanczos;
 mod ragged;
 mod reduce;
 mod sym3;
+mod work;
 
 pub use connected::{connected, numbered_parts};
 pub use lanczos::largest_eigenvalue;
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};
 pub use sym3::Sym3;
+pub use work::{HalfSteps, Work};
 
 /// A vector in space (SI units of the quantity it holds).
 pub type Vec3 = nalgebra::Vector3<f64>;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fractum_fem::Solid;
-use fractum_math::{CHUNK, Vec3};
+use fractum_math::{CHUNK, HalfSteps, Vec3};
 use rayon::prelude::*;
 
 use crate::error::SceneError;
@@ -45,17 +45,6 @@ impl Support {
         let zeros = vec![0.0; nodes.len()];
         Support { name: name.to_owned(), nodes, axis, motion, before: zeros.clone(), reaction: zeros }
     }
-}
-
-/// Work of boundary conditions in one step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct BoundaryWork {
-    /// In the half step before tⁿ [J].
-    pub(crate) before: f64,
-    /// In the half step after tⁿ [J].
-    pub(crate) after: f64,
-    /// What the prescribed velocities change in the kinetic energy of tⁿ [J].
-    pub(crate) kinetic: f64,
 }
 
 /// All supports of a scene.
@@ -169,8 +158,8 @@ impl Supports {
     }
 
     /// Replaces the free motion of the prescribed axes, after the kick and drift, and finds the reactions.
-    pub(crate) fn impose(&mut self, solid: &mut Solid, time: f64, dt_before: f64, dt_after: f64) -> BoundaryWork {
-        let mut work = BoundaryWork::default();
+    pub(crate) fn impose(&mut self, solid: &mut Solid, time: f64, dt_before: f64, dt_after: f64) -> HalfSteps {
+        let mut work = HalfSteps::default();
         let dt_kick = 0.5 * (dt_before + dt_after);
         for Support { nodes, axis, motion, before, reaction, .. } in &mut self.sets {
             for ((&node, &mut before), reaction) in nodes.iter().zip(before).zip(reaction) {
@@ -190,9 +179,9 @@ impl Supports {
                 solid.velocity[i][axis] = velocity;
                 solid.displacement[i][axis] += change * dt_after;
                 *reaction = mass * change / dt_kick;
-                work.before += 0.5 * *reaction * before * dt_before;
-                work.after += 0.5 * *reaction * velocity * dt_after;
-                work.kinetic += 0.5 * *reaction * before * dt_before;
+                work.before.external += 0.5 * *reaction * before * dt_before;
+                work.after.external += 0.5 * *reaction * velocity * dt_after;
+                work.before.kinetic += 0.5 * *reaction * before * dt_before;
             }
         }
         work

@@ -3,8 +3,9 @@
 //! To add an entry: a variant of [`EnergyKind`] and its row in [`EnergyKind::TABLE`], in the same order, and whoever writes
 //! it. Nothing else lists the entries; `docs/case-file.md` gets its row of `probes[].energy` anew.
 
-use std::ops::{Index, IndexMut};
+use std::ops::{AddAssign, Index, IndexMut};
 
+use fractum_math::Work;
 use serde::{Deserialize, Serialize};
 
 /// An entry of the energy ledger [J].
@@ -189,6 +190,14 @@ pub(crate) struct Books {
     pub(crate) removed: f64,
     pub(crate) damping: f64,
     pub(crate) friction: f64,
+}
+
+impl AddAssign<Work> for Books {
+    fn add_assign(&mut self, work: Work) {
+        self.external += work.external;
+        self.damping += work.damping;
+        self.friction += work.friction;
+    }
 }
 
 impl Index<EnergyKind> for Ledger {

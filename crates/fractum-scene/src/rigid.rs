@@ -1,9 +1,9 @@
 //! Rigid shapes that the nodes and discrete elements of solids touch.
 
 use fractum_contact::law::{ContactForce, ContactLaw, ContactMemory, Linear, PairMotion, Surface};
-use fractum_contact::{ContactWork, Frame, Outside, Shape};
+use fractum_contact::{Frame, Outside, Shape};
 use fractum_fem::Solid;
-use fractum_math::{Rotation, Vec3};
+use fractum_math::{Rotation, Vec3, Work};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -124,13 +124,7 @@ impl RigidGround {
     }
 
     /// Adds the contact forces to the nodes, the torques to free particles, and the opposite to the rigid body.
-    pub(crate) fn add_forces(
-        &mut self,
-        tools: &mut [Tool],
-        solid: &mut Solid,
-        debris: &mut Debris,
-        dt: f64,
-    ) -> ContactWork {
+    pub(crate) fn add_forces(&mut self, tools: &mut [Tool], solid: &mut Solid, debris: &mut Debris, dt: f64) -> Work {
         let RigidGround { shape, frame, tool, candidates, .. } = self;
         let mut tool = tool.and_then(|index| tools.get_mut(index));
         if let Some(tool) = &tool {
@@ -160,7 +154,7 @@ impl RigidGround {
                 (c.stored, c.friction, c.damping) = (stored, friction, damping);
             });
         }
-        let mut work = ContactWork::default();
+        let mut work = Work::default();
         for c in candidates.iter().filter(|c| c.stored > 0.0 || c.damping != 0.0 || c.friction != 0.0) {
             let i = c.node as usize;
             solid.force[i] += c.force;
@@ -168,9 +162,7 @@ impl RigidGround {
             if let Some(tool) = &mut tool {
                 tool.push(&-c.force, &-c.couple, &(solid.position(i) + c.arm));
             }
-            work.stored += c.stored;
-            work.friction += c.friction;
-            work.damping += c.damping;
+            work += Work::contact(c.stored, c.friction, c.damping);
         }
         work
     }

@@ -1,8 +1,6 @@
-use fractum_contact::ContactWork;
 use fractum_dem::Particles;
-use fractum_math::Vec3;
+use fractum_math::{HalfSteps, Vec3, Work};
 
-use crate::bonded::BondedWork;
 use crate::error::StepError;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
@@ -59,10 +57,9 @@ impl Scene {
         let first = self.clock.begins_motion();
         let measure = measure || first;
         let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
-        let dt_kick = 0.5 * (dt_before + dt_after);
-
         // Nothing has moved before.
         let elapsed = if first { 0.0 } else { dt_before };
+
         self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
         passed(Phase::Solid);
         let (bonded_load, faces) = self.add_bond_forces(time, elapsed, dt_before, measure);
@@ -72,37 +69,25 @@ impl Scene {
         let contact = self.add_contact_forces(elapsed, faces);
         self.ties.pass_on(&mut self.solid, &mut self.bonded.particles);
         passed(Phase::Contact);
-        let load_before = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
+        let load = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
         if first {
             self.start_half_a_step_early(dt_before);
         }
+        let mut work = self.advance(measure); // vⁿ⁺½, uⁿ⁺¹
+        work.before.external += load;
 
-        self.supports.remember(&self.solid);
-        let damping = self.settings.damping;
-        let motion = self.solid.kick_and_drift(dt_before, dt_after, damping, self.supports.held(), measure);
-        let support = self.supports.impose(&mut self.solid, time, dt_before, dt_after);
-        let bonded = self.move_bonded(time, dt_before, dt_after, measure);
-        let tools = self.contacts.move_tools(time, dt_before, dt_after);
-        let turning = self.debris.turn(&self.solid, dt_before, dt_kick);
-        let load_after = 0.5 * dt_after * self.loads.power(&self.solid);
-
-        let books = &mut self.books;
-        books.friction += contact.friction;
-        books.damping += contact.damping;
+        self.books += contact;
         if !first {
-            books.external += support.before + bonded.external_before + tools.external_before + load_before;
-            books.damping += motion.damped_before + bonded.damped_before;
+            self.books += work.before;
         }
         if measure {
-            self.ledger[EnergyKind::Kinetic] =
-                motion.kinetic + support.kinetic + turning + bonded.kinetic + tools.kinetic;
+            self.ledger[EnergyKind::Kinetic] = work.before.kinetic;
             self.ledger[EnergyKind::Contact] = contact.stored;
             self.close_balance()?;
         }
-        self.books.external += support.after + bonded.external_after + tools.external_after + load_after;
-        self.books.damping += motion.damped_after + bonded.damped_after;
-
+        self.books += work.after;
         passed(Phase::Motion);
+
         if self.clock.step.is_multiple_of(STEPS_BETWEEN_GATES) && self.solid.has_gates() {
             self.solid.update_gates();
         }
@@ -115,6 +100,20 @@ impl Scene {
         let dt = self.next_dt(time + dt_after);
         self.clock.advance(dt);
         Ok(report)
+    }
+
+    /// Advances nodes, particles and rigid bodies with the forces of tⁿ; prescribed motion takes the place of free motion.
+    fn advance(&mut self, measure: bool) -> HalfSteps {
+        let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
+        self.supports.remember(&self.solid);
+        let held = self.supports.held();
+        let mut work = self.solid.kick_and_drift(dt_before, dt_after, self.settings.damping, held, measure);
+        work += self.supports.impose(&mut self.solid, time, dt_before, dt_after);
+        work.before.kinetic += self.debris.turn(&self.solid, dt_before, 0.5 * (dt_before + dt_after));
+        work += self.move_bonded(time, dt_before, dt_after, measure);
+        work += self.contacts.move_tools(time, dt_before, dt_after);
+        work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
+        work
     }
 
     /// The velocities given at the start become those of the half step before it, so that the balance starts exact.
@@ -133,17 +132,17 @@ impl Scene {
 
     /// Forces of the bonds, of crack faces and of the loads on their particles; the work of loads in the half step
     /// before [J], and that of crack faces.
-    fn add_bond_forces(&mut self, time: f64, elapsed: f64, dt_before: f64, measure: bool) -> (f64, ContactWork) {
+    fn add_bond_forces(&mut self, time: f64, elapsed: f64, dt_before: f64, measure: bool) -> (f64, Work) {
         if self.bonded.is_empty() {
-            return (0.0, ContactWork::default());
+            return (0.0, Work::default());
         }
         let faces = self.bonded.update_bond_forces(elapsed, measure);
         (self.bonded.add_loads(time, dt_before), faces)
     }
 
-    fn move_bonded(&mut self, time: f64, dt_before: f64, dt_after: f64, measure: bool) -> BondedWork {
+    fn move_bonded(&mut self, time: f64, dt_before: f64, dt_after: f64, measure: bool) -> HalfSteps {
         if self.bonded.is_empty() {
-            return BondedWork::default();
+            return HalfSteps::default();
         }
         let Scene { bonded, ties, solid, settings, clock, .. } = self;
         bonded.break_overloaded(clock.step, time, measure);
@@ -152,7 +151,7 @@ impl Scene {
     }
 
     /// - `work`: that of the contacts counted so far
-    fn add_contact_forces(&mut self, dt: f64, mut work: ContactWork) -> ContactWork {
+    fn add_contact_forces(&mut self, dt: f64, mut work: Work) -> Work {
         if !self.contacts.is_empty() {
             work += self.contacts.add_forces(&mut self.solid, &mut self.bonded.particles, dt);
         }

@@ -1,4 +1,4 @@
-use fractum_math::Vec3;
+use fractum_math::{Vec3, Work};
 use serde::{Deserialize, Serialize};
 
 use super::Surface;
@@ -47,6 +47,13 @@ pub struct ContactForce {
     pub friction: f64,
     /// Energy taken by the normal damper in this step [J].
     pub damping: f64,
+}
+
+impl ContactForce {
+    /// Its energies.
+    pub fn work(&self) -> Work {
+        Work::contact(self.stored, self.friction, self.damping)
+    }
 }
 
 /// What a contact remembers from step to step.

@@ -1,6 +1,7 @@
 //! Contact of what bonds held, and of what they never held.
 
 use fractum_contact::law::{ContactMemory, Linear, PairMotion, Rolling};
+use fractum_math::Work;
 use serde::{Deserialize, Serialize};
 
 use crate::bond::BeamSection;
@@ -21,16 +22,12 @@ impl Default for CrackFaces {
     }
 }
 
-/// Energies of crack faces in one step [J].
+/// Work of crack faces in one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FaceWork {
-    /// In the springs of faces that touch.
-    pub stored: f64,
-    /// Taken by friction in the step.
-    pub friction: f64,
-    /// Taken by damping in the step.
-    pub damping: f64,
-    /// Taken or given by the finite step where faces meet or part within it; of second order in the step.
+    /// In the springs of faces that touch; taken by friction and damping.
+    pub contact: Work,
+    /// Taken or given by the finite step where faces meet or part within it; of second order in the step [J].
     pub kinks: f64,
 }
 
@@ -120,8 +117,6 @@ impl Face {
         force[j] += found.on_second;
         moment[i] += twist;
         moment[j] += twist;
-        work.stored += found.stored;
-        work.friction += found.friction;
-        work.damping += found.damping;
+        work.contact += found.work();
     }
 }

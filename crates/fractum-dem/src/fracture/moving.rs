@@ -380,8 +380,8 @@ mod tests {
             particles.kick(dt, Integrator::VelocityVerlet);
             let time = dt * f64::from(step);
             fracture.break_overloaded(&mut bonds, &particles, Occasion { time, ..Occasion::default() });
-            lost += work.friction + work.damping;
-            let now = energy(&particles, &bonds) + fracture.released() + work.stored + lost;
+            lost += work.contact.friction + work.contact.damping;
+            let now = energy(&particles, &bonds) + fracture.released() + work.contact.stored + lost;
             drift = drift.max((now - start).abs() / start);
         }
         (drift, jump, fracture)
@@ -439,7 +439,7 @@ mod tests {
         assert!(particles.position[1].x < particles.position[2].x - 0.9, "{:?}", particles.position);
         // One on two of the same mass: the ball keeps between a third of its speed, thrown back, and none.
         assert!((-0.05 / 3.0 - 1e-6..1e-3).contains(&particles.velocity[1].x), "{:?}", particles.velocity);
-        let energy = particles.kinetic_energy() + bonds.energy(&particles).total() + work.stored;
+        let energy = particles.kinetic_energy() + bonds.energy(&particles).total() + work.contact.stored;
         assert!((energy / (0.5 * 0.05 * 0.05) - 1.0).abs() < 1e-3, "{energy}");
     }
 

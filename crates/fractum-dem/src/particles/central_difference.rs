@@ -1,7 +1,7 @@
 //! Particles with velocities at half steps: velocity Verlet seen from the middle of its steps, for steps that may differ
 //! in size and energies that balance to round-off.
 
-use fractum_math::Vec3;
+use fractum_math::{HalfSteps, Vec3};
 use rayon::prelude::*;
 
 use super::{BLOCK, Particles, free, turned};
@@ -64,28 +64,6 @@ pub struct Leap {
     pub measure: bool,
 }
 
-/// Energies of one step [J].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LeapWork {
-    /// Kinetic energy at tⁿ, ½ Σ m vⁿ⁻½ · (vⁿ⁻½ + Δt aⁿ) and the same for the rotation: the product that the scheme
-    /// conserves exactly in a linear body.
-    pub kinetic: f64,
-    /// Taken by damping in the half step before tⁿ.
-    pub damped_before: f64,
-    /// Taken by damping in the half step after tⁿ.
-    pub damped_after: f64,
-}
-
-impl LeapWork {
-    fn plus(self, other: &LeapWork) -> LeapWork {
-        LeapWork {
-            kinetic: self.kinetic + other.kinetic,
-            damped_before: self.damped_before + other.damped_before,
-            damped_after: self.damped_after + other.damped_after,
-        }
-    }
-}
-
 impl Particles {
     /// Number of entries that [`Particles::leap`] needs for its partial sums.
     pub fn block_count(&self) -> usize {
@@ -98,7 +76,9 @@ impl Particles {
     /// - `before`: forces of the step before, one per particle where [`ParticleDamping::dissipation`] is not 0 (else not
     ///   looked at); those of this step afterwards
     /// - `partial`: scratch, [`Particles::block_count`] entries
-    pub fn leap(&mut self, step: &Leap, before: &mut PastForces, partial: &mut [LeapWork]) -> LeapWork {
+    /// - returns what damping takes, and the kinetic energy at tⁿ as ½ Σ m vⁿ⁻½ · (vⁿ⁻½ + Δt aⁿ) and the same for the
+    ///   rotation: the product that the scheme conserves exactly in a linear body
+    pub fn leap(&mut self, step: &Leap, before: &mut PastForces, partial: &mut [HalfSteps]) -> HalfSteps {
         let Leap { dt_before, dt_after, damping, measure } = *step;
         let dt_kick = 0.5 * (dt_before + dt_after);
         let plain = damping.is_off() && !measure;
@@ -112,7 +92,7 @@ impl Particles {
             |(block, (((motion, rates), (loads, (weights, held))), work))| {
                 let (position, orientation) = motion;
                 let (velocity, spin) = rates;
-                *work = LeapWork::default();
+                *work = HalfSteps::default();
                 for k in 0..position.len() {
                     let (mass, inertia) = (weights.0[k], weights.1[k]);
                     let mut force = free(loads.0[k], held[k]);
@@ -129,10 +109,11 @@ impl Particles {
                         force += resist;
                         moment += brake;
                         let after = (v + force * (dt_kick / mass), w + moment * (dt_kick / inertia));
-                        work.damped_before -= 0.5 * dt_before * (resist.dot(&v) + brake.dot(&w));
-                        work.damped_after -= 0.5 * dt_after * (resist.dot(&after.0) + brake.dot(&after.1));
-                        work.kinetic += 0.5 * mass * velocity[k].dot(&(velocity[k] + force * (dt_before / mass)));
-                        work.kinetic += 0.5 * inertia * spin[k].dot(&(spin[k] + moment * (dt_before / inertia)));
+                        work.before.damping -= 0.5 * dt_before * (resist.dot(&v) + brake.dot(&w));
+                        work.after.damping -= 0.5 * dt_after * (resist.dot(&after.0) + brake.dot(&after.1));
+                        work.before.kinetic +=
+                            0.5 * mass * velocity[k].dot(&(velocity[k] + force * (dt_before / mass)));
+                        work.before.kinetic += 0.5 * inertia * spin[k].dot(&(spin[k] + moment * (dt_before / inertia)));
                     }
                     velocity[k] += force * (dt_kick / mass);
                     spin[k] += moment * (dt_kick / inertia);
@@ -151,7 +132,7 @@ impl Particles {
                 }
             });
         }
-        partial.iter().fold(LeapWork::default(), LeapWork::plus)
+        partial.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
     }
 
     /// Velocities and spins given at t = 0 become those of half a step before it.
@@ -192,7 +173,7 @@ mod tests {
             verlet.clear_forces();
             bonds.add_forces(&mut verlet);
             verlet.kick(dt, Integrator::VelocityVerlet);
-            leaping.leap(&leap, &mut PastForces::default(), &mut [LeapWork::default()]);
+            leaping.leap(&leap, &mut PastForces::default(), &mut [HalfSteps::default()]);
             leaping.clear_forces();
             bonds.add_forces(&mut leaping);
         }
@@ -206,13 +187,13 @@ mod tests {
     fn damping_takes_what_the_motion_loses() {
         let (mut particles, _) = pair();
         let damping = ParticleDamping { mass_rate: 2.0, ..ParticleDamping::default() };
-        let (dt, mut work) = (1e-4, [LeapWork::default()]);
+        let (dt, mut work) = (1e-4, [HalfSteps::default()]);
         let leap = Leap { dt_before: dt, dt_after: dt, damping, measure: true };
         let start = particles.kinetic_energy();
         let mut taken = 0.0;
         for _ in 0..1000 {
             let step = particles.leap(&leap, &mut PastForces::default(), &mut work);
-            taken += step.damped_before + step.damped_after;
+            taken += step.before.damping + step.after.damping;
         }
         assert!((taken + particles.kinetic_energy() - start).abs() < 1e-3 * start);
         assert!(taken > 0.3 * start);
@@ -228,7 +209,7 @@ mod tests {
         let dt = bonds.stable_step(&scheme, 0.5);
         let damping = ParticleDamping { dissipation: phi - 1.0, ..ParticleDamping::default() };
         let leap = Leap { dt_before: dt, dt_after: dt, damping, measure: true };
-        let (mut before, mut work) = (PastForces::none(2), [LeapWork::default()]);
+        let (mut before, mut work) = (PastForces::none(2), [HalfSteps::default()]);
         let (mut taken, mut start) = (0.0, f64::NAN);
         for step in 0..100 {
             scheme.clear_forces();
@@ -239,9 +220,9 @@ mod tests {
             let elastic = bonds.energy(&leaping).total();
             let done = leaping.leap(&leap, &mut before, &mut work);
             // Energy at tⁿ and what damping took in the half steps since the first one.
-            taken += if step == 0 { 0.0 } else { done.damped_before };
-            let total = done.kinetic + elastic + taken;
-            taken += done.damped_after;
+            taken += if step == 0 { 0.0 } else { done.before.damping };
+            let total = done.before.kinetic + elastic + taken;
+            taken += done.after.damping;
             if step == 0 {
                 start = total;
             }

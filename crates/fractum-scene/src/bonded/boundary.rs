@@ -3,9 +3,9 @@
 use std::fmt;
 
 use fractum_dem::Particles;
-use fractum_math::Vec3;
+use fractum_math::{HalfSteps, Vec3};
 
-use crate::boundary::{BoundaryWork, Motion, TimeFunction};
+use crate::boundary::{Motion, TimeFunction};
 use crate::error::SceneError;
 
 /// One axis of a set of particles, prescribed.
@@ -168,8 +168,8 @@ impl Holds {
         time: f64,
         dt_before: f64,
         dt_after: f64,
-    ) -> BoundaryWork {
-        let mut work = BoundaryWork::default();
+    ) -> HalfSteps {
+        let mut work = HalfSteps::default();
         let dt_kick = 0.5 * (dt_before + dt_after);
         for Held { support, reaction } in &mut self.sets {
             let axis = support.axis;
@@ -189,9 +189,9 @@ impl Holds {
                 *reaction = total - particles.force[i][axis];
                 particles.velocity[i][axis] = velocity;
                 particles.position[i][axis] += (velocity - before) * dt_after;
-                work.before += 0.5 * *reaction * before * dt_before;
-                work.after += 0.5 * *reaction * velocity * dt_after;
-                work.kinetic += 0.5 * total * before * dt_before;
+                work.before.external += 0.5 * *reaction * before * dt_before;
+                work.after.external += 0.5 * *reaction * velocity * dt_after;
+                work.before.kinetic += 0.5 * total * before * dt_before;
             }
         }
         work

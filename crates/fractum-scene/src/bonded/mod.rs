@@ -7,13 +7,12 @@ mod probe;
 
 use std::ops::Range;
 
-use fractum_contact::ContactWork;
 use fractum_dem::{
     BeamEnergy, BeamNetwork, BeamSection, Crack, CrackFaces, Fracture, FractureCriterion, FractureState, Leap,
-    LeapWork, Occasion, ParticleDamping, Particles, PastForces, highest_frequency,
+    Occasion, ParticleDamping, Particles, PastForces, highest_frequency,
 };
 use fractum_fem::LocalDamping;
-use fractum_math::{Rotation, Vec3};
+use fractum_math::{HalfSteps, Rotation, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
 pub use boundary::{ParticleLoad, ParticleSupport};
@@ -130,7 +129,7 @@ pub struct Bonded {
     released: f64,
     /// Highest natural frequency, or a bound on it [rad/s].
     frequency: f64,
-    partial: Vec<LeapWork>,
+    partial: Vec<HalfSteps>,
     /// φ − 1 of the scheme of Tchamwa and Wielgosz.
     dissipation: f64,
     /// Forces of the step before, where that scheme is used.
@@ -147,16 +146,6 @@ pub struct BondedState {
     /// Broken bonds and crack faces of each body, with how close it came to breaking.
     fracture: Vec<(Option<FractureState>, Option<Closest>)>,
     past: PastForces,
-}
-
-/// Energies of one step [J].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct BondedWork {
-    pub(crate) kinetic: f64,
-    pub(crate) external_before: f64,
-    pub(crate) external_after: f64,
-    pub(crate) damped_before: f64,
-    pub(crate) damped_after: f64,
 }
 
 impl Bonded {
@@ -197,7 +186,7 @@ impl Bonded {
             all.bodies.push(BondedBody { name, range, bonds, density, plan, fracture, closest: None });
         }
         all.frequency = all.bodies.iter().map(|body| body.bound(&all.particles)).fold(0.0, f64::max);
-        all.partial = vec![LeapWork::default(); all.particles.block_count()];
+        all.partial = vec![HalfSteps::default(); all.particles.block_count()];
         Ok(all)
     }
 
@@ -331,10 +320,10 @@ impl Bonded {
     ///
     /// - `dt` [s]: the step that led here
     /// - `measure`: whether to sum the elastic energy, see [`Bonded::energy`]
-    pub(crate) fn update_bond_forces(&mut self, dt: f64, measure: bool) -> ContactWork {
+    pub(crate) fn update_bond_forces(&mut self, dt: f64, measure: bool) -> Work {
         let Bonded { particles, bodies, energy, released, .. } = self;
         particles.clear_forces();
-        let mut work = ContactWork::default();
+        let mut work = Work::default();
         *released = 0.0;
         for BondedBody { bonds, fracture, .. } in bodies.iter_mut() {
             let Some(fracture) = fracture else {
@@ -343,7 +332,7 @@ impl Bonded {
             };
             fracture.add_bond_forces(bonds, particles);
             let faces = fracture.add_contact_forces(particles, dt);
-            work += ContactWork { stored: faces.stored, friction: faces.friction, damping: faces.damping };
+            work += faces.contact;
             *released += fracture.released();
         }
         if measure {
@@ -391,23 +380,19 @@ impl Bonded {
         damping: LocalDamping,
         measure: bool,
         follow: impl FnOnce(&mut Particles),
-    ) -> BondedWork {
+    ) -> HalfSteps {
         let Bonded { particles, reference, bodies, holds, forces, partial, past, dissipation, tied, .. } = self;
         let damping = ParticleDamping { local: damping.local, mass_rate: damping.mass_rate, dissipation: *dissipation };
         let counted_twice = if measure { energy_of(particles, tied) } else { 0.0 };
-        let motion = particles.leap(&Leap { dt_before, dt_after, damping, measure }, past, partial);
-        let support = holds.impose(particles, reference, time, dt_before, dt_after);
+        let mut work = particles.leap(&Leap { dt_before, dt_after, damping, measure }, past, partial);
+        work += holds.impose(particles, reference, time, dt_before, dt_after);
+        work.before.kinetic -= counted_twice;
         follow(particles);
         for fracture in bodies.iter_mut().filter_map(|body| body.fracture.as_mut()) {
             fracture.book_last_work(particles, dt_after);
         }
-        BondedWork {
-            kinetic: motion.kinetic + support.kinetic - counted_twice,
-            external_before: support.before,
-            external_after: support.after + 0.5 * dt_after * forces.power(particles, tied),
-            damped_before: motion.damped_before,
-            damped_after: motion.damped_after,
-        }
+        work.after.external += 0.5 * dt_after * forces.power(particles, tied);
+        work
     }
 
     /// Everything that changes, for a checkpoint.

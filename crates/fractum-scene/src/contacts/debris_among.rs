@@ -1,10 +1,10 @@
 //! Discrete elements of solids among particles that have nodes of their own.
 
 use fractum_contact::law::{ContactLaw, ContactMemory, Linear};
-use fractum_contact::{ContactWork, SphereContacts, Spheres};
+use fractum_contact::{SphereContacts, Spheres};
 use fractum_dem::Particles;
 use fractum_fem::Solid;
-use fractum_math::Vec3;
+use fractum_math::{Vec3, Work};
 
 use super::ContactMaterial;
 use crate::coupling::Debris;
@@ -99,7 +99,7 @@ impl DebrisAmong {
         particles: &mut Particles,
         made: Made,
         dt: f64,
-    ) -> ContactWork {
+    ) -> Work {
         self.locate(solid, debris, particles);
         self.search(solid, debris, particles, made);
         let DebrisAmong { contacts, position, velocity, spin, radius, force, moment, .. } = self;

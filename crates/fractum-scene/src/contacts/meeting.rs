@@ -1,10 +1,10 @@
 //! What nodes of solids meet beside the nodes of their own kind: facets of rigid bodies and of other solids, containers, and
 //! particles with nodes of their own.
 
-use fractum_contact::{ContactWork, Spheres};
+use fractum_contact::Spheres;
 use fractum_dem::Particles;
 use fractum_fem::Solid;
-use fractum_math::connected;
+use fractum_math::{Work, connected};
 
 use super::debris_among::{DebrisAmong, Made};
 use super::nodes_on_ground::{NodesOnGround, frequency_square};
@@ -54,8 +54,8 @@ impl Contacts {
         debris: &mut Debris,
         particles: &mut Particles,
         dt: f64,
-    ) -> ContactWork {
-        let mut work = ContactWork::default();
+    ) -> Work {
+        let mut work = Work::default();
         let mut fastest = self.node_frequency_square;
         for (tool, nodes) in self.tools.iter_mut().zip(&mut self.nodes_on_tools) {
             let Some(nodes) = nodes else { continue };

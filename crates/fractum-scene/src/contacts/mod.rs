@@ -8,15 +8,14 @@ mod solid_ground;
 mod tool;
 
 use fractum_contact::law::{ContactMemory, ElasticMaterial, Hertz, HertzMemory, MaterialPair, Surface};
-use fractum_contact::{ContactWork, GroundContacts, SphereContacts, Spheres, Touch};
+use fractum_contact::{GroundContacts, SphereContacts, Spheres, Touch};
 use fractum_dem::Particles;
 use fractum_fem::Solid;
-use fractum_math::Vec3;
+use fractum_math::{HalfSteps, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
 pub use meeting::pieces;
 pub use solid_ground::SolidGround;
-pub(crate) use tool::ToolWork;
 pub use tool::{Drive, Form, Inertia, Tool};
 
 use crate::bonded::Bonded;
@@ -206,8 +205,8 @@ impl Contacts {
     /// Adds the forces of the moment to particles, rigid bodies and the nodes of solids.
     ///
     /// - `dt` [s]: the step that led here
-    pub(crate) fn add_forces(&mut self, solid: &mut Solid, particles: &mut Particles, dt: f64) -> ContactWork {
-        let mut work = ContactWork::default();
+    pub(crate) fn add_forces(&mut self, solid: &mut Solid, particles: &mut Particles, dt: f64) -> Work {
+        let mut work = Work::default();
         let Particles { position, velocity, spin, radius, mass, force, moment, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
         if let Some(mut among) = self.among.take() {
@@ -267,8 +266,8 @@ impl Contacts {
     }
 
     /// Advances the rigid bodies with the forces of tⁿ.
-    pub(crate) fn move_tools(&mut self, time: f64, dt_before: f64, dt_after: f64) -> ToolWork {
-        let mut work = ToolWork::default();
+    pub(crate) fn move_tools(&mut self, time: f64, dt_before: f64, dt_after: f64) -> HalfSteps {
+        let mut work = HalfSteps::default();
         let gravity = if self.tools.is_empty() { Vec3::zeros() } else { self.gravity(time) };
         for tool in &mut self.tools {
             work += tool.advance(time, dt_before, dt_after, &gravity);

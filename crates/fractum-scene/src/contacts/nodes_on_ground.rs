@@ -1,9 +1,9 @@
 //! Nodes of solids - points of a surface, and discrete elements - on facets that are not their own.
 
 use fractum_contact::law::{ContactLaw, ContactMemory, Linear, Rolling};
-use fractum_contact::{ContactWork, Ground, GroundContacts, Spheres, Touch};
+use fractum_contact::{Ground, GroundContacts, Spheres, Touch};
 use fractum_fem::Solid;
-use fractum_math::Vec3;
+use fractum_math::{Vec3, Work};
 
 use crate::coupling::Debris;
 
@@ -140,7 +140,7 @@ impl NodesOnGround {
         debris: &mut Debris,
         law: impl Fn(&Solid, &Debris, u32) -> Linear + Sync,
         dt: f64,
-    ) -> ContactWork {
+    ) -> Work {
         self.locate(solid);
         let NodesOnGround { nodes, position, velocity, spin, radius, contacts, .. } = self;
         contacts.search(ground, &Spheres { position, velocity, spin, radius });

@@ -1,9 +1,9 @@
 //! The surface of a solid as ground for particles.
 
 use fractum_contact::law::{ContactLaw, ContactMemory, ElasticMaterial, Hertz, HertzMemory, MaterialPair, Surface};
-use fractum_contact::{ContactWork, FacetMesh, Ground, GroundContacts, Spheres, SurfaceError, Touch};
+use fractum_contact::{FacetMesh, Ground, GroundContacts, Spheres, SurfaceError, Touch};
 use fractum_fem::Solid;
-use fractum_math::Vec3;
+use fractum_math::{Vec3, Work};
 
 use super::ContactMaterial;
 use super::nodes_on_ground::{NodesOnGround, frequency_square};
@@ -166,9 +166,9 @@ impl SolidGround {
     }
 
     /// Adds the forces of nodes of other solids to both.
-    pub(super) fn add_node_forces(&mut self, solid: &mut Solid, debris: &mut Debris, dt: f64) -> ContactWork {
+    pub(super) fn add_node_forces(&mut self, solid: &mut Solid, debris: &mut Debris, dt: f64) -> Work {
         let SolidGround { mesh, nodes, points, velocity, visitors, elastic, surface, .. } = self;
-        let Some(visitors) = visitors else { return ContactWork::default() };
+        let Some(visitors) = visitors else { return Work::default() };
         let ground = Ground::Deformable { surface: mesh, points, velocity };
         let law = |solid: &Solid, debris: &Debris, node: u32| {
             debris.facet_law(node, solid.mass[node as usize], elastic, *surface)
@@ -208,7 +208,7 @@ impl SolidGround {
         body_of: &[u16],
         law: impl Fn(&MaterialPair, u32) -> Hertz + Sync,
         dt: f64,
-    ) -> ContactWork {
+    ) -> Work {
         self.locate(solid);
         let SolidGround { mesh, nodes, points, velocity, contacts, pairs, felt, .. } = self;
         let spheres = &Spheres { radius: if felt.is_empty() { spheres.radius } else { felt }, ..*spheres };

@@ -2,7 +2,7 @@
 
 use fractum_contact::law::{ElasticMaterial, Surface};
 use fractum_contact::{FacetMesh, Frame, Ground, Shape};
-use fractum_math::{Mat3, Rotation, Vec3};
+use fractum_math::{HalfSteps, Mat3, Rotation, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::boundary::TimeFunction;
@@ -87,22 +87,6 @@ pub(super) struct ToolState {
     angular_momentum: Vec3,
     force: Vec3,
     moment: Vec3,
-}
-
-/// Energies of the rigid bodies in one step [J].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct ToolWork {
-    pub(crate) kinetic: f64,
-    pub(crate) external_before: f64,
-    pub(crate) external_after: f64,
-}
-
-impl std::ops::AddAssign for ToolWork {
-    fn add_assign(&mut self, other: Self) {
-        self.kinetic += other.kinetic;
-        self.external_before += other.external_before;
-        self.external_after += other.external_after;
-    }
 }
 
 impl Tool {
@@ -211,8 +195,8 @@ impl Tool {
     }
 
     /// Advances velocities and place with the forces of tⁿ.
-    pub(super) fn advance(&mut self, time: f64, dt_before: f64, dt_after: f64, gravity: &Vec3) -> ToolWork {
-        let mut work = ToolWork::default();
+    pub(super) fn advance(&mut self, time: f64, dt_before: f64, dt_after: f64, gravity: &Vec3) -> HalfSteps {
+        let mut work = HalfSteps::default();
         let dt_kick = 0.5 * (dt_before + dt_after);
         for axis in 0..3 {
             let before = self.frame.velocity[axis];
@@ -221,15 +205,15 @@ impl Tool {
                 (Drive::Force(_) | Drive::Free, Some(inertia)) => {
                     let outside = self.applied(axis, time, gravity);
                     let change = (self.force[axis] + outside) / inertia.mass;
-                    work.kinetic += 0.5 * inertia.mass * before * (before + dt_before * change);
+                    work.before.kinetic += 0.5 * inertia.mass * before * (before + dt_before * change);
                     (before + dt_kick * change, outside)
                 }
                 (Drive::Velocity(velocity), _) => (velocity(time + 0.5 * dt_after, &self.start), -self.force[axis]),
                 _ => (0.0, 0.0),
             };
             self.frame.velocity[axis] = after;
-            work.external_before += 0.5 * outside * before * dt_before;
-            work.external_after += 0.5 * outside * after * dt_after;
+            work.before.external += 0.5 * outside * before * dt_before;
+            work.after.external += 0.5 * outside * after * dt_after;
         }
         self.turn(time, dt_before, dt_after, &mut work);
         self.frame.origin += self.frame.velocity * dt_after;
@@ -239,10 +223,10 @@ impl Tool {
         work
     }
 
-    fn turn(&mut self, time: f64, dt_before: f64, dt_after: f64, work: &mut ToolWork) {
+    fn turn(&mut self, time: f64, dt_before: f64, dt_after: f64, work: &mut HalfSteps) {
         if let (true, Some(inertia)) = (self.turns_freely(), self.inertia) {
             let before = self.frame.spin;
-            work.kinetic += 0.5 * before.dot(&(self.angular_momentum + self.moment * dt_before));
+            work.before.kinetic += 0.5 * before.dot(&(self.angular_momentum + self.moment * dt_before));
             self.angular_momentum += self.moment * (0.5 * (dt_before + dt_after));
             let in_space = inertia_in_space(&inertia, &self.frame.rotation);
             self.frame.spin = in_space.try_inverse().map_or(before, |inverse| inverse * self.angular_momentum);
@@ -255,8 +239,8 @@ impl Tool {
                 _ => 0.0,
             };
             self.frame.spin[axis] = after;
-            work.external_before -= 0.5 * self.moment[axis] * before * dt_before;
-            work.external_after -= 0.5 * self.moment[axis] * after * dt_after;
+            work.before.external -= 0.5 * self.moment[axis] * before * dt_before;
+            work.after.external -= 0.5 * self.moment[axis] * after * dt_after;
         }
     }
 

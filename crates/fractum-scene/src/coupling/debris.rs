@@ -2,10 +2,10 @@ mod at_rest;
 
 pub(crate) use at_rest::Push;
 
+use fractum_contact::close_pairs;
 use fractum_contact::law::{ContactForce, ContactMemory, ElasticMaterial, Linear, PairMotion, Surface};
-use fractum_contact::{ContactWork, close_pairs};
 use fractum_fem::Solid;
-use fractum_math::Vec3;
+use fractum_math::{Vec3, Work};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -348,7 +348,7 @@ impl Debris {
     }
 
     /// Adds the contact forces of all pairs to the nodes.
-    pub(crate) fn add_forces(&mut self, solid: &mut Solid, dt: f64) -> ContactWork {
+    pub(crate) fn add_forces(&mut self, solid: &mut Solid, dt: f64) -> Work {
         self.update_turning(solid);
         let Debris { state, particle_of, radius, torque, turning, .. } = self;
         let DebrisState { pairs, .. } = state;
@@ -373,7 +373,7 @@ impl Debris {
             });
         }
         // In the order of the pairs: contacts are few beside elements, and the sum has one order.
-        let mut work = ContactWork::default();
+        let mut work = Work::default();
         for pair in pairs.iter().filter(|p| p.stored > 0.0 || p.damping != 0.0 || p.friction != 0.0) {
             let [i, j] = pair.nodes.map(|n| n as usize);
             solid.force[i] -= pair.force;
@@ -383,9 +383,7 @@ impl Debris {
             let (arm_i, arm_j) = arms(apart / distance, distance, radius[i], radius[j]);
             torque[particle_of[i] as usize] -= arm_i.cross(&pair.force) + pair.couple;
             torque[particle_of[j] as usize] += arm_j.cross(&pair.force) + pair.couple;
-            work.stored += pair.stored;
-            work.friction += pair.friction;
-            work.damping += pair.damping;
+            work += Work::contact(pair.stored, pair.friction, pair.damping);
         }
         work
     }

@@ -143,9 +143,9 @@ pub fn break_in_motion(
         let faces = fracture.add_contact_forces(&mut particles, dt);
         let after = push(&particles);
         energy.external += 0.5 * (before + after) * rate * dt;
-        energy.friction += faces.friction + faces.damping;
+        energy.friction += faces.contact.friction + faces.contact.damping;
         energy.kinks += faces.kinks;
-        energy.contact = faces.stored;
+        energy.contact = faces.contact.stored;
         particles.kick(dt, Integrator::VelocityVerlet);
         let kinetic = if (steps + 1) % EVERY == 0 { conserved_kinetic(&particles, dt) } else { 0.0 };
         factor += rate * dt;

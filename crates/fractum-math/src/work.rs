@@ -1,0 +1,77 @@
+use std::ops::{Add, AddAssign};
+
+/// Energies that a step moves, or that are in motion and in springs at its instant [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Kinetic energy at the instant.
+    pub kinetic: f64,
+    /// Energy in springs at the instant.
+    pub stored: f64,
+    /// Done from outside, by supports, loads and drives.
+    pub external: f64,
+    /// Taken by damping.
+    pub damping: f64,
+    /// Taken by friction.
+    pub friction: f64,
+}
+
+impl Work {
+    /// Energies of a contact: in its springs, taken by friction, taken by its dampers [J].
+    pub fn contact(stored: f64, friction: f64, damping: f64) -> Self {
+        Self { stored, friction, damping, ..Self::default() }
+    }
+
+    /// Work done from outside [J].
+    pub fn external(external: f64) -> Self {
+        Self { external, ..Self::default() }
+    }
+}
+
+impl AddAssign for Work {
+    fn add_assign(&mut self, other: Self) {
+        self.kinetic += other.kinetic;
+        self.stored += other.stored;
+        self.external += other.external;
+        self.damping += other.damping;
+        self.friction += other.friction;
+    }
+}
+
+/// Work of a step around tⁿ, in two halves: central differences have velocities at half steps, so that the forces of tⁿ
+/// work in both, with the velocity of each.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HalfSteps {
+    /// In the half step before tⁿ, and the energies at tⁿ.
+    pub before: Work,
+    /// In the half step after tⁿ.
+    pub after: Work,
+}
+
+impl AddAssign for HalfSteps {
+    fn add_assign(&mut self, other: Self) {
+        self.before += other.before;
+        self.after += other.after;
+    }
+}
+
+impl Add for HalfSteps {
+    type Output = Self;
+
+    fn add(mut self, other: Self) -> Self {
+        self += other;
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_energy_is_added() {
+        let one = Work { kinetic: 1.0, stored: 2.0, external: 4.0, damping: 8.0, friction: 16.0 };
+        let sum = HalfSteps { before: one, after: Work::external(1.0) } + HalfSteps { before: one, after: one };
+        assert_eq!(sum.before, Work { kinetic: 2.0, stored: 4.0, external: 8.0, damping: 16.0, friction: 32.0 });
+        assert_eq!(sum.after, Work { external: 5.0, ..one });
+    }
+}
