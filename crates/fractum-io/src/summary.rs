@@ -249,7 +249,7 @@ pub(crate) mod number {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::model::Bound;
+    use crate::case::model::{Bound, summary_quantities};
 
     fn example() -> Summary {
         let mut summary =
@@ -330,6 +330,8 @@ mod tests {
         for name in "external kinetic elastic damage removed contact friction damping absorbed".split(' ') {
             assert!(keys.contains_key(name), "the contract of summary.json: {name}");
         }
+        let paths: Vec<String> = summary_quantities().map(|(path, _)| path).collect();
+        assert!(EnergyKind::written().all(|kind| paths.contains(&format!("energy.{}", kind.name()))), "{paths:?}");
         let back: Energy = serde_json::from_value(json).unwrap();
         assert!(back.entries == energy.entries && back.residual_max_relative.is_nan());
     }

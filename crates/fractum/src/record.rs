@@ -395,3 +395,19 @@ fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
         (None, _) => values.first().copied().unwrap_or(f64::NAN),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_energy_that_a_scene_can_write_is_a_column() {
+        let columns = ledger_columns(true);
+        assert!(EnergyKind::written().all(|kind| columns.contains(&(kind.name(), "J"))), "{columns:?}");
+        let names: Vec<&str> = columns.iter().map(|(name, _)| *name).chain(["load"]).collect();
+        assert_eq!(count_ledger_columns(&names), columns.len());
+        let unbonded = ledger_columns(false);
+        let names: Vec<&str> = unbonded.iter().map(|(name, _)| *name).chain([IN_MOTION.0, "load"]).collect();
+        assert_eq!(count_ledger_columns(&names), unbonded.len() + 1);
+    }
+}

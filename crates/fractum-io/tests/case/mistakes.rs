@@ -267,10 +267,9 @@ fn each_mistake_has_one_clear_message() {
         ),
         (
             "end = 1e-3",
-            "end = 1e-3\n[[probes]]\nname = \"a\"\nenergy = \"kinetc\"",
-            "17:10: probes[0].energy = \"kinetc\"; expected \"external\", \"kinetic\", \"elastic\", \"damage\", \
-             \"removed\", \"bond_tension\", \"bond_bending\", \"bond_torsion\", \
-             \"contact\", \"friction\", \"damping\", \"absorbed\" or \"residual\"; did you mean \"kinetic\"?",
+            "end = 1e-3\n[[probes]]\nname = \"a\"\ncount = \"fragment\"",
+            "17:9: probes[0].count = \"fragment\"; expected \"removed_elements\", \"broken_edges\", \"damaged_edges\", \
+             \"particles\", \"fragments\", \"contacts\", \"bonds\" or \"broken_bonds\"; did you mean \"fragments\"?",
         ),
         (
             "end = 1e-3",
