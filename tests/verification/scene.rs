@@ -6,8 +6,8 @@ use fractum_fem::{Body, Criterion, DamageLaw, Formulation, Kinematics, LocalDamp
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    EnergyKind, Load, Loads, Motion, RigidGround, Scene, SceneSettings, StepError, Support, Supports, Surface,
-    TimeStepSettings,
+    EnergyKind, Gravity, Load, Loads, Motion, NodalForce, Pressure, RigidGround, Scene, SceneSettings, StepError,
+    Support, Supports, Surface, TimeStepSettings,
 };
 use fractum_tests::{jittered_box, noise};
 
@@ -299,9 +299,9 @@ fn loads_do_the_work_that_the_ledger_says() {
     let solid = Solid::new(nodes, vec![body]).unwrap();
     let end = nodes_where(&solid, |p| p.x < 1e-9).into_iter().map(|n| (n, 1e-3)).collect();
     let loads = vec![
-        Load::Nodal { nodes: end, axis: 1, value: Arc::new(|t, _| 1e6 * (t * 2e4).sin()) },
-        Load::Pressure { facets, thickness: 0.0, value: Arc::new(|t, _| 1e5 * (t * 1e4).cos()) },
-        Load::Gravity { axis: 2, value: Arc::new(|t, _| -9.81 * (1.0 + 1e3 * t)) },
+        Load::Nodal(NodalForce { points: end, axis: 1, value: Arc::new(|t, _| 1e6 * (t * 2e4).sin()) }),
+        Load::Pressure(Pressure { facets, thickness: 0.0, value: Arc::new(|t, _| 1e5 * (t * 1e4).cos()) }),
+        Load::Gravity(Gravity { axis: 2, value: Arc::new(|t, _| -9.81 * (1.0 + 1e3 * t)) }),
     ];
     let mut scene = scene(solid, Vec::new(), loads, settings(1e-3));
     run(&mut scene).unwrap();

@@ -12,7 +12,8 @@ use fractum_scene::statics::{
     Control, LinearSolver, NoEquilibrium, Opening, StaticSettings, StaticSolver, Stiffness, check_supports,
 };
 use fractum_scene::{
-    Load, Loads, Motion, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeFunction, TimeStepSettings,
+    Load, Loads, Motion, NodalForce, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeFunction,
+    TimeStepSettings,
 };
 use fractum_tests::{CONCRETE, jittered_box};
 
@@ -166,8 +167,11 @@ fn a_pressed_block_has_the_stress_of_its_load() {
     let top = nodes_where(&solid, |p| p.z > 1.0 - 1e-9);
     // Equal forces are no uniform traction on a jittered mesh, but their sum is.
     let share = 1.0 / top.len() as f64;
-    let load =
-        Load::Nodal { nodes: top.iter().map(|&n| (n, share)).collect(), axis: 2, value: Arc::new(|t, _| -1e6 * t) };
+    let load = Load::Nodal(NodalForce {
+        points: top.iter().map(|&n| (n, share)).collect(),
+        axis: 2,
+        value: Arc::new(|t, _| -1e6 * t),
+    });
     let mut scene = scene(solid, supports, vec![load]);
     let mut solver = StaticSolver::new(&scene, settings(Control::Time, LinearSolver::Iterative)).unwrap();
     while !solver.is_finished(&scene) {

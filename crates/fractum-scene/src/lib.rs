@@ -5,8 +5,8 @@
 //! [`SceneState`], one value that can be saved and put back bit for bit.
 
 mod bonded;
-mod boundary;
 mod clock;
+mod conditions;
 mod contacts;
 pub mod coupling;
 mod crack_measure;
@@ -19,12 +19,9 @@ mod scene;
 pub mod statics;
 mod step;
 
-pub use bonded::{
-    BondFracture, Bonded, BondedBody, BondedPart, BondedState, BondedStaticSettings, BondedStatics, Closest,
-    ParticleLoad, ParticleProbe, ParticleSupport,
-};
-pub use boundary::{Load, Loads, Motion, Support, Supports, TimeFunction};
+pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest};
 pub use clock::{Clock, TimeStepSettings};
+pub use conditions::{Gravity, Load, Loads, Motion, NodalForce, PointProbe, Pressure, Support, Supports, TimeFunction};
 pub use contacts::{ContactMaterial, Contacts, Drive, Form, Inertia, Overlap, OverlapWith, SolidGround, Tool, pieces};
 pub use crack_measure::{CrackMeasure, InsideCracks};
 pub use error::{SceneError, StepError};
@@ -32,7 +29,8 @@ pub use fractum_contact::law::{ElasticMaterial, Surface, damping_of_restitution}
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fragment::{Fragment, fragments};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
-pub use probe::{CountKind, Probe};
+pub use probe::{Population, Probe};
 pub use rigid::RigidGround;
-pub use scene::{Counts, Scene, SceneSettings, SceneState};
+pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
+pub use statics::{BondedStaticSettings, BondedStatics};
 pub use step::{Phase, StepReport};

@@ -1,48 +1,29 @@
 use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 
-use crate::bonded::ParticleProbe;
+use crate::conditions::PointProbe;
 use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
 use crate::ledger::EnergyProbe;
-use crate::scene::Scene;
+use crate::scene::{CountKind, Scene};
 
-/// What a probe counts.
+/// The points that a set is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // the names say it
-pub enum CountKind {
-    RemovedElements,
-    BrokenEdges,
-    DamagedEdges,
+pub enum Population {
+    /// Nodes of solids.
+    Nodes,
+    /// Particles of bonded bodies and loose ones.
     Particles,
-    Fragments,
-    Contacts,
-    Bonds,
-    BrokenBonds,
 }
 
 /// A number that a scene yields at every instant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Probe {
-    /// Force of the supports on a set of nodes along a direction [N]; see [`crate::Supports::places`].
-    Reaction {
-        /// Prescribed degrees of freedom.
-        places: Vec<(u32, u32, u32)>,
-        /// Unit direction.
-        direction: Vec3,
-    },
-    /// Mean displacement of nodes along a direction at the instant of the last step, as its reactions are [m].
-    Displacement {
-        /// Nodes.
-        nodes: Vec<u32>,
-        /// Unit direction.
-        direction: Vec3,
-    },
-    /// Mean velocity of nodes along a direction [m/s].
-    Velocity {
-        /// Nodes.
-        nodes: Vec<u32>,
-        /// Unit direction.
-        direction: Vec3,
+    /// Something about a set of nodes or particles.
+    Points {
+        /// Whose points.
+        population: Population,
+        /// What is measured on them.
+        probe: PointProbe,
     },
     /// An entry of the energy ledger, or its residual [J].
     Energy(EnergyProbe),
@@ -59,8 +40,6 @@ pub enum Probe {
     Momentum(Vec3),
     /// Angular momentum about the origin along a direction [kg m²/s].
     AngularMomentum(Vec3),
-    /// Something about particles of bonded bodies.
-    Particles(ParticleProbe),
     /// Force of a rigid body on what it touches along a direction [N].
     ToolForce {
         /// Rigid body.
@@ -105,16 +84,14 @@ impl Probe {
     /// Value at the last step that was measured.
     pub fn value(&self, scene: &Scene) -> f64 {
         let solid = &scene.solid;
-        let mean = |nodes: &[u32], of: &dyn Fn(usize) -> f64| {
-            nodes.iter().map(|&n| of(n as usize)).sum::<f64>() / nodes.len().max(1) as f64
-        };
         match self {
-            Probe::Reaction { places, direction } => scene.supports().reaction(places, direction),
-            Probe::Displacement { nodes, direction } => mean(nodes, &|n| {
+            Probe::Points { population, probe } => {
                 let dt = scene.clock.dt_before;
-                (solid.displacement[n] - solid.velocity[n] * dt).dot(direction)
-            }),
-            Probe::Velocity { nodes, direction } => mean(nodes, &|n| solid.velocity[n].dot(direction)),
+                match population {
+                    Population::Nodes => probe.value(solid, scene.supports(), dt),
+                    Population::Particles => probe.value(&scene.bonded, scene.bonded.supports(), dt),
+                }
+            }
             Probe::Energy(kind) => scene.ledger().probe(*kind),
             Probe::Count(kind) => scene.count(*kind) as f64,
             Probe::Stress { elements, component } => {
@@ -138,7 +115,6 @@ impl Probe {
                 let spins = scene.debris.spin_momentum(solid) + scene.bonded.angular_momentum();
                 nodes.sum::<f64>() + spins.dot(direction)
             }
-            Probe::Particles(probe) => probe.value(&scene.bonded, scene.clock.dt_before),
             Probe::ToolForce { tool, direction } => -scene.contacts.tools()[*tool].contact_force().dot(direction),
             Probe::ToolDisplacement { tool, direction } => {
                 let tool = &scene.contacts.tools()[*tool];

@@ -2,13 +2,12 @@ use fractum_fem::{LocalDamping, Solid, SolidState, StableStep};
 use serde::{Deserialize, Serialize};
 
 use crate::bonded::{Bonded, BondedState};
-use crate::boundary::{Loads, Supports};
 use crate::clock::{Clock, TimeStepSettings};
+use crate::conditions::{Loads, Supports};
 use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
 use crate::fragment::{Fragment, fragments, joined};
 use crate::ledger::{Books, Ledger};
-use crate::probe::CountKind;
 use crate::rigid::{Candidate, RigidGround};
 
 /// How much faster than it is a wall contact counts in the stable step: the whole weight of a body may come on few of
@@ -72,6 +71,20 @@ pub struct SceneState {
     governing: (usize, u32),
     removed_since_check: usize,
     contact_frequency_square: f64,
+}
+
+/// What a probe counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // the names say it
+pub enum CountKind {
+    RemovedElements,
+    BrokenEdges,
+    DamagedEdges,
+    Particles,
+    Fragments,
+    Contacts,
+    Bonds,
+    BrokenBonds,
 }
 
 /// What there is of everything.

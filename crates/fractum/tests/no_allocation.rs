@@ -11,8 +11,8 @@ use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::{Debris, Layer};
 use fractum_scene::{
-    Bonded, BondedPart, Load, Loads, Motion, ParticleLoad, ParticleSupport, RigidGround, Scene, SceneSettings, Support,
-    Supports, Surface, TimeStepSettings,
+    Bonded, BondedPart, Gravity, Load, Loads, Motion, NodalForce, RigidGround, Scene, SceneSettings, Support, Supports,
+    Surface, TimeStepSettings,
 };
 
 /// The allocator of the system, counting requests while it is told to.
@@ -88,8 +88,12 @@ fn pulled(nodes: Vec<Vec3>, body: Body, speed: f64, viscosity: Viscosity) -> Sce
         Support::new("right", right.clone(), 0, Motion::Velocity(Arc::new(move |_, _| speed))),
     ];
     let loads = vec![
-        Load::Nodal { nodes: right.iter().map(|&n| (n, 1e-3)).collect(), axis: 1, value: Arc::new(|t, _| 1e3 * t) },
-        Load::Gravity { axis: 2, value: Arc::new(|_, _| -9.81) },
+        Load::Nodal(NodalForce {
+            points: right.iter().map(|&n| (n, 1e-3)).collect(),
+            axis: 1,
+            value: Arc::new(|t, _| 1e3 * t),
+        }),
+        Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -9.81) }),
     ];
     let mut solid = Solid::new(nodes, vec![body]).unwrap();
     solid.set_viscosity(viscosity);
@@ -158,12 +162,11 @@ fn lattice() -> Bonded {
     let part = BondedPart { name: "bar".into(), particles, pairs, section, density: 1.0, fracture: None };
     let mut bonded = Bonded::new(vec![part]).unwrap();
     let end = |x: f64| (0..count as u32).filter(|&i| site(i as usize).x == x).collect::<Vec<u32>>();
-    let support = |name: &str, particles, motion| ParticleSupport { name: name.into(), particles, axis: 0, motion };
     let pull = Motion::Velocity(Arc::new(|_, _| 1e-3));
-    let supports = vec![support("low", end(0.0), Motion::Fixed), support("high", end(29.0), pull)];
+    let supports = vec![Support::new("low", end(0.0), 0, Motion::Fixed), Support::new("high", end(29.0), 0, pull)];
     bonded.set_supports(supports, &[(0, 0b111)]).unwrap();
-    let force = ParticleLoad::Force { particles: vec![(150, 1.0)], axis: 1, value: Arc::new(|t, _| t) };
-    bonded.set_loads(vec![force, ParticleLoad::Gravity { axis: 2, value: Arc::new(|_, _| -1e-3) }]);
+    let force = Load::Nodal(NodalForce { points: vec![(150, 1.0)], axis: 1, value: Arc::new(|t, _| t) });
+    bonded.set_loads(vec![force, Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -1e-3) })]);
     bonded
 }
 

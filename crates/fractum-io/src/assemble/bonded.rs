@@ -3,9 +3,9 @@
 use fractum_dem::{BeamSection, Particles};
 use fractum_math::Vec3;
 use fractum_scene::coupling::Attachment;
-use fractum_scene::{BondFracture, Bonded, BondedPart, ParticleLoad, ParticleProbe, ParticleSupport, Probe};
+use fractum_scene::{BondFracture, Bonded, BondedPart, Gravity, Load, PointProbe, Population, Probe, Support};
 
-use super::conditions::motion_of;
+use super::conditions::{motion_of, push_nodal};
 use super::{Context, function};
 use crate::case::model::{BodyKind, LoadKind, ProbeKind, TimeStep};
 use crate::case::{Diagnostic, Field, Spanned, nearest};
@@ -146,8 +146,7 @@ impl Context<'_> {
             let name = &support.name.as_ref().unwrap_or(&support.group).value;
             for (axis, motion) in support.motion.iter().enumerate() {
                 let Some(motion) = motion else { continue };
-                let motion = motion_of(&motion.value);
-                sets.push(ParticleSupport { name: name.clone(), particles: particles.clone(), axis, motion });
+                sets.push(Support::new(name, particles.clone(), axis, motion_of(&motion.value)));
             }
             if let Some(axes) = &support.fix_rotation {
                 turning.extend(particles.iter().map(|&i| (i, axes.value)));
@@ -165,12 +164,7 @@ impl Context<'_> {
                     let area = |i: u32| bonded.particles.radius[i as usize].powi(2);
                     let total: f64 = particles.iter().map(|&i| area(i)).sum();
                     let shares: Vec<(u32, f64)> = particles.iter().map(|&i| (i, area(i) / total)).collect();
-                    for (axis, value) in force.iter().enumerate() {
-                        if let Some(value) = value {
-                            let particles = shares.clone();
-                            loads.push(ParticleLoad::Force { particles, axis, value: function(&value.value) });
-                        }
-                    }
+                    push_nodal(&mut loads, &shares, force);
                 }
                 LoadKind::Traction { group, .. } | LoadKind::Pressure { group, .. } if self.names_particles(group) => {
                     let diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value));
@@ -180,7 +174,7 @@ impl Context<'_> {
                 LoadKind::Gravity { acceleration } => {
                     for (axis, value) in acceleration.iter().enumerate() {
                         if let Some(value) = value {
-                            loads.push(ParticleLoad::Gravity { axis, value: function(&value.value) });
+                            loads.push(Load::Gravity(Gravity { axis, value: function(&value.value) }));
                         }
                     }
                 }
@@ -203,21 +197,22 @@ impl Context<'_> {
             return None;
         }
         let particles = self.particles(group);
-        Some(Probe::Particles(match kind {
+        let probe = match kind {
             ProbeKind::Reaction { along, .. } => {
-                let places = bonded.support_places(&particles);
+                let places = bonded.supports().places(&particles);
                 let along_held = places.iter().any(|&(_, _, axis)| along[axis as usize] != 0.0);
                 if !particles.is_empty() && !along_held {
                     let found = format!("= \"{}\": nothing holds it along the direction of the probe", group.value);
                     self.error(&group.place, found, "a set that a support prescribes");
                 }
-                ParticleProbe::Reaction { places, direction: *along }
+                PointProbe::Reaction { places, direction: *along }
             }
-            ProbeKind::Displacement { along, .. } => ParticleProbe::Displacement { particles, direction: *along },
-            ProbeKind::Velocity { along, .. } => ParticleProbe::Velocity { particles, direction: *along },
-            ProbeKind::Rotation { along, .. } => ParticleProbe::Rotation { particles, axis: *along },
+            ProbeKind::Displacement { along, .. } => PointProbe::Displacement { points: particles, direction: *along },
+            ProbeKind::Velocity { along, .. } => PointProbe::Velocity { points: particles, direction: *along },
+            ProbeKind::Rotation { along, .. } => PointProbe::Rotation { points: particles, axis: *along },
             _ => return None,
-        }))
+        };
+        Some(Probe::Points { population: Population::Particles, probe })
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use fractum_math::Vec3;
-use fractum_scene::{Load, Motion, Support};
+use fractum_scene::{Gravity, Load, Motion, NodalForce, Pressure, Support};
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function, use_in_words};
@@ -53,13 +53,13 @@ impl Context<'_> {
                 }
                 LoadKind::Pressure { group, pressure } => {
                     let facets = self.group_facets(group, numbering, &surface);
-                    loads.push(Load::Pressure { facets, thickness, value: function(&pressure.value) });
+                    loads.push(Load::Pressure(Pressure { facets, thickness, value: function(&pressure.value) }));
                 }
                 LoadKind::Gravity { acceleration } => {
                     for (axis, value) in acceleration.iter().enumerate() {
                         let Some(value) = value else { continue };
                         self.refuse_position(value);
-                        loads.push(Load::Gravity { axis, value: function(&value.value) });
+                        loads.push(Load::Gravity(Gravity { axis, value: function(&value.value) }));
                     }
                 }
             }
@@ -121,10 +121,10 @@ pub(super) fn motion_of(motion: &model::Motion) -> Motion {
     }
 }
 
-fn push_nodal(loads: &mut Vec<Load>, nodes: &[(u32, f64)], components: &Components) {
+pub(super) fn push_nodal(loads: &mut Vec<Load>, points: &[(u32, f64)], components: &Components) {
     for (axis, value) in components.iter().enumerate() {
         if let Some(value) = value {
-            loads.push(Load::Nodal { nodes: nodes.to_vec(), axis, value: function(&value.value) });
+            loads.push(Load::Nodal(NodalForce { points: points.to_vec(), axis, value: function(&value.value) }));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
-use fractum_scene::{Bonded, BondedBody, InsideCracks, Probe, Supports};
+use fractum_scene::{Bonded, BondedBody, InsideCracks, PointProbe, Population, Probe, Supports};
 
 use super::Context;
 use super::bodies::{Numbering, Part};
@@ -48,13 +48,13 @@ impl Context<'_> {
                         "a group that a support prescribes",
                     );
                 }
-                Probe::Reaction { places, direction: *along }
+                on_nodes(PointProbe::Reaction { places, direction: *along })
             }
             ProbeKind::Displacement { group, along } => {
-                Probe::Displacement { nodes: self.group_nodes(group, numbering), direction: *along }
+                on_nodes(PointProbe::Displacement { points: self.group_nodes(group, numbering), direction: *along })
             }
             ProbeKind::Velocity { group, along } => {
-                Probe::Velocity { nodes: self.group_nodes(group, numbering), direction: *along }
+                on_nodes(PointProbe::Velocity { points: self.group_nodes(group, numbering), direction: *along })
             }
             ProbeKind::Rotation { group, .. } => {
                 let found = format!("= \"{}\"", group.value);
@@ -103,6 +103,10 @@ impl Context<'_> {
             ProbeKind::Expression(_) => return None,
         })
     }
+}
+
+fn on_nodes(probe: PointProbe) -> Probe {
+    Probe::Points { population: Population::Nodes, probe }
 }
 
 /// Which edges of bodies that may be damaged fulfil a condition at their middles, body by body.

@@ -1,9 +1,8 @@
 //! Bonded bodies: particles of their own beside the solids, joined by cohesive beams.
 
-mod boundary;
-mod equilibrium;
+mod momentum;
 mod piece;
-mod probe;
+mod points;
 
 use std::ops::Range;
 
@@ -15,12 +14,9 @@ use fractum_fem::LocalDamping;
 use fractum_math::{HalfSteps, Rotation, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
-pub use boundary::{ParticleLoad, ParticleSupport};
-pub use equilibrium::{BondedStaticSettings, BondedStatics};
-pub use probe::ParticleProbe;
-
+use crate::conditions::{Load, Loads, Support, Supports};
 use crate::error::SceneError;
-use boundary::{Forces, Holds};
+use points::ParticlePoints;
 
 /// Steps between two searches for particles of a broken body that meet others of it.
 const STEPS_BETWEEN_SEARCHES: u64 = 20;
@@ -77,9 +73,9 @@ pub struct BondedBody {
     pub bonds: BeamNetwork,
     /// Density of the continuum that it stands for [kg/m³].
     pub density: f64,
-    plan: Option<BondFracture>,
-    fracture: Option<Fracture>,
-    closest: Option<Closest>,
+    pub(crate) plan: Option<BondFracture>,
+    pub(crate) fracture: Option<Fracture>,
+    pub(crate) closest: Option<Closest>,
 }
 
 impl BondedBody {
@@ -117,14 +113,14 @@ pub struct Bonded {
     /// The particles of all bodies.
     pub particles: Particles,
     /// Centres without load [m].
-    reference: Vec<Vec3>,
-    bodies: Vec<BondedBody>,
-    holds: Holds,
-    forces: Forces,
+    pub(crate) reference: Vec<Vec3>,
+    pub(crate) bodies: Vec<BondedBody>,
+    pub(crate) supports: Supports,
+    loads: Loads,
     /// Particles that follow the facets of a solid, ascending; their mass is the nodes'.
     tied: Vec<u32>,
     /// Elastic energy of the bonds when last measured.
-    energy: BeamEnergy,
+    pub(crate) energy: BeamEnergy,
     /// Elastic energy that bonds which broke before tⁿ held [J].
     released: f64,
     /// Highest natural frequency, or a bound on it [rad/s].
@@ -214,8 +210,9 @@ impl Bonded {
     ///
     /// # Errors
     /// [`SceneError::ContradictorySupports`] if a degree of freedom is prescribed in two ways.
-    pub fn set_supports(&mut self, sets: Vec<ParticleSupport>, turning: &[(u32, u8)]) -> Result<(), SceneError> {
-        self.holds = Holds::new(sets, &self.reference, &mut self.particles.held)?;
+    pub fn set_supports(&mut self, sets: Vec<Support>, turning: &[(u32, u8)]) -> Result<(), SceneError> {
+        self.supports = Supports::new(sets, &self.reference)?;
+        self.particles.held.iter_mut().zip(self.supports.held()).for_each(|(held, bits)| *held |= bits);
         for &(particle, axes) in turning {
             let i = particle as usize;
             self.particles.held[i] |= axes << 3;
@@ -229,7 +226,7 @@ impl Bonded {
     /// # Errors
     /// [`SceneError::NotProportional`] with the first that does not.
     pub fn check_proportional(&self, end: f64) -> Result<(), SceneError> {
-        self.holds.displacements(&self.reference, end).map(|_| ())
+        self.supports.proportional(&self.reference, end).map(|_| ())
     }
 
     /// Damps the highest frequencies by the scheme of Tchamwa and Wielgosz.
@@ -246,8 +243,8 @@ impl Bonded {
     }
 
     /// Sets what pushes particles.
-    pub fn set_loads(&mut self, loads: Vec<ParticleLoad>) {
-        self.forces = Forces::new(loads);
+    pub fn set_loads(&mut self, loads: Vec<Load>) {
+        self.loads = Loads::new(loads, self.particles.len());
     }
 
     /// Hands particles over to what moves them from now on.
@@ -272,6 +269,11 @@ impl Bonded {
     /// The bodies in the order of the case.
     pub fn bodies(&self) -> &[BondedBody] {
         &self.bodies
+    }
+
+    /// Supports of the particles, with the reactions of the last step.
+    pub fn supports(&self) -> &Supports {
+        &self.supports
     }
 
     /// Centres without load [m].
@@ -364,9 +366,8 @@ impl Bonded {
 
     /// Adds the loads of `time`; returns their work in the half step before [J].
     pub(crate) fn add_loads(&mut self, time: f64, dt_before: f64) -> f64 {
-        let Bonded { particles, reference, forces, tied, .. } = self;
-        forces.add(particles, tied, reference, time);
-        0.5 * dt_before * forces.power(particles, tied)
+        let Bonded { particles, reference, loads, tied, .. } = self;
+        loads.add_forces(&mut ParticlePoints { particles, reference, tied }, time, dt_before)
     }
 
     /// Advances velocities and positions, then puts prescribed motion in the place of free motion.
@@ -381,17 +382,19 @@ impl Bonded {
         measure: bool,
         follow: impl FnOnce(&mut Particles),
     ) -> HalfSteps {
-        let Bonded { particles, reference, bodies, holds, forces, partial, past, dissipation, tied, .. } = self;
+        let Bonded { particles, reference, bodies, supports, loads, partial, past, dissipation, tied, .. } = self;
         let damping = ParticleDamping { local: damping.local, mass_rate: damping.mass_rate, dissipation: *dissipation };
         let counted_twice = if measure { energy_of(particles, tied) } else { 0.0 };
-        let mut work = particles.leap(&Leap { dt_before, dt_after, damping, measure }, past, partial);
-        work += holds.impose(particles, reference, time, dt_before, dt_after);
+        let mut points = ParticlePoints { particles, reference, tied };
+        supports.remember(&points);
+        let mut work = points.particles.leap(&Leap { dt_before, dt_after, damping, measure }, past, partial);
+        work += supports.impose(&mut points, time, dt_before, dt_after);
         work.before.kinetic -= counted_twice;
-        follow(particles);
+        follow(points.particles);
         for fracture in bodies.iter_mut().filter_map(|body| body.fracture.as_mut()) {
-            fracture.book_last_work(particles, dt_after);
+            fracture.book_last_work(points.particles, dt_after);
         }
-        work.after.external += 0.5 * dt_after * forces.power(particles, tied);
+        work.after.external += 0.5 * dt_after * loads.power(&points);
         work
     }
 

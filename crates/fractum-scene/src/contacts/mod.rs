@@ -19,7 +19,7 @@ pub use solid_ground::SolidGround;
 pub use tool::{Drive, Form, Inertia, Tool};
 
 use crate::bonded::Bonded;
-use crate::boundary::TimeFunction;
+use crate::conditions::TimeFunction;
 use crate::coupling::Debris;
 use debris_among::DebrisAmong;
 use nodes_on_ground::NodesOnGround;

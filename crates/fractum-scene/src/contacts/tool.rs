@@ -5,7 +5,7 @@ use fractum_contact::{FacetMesh, Frame, Ground, Shape};
 use fractum_math::{HalfSteps, Mat3, Rotation, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::boundary::TimeFunction;
+use crate::conditions::TimeFunction;
 
 /// What a rigid body looks like, in its own axes.
 #[derive(Clone, Debug)]

@@ -301,9 +301,9 @@ impl TiedFacet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bonded::{BondedPart, ParticleLoad};
-    use crate::boundary::{Load, Loads, Supports};
+    use crate::bonded::BondedPart;
     use crate::clock::TimeStepSettings;
+    use crate::conditions::{Gravity, Load, Loads, Supports};
     use crate::coupling::Debris;
     use crate::coupling::Layer;
     use crate::{Scene, SceneSettings};
@@ -317,7 +317,7 @@ mod tests {
     const ELASTIC: Elastic = Elastic { density: 2500.0, young_modulus: 70e9, poisson_ratio: 0.2 };
 
     /// A cube of tetrahedra of 4 mm below z = 0 and a cubic lattice of 4 × 4 × 4 particles on it, tied.
-    fn halves(loads: Vec<Load>, on_particles: Vec<ParticleLoad>) -> Scene {
+    fn halves(loads: Vec<Load>, on_particles: Vec<Load>) -> Scene {
         let mesh = structured_box([3, 3, 3], Vec3::repeat(4e-3), Some(Jitter { fraction: 0.1, seed: 3 }));
         let nodes: Vec<Vec3> = mesh.nodes.iter().map(|x| x - Vec3::z() * 4e-3).collect();
         let facets: Vec<[u32; 3]> =
@@ -482,8 +482,8 @@ mod tests {
     #[test]
     fn a_falling_body_weighs_once_and_a_saved_state_goes_on_bit_for_bit() {
         let gravity: crate::TimeFunction = Arc::new(|_: f64, _: &Vec3| -9.81);
-        let on_nodes = vec![Load::Gravity { axis: 2, value: gravity.clone() }];
-        let on_particles = vec![ParticleLoad::Gravity { axis: 2, value: gravity }];
+        let on_nodes = vec![Load::Gravity(Gravity { axis: 2, value: gravity.clone() })];
+        let on_particles = vec![Load::Gravity(Gravity { axis: 2, value: gravity })];
         let mut scene = halves(on_nodes, on_particles);
         let mut fresh = scene.clone();
         for _ in 0..50 {

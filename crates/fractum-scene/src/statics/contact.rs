@@ -6,7 +6,7 @@
 use fractum_contact::{Frame, Outside};
 use fractum_math::{Mat3, Vec3};
 
-use crate::boundary::integral;
+use crate::conditions::integral;
 use crate::contacts::{Drive, Tool};
 use crate::coupling::Push;
 use crate::error::SceneError;

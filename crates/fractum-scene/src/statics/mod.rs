@@ -5,6 +5,7 @@
 //! whatever the load does meanwhile: t may go back. With the damage of the last iterate K is linear, so that
 //! u = a + (t - tⁿ) b from two right-hand sides, and t follows from the most strained edge alone.
 
+mod bonded;
 mod contact;
 mod equilibrium;
 mod hand_over;
@@ -20,6 +21,7 @@ use fractum_math::{Sym3, Vec3};
 use fractum_sparse::SparseError;
 use serde::{Deserialize, Serialize};
 
+pub use bonded::{BondedStaticSettings, BondedStatics};
 pub use hand_over::Interlude;
 pub use opening::Opening;
 pub use period::Stiffness;

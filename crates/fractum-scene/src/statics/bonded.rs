@@ -4,7 +4,7 @@ use fractum_dem::criterion::{BeamRankine, EndMoments, FractureCriterion};
 use fractum_dem::{Batch, BeamEnergy, Breaking, Crack, Lattice, LatticeSupports, LoadStage, QuasiStatic, Tolerance};
 use fractum_math::{Rotation, Vec3};
 
-use super::{Bonded, BondedBody, Closest};
+use crate::bonded::{Bonded, BondedBody, Closest};
 use crate::error::{SceneError, StepError};
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
@@ -62,7 +62,7 @@ impl BondedStatics {
         for (i, held) in (0..).zip(&all.held) {
             (0..6).filter(|d| held >> d & 1 == 1).for_each(|d| supports.set(i, d, 0.0));
         }
-        let prescribed = bonded.holds.displacements(&bonded.reference, settings.end)?;
+        let prescribed = bonded.supports.proportional(&bonded.reference, settings.end)?;
         prescribed.iter().for_each(|&(particle, axis, value)| supports.set(particle, axis, value));
         let guess = vec![[0.0; 6]; all.len()];
         let plan = body.plan;
@@ -112,14 +112,14 @@ impl BondedStatics {
         scene.clock.dt_after = 0.0;
         scene.clock.time = time;
         scene.clock.step += 1;
-        let Bonded { particles, reference, bodies, holds, energy, .. } = &mut scene.bonded;
+        let Bonded { particles, reference, bodies, supports, energy, .. } = &mut scene.bonded;
         let factor = self.run.factor();
         for (i, u) in self.run.body().state().iter().enumerate() {
             let (shift, turn) = (Vec3::new(u[0], u[1], u[2]), Vec3::new(u[3], u[4], u[5]));
             particles.position[i] = reference[i] + shift * factor;
             particles.orientation[i] = Rotation::from_scaled_axis(turn * factor);
         }
-        holds.set_reactions(|particle| self.run.body().reaction(particle).map(|force| force * factor));
+        supports.set_reactions(|particle, axis| self.run.body().reaction(particle)[axis] * factor);
         let body = &mut bodies[0];
         note_closest(body, &self.run, reference, time);
         // Parts of the energy as the beams show them; their sum is that of the equilibrium.

@@ -1,0 +1,241 @@
+use std::fmt;
+
+use fractum_math::{HalfSteps, Vec3};
+
+use super::{DrivenPoints, Points, TimeFunction};
+use crate::error::SceneError;
+
+/// How a support moves.
+#[derive(Clone)]
+pub enum Motion {
+    /// Not at all.
+    Fixed,
+    /// By a velocity [m/s].
+    Velocity(TimeFunction),
+    /// By a displacement [m].
+    Displacement(TimeFunction),
+}
+
+/// One axis of a set of points, prescribed.
+#[derive(Clone)]
+pub struct Support {
+    /// The user's name for it.
+    pub name: String,
+    /// Nodes of solids, or particles.
+    pub points: Vec<u32>,
+    /// Axis 0, 1 or 2.
+    pub axis: usize,
+    /// How it moves.
+    pub motion: Motion,
+    /// Velocity of each point before the kick [m/s].
+    before: Vec<f64>,
+    /// Force of the support on each point at tⁿ [N].
+    reaction: Vec<f64>,
+}
+
+impl Support {
+    /// A support of `points` along `axis` (0, 1, 2).
+    pub fn new(name: &str, points: Vec<u32>, axis: usize, motion: Motion) -> Self {
+        let zeros = vec![0.0; points.len()];
+        Support { name: name.to_owned(), points, axis, motion, before: zeros.clone(), reaction: zeros }
+    }
+}
+
+impl fmt::Debug for Support {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Support({} along {})", self.name, self.axis)
+    }
+}
+
+/// All supports of one population: the nodes of solids, or the particles.
+#[derive(Clone, Debug, Default)]
+pub struct Supports {
+    sets: Vec<Support>,
+    /// Bit a is set where axis a of a point is prescribed; empty without supports.
+    held: Vec<u8>,
+}
+
+impl Supports {
+    /// Collects supports; points that two fixed supports share are kept once.
+    ///
+    /// # Errors
+    /// [`SceneError::ContradictorySupports`] if a degree of freedom is prescribed in two ways.
+    pub fn new(mut sets: Vec<Support>, reference: &[Vec3]) -> Result<Self, SceneError> {
+        let mut owner: Vec<[u32; 3]> = vec![[u32::MAX; 3]; if sets.is_empty() { 0 } else { reference.len() }];
+        for index in 0..sets.len() {
+            let axis = sets[index].axis;
+            let mut kept = Vec::with_capacity(sets[index].points.len());
+            for &point in &sets[index].points {
+                let place = &mut owner[point as usize][axis];
+                if *place == u32::MAX {
+                    *place = index as u32;
+                    kept.push(point);
+                    continue;
+                }
+                let first = &sets[*place as usize];
+                if !(matches!(first.motion, Motion::Fixed) && matches!(sets[index].motion, Motion::Fixed)) {
+                    let p = reference[point as usize];
+                    return Err(SceneError::ContradictorySupports {
+                        first: first.name.clone(),
+                        second: sets[index].name.clone(),
+                        axis: ['x', 'y', 'z'][axis],
+                        x: p.x,
+                        y: p.y,
+                        z: p.z,
+                    });
+                }
+            }
+            let set = &mut sets[index];
+            *set = Support::new(&set.name, kept, axis, set.motion.clone());
+        }
+        let bits = |axes: &[u32; 3]| (0..3).filter(|&a| axes[a] != u32::MAX).fold(0u8, |bits, a| bits | 1 << a);
+        let held = owner.iter().map(bits).collect();
+        Ok(Supports { sets, held })
+    }
+
+    /// Bit a of a point is set where its axis a is prescribed; empty without supports.
+    pub fn held(&self) -> &[u8] {
+        &self.held
+    }
+
+    /// Degrees of freedom that are prescribed.
+    pub fn count(&self) -> usize {
+        self.sets.iter().map(|s| s.points.len()).sum()
+    }
+
+    /// Places (set, entry, axis) of the prescribed degrees of freedom of these points, which are ascending.
+    pub fn places(&self, points: &[u32]) -> Vec<(u32, u32, u32)> {
+        let mut places = Vec::new();
+        for (set, support) in self.sets.iter().enumerate() {
+            for (entry, point) in support.points.iter().enumerate() {
+                if points.binary_search(point).is_ok() {
+                    places.push((set as u32, entry as u32, support.axis as u32));
+                }
+            }
+        }
+        places
+    }
+
+    /// Force of the supports on these places along `direction` at the last step [N].
+    pub fn reaction(&self, places: &[(u32, u32, u32)], direction: &Vec3) -> f64 {
+        places.iter().map(|&(s, e, a)| self.sets[s as usize].reaction[e as usize] * direction[a as usize]).sum()
+    }
+
+    /// Writes the displacements prescribed at `time` into `displacement`; those of supports with a velocity go on from
+    /// the present values at `present`.
+    pub(crate) fn prescribe(&self, displacement: &mut [Vec3], reference: &[Vec3], present: f64, time: f64) {
+        for set in &self.sets {
+            for &point in &set.points {
+                let (value, place) = (&mut displacement[point as usize][set.axis], &reference[point as usize]);
+                match &set.motion {
+                    Motion::Fixed => *value = 0.0,
+                    Motion::Displacement(u) => *value = u(time, place),
+                    Motion::Velocity(v) => *value += integral(|t| v(t, place), present, time),
+                }
+            }
+        }
+    }
+
+    /// Point, axis and displacement at the time `end` of everything prescribed, which must move in proportion to time.
+    ///
+    /// # Errors
+    /// [`SceneError::NotProportional`].
+    pub(crate) fn proportional(&self, reference: &[Vec3], end: f64) -> Result<Vec<(u32, usize, f64)>, SceneError> {
+        let mut found = Vec::new();
+        for support in &self.sets {
+            for &point in &support.points {
+                let x = &reference[point as usize];
+                let at = |share: f64| match &support.motion {
+                    Motion::Fixed => 0.0,
+                    // A velocity is proportional if it is constant.
+                    Motion::Velocity(v) => v(share * end, x) * share * end,
+                    Motion::Displacement(u) => u(share * end, x),
+                };
+                let whole = at(1.0);
+                let proportional = |share: f64| (at(share) - share * whole).abs() <= 1e-9 * whole.abs();
+                if ![0.0, 0.1, 0.25, 0.5, 0.7].into_iter().all(proportional) {
+                    let name = support.name.clone();
+                    return Err(SceneError::NotProportional { name, axis: ['x', 'y', 'z'][support.axis] });
+                }
+                found.push((point, support.axis, whole));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Takes the reactions of an equilibrium: force of the support on a point along an axis [N].
+    pub(crate) fn set_reactions(&mut self, of: impl Fn(u32, usize) -> f64) {
+        for Support { points, axis, reaction, .. } in &mut self.sets {
+            for (&point, reaction) in points.iter().zip(reaction) {
+                *reaction = of(point, *axis);
+            }
+        }
+    }
+
+    /// Takes the reactions from the sum of all other forces; a vector per point.
+    pub(crate) fn take_reactions(&mut self, force: &[Vec3]) -> Vec<Vec3> {
+        let mut reactions = vec![Vec3::zeros(); force.len()];
+        self.set_reactions(|point, axis| -force[point as usize][axis]);
+        for Support { points, axis, reaction, .. } in &self.sets {
+            points.iter().zip(reaction).for_each(|(&point, &value)| reactions[point as usize][*axis] = value);
+        }
+        reactions
+    }
+
+    /// Keeps the velocities before the kick.
+    pub(crate) fn remember(&mut self, points: &impl Points) {
+        for set in &mut self.sets {
+            for (before, &point) in set.before.iter_mut().zip(&set.points) {
+                *before = points.velocity(point as usize)[set.axis];
+            }
+        }
+    }
+
+    /// Gives the prescribed axes their motion, after the kick and drift, and finds the reactions.
+    pub(crate) fn impose(
+        &mut self,
+        points: &mut impl DrivenPoints,
+        time: f64,
+        dt_before: f64,
+        dt_after: f64,
+    ) -> HalfSteps {
+        let mut work = HalfSteps::default();
+        let dt_kick = 0.5 * (dt_before + dt_after);
+        for Support { points: set, axis, motion, before, reaction, .. } in &mut self.sets {
+            for ((&point, &mut before), reaction) in set.iter().zip(before).zip(reaction) {
+                let (i, axis) = (point as usize, *axis);
+                let free = points.velocity(i)[axis];
+                let place = points.reference(i);
+                let velocity = match motion {
+                    Motion::Fixed => 0.0,
+                    Motion::Velocity(v) => v(time + 0.5 * dt_after, place),
+                    Motion::Displacement(u) => {
+                        let present = points.displacement(i)[axis] - free * dt_after;
+                        (u(time + dt_after, place) - present) / dt_after
+                    }
+                };
+                let change = velocity - free;
+                // What changes the motion: the support, and the force that the kick has left out.
+                let total = points.mass(i) * change / dt_kick;
+                *reaction = total - points.force_left_out(i, axis);
+                points.set_motion(i, axis, velocity, change * dt_after);
+                work.before.external += 0.5 * *reaction * before * dt_before;
+                work.after.external += 0.5 * *reaction * velocity * dt_after;
+                work.before.kinetic += 0.5 * total * before * dt_before;
+            }
+        }
+        work
+    }
+}
+
+/// Integral of a velocity by Gauss' rule of two points on 16 parts [m].
+pub(crate) fn integral(velocity: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    const PARTS: usize = 16;
+    let width = (to - from) / PARTS as f64;
+    let offset = 0.5 / 3f64.sqrt();
+    let part = |k: usize| {
+        let middle = from + (k as f64 + 0.5) * width;
+        0.5 * width * (velocity(middle - offset * width) + velocity(middle + offset * width))
+    };
+    if width == 0.0 { 0.0 } else { (0..PARTS).map(part).sum() }
+}
