@@ -2,7 +2,7 @@
 
 mod central_difference;
 
-pub use central_difference::{Leap, LeapWork, ParticleDamping, PastForces};
+pub use central_difference::{Leap, ParticleDamping, PastForces};
 
 use fractum_math::{Rotation, Vec3};
 use rayon::prelude::*;
