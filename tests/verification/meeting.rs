@@ -9,11 +9,11 @@ use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Bonded, BondedPart, ContactMaterial, Contacts, Drive, ElasticMaterial, EnergyKind, FacetMesh, Form, Frame, Inertia,
-    Loads, Probe, Scene, SceneSettings, SolidGround, Supports, Surface, TimeStepSettings, Tool,
+    Bonded, BondedPart, ContactMaterial, ContactParameters, Contacts, Drive, ElasticMaterial, EnergyKind, FacetMesh,
+    Form, Frame, Inertia, Loads, Probe, RigidBody, Scene, SceneSettings, SolidSurface, Supports, TimeStepSettings,
 };
 
-const SURFACE: Surface = Surface { friction: 0.4, damping_ratio: 0.05, rolling_friction: 0.0 };
+const SURFACE: ContactParameters = ContactParameters { friction: 0.4, damping_ratio: 0.05, rolling_friction: 0.0 };
 
 fn elastic() -> Elastic {
     Elastic { young_modulus: 10e9, poisson_ratio: 0.2, density: 2400.0 }
@@ -54,7 +54,7 @@ fn crash(target: Target, particles: bool) -> Scene {
     let mut brittle = Body::new("block", Shape::T4, elements, elastic()).smoothed().with_damage(law);
     brittle.kinematics = Kinematics::Corotational;
     brittle.damage.as_mut().unwrap().reduce_strength_to_fit = true;
-    let (mut bodies, mut all_facets, mut tools) = (vec![brittle], vec![facets], Vec::new());
+    let (mut bodies, mut all_facets, mut rigid_bodies) = (vec![brittle], vec![facets], Vec::new());
     let count = nodes.len();
     let size = Vec3::new(0.3, 0.3, 0.08);
     let shift = Vec3::new(0.15, 0.15, 0.08);
@@ -72,10 +72,10 @@ fn crash(target: Target, particles: bool) -> Scene {
             let points: Vec<Vec3> = points.iter().map(|x| x - shift).collect();
             let mesh = FacetMesh::new(&points, &facets).unwrap();
             let form = Form::Mesh { mesh, points };
-            let mut tool = Tool::new("anvil", form, Frame::at_rest(), ElasticMaterial::RIGID, SURFACE);
-            tool.along = [Drive::Free, Drive::Free, Drive::Free];
-            tool.inertia = Some(Inertia { mass: 17.0, tensor: fractum_math::Mat3::identity() });
-            tools.push(tool);
+            let mut rigid_body = RigidBody::new("anvil", form, Frame::at_rest(), ElasticMaterial::RIGID, SURFACE);
+            rigid_body.along = [Drive::Free, Drive::Free, Drive::Free];
+            rigid_body.inertia = Some(Inertia { mass: 17.0, tensor: fractum_math::Mat3::identity() });
+            rigid_bodies.push(rigid_body);
         }
     }
     let mut solid = Solid::new(nodes, bodies).unwrap();
@@ -107,9 +107,9 @@ fn crash(target: Target, particles: bool) -> Scene {
         let elastic = ElasticMaterial { young_modulus: 10e9, poisson_ratio: 0.2 };
         materials.push(ContactMaterial { elastic, density: 2400.0, surface: SURFACE });
     }
-    let ground = |(body, facets): (usize, &Vec<[u32; 3]>)| SolidGround::new(&solid, body, SURFACE, facets).unwrap();
+    let ground = |(body, facets): (usize, &Vec<[u32; 3]>)| SolidSurface::new(&solid, body, SURFACE, facets).unwrap();
     let solids = all_facets.iter().enumerate().map(ground).collect();
-    let contacts = Contacts::new(&bonded, materials, tools, solids, Vec::new());
+    let contacts = Contacts::new(&bonded, materials, rigid_bodies, solids, Vec::new());
     let debris = Debris::new(&solid, vec![SURFACE; all_facets.len()]);
     let settings = SceneSettings {
         time_step: TimeStepSettings { safety: 0.2, element_bound: false, fixed: None, end: 4e-3 },
@@ -179,7 +179,7 @@ fn a_block_that_breaks_on_free_rigid_facets_keeps_momentum_and_energy() {
     let (start, change) = run(&mut scene, |_| {});
     assert!(scene.counts().removed_elements > 20, "{:?}", scene.counts());
     assert!(change.0 < 1e-12 * start.0.norm(), "{change:?} {start:?}");
-    let below = (0..125).map(|i| scene.solid.position(i).z - scene.contacts.tools()[0].displacement().z);
+    let below = (0..125).map(|i| scene.solid.position(i).z - scene.contacts.rigid_bodies()[0].displacement().z);
     assert!(below.clone().fold(0.0, f64::min) > -5e-3, "{}", below.fold(0.0, f64::min));
     assert!(scene.ledger().residual_max_relative < 1e-3, "{:?}", scene.ledger());
 }

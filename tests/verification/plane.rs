@@ -3,7 +3,7 @@
 use fractum_fem::{Body, Criterion, DamageLaw, Elastic, Formulation, Plane, Shape, Softening, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_rectangle};
-use fractum_scene::Surface;
+use fractum_scene::ContactParameters;
 use fractum_scene::coupling::Debris;
 use fractum_tests::CONCRETE;
 
@@ -97,7 +97,7 @@ fn particles_of_a_plane_body_are_discs_of_its_thickness() {
     let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
     let body = Body::new("sheet", Shape::T3, elements, CONCRETE);
     let solid = Solid::new(mesh.nodes, vec![Body { thickness: 0.07, ..body }]).unwrap();
-    let debris = Debris::new(&solid, vec![Surface::default()]);
+    let debris = Debris::new(&solid, vec![ContactParameters::default()]);
     assert!((0..solid.reference.len() as u32).all(|node| debris.thickness(node) == 0.07));
     let mass: f64 = solid.mass.iter().sum();
     assert!((mass - 0.07 * CONCRETE.density).abs() < 1e-9);

@@ -6,8 +6,8 @@ use fractum_fem::{Body, Criterion, DamageLaw, Formulation, Kinematics, LocalDamp
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    EnergyKind, Gravity, Load, Loads, Motion, NodalForce, Pressure, RigidGround, Scene, SceneSettings, StepError,
-    Support, Supports, Surface, TimeStepSettings,
+    ContactParameters, EnergyKind, Gravity, Load, Loads, Motion, NodalForce, NodesOnShape, Pressure, Scene,
+    SceneSettings, StepError, Support, Supports, TimeStepSettings,
 };
 use fractum_tests::{jittered_box, noise};
 
@@ -30,7 +30,7 @@ fn fine_settings(end: f64) -> SceneSettings {
 fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, settings: SceneSettings) -> Scene {
     let supports = Supports::new(supports, &solid.reference).unwrap();
     let loads = Loads::new(loads, solid.reference.len());
-    let debris = Debris::new(&solid, vec![Surface::default()]);
+    let debris = Debris::new(&solid, vec![ContactParameters::default()]);
     Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
 }
 
@@ -333,8 +333,12 @@ fn a_block_dropped_on_a_plane_bounces_and_closes_its_balance() {
     let body = Body { kinematics: Kinematics::Corotational, ..body };
     let mut solid = Solid::new(nodes, vec![body]).unwrap();
     solid.velocity.fill(Vec3::new(0.3, 0.0, -1.0));
-    let debris = Debris::new(&solid, vec![Surface::default()]);
-    let planes = vec![RigidGround::plane(Vec3::zeros(), Vec3::z(), Surface { friction: 0.3, ..Surface::default() })];
+    let debris = Debris::new(&solid, vec![ContactParameters::default()]);
+    let planes = vec![NodesOnShape::plane(
+        Vec3::zeros(),
+        Vec3::z(),
+        ContactParameters { friction: 0.3, ..ContactParameters::default() },
+    )];
     let supports = Supports::default();
     let mut scene = Scene::new(solid, supports, Loads::default(), debris, planes, &surface, settings(8e-4));
     let mut stored = 0.0f64;

@@ -12,8 +12,8 @@ use fractum_scene::statics::{
     Control, LinearSolver, NoEquilibrium, Opening, StaticSettings, StaticSolver, Stiffness, check_supports,
 };
 use fractum_scene::{
-    Load, Loads, Motion, NodalForce, Scene, SceneError, SceneSettings, Support, Supports, Surface, TimeFunction,
-    TimeStepSettings,
+    ContactParameters, Load, Loads, Motion, NodalForce, Scene, SceneError, SceneSettings, Support, Supports,
+    TimeFunction, TimeStepSettings,
 };
 use fractum_tests::{CONCRETE, jittered_box};
 
@@ -36,7 +36,7 @@ fn settings(control: Control, linear: LinearSolver) -> StaticSettings {
 fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>) -> Scene {
     let supports = Supports::new(supports, &solid.reference).unwrap();
     let loads = Loads::new(loads, solid.reference.len());
-    let debris = Debris::new(&solid, vec![Surface::default(); solid.body_count()]);
+    let debris = Debris::new(&solid, vec![ContactParameters::default(); solid.body_count()]);
     let settings = SceneSettings {
         time_step: TimeStepSettings { safety: 0.8, element_bound: true, fixed: None, end: 1.0 },
         damping: LocalDamping::default(),

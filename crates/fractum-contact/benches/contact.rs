@@ -2,8 +2,10 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use fractum_contact::law::{ContactMemory, ElasticMaterial, Hertz, Linear, MaterialPair, PairMotion, Surface};
-use fractum_contact::{FacetMesh, Frame, Ground, GroundContacts, SphereContacts, Spheres, close_pairs};
+use fractum_contact::law::{
+    ContactMemory, ContactParameters, ElasticMaterial, Hertz, Linear, MaterialPair, PairMotion,
+};
+use fractum_contact::{FacetMesh, Frame, SphereContacts, Spheres, Surface, SurfaceContacts, close_pairs};
 use fractum_math::Vec3;
 
 fn main() {
@@ -19,7 +21,7 @@ fn grid(side: usize) -> Vec<Vec3> {
 }
 
 fn glass() -> MaterialPair {
-    MaterialPair::new([ElasticMaterial { young_modulus: 70e9, poisson_ratio: 0.22 }; 2], Surface::default())
+    MaterialPair::new([ElasticMaterial { young_modulus: 70e9, poisson_ratio: 0.22 }; 2], ContactParameters::default())
 }
 
 #[divan::bench(args = [21, 46])]
@@ -42,7 +44,7 @@ fn search_thousand_to_one(bencher: Bencher) {
 
 #[divan::bench]
 fn linear_law(bencher: Bencher) {
-    let law = Linear::between_spheres(30e9, 0.2, [0.01, 0.01], [0.01, 0.01], Surface::default());
+    let law = Linear::between_spheres(30e9, 0.2, [0.01, 0.01], [0.01, 0.01], ContactParameters::default());
     let motion = PairMotion {
         normal: Vec3::x(),
         overlap: 1e-6,
@@ -101,9 +103,9 @@ fn hertz_facets(bencher: Bencher, radius: f64) {
     let radius = vec![radius; count];
     let spheres = Spheres { position: &position, velocity: &velocity, spin: &spin, radius: &radius };
     let frame = Frame::at_rest();
-    let ground = Ground::Rigid { surface: &surface, points: &points, frame: &frame };
+    let ground = Surface::Rigid { surface: &surface, points: &points, frame: &frame };
     let pair = glass();
-    let mut contacts = GroundContacts::new(0.1 * radius[0]);
+    let mut contacts = SurfaceContacts::new(0.1 * radius[0]);
     contacts.search(&ground, &spheres);
     let (mut force, mut moment) = (vec![Vec3::zeros(); count], vec![Vec3::zeros(); count]);
     bencher.counter(ItemsCount::new(count)).bench_local(|| {

@@ -1,11 +1,11 @@
 //! Contact search and contact laws.
 //!
 //! [`close_pairs`] finds the spheres that may touch; [`SphereContacts`] carries their contacts through time, and
-//! [`GroundContacts`] those of spheres with facets and rigid shapes, found by the [`DoubleHierarchy`]. [`law`] says what
+//! [`SurfaceContacts`] those of spheres with facets and rigid shapes, found by the [`DoubleHierarchy`]. [`law`] says what
 //! a touching pair feels. None of them knows particles or nodes as populations: they see positions, radii and velocities.
 //!
 //! Left out: contact of facets with facets. Behind the facets of a body with an inside, a centre is pushed out only where that is
-//! asked for ([`GroundContacts::on_solid_ground`]).
+//! asked for ([`SurfaceContacts::on_solid_ground`]).
 //!
 //! ```
 //! use fractum_contact::close_pairs;
@@ -17,7 +17,6 @@
 mod broad_phase;
 mod error;
 mod frame;
-mod ground_block;
 mod hierarchy;
 mod inside;
 pub mod law;
@@ -27,6 +26,7 @@ mod shape;
 mod sphere_facet;
 mod sphere_sphere;
 pub mod surface;
+mod surface_block;
 
 pub use broad_phase::close_pairs;
 pub use error::SurfaceError;
@@ -34,6 +34,6 @@ pub use frame::Frame;
 pub use hierarchy::{DoubleHierarchy, Foot};
 pub use nearest::{Nearest, nearest_facets};
 pub use shape::{Outside, Shape};
-pub use sphere_facet::{Ground, GroundContacts, Spheres, Touch};
+pub use sphere_facet::{Spheres, Surface, SurfaceContacts, Touch};
 pub use sphere_sphere::SphereContacts;
 pub use surface::FacetMesh;

@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::frame::Frame;
-use crate::ground_block::Block;
 use crate::law::ContactLaw;
 use crate::shape::Shape;
 use crate::surface::FacetMesh;
+use crate::surface_block::Block;
 
 /// Spheres handled as one piece of parallel work.
 const BLOCK: usize = 256;
@@ -31,7 +31,7 @@ pub struct Spheres<'a> {
 
 /// What spheres touch.
 #[derive(Clone, Copy, Debug)]
-pub enum Ground<'a> {
+pub enum Surface<'a> {
     /// Facets of a rigid body; points in the axes of the body [m].
     Rigid {
         /// Facets.
@@ -93,7 +93,7 @@ pub struct Touch<M> {
 /// Contacts are found anew at every step; their memory follows them from facet to facet. Which facets may be near is
 /// looked up only when something has moved by the skin. What is found does not depend on when that was.
 #[derive(Clone, Debug)]
-pub struct GroundContacts<L: ContactLaw> {
+pub struct SurfaceContacts<L: ContactLaw> {
     skin: f64,
     blocks: Vec<Block<L>>,
     /// Centres at the last search, in the axes of the ground [m].
@@ -106,12 +106,12 @@ pub struct GroundContacts<L: ContactLaw> {
     depth: Option<f64>,
 }
 
-impl<L: ContactLaw> GroundContacts<L> {
+impl<L: ContactLaw> SurfaceContacts<L> {
     /// No contacts yet.
     ///
     /// - `skin` [m] > 0: what may move before facets are looked up again; a fraction of the smallest radius
     pub fn new(skin: f64) -> Self {
-        GroundContacts {
+        SurfaceContacts {
             skin,
             blocks: Vec::new(),
             searched_at: Vec::new(),
@@ -126,14 +126,14 @@ impl<L: ContactLaw> GroundContacts<L> {
     ///
     /// A sphere whose closest place lies on an open edge counts as outside.
     pub fn on_solid_ground(self, depth: f64) -> Self {
-        GroundContacts { depth: Some(depth), ..self }
+        SurfaceContacts { depth: Some(depth), ..self }
     }
 
     /// Looks up the facets near each sphere if the skin is used up; true if it did.
-    pub fn search(&mut self, ground: &Ground, spheres: &Spheres) -> bool {
+    pub fn search(&mut self, ground: &Surface, spheres: &Spheres) -> bool {
         let to_ground = |x: &Vec3| match ground {
-            Ground::Rigid { frame, .. } | Ground::Shape { frame, .. } => frame.to_body(x),
-            Ground::Deformable { .. } => *x,
+            Surface::Rigid { frame, .. } | Surface::Shape { frame, .. } => frame.to_body(x),
+            Surface::Deformable { .. } => *x,
         };
         if spheres.position.is_empty() {
             return false;
@@ -142,7 +142,7 @@ impl<L: ContactLaw> GroundContacts<L> {
         if self.searched_at.len() == spheres.position.len() {
             let sphere = |(x, at): (&Vec3, &Vec3)| (to_ground(x) - at).norm_squared();
             let mut used = most(&mut spheres.position.iter().zip(&self.searched_at).map(sphere));
-            if let Ground::Deformable { points, .. } = ground {
+            if let Surface::Deformable { points, .. } = ground {
                 used += most(&mut points.iter().zip(&self.points_at).map(|(p, at)| (p - at).norm_squared()));
             }
             if used <= self.skin {
@@ -151,7 +151,7 @@ impl<L: ContactLaw> GroundContacts<L> {
         }
         self.searched_at.clear();
         self.searched_at.extend(spheres.position.iter().map(to_ground));
-        if let Ground::Deformable { points, .. } = ground {
+        if let Surface::Deformable { points, .. } = ground {
             self.points_at.clear();
             self.points_at.extend_from_slice(points);
         }
@@ -161,11 +161,11 @@ impl<L: ContactLaw> GroundContacts<L> {
         true
     }
 
-    fn find_near(&mut self, ground: &Ground, radii: &[f64]) {
+    fn find_near(&mut self, ground: &Surface, radii: &[f64]) {
         let (centres, skin, depth) = (&self.searched_at, self.skin, self.depth.unwrap_or(0.0));
         let spheres: Vec<u32> = (0..centres.len() as u32).collect();
         let near: Vec<Vec<(u32, Vec<u32>)>> = match ground {
-            Ground::Shape { shape, hollow, .. } => spheres
+            Surface::Shape { shape, hollow, .. } => spheres
                 .par_chunks(BLOCK)
                 .map(|chunk| {
                     let mut feet = Vec::new();
@@ -176,8 +176,8 @@ impl<L: ContactLaw> GroundContacts<L> {
                     chunk.iter().filter(|&&i| close(i)).map(|&i| (i, Vec::new())).collect()
                 })
                 .collect(),
-            Ground::Rigid { surface, points, .. } | Ground::Deformable { surface, points, .. } => {
-                let keep = matches!(ground, Ground::Rigid { .. });
+            Surface::Rigid { surface, points, .. } | Surface::Deformable { surface, points, .. } => {
+                let keep = matches!(ground, Surface::Rigid { .. });
                 let tree = self.tree.take().filter(|_| keep).unwrap_or_else(|| tree_of(surface, points));
                 let near_sphere = |i: u32| {
                     let (x, reach) = (centres[i as usize], radii[i as usize].max(depth) + skin);
@@ -218,7 +218,7 @@ impl<L: ContactLaw> GroundContacts<L> {
     ///
     /// - `law`: law of a sphere on this ground, where its mean curvature is the second argument [1/m]
     /// - `dt` [s]: the step that led here
-    pub fn update(&mut self, ground: &Ground, spheres: &Spheres, law: impl Fn(u32, f64) -> L + Sync, dt: f64) -> Work {
+    pub fn update(&mut self, ground: &Surface, spheres: &Spheres, law: impl Fn(u32, f64) -> L + Sync, dt: f64) -> Work {
         let depth = self.depth;
         self.blocks.par_iter_mut().for_each(|block| block.update(ground, spheres, depth, &law, dt));
         let mut work = Work::default();
@@ -232,13 +232,18 @@ impl<L: ContactLaw> GroundContacts<L> {
     }
 
     /// Takes the contacts of some spheres as they stand, without any force; they touch no nearer than now until they have
-    /// parted. Asks for a [`search`](GroundContacts::search) before.
+    /// parted. Asks for a [`search`](SurfaceContacts::search) before.
     ///
     /// - `grown`: by how much a sphere has grown since the last update [m], whose contacts then keep their force; none for
     ///   spheres that are left alone
-    pub fn take_up(&mut self, ground: &Ground, spheres: &Spheres, grown: impl Fn(u32) -> Option<f64> + Sync) {
+    pub fn accept_initial_overlap(
+        &mut self,
+        ground: &Surface,
+        spheres: &Spheres,
+        grown: impl Fn(u32) -> Option<f64> + Sync,
+    ) {
         let depth = self.depth;
-        self.blocks.par_iter_mut().for_each(|block| block.take_up(ground, spheres, depth, &grown));
+        self.blocks.par_iter_mut().for_each(|block| block.accept_initial_overlap(ground, spheres, depth, &grown));
     }
 
     /// Has the next search look up everything, since radii or facets have changed.

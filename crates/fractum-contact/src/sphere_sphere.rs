@@ -163,14 +163,14 @@ impl<L: ContactLaw> SphereContacts<L> {
 
     /// Takes the pairs that overlap and for which `which` holds as they stand, without any force; they touch no nearer than
     /// now until they have parted. Asks for a [`search`](SphereContacts::search) before.
-    pub fn take_up(&mut self, spheres: &Spheres, which: impl Fn(u32, u32) -> bool) {
+    pub fn accept_initial_overlap(&mut self, spheres: &Spheres, which: impl Fn(u32, u32) -> bool) {
         for k in 0..self.pairs.len() {
             let [i, j] = self.pairs[k];
             let apart = spheres.position[j as usize] - spheres.position[i as usize];
             let overlap = spheres.radius[i as usize] + spheres.radius[j as usize] - apart.norm();
             if overlap > 0.0 && which(i, j) {
                 self.memories[k] = L::Memory::default();
-                L::add_slack(&mut self.memories[k], overlap);
+                L::add_overlap_offset(&mut self.memories[k], overlap);
                 self.touching[k] = true;
             }
         }

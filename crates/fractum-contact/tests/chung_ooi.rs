@@ -1,12 +1,14 @@
 //! The elastic impacts of Chung and Ooi (2011), tests 1 to 4, against Hertz' closed forms and the impulse-momentum
 //! relations of gross sliding.
 
-use fractum_contact::law::{ContactLaw, ElasticMaterial, Hertz, MaterialPair, Surface, damping_of_restitution};
-use fractum_contact::{Frame, Ground, GroundContacts, Shape, SphereContacts, Spheres};
+use fractum_contact::law::{
+    ContactLaw, ContactParameters, ElasticMaterial, Hertz, MaterialPair, damping_of_restitution,
+};
+use fractum_contact::{Frame, Shape, SphereContacts, Spheres, Surface, SurfaceContacts};
 use fractum_math::Vec3;
 
-fn surface(friction: f64, rolling_friction: f64, restitution: f64) -> Surface {
-    Surface { friction, rolling_friction, damping_ratio: damping_of_restitution(restitution) }
+fn surface(friction: f64, rolling_friction: f64, restitution: f64) -> ContactParameters {
+    ContactParameters { friction, rolling_friction, damping_ratio: damping_of_restitution(restitution) }
 }
 
 struct Sphere {
@@ -88,8 +90,8 @@ fn on_plane(material: ElasticMaterial, density: f64, radius: f64, speed: f64, an
     let pair = MaterialPair::new([material, ElasticMaterial::RIGID], surface(mu, 0.0, e));
     let law = Hertz::new(&pair, radius, spheres[0].mass);
     let frame = Frame::at_rest();
-    let ground = Ground::Shape { shape: Shape::HalfSpace, hollow: false, frame: &frame };
-    let mut contacts = GroundContacts::new(0.1 * radius);
+    let ground = Surface::Shape { shape: Shape::HalfSpace, hollow: false, frame: &frame };
+    let mut contacts = SurfaceContacts::new(0.1 * radius);
     // Some 3000 steps per impact.
     let time = 2.94 * (1.25 * spheres[0].mass / law.normal).powf(0.4) * (speed * angle.cos()).powf(-0.2);
     let dt = time / 3000.0;

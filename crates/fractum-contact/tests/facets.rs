@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-use fractum_contact::law::{ElasticMaterial, Hertz, MaterialPair, Surface, damping_of_restitution};
-use fractum_contact::{DoubleHierarchy, FacetMesh, Foot, Frame, Ground, GroundContacts, Shape, Spheres};
+use fractum_contact::law::{ContactParameters, ElasticMaterial, Hertz, MaterialPair, damping_of_restitution};
+use fractum_contact::{DoubleHierarchy, FacetMesh, Foot, Frame, Shape, Spheres, Surface, SurfaceContacts};
 use fractum_math::Vec3;
 
-fn surface(friction: f64, rolling_friction: f64, restitution: f64) -> Surface {
-    Surface { friction, rolling_friction, damping_ratio: damping_of_restitution(restitution) }
+fn surface(friction: f64, rolling_friction: f64, restitution: f64) -> ContactParameters {
+    ContactParameters { friction, rolling_friction, damping_ratio: damping_of_restitution(restitution) }
 }
 
 struct Mesh {
@@ -241,11 +241,11 @@ fn on_ridge_and_apex_nothing_pushes_sideways_to_the_last_bit() {
 }
 
 /// Work of friction and final force of a sphere pulled over a ground at constant height and speed.
-fn pulled(ground: &Ground, steps: usize) -> (f64, Vec3) {
+fn pulled(ground: &Surface, steps: usize) -> (f64, Vec3) {
     let radius = 0.2;
     let material = ElasticMaterial { young_modulus: 1e7, poisson_ratio: 0.3 };
     let law = Hertz::new(&MaterialPair::new([material; 2], surface(0.4, 0.0, 1.0)), radius, 1.0);
-    let mut contacts = GroundContacts::new(0.1 * radius);
+    let mut contacts = SurfaceContacts::new(0.1 * radius);
     let (mut friction, mut force) = (0.0, Vec3::zeros());
     let (dt, velocity) = (1e-3, Vec3::new(0.6, 0.35, 0.0));
     for step in 0..steps {
@@ -264,12 +264,12 @@ fn pulled(ground: &Ground, steps: usize) -> (f64, Vec3) {
 #[test]
 fn friction_over_many_facets_is_that_on_one_plane() {
     let frame = Frame::at_rest();
-    let plane = Ground::Shape { shape: Shape::HalfSpace, hollow: false, frame: &frame };
+    let plane = Surface::Shape { shape: Shape::HalfSpace, hollow: false, frame: &frame };
     let (work, force) = pulled(&plane, 2000);
     assert!(work > 0.0);
     for (n, seed) in [(2, 1), (6, 2), (12, 3)] {
         let mesh = sheet(n, seed, false, |_| 0.0, &[-1.0, 1.0]);
-        let ground = Ground::Rigid { surface: &mesh.surface, points: &mesh.points, frame: &frame };
+        let ground = Surface::Rigid { surface: &mesh.surface, points: &mesh.points, frame: &frame };
         let (same_work, same_force) = pulled(&ground, 2000);
         assert!((same_work / work - 1.0).abs() < 1e-6, "{same_work} against {work}");
         assert!((same_force - force).norm() < 1e-9 * force.norm());
@@ -282,15 +282,15 @@ fn a_spring_that_sticks_keeps_its_stretch_across_an_edge() {
     // force is that on the plane, where histories that restart at each facet would lose it.
     let frame = Frame::at_rest();
     let mesh = sheet(10, 4, false, |_| 0.0, &[-1.0, 1.0]);
-    let grounds = [
-        Ground::Shape { shape: Shape::HalfSpace, hollow: false, frame: &frame },
-        Ground::Rigid { surface: &mesh.surface, points: &mesh.points, frame: &frame },
+    let shape_contacts = [
+        Surface::Shape { shape: Shape::HalfSpace, hollow: false, frame: &frame },
+        Surface::Rigid { surface: &mesh.surface, points: &mesh.points, frame: &frame },
     ];
-    let forces = grounds.map(|ground| {
+    let forces = shape_contacts.map(|ground| {
         let radius = 0.2;
         let material = ElasticMaterial { young_modulus: 1e7, poisson_ratio: 0.3 };
         let law = Hertz::new(&MaterialPair::new([material; 2], surface(0.9, 0.0, 1.0)), radius, 1.0);
-        let mut contacts = GroundContacts::new(0.1 * radius);
+        let mut contacts = SurfaceContacts::new(0.1 * radius);
         let dt = 1e-3;
         let mut force = Vec3::zeros();
         for step in 0..1000 {
@@ -315,7 +315,7 @@ fn a_spring_that_sticks_keeps_its_stretch_across_an_edge() {
 fn forces_on_the_points_of_facets_balance_force_and_moment() {
     let mesh = sheet(5, 11, false, |x: f64| 0.05 * x.abs(), &[-1.0, 0.0, 1.0]);
     let velocity = vec![Vec3::new(0.1, -0.2, 0.3); mesh.points.len()];
-    let ground = Ground::Deformable { surface: &mesh.surface, points: &mesh.points, velocity: &velocity };
+    let ground = Surface::Deformable { surface: &mesh.surface, points: &mesh.points, velocity: &velocity };
     let mut seed = 3;
     let count = 50;
     let position: Vec<Vec3> = (0..count)
@@ -325,7 +325,7 @@ fn forces_on_the_points_of_facets_balance_force_and_moment() {
     let spheres = Spheres { position: &position, velocity: &still, spin: &still, radius: &radius };
     let material = ElasticMaterial { young_modulus: 1e7, poisson_ratio: 0.3 };
     let law = Hertz::new(&MaterialPair::new([material; 2], surface(0.4, 0.0, 0.5)), 0.2, 1.0);
-    let mut contacts = GroundContacts::new(0.02);
+    let mut contacts = SurfaceContacts::new(0.02);
     contacts.search(&ground, &spheres);
     contacts.update(&ground, &spheres, |_, _| law, 1e-4);
     let (mut force, mut moment) = (still.clone(), still.clone());
@@ -351,7 +351,7 @@ fn one_and_three_threads_give_the_same_bits_and_so_does_a_later_search() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let frame = Frame::at_rest();
-            let ground = Ground::Rigid { surface: &mesh.surface, points: &mesh.points, frame: &frame };
+            let ground = Surface::Rigid { surface: &mesh.surface, points: &mesh.points, frame: &frame };
             let mut seed = 17;
             let count = 700;
             let mut position: Vec<Vec3> = (0..count)
@@ -361,7 +361,7 @@ fn one_and_three_threads_give_the_same_bits_and_so_does_a_later_search() {
             let (spin, radius) = (vec![Vec3::zeros(); count], vec![0.06; count]);
             let material = ElasticMaterial { young_modulus: 1e6, poisson_ratio: 0.3 };
             let law = Hertz::new(&MaterialPair::new([material; 2], surface(0.4, 0.1, 0.5)), 0.06, 1.0);
-            let mut contacts = GroundContacts::new(skin);
+            let mut contacts = SurfaceContacts::new(skin);
             for _ in 0..100 {
                 let spheres = Spheres { position: &position, velocity: &velocity, spin: &spin, radius: &radius };
                 contacts.search(&ground, &spheres);

@@ -14,7 +14,6 @@ mod error;
 mod fragment;
 mod ledger;
 mod probe;
-mod rigid;
 mod scene;
 pub mod statics;
 mod step;
@@ -22,15 +21,17 @@ mod step;
 pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest};
 pub use clock::{Clock, TimeStepSettings};
 pub use conditions::{Gravity, Load, Loads, Motion, NodalForce, PointProbe, Pressure, Support, Supports, TimeFunction};
-pub use contacts::{ContactMaterial, Contacts, Drive, Form, Inertia, Overlap, OverlapWith, SolidGround, Tool, pieces};
+pub use contacts::{
+    ContactMaterial, Contacts, Drive, Form, Inertia, NodesOnShape, Overlap, OverlapWith, RigidBody, SolidSurface,
+    pieces,
+};
 pub use crack_measure::{CrackMeasure, InsideCracks};
 pub use error::{SceneError, StepError};
-pub use fractum_contact::law::{ElasticMaterial, Surface, damping_of_restitution};
+pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution};
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fragment::{Fragment, fragments};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use probe::{Population, Probe};
-pub use rigid::RigidGround;
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
 pub use statics::{BondedStaticSettings, BondedStatics};
 pub use step::{Phase, StepReport};

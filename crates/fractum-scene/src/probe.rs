@@ -41,23 +41,23 @@ pub enum Probe {
     /// Angular momentum about the origin along a direction [kg m²/s].
     AngularMomentum(Vec3),
     /// Force of a rigid body on what it touches along a direction [N].
-    ToolForce {
+    RigidBodyForce {
         /// Rigid body.
-        tool: usize,
+        rigid_body: usize,
         /// Unit direction.
         direction: Vec3,
     },
     /// Way of the reference point of a rigid body along a direction, at the instant of the last step [m].
-    ToolDisplacement {
+    RigidBodyDisplacement {
         /// Rigid body.
-        tool: usize,
+        rigid_body: usize,
         /// Unit direction.
         direction: Vec3,
     },
     /// Velocity of the reference point of a rigid body along a direction [m/s].
-    ToolVelocity {
+    RigidBodyVelocity {
         /// Rigid body.
-        tool: usize,
+        rigid_body: usize,
         /// Unit direction.
         direction: Vec3,
     },
@@ -106,8 +106,9 @@ impl Probe {
             }
             Probe::Momentum(direction) => {
                 let nodes = (0..solid.mass.len()).map(|i| solid.mass[i] * solid.velocity[i].dot(direction));
-                let tools: Vec3 = scene.contacts.tools().iter().map(|tool| tool.momentum()).sum();
-                nodes.sum::<f64>() + (scene.bonded.momentum() + tools).dot(direction)
+                let rigid_bodies: Vec3 =
+                    scene.contacts.rigid_bodies().iter().map(|rigid_body| rigid_body.momentum()).sum();
+                nodes.sum::<f64>() + (scene.bonded.momentum() + rigid_bodies).dot(direction)
             }
             Probe::AngularMomentum(direction) => {
                 let nodes = (0..solid.mass.len())
@@ -115,12 +116,16 @@ impl Probe {
                 let spins = scene.debris.spin_momentum(solid) + scene.bonded.angular_momentum();
                 nodes.sum::<f64>() + spins.dot(direction)
             }
-            Probe::ToolForce { tool, direction } => -scene.contacts.tools()[*tool].contact_force().dot(direction),
-            Probe::ToolDisplacement { tool, direction } => {
-                let tool = &scene.contacts.tools()[*tool];
-                (tool.displacement() - tool.frame.velocity * scene.clock.dt_before).dot(direction)
+            Probe::RigidBodyForce { rigid_body, direction } => {
+                -scene.contacts.rigid_bodies()[*rigid_body].contact_force().dot(direction)
             }
-            Probe::ToolVelocity { tool, direction } => scene.contacts.tools()[*tool].frame.velocity.dot(direction),
+            Probe::RigidBodyDisplacement { rigid_body, direction } => {
+                let rigid_body = &scene.contacts.rigid_bodies()[*rigid_body];
+                (rigid_body.displacement() - rigid_body.frame.velocity * scene.clock.dt_before).dot(direction)
+            }
+            Probe::RigidBodyVelocity { rigid_body, direction } => {
+                scene.contacts.rigid_bodies()[*rigid_body].frame.velocity.dot(direction)
+            }
             Probe::CrackArea => solid.crack_area(),
             Probe::Crack { measure, axis, inside } => measure_crack(scene, *measure, axis, inside.as_ref()),
         }

@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 use crate::bonded::{Bonded, BondedState};
 use crate::clock::{Clock, TimeStepSettings};
 use crate::conditions::{Loads, Supports};
+use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
 use crate::fragment::{Fragment, fragments, joined};
 use crate::ledger::{Books, Ledger};
-use crate::rigid::{Candidate, RigidGround};
 
 /// How much faster than it is a wall contact counts in the stable step: the whole weight of a body may come on few of
 /// them, and half a period of contact wants some twenty steps for the energy balance.
@@ -28,7 +28,7 @@ pub struct Scene {
     /// Contacts of particles with nodes of their own, and the rigid bodies that they meet.
     pub contacts: Contacts,
     /// Rigid shapes that nodes of solids and debris touch.
-    pub grounds: Vec<RigidGround>,
+    pub shape_contacts: Vec<NodesOnShape>,
     /// Time and step.
     pub clock: Clock,
     pub(crate) supports: Supports,
@@ -64,7 +64,7 @@ pub struct SceneState {
     debris: DebrisState,
     bonded: Option<BondedState>,
     contacts: Option<ContactsState>,
-    grounds: Vec<Vec<Candidate>>,
+    shape_contacts: Vec<Vec<Candidate>>,
     ledger: Ledger,
     books: Books,
     frequency: f64,
@@ -111,7 +111,7 @@ impl Scene {
         supports: Supports,
         loads: Loads,
         mut debris: Debris,
-        mut grounds: Vec<RigidGround>,
+        mut shape_contacts: Vec<NodesOnShape>,
         surface: &[u32],
         settings: SceneSettings,
     ) -> Self {
@@ -120,9 +120,9 @@ impl Scene {
         } else {
             solid.stable_step()
         };
-        if !grounds.is_empty() {
+        if !shape_contacts.is_empty() {
             debris.prepare(&solid);
-            grounds.iter_mut().for_each(|ground| ground.watch(surface, &solid, &debris));
+            shape_contacts.iter_mut().for_each(|ground| ground.watch(surface, &solid, &debris));
         }
         let mut scene = Scene {
             solid,
@@ -130,7 +130,7 @@ impl Scene {
             bonded: Bonded::default(),
             ties: Ties::default(),
             contacts: Contacts::default(),
-            grounds,
+            shape_contacts,
             clock: Clock::new(0.0),
             supports,
             loads,
@@ -165,7 +165,7 @@ impl Scene {
     ///
     /// - `surface`: nodes on the surface of the solids, ascending
     pub fn with_contacts(mut self, mut contacts: Contacts, surface: &[u32]) -> Self {
-        contacts.meet_nodes(&self.solid, &mut self.debris, &self.bonded.particles, surface);
+        contacts.set_node_contacts(&self.solid, &mut self.debris, &self.bonded.particles, surface);
         self.contacts = contacts;
         self.clock = Clock::new(self.next_dt(0.0));
         self
@@ -173,24 +173,27 @@ impl Scene {
 
     /// Takes everything that overlaps as it stands, before the first step: it gives no force, and touches no nearer than now until
     /// it has parted.
-    pub fn keep_overlaps(&mut self) {
-        self.contacts.take_up_particles(&self.solid, &self.bonded.particles);
-        self.take_up_nodes();
+    pub fn accept_initial_overlaps(&mut self) {
+        self.contacts.accept_particle_overlaps(&self.solid, &self.bonded.particles);
+        self.accept_node_overlaps();
     }
 
     /// Nodes of solids that are in something before the first step: node, depth [m] and what it is in, deepest first.
     pub fn node_overlaps(&self) -> Vec<(u32, f64, OverlapWith)> {
-        let mut found = self.clone().take_up_nodes();
+        let mut found = self.clone().accept_node_overlaps();
         found.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         found
     }
 
-    fn take_up_nodes(&mut self) -> Vec<(u32, f64, OverlapWith)> {
-        let mut found = self.contacts.take_up_nodes(&self.solid);
-        for ground in &mut self.grounds {
-            let inside = ground.take_up(self.contacts.tools(), &self.solid);
-            let name = ground.tool().and_then(|index| self.contacts.tools().get(index)).map(|tool| tool.name.clone());
-            let other = OverlapWith::Tool(name.unwrap_or_default());
+    fn accept_node_overlaps(&mut self) -> Vec<(u32, f64, OverlapWith)> {
+        let mut found = self.contacts.accept_node_overlaps(&self.solid);
+        for ground in &mut self.shape_contacts {
+            let inside = ground.accept_initial_overlap(self.contacts.rigid_bodies(), &self.solid);
+            let name = ground
+                .rigid_body()
+                .and_then(|index| self.contacts.rigid_bodies().get(index))
+                .map(|rigid_body| rigid_body.name.clone());
+            let other = OverlapWith::RigidBody(name.unwrap_or_default());
             found.extend(inside.into_iter().map(|(node, depth)| (node, depth, other.clone())));
         }
         found
@@ -233,8 +236,8 @@ impl Scene {
     }
 
     pub(crate) fn update_contact_frequency(&mut self) {
-        let Scene { solid, debris, grounds, .. } = self;
-        let walls: f64 = grounds.iter().map(|ground| ground.frequency_square(solid)).sum();
+        let Scene { solid, debris, shape_contacts, .. } = self;
+        let walls: f64 = shape_contacts.iter().map(|ground| ground.frequency_square(solid)).sum();
         self.contact_frequency_square = RESOLUTION * RESOLUTION * walls + debris.frequency_square(solid);
     }
 
@@ -281,7 +284,7 @@ impl Scene {
             bonds: self.bonded.bond_counts().0,
             broken_bonds: self.bonded.bond_counts().1,
             contacts: self.debris.touching().count()
-                + self.grounds.iter().map(RigidGround::touching).sum::<usize>()
+                + self.shape_contacts.iter().map(NodesOnShape::touching).sum::<usize>()
                 + self.contacts.touching(),
         }
     }
@@ -319,7 +322,7 @@ impl Scene {
             debris: self.debris.state().clone(),
             bonded: (!self.bonded.is_empty()).then(|| self.bonded.state()),
             contacts: (!self.contacts.is_empty()).then(|| self.contacts.state()),
-            grounds: self.grounds.iter().map(RigidGround::state).collect(),
+            shape_contacts: self.shape_contacts.iter().map(NodesOnShape::state).collect(),
             ledger: self.ledger,
             books: self.books,
             frequency: self.stable.frequency,
@@ -341,7 +344,7 @@ impl Scene {
         if let Some(contacts) = state.contacts {
             self.contacts.restore(&self.solid, &self.debris, contacts);
         }
-        for (ground, candidates) in self.grounds.iter_mut().zip(state.grounds) {
+        for (ground, candidates) in self.shape_contacts.iter_mut().zip(state.shape_contacts) {
             ground.restore(candidates);
         }
         self.ledger = state.ledger;

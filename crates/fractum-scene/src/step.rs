@@ -111,7 +111,7 @@ impl Scene {
         work += self.supports.impose(&mut self.solid, time, dt_before, dt_after);
         work.before.kinetic += self.debris.turn(&self.solid, dt_before, 0.5 * (dt_before + dt_after));
         work += self.move_bonded(time, dt_before, dt_after, measure);
-        work += self.contacts.move_tools(time, dt_before, dt_after);
+        work += self.contacts.move_bodies(time, dt_before, dt_after);
         work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
         work
     }
@@ -155,14 +155,14 @@ impl Scene {
         if !self.contacts.is_empty() {
             work += self.contacts.add_forces(&mut self.solid, &mut self.bonded.particles, dt);
         }
-        if self.debris.is_empty() && self.grounds.is_empty() && !self.contacts.meets_nodes() {
+        if self.debris.is_empty() && self.shape_contacts.is_empty() && !self.contacts.has_node_contacts() {
             return work;
         }
         work += self.debris.add_forces(&mut self.solid, dt);
         let Scene { contacts, solid, debris, bonded, .. } = self;
         work += contacts.add_node_forces(solid, debris, &mut bonded.particles, dt);
-        for ground in &mut self.grounds {
-            work += ground.add_forces(self.contacts.tools_mut(), &mut self.solid, &mut self.debris, dt);
+        for ground in &mut self.shape_contacts {
+            work += ground.add_forces(self.contacts.rigid_bodies_mut(), &mut self.solid, &mut self.debris, dt);
         }
         self.debris.pass_on_torques(&mut self.solid);
         work
@@ -178,7 +178,7 @@ impl Scene {
             let before = self.debris.len();
             self.debris.release(&self.solid, &self.removed);
             report.particles_born = self.debris.len() - before;
-            for ground in &mut self.grounds {
+            for ground in &mut self.shape_contacts {
                 for &node in &self.debris.state().nodes[before..] {
                     ground.watch_node(node, &self.solid, &self.debris);
                 }
@@ -216,10 +216,10 @@ impl Scene {
         ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
         if self.clock.step == 0 {
             ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];
-            // Less than this is no energy: bodies that wait for a tool move by what rounding leaves.
+            // Less than this is no energy: bodies that wait for a rigid body move by what rounding leaves.
             ledger.scale = bonded.round_off_energy(self.clock.dt_after);
         }
-        // The first touch of a tool is found to a step only; it is measured by what a particle takes from it, not by the little
+        // The first touch of a rigid body is found to a step only; it is measured by what a particle takes from it, not by the little
         // work done so far.
         ledger.scale = ledger.scale.max(contacts.touch_energy(&bonded.particles));
         ledger.update_maxima();

@@ -148,8 +148,8 @@ impl Plan {
             RigidShape::Cylinder { .. } => "cylinder".to_owned(),
             RigidShape::Sphere { .. } => "sphere".to_owned(),
             RigidShape::Group { .. } | RigidShape::Stl { .. } => {
-                let tool = scene.contacts.tools().iter().find(|tool| tool.name == name);
-                let facets = tool.map_or(0, |tool| tool.facets());
+                let rigid_body = scene.contacts.rigid_bodies().iter().find(|rigid_body| rigid_body.name == name);
+                let facets = rigid_body.map_or(0, |rigid_body| rigid_body.facets());
                 format!("mesh of {facets} facets")
             }
         };
@@ -326,7 +326,8 @@ impl Plan {
         choose(damage, "damage and removal of elements", "no body can be damaged");
         choose(damage, "discrete elements (from the first removal)", "nothing turns into them");
         choose(scene.bonded.bond_counts().0 > 0, "cohesive beams", "no bonded body");
-        let touched = (!scene.grounds.is_empty() || scene.contacts.meets_nodes()) && scene.solid.body_count() > 0;
+        let touched =
+            (!scene.shape_contacts.is_empty() || scene.contacts.has_node_contacts()) && scene.solid.body_count() > 0;
         choose(touched, "contact of solids with other bodies", "nothing that a solid could meet");
         let balls = !scene.contacts.is_empty() && (damage || !scene.bonded.particles.is_empty());
         choose(balls, "contact of particles by Hertz' law", "no particles that could meet anything");

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fractum_io::number::quantity;
-use fractum_scene::statics::{Interlude, NoEquilibrium, StaticSolver, StaticState};
+use fractum_scene::statics::{DynamicPhase, NoEquilibrium, StaticSolver, StaticState};
 use fractum_scene::{BondedStaticSettings, BondedStatics, Scene, StepError};
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ use crate::run::{End, PHASES, Run, is_interrupted};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct StaticProgress {
     solver: StaticState,
-    interlude: Option<Interlude>,
+    interlude: Option<DynamicPhase>,
     rested_at: f64,
     periods: f64,
 }
@@ -22,7 +22,7 @@ pub(crate) struct StaticProgress {
 /// A quasi-static run: at equilibrium, or in motion between two states of it.
 pub(crate) struct Quiet {
     solver: StaticSolver,
-    interlude: Option<Interlude>,
+    interlude: Option<DynamicPhase>,
     /// Time at which motion ended last [s].
     rested_at: f64,
     /// First periods that the next motion lasts at least: more where the last one has not reached an equilibrium.
@@ -133,7 +133,7 @@ impl Run<'_> {
         &mut self,
         scene: &mut Scene,
         quiet: &mut Quiet,
-        interlude: &mut Interlude,
+        interlude: &mut DynamicPhase,
     ) -> Result<Result<(), StepError>, Failure> {
         let (time, dt) = (scene.clock.time, scene.clock.dt_after);
         if !interlude.look_is_due(time) {
@@ -153,7 +153,7 @@ impl Run<'_> {
             ))?;
             quiet.interlude = None;
             quiet.rested_at = time;
-            self.timed(0, |_| quiet.solver.take_up(scene));
+            self.timed(0, |_| quiet.solver.resume_from_motion(scene));
         }
         Ok(Ok(()))
     }

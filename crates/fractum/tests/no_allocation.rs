@@ -11,8 +11,8 @@ use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::{Debris, Layer};
 use fractum_scene::{
-    Bonded, BondedPart, Gravity, Load, Loads, Motion, NodalForce, RigidGround, Scene, SceneSettings, Support, Supports,
-    Surface, TimeStepSettings,
+    Bonded, BondedPart, ContactParameters, Gravity, Load, Loads, Motion, NodalForce, NodesOnShape, Scene,
+    SceneSettings, Support, Supports, TimeStepSettings,
 };
 
 /// The allocator of the system, counting requests while it is told to.
@@ -108,14 +108,18 @@ fn landing(nodes: Vec<Vec3>, body: Body) -> Scene {
         solid,
         Vec::new(),
         Vec::new(),
-        vec![RigidGround::plane(Vec3::zeros(), Vec3::z(), Surface { friction: 0.3, ..Surface::default() })],
+        vec![NodesOnShape::plane(
+            Vec3::zeros(),
+            Vec3::z(),
+            ContactParameters { friction: 0.3, ..ContactParameters::default() },
+        )],
     )
 }
 
-fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<RigidGround>) -> Scene {
+fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<NodesOnShape>) -> Scene {
     let supports = Supports::new(supports, &solid.reference).unwrap();
     let loads = Loads::new(loads, solid.reference.len());
-    let debris = Debris::new(&solid, vec![Surface::default(); solid.body_count()]);
+    let debris = Debris::new(&solid, vec![ContactParameters::default(); solid.body_count()]);
     let surface: Vec<u32> = (0..).zip(&solid.reference).filter(|(_, p)| p.z < 1e-9).map(|(n, _)| n).collect();
     let settings = SceneSettings {
         time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end: 1.0 },

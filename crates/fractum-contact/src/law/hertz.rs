@@ -2,7 +2,7 @@ use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::rolling::{Rolling, RollingMemory};
-use super::{ContactForce, ContactLaw, PairMotion, Surface};
+use super::{ContactForce, ContactLaw, ContactParameters, PairMotion};
 
 /// Elastic constants of a material in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,12 +37,12 @@ pub struct MaterialPair {
     pub effective_shear_modulus: f64,
     /// Friction and damping; a damping ratio ζ gives the restitution [`restitution_of_damping`](super::restitution_of_damping)
     /// at every speed.
-    pub surface: Surface,
+    pub surface: ContactParameters,
 }
 
 impl MaterialPair {
-    /// Two materials; `surface` is that of the pair, [`Surface::against`].
-    pub fn new(materials: [ElasticMaterial; 2], surface: Surface) -> Self {
+    /// Two materials; `surface` is that of the pair, [`ContactParameters::against`].
+    pub fn new(materials: [ElasticMaterial; 2], surface: ContactParameters) -> Self {
         let sum = |of: fn(&ElasticMaterial) -> f64| 1.0 / (of(&materials[0]) + of(&materials[1]));
         MaterialPair {
             effective_modulus: sum(ElasticMaterial::normal_compliance),
@@ -88,8 +88,8 @@ pub struct HertzMemory {
     /// Force of the normal damper at the last step [N].
     damper: f64,
     rolling: RollingMemory,
-    /// Part of the overlap that gives no force [m], see [`ContactLaw::add_slack`].
-    slack: f64,
+    /// Part of the overlap that gives no force [m], see [`ContactLaw::add_overlap_offset`].
+    overlap_offset: f64,
 }
 
 impl Hertz {
@@ -120,10 +120,10 @@ impl ContactLaw for Hertz {
         let old = *memory;
         let old_stiffness = self.tangential * old.root;
         let old_spring = 0.5 * old_stiffness * old.slip.norm_squared();
-        let slack = old.slack.min(motion.overlap.max(0.0));
-        let overlap = motion.overlap - slack;
+        let overlap_offset = old.overlap_offset.min(motion.overlap.max(0.0));
+        let overlap = motion.overlap - overlap_offset;
         if overlap <= 0.0 {
-            *memory = HertzMemory { slack, ..HertzMemory::default() };
+            *memory = HertzMemory { overlap_offset, ..HertzMemory::default() };
             return ContactForce {
                 damping: 0.5 * (old.damper * approach + old.drag.dot(&across)) * motion.dt,
                 friction: old_spring + old.rolling.stored(),
@@ -159,7 +159,7 @@ impl ContactLaw for Hertz {
             let size = whole.norm();
             (trial, if size > limit { whole * (limit / size) - trial * stiffness } else { drag })
         };
-        *memory = HertzMemory { slip, drag, root, damper, rolling: old.rolling, slack };
+        *memory = HertzMemory { slip, drag, root, damper, rolling: old.rolling, overlap_offset };
 
         let spring = 0.5 * stiffness * slip.norm_squared();
         let work = 0.5 * (turned * old_stiffness + slip * stiffness).dot(&across) * motion.dt;
@@ -180,12 +180,12 @@ impl ContactLaw for Hertz {
         force
     }
 
-    fn add_slack(memory: &mut HertzMemory, by: f64) {
-        memory.slack += by;
+    fn add_overlap_offset(memory: &mut HertzMemory, by: f64) {
+        memory.overlap_offset += by;
     }
 
-    fn slack(memory: &HertzMemory) -> f64 {
-        memory.slack
+    fn overlap_offset(memory: &HertzMemory) -> f64 {
+        memory.overlap_offset
     }
 
     fn stiffness(&self, overlap: f64) -> (f64, f64) {

@@ -1,7 +1,7 @@
 use fractum_math::{Vec3, Work};
 use serde::{Deserialize, Serialize};
 
-use super::Surface;
+use super::ContactParameters;
 use super::rolling::{Rolling, RollingMemory};
 
 /// Linear springs along and across the normal with viscous damping, Coulomb friction, and friction against [`Rolling`].
@@ -64,8 +64,8 @@ pub struct ContactMemory {
     rolling: RollingMemory,
     /// Force of the normal damper at the last step [N].
     damper: f64,
-    /// Part of the overlap that gives no force [m], see [`ContactLaw::add_slack`](super::ContactLaw::add_slack).
-    pub(super) slack: f64,
+    /// Part of the overlap that gives no force [m], see [`ContactLaw::add_overlap_offset`](super::ContactLaw::add_overlap_offset).
+    pub(super) overlap_offset: f64,
 }
 
 impl Linear {
@@ -78,7 +78,7 @@ impl Linear {
         poisson_ratio: f64,
         radii: [f64; 2],
         masses: [f64; 2],
-        surface: Surface,
+        surface: ContactParameters,
     ) -> Self {
         let smaller = radii[0].min(radii[1]);
         let stiffness = young_modulus * std::f64::consts::PI * smaller * smaller / (radii[0] + radii[1]);
@@ -95,7 +95,7 @@ impl Linear {
         radii: [f64; 2],
         thickness: f64,
         masses: [f64; 2],
-        surface: Surface,
+        surface: ContactParameters,
     ) -> Self {
         let stiffness = young_modulus * 2.0 * radii[0].min(radii[1]) * thickness / (radii[0] + radii[1]);
         let reduced = |[a, b]: [f64; 2]| a * b / (a + b);
@@ -109,18 +109,18 @@ impl Linear {
         radius: f64,
         thickness: f64,
         mass: f64,
-        surface: Surface,
+        surface: ContactParameters,
     ) -> Self {
         Linear::new(young_modulus * thickness, poisson_ratio, radius, mass, surface)
     }
 
     /// The law of a sphere on a rigid wall, that of a sphere on its mirror image: k_n = E π r/2.
-    pub fn on_wall(young_modulus: f64, poisson_ratio: f64, radius: f64, mass: f64, surface: Surface) -> Self {
+    pub fn on_wall(young_modulus: f64, poisson_ratio: f64, radius: f64, mass: f64, surface: ContactParameters) -> Self {
         let stiffness = 0.5 * young_modulus * std::f64::consts::PI * radius;
         Linear::new(stiffness, poisson_ratio, radius, mass, surface)
     }
 
-    fn new(stiffness: f64, poisson_ratio: f64, radius: f64, mass: f64, surface: Surface) -> Self {
+    fn new(stiffness: f64, poisson_ratio: f64, radius: f64, mass: f64, surface: ContactParameters) -> Self {
         let tangential_stiffness = stiffness / (2.0 * (1.0 + poisson_ratio));
         Linear {
             normal_stiffness: stiffness,
@@ -139,8 +139,8 @@ impl Linear {
         let n = motion.normal;
         let approach = -motion.velocity.dot(&n);
         let last = std::mem::take(&mut memory.damper);
-        memory.slack = memory.slack.min(motion.overlap.max(0.0));
-        let overlap = motion.overlap - memory.slack;
+        memory.overlap_offset = memory.overlap_offset.min(motion.overlap.max(0.0));
+        let overlap = motion.overlap - memory.overlap_offset;
         if overlap <= 0.0 {
             // What the springs held is lost: they slip with nothing to press them.
             let across = motion.velocity + n * approach;
@@ -258,7 +258,13 @@ mod tests {
     fn bounce_gives_back_what_damping_leaves() {
         // A mass on the normal spring: restitution exp(-π ξ/√(1 - ξ²)) of the linear oscillator, up to the clipped end.
         let (mass, xi): (f64, f64) = (0.2, 0.05);
-        let law = Linear::new(1e5, 0.2, 0.1, mass, Surface { friction: 0.0, rolling_friction: 0.0, damping_ratio: xi });
+        let law = Linear::new(
+            1e5,
+            0.2,
+            0.1,
+            mass,
+            ContactParameters { friction: 0.0, rolling_friction: 0.0, damping_ratio: xi },
+        );
         let (mut x, mut v, dt) = (0.0, -1.0, 1e-7);
         let mut memory = ContactMemory::default();
         loop {
@@ -278,7 +284,7 @@ mod tests {
     fn rolling_friction_stops_a_rolling_sphere_after_the_distance_of_theory() {
         // Rolling without sliding under the couple μ_r R m g: deceleration (5/7) μ_r g, path v²/(2 a).
         let (mass, radius, g, mu_r): (f64, f64, f64, f64) = (0.1, 0.02, 9.81, 0.05);
-        let surface = Surface { friction: 0.8, rolling_friction: mu_r, damping_ratio: 0.0 };
+        let surface = ContactParameters { friction: 0.8, rolling_friction: mu_r, damping_ratio: 0.0 };
         let law = Linear::on_wall(1e6, 0.2, radius, mass, surface);
         let overlap = mass * g / law.normal_stiffness;
         let arm = -Vec3::z() * (radius - overlap);

@@ -2,15 +2,15 @@
 
 mod hertz;
 mod linear;
+mod parameters;
 mod restitution;
 mod rolling;
-mod surface;
 
 pub use hertz::{ElasticMaterial, Hertz, HertzMemory, MaterialPair};
 pub use linear::{ContactForce, ContactMemory, Linear, PairMotion};
+pub use parameters::ContactParameters;
 pub use restitution::{damping_of_restitution, restitution_of_damping};
 pub use rolling::{Rolling, RollingMemory};
-pub use surface::Surface;
 
 /// A law of contact between two bodies at one point.
 pub trait ContactLaw: Copy + Send + Sync {
@@ -23,10 +23,10 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// Makes some more of the overlap give no force [m]; what gives none shrinks for good as the pair parts.
     ///
     /// So a pair that is found deep within each other bears nothing as it stands, and brings no energy.
-    fn add_slack(memory: &mut Self::Memory, by: f64);
+    fn add_overlap_offset(memory: &mut Self::Memory, by: f64);
 
     /// How much of the overlap gives no force [m].
-    fn slack(memory: &Self::Memory) -> f64;
+    fn overlap_offset(memory: &Self::Memory) -> f64;
 
     /// Normal and tangential stiffness at an overlap [m], in N/m.
     fn stiffness(&self, overlap: f64) -> (f64, f64);
@@ -39,12 +39,12 @@ impl ContactLaw for Linear {
         Linear::force(self, motion, memory)
     }
 
-    fn add_slack(memory: &mut ContactMemory, by: f64) {
-        memory.slack += by;
+    fn add_overlap_offset(memory: &mut ContactMemory, by: f64) {
+        memory.overlap_offset += by;
     }
 
-    fn slack(memory: &ContactMemory) -> f64 {
-        memory.slack
+    fn overlap_offset(memory: &ContactMemory) -> f64 {
+        memory.overlap_offset
     }
 
     fn stiffness(&self, _overlap: f64) -> (f64, f64) {
@@ -61,7 +61,7 @@ mod tests {
     /// Presses, parts, and presses again a pair that was found 2 µm deep: force only beyond what it was found or parted at.
     fn found_deep<L: ContactLaw>(law: L) {
         let mut memory = L::Memory::default();
-        L::add_slack(&mut memory, 2e-6);
+        L::add_overlap_offset(&mut memory, 2e-6);
         let mut press = |overlap: f64| {
             let still = Vec3::zeros();
             let motion = PairMotion { normal: Vec3::x(), overlap, velocity: still, spin: still, dt: 1e-6 };
@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn a_pair_that_is_found_deep_gives_force_only_beyond_that_and_forgets_it_as_it_parts() {
         let steel = ElasticMaterial { young_modulus: 200e9, poisson_ratio: 0.3 };
-        let surface = Surface { friction: 0.3, damping_ratio: 0.0, rolling_friction: 0.0 };
+        let surface = ContactParameters { friction: 0.3, damping_ratio: 0.0, rolling_friction: 0.0 };
         found_deep(Hertz::new(&MaterialPair::new([steel, steel], surface), 5e-3, 1e-3));
         found_deep(Linear::between_spheres(200e9, 0.3, [1e-2, 1e-2], [1e-3, 1e-3], surface));
     }

@@ -4,13 +4,13 @@ use fractum_fem as fem;
 use fractum_math::{Mat3, Rotation, Vec3};
 use fractum_mesh::topology;
 use fractum_scene::{
-    ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, OverlapWith, Probe,
-    RigidGround, Scene, Shape, SolidGround, Tool, pieces,
+    ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, NodesOnShape, OverlapWith,
+    Probe, RigidBody, Scene, Shape, SolidSurface, pieces,
 };
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function};
-use crate::case::model::{Body, BodyKind, InitialOverlap, LoadKind, ProbeKind, RigidBody, RigidShape};
+use crate::case::model::{self, Body, BodyKind, InitialOverlap, LoadKind, ProbeKind, RigidShape};
 use crate::case::{Diagnostic, Spanned};
 use crate::number::quantity;
 
@@ -47,7 +47,7 @@ impl Context<'_> {
         parts: &[Part],
         facets: &[Vec<[u32; 3]>],
         surface: &[u32],
-        tools: Vec<Tool>,
+        rigid_bodies: Vec<RigidBody>,
         tied: &[u32],
         warnings: &mut Vec<Diagnostic>,
     ) -> Option<Scene> {
@@ -71,9 +71,9 @@ impl Context<'_> {
         let solids_meet = pieces.iter().any(|piece| *piece != pieces[0]);
         if materials.is_empty() {
             if scene.solid.is_plane() {
-                self.refuse_facets(&tools);
+                self.refuse_facets(&rigid_bodies);
             }
-            if tools.is_empty() && !solids_meet {
+            if rigid_bodies.is_empty() && !solids_meet {
                 return Some(scene);
             }
         }
@@ -81,7 +81,7 @@ impl Context<'_> {
         let meeting = if materials.is_empty() && !solids_meet { &[] } else { facets };
         for (index, (part, facets)) in parts.iter().zip(meeting).enumerate().filter(|(_, (_, f))| !f.is_empty()) {
             let surface = case.materials[part.body.material].contact;
-            match SolidGround::new(&scene.solid, index, surface, facets) {
+            match SolidSurface::new(&scene.solid, index, surface, facets) {
                 Ok(ground) if tied.is_empty() => solids.push(ground),
                 Ok(ground) => solids.push(ground.without(tied.iter().copied(), &scene.bonded.particles.radius)),
                 Err(error) if materials.is_empty() => {
@@ -103,7 +103,7 @@ impl Context<'_> {
                 );
             }
         }
-        let mut contacts = Contacts::new(&scene.bonded, materials, tools, solids, gravity);
+        let mut contacts = Contacts::new(&scene.bonded, materials, rigid_bodies, solids, gravity);
         if !tied.is_empty() {
             // A bonded region fits its cavity within the tolerance of the packing.
             contacts.take_up_on_solids(&scene.solid, &scene.bonded.particles, |i| {
@@ -123,7 +123,7 @@ impl Context<'_> {
             };
             let other = match &worst.other {
                 OverlapWith::Particle(other) => name(*other),
-                OverlapWith::Tool(tool) => format!("rigid body {tool}"),
+                OverlapWith::RigidBody(rigid_body) => format!("rigid body {rigid_body}"),
                 OverlapWith::Solid(body) => format!("solid {body}"),
             };
             let found = format!(
@@ -140,7 +140,7 @@ impl Context<'_> {
         let mut scene = scene.with_contacts(contacts, surface);
         warnings.extend(self.node_overlaps(&scene, surface));
         if case.solver.initial_overlap == InitialOverlap::Keep {
-            scene.keep_overlaps();
+            scene.accept_initial_overlaps();
         }
         Some(scene)
     }
@@ -155,7 +155,7 @@ impl Context<'_> {
         let (node, depth, other) = deep.clone().next()?;
         let other = match other {
             OverlapWith::Solid(name) => format!("solid {name}"),
-            OverlapWith::Tool(name) => format!("rigid body {name}"),
+            OverlapWith::RigidBody(name) => format!("rigid body {name}"),
             OverlapWith::Particle(particle) => format!("particle {particle}"),
         };
         let at = scene.solid.position(*node as usize);
@@ -182,9 +182,9 @@ impl Context<'_> {
     }
 
     /// Facets of rigid bodies and containers act in space only.
-    fn refuse_facets(&mut self, tools: &[Tool]) {
-        for tool in tools.iter().filter(|tool| touches_solids(tool).is_none()) {
-            let body = self.case.bodies.iter().find(|body| body.name.value == tool.name);
+    fn refuse_facets(&mut self, rigid_bodies: &[RigidBody]) {
+        for rigid_body in rigid_bodies.iter().filter(|rigid_body| touches_solids(rigid_body).is_none()) {
+            let body = self.case.bodies.iter().find(|body| body.name.value == rigid_body.name);
             if let Some(Body { name, .. }) = body {
                 self.error(
                     &name.place,
@@ -196,15 +196,16 @@ impl Context<'_> {
     }
 
     /// Shapes of rigid bodies, as nodes of solids and their discrete elements feel them.
-    pub(super) fn grounds(&self, tools: &[Tool]) -> Vec<RigidGround> {
-        let shape = |(index, tool)| Some(RigidGround::of_tool(index, touches_solids(tool)?, tool.surface));
-        tools.iter().enumerate().filter_map(shape).collect()
+    pub(super) fn shape_contacts(&self, rigid_bodies: &[RigidBody]) -> Vec<NodesOnShape> {
+        let shape =
+            |(index, rigid_body)| Some(NodesOnShape::of_body(index, touches_solids(rigid_body)?, rigid_body.surface));
+        rigid_bodies.iter().enumerate().filter_map(shape).collect()
     }
 
     /// The rigid bodies of the case.
-    pub(super) fn tools(&mut self, facets: Vec<PreparedFacets>) -> Vec<Tool> {
+    pub(super) fn rigid_bodies(&mut self, facets: Vec<PreparedFacets>) -> Vec<RigidBody> {
         let (case, mut facets) = (self.case, facets.into_iter());
-        let mut tools = Vec::new();
+        let mut rigid_bodies = Vec::new();
         for body in &case.bodies {
             if let BodyKind::Rigid(rigid) = &body.kind
                 && let Some((form, frame)) = self.form(rigid, &mut facets)
@@ -212,15 +213,19 @@ impl Context<'_> {
                 let elastic = rigid.material.map_or(ElasticMaterial::RIGID, |material| {
                     elastic(case.materials[material].young_modulus, case.materials[material].poisson_ratio)
                 });
-                let mut tool = Tool::new(&body.name.value, form, frame, elastic, rigid.contact);
-                drive(&mut tool, rigid);
-                tools.push(tool);
+                let mut rigid_body = RigidBody::new(&body.name.value, form, frame, elastic, rigid.contact);
+                drive(&mut rigid_body, rigid);
+                rigid_bodies.push(rigid_body);
             }
         }
-        tools
+        rigid_bodies
     }
 
-    fn form(&mut self, rigid: &RigidBody, facets: &mut impl Iterator<Item = PreparedFacets>) -> Option<(Form, Frame)> {
+    fn form(
+        &mut self,
+        rigid: &model::RigidBody,
+        facets: &mut impl Iterator<Item = PreparedFacets>,
+    ) -> Option<(Form, Frame)> {
         let shape = |shape| Form::Shape { shape, hollow: rigid.inside };
         let along_z = |axis: &Vec3| Rotation::rotation_between(&Vec3::z(), axis);
         let half_turn = || Rotation::from_scaled_axis(Vec3::x() * std::f64::consts::PI);
@@ -279,25 +284,25 @@ impl Context<'_> {
     }
 
     /// A probe of a rigid body; none where it names something else.
-    pub(super) fn tool_probe(&mut self, kind: &ProbeKind) -> Option<Probe> {
+    pub(super) fn rigid_body_probe(&mut self, kind: &ProbeKind) -> Option<Probe> {
         let (ProbeKind::Reaction { group, along }
         | ProbeKind::Displacement { group, along }
         | ProbeKind::Velocity { group, along }) = kind
         else {
             return None;
         };
-        let (tool, direction) = (self.case.tool(&group.value)?, *along);
+        let (rigid_body, direction) = (self.case.tool(&group.value)?, *along);
         Some(match kind {
-            ProbeKind::Reaction { .. } => Probe::ToolForce { tool, direction },
-            ProbeKind::Displacement { .. } => Probe::ToolDisplacement { tool, direction },
-            _ => Probe::ToolVelocity { tool, direction },
+            ProbeKind::Reaction { .. } => Probe::RigidBodyForce { rigid_body, direction },
+            ProbeKind::Displacement { .. } => Probe::RigidBodyDisplacement { rigid_body, direction },
+            _ => Probe::RigidBodyVelocity { rigid_body, direction },
         })
     }
 }
 
 /// The shape that solids feel of a rigid body.
-fn touches_solids(tool: &Tool) -> Option<Shape> {
-    match tool.form {
+fn touches_solids(rigid_body: &RigidBody) -> Option<Shape> {
+    match rigid_body.form {
         Form::Shape { shape, hollow: false } => Some(shape),
         _ => None,
     }
@@ -308,24 +313,24 @@ fn elastic(young_modulus: f64, poisson_ratio: f64) -> ElasticMaterial {
 }
 
 /// Sets how a rigid body moves.
-fn drive(tool: &mut Tool, rigid: &RigidBody) {
+fn drive(rigid_body: &mut RigidBody, rigid: &model::RigidBody) {
     for axis in 0..3 {
-        tool.along[axis] = match (&rigid.velocity[axis], rigid.free[axis], &rigid.force[axis]) {
+        rigid_body.along[axis] = match (&rigid.velocity[axis], rigid.free[axis], &rigid.force[axis]) {
             (Some(velocity), ..) => Drive::Velocity(function(&velocity.value)),
             (None, true, Some(force)) => Drive::Force(function(&force.value)),
             (None, true, None) => Drive::Free,
             _ => Drive::Fixed,
         };
-        tool.about[axis] = match &rigid.spin[axis] {
+        rigid_body.about[axis] = match &rigid.spin[axis] {
             Some(spin) => Drive::Velocity(function(&spin.value)),
             None if rigid.free_rotation => Drive::Free,
             None => Drive::Fixed,
         };
     }
-    let start = tool.frame.origin;
-    tool.frame.velocity =
+    let start = rigid_body.frame.origin;
+    rigid_body.frame.velocity =
         Vec3::from_fn(|axis, _| rigid.initial_velocity[axis].as_ref().map_or(0.0, |field| field.value(0.0, start)));
-    tool.inertia = rigid.mass.map(|mass| Inertia { mass, tensor: inertia_tensor(&rigid.shape, mass) });
+    rigid_body.inertia = rigid.mass.map(|mass| Inertia { mass, tensor: inertia_tensor(&rigid.shape, mass) });
 }
 
 /// Moments of inertia of a shape of uniform density about its centre, in its axes [kg m²].

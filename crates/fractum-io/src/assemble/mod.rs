@@ -190,20 +190,21 @@ impl Context<'_> {
         let mut surface: Vec<u32> = boundary.iter().flatten().copied().collect();
         surface.sort_unstable();
         surface.dedup();
-        let tools = self.tools(facets);
+        let rigid_bodies = self.rigid_bodies(facets);
         let scene = Scene::new(
             solid,
             supports,
             Loads::new(loads, numbering.positions.len()),
             debris,
-            self.grounds(&tools),
+            self.shape_contacts(&rigid_bodies),
             &surface,
             self.settings(),
         )
         .with_bonded(bonded)
         .with_ties(&ties.attachments);
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
-        let scene = self.with_contacts(scene, &parts, &boundary_of_parts, &surface, tools, &tied, &mut warnings)?;
+        let scene =
+            self.with_contacts(scene, &parts, &boundary_of_parts, &surface, rigid_bodies, &tied, &mut warnings)?;
         let statics = statics.filter(|_| self.is_held(&scene));
         if !self.diagnostics.is_empty() {
             return None;

@@ -21,7 +21,7 @@ impl Context<'_> {
         bonded: &Bonded,
     ) -> Vec<Option<Probe>> {
         let case = self.case;
-        let mut measured = |kind| match self.particle_probe(kind, bonded).or_else(|| self.tool_probe(kind)) {
+        let mut measured = |kind| match self.particle_probe(kind, bonded).or_else(|| self.rigid_body_probe(kind)) {
             Some(probe) => Some(probe),
             None => self.probe(kind, parts, numbering, solid, supports, bonded),
         };

@@ -88,7 +88,7 @@ impl DebrisAmong {
         self.search(solid, debris, particles, made);
         let DebrisAmong { contacts, position, velocity, spin, radius, .. } = self;
         let first = particles.len() + before;
-        contacts.take_up(&Spheres { position, velocity, spin, radius }, |_, j| j as usize >= first);
+        contacts.accept_initial_overlap(&Spheres { position, velocity, spin, radius }, |_, j| j as usize >= first);
     }
 
     /// Adds the forces of the moment to nodes and particles.

@@ -2,29 +2,32 @@
 //! with the facets of solids; and of the nodes of solids with all of these.
 
 mod debris_among;
-mod meeting;
-mod nodes_on_ground;
-mod solid_ground;
-mod tool;
+mod node_contacts;
+mod nodes_on_shape;
+mod nodes_on_surface;
+mod rigid_body;
+mod solid_surface;
 
-use fractum_contact::law::{ContactMemory, ElasticMaterial, Hertz, HertzMemory, MaterialPair, Surface};
-use fractum_contact::{GroundContacts, SphereContacts, Spheres, Touch};
+use fractum_contact::law::{ContactMemory, ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair};
+use fractum_contact::{SphereContacts, Spheres, SurfaceContacts, Touch};
 use fractum_dem::Particles;
 use fractum_fem::Solid;
 use fractum_math::{HalfSteps, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
-pub use meeting::pieces;
-pub use solid_ground::SolidGround;
-pub use tool::{Drive, Form, Inertia, Tool};
+pub use node_contacts::pieces;
+pub(crate) use nodes_on_shape::Candidate;
+pub use nodes_on_shape::NodesOnShape;
+pub use rigid_body::{Drive, Form, Inertia, RigidBody};
+pub use solid_surface::SolidSurface;
 
 use crate::bonded::Bonded;
 use crate::conditions::TimeFunction;
 use crate::coupling::Debris;
 use debris_among::DebrisAmong;
-use nodes_on_ground::NodesOnGround;
-use solid_ground::GroundState;
-use tool::ToolState;
+use nodes_on_surface::NodesOnSurface;
+use rigid_body::RigidBodyState;
+use solid_surface::SolidSurfaceState;
 
 /// Skin of the searches over the smallest radius.
 const SKIN: f64 = 0.2;
@@ -39,7 +42,7 @@ pub struct ContactMaterial {
     /// Density of a particle [kg/m³].
     pub density: f64,
     /// Friction and damping.
-    pub surface: Surface,
+    pub surface: ContactParameters,
 }
 
 /// Contacts of all particles with nodes of their own, by Hertz' law, and the rigid bodies among them.
@@ -54,12 +57,12 @@ pub struct Contacts {
     /// Pairs of materials, body by body.
     pairs: Vec<MaterialPair>,
     among: Option<SphereContacts<Hertz>>,
-    tools: Vec<Tool>,
-    /// Contacts with each tool, and its material with that of each body.
-    on_tools: Vec<(GroundContacts<Hertz>, Vec<MaterialPair>)>,
-    solids: Vec<SolidGround>,
+    rigid_bodies: Vec<RigidBody>,
+    /// Contacts with each rigid body, and its material with that of each body.
+    on_tools: Vec<(SurfaceContacts<Hertz>, Vec<MaterialPair>)>,
+    solids: Vec<SolidSurface>,
     /// Nodes of solids on each rigid body that has facets or is a container, and their discrete elements among the particles.
-    nodes_on_tools: Vec<Option<NodesOnGround>>,
+    nodes_on_tools: Vec<Option<NodesOnSurface>>,
     debris: Option<DebrisAmong>,
     /// Accelerations of everything, by axis.
     gravity: Vec<(usize, TimeFunctionOf)>,
@@ -82,8 +85,8 @@ impl std::fmt::Debug for TimeFunctionOf {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ContactsState {
     among: Vec<([u32; 2], HertzMemory)>,
-    tools: Vec<(ToolState, Vec<Touch<HertzMemory>>)>,
-    solids: Vec<GroundState>,
+    rigid_bodies: Vec<(RigidBodyState, Vec<Touch<HertzMemory>>)>,
+    solids: Vec<SolidSurfaceState>,
     nodes_on_tools: Vec<Vec<Touch<ContactMemory>>>,
     debris: Vec<([u32; 2], ContactMemory)>,
     node_frequency_square: f64,
@@ -106,7 +109,7 @@ pub enum OverlapWith {
     /// Another particle of the scene.
     Particle(u32),
     /// A rigid body, by name.
-    Tool(String),
+    RigidBody(String),
     /// A solid body, by name.
     Solid(String),
 }
@@ -119,8 +122,8 @@ impl Contacts {
     pub fn new(
         bonded: &Bonded,
         materials: Vec<ContactMaterial>,
-        tools: Vec<Tool>,
-        solids: Vec<SolidGround>,
+        rigid_bodies: Vec<RigidBody>,
+        solids: Vec<SolidSurface>,
         gravity: Vec<(usize, TimeFunction)>,
     ) -> Self {
         let mut body = vec![0u16; bonded.particles.len()];
@@ -132,10 +135,11 @@ impl Contacts {
         };
         let smallest = bonded.particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
         let skin = SKIN * smallest;
-        let on_tool = |tool: &Tool| {
-            let with =
-                |m: &ContactMaterial| MaterialPair::new([m.elastic, tool.elastic], m.surface.against(tool.surface));
-            (GroundContacts::new(skin), materials.iter().map(with).collect())
+        let on_tool = |rigid_body: &RigidBody| {
+            let with = |m: &ContactMaterial| {
+                MaterialPair::new([m.elastic, rigid_body.elastic], m.surface.against(rigid_body.surface))
+            };
+            (SurfaceContacts::new(skin), materials.iter().map(with).collect())
         };
         let rayleigh = (0..body.len()).map(|i| {
             let ContactMaterial { elastic, density, .. } = materials[body[i] as usize];
@@ -145,21 +149,22 @@ impl Contacts {
             2.0 / (RAYLEIGH_SHARE * time / (0.1631 * nu + 0.8766))
         });
         let is_bonded: Vec<bool> = bonded.bodies().iter().map(|body| !body.bonds.is_empty()).collect();
-        let meets = is_bonded.iter().any(|b| !b) || !tools.is_empty() || !solids.is_empty() || is_bonded.len() > 1;
+        let meets =
+            is_bonded.iter().any(|b| !b) || !rigid_bodies.is_empty() || !solids.is_empty() || is_bonded.len() > 1;
         let rayleigh_frequency = if meets { rayleigh.fold(0.0, f64::max) } else { 0.0 };
         let alone = is_bonded.len() == 1 && is_bonded[0];
         Contacts {
             pairs: materials.iter().flat_map(|a| materials.iter().map(move |b| pair(a, b))).collect(),
-            on_tools: tools.iter().map(on_tool).collect(),
+            on_tools: rigid_bodies.iter().map(on_tool).collect(),
             among: (!alone && !body.is_empty()).then(|| SphereContacts::new(skin)),
             solids: solids.into_iter().map(|solid| solid.prepared(skin, &materials)).collect(),
-            nodes_on_tools: tools.iter().map(|_| None).collect(),
+            nodes_on_tools: rigid_bodies.iter().map(|_| None).collect(),
             debris: None,
             gravity: gravity.into_iter().map(|(axis, value)| (axis, TimeFunctionOf(value))).collect(),
             bonded: is_bonded,
             materials,
             body,
-            tools,
+            rigid_bodies,
             rayleigh_frequency,
             node_frequency_square: 0.0,
         }
@@ -167,16 +172,16 @@ impl Contacts {
 
     /// Whether nothing can touch: no particles but those of one bonded body, and nothing else that they could meet.
     pub fn is_empty(&self) -> bool {
-        self.among.is_none() && self.tools.is_empty() && self.solids.is_empty()
+        self.among.is_none() && self.rigid_bodies.is_empty() && self.solids.is_empty()
     }
 
     /// Rigid bodies.
-    pub fn tools(&self) -> &[Tool] {
-        &self.tools
+    pub fn rigid_bodies(&self) -> &[RigidBody] {
+        &self.rigid_bodies
     }
 
-    pub(crate) fn tools_mut(&mut self) -> &mut [Tool] {
-        &mut self.tools
+    pub(crate) fn rigid_bodies_mut(&mut self) -> &mut [RigidBody] {
+        &mut self.rigid_bodies
     }
 
     /// Squared frequency that contacts ask of the step [1/s²].
@@ -186,7 +191,8 @@ impl Contacts {
 
     /// Energy of the mean particle at the speed of the fastest rigid body [J]: what the first touch is about.
     pub(crate) fn touch_energy(&self, particles: &Particles) -> f64 {
-        let fastest = self.tools.iter().map(|tool| tool.frame.velocity.norm_squared()).fold(0.0, f64::max);
+        let fastest =
+            self.rigid_bodies.iter().map(|rigid_body| rigid_body.frame.velocity.norm_squared()).fold(0.0, f64::max);
         if fastest == 0.0 || particles.is_empty() {
             return 0.0;
         }
@@ -195,7 +201,7 @@ impl Contacts {
 
     /// Contacts at the last step.
     pub(crate) fn touching(&self) -> usize {
-        let ground = |contacts: &GroundContacts<Hertz>| contacts.touches().count();
+        let ground = |contacts: &SurfaceContacts<Hertz>| contacts.touches().count();
         self.among.as_ref().map_or(0, |among| among.touching().count())
             + self.on_tools.iter().map(|(contacts, _)| ground(contacts)).sum::<usize>()
             + self.solids.iter().map(|solid| ground(solid.contacts())).sum::<usize>()
@@ -214,23 +220,23 @@ impl Contacts {
             work += among.add_forces(&spheres, force, moment, dt);
             self.among = Some(among);
         }
-        let Contacts { body, tools, on_tools, solids, .. } = self;
+        let Contacts { body, rigid_bodies, on_tools, solids, .. } = self;
         let body = &*body;
-        for (tool, (contacts, pairs)) in tools.iter_mut().zip(on_tools) {
-            let heavy = tool.mass();
+        for (rigid_body, (contacts, pairs)) in rigid_bodies.iter_mut().zip(on_tools) {
+            let heavy = rigid_body.mass();
             let law = |i: u32, curvature: f64| {
                 let i = i as usize;
                 let moved = if heavy.is_finite() { mass[i] * heavy / (mass[i] + heavy) } else { mass[i] };
                 Hertz::new(&pairs[body[i] as usize], 1.0 / (1.0 / radius[i] + curvature), moved)
             };
-            let ground = tool.ground();
+            let ground = rigid_body.ground();
             contacts.search(&ground, &spheres);
             work += contacts.update(&ground, &spheres, law, dt);
             contacts.add_to(force, moment);
-            tool.clear_forces();
+            rigid_body.clear_forces();
             for touch in contacts.touches() {
                 let place = position[touch.sphere as usize] + touch.offset;
-                tool.push(&-touch.force, &-touch.couple, &place);
+                rigid_body.push(&-touch.force, &-touch.couple, &place);
             }
         }
         for ground in solids {
@@ -262,15 +268,15 @@ impl Contacts {
 
     pub(crate) fn start_half_a_step_early(&mut self, dt: f64) {
         let gravity = self.gravity(0.0);
-        self.tools.iter_mut().for_each(|tool| tool.start_half_a_step_early(dt, &gravity));
+        self.rigid_bodies.iter_mut().for_each(|rigid_body| rigid_body.start_half_a_step_early(dt, &gravity));
     }
 
     /// Advances the rigid bodies with the forces of tⁿ.
-    pub(crate) fn move_tools(&mut self, time: f64, dt_before: f64, dt_after: f64) -> HalfSteps {
+    pub(crate) fn move_bodies(&mut self, time: f64, dt_before: f64, dt_after: f64) -> HalfSteps {
         let mut work = HalfSteps::default();
-        let gravity = if self.tools.is_empty() { Vec3::zeros() } else { self.gravity(time) };
-        for tool in &mut self.tools {
-            work += tool.advance(time, dt_before, dt_after, &gravity);
+        let gravity = if self.rigid_bodies.is_empty() { Vec3::zeros() } else { self.gravity(time) };
+        for rigid_body in &mut self.rigid_bodies {
+            work += rigid_body.advance(time, dt_before, dt_after, &gravity);
         }
         work
     }
@@ -288,14 +294,14 @@ impl Contacts {
             let pairs = among.overlaps(&spheres);
             found.extend(pairs.map(|([i, j], depth)| Overlap { particle: i, other: OverlapWith::Particle(j), depth }));
         }
-        let deepest = |contacts: &GroundContacts<Hertz>, other: OverlapWith| -> Vec<Overlap> {
+        let deepest = |contacts: &SurfaceContacts<Hertz>, other: OverlapWith| -> Vec<Overlap> {
             // What was taken up as it stands bears nothing.
             let loaded = |t: &&Touch<HertzMemory>| t.force != Vec3::zeros();
             let of = |t: &Touch<HertzMemory>| Overlap { particle: t.sphere, other: other.clone(), depth: t.overlap };
             contacts.touches().filter(loaded).map(of).collect()
         };
-        for (tool, (contacts, _)) in still.tools.iter().zip(&still.on_tools) {
-            found.extend(deepest(contacts, OverlapWith::Tool(tool.name.clone())));
+        for (rigid_body, (contacts, _)) in still.rigid_bodies.iter().zip(&still.on_tools) {
+            found.extend(deepest(contacts, OverlapWith::RigidBody(rigid_body.name.clone())));
         }
         for ground in &still.solids {
             let name = solid.body(ground.body()).name.clone();
@@ -309,13 +315,13 @@ impl Contacts {
     pub(crate) fn state(&self) -> ContactsState {
         ContactsState {
             among: self.among.as_ref().map_or_else(Vec::new, SphereContacts::state),
-            tools: self
-                .tools
+            rigid_bodies: self
+                .rigid_bodies
                 .iter()
                 .zip(&self.on_tools)
                 .map(|(t, (contacts, _))| (t.state(), contacts.state()))
                 .collect(),
-            solids: self.solids.iter().map(SolidGround::state).collect(),
+            solids: self.solids.iter().map(SolidSurface::state).collect(),
             nodes_on_tools: self.nodes_on_tools_state(),
             debris: self.debris.as_ref().map_or_else(Vec::new, DebrisAmong::state),
             node_frequency_square: self.node_frequency_square,
@@ -327,8 +333,10 @@ impl Contacts {
         if let Some(among) = &mut self.among {
             among.restore(state.among);
         }
-        for ((tool, (contacts, _)), (own, touches)) in self.tools.iter_mut().zip(&mut self.on_tools).zip(state.tools) {
-            tool.restore(own);
+        for ((rigid_body, (contacts, _)), (own, touches)) in
+            self.rigid_bodies.iter_mut().zip(&mut self.on_tools).zip(state.rigid_bodies)
+        {
+            rigid_body.restore(own);
             contacts.restore(touches);
         }
         for (ground, touches) in self.solids.iter_mut().zip(state.solids) {

@@ -3,7 +3,7 @@ mod at_rest;
 pub(crate) use at_rest::Push;
 
 use fractum_contact::close_pairs;
-use fractum_contact::law::{ContactForce, ContactMemory, ElasticMaterial, Linear, PairMotion, Surface};
+use fractum_contact::law::{ContactForce, ContactMemory, ContactParameters, ElasticMaterial, Linear, PairMotion};
 use fractum_fem::Solid;
 use fractum_math::{Vec3, Work};
 use rayon::prelude::*;
@@ -22,8 +22,8 @@ const NONE: u32 = u32::MAX;
 /// sphere (a disc in the plane) with rotation of its own.
 #[derive(Clone, Debug)]
 pub struct Debris {
-    /// Surface of each body.
-    surfaces: Vec<Surface>,
+    /// Contact parameters of each body.
+    surfaces: Vec<ContactParameters>,
     /// Body of each node.
     body: Vec<u32>,
     /// All bodies are plane: particles are discs.
@@ -85,7 +85,7 @@ impl Debris {
     /// Debris of a solid without any particle yet.
     ///
     /// - `surfaces`: of each body of the solid, in their order
-    pub fn new(solid: &Solid, surfaces: Vec<Surface>) -> Self {
+    pub fn new(solid: &Solid, surfaces: Vec<ContactParameters>) -> Self {
         let bodies = 0..solid.body_count();
         assert_eq!(surfaces.len(), bodies.len(), "one surface per body");
         let mut elasticity = vec![(0.0, 0.0); solid.reference.len()];
@@ -152,13 +152,13 @@ impl Debris {
         self.state.pairs.iter().filter(|p| p.stored > 0.0)
     }
 
-    /// Surface of the body of a node.
-    pub(crate) fn surface(&self, node: u32) -> Surface {
+    /// Contact parameters of the body of a node.
+    pub(crate) fn surface(&self, node: u32) -> ContactParameters {
         self.surfaces[self.body[node as usize] as usize]
     }
 
     /// The law of a node on a rigid wall.
-    pub(crate) fn wall_law(&self, node: u32, mass: f64, wall: Surface) -> Linear {
+    pub(crate) fn wall_law(&self, node: u32, mass: f64, wall: ContactParameters) -> Linear {
         let i = node as usize;
         let ((e, nu), radius, thickness) = (self.elasticity[i], self.radius[i], self.thickness[i]);
         let surface = wall.against(self.surface(node));
@@ -181,7 +181,13 @@ impl Debris {
     }
 
     /// The law of a node of a solid in space on a facet of another body.
-    pub(crate) fn facet_law(&self, node: u32, mass: f64, other: &ElasticMaterial, surface: Surface) -> Linear {
+    pub(crate) fn facet_law(
+        &self,
+        node: u32,
+        mass: f64,
+        other: &ElasticMaterial,
+        surface: ContactParameters,
+    ) -> Linear {
         let (e, nu) = self.mean_elasticity(node, other);
         Linear::on_wall(e, nu, self.radius(node), mass, surface.against(self.surface(node)))
     }

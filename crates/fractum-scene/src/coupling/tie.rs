@@ -345,7 +345,7 @@ mod tests {
         let layer = Layer::find(&solid, &facets, &bonded.particles, &among, 0.1 * RADIUS).unwrap();
         assert_eq!((layer.attachments.len(), layer.facets > 4), (16, true));
         assert!(layer.least_gap.abs() < 1e-12);
-        let debris = Debris::new(&solid, vec![crate::Surface::default()]);
+        let debris = Debris::new(&solid, vec![crate::ContactParameters::default()]);
         let settings = SceneSettings {
             time_step: TimeStepSettings { safety: 0.5, element_bound: false, fixed: None, end: 1.0 },
             damping: LocalDamping::default(),

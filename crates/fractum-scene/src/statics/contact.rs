@@ -7,11 +7,11 @@ use fractum_contact::{Frame, Outside};
 use fractum_math::{Mat3, Vec3};
 
 use crate::conditions::integral;
-use crate::contacts::{Drive, Tool};
+use crate::contacts::{Candidate, NodesOnShape};
+use crate::contacts::{Drive, RigidBody};
 use crate::coupling::Push;
 use crate::error::SceneError;
 use crate::ledger::EnergyKind;
-use crate::rigid::{Candidate, RigidGround};
 use crate::scene::Scene;
 use crate::statics::check_supports;
 
@@ -64,7 +64,7 @@ struct Tangential {
 }
 
 /// Normal out of the shape and overlap of a node at a place.
-fn sense(ground: &RigidGround, frame: &Frame, c: &Candidate, place: &Vec3) -> (Vec3, f64) {
+fn sense(ground: &NodesOnShape, frame: &Frame, c: &Candidate, place: &Vec3) -> (Vec3, f64) {
     let Outside { normal, distance, .. } = ground.shape.outside(&frame.to_body(place));
     (-frame.to_space(&normal), c.radius - distance)
 }
@@ -78,7 +78,7 @@ fn tangential(c: &Candidate, normal: &Vec3, pressure: f64, moved: Vec3) -> Tange
     Tangential { slip, slid: trial - slip }
 }
 
-impl Tool {
+impl RigidBody {
     /// Way that its drive takes it between two times [m].
     fn way(&self, from: f64, to: f64) -> Vec3 {
         Vec3::from_fn(|axis, _| match &self.along[axis] {
@@ -112,12 +112,12 @@ impl Scene {
             Spring { node, partner: Some(partner), normal: push.normal, force, stiffness, rate: Vec3::zeros() }
         };
         let mut springs: Vec<Spring> = self.debris.pushes(&self.solid, field).map(pushed).collect();
-        if self.grounds.is_empty() {
+        if self.shape_contacts.is_empty() {
             return springs;
         }
         let size = self.solid.reference.iter().map(|p| p.norm()).fold(0.0, f64::max);
         let gap = if near { TOUCHING * size } else { 0.0 };
-        for ground in &self.grounds {
+        for ground in &self.shape_contacts {
             let (mut frame, way, pace) = self.motion_of(ground, times, ahead);
             frame.origin += way;
             for c in &ground.candidates {
@@ -149,9 +149,11 @@ impl Scene {
     }
 
     /// Where a shape was at the last equilibrium, the way it has gone since, and its pace.
-    fn motion_of(&self, ground: &RigidGround, [present, time]: [f64; 2], ahead: f64) -> (Frame, Vec3, Vec3) {
-        match ground.tool.and_then(|index| self.contacts.tools().get(index)) {
-            Some(tool) => (tool.frame, tool.way(present, time), tool.way(time, time + ahead) / ahead),
+    fn motion_of(&self, ground: &NodesOnShape, [present, time]: [f64; 2], ahead: f64) -> (Frame, Vec3, Vec3) {
+        match ground.rigid_body.and_then(|index| self.contacts.rigid_bodies().get(index)) {
+            Some(rigid_body) => {
+                (rigid_body.frame, rigid_body.way(present, time), rigid_body.way(time, time + ahead) / ahead)
+            }
             None => (ground.frame, Vec3::zeros(), Vec3::zeros()),
         }
     }
@@ -164,27 +166,27 @@ impl Scene {
             return;
         }
         self.books.external -= self.debris.accept_at_rest(&self.solid, before);
-        if !self.grounds.is_empty() {
+        if !self.shape_contacts.is_empty() {
             self.accept_grounds(before, present, time);
         }
-        let on_grounds: f64 = self.grounds.iter().flat_map(|ground| &ground.candidates).map(|c| c.stored).sum();
+        let on_grounds: f64 = self.shape_contacts.iter().flat_map(|ground| &ground.candidates).map(|c| c.stored).sum();
         self.ledger[EnergyKind::Contact] = on_grounds + self.debris.stored();
     }
 
     /// Whether anything can touch at equilibrium.
     pub(super) fn has_contacts(&self) -> bool {
-        !(self.grounds.is_empty() && self.debris.is_empty())
+        !(self.shape_contacts.is_empty() && self.debris.is_empty())
     }
 
     fn accept_grounds(&mut self, before: &[Vec3], present: f64, time: f64) {
-        self.contacts.tools_mut().iter_mut().for_each(Tool::clear_forces);
+        self.contacts.rigid_bodies_mut().iter_mut().for_each(RigidBody::clear_forces);
         let (mut friction, mut external) = (0.0, 0.0);
-        for index in 0..self.grounds.len() {
-            let (old, way, _) = self.motion_of(&self.grounds[index], [present, time], 1.0);
+        for index in 0..self.shape_contacts.len() {
+            let (old, way, _) = self.motion_of(&self.shape_contacts[index], [present, time], 1.0);
             let new = Frame { origin: old.origin + way, ..old };
-            let Scene { grounds, contacts, solid, debris, .. } = self;
-            let mut candidates = std::mem::take(&mut grounds[index].candidates);
-            let ground = &grounds[index];
+            let Scene { shape_contacts, contacts, solid, debris, .. } = self;
+            let mut candidates = std::mem::take(&mut shape_contacts[index].candidates);
+            let ground = &shape_contacts[index];
             for c in &mut candidates {
                 let i = c.node as usize;
                 let place = solid.position(i);
@@ -209,15 +211,17 @@ impl Scene {
                 (c.force, c.couple, c.arm) = (force, Vec3::zeros(), normal * (overlap - c.radius));
                 c.stored = half * overlap.max(0.0).powi(2) + 0.5 * c.law.tangential_stiffness * slip.norm_squared();
                 (c.friction, c.damping) = (0.0, 0.0);
-                if let Some(tool) = ground.tool.and_then(|tool| contacts.tools_mut().get_mut(tool)) {
-                    tool.push(&-force, &Vec3::zeros(), &(place + c.arm));
+                if let Some(rigid_body) =
+                    ground.rigid_body.and_then(|rigid_body| contacts.rigid_bodies_mut().get_mut(rigid_body))
+                {
+                    rigid_body.push(&-force, &Vec3::zeros(), &(place + c.arm));
                 }
             }
-            grounds[index].candidates = candidates;
+            shape_contacts[index].candidates = candidates;
         }
-        for tool in self.contacts.tools_mut() {
-            tool.frame.origin += tool.way(present, time);
-            tool.frame.velocity = Vec3::zeros();
+        for rigid_body in self.contacts.rigid_bodies_mut() {
+            rigid_body.frame.origin += rigid_body.way(present, time);
+            rigid_body.frame.velocity = Vec3::zeros();
         }
         self.books.friction += friction;
         self.books.external += external;

@@ -14,7 +14,7 @@ const FAR: f64 = 10.0;
 
 /// Forces at the state that the next step starts from, for its work; empty before the first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Outer {
+pub(super) struct AppliedForces {
     reaction: Vec<Vec3>,
     load: Vec<Vec3>,
     /// What the removal of elements took from the internal forces since; empty where none left.
@@ -68,7 +68,7 @@ impl Scene {
         &mut self,
         displacement: &[Vec3],
         time: f64,
-        outer: &mut Outer,
+        outer: &mut AppliedForces,
     ) -> Result<StepReport, StepError> {
         let before = std::mem::replace(&mut self.solid.displacement, displacement.to_vec());
         self.solid.update_internal_forces(0.0, true);
@@ -87,7 +87,7 @@ impl Scene {
             self.books.removed += 0.5 * moved.dot(&outer.lost.get(i).copied().unwrap_or_default());
             self.books.damping += 0.5 * moved.dot(&outer.unbalanced.get(i).copied().unwrap_or_default());
         }
-        *outer = Outer { reaction, load, ..Outer::default() };
+        *outer = AppliedForces { reaction, load, ..AppliedForces::default() };
         self.books.external += external;
         self.clock.dt_before = time - self.clock.time;
         self.clock.dt_after = self.clock.dt_before;
@@ -136,14 +136,14 @@ impl Scene {
     }
 
     fn add_contact_forces_at_rest(&mut self) {
-        for candidate in self.grounds.iter().flat_map(|ground| &ground.candidates) {
+        for candidate in self.shape_contacts.iter().flat_map(|ground| &ground.candidates) {
             self.solid.force[candidate.node as usize] += candidate.force;
         }
         self.debris.add_forces_at_rest(&mut self.solid);
     }
 
     /// The forces of a state at rest that is no exact equilibrium.
-    pub(super) fn outer_at_rest(&mut self) -> Outer {
+    pub(super) fn forces_at_rest(&mut self) -> AppliedForces {
         self.solid.update_internal_forces(0.0, true);
         let inner = self.solid.force.clone();
         let time = self.clock.time;
@@ -159,6 +159,6 @@ impl Scene {
         let force = &self.solid.force;
         let reaction = self.supports.take_reactions(force);
         let unbalanced = force.iter().zip(&reaction).map(|(f, r)| f + r).collect();
-        Outer { reaction, load, lost: Vec::new(), unbalanced }
+        AppliedForces { reaction, load, lost: Vec::new(), unbalanced }
     }
 }

@@ -5,14 +5,14 @@
 //! whatever the load does meanwhile: t may go back. With the damage of the last iterate K is linear, so that
 //! u = a + (t - tⁿ) b from two right-hand sides, and t follows from the most strained edge alone.
 
+mod anderson;
 mod bonded;
 mod contact;
 mod equilibrium;
-mod hand_over;
-mod mixing;
 mod opening;
 mod path;
 mod period;
+mod static_dynamic;
 mod support_check;
 mod system;
 
@@ -22,18 +22,18 @@ use fractum_sparse::SparseError;
 use serde::{Deserialize, Serialize};
 
 pub use bonded::{BondedStaticSettings, BondedStatics};
-pub use hand_over::Interlude;
 pub use opening::Opening;
 pub use period::Stiffness;
+pub use static_dynamic::DynamicPhase;
 pub use support_check::check_supports;
 pub use system::LinearWork;
 
 use crate::error::StepError;
 use crate::scene::Scene;
 use crate::step::StepReport;
+use anderson::Anderson;
 use contact::Spring;
-use equilibrium::{Boundary, Outer};
-use mixing::Mixer;
+use equilibrium::{AppliedForces, Boundary};
 use system::System;
 
 /// How the load parameter proceeds.
@@ -204,8 +204,8 @@ pub struct StaticSolver {
     image: Vec<f64>,
     /// What the last step added to `loading` per growth: the next one is likely to go on like that.
     trend: Vec<f64>,
-    mixer: Mixer,
-    outer: Outer,
+    mixer: Anderson,
+    outer: AppliedForces,
     /// Largest forces of a state of equilibrium so far [N].
     largest_forces: f64,
     iterations: usize,
@@ -218,7 +218,7 @@ pub struct StaticState {
     part: f64,
     trend: Vec<f64>,
     touching: Vec<[u32; 2]>,
-    outer: Outer,
+    outer: AppliedForces,
     largest_forces: f64,
     iterations: u64,
     factorisations: u64,
@@ -258,8 +258,8 @@ impl StaticSolver {
             loading: Vec::new(),
             image: Vec::new(),
             trend: Vec::new(),
-            mixer: Mixer::default(),
-            outer: Outer::default(),
+            mixer: Anderson::default(),
+            outer: AppliedForces::default(),
             largest_forces: 0.0,
             iterations: 0,
         })
@@ -310,8 +310,8 @@ impl StaticSolver {
     }
 
     /// Goes on from the state in which motion has left the scene.
-    pub fn take_up(&mut self, scene: &mut Scene) {
-        self.outer = scene.outer_at_rest();
+    pub fn resume_from_motion(&mut self, scene: &mut Scene) {
+        self.outer = scene.forces_at_rest();
         self.growth = GROWTH[0];
         self.trend.clear();
     }
@@ -422,7 +422,7 @@ impl StaticSolver {
             scene.debris.meet(&scene.solid, &self.place);
             self.springs = scene.springs(&self.place, [present, found_at], longest, iteration == 1);
             self.couple(scene)?;
-            if !(self.elastic && self.prepared && scene.grounds.is_empty()) {
+            if !(self.elastic && self.prepared && scene.shape_contacts.is_empty()) {
                 self.system.prepare(scene, &self.trial, &self.springs).map_err(|e| scene.come_apart(e))?;
                 self.prepared = true;
             }

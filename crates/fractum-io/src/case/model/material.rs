@@ -1,7 +1,7 @@
 //! Materials: elasticity, damage, contact.
 
 use fractum_fem::{CriterionKind, DamageLaw};
-use fractum_scene::Surface;
+use fractum_scene::ContactParameters;
 
 use super::{BondFailure, Bonds};
 use crate::case::Spanned;
@@ -25,7 +25,7 @@ pub struct Material {
     /// When bonds break, where the material has a `fracture` table; they hold otherwise.
     pub fracture: Option<Spanned<BondFailure>>,
     /// Contact of the discrete elements that this material leaves behind.
-    pub contact: Surface,
+    pub contact: ContactParameters,
     /// Young's modulus that contacts of its particles take [Pa], > 0; `None` = that of the material.
     pub contact_modulus: Option<f64>,
 }

@@ -1,7 +1,7 @@
 //! Rigid bodies: shapes, facets, and how they move.
 
 use fractum_math::Vec3;
-use fractum_scene::Surface;
+use fractum_scene::ContactParameters;
 
 use super::{Components, FileContent};
 use crate::case::{Field, Spanned};
@@ -16,7 +16,7 @@ pub struct RigidBody {
     /// Index into `Case::materials` of its elastic constants in contact; `None` = it does not deform.
     pub material: Option<usize>,
     /// Contact with it.
-    pub contact: Surface,
+    pub contact: ContactParameters,
     /// Prescribed velocity [m/s] along x, y, z; `None` = held, or free.
     pub velocity: Components,
     /// Prescribed angular velocity [rad/s] about axes through its reference point; `None` = held.

@@ -4,7 +4,7 @@ use crate::case::model::{Damage, Distribution, Material, Scatter};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned};
 use fractum_fem::{Criterion, CriterionKind, DamageLaw, Softening};
-use fractum_scene::{Surface, damping_of_restitution};
+use fractum_scene::{ContactParameters, damping_of_restitution};
 
 /// Reads all materials: each with its name, and itself where nothing is wrong with it.
 pub(super) fn read(root: &Table<'_>) -> Vec<(String, Option<Material>)> {
@@ -207,10 +207,10 @@ fn contact_modulus(parent: &Table<'_>) -> Option<Option<f64>> {
 }
 
 /// The `contact` table of a material or tool.
-pub(super) fn contact(parent: &Table<'_>) -> Surface {
+pub(super) fn contact(parent: &Table<'_>) -> ContactParameters {
     let table = parent.table_or_empty("contact");
     table.node("young_modulus"); // a material's, read by itself
-    let default = Surface::default();
+    let default = ContactParameters::default();
     let friction = table.quantity("friction").not_negative().or(default.friction);
     let rolling_friction = table.quantity("rolling_friction").not_negative().or(default.rolling_friction);
     let damping_ratio = if table.has("restitution") {
@@ -222,5 +222,5 @@ pub(super) fn contact(parent: &Table<'_>) -> Surface {
         ratio.or(default.damping_ratio)
     };
     table.finish("here");
-    Surface { friction, rolling_friction, damping_ratio }
+    ContactParameters { friction, rolling_friction, damping_ratio }
 }

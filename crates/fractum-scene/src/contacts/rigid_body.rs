@@ -1,7 +1,7 @@
 //! Rigid bodies that particles meet: where they are, what drives them.
 
-use fractum_contact::law::{ElasticMaterial, Surface};
-use fractum_contact::{FacetMesh, Frame, Ground, Shape};
+use fractum_contact::law::{ContactParameters, ElasticMaterial};
+use fractum_contact::{FacetMesh, Frame, Shape, Surface};
 use fractum_math::{HalfSteps, Mat3, Rotation, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -50,7 +50,7 @@ pub struct Inertia {
 
 /// A rigid body.
 #[derive(Clone)]
-pub struct Tool {
+pub struct RigidBody {
     /// The user's name for it.
     pub name: String,
     /// What it looks like.
@@ -58,7 +58,7 @@ pub struct Tool {
     /// Its elastic constants in contact; [`ElasticMaterial::RIGID`] leaves those of the particles alone.
     pub elastic: ElasticMaterial,
     /// Friction and damping.
-    pub surface: Surface,
+    pub surface: ContactParameters,
     /// Where it is, with its velocities at the half step before tⁿ.
     pub frame: Frame,
     /// Motion along x, y, z.
@@ -74,25 +74,25 @@ pub struct Tool {
     moment: Vec3,
 }
 
-impl std::fmt::Debug for Tool {
+impl std::fmt::Debug for RigidBody {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Tool({} at {:?})", self.name, self.frame.origin.as_slice())
+        write!(f, "RigidBody({} at {:?})", self.name, self.frame.origin.as_slice())
     }
 }
 
 /// What changes in a rigid body during a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct ToolState {
+pub(super) struct RigidBodyState {
     frame: Frame,
     angular_momentum: Vec3,
     force: Vec3,
     moment: Vec3,
 }
 
-impl Tool {
+impl RigidBody {
     /// A rigid body at rest whose axes are fixed; its reference point is the origin of `frame`.
-    pub fn new(name: &str, form: Form, frame: Frame, elastic: ElasticMaterial, surface: Surface) -> Self {
-        Tool {
+    pub fn new(name: &str, form: Form, frame: Frame, elastic: ElasticMaterial, surface: ContactParameters) -> Self {
+        RigidBody {
             name: name.to_owned(),
             form,
             elastic,
@@ -109,10 +109,10 @@ impl Tool {
     }
 
     /// As contacts see it.
-    pub(super) fn ground(&self) -> Ground<'_> {
+    pub(super) fn ground(&self) -> Surface<'_> {
         match &self.form {
-            Form::Shape { shape, hollow } => Ground::Shape { shape: *shape, hollow: *hollow, frame: &self.frame },
-            Form::Mesh { mesh, points } => Ground::Rigid { surface: mesh, points, frame: &self.frame },
+            Form::Shape { shape, hollow } => Surface::Shape { shape: *shape, hollow: *hollow, frame: &self.frame },
+            Form::Mesh { mesh, points } => Surface::Rigid { surface: mesh, points, frame: &self.frame },
         }
     }
 
@@ -244,13 +244,13 @@ impl Tool {
         }
     }
 
-    pub(super) fn state(&self) -> ToolState {
-        let Tool { frame, angular_momentum, force, moment, .. } = self;
-        ToolState { frame: *frame, angular_momentum: *angular_momentum, force: *force, moment: *moment }
+    pub(super) fn state(&self) -> RigidBodyState {
+        let RigidBody { frame, angular_momentum, force, moment, .. } = self;
+        RigidBodyState { frame: *frame, angular_momentum: *angular_momentum, force: *force, moment: *moment }
     }
 
-    pub(super) fn restore(&mut self, state: ToolState) {
-        let ToolState { frame, angular_momentum, force, moment } = state;
+    pub(super) fn restore(&mut self, state: RigidBodyState) {
+        let RigidBodyState { frame, angular_momentum, force, moment } = state;
         (self.frame, self.angular_momentum, self.force, self.moment) = (frame, angular_momentum, force, moment);
     }
 }

@@ -25,7 +25,7 @@ const CROSSINGS: f64 = 20.0;
 ///
 /// The scene starts from rest, with the forces that its supports and loads have then; time goes on as real time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Interlude {
+pub struct DynamicPhase {
     /// Time at which it began [s].
     pub begin: f64,
     /// First period of the solid as it was then [s].
@@ -39,7 +39,7 @@ pub struct Interlude {
     next_look: f64,
 }
 
-impl Interlude {
+impl DynamicPhase {
     /// Whether to [`Scene::look`] at the energies in this step.
     pub fn look_is_due(&self, time: f64) -> bool {
         time >= self.next_look
@@ -51,7 +51,7 @@ impl Scene {
     ///
     /// - `damping`: instead of twice the critical damping of the first period
     /// - `periods`: first periods for which it moves at least
-    pub fn begin_motion(&mut self, damping: Option<LocalDamping>, periods: f64) -> Interlude {
+    pub fn begin_motion(&mut self, damping: Option<LocalDamping>, periods: f64) -> DynamicPhase {
         let time = self.clock.time;
         let period = self.period_as_it_is(time);
         let critical = 4.0 * std::f64::consts::PI / period;
@@ -64,7 +64,7 @@ impl Scene {
         let clock = &mut self.clock;
         (clock.dt_before, clock.dt_after, clock.dt_min) = (dt, dt, clock.dt_min.min(dt));
         clock.motion_since = clock.step;
-        Interlude {
+        DynamicPhase {
             begin: time,
             period,
             least: periods * period,
@@ -75,7 +75,7 @@ impl Scene {
     }
 
     /// Goes on with motion that a checkpoint interrupted.
-    pub fn resume_motion(&mut self, interlude: &Interlude) {
+    pub fn resume_motion(&mut self, interlude: &DynamicPhase) {
         self.settings.damping = interlude.damping;
     }
 
@@ -99,9 +99,9 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::step`].
-    pub fn look(&mut self, interlude: &mut Interlude) -> Result<bool, StepError> {
+    pub fn look(&mut self, interlude: &mut DynamicPhase) -> Result<bool, StepError> {
         let (clock, displacement) = (self.clock, self.solid.displacement.clone());
-        let frames: Vec<Frame> = self.contacts.tools().iter().map(|tool| tool.frame).collect();
+        let frames: Vec<Frame> = self.contacts.rigid_bodies().iter().map(|rigid_body| rigid_body.frame).collect();
         let report = self.step(true)?;
         let kinetic = self.ledger[EnergyKind::Kinetic];
         interlude.next_look = self.clock.time + interlude.period / LOOKS;
@@ -118,8 +118,8 @@ impl Scene {
         self.solid.displacement = displacement;
         self.solid.velocity.fill(Vec3::zeros());
         self.debris.stop();
-        for (tool, frame) in self.contacts.tools_mut().iter_mut().zip(frames) {
-            tool.frame = Frame { velocity: Vec3::zeros(), ..frame };
+        for (rigid_body, frame) in self.contacts.rigid_bodies_mut().iter_mut().zip(frames) {
+            rigid_body.frame = Frame { velocity: Vec3::zeros(), ..frame };
         }
         self.books.external = self.ledger[EnergyKind::External];
         self.books.damping = self.ledger[EnergyKind::Damping] - self.solid.viscous_dissipation() + kinetic;

@@ -1,7 +1,7 @@
 //! Nodes of solids - points of a surface, and discrete elements - on facets that are not their own.
 
 use fractum_contact::law::{ContactLaw, ContactMemory, Linear, Rolling};
-use fractum_contact::{Ground, GroundContacts, Spheres, Touch};
+use fractum_contact::{Spheres, Surface, SurfaceContacts, Touch};
 use fractum_fem::Solid;
 use fractum_math::{Vec3, Work};
 
@@ -20,7 +20,7 @@ const TURNING: f64 = 3.5;
 /// A node on the surface of its solid is a point; a discrete element has its radius. Where a node becomes one while it
 /// touches, the contact keeps its force, and what its radius adds gives none until both have parted.
 #[derive(Clone, Debug)]
-pub(crate) struct NodesOnGround {
+pub(crate) struct NodesOnSurface {
     /// Those on the surface at the start, ascending, then discrete elements in the order of their birth.
     nodes: Vec<u32>,
     at_start: usize,
@@ -30,15 +30,15 @@ pub(crate) struct NodesOnGround {
     velocity: Vec<Vec3>,
     spin: Vec<Vec3>,
     radius: Vec<f64>,
-    contacts: GroundContacts<Linear>,
+    contacts: SurfaceContacts<Linear>,
 }
 
-impl NodesOnGround {
+impl NodesOnSurface {
     /// - `surface`: nodes on the surfaces of all solids, ascending; `bodies`: whose nodes touch this ground
     pub(crate) fn new(surface: &[u32], bodies: Vec<bool>, debris: &Debris) -> Self {
         let nodes: Vec<u32> = surface.iter().copied().filter(|&n| bodies[debris.body(n)]).collect();
         let mean = nodes.iter().map(|&n| debris.radius(n)).sum::<f64>() / nodes.len().max(1) as f64;
-        NodesOnGround {
+        NodesOnSurface {
             at_start: nodes.len(),
             bodies,
             position: vec![Vec3::zeros(); nodes.len()],
@@ -46,11 +46,11 @@ impl NodesOnGround {
             spin: vec![Vec3::zeros(); nodes.len()],
             radius: vec![0.0; nodes.len()],
             nodes,
-            contacts: GroundContacts::new(SKIN * mean).on_solid_ground(DEPTH * mean),
+            contacts: SurfaceContacts::new(SKIN * mean).on_solid_ground(DEPTH * mean),
         }
     }
 
-    pub(crate) fn contacts(&self) -> &GroundContacts<Linear> {
+    pub(crate) fn contacts(&self) -> &SurfaceContacts<Linear> {
         &self.contacts
     }
 
@@ -73,7 +73,7 @@ impl NodesOnGround {
     }
 
     /// Adds nodes of new discrete elements, or makes them grow to their size.
-    pub(crate) fn admit(&mut self, born: &[u32], ground: &Ground, solid: &Solid, debris: &Debris) {
+    pub(crate) fn admit(&mut self, born: &[u32], ground: &Surface, solid: &Solid, debris: &Debris) {
         let mut grown: Vec<(u32, f64)> = Vec::new();
         for &node in born.iter().filter(|&&n| self.bodies[debris.body(n)]) {
             let radius = debris.radius(node);
@@ -97,20 +97,20 @@ impl NodesOnGround {
         grown.sort_unstable_by_key(|g| g.0);
         self.locate(solid);
         self.contacts.look_again();
-        let NodesOnGround { position, velocity, spin, radius, contacts, .. } = self;
+        let NodesOnSurface { position, velocity, spin, radius, contacts, .. } = self;
         let spheres = Spheres { position, velocity, spin, radius };
         contacts.search(ground, &spheres);
         let growth = |k: u32| grown.binary_search_by_key(&k, |g| g.0).ok().map(|place| grown[place].1);
-        contacts.take_up(ground, &spheres, growth);
+        contacts.accept_initial_overlap(ground, &spheres, growth);
     }
 
     /// Takes all contacts as they stand.
-    pub(crate) fn take_up(&mut self, ground: &Ground, solid: &Solid) {
+    pub(crate) fn accept_initial_overlap(&mut self, ground: &Surface, solid: &Solid) {
         self.locate(solid);
-        let NodesOnGround { position, velocity, spin, radius, contacts, .. } = self;
+        let NodesOnSurface { position, velocity, spin, radius, contacts, .. } = self;
         let spheres = Spheres { position, velocity, spin, radius };
         contacts.search(ground, &spheres);
-        contacts.take_up(ground, &spheres, |_| Some(0.0));
+        contacts.accept_initial_overlap(ground, &spheres, |_| Some(0.0));
     }
 
     /// Takes a saved state: the discrete elements that there were, and the contacts.
@@ -135,14 +135,14 @@ impl NodesOnGround {
     /// - `law`: of a node on this ground; `on_ground`: takes each contact, its place and its stiffness [N/m]
     pub(crate) fn add_forces(
         &mut self,
-        ground: &Ground,
+        ground: &Surface,
         solid: &mut Solid,
         debris: &mut Debris,
         law: impl Fn(&Solid, &Debris, u32) -> Linear + Sync,
         dt: f64,
     ) -> Work {
         self.locate(solid);
-        let NodesOnGround { nodes, position, velocity, spin, radius, contacts, .. } = self;
+        let NodesOnSurface { nodes, position, velocity, spin, radius, contacts, .. } = self;
         contacts.search(ground, &Spheres { position, velocity, spin, radius });
         for k in contacts.near() {
             spin[k as usize] = debris.turning_at(solid, nodes[k as usize]);

@@ -7,12 +7,12 @@ const DEPTH: usize = 6;
 
 /// Remembers the last iterates and mixes them into a better one.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Mixer {
+pub(super) struct Anderson {
     /// Last x and g(x), oldest first.
     iterates: Vec<(Vec<f64>, Vec<f64>)>,
 }
 
-impl Mixer {
+impl Anderson {
     /// Forgets everything.
     pub(super) fn reset(&mut self) {
         self.iterates.clear();
@@ -61,7 +61,7 @@ mod tests {
         // g(x) = A x + c with the slow modes 0.9, 0.8, -0.7: by itself 0.9 per step.
         let g = |x: &[f64]| vec![0.9 * x[0] + 1.0, 0.8 * x[1] + 0.1 * x[0] + 2.0, -0.7 * x[2] + 3.0];
         let mut x = vec![0.0; 3];
-        let mut mixer = Mixer::default();
+        let mut mixer = Anderson::default();
         for _ in 0..6 {
             let image = g(&x);
             mixer.next(&mut x, &image);

@@ -7,7 +7,7 @@ use fractum_math::{Vec3, Work};
 use crate::hierarchy::{DoubleHierarchy, Foot};
 use crate::inside::foot_from_inside;
 use crate::law::{ContactLaw, PairMotion};
-use crate::sphere_facet::{Ground, Spheres, Touch};
+use crate::sphere_facet::{Spheres, Surface, Touch};
 use crate::surface::FacetMesh;
 
 /// Cosine of the angle between the normals of two steps beyond which a contact is a new one.
@@ -49,7 +49,7 @@ impl<L: ContactLaw> Block<L> {
 
     pub(crate) fn update(
         &mut self,
-        ground: &Ground,
+        ground: &Surface,
         spheres: &Spheres,
         depth: Option<f64>,
         law: &(impl Fn(u32, f64) -> L + Sync),
@@ -74,8 +74,9 @@ impl<L: ContactLaw> Block<L> {
             }
             self.follow(ground, old.clone());
             // A sphere that was taken as it stood, deep within an edge, may leave on the other side: what gives no force is its own.
-            let slack = self.before[old.clone()].iter().map(|t| L::slack(&t.memory)).fold(0.0, f64::max);
-            self.add_touches(ground, spheres, law, dt, (sphere, slack));
+            let overlap_offset =
+                self.before[old.clone()].iter().map(|t| L::overlap_offset(&t.memory)).fold(0.0, f64::max);
+            self.add_touches(ground, spheres, law, dt, (sphere, overlap_offset));
             for touch in self.before[old.clone()].iter().zip(&self.taken).filter(|(_, taken)| !**taken).map(|(t, _)| t)
             {
                 self.ended += ending(touch, law(sphere, 0.0));
@@ -86,7 +87,7 @@ impl<L: ContactLaw> Block<L> {
     /// Finds which contact of the last step each foot continues: the one on the same feature; or else the one on the
     /// same part of the surface that points most nearly the same way and that nothing else continues; or else, on an
     /// edge so shallow that both are one, the one beside it.
-    fn follow(&mut self, ground: &Ground, old: Range<usize>) {
+    fn follow(&mut self, ground: &Surface, old: Range<usize>) {
         let Block { feet, before, origin, taken, .. } = self;
         let before = &before[old.clone()];
         let part = |foot: &Foot| ground.part(foot.facet);
@@ -125,17 +126,17 @@ impl<L: ContactLaw> Block<L> {
     /// Forces of the feet of one sphere, with what contacts that continue none start with.
     fn add_touches(
         &mut self,
-        ground: &Ground,
+        ground: &Surface,
         spheres: &Spheres,
         law: &(impl Fn(u32, f64) -> L + Sync),
         dt: f64,
-        (sphere, slack): (u32, f64),
+        (sphere, overlap_offset): (u32, f64),
     ) {
         let i = sphere as usize;
         for (foot, origin) in self.feet.iter().zip(&self.origin) {
             let mut memory = origin.map_or_else(Default::default, |k| self.before[k].memory);
             if origin.is_none() {
-                L::add_slack(&mut memory, slack);
+                L::add_overlap_offset(&mut memory, overlap_offset);
             }
             let place = spheres.position[i] + foot.offset;
             let (ground_velocity, ground_spin) = ground.motion_at(foot.feature, &place);
@@ -159,7 +160,7 @@ impl<L: ContactLaw> Block<L> {
 }
 
 /// A contact at a foot that bears nothing.
-fn unloaded<M>(ground: &Ground, sphere: u32, foot: &Foot, overlap: f64, memory: M) -> Touch<M> {
+fn unloaded<M>(ground: &Surface, sphere: u32, foot: &Foot, overlap: f64, memory: M) -> Touch<M> {
     Touch {
         sphere,
         feature: foot.feature,
@@ -183,9 +184,9 @@ impl<L: ContactLaw> Block<L> {
     /// since the last step because the sphere has grown give that of before.
     ///
     /// - `grown`: by how much a sphere has grown [m]; none of the others
-    pub(crate) fn take_up(
+    pub(crate) fn accept_initial_overlap(
         &mut self,
-        ground: &Ground,
+        ground: &Surface,
         spheres: &Spheres,
         depth: Option<f64>,
         grown: &impl Fn(u32) -> Option<f64>,
@@ -203,7 +204,7 @@ impl<L: ContactLaw> Block<L> {
             let Some(growth) = grown(sphere) else { continue };
             for touch in &mut self.touches[first..] {
                 touch.overlap += growth;
-                L::add_slack(&mut touch.memory, growth);
+                L::add_overlap_offset(&mut touch.memory, growth);
             }
             let (centre, radius) = (&spheres.position[sphere as usize], spheres.radius[sphere as usize]);
             let facets = &self.facets[self.starts[k] as usize..self.starts[k + 1] as usize];
@@ -214,7 +215,7 @@ impl<L: ContactLaw> Block<L> {
                 }
                 let overlap = radius - foot.distance;
                 let mut memory = L::Memory::default();
-                L::add_slack(&mut memory, overlap);
+                L::add_overlap_offset(&mut memory, overlap);
                 self.touches.push(unloaded(ground, sphere, foot, overlap, memory));
             }
         }
@@ -230,11 +231,11 @@ fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L) -> Work {
     Work::contact(0.0, force.friction * touch.weight, force.damping * touch.weight)
 }
 
-impl Ground<'_> {
+impl Surface<'_> {
     fn part(&self, facet: u32) -> u32 {
         match self {
-            Ground::Rigid { surface, .. } | Ground::Deformable { surface, .. } => surface.part(facet),
-            Ground::Shape { .. } => 0,
+            Surface::Rigid { surface, .. } | Surface::Deformable { surface, .. } => surface.part(facet),
+            Surface::Shape { .. } => 0,
         }
     }
 
@@ -242,8 +243,8 @@ impl Ground<'_> {
     /// deforms counts as zero.
     fn motion_at(&self, feature: u32, place: &Vec3) -> (Vec3, Vec3) {
         match self {
-            Ground::Rigid { frame, .. } | Ground::Shape { frame, .. } => (frame.velocity_at(place), frame.spin),
-            Ground::Deformable { surface, points, velocity } => {
+            Surface::Rigid { frame, .. } | Surface::Shape { frame, .. } => (frame.velocity_at(place), frame.spin),
+            Surface::Deformable { surface, points, velocity } => {
                 (surface.interpolate(feature, place, points, velocity), Vec3::zeros())
             }
         }
@@ -252,7 +253,7 @@ impl Ground<'_> {
 
 /// Feet of a sphere, in space.
 fn find_feet(
-    ground: &Ground,
+    ground: &Surface,
     facets: &[u32],
     centre: &Vec3,
     radius: f64,
@@ -270,15 +271,15 @@ fn find_feet(
         None => hierarchy.feet(surface, points, facets, centre, radius, feet),
     };
     let frame = match ground {
-        Ground::Deformable { surface, points, .. } => {
+        Surface::Deformable { surface, points, .. } => {
             on_facets(surface, points, centre, feet);
             return;
         }
-        Ground::Rigid { surface, points, frame } => {
+        Surface::Rigid { surface, points, frame } => {
             on_facets(surface, points, &frame.to_body(centre), feet);
             frame
         }
-        Ground::Shape { shape, hollow, frame } => {
+        Surface::Shape { shape, hollow, frame } => {
             shape.feet(*hollow, &frame.to_body(centre), radius, feet);
             frame
         }

@@ -7,8 +7,8 @@ use fractum_fem::Solid;
 use fractum_math::{Work, connected};
 
 use super::debris_among::{DebrisAmong, Made};
-use super::nodes_on_ground::{NodesOnGround, frequency_square};
-use super::tool::{Form, Tool};
+use super::nodes_on_surface::{NodesOnSurface, frequency_square};
+use super::rigid_body::{Form, RigidBody};
 use super::{Contacts, OverlapWith, SKIN};
 use crate::coupling::Debris;
 
@@ -16,7 +16,13 @@ impl Contacts {
     /// Has the nodes of solids meet what there is; plane ones meet nothing of it.
     ///
     /// - `surface`: nodes on the surfaces of the solids, ascending
-    pub(crate) fn meet_nodes(&mut self, solid: &Solid, debris: &mut Debris, particles: &Particles, surface: &[u32]) {
+    pub(crate) fn set_node_contacts(
+        &mut self,
+        solid: &Solid,
+        debris: &mut Debris,
+        particles: &Particles,
+        surface: &[u32],
+    ) {
         if solid.body_count() == 0 || solid.is_plane() {
             return;
         }
@@ -27,23 +33,23 @@ impl Contacts {
         let piece = pieces(solid);
         let apart = |body: usize| -> Vec<bool> { piece.iter().map(|other| *other != piece[body]).collect() };
         let meets = self.solids.iter().any(|ground| apart(ground.body()).contains(&true));
-        if meets || self.tools.iter().any(has_walls) {
+        if meets || self.rigid_bodies.iter().any(has_walls) {
             debris.prepare_holders(solid);
         }
         for ground in &mut self.solids {
             let bodies = apart(ground.body());
             if bodies.contains(&true) {
-                ground.meets_nodes(surface, bodies, debris);
+                ground.has_node_contacts(surface, bodies, debris);
             }
         }
         self.solids.retain(|ground| ground.visitors().is_some() || !particles.is_empty());
-        for (tool, nodes) in self.tools.iter().zip(&mut self.nodes_on_tools) {
-            *nodes = has_walls(tool).then(|| NodesOnGround::new(surface, vec![true; piece.len()], debris));
+        for (rigid_body, nodes) in self.rigid_bodies.iter().zip(&mut self.nodes_on_tools) {
+            *nodes = has_walls(rigid_body).then(|| NodesOnSurface::new(surface, vec![true; piece.len()], debris));
         }
     }
 
     /// Whether nodes of solids that are no discrete elements yet may touch something here.
-    pub fn meets_nodes(&self) -> bool {
+    pub fn has_node_contacts(&self) -> bool {
         self.nodes_on_tools.iter().any(Option::is_some) || self.solids.iter().any(|ground| ground.visitors().is_some())
     }
 
@@ -57,14 +63,14 @@ impl Contacts {
     ) -> Work {
         let mut work = Work::default();
         let mut fastest = self.node_frequency_square;
-        for (tool, nodes) in self.tools.iter_mut().zip(&mut self.nodes_on_tools) {
+        for (rigid_body, nodes) in self.rigid_bodies.iter_mut().zip(&mut self.nodes_on_tools) {
             let Some(nodes) = nodes else { continue };
-            let surface = tool.surface;
+            let surface = rigid_body.surface;
             let law =
                 |solid: &Solid, debris: &Debris, node: u32| debris.wall_law(node, solid.mass[node as usize], surface);
-            work += nodes.add_forces(&tool.ground(), solid, debris, law, dt);
+            work += nodes.add_forces(&rigid_body.ground(), solid, debris, law, dt);
             for (touch, place, node) in nodes.touches() {
-                tool.push(&-touch.force, &-touch.couple, &place);
+                rigid_body.push(&-touch.force, &-touch.couple, &place);
                 let mobility = 1.0 / solid.mass[node as usize];
                 fastest = fastest.max(frequency_square(&law(solid, debris, node), mobility));
             }
@@ -98,9 +104,9 @@ impl Contacts {
             ground.remove_facets(solid, removed);
             ground.admit(born, solid, debris);
         }
-        for (tool, nodes) in self.tools.iter().zip(&mut self.nodes_on_tools) {
+        for (rigid_body, nodes) in self.rigid_bodies.iter().zip(&mut self.nodes_on_tools) {
             if let Some(nodes) = nodes {
-                nodes.admit(born, &tool.ground(), solid, debris);
+                nodes.admit(born, &rigid_body.ground(), solid, debris);
             }
         }
         if let Some(among) = self.debris.as_mut().filter(|_| !born.is_empty()) {
@@ -116,40 +122,40 @@ impl Contacts {
         let Particles { position, velocity, spin, radius, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
         for ground in &mut self.solids {
-            ground.take_up(solid, &spheres, &which);
+            ground.accept_initial_overlap(solid, &spheres, &which);
         }
     }
 
     /// Takes everything of particles as it stands, as [`Contacts::take_up_on_solids`] does.
-    pub(crate) fn take_up_particles(&mut self, solid: &Solid, particles: &Particles) {
+    pub(crate) fn accept_particle_overlaps(&mut self, solid: &Solid, particles: &Particles) {
         self.take_up_on_solids(solid, particles, |_| true);
         let Particles { position, velocity, spin, radius, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
         if let Some(mut among) = self.among.take() {
             among.search(&spheres, |i, j| self.law_among(radius, &particles.mass, i, j));
-            among.take_up(&spheres, |_, _| true);
+            among.accept_initial_overlap(&spheres, |_, _| true);
             self.among = Some(among);
         }
-        for (tool, (contacts, _)) in self.tools.iter().zip(&mut self.on_tools) {
-            contacts.search(&tool.ground(), &spheres);
-            contacts.take_up(&tool.ground(), &spheres, |_| Some(0.0));
+        for (rigid_body, (contacts, _)) in self.rigid_bodies.iter().zip(&mut self.on_tools) {
+            contacts.search(&rigid_body.ground(), &spheres);
+            contacts.accept_initial_overlap(&rigid_body.ground(), &spheres, |_| Some(0.0));
         }
     }
 
     /// Takes all contacts of nodes as they stand, and tells them: node, depth [m] and what the node is in.
-    pub(crate) fn take_up_nodes(&mut self, solid: &Solid) -> Vec<(u32, f64, OverlapWith)> {
+    pub(crate) fn accept_node_overlaps(&mut self, solid: &Solid) -> Vec<(u32, f64, OverlapWith)> {
         let mut found = Vec::new();
-        let mut tell = |nodes: &NodesOnGround, other: OverlapWith| {
+        let mut tell = |nodes: &NodesOnSurface, other: OverlapWith| {
             found.extend(nodes.touches().map(|(touch, _, node)| (node, touch.overlap, other.clone())));
         };
-        for (tool, nodes) in self.tools.iter().zip(&mut self.nodes_on_tools) {
+        for (rigid_body, nodes) in self.rigid_bodies.iter().zip(&mut self.nodes_on_tools) {
             if let Some(nodes) = nodes {
-                nodes.take_up(&tool.ground(), solid);
-                tell(nodes, OverlapWith::Tool(tool.name.clone()));
+                nodes.accept_initial_overlap(&rigid_body.ground(), solid);
+                tell(nodes, OverlapWith::RigidBody(rigid_body.name.clone()));
             }
         }
         for ground in &mut self.solids {
-            ground.take_up_nodes(solid);
+            ground.accept_node_overlaps(solid);
             let name = &solid.body(ground.body()).name;
             ground.visitors().iter().for_each(|nodes| tell(nodes, OverlapWith::Solid(name.clone())));
         }
@@ -158,22 +164,22 @@ impl Contacts {
 
     /// Contacts of nodes at the last step.
     pub(super) fn node_contacts(&self) -> usize {
-        let on = |nodes: &NodesOnGround| nodes.contacts().touches().count();
-        let tools = self.nodes_on_tools.iter().flatten().map(on).sum::<usize>();
+        let on = |nodes: &NodesOnSurface| nodes.contacts().touches().count();
+        let rigid_bodies = self.nodes_on_tools.iter().flatten().map(on).sum::<usize>();
         let solids = self.solids.iter().filter_map(|ground| ground.visitors()).map(on).sum::<usize>();
-        tools + solids + self.debris.as_ref().map_or(0, DebrisAmong::touching)
+        rigid_bodies + solids + self.debris.as_ref().map_or(0, DebrisAmong::touching)
     }
 
     pub(super) fn nodes_on_tools_state(&self) -> Vec<Vec<fractum_contact::Touch<fractum_contact::law::ContactMemory>>> {
-        let of = |nodes: &Option<NodesOnGround>| nodes.as_ref().map_or_else(Vec::new, |n| n.contacts().state());
+        let of = |nodes: &Option<NodesOnSurface>| nodes.as_ref().map_or_else(Vec::new, |n| n.contacts().state());
         self.nodes_on_tools.iter().map(of).collect()
     }
 }
 
 /// Whether nodes meet a rigid body as facets or as a container; those of other shapes know it as
-/// [`RigidGround`](crate::RigidGround).
-fn has_walls(tool: &Tool) -> bool {
-    !matches!(tool.form, Form::Shape { hollow: false, .. })
+/// [`NodesOnShape`](crate::NodesOnShape).
+fn has_walls(rigid_body: &RigidBody) -> bool {
+    !matches!(rigid_body.form, Form::Shape { hollow: false, .. })
 }
 
 /// The piece that each solid body belongs to, by the first body of it: bodies that share nodes are one piece, whose bodies do

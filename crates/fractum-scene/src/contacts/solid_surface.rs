@@ -1,12 +1,14 @@
 //! The surface of a solid as ground for particles.
 
-use fractum_contact::law::{ContactLaw, ContactMemory, ElasticMaterial, Hertz, HertzMemory, MaterialPair, Surface};
-use fractum_contact::{FacetMesh, Ground, GroundContacts, Spheres, SurfaceError, Touch};
+use fractum_contact::law::{
+    ContactLaw, ContactMemory, ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair,
+};
+use fractum_contact::{FacetMesh, Spheres, Surface, SurfaceContacts, SurfaceError, Touch};
 use fractum_fem::Solid;
 use fractum_math::{Vec3, Work};
 
 use super::ContactMaterial;
-use super::nodes_on_ground::{NodesOnGround, frequency_square};
+use super::nodes_on_surface::{NodesOnSurface, frequency_square};
 use crate::coupling::Debris;
 
 /// Outward facets of one solid body, with the contacts of particles, and of nodes of other solids, on them.
@@ -14,35 +16,40 @@ use crate::coupling::Debris;
 /// These are the facets of the start. One goes with its element; the nodes of that element are discrete elements then, which
 /// meet everything but the facets of their own solid.
 #[derive(Clone, Debug)]
-pub struct SolidGround {
+pub struct SolidSurface {
     body: usize,
-    surface: Surface,
+    surface: ContactParameters,
     elastic: ElasticMaterial,
     mesh: FacetMesh,
     /// Nodes of the solid that are points of the mesh.
     nodes: Vec<u32>,
     points: Vec<Vec3>,
     velocity: Vec<Vec3>,
-    contacts: GroundContacts<Hertz>,
+    contacts: SurfaceContacts<Hertz>,
     /// Material of the body with that of each body of particles.
     pairs: Vec<MaterialPair>,
     frequency_square: f64,
     /// Facets by their nodes, ascending.
     by_nodes: Vec<([u32; 3], u32)>,
     /// Nodes of solids that this one shares no node with.
-    visitors: Option<NodesOnGround>,
+    visitors: Option<NodesOnSurface>,
     /// Radii of the particles as this body feels them, where some count as points: those that are tied to it. Else empty.
     felt: Vec<f64>,
 }
 
-impl SolidGround {
+impl SolidSurface {
     /// The ground of the facets of one body.
     ///
     /// - `facets`: nodes of the solid, counter-clockwise from outside
     ///
     /// # Errors
     /// Facets that are no surface.
-    pub fn new(solid: &Solid, body: usize, surface: Surface, facets: &[[u32; 3]]) -> Result<Self, SurfaceError> {
+    pub fn new(
+        solid: &Solid,
+        body: usize,
+        surface: ContactParameters,
+        facets: &[[u32; 3]],
+    ) -> Result<Self, SurfaceError> {
         let mut nodes: Vec<u32> = facets.iter().flatten().copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
@@ -50,7 +57,7 @@ impl SolidGround {
         let local: Vec<[u32; 3]> = facets.iter().map(|f| [place(&f[0]), place(&f[1]), place(&f[2])]).collect();
         let points: Vec<Vec3> = nodes.iter().map(|&n| solid.position(n as usize)).collect();
         let elastic = &solid.body(body).elastic;
-        Ok(SolidGround {
+        Ok(SolidSurface {
             body,
             surface,
             elastic: ElasticMaterial { young_modulus: elastic.young_modulus, poisson_ratio: elastic.poisson_ratio },
@@ -58,7 +65,7 @@ impl SolidGround {
             velocity: vec![Vec3::zeros(); points.len()],
             nodes,
             points,
-            contacts: GroundContacts::new(1.0),
+            contacts: SurfaceContacts::new(1.0),
             pairs: Vec::new(),
             frequency_square: 0.0,
             by_nodes: {
@@ -81,14 +88,14 @@ impl SolidGround {
     /// The same with contact of nodes of other solids.
     ///
     /// - `surface`: nodes on the surfaces of all solids, ascending; `bodies`: whose nodes may touch this one
-    pub(crate) fn meets_nodes(&mut self, surface: &[u32], bodies: Vec<bool>, debris: &Debris) {
-        self.visitors = Some(NodesOnGround::new(surface, bodies, debris));
+    pub(crate) fn has_node_contacts(&mut self, surface: &[u32], bodies: Vec<bool>, debris: &Debris) {
+        self.visitors = Some(NodesOnSurface::new(surface, bodies, debris));
     }
 
     pub(super) fn prepared(mut self, skin: f64, materials: &[ContactMaterial]) -> Self {
         let pair = |m: &ContactMaterial| MaterialPair::new([m.elastic, self.elastic], m.surface.against(self.surface));
         self.pairs = materials.iter().map(pair).collect();
-        self.contacts = GroundContacts::new(skin);
+        self.contacts = SurfaceContacts::new(skin);
         self
     }
 
@@ -97,19 +104,19 @@ impl SolidGround {
         self.body
     }
 
-    pub(super) fn contacts(&self) -> &GroundContacts<Hertz> {
+    pub(super) fn contacts(&self) -> &SurfaceContacts<Hertz> {
         &self.contacts
     }
 
-    pub(super) fn visitors(&self) -> Option<&NodesOnGround> {
+    pub(super) fn visitors(&self) -> Option<&NodesOnSurface> {
         self.visitors.as_ref()
     }
 
-    pub(super) fn state(&self) -> GroundState {
+    pub(super) fn state(&self) -> SolidSurfaceState {
         (self.contacts.state(), self.visitors.as_ref().map_or_else(Vec::new, |nodes| nodes.contacts().state()))
     }
 
-    pub(super) fn restore(&mut self, solid: &Solid, debris: &Debris, (touches, nodes): GroundState) {
+    pub(super) fn restore(&mut self, solid: &Solid, debris: &Debris, (touches, nodes): SolidSurfaceState) {
         let dead = (0u32..).zip(solid.alive(self.body)).filter(|(_, alive)| !**alive);
         let dead: Vec<(usize, u32)> = dead.map(|(element, _)| (self.body, element)).collect();
         self.remove_facets(solid, &dead);
@@ -133,43 +140,48 @@ impl SolidGround {
         }
         if some {
             self.contacts.look_again();
-            self.visitors.iter_mut().for_each(NodesOnGround::look_again);
+            self.visitors.iter_mut().for_each(NodesOnSurface::look_again);
         }
     }
 
     /// Takes nodes of new discrete elements as they stand.
     pub(super) fn admit(&mut self, born: &[u32], solid: &Solid, debris: &Debris) {
         self.locate(solid);
-        let SolidGround { mesh, points, velocity, visitors, .. } = self;
+        let SolidSurface { mesh, points, velocity, visitors, .. } = self;
         if let Some(visitors) = visitors {
-            visitors.admit(born, &Ground::Deformable { surface: mesh, points, velocity }, solid, debris);
+            visitors.admit(born, &Surface::Deformable { surface: mesh, points, velocity }, solid, debris);
         }
     }
 
     /// Takes the contacts of nodes of other solids as they stand.
-    pub(super) fn take_up_nodes(&mut self, solid: &Solid) {
+    pub(super) fn accept_node_overlaps(&mut self, solid: &Solid) {
         self.locate(solid);
-        let SolidGround { mesh, points, velocity, visitors, .. } = self;
+        let SolidSurface { mesh, points, velocity, visitors, .. } = self;
         if let Some(visitors) = visitors {
-            visitors.take_up(&Ground::Deformable { surface: mesh, points, velocity }, solid);
+            visitors.accept_initial_overlap(&Surface::Deformable { surface: mesh, points, velocity }, solid);
         }
     }
 
     /// Takes the contacts of particles as they stand.
-    pub(super) fn take_up(&mut self, solid: &Solid, spheres: &Spheres, which: impl Fn(u32) -> bool + Sync) {
+    pub(super) fn accept_initial_overlap(
+        &mut self,
+        solid: &Solid,
+        spheres: &Spheres,
+        which: impl Fn(u32) -> bool + Sync,
+    ) {
         self.locate(solid);
-        let SolidGround { mesh, points, velocity, contacts, felt, .. } = self;
-        let ground = Ground::Deformable { surface: mesh, points, velocity };
+        let SolidSurface { mesh, points, velocity, contacts, felt, .. } = self;
+        let ground = Surface::Deformable { surface: mesh, points, velocity };
         let spheres = Spheres { radius: if felt.is_empty() { spheres.radius } else { felt }, ..*spheres };
         contacts.search(&ground, &spheres);
-        contacts.take_up(&ground, &spheres, |i| which(i).then_some(0.0));
+        contacts.accept_initial_overlap(&ground, &spheres, |i| which(i).then_some(0.0));
     }
 
     /// Adds the forces of nodes of other solids to both.
     pub(super) fn add_node_forces(&mut self, solid: &mut Solid, debris: &mut Debris, dt: f64) -> Work {
-        let SolidGround { mesh, nodes, points, velocity, visitors, elastic, surface, .. } = self;
+        let SolidSurface { mesh, nodes, points, velocity, visitors, elastic, surface, .. } = self;
         let Some(visitors) = visitors else { return Work::default() };
-        let ground = Ground::Deformable { surface: mesh, points, velocity };
+        let ground = Surface::Deformable { surface: mesh, points, velocity };
         let law = |solid: &Solid, debris: &Debris, node: u32| {
             debris.facet_law(node, solid.mass[node as usize], elastic, *surface)
         };
@@ -210,9 +222,9 @@ impl SolidGround {
         dt: f64,
     ) -> Work {
         self.locate(solid);
-        let SolidGround { mesh, nodes, points, velocity, contacts, pairs, felt, .. } = self;
+        let SolidSurface { mesh, nodes, points, velocity, contacts, pairs, felt, .. } = self;
         let spheres = &Spheres { radius: if felt.is_empty() { spheres.radius } else { felt }, ..*spheres };
-        let ground = Ground::Deformable { surface: mesh, points, velocity };
+        let ground = Surface::Deformable { surface: mesh, points, velocity };
         let law_of = |i: u32| law(&pairs[body_of[i as usize] as usize], i);
         contacts.search(&ground, spheres);
         let work = contacts.update(&ground, spheres, |i, _| law_of(i), dt);
@@ -232,7 +244,7 @@ impl SolidGround {
 }
 
 /// Contacts of particles, and of nodes of other solids.
-pub(super) type GroundState = (Vec<Touch<HertzMemory>>, Vec<Touch<ContactMemory>>);
+pub(super) type SolidSurfaceState = (Vec<Touch<HertzMemory>>, Vec<Touch<ContactMemory>>);
 
 fn sorted(mut nodes: [u32; 3]) -> [u32; 3] {
     nodes.sort_unstable();

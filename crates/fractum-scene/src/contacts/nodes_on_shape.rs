@@ -1,13 +1,13 @@
 //! Rigid shapes that the nodes and discrete elements of solids touch.
 
-use fractum_contact::law::{ContactForce, ContactLaw, ContactMemory, Linear, PairMotion, Surface};
+use fractum_contact::law::{ContactForce, ContactLaw, ContactMemory, ContactParameters, Linear, PairMotion};
 use fractum_contact::{Frame, Outside, Shape};
 use fractum_fem::Solid;
 use fractum_math::{Rotation, Vec3, Work};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::contacts::Tool;
+use crate::contacts::RigidBody;
 use crate::coupling::Debris;
 
 /// A rigid shape, seen from outside; solids stay out of it.
@@ -15,14 +15,14 @@ use crate::coupling::Debris;
 /// It feels the nodes on the surface of the solids at the start (as points) and every particle (as a sphere). A node
 /// that turns into a particle while it lies nearer than its radius keeps touching as a point until it has left.
 #[derive(Clone, Debug)]
-pub struct RigidGround {
+pub struct NodesOnShape {
     pub(crate) shape: Shape,
     /// Where it is if it belongs to no rigid body of the scene.
     pub(crate) frame: Frame,
     /// The rigid body that it is the shape of, which moves it.
-    pub(crate) tool: Option<usize>,
+    pub(crate) rigid_body: Option<usize>,
     /// Friction and damping of its contacts, together with those of the other surface.
-    surface: Surface,
+    surface: ContactParameters,
     pub(crate) candidates: Vec<Candidate>,
 }
 
@@ -42,23 +42,23 @@ pub(crate) struct Candidate {
     pub(crate) damping: f64,
 }
 
-impl RigidGround {
+impl NodesOnShape {
     /// A fixed half space behind the plane through `point` with unit `normal`.
-    pub fn plane(point: Vec3, normal: Vec3, surface: Surface) -> Self {
+    pub fn plane(point: Vec3, normal: Vec3, surface: ContactParameters) -> Self {
         let half_turn = || Rotation::from_scaled_axis(Vec3::x() * std::f64::consts::PI);
         let rotation = Rotation::rotation_between(&Vec3::z(), &normal).unwrap_or_else(half_turn);
         let frame = Frame { rotation, ..Frame::at(point) };
-        RigidGround { shape: Shape::HalfSpace, frame, tool: None, surface, candidates: Vec::new() }
+        NodesOnShape { shape: Shape::HalfSpace, frame, rigid_body: None, surface, candidates: Vec::new() }
     }
 
     /// The shape of a rigid body of the scene, by its number there.
-    pub fn of_tool(tool: usize, shape: Shape, surface: Surface) -> Self {
-        RigidGround { shape, frame: Frame::at_rest(), tool: Some(tool), surface, candidates: Vec::new() }
+    pub fn of_body(rigid_body: usize, shape: Shape, surface: ContactParameters) -> Self {
+        NodesOnShape { shape, frame: Frame::at_rest(), rigid_body: Some(rigid_body), surface, candidates: Vec::new() }
     }
 
     /// The rigid body that it is the shape of.
-    pub(crate) fn tool(&self) -> Option<usize> {
-        self.tool
+    pub(crate) fn rigid_body(&self) -> Option<usize> {
+        self.rigid_body
     }
 
     /// Sets the nodes that may touch: the surface of the solids.
@@ -90,13 +90,14 @@ impl RigidGround {
 
     /// Takes all contacts as they stand: they give no force, and touch no nearer than now until they have parted. Tells
     /// them: node and depth [m].
-    pub(crate) fn take_up(&mut self, tools: &[Tool], solid: &Solid) -> Vec<(u32, f64)> {
-        let frame = self.tool.and_then(|index| tools.get(index)).map_or(self.frame, |tool| tool.frame);
+    pub(crate) fn accept_initial_overlap(&mut self, rigid_bodies: &[RigidBody], solid: &Solid) -> Vec<(u32, f64)> {
+        let frame =
+            self.rigid_body.and_then(|index| rigid_bodies.get(index)).map_or(self.frame, |rigid_body| rigid_body.frame);
         let mut found = Vec::new();
         for c in &mut self.candidates {
             let depth = -self.shape.outside(&frame.to_body(&solid.position(c.node as usize))).distance;
             if depth > 0.0 {
-                Linear::add_slack(&mut c.memory, depth);
+                Linear::add_overlap_offset(&mut c.memory, depth);
                 found.push((c.node, depth));
             }
         }
@@ -124,11 +125,17 @@ impl RigidGround {
     }
 
     /// Adds the contact forces to the nodes, the torques to free particles, and the opposite to the rigid body.
-    pub(crate) fn add_forces(&mut self, tools: &mut [Tool], solid: &mut Solid, debris: &mut Debris, dt: f64) -> Work {
-        let RigidGround { shape, frame, tool, candidates, .. } = self;
-        let mut tool = tool.and_then(|index| tools.get_mut(index));
-        if let Some(tool) = &tool {
-            *frame = tool.frame;
+    pub(crate) fn add_forces(
+        &mut self,
+        rigid_bodies: &mut [RigidBody],
+        solid: &mut Solid,
+        debris: &mut Debris,
+        dt: f64,
+    ) -> Work {
+        let NodesOnShape { shape, frame, rigid_body, candidates, .. } = self;
+        let mut rigid_body = rigid_body.and_then(|index| rigid_bodies.get_mut(index));
+        if let Some(rigid_body) = &rigid_body {
+            *frame = rigid_body.frame;
         }
         let (shape, frame) = (*shape, *frame);
         {
@@ -159,8 +166,8 @@ impl RigidGround {
             let i = c.node as usize;
             solid.force[i] += c.force;
             debris.add_torque(c.node, c.arm.cross(&c.force) + c.couple);
-            if let Some(tool) = &mut tool {
-                tool.push(&-c.force, &-c.couple, &(solid.position(i) + c.arm));
+            if let Some(rigid_body) = &mut rigid_body {
+                rigid_body.push(&-c.force, &-c.couple, &(solid.position(i) + c.arm));
             }
             work += Work::contact(c.stored, c.friction, c.damping);
         }
