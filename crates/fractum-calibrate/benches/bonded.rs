@@ -1,7 +1,7 @@
 //! Bonded packings: one tension solve, and explicit steps, on the threads given by `RAYON_NUM_THREADS`.
 
 use fractum_calibrate::{Micro, Sample, lab};
-use fractum_dem::{BeamNetwork, Integrator, Particles, Tolerance};
+use fractum_dem::{BeamNetwork, CentralDifference, ParticleDamping, Particles, Tolerance};
 use fractum_pack::{Convention, Domain, PackSpec, pack};
 
 fn main() {
@@ -34,11 +34,11 @@ fn explicit_step(bencher: divan::Bencher, count: usize) {
         return;
     };
     let dt = bonds.stable_step(&particles, 0.7);
+    let mut motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
     particles.velocity.iter_mut().enumerate().for_each(|(i, v)| v.x = 1e-3 * (i as f64).sin());
     bencher.counter(divan::counter::ItemsCount::new(network.pairs.len())).bench_local(|| {
-        particles.kick_and_drift(dt, Integrator::VelocityVerlet);
+        motion.kick_and_drift(&mut particles);
         particles.clear_forces();
         bonds.add_forces(&mut particles);
-        particles.kick(dt, Integrator::VelocityVerlet);
     });
 }

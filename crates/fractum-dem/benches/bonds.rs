@@ -4,7 +4,10 @@
 //! as a packing gives it.
 
 use fractum_dem::criterion::{FractureCriterion, Level, Principal};
-use fractum_dem::{BeamNetwork, BeamSection, CrackFaces, Dof6, Fracture, Integrator, Lattice, Occasion, Particles};
+use fractum_dem::{
+    BeamNetwork, BeamSection, CentralDifference, CrackFaces, Dof6, Fracture, Lattice, Occasion, ParticleDamping,
+    Particles,
+};
 use fractum_math::Vec3;
 
 fn main() {
@@ -54,12 +57,12 @@ fn step(bencher: divan::Bencher, side: usize) {
         return;
     };
     let dt = bonds.stable_step(&particles, 0.7);
+    let mut motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
     particles.velocity.iter_mut().enumerate().for_each(|(i, v)| v.x = 1e-3 * (i as f64).sin());
     bencher.counter(divan::counter::ItemsCount::new(pairs.len())).bench_local(|| {
-        particles.kick_and_drift(dt, Integrator::VelocityVerlet);
+        motion.kick_and_drift(&mut particles);
         particles.clear_forces();
         bonds.add_forces(&mut particles);
-        particles.kick(dt, Integrator::VelocityVerlet);
     });
 }
 

@@ -38,7 +38,7 @@ pub use fracture::{
     LoadedBonds, Occasion, criterion,
 };
 pub use measure::{Piece, crack_shape, pieces, strain, stress};
-pub use particles::{Integrator, Leap, ParticleDamping, Particles, PastForces};
+pub use particles::{CentralDifference, ParticleDamping, Particles, PastForces, TimeStep};
 pub use statics::{
     Batch, Breaking, BreakingOutcome, CriticalLoad, Dof6, Equilibrium, Lattice, LatticeSupports, LoadPoint, LoadStage,
     QuasiStatic, StaticBody, Tolerance, highest_frequency, quasi_static,

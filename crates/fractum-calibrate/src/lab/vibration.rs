@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use fractum_dem::{BeamNetwork, Integrator, LatticeSupports, Particles, Tolerance};
+use fractum_dem::{BeamNetwork, CentralDifference, LatticeSupports, ParticleDamping, Particles, Tolerance};
 use fractum_math::{Rotation, Vec3};
 use fractum_pack::Domain;
 use serde::Serialize;
@@ -54,7 +54,7 @@ pub(super) const SAFETY: f64 = 0.7;
 struct Body {
     particles: Particles,
     bonds: BeamNetwork,
-    dt: f64,
+    motion: CentralDifference,
     length: f64,
     radius: f64,
     axis: Vec3,
@@ -70,15 +70,15 @@ fn body(sample: &Sample, density: f64, test: &'static str) -> Result<Body, Calib
     let particles = Particles::at_rest(sample.packing.position.clone(), sample.packing.radius.clone(), mass)?;
     let bonds = BeamNetwork::new(&particles.position, &sample.network.pairs, sample.lattice.section())?;
     let dt = bonds.stable_step(&particles, SAFETY);
-    Ok(Body { particles, bonds, dt, length, radius, axis: *start })
+    let motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
+    Ok(Body { particles, bonds, motion, length, radius, axis: *start })
 }
 
 impl Body {
     fn step(&mut self) {
-        self.particles.kick_and_drift(self.dt, Integrator::VelocityVerlet);
+        self.motion.kick_and_drift(&mut self.particles);
         self.particles.clear_forces();
         self.bonds.add_forces(&mut self.particles);
-        self.particles.kick(self.dt, Integrator::VelocityVerlet);
     }
 }
 
@@ -119,6 +119,8 @@ pub fn vibration(
     }
     held.iter().for_each(|&i| body.particles.held[i as usize] = 0b11_1111);
     body.bonds.add_forces(&mut body.particles);
+    let dt = body.motion.dt();
+    body.particles.start_half_a_step_early(dt);
     let start: Vec<Vec3> = face.iter().map(|&i| sample.packing.position[i as usize]).collect();
     let axis = body.axis;
     let signal = |particles: &Particles| -> f64 {
@@ -139,7 +141,6 @@ pub fn vibration(
         VibrationMode::Bending => 2.0 * PI / 1.875_104_f64.powi(2) * body.length.powi(2) * wave * 2.0 / body.radius,
         VibrationMode::Torsion => 4.0 * body.length * wave * (2.0 * (1.0 + poisson_ratio)).sqrt(),
     };
-    let dt = body.dt;
     let first = signal(&body.particles);
     let (period, steps) = follow(dt, theory, first, || {
         body.step();
@@ -192,16 +193,19 @@ pub fn impact(sample: &Sample, density: f64, young_modulus: f64) -> Result<Impac
     let (speed, transit) = (1e-5 * theory, body.length / theory);
     near.iter().for_each(|&i| body.particles.held[i as usize] = 1);
     let mean = |p: &Particles| far.iter().map(|&i| p.velocity[i as usize].x).sum::<f64>() / far.len() as f64;
-    let steps = (WATCH * transit / body.dt) as usize;
+    let dt = body.motion.dt();
+    let steps = (WATCH * transit / dt) as usize;
     let (mut sum, mut moment) = (0.0, 0.0);
     for step in 0..steps {
-        let phase = (step as f64 + 0.5) * body.dt / (PULSE * transit);
+        // Velocities are those of the middle of the step.
+        let time = (step as f64 + 0.5) * dt;
+        let phase = time / (PULSE * transit);
         let pulse = if phase < 1.0 { speed * (PI * phase).sin().powi(2) } else { 0.0 };
         near.iter().for_each(|&i| body.particles.velocity[i as usize].x = pulse);
         body.step();
         let value = mean(&body.particles);
         sum += value;
-        moment += value * (step + 1) as f64 * body.dt;
+        moment += value * time;
     }
     let time = moment / sum - 0.5 * PULSE * transit;
     Ok(Impact { wave_speed: body.length / time, theory, steps })

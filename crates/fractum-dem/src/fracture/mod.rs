@@ -8,7 +8,7 @@ mod search;
 
 pub use crack::Crack;
 pub(crate) use crack::facet_area;
-pub use criterion::FractureCriterion;
+pub use criterion::{FailureSite, FractureCriterion};
 pub use faces::{CrackFaces, FaceWork};
 pub use moving::{Fracture, FractureState, Occasion};
-pub use search::{Break, FailureSearch, FailureSite, LoadedBonds};
+pub use search::{Break, FailureSearch, LoadedBonds};

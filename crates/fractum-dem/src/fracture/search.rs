@@ -1,15 +1,10 @@
 //! The search for bonds that must break, in a state at rest or in motion.
 
 use fractum_math::{Sym3, Vec3};
-use rayon::prelude::*;
-use serde::Serialize;
 
-use super::criterion::{BondLoad, BreakMode, FractureCriterion, Level, Release, StressCriterion};
+use super::criterion::{BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule};
 use crate::DemError;
-use crate::bond::{BeamNetwork, BeamSection, BondGraph};
-
-/// Particles or bonds handled as one block by the parallel loops.
-const BLOCK: usize = 1024;
+use crate::bond::{BeamNetwork, BondGraph};
 
 /// What a criterion needs to know of a bonded body.
 pub trait LoadedBonds: Sync {
@@ -21,18 +16,6 @@ pub trait LoadedBonds: Sync {
 
     /// Unit vector along a bond, in either sense.
     fn axis(&self, bond: u32) -> Vec3;
-
-    /// The section of its bonds.
-    fn section(&self) -> BeamSection;
-}
-
-/// What a criterion looks at: a particle, or a bond for a criterion of beams.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct FailureSite {
-    /// Particle or bond.
-    pub index: u32,
-    /// What it bears over what it can bear.
-    pub ratio: f64,
 }
 
 /// A bond that breaks.
@@ -87,7 +70,10 @@ impl FailureSearch {
             let expected = "above 0 and at most 1";
             return Err(DemError::BadCriterion { what: "volume fraction", value: fraction, expected });
         }
-        let fraction = if matches!(criterion, FractureCriterion::Hydrostatic(_)) { 1.0 } else { fraction };
+        let fraction = match criterion.rule() {
+            Rule::Stress(c) if c.without_voids() => 1.0,
+            _ => fraction,
+        };
         let volume = radius.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).collect();
         let (stressed, listed) = match criterion.level() {
             None => (0, 0),
@@ -177,114 +163,36 @@ impl FailureSearch {
     /// neighbourhood is a mean of its members' own, and bounds are convex, so that no neighbourhood exceeds the largest
     /// bound of a particle alone.
     pub fn may_fail(&mut self, body: &impl LoadedBonds, limit: f64) -> bool {
-        match self.criterion {
-            FractureCriterion::BeamRankine(_) => true,
-            FractureCriterion::Hydrostatic(c) => self.own_bound_reaches(&c, body, limit),
-            FractureCriterion::Principal(c) => self.own_bound_reaches(&c, body, limit),
-            FractureCriterion::MohrCoulomb(c) => self.own_bound_reaches(&c, body, limit),
-            FractureCriterion::DruckerPrager(c) => self.own_bound_reaches(&c, body, limit),
-        }
+        let Rule::Stress(criterion) = self.criterion.rule() else { return true };
+        body.virials(&mut self.virials);
+        criterion.virials_reach(&self.virials, &self.volume, self.fraction, limit)
     }
 
-    /// The same from [`BeamNetwork::virial_bounds`], without a tensor: still cheaper, and farther from what is there.
+    /// The same from [`BeamNetwork::virial_bounds`], without a tensor: cheaper still, and a coarser bound.
     pub fn virial_bounds_may_fail(&mut self, bonds: &BeamNetwork, limit: f64) -> bool {
-        match self.criterion {
-            FractureCriterion::BeamRankine(_) => true,
-            FractureCriterion::Hydrostatic(c) => self.virial_bounds_reach(&c, bonds, limit),
-            FractureCriterion::Principal(c) => self.virial_bounds_reach(&c, bonds, limit),
-            FractureCriterion::MohrCoulomb(c) => self.virial_bounds_reach(&c, bonds, limit),
-            FractureCriterion::DruckerPrager(c) => self.virial_bounds_reach(&c, bonds, limit),
-        }
-    }
-
-    fn virial_bounds_reach(&mut self, criterion: &impl StressCriterion, bonds: &BeamNetwork, limit: f64) -> bool {
+        let Rule::Stress(criterion) = self.criterion.rule() else { return true };
         bonds.virial_bounds(&mut self.virial_bounds);
-        let fraction = self.fraction;
-        let reaches = |(virial_bounds, volume): (&[[f64; 2]], &[f64])| {
-            let over = |(&[tension, compression], volume): (&[f64; 2], &f64)| {
-                criterion.bound_between(tension, compression) * fraction >= limit * volume
-            };
-            virial_bounds.iter().zip(volume).any(over)
-        };
-        self.virial_bounds.par_chunks(BLOCK).zip(self.volume.par_chunks(BLOCK)).any(reaches)
+        criterion.bounds_reach(&self.virial_bounds, &self.volume, self.fraction, limit)
     }
 
-    fn own_bound_reaches(&mut self, criterion: &impl StressCriterion, body: &impl LoadedBonds, limit: f64) -> bool {
-        body.virials(&mut self.virials);
-        let fraction = self.fraction;
-        let reaches = |(virials, volume): (&[Sym3], &[f64])| {
-            virials
-                .iter()
-                .zip(volume)
-                .any(|(virial, volume)| criterion.bound(&(*virial * (fraction / volume))) >= limit)
-        };
-        self.virials.par_chunks(BLOCK).zip(self.volume.par_chunks(BLOCK)).any(reaches)
-    }
-
-    /// Looks at every site: finds the one nearest to failure, and those with a ratio of at least `limit`.
+    /// Searches all sites: finds the one nearest to failure, and those with a ratio of at least `limit`.
     pub fn search(&mut self, body: &impl LoadedBonds, graph: &BondGraph, limit: f64) {
-        if let FractureCriterion::BeamRankine(beam) = self.criterion {
-            let section = body.section();
-            let ratio = |bond: usize| {
-                let live = graph.is_live(bond as u32);
-                if live { beam.ratio(&body.load(bond as u32), &section) } else { 0.0 }
-            };
-            let found = (0..graph.pairs().len().div_ceil(BLOCK)).into_par_iter().map(|block| {
-                let mut found = BlockSearch::default();
-                for bond in block * BLOCK..((block + 1) * BLOCK).min(graph.pairs().len()) {
-                    found.take(bond, ratio(bond), limit);
-                }
-                found
-            });
-            let found: Vec<BlockSearch> = found.collect();
-            self.merge(found);
-            return;
-        }
-        body.virials(&mut self.virials);
-        let found = match self.criterion {
-            FractureCriterion::Hydrostatic(c) => self.scan(&c, graph, limit),
-            FractureCriterion::Principal(c) => self.scan(&c, graph, limit),
-            FractureCriterion::MohrCoulomb(c) => self.scan(&c, graph, limit),
-            FractureCriterion::DruckerPrager(c) => self.scan(&c, graph, limit),
-            FractureCriterion::BeamRankine(_) => Vec::new(),
-        };
-        self.merge(found);
-    }
-
-    /// Stresses of all neighbourhoods, and what the criterion says of them.
-    fn scan(&mut self, criterion: &impl StressCriterion, graph: &BondGraph, limit: f64) -> Vec<BlockSearch> {
-        let FailureSearch { virials, members, inverse, stress, .. } = self;
-        let (virials, members, inverse): (&[Sym3], &[Vec<u32>], &[f64]) = (virials, members, inverse);
-        let level = self.criterion.level();
-        let block = |(block, stress): (usize, &mut [Sym3])| {
-            let mut found = BlockSearch::default();
-            for (slot, stress) in stress.iter_mut().enumerate() {
-                let i = block * BLOCK + slot;
-                let mut sum = virials[i];
-                match level {
-                    Some(Level::Neighbours) => graph.neighbours(i).for_each(|h| sum += virials[h.other as usize]),
-                    Some(Level::Second) => members[i].iter().for_each(|&j| sum += virials[j as usize]),
-                    _ => {}
-                }
-                *stress = sum * inverse[i];
-                // Eigenvalues only where they could matter.
-                if criterion.bound(stress) >= limit.min(found.best()) {
-                    found.take(i, criterion.ratio(stress), limit);
-                }
+        let criterion = self.criterion;
+        let found = match criterion.rule() {
+            Rule::Load(criterion) => criterion.search(&|bond| body.load(bond), graph, limit),
+            Rule::Stress(criterion) => {
+                body.virials(&mut self.virials);
+                let FailureSearch { members, inverse, virials, stress, .. } = self;
+                criterion.search(&Neighbourhoods { graph, members, inverse, virials }, stress, limit)
             }
-            found
         };
-        stress.par_chunks_mut(BLOCK).enumerate().map(block).collect()
-    }
-
-    /// Joins what blocks found, in their order.
-    fn merge(&mut self, found: Vec<BlockSearch>) {
         self.overloaded.clear();
         self.worst = None;
-        for found in found {
-            self.overloaded.extend_from_slice(&found.overloaded);
-            if let Some(site) = found.worst
-                && self.worst.is_none_or(|w| site.ratio > w.ratio)
+        // Blocks in their order.
+        for block in found {
+            self.overloaded.extend_from_slice(&block.overloaded);
+            if let Some(site) = block.worst
+                && self.worst.is_none_or(|worst| site.ratio > worst.ratio)
             {
                 self.worst = Some(site);
             }
@@ -294,15 +202,12 @@ impl FailureSearch {
     /// The bonds that break when a site fails.
     pub fn breaks(&self, site: &FailureSite, body: &impl LoadedBonds, graph: &BondGraph, out: &mut Vec<Break>) {
         let i = site.index as usize;
-        let release = match self.criterion {
-            FractureCriterion::BeamRankine(beam) => {
-                let mode = beam.mode(&body.load(site.index), &body.section());
+        let release = match self.criterion.rule() {
+            Rule::Load(criterion) => {
+                let mode = criterion.mode(&body.load(site.index));
                 return out.push(Break { bond: site.index, mode });
             }
-            FractureCriterion::Hydrostatic(c) => c.release(&self.stress[i]),
-            FractureCriterion::Principal(c) => c.release(&self.stress[i]),
-            FractureCriterion::MohrCoulomb(c) => c.release(&self.stress[i]),
-            FractureCriterion::DruckerPrager(c) => c.release(&self.stress[i]),
+            Rule::Stress(criterion) => criterion.release(&self.stress[i]),
         };
         match release {
             Release::All(mode) => out.extend(graph.neighbours(i).map(|h| Break { bond: h.bond, mode })),
@@ -317,30 +222,6 @@ impl FailureSearch {
                 }
                 out.extend(best.map(|(_, bond)| Break { bond, mode }));
             }
-        }
-    }
-}
-
-/// What a block of sites shows.
-#[derive(Default)]
-struct BlockSearch {
-    worst: Option<FailureSite>,
-    overloaded: Vec<FailureSite>,
-}
-
-impl BlockSearch {
-    fn best(&self) -> f64 {
-        self.worst.map_or(0.0, |w| w.ratio)
-    }
-
-    #[inline]
-    fn take(&mut self, index: usize, ratio: f64, limit: f64) {
-        let site = FailureSite { index: index as u32, ratio };
-        if ratio > self.best() {
-            self.worst = Some(site);
-        }
-        if ratio >= limit {
-            self.overloaded.push(site);
         }
     }
 }

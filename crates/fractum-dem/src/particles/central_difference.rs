@@ -1,5 +1,5 @@
-//! Particles with velocities at half steps: velocity Verlet seen from the middle of its steps, for steps that may differ
-//! in size and energies that balance to round-off.
+//! The time integrator: central differences with velocities at half steps, which is velocity Verlet seen from the middle
+//! of its steps, for steps that may differ in size and energies that balance to round-off.
 
 use fractum_math::{HalfSteps, Vec3};
 use rayon::prelude::*;
@@ -30,7 +30,8 @@ impl ParticleDamping {
     }
 }
 
-/// Forces and moments of a step, which the scheme of Tchamwa and Wielgosz holds against those of the next.
+/// Forces and moments of a step, which the scheme of Tchamwa and Wielgosz compares with those of the next (Mahéo, Grolleau
+/// and Rio 2013).
 ///
 /// It drifts by Δt v + φ Δt² a. Seen from velocities u = Δx/Δt at half steps this reads
 /// uⁿ⁺½ = uⁿ⁻½ + Δt aⁿ + (φ − 1) Δt (aⁿ − aⁿ⁻¹): central differences with the resistance (φ − 1)(Fⁿ − Fⁿ⁻¹), which in a
@@ -53,7 +54,7 @@ impl PastForces {
 
 /// One step from tⁿ to tⁿ⁺¹.
 #[derive(Clone, Copy, Debug)]
-pub struct Leap {
+pub struct TimeStep {
     /// Step that led to tⁿ [s].
     pub dt_before: f64,
     /// Step that follows [s].
@@ -65,7 +66,7 @@ pub struct Leap {
 }
 
 impl Particles {
-    /// Number of entries that [`Particles::leap`] needs for its partial sums.
+    /// Number of entries that [`Particles::kick_and_drift`] needs for its partial sums.
     pub fn block_count(&self) -> usize {
         self.len().div_ceil(BLOCK)
     }
@@ -78,8 +79,8 @@ impl Particles {
     /// - `partial`: scratch, [`Particles::block_count`] entries
     /// - returns what damping takes, and the kinetic energy at tⁿ as ½ Σ m vⁿ⁻½ · (vⁿ⁻½ + Δt aⁿ) and the same for the
     ///   rotation: the product that the scheme conserves exactly in a linear body
-    pub fn leap(&mut self, step: &Leap, before: &mut PastForces, partial: &mut [HalfSteps]) -> HalfSteps {
-        let Leap { dt_before, dt_after, damping, measure } = *step;
+    pub fn kick_and_drift(&mut self, step: &TimeStep, before: &mut PastForces, partial: &mut [HalfSteps]) -> HalfSteps {
+        let TimeStep { dt_before, dt_after, damping, measure } = *step;
         let dt_kick = 0.5 * (dt_before + dt_after);
         let plain = damping.is_off() && !measure;
         let motion = self.position.par_chunks_mut(BLOCK).zip(self.orientation.par_chunks_mut(BLOCK));
@@ -145,10 +146,45 @@ impl Particles {
     }
 }
 
+/// Central differences at one step size, with what they keep from step to step: for particles without supports that move.
+///
+/// Velocities given at t = 0 need [`Particles::start_half_a_step_early`] first, with the forces of t = 0.
+#[derive(Clone, Debug)]
+pub struct CentralDifference {
+    step: TimeStep,
+    past: PastForces,
+    partial: Vec<HalfSteps>,
+}
+
+impl CentralDifference {
+    /// Steps of `dt` [s] for these particles.
+    pub fn new(particles: &Particles, dt: f64, damping: ParticleDamping) -> Self {
+        let past = if damping.dissipation == 0.0 { PastForces::default() } else { PastForces::none(particles.len()) };
+        let step = TimeStep { dt_before: dt, dt_after: dt, damping, measure: false };
+        CentralDifference { step, past, partial: vec![HalfSteps::default(); particles.block_count()] }
+    }
+
+    /// The step [s].
+    pub fn dt(&self) -> f64 {
+        self.step.dt_after
+    }
+
+    /// One step with the forces of tⁿ; see [`Particles::kick_and_drift`].
+    pub fn kick_and_drift(&mut self, particles: &mut Particles) {
+        particles.kick_and_drift(&self.step, &mut self.past, &mut self.partial);
+    }
+
+    /// One step that also gives the energies of tⁿ.
+    pub fn kick_drift_and_measure(&mut self, particles: &mut Particles) -> HalfSteps {
+        let step = TimeStep { measure: true, ..self.step };
+        particles.kick_and_drift(&step, &mut self.past, &mut self.partial)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BeamNetwork, BeamSection, Integrator};
+    use crate::{BeamNetwork, BeamSection};
 
     fn pair() -> (Particles, BeamNetwork) {
         let position = vec![Vec3::zeros(), Vec3::new(1.0, 0.2, -0.1)];
@@ -159,27 +195,46 @@ mod tests {
         (particles, bonds)
     }
 
+    /// Velocities and spins by the forces and moments of the moment.
+    fn kick(particles: &mut Particles, dt: f64) {
+        for i in 0..particles.len() {
+            particles.velocity[i] += particles.force[i] * (dt / particles.mass[i]);
+            particles.spin[i] += particles.moment[i] * (dt / particles.inertia[i]);
+        }
+    }
+
+    /// Positions and orientations by velocities and φ − 1 times what a kick would add.
+    fn drift(particles: &mut Particles, dt: f64, dissipation: f64) {
+        for i in 0..particles.len() {
+            let more = particles.force[i] * (dissipation * dt / particles.mass[i]);
+            let turn = particles.moment[i] * (dissipation * dt / particles.inertia[i]);
+            particles.position[i] += (particles.velocity[i] + more) * dt;
+            particles.orientation[i] = turned(&particles.orientation[i], (particles.spin[i] + turn) * dt);
+        }
+    }
+
     #[test]
-    fn leaping_is_velocity_verlet() {
+    fn central_differences_are_velocity_verlet() {
         let (mut verlet, mut bonds) = pair();
         let dt = bonds.stable_step(&verlet, 0.3);
-        let (mut leaping, _) = pair();
-        bonds.add_forces(&mut leaping);
-        leaping.start_half_a_step_early(dt);
-        let leap = Leap { dt_before: dt, dt_after: dt, damping: ParticleDamping::default(), measure: false };
+        let (mut central, _) = pair();
+        bonds.add_forces(&mut central);
+        central.start_half_a_step_early(dt);
+        let mut motion = CentralDifference::new(&central, dt, ParticleDamping::default());
         bonds.add_forces(&mut verlet);
         for _ in 0..200 {
-            verlet.kick_and_drift(dt, Integrator::VelocityVerlet);
+            kick(&mut verlet, 0.5 * dt);
+            drift(&mut verlet, dt, 0.0);
             verlet.clear_forces();
             bonds.add_forces(&mut verlet);
-            verlet.kick(dt, Integrator::VelocityVerlet);
-            leaping.leap(&leap, &mut PastForces::default(), &mut [HalfSteps::default()]);
-            leaping.clear_forces();
-            bonds.add_forces(&mut leaping);
+            kick(&mut verlet, 0.5 * dt);
+            motion.kick_and_drift(&mut central);
+            central.clear_forces();
+            bonds.add_forces(&mut central);
         }
         for i in 0..2 {
-            assert!((verlet.position[i] - leaping.position[i]).norm() < 1e-12);
-            assert!(verlet.orientation[i].angle_to(&leaping.orientation[i]) < 1e-7);
+            assert!((verlet.position[i] - central.position[i]).norm() < 1e-12);
+            assert!(verlet.orientation[i].angle_to(&central.orientation[i]) < 1e-7);
         }
     }
 
@@ -187,12 +242,11 @@ mod tests {
     fn damping_takes_what_the_motion_loses() {
         let (mut particles, _) = pair();
         let damping = ParticleDamping { mass_rate: 2.0, ..ParticleDamping::default() };
-        let (dt, mut work) = (1e-4, [HalfSteps::default()]);
-        let leap = Leap { dt_before: dt, dt_after: dt, damping, measure: true };
+        let mut motion = CentralDifference::new(&particles, 1e-4, damping);
         let start = particles.kinetic_energy();
         let mut taken = 0.0;
         for _ in 0..1000 {
-            let step = particles.leap(&leap, &mut PastForces::default(), &mut work);
+            let step = motion.kick_drift_and_measure(&mut particles);
             taken += step.before.damping + step.after.damping;
         }
         assert!((taken + particles.kinetic_energy() - start).abs() < 1e-3 * start);
@@ -200,25 +254,26 @@ mod tests {
     }
 
     #[test]
-    fn the_dissipative_leap_is_the_scheme_of_tchamwa_and_wielgosz_and_books_what_it_takes() {
+    fn dissipation_is_the_scheme_of_tchamwa_and_wielgosz_and_its_work_is_booked() {
         let phi = 1.2;
         let (mut scheme, mut bonds) = pair();
         // Slow, so that the beam hardly turns: the balance is exact for a linear body.
         scheme.velocity.iter_mut().chain(&mut scheme.spin).for_each(|v| *v *= 1e-5);
-        let mut leaping = scheme.clone();
+        let mut central = scheme.clone();
         let dt = bonds.stable_step(&scheme, 0.5);
         let damping = ParticleDamping { dissipation: phi - 1.0, ..ParticleDamping::default() };
-        let leap = Leap { dt_before: dt, dt_after: dt, damping, measure: true };
-        let (mut before, mut work) = (PastForces::none(2), [HalfSteps::default()]);
+        let mut motion = CentralDifference::new(&central, dt, damping);
         let (mut taken, mut start) = (0.0, f64::NAN);
         for step in 0..100 {
+            // x⁺ = x + Δt v + φ Δt² a, v⁺ = v + Δt a.
             scheme.clear_forces();
             bonds.add_forces(&mut scheme);
-            scheme.kick_and_drift(dt, Integrator::TchamwaWielgosz { phi });
-            leaping.clear_forces();
-            bonds.add_forces(&mut leaping);
-            let elastic = bonds.energy(&leaping).total();
-            let done = leaping.leap(&leap, &mut before, &mut work);
+            kick(&mut scheme, dt);
+            drift(&mut scheme, dt, phi - 1.0);
+            central.clear_forces();
+            bonds.add_forces(&mut central);
+            let elastic = bonds.energy(&central).total();
+            let done = motion.kick_drift_and_measure(&mut central);
             // Energy at tⁿ and what damping took in the half steps since the first one.
             taken += if step == 0 { 0.0 } else { done.before.damping };
             let total = done.before.kinetic + elastic + taken;
@@ -228,8 +283,8 @@ mod tests {
             }
             assert!((total / start - 1.0).abs() < 1e-4, "step {step}: {}", total / start - 1.0);
             for i in 0..2 {
-                assert!((scheme.position[i] - leaping.position[i]).norm() < 1e-12, "step {step}");
-                assert!(scheme.orientation[i].angle_to(&leaping.orientation[i]) < 1e-7, "step {step}");
+                assert!((scheme.position[i] - central.position[i]).norm() < 1e-12, "step {step}");
+                assert!(scheme.orientation[i].angle_to(&central.orientation[i]) < 1e-7, "step {step}");
             }
         }
         // Most of the motion is rigid and stays.

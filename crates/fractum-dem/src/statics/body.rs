@@ -6,7 +6,6 @@ use rayon::prelude::*;
 use super::conjugate_gradients::Iterate;
 use super::lattice::{BLOCK, Dof6, HalfBond, Lattice, LatticeSupports, Stiffness, Tolerance, clear, dot};
 use crate::DemError;
-use crate::bond::BeamSection;
 use crate::fracture::LoadedBonds;
 use crate::fracture::criterion::BondLoad;
 
@@ -165,7 +164,7 @@ impl StaticBody {
         let (a, b) = (&self.iterate.x[end.other as usize], &self.iterate.x[own.other as usize]);
         let k = self.lattice.stiffness();
         let strained = Strained::of(own, a, b, &k);
-        let load = strained.load(own, &k);
+        let load = strained.load(own, &k, self.lattice.section().radius);
         let [first, second] = strained.turn;
         0.5 * (load.normal * strained.stretch
             + load.bending[0].dot(&first)
@@ -196,13 +195,15 @@ impl Strained {
         Strained { stretch: du.dot(&n), turn: [across(a), across(b)], twist: (b - a).dot(&n) }
     }
 
-    fn load(&self, end: &HalfBond, k: &Stiffness) -> BondLoad {
+    /// - `radius`: of the section [m]
+    fn load(&self, end: &HalfBond, k: &Stiffness, radius: f64) -> BondLoad {
         let bend = 2.0 * k.bending * end.inverse;
         let [a, b] = self.turn;
         BondLoad {
             normal: k.axial * end.inverse * self.stretch,
             bending: [(a * 2.0 + b) * bend, (a + b * 2.0) * bend],
             torsion: k.torsion * end.inverse * self.twist,
+            radius,
         }
     }
 }
@@ -243,14 +244,10 @@ impl LoadedBonds for StaticBody {
         let [own, end] = self.lattice.bond(bond);
         let (a, b) = (&self.iterate.x[end.other as usize], &self.iterate.x[own.other as usize]);
         let k = self.lattice.stiffness();
-        Strained::of(own, a, b, &k).load(own, &k)
+        Strained::of(own, a, b, &k).load(own, &k, self.lattice.section().radius)
     }
 
     fn axis(&self, bond: u32) -> Vec3 {
         Vec3::from(self.lattice.bond(bond)[0].axis)
-    }
-
-    fn section(&self) -> BeamSection {
-        self.lattice.section()
     }
 }

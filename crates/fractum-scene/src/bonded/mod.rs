@@ -7,8 +7,8 @@ mod points;
 use std::ops::Range;
 
 use fractum_dem::{
-    BeamEnergy, BeamNetwork, BeamSection, Crack, CrackFaces, Fracture, FractureCriterion, FractureState, Leap,
-    Occasion, ParticleDamping, Particles, PastForces, highest_frequency,
+    BeamEnergy, BeamNetwork, BeamSection, Crack, CrackFaces, Fracture, FractureCriterion, FractureState, Occasion,
+    ParticleDamping, Particles, PastForces, TimeStep, highest_frequency,
 };
 use fractum_fem::LocalDamping;
 use fractum_math::{HalfSteps, Rotation, Vec3, Work};
@@ -250,7 +250,7 @@ impl Bonded {
     /// Hands particles over to what moves them from now on.
     pub(crate) fn set_tied(&mut self, mut tied: Vec<u32>) {
         tied.sort_unstable();
-        // Held in all degrees of freedom, they take no part in the leap.
+        // Held in all degrees of freedom, they take no part in the step.
         tied.iter().for_each(|&i| self.particles.held[i as usize] = 0b11_1111);
         self.tied = tied;
     }
@@ -387,7 +387,8 @@ impl Bonded {
         let counted_twice = if measure { energy_of(particles, tied) } else { 0.0 };
         let mut points = ParticlePoints { particles, reference, tied };
         supports.remember(&points);
-        let mut work = points.particles.leap(&Leap { dt_before, dt_after, damping, measure }, past, partial);
+        let mut work =
+            points.particles.kick_and_drift(&TimeStep { dt_before, dt_after, damping, measure }, past, partial);
         work += supports.impose(&mut points, time, dt_before, dt_after);
         work.before.kinetic -= counted_twice;
         follow(points.particles);
@@ -420,7 +421,7 @@ impl Bonded {
     }
 }
 
-/// Kinetic energy that the leap sums for particles at constant velocity [J].
+/// Kinetic energy that the step sums for particles at constant velocity [J].
 fn energy_of(particles: &Particles, of: &[u32]) -> f64 {
     let energy = |i: usize| {
         particles.mass[i] * particles.velocity[i].norm_squared()

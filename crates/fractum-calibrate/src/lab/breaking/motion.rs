@@ -1,6 +1,6 @@
 use fractum_dem::{
-    BeamNetwork, CrackFaces, CriticalLoad, Fracture, Integrator, LoadPoint, Occasion, Particles, Piece, StaticBody,
-    pieces,
+    BeamNetwork, CentralDifference, CrackFaces, CriticalLoad, Dof6, Fracture, LoadPoint, Occasion, ParticleDamping,
+    Particles, Piece, StaticBody, pieces,
 };
 use fractum_math::{Rotation, Vec3};
 use serde::Serialize;
@@ -89,7 +89,7 @@ pub fn break_in_motion(
     options: &FailureOptions,
     motion: &MotionOptions,
 ) -> Result<BrokenInMotion, CalibrateError> {
-    let Setup { supports, guess, displacement, stress_per_load, ends, middle, .. } = Setup::of(sample, test)?;
+    let setup = Setup::of(sample, test)?;
     let first = super::break_sample(sample, test, &FailureOptions { limit: f64::INFINITY, ..*options })?.outcome;
     let Some(point) = first.first else {
         return Err(CalibrateError::Material {
@@ -98,112 +98,190 @@ pub fn break_in_motion(
             expected: "a test in which something breaks",
         });
     };
-    let first_factor = point.displacement / displacement;
-    let rest = StaticBody::new(sample.lattice.clone(), supports.clone(), &guess, options.tolerance)?;
-    let state = rest.state();
-    let mass = motion.density * sample.measured_volume();
-    let mut particles = Particles::at_rest(sample.packing.position.clone(), sample.packing.radius.clone(), mass)?;
-    let mut bonds = BeamNetwork::new(&particles.position, &sample.network.pairs, sample.lattice.section())?;
-    let volume = sample.measured_volume();
-    let mut fracture = Fracture::new(&bonds, &particles, options.criterion, motion.faces, sample.fraction, volume)?;
-    // Wave speed from the stiffness that the sample shows: c² = E/ρ with E = stress per strain.
-    let strain = point.displacement / displacement * super::STRAIN;
-    let speed = (point.load * stress_per_load / strain / motion.density).sqrt();
-    let (lower, upper) = sample.packing.domain.bounds();
-    let period = motion.transits * (upper - lower).max() / speed;
-    let rate = first_factor / period;
-    let mut factor = motion.start * first_factor;
+    let mut moving = MovingSample::new(sample, &setup, &point, options, motion)?;
+    let first_factor = point.displacement / setup.displacement;
+    let separated = |graph: &fractum_dem::BondGraph| {
+        graph.broken() > 0
+            && match &setup.middle {
+                None => graph.parts().separate(&setup.ends[0], &setup.ends[1]),
+                Some(inside) => graph.parts_among(|i| inside[i]).separate(&setup.ends[0], &setup.ends[1]),
+            }
+    };
+    let (mut curve, mut apart) = (Vec::new(), false);
+    while moving.factor < BEYOND * first_factor && !apart {
+        if !moving.steps.is_multiple_of(EVERY) {
+            moving.step(false);
+            continue;
+        }
+        let point = moving.measured_step();
+        if moving.steps > EVERY {
+            curve.push(point);
+            // Half a transit without a break: the crack has come to rest.
+            let rested = (moving.steps - moving.last_broken) as f64 * moving.motion.dt() > 0.5 * moving.transit;
+            apart = separated(moving.fracture.graph()) || (rested && point.load < options.stop * moving.peak.load);
+        }
+    }
+    let MovingSample { particles, fracture, motion, energy, peak, first_load, steps, .. } = moving;
+    Ok(BrokenInMotion {
+        first_break: first_load.map(|load| load * setup.stress_per_load),
+        strength: peak.load * setup.stress_per_load,
+        peak,
+        broken: fracture.cracks().len(),
+        separated: apart,
+        steps,
+        dt: motion.dt(),
+        energy,
+        curve,
+        pieces: pieces(&particles, fracture.graph().live_pairs(), |i| particles.mass[i]),
+    })
+}
+
+/// A sample between supports that move at constant speed.
+struct MovingSample {
+    particles: Particles,
+    bonds: BeamNetwork,
+    fracture: Fracture,
+    motion: CentralDifference,
+    /// Prescribed displacements (particle, axis) at load factor one.
+    prescribed: Vec<(usize, usize, f64)>,
+    /// Displacement (or rotation) of the supports at load factor one.
+    displacement: f64,
+    factor: f64,
+    /// Load factor per time [1/s].
+    rate: f64,
+    /// Time of a wave along the sample [s].
+    transit: f64,
+    energy: MotionEnergy,
+    load: f64,
+    peak: CriticalLoad,
+    first_load: Option<f64>,
+    steps: usize,
+    last_broken: usize,
+}
+
+impl MovingSample {
+    /// The sample at its start: displacements and velocities of the quasi-static motion.
+    ///
+    /// - `first`: the load at which the sample at rest breaks
+    fn new(
+        sample: &Sample,
+        setup: &Setup,
+        first: &CriticalLoad,
+        options: &FailureOptions,
+        motion: &MotionOptions,
+    ) -> Result<Self, CalibrateError> {
+        let Setup { supports, guess, displacement, stress_per_load, .. } = setup;
+        let state = StaticBody::new(sample.lattice.clone(), supports.clone(), guess, options.tolerance)?.state();
+        let volume = sample.measured_volume();
+        let (position, radius) = (sample.packing.position.clone(), sample.packing.radius.clone());
+        let mut particles = Particles::at_rest(position, radius, motion.density * volume)?;
+        let mut bonds = BeamNetwork::new(&particles.position, &sample.network.pairs, sample.lattice.section())?;
+        let mut fracture = Fracture::new(&bonds, &particles, options.criterion, motion.faces, sample.fraction, volume)?;
+        // Wave speed from the stiffness that the sample shows: c² = E/ρ with E = stress per strain.
+        let first_factor = first.displacement / displacement;
+        let speed = (first.load * stress_per_load / (first_factor * super::STRAIN) / motion.density).sqrt();
+        let (lower, upper) = sample.packing.domain.bounds();
+        let transit = (upper - lower).max() / speed;
+        let rate = first_factor / (motion.transits * transit);
+        let factor = motion.start * first_factor;
+        set_in_motion(&mut particles, &state, factor, rate);
+        let mut prescribed = Vec::new();
+        for (i, u) in state.iter().enumerate() {
+            let held = |&d: &usize| supports.is_fixed(i as u32, d);
+            particles.held[i] = (0..6).filter(held).fold(0, |bits, d| bits | 1 << d);
+            prescribed.extend((0..3).filter(held).map(|d| (i, d, u[d])));
+        }
+        let dt = bonds.stable_step(&particles, motion.safety);
+        fracture.add_bond_forces(&mut bonds, &mut particles);
+        particles.start_half_a_step_early(dt);
+        Ok(MovingSample {
+            motion: CentralDifference::new(&particles, dt, ParticleDamping::default()),
+            particles,
+            bonds,
+            fracture,
+            prescribed,
+            displacement: *displacement,
+            factor,
+            rate,
+            transit,
+            energy: MotionEnergy::default(),
+            load: 0.0,
+            peak: CriticalLoad { displacement: 0.0, load: 0.0, broken: 0 },
+            first_load: None,
+            steps: 0,
+            last_broken: 0,
+        })
+    }
+
+    /// Work of the supports per unit of the load factor, against the forces of bonds and contacts [J].
+    fn push(&self) -> f64 {
+        -self.prescribed.iter().map(|&(i, d, u)| self.particles.force[i][d] * u).sum::<f64>()
+    }
+
+    /// One step. Returns the kinetic energy at its start, where it is measured [J].
+    fn step(&mut self, measure: bool) -> f64 {
+        let before = self.push();
+        let MovingSample { particles, bonds, fracture, motion, .. } = self;
+        let kinetic = if measure {
+            motion.kick_drift_and_measure(particles).before.kinetic
+        } else {
+            motion.kick_and_drift(particles);
+            0.0
+        };
+        let dt = motion.dt();
+        fracture.book_last_work(particles, dt);
+        particles.clear_forces();
+        fracture.add_bond_forces(bonds, particles);
+        let faces = fracture.add_contact_forces(particles, dt);
+        self.energy.friction += faces.contact.friction + faces.contact.damping;
+        self.energy.kinks += faces.kinks;
+        self.energy.contact = faces.contact.stored;
+        let after = self.push();
+        self.energy.external += 0.5 * (before + after) * self.rate * dt;
+        self.factor += self.rate * dt;
+        self.steps += 1;
+        self.load = after / self.displacement;
+        let broken = self.fracture.cracks().len();
+        if self.load > self.peak.load {
+            self.peak = CriticalLoad { displacement: self.factor * self.displacement, load: self.load, broken };
+        }
+        let occasion = Occasion { time: self.steps as f64 * dt, event: self.steps, load: self.load };
+        if self.fracture.break_overloaded(&mut self.bonds, &self.particles, occasion) > 0 {
+            self.first_load.get_or_insert(self.load);
+            self.last_broken = self.steps;
+        }
+        kinetic
+    }
+
+    /// One step with the energies at its start, and the point of the load curve there.
+    fn measured_step(&mut self) -> LoadPoint {
+        let mut now = self.energy;
+        now.elastic = self.bonds.energy(&self.particles).total();
+        now.broken_bonds = self.fracture.released();
+        let displacement = self.factor * self.displacement;
+        let (load, broken) = (self.load, self.fracture.cracks().len());
+        let first = self.steps == 0;
+        now.kinetic = self.step(true);
+        if first {
+            now.external = now.kinetic + now.elastic;
+            self.energy.external += now.external;
+        }
+        let sum = now.kinetic + now.elastic + now.broken_bonds + now.contact + now.friction + now.kinks;
+        let residual = ((now.external - sum) / now.external).abs();
+        let MotionEnergy { kinetic, elastic, broken_bonds, .. } = now;
+        let residual_max_relative = now.residual_max_relative.max(residual);
+        self.energy = MotionEnergy { kinetic, elastic, broken_bonds, residual_max_relative, ..self.energy };
+        LoadPoint { displacement, load, elastic, work: now.external, broken }
+    }
+}
+
+/// Displacements and rotations times a factor, and velocities and spins at its rate [1/s].
+fn set_in_motion(particles: &mut Particles, state: &[Dof6], factor: f64, rate: f64) {
     for (i, u) in state.iter().enumerate() {
         let (shift, turn) = (Vec3::new(u[0], u[1], u[2]), Vec3::new(u[3], u[4], u[5]));
         particles.position[i] += shift * factor;
         particles.orientation[i] = Rotation::from_scaled_axis(turn * factor);
         particles.velocity[i] = shift * rate;
         particles.spin[i] = turn * rate;
-        particles.held[i] = (0..6).filter(|&d| supports.is_fixed(i as u32, d)).fold(0, |bits, d| bits | 1 << d);
     }
-    let held: Vec<(usize, usize)> = (0..particles.len())
-        .flat_map(|i| (0..3).map(move |d| (i, d)))
-        .filter(|&(i, d)| supports.is_fixed(i as u32, d))
-        .collect();
-    // What supports do per unit of the load factor, against the forces of bonds and contacts.
-    let push = |p: &Particles| -held.iter().map(|&(i, d)| p.force[i][d] * state[i][d]).sum::<f64>();
-    let dt = bonds.stable_step(&particles, motion.safety);
-    fracture.add_bond_forces(&mut bonds, &mut particles);
-    let mut energy =
-        MotionEnergy { external: particles.kinetic_energy() + bonds.energy(&particles).total(), ..Default::default() };
-    let (mut peak, mut first_break) = (CriticalLoad { displacement: 0.0, load: 0.0, broken: 0 }, None);
-    let (mut curve, mut separated, mut steps) = (Vec::new(), false, 0);
-    let mut last_broken = 0;
-    while factor < BEYOND * first_factor {
-        let before = push(&particles);
-        particles.kick_and_drift(dt, Integrator::VelocityVerlet);
-        fracture.book_last_work(&particles, dt);
-        particles.clear_forces();
-        fracture.add_bond_forces(&mut bonds, &mut particles);
-        let faces = fracture.add_contact_forces(&mut particles, dt);
-        let after = push(&particles);
-        energy.external += 0.5 * (before + after) * rate * dt;
-        energy.friction += faces.contact.friction + faces.contact.damping;
-        energy.kinks += faces.kinks;
-        energy.contact = faces.contact.stored;
-        particles.kick(dt, Integrator::VelocityVerlet);
-        let kinetic = if (steps + 1) % EVERY == 0 { conserved_kinetic(&particles, dt) } else { 0.0 };
-        factor += rate * dt;
-        steps += 1;
-        let load = after / displacement;
-        let broken = fracture.cracks().len();
-        if load > peak.load {
-            peak = CriticalLoad { displacement: factor * displacement, load, broken };
-        }
-        let occasion = Occasion { time: steps as f64 * dt, event: steps, load };
-        if fracture.break_overloaded(&mut bonds, &particles, occasion) > 0 {
-            first_break.get_or_insert(load * stress_per_load);
-            last_broken = steps;
-        }
-        if steps % EVERY == 0 {
-            energy.kinetic = kinetic;
-            energy.elastic = bonds.energy(&particles).total();
-            energy.broken_bonds = fracture.released();
-            let sum =
-                energy.kinetic + energy.elastic + energy.broken_bonds + energy.contact + energy.friction + energy.kinks;
-            let residual = ((energy.external - sum) / energy.external).abs();
-            energy.residual_max_relative = energy.residual_max_relative.max(residual);
-            let point = LoadPoint {
-                displacement: factor * displacement,
-                load,
-                elastic: energy.elastic,
-                work: energy.external,
-                broken: fracture.cracks().len(),
-            };
-            curve.push(point);
-            let graph = fracture.graph();
-            separated = graph.broken() > 0
-                && match &middle {
-                    None => graph.parts().separate(&ends[0], &ends[1]),
-                    Some(inside) => graph.parts_among(|i| inside[i]).separate(&ends[0], &ends[1]),
-                };
-            // Half a transit without a break: the crack has come to rest.
-            let rested = (steps - last_broken) as f64 * dt > 0.5 * period / motion.transits;
-            if separated || (rested && load < options.stop * peak.load) {
-                separated = true;
-                break;
-            }
-        }
-    }
-    let strength = peak.load * stress_per_load;
-    let broken = fracture.cracks().len();
-    let pieces = pieces(&particles, fracture.graph().live_pairs(), |i| particles.mass[i]);
-    Ok(BrokenInMotion { first_break, strength, peak, broken, separated, steps, dt, energy, curve, pieces })
-}
-
-/// The kinetic energy that velocity Verlet conserves exactly in a linear body, with those half a step before and after:
-/// ½ Σ m v⁻·v⁺ = ½ Σ m (v² − (Δt a/2)²), the same for the rotation.
-fn conserved_kinetic(particles: &Particles, dt: f64) -> f64 {
-    let square =
-        |force: &Vec3, held: u8| (0..3).filter(|d| held >> d & 1 == 0).map(|d| force[d] * force[d]).sum::<f64>();
-    let excess = |i: usize| {
-        let (held, force, moment) = (particles.held[i], &particles.force[i], &particles.moment[i]);
-        square(force, held) / particles.mass[i] + square(moment, held >> 3) / particles.inertia[i]
-    };
-    particles.kinetic_energy() - 0.125 * dt * dt * (0..particles.len()).map(excess).sum::<f64>()
 }

@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 
-use super::{BondLoad, BreakMode};
-use crate::bond::BeamSection;
+use super::{BondLoad, BreakMode, LoadCriterion, Strengths, positive};
+use crate::DemError;
 
 /// Largest principal stress in a cohesive beam against its strength (Jebahi et al. 2015, eqs. 4.1–4.3):
 /// σ = ½ (σ_n + √(σ_n² + 4 τ²)) with σ_n = N/S + M r/I and τ = r M_x/I₀.
@@ -25,18 +25,27 @@ pub enum EndMoments {
     Largest,
 }
 
-impl BeamRankine {
-    /// Stress of a beam over its strength; not negative.
+impl Strengths for BeamRankine {
+    fn check(&self) -> Result<(), DemError> {
+        positive("strength of the beams", self.strength)
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.strength *= factor;
+    }
+}
+
+impl LoadCriterion for BeamRankine {
     #[inline]
-    pub fn ratio(&self, load: &BondLoad, section: &BeamSection) -> f64 {
-        let (normal, bending, shear) = self.stresses(load, section);
+    fn ratio(&self, load: &BondLoad) -> f64 {
+        let (normal, bending, shear) = self.stresses(load);
         let sum = normal + bending;
         (0.5 * (sum + (sum * sum + 4.0 * shear * shear).sqrt()) / self.strength).max(0.0)
     }
 
     /// What contributes most.
-    pub fn mode(&self, load: &BondLoad, section: &BeamSection) -> BreakMode {
-        let (normal, bending, shear) = self.stresses(load, section);
+    fn mode(&self, load: &BondLoad) -> BreakMode {
+        let (normal, bending, shear) = self.stresses(load);
         if normal >= bending && normal >= shear {
             BreakMode::Tension
         } else if bending >= shear {
@@ -45,11 +54,13 @@ impl BeamRankine {
             BreakMode::Torsion
         }
     }
+}
 
+impl BeamRankine {
     /// N/S, M r/I, and r M_x/I₀ [Pa].
     #[inline]
-    fn stresses(&self, load: &BondLoad, section: &BeamSection) -> (f64, f64, f64) {
-        let r = section.radius;
+    fn stresses(&self, load: &BondLoad) -> (f64, f64, f64) {
+        let r = load.radius;
         let area = std::f64::consts::PI * r * r;
         let [first, second] = load.bending;
         let moment = match self.moments {
@@ -69,20 +80,20 @@ mod tests {
 
     #[test]
     fn pure_loads_have_the_stresses_of_the_textbook() {
-        let section = BeamSection::new(1.0, 0.5).unwrap();
         let beam = BeamRankine { strength: 1.0, moments: EndMoments::Largest };
         let (s, i) = (PI * 0.25, PI * 0.5f64.powi(4) / 4.0);
-        let pull = BondLoad { normal: 3.0, ..BondLoad::default() };
-        assert!((beam.ratio(&pull, &section) - 3.0 / s).abs() < 1e-12);
-        assert_eq!(beam.ratio(&BondLoad { normal: -3.0, ..pull }, &section), 0.0);
-        let twist = BondLoad { torsion: -2.0, ..BondLoad::default() };
-        assert!((beam.ratio(&twist, &section) - 2.0 * 0.5 / (2.0 * i)).abs() < 1e-12);
+        let none = BondLoad { radius: 0.5, ..BondLoad::default() };
+        let pull = BondLoad { normal: 3.0, ..none };
+        assert!((beam.ratio(&pull) - 3.0 / s).abs() < 1e-12);
+        assert_eq!(beam.ratio(&BondLoad { normal: -3.0, ..pull }), 0.0);
+        let twist = BondLoad { torsion: -2.0, ..none };
+        assert!((beam.ratio(&twist) - 2.0 * 0.5 / (2.0 * i)).abs() < 1e-12);
         // Uniform bending: opposite moments on the two ends.
-        let bend = BondLoad { bending: [Vec3::y() * 2.0, Vec3::y() * -2.0], ..BondLoad::default() };
-        assert!((beam.ratio(&bend, &section) - 2.0 * 0.5 / i).abs() < 1e-12);
-        assert_eq!(BeamRankine { moments: EndMoments::Mean, ..beam }.ratio(&bend, &section), 0.0);
+        let bend = BondLoad { bending: [Vec3::y() * 2.0, Vec3::y() * -2.0], ..none };
+        assert!((beam.ratio(&bend) - 2.0 * 0.5 / i).abs() < 1e-12);
+        assert_eq!(BeamRankine { moments: EndMoments::Mean, ..beam }.ratio(&bend), 0.0);
         assert_eq!(
-            [pull, bend, twist].map(|l| beam.mode(&l, &section)),
+            [pull, bend, twist].map(|l| beam.mode(&l)),
             [BreakMode::Tension, BreakMode::Bending, BreakMode::Torsion]
         );
     }

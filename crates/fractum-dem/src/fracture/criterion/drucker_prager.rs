@@ -1,7 +1,8 @@
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use super::{BreakMode, Level, Release, StressCriterion};
+use super::{BreakMode, Level, Release, Strengths, StressCriterion, positive};
+use crate::DemError;
 
 /// Drucker–Prager on the virial stress: (α I₁ + √J₂)/k with α = (f_c − f_t)/(√3 (f_c + f_t)) and
 /// k = 2 f_c f_t/(√3 (f_c + f_t)), which has both uniaxial strengths. The bond nearest to the first principal
@@ -17,7 +18,23 @@ pub struct DruckerPrager {
     pub level: Level,
 }
 
+impl Strengths for DruckerPrager {
+    fn check(&self) -> Result<(), DemError> {
+        positive("tensile strength", self.tensile_strength)?;
+        positive("compressive strength", self.compressive_strength)
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.tensile_strength *= factor;
+        self.compressive_strength *= factor;
+    }
+}
+
 impl StressCriterion for DruckerPrager {
+    fn level(&self) -> Level {
+        self.level
+    }
+
     #[inline]
     fn bound(&self, stress: &Sym3) -> f64 {
         self.ratio(stress)

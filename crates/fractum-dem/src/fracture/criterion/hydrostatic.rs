@@ -1,7 +1,8 @@
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use super::{BreakMode, Release, StressCriterion};
+use super::{BreakMode, Level, Release, Strengths, StressCriterion, positive};
+use crate::DemError;
 
 /// Mean virial stress of a particle against a strength; the particle loses all its bonds (Jebahi et al. 2015, eqs.
 /// 4.23–4.24, with the sphere's own volume).
@@ -11,7 +12,25 @@ pub struct Hydrostatic {
     pub strength: f64,
 }
 
+impl Strengths for Hydrostatic {
+    fn check(&self) -> Result<(), DemError> {
+        positive("hydrostatic strength", self.strength)
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.strength *= factor;
+    }
+}
+
 impl StressCriterion for Hydrostatic {
+    fn level(&self) -> Level {
+        Level::Own
+    }
+
+    fn without_voids(&self) -> bool {
+        true
+    }
+
     #[inline]
     fn bound(&self, stress: &Sym3) -> f64 {
         self.ratio(stress)

@@ -4,12 +4,15 @@
 //! load twice as large has twice the ratio, so that a linear solution tells the load of the first break. A criterion of
 //! stress looks at the virial stress of a particle and its neighbours, one of beams at the bond itself.
 
+mod batch;
 mod beam_rankine;
 mod drucker_prager;
 mod hydrostatic;
 mod mohr_coulomb;
 mod principal;
 
+pub use batch::FailureSite;
+pub(super) use batch::{LoadBatch, Neighbourhoods, StressBatch};
 pub use beam_rankine::{BeamRankine, EndMoments};
 pub use drucker_prager::DruckerPrager;
 pub use hydrostatic::Hydrostatic;
@@ -30,6 +33,8 @@ pub struct BondLoad {
     pub bending: [Vec3; 2],
     /// Torsional moment [N m].
     pub torsion: f64,
+    /// Radius of its section [m].
+    pub radius: f64,
 }
 
 /// How a bond broke.
@@ -93,8 +98,28 @@ pub enum Release {
     Nearest([Vec3; 2], BreakMode),
 }
 
+/// The strengths of a criterion.
+pub trait Strengths {
+    /// Refuses impossible numbers.
+    ///
+    /// # Errors
+    /// [`DemError::BadCriterion`].
+    fn check(&self) -> Result<(), DemError>;
+
+    /// Multiplies all strengths.
+    fn scale(&mut self, factor: f64);
+}
+
 /// A criterion on the stress of a particle. It sees one tensor, never the body.
 pub trait StressCriterion: Sync {
+    /// Over which particles stress is taken.
+    fn level(&self) -> Level;
+
+    /// Whether stress is taken over the volume of the spheres alone, without the voids between them.
+    fn without_voids(&self) -> bool {
+        false
+    }
+
     /// Largest value that [`StressCriterion::ratio`] can have for this stress, cheaply: without eigenvalues.
     fn bound(&self, stress: &Sym3) -> f64;
 
@@ -109,20 +134,66 @@ pub trait StressCriterion: Sync {
     fn release(&self, stress: &Sym3) -> Release;
 }
 
-/// When bonds break.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum FractureCriterion {
+/// A criterion on what a single bond bears; the bond itself breaks.
+pub trait LoadCriterion: Sync {
+    /// Load over strength: one where the bond fails, proportional to the load; not negative.
+    fn ratio(&self, load: &BondLoad) -> f64;
+
+    /// How a bond breaks under this load.
+    fn mode(&self, load: &BondLoad) -> BreakMode;
+}
+
+/// What a criterion is applied to, as the search sees it.
+pub(super) enum Rule<'a> {
+    /// To bonds.
+    Load(&'a dyn LoadBatch),
+    /// To particles.
+    Stress(&'a dyn StressBatch),
+}
+
+/// The enum of all criteria, with the only matches over it: a new criterion is its file and a line here.
+macro_rules! criteria {
+    ($($(#[$doc:meta])* $name:ident: $rule:ident,)*) => {
+        /// When bonds break.
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+        #[serde(tag = "kind", rename_all = "kebab-case")]
+        pub enum FractureCriterion {
+            $($(#[$doc])* $name($name),)*
+        }
+
+        impl FractureCriterion {
+            pub(super) fn rule(&self) -> Rule<'_> {
+                match self {
+                    $(FractureCriterion::$name(c) => Rule::$rule(c),)*
+                }
+            }
+
+            fn strengths(&self) -> &dyn Strengths {
+                match self {
+                    $(FractureCriterion::$name(c) => c,)*
+                }
+            }
+
+            fn strengths_mut(&mut self) -> &mut dyn Strengths {
+                match self {
+                    $(FractureCriterion::$name(c) => c,)*
+                }
+            }
+        }
+    };
+}
+
+criteria! {
     /// Largest principal stress in the beam itself.
-    BeamRankine(BeamRankine),
+    BeamRankine: Load,
     /// Mean stress of a particle; all its bonds go.
-    Hydrostatic(Hydrostatic),
+    Hydrostatic: Stress,
     /// Principal stress of a neighbourhood; one bond goes.
-    Principal(Principal),
+    Principal: Stress,
     /// Mohr–Coulomb with tension cut-off on the stress of a neighbourhood.
-    MohrCoulomb(MohrCoulomb),
+    MohrCoulomb: Stress,
     /// Drucker–Prager on the stress of a neighbourhood.
-    DruckerPrager(DruckerPrager),
+    DruckerPrager: Stress,
 }
 
 impl FractureCriterion {
@@ -131,68 +202,28 @@ impl FractureCriterion {
     /// # Errors
     /// [`DemError::BadCriterion`].
     pub fn check(&self) -> Result<(), DemError> {
-        let positive = |what, value: f64| {
-            let fine = value.is_finite() && value > 0.0;
-            if fine { Ok(()) } else { Err(DemError::BadCriterion { what, value, expected: "a positive number" }) }
-        };
-        match self {
-            FractureCriterion::BeamRankine(c) => positive("strength of the beams", c.strength),
-            FractureCriterion::Hydrostatic(c) => positive("hydrostatic strength", c.strength),
-            FractureCriterion::Principal(c) => {
-                positive("tensile strength", c.tensile_strength)?;
-                c.compressive_strength.map_or(Ok(()), |s| positive("compressive strength", s))
-            }
-            FractureCriterion::MohrCoulomb(c) => {
-                positive("tensile strength", c.tensile_strength)?;
-                positive("compressive strength", c.compressive_strength)?;
-                let fine = (0.0..std::f64::consts::FRAC_PI_2).contains(&c.friction_angle);
-                let (what, expected) = ("friction angle in radians", "0 to below pi/2");
-                if fine { Ok(()) } else { Err(DemError::BadCriterion { what, value: c.friction_angle, expected }) }
-            }
-            FractureCriterion::DruckerPrager(c) => {
-                positive("tensile strength", c.tensile_strength)?;
-                positive("compressive strength", c.compressive_strength)
-            }
-        }
+        self.strengths().check()
     }
 
     /// The same criterion with all its strengths multiplied.
-    pub fn scaled(self, factor: f64) -> Self {
-        match self {
-            FractureCriterion::BeamRankine(c) => {
-                FractureCriterion::BeamRankine(BeamRankine { strength: c.strength * factor, ..c })
-            }
-            FractureCriterion::Hydrostatic(c) => {
-                FractureCriterion::Hydrostatic(Hydrostatic { strength: c.strength * factor })
-            }
-            FractureCriterion::Principal(c) => FractureCriterion::Principal(Principal {
-                tensile_strength: c.tensile_strength * factor,
-                compressive_strength: c.compressive_strength.map(|s| s * factor),
-                ..c
-            }),
-            FractureCriterion::MohrCoulomb(c) => FractureCriterion::MohrCoulomb(MohrCoulomb {
-                tensile_strength: c.tensile_strength * factor,
-                compressive_strength: c.compressive_strength * factor,
-                ..c
-            }),
-            FractureCriterion::DruckerPrager(c) => FractureCriterion::DruckerPrager(DruckerPrager {
-                tensile_strength: c.tensile_strength * factor,
-                compressive_strength: c.compressive_strength * factor,
-                ..c
-            }),
-        }
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.strengths_mut().scale(factor);
+        self
     }
 
-    /// Over which particles stress is taken; none for a criterion of beams.
+    /// Over which particles stress is taken; none for a criterion of single bonds.
     pub fn level(&self) -> Option<Level> {
-        match self {
-            FractureCriterion::BeamRankine(_) => None,
-            FractureCriterion::Hydrostatic(_) => Some(Level::Own),
-            FractureCriterion::Principal(c) => Some(c.level),
-            FractureCriterion::MohrCoulomb(c) => Some(c.level),
-            FractureCriterion::DruckerPrager(c) => Some(c.level),
+        match self.rule() {
+            Rule::Load(_) => None,
+            Rule::Stress(c) => Some(c.level()),
         }
     }
+}
+
+/// Refuses a strength that is not positive.
+fn positive(what: &'static str, value: f64) -> Result<(), DemError> {
+    let fine = value.is_finite() && value > 0.0;
+    if fine { Ok(()) } else { Err(DemError::BadCriterion { what, value, expected: "a positive number" }) }
 }
 
 /// Upper bound of the first principal value, from invariants.

@@ -1,7 +1,8 @@
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::{BreakMode, Level, Release, StressCriterion, first_bound, last_bound};
+use super::{BreakMode, Level, Release, Strengths, StressCriterion, first_bound, last_bound, positive};
+use crate::DemError;
 
 /// Mohr–Coulomb with tension cut-off on the virial stress: max(σ₁/f_t, (N σ₁ − σ₃)/f_c) with
 /// N = (1 + sin φ)/(1 − sin φ), tension positive.
@@ -29,7 +30,26 @@ impl MohrCoulomb {
     }
 }
 
+impl Strengths for MohrCoulomb {
+    fn check(&self) -> Result<(), DemError> {
+        positive("tensile strength", self.tensile_strength)?;
+        positive("compressive strength", self.compressive_strength)?;
+        let fine = (0.0..std::f64::consts::FRAC_PI_2).contains(&self.friction_angle);
+        let (what, expected) = ("friction angle in radians", "0 to below pi/2");
+        if fine { Ok(()) } else { Err(DemError::BadCriterion { what, value: self.friction_angle, expected }) }
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.tensile_strength *= factor;
+        self.compressive_strength *= factor;
+    }
+}
+
 impl StressCriterion for MohrCoulomb {
+    fn level(&self) -> Level {
+        self.level
+    }
+
     #[inline]
     fn bound(&self, stress: &Sym3) -> f64 {
         let (first, last) = (first_bound(stress), last_bound(stress));

@@ -1,7 +1,8 @@
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use super::{BreakMode, Level, Release, StressCriterion, first_bound, last_bound};
+use super::{BreakMode, Level, Release, Strengths, StressCriterion, first_bound, last_bound, positive};
+use crate::DemError;
 
 /// Largest principal virial stress against a strength; the bond of the particle nearest to that principal direction
 /// breaks (Nguyen et al. 2019, eqs. 5–8). With a compressive strength also the smallest principal stress (4.5).
@@ -23,7 +24,23 @@ impl Principal {
     }
 }
 
+impl Strengths for Principal {
+    fn check(&self) -> Result<(), DemError> {
+        positive("tensile strength", self.tensile_strength)?;
+        self.compressive_strength.map_or(Ok(()), |strength| positive("compressive strength", strength))
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.tensile_strength *= factor;
+        self.compressive_strength = self.compressive_strength.map(|strength| strength * factor);
+    }
+}
+
 impl StressCriterion for Principal {
+    fn level(&self) -> Level {
+        self.level
+    }
+
     #[inline]
     fn bound(&self, stress: &Sym3) -> f64 {
         (first_bound(stress) / self.tensile_strength).max(self.crushing(last_bound(stress)))

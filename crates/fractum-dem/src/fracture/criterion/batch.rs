@@ -1,0 +1,141 @@
+//! Criteria over whole bodies: compiled for each criterion, called once for all particles or bonds.
+
+use fractum_math::Sym3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{BondLoad, BreakMode, Level, LoadCriterion, StressCriterion};
+use crate::bond::BondGraph;
+
+/// Particles or bonds handled as one block by the parallel loops.
+const BLOCK: usize = 1024;
+
+/// What fails first under a criterion: a particle, or a bond for a criterion of single bonds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FailureSite {
+    /// Particle or bond.
+    pub index: u32,
+    /// What it bears over what it can bear.
+    pub ratio: f64,
+}
+
+/// What the search in a block of sites has found.
+#[derive(Default)]
+pub(in crate::fracture) struct BlockSearch {
+    pub(in crate::fracture) worst: Option<FailureSite>,
+    pub(in crate::fracture) overloaded: Vec<FailureSite>,
+}
+
+impl BlockSearch {
+    fn largest(&self) -> f64 {
+        self.worst.map_or(0.0, |worst| worst.ratio)
+    }
+
+    #[inline]
+    fn add(&mut self, index: usize, ratio: f64, limit: f64) {
+        let site = FailureSite { index: index as u32, ratio };
+        if ratio > self.largest() {
+            self.worst = Some(site);
+        }
+        if ratio >= limit {
+            self.overloaded.push(site);
+        }
+    }
+}
+
+/// The neighbourhoods over which stress is taken, and the virials of their particles.
+pub(in crate::fracture) struct Neighbourhoods<'a> {
+    pub(in crate::fracture) graph: &'a BondGraph,
+    pub(in crate::fracture) members: &'a [Vec<u32>],
+    pub(in crate::fracture) inverse: &'a [f64],
+    pub(in crate::fracture) virials: &'a [Sym3],
+}
+
+impl Neighbourhoods<'_> {
+    /// Virial stress of neighbourhood `i` [Pa].
+    #[inline]
+    fn stress(&self, i: usize, level: Level) -> Sym3 {
+        let mut sum = self.virials[i];
+        match level {
+            Level::Own => {}
+            Level::Neighbours => self.graph.neighbours(i).for_each(|h| sum += self.virials[h.other as usize]),
+            Level::Second => self.members[i].iter().for_each(|&j| sum += self.virials[j as usize]),
+        }
+        sum * self.inverse[i]
+    }
+}
+
+/// A criterion of stress over all particles.
+pub(in crate::fracture) trait StressBatch: StressCriterion {
+    /// Whether the bounds of some particle's virial [N m] allow a ratio of at least `limit`.
+    fn bounds_reach(&self, bounds: &[[f64; 2]], volume: &[f64], fraction: f64, limit: f64) -> bool;
+
+    /// Whether the virial of some particle alone [N m] allows a ratio of at least `limit`.
+    fn virials_reach(&self, virials: &[Sym3], volume: &[f64], fraction: f64, limit: f64) -> bool;
+
+    /// Stresses of all neighbourhoods, and what the criterion says of them.
+    fn search(&self, around: &Neighbourhoods<'_>, stress: &mut [Sym3], limit: f64) -> Vec<BlockSearch>;
+}
+
+impl<C: StressCriterion> StressBatch for C {
+    fn bounds_reach(&self, bounds: &[[f64; 2]], volume: &[f64], fraction: f64, limit: f64) -> bool {
+        let reaches = |(bounds, volume): (&[[f64; 2]], &[f64])| {
+            bounds.iter().zip(volume).any(|(&[tension, compression], volume)| {
+                self.bound_between(tension, compression) * fraction >= limit * volume
+            })
+        };
+        bounds.par_chunks(BLOCK).zip(volume.par_chunks(BLOCK)).any(reaches)
+    }
+
+    fn virials_reach(&self, virials: &[Sym3], volume: &[f64], fraction: f64, limit: f64) -> bool {
+        let reaches = |(virials, volume): (&[Sym3], &[f64])| {
+            virials.iter().zip(volume).any(|(virial, volume)| self.bound(&(*virial * (fraction / volume))) >= limit)
+        };
+        virials.par_chunks(BLOCK).zip(volume.par_chunks(BLOCK)).any(reaches)
+    }
+
+    fn search(&self, around: &Neighbourhoods<'_>, stress: &mut [Sym3], limit: f64) -> Vec<BlockSearch> {
+        let level = self.level();
+        let block = |(block, stress): (usize, &mut [Sym3])| {
+            let mut found = BlockSearch::default();
+            for (slot, stress) in stress.iter_mut().enumerate() {
+                let i = block * BLOCK + slot;
+                *stress = around.stress(i, level);
+                // Eigenvalues only where they could matter.
+                if self.bound(stress) >= limit.min(found.largest()) {
+                    found.add(i, self.ratio(stress), limit);
+                }
+            }
+            found
+        };
+        stress.par_chunks_mut(BLOCK).enumerate().map(block).collect()
+    }
+}
+
+/// A criterion of loads over all bonds.
+pub(in crate::fracture) trait LoadBatch: Sync {
+    /// What the criterion says of all bonds that hold.
+    fn search(&self, load: &(dyn Fn(u32) -> BondLoad + Sync), graph: &BondGraph, limit: f64) -> Vec<BlockSearch>;
+
+    /// How a bond breaks under this load.
+    fn mode(&self, load: &BondLoad) -> BreakMode;
+}
+
+impl<C: LoadCriterion> LoadBatch for C {
+    fn search(&self, load: &(dyn Fn(u32) -> BondLoad + Sync), graph: &BondGraph, limit: f64) -> Vec<BlockSearch> {
+        let count = graph.pairs().len();
+        let block = |block: usize| {
+            let mut found = BlockSearch::default();
+            for bond in block * BLOCK..((block + 1) * BLOCK).min(count) {
+                let live = graph.is_live(bond as u32);
+                found.add(bond, if live { self.ratio(&load(bond as u32)) } else { 0.0 }, limit);
+            }
+            found
+        };
+        (0..count.div_ceil(BLOCK)).into_par_iter().map(block).collect()
+    }
+
+    fn mode(&self, load: &BondLoad) -> BreakMode {
+        LoadCriterion::mode(self, load)
+    }
+}
