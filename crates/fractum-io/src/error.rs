@@ -3,26 +3,6 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::checkpoint::CheckpointError;
-use crate::vtk::VtkError;
-
-/// Any error of the output modules.
-#[derive(Debug, thiserror::Error)]
-pub enum OutputError {
-    /// A file or folder could not be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// A result could not be read back.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A checkpoint could not be saved or loaded.
-    #[error(transparent)]
-    Checkpoint(#[from] CheckpointError),
-    /// Arrays for ParaView do not fit together, or could not be written.
-    #[error(transparent)]
-    Vtk(#[from] VtkError),
-}
-
 /// Why a result written earlier could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {

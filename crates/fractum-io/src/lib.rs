@@ -1,14 +1,14 @@
 //! What goes into fractum and what comes out of it: cases, results, checkpoints and reports.
 //!
-//! - in: [`case`] reads and checks a case file
-//! - to compute with: [`history`] (`history.csv`), [`summary`] (`summary.json`, `verify.json`), [`expectation`], [`fragments`]
-//! - to look at: [`vtk`] (ParaView), [`picture`] (PNG), [`plot`] (SVG), [`report`] (`report.html`)
-//! - while it runs: [`log`] (`run.log` and the progress line), [`checkpoint`] (stop and go on, bit for bit)
-//! - beneath: [`atomic`] (files that are whole or absent), [`number`] (numbers and units as text), [`error`]
+//! Three rooms:
+//! - [`case`] reads and checks a case file
+//! - [`build`] makes the scene of a case on its mesh
+//! - `output` writes results. To compute with: [`history`] (`history.csv`), [`summary`] (`summary.json`, `verify.json`),
+//!   [`expectation`], [`fragments`]; to look at: [`vtk`] (ParaView), [`picture`] (PNG), [`plot`] (SVG), [`report`]
+//!   (`report.html`); while it runs: [`log`] (`run.log` and the progress line)
 //!
-//! The output modules know no simulation: they take slices and small structs, so that any part of the program, or
-//! another program, can write results. They leave out what to write and when; that is the run's business. Equal numbers
-//! make equal files, for any number of threads; only what tells of the clock differs.
+//! Beside them: [`checkpoint`] (stop and go on, bit for bit), [`atomic`] (files that are whole or absent), [`number`]
+//! (numbers and units as text), [`error`].
 //!
 //! ```
 //! use fractum_io::history::{self, Column, History};
@@ -23,23 +23,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod assemble;
 pub mod atomic;
+pub mod build;
 pub mod case;
 pub mod checkpoint;
 mod compress;
 pub mod error;
-pub mod expectation;
-pub mod fragments;
-pub mod history;
-pub mod log;
-mod markup;
 pub mod number;
-pub mod picture;
-pub mod plot;
-pub mod report;
-pub mod summary;
-pub mod vtk;
+mod output;
 
 pub use compress::Compression;
-pub use error::{OutputError, ReadError, WriteError};
+pub use error::{ReadError, WriteError};
+pub use output::{OutputError, expectation, fragments, history, log, picture, plot, report, summary, vtk};

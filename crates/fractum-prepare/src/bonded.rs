@@ -5,7 +5,7 @@ use std::time::Instant;
 use fractum_calibrate::strength::{BondKind, strength_factor};
 use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Micro, Sample, prepare, suitable_coordination};
 use fractum_dem::{CrackFaces, FractureCriterion};
-use fractum_io::assemble::PreparedBody;
+use fractum_io::build::PreparedBody;
 use fractum_io::case::model::{BodyKind, BondFailure, BondedBody, BondedShape, Case, PackingSource, ParticleSize};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
 use fractum_mesh::{Mesh, topology};

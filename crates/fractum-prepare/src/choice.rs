@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use fractum_io::assemble::{Assembly, may_rest};
+use fractum_io::build::{BuiltScene, may_rest};
 use fractum_io::case::TimeFunction;
 use fractum_io::case::model::{Body, BodyKind, Case, Components, LoadKind, Motion, SolverKind};
 use fractum_io::number::quantity;
@@ -22,8 +22,8 @@ const MOST_NODES: usize = 300_000;
 /// What the solvers would do with a case, line by line; empty where only motion can be meant.
 ///
 /// - `step_seconds`: estimated time of one explicit step [s]
-pub fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -> Vec<(&'static str, String)> {
-    let scene = &mut assembly.scene;
+pub fn compare(case: &Case, built: &mut BuiltScene, step_seconds: f64) -> Vec<(&'static str, String)> {
+    let scene = &mut built.scene;
     if scene.solid.body_count() == 0 {
         return Vec::new();
     }
@@ -63,7 +63,7 @@ pub fn compare(case: &Case, assembly: &mut Assembly, step_seconds: f64) -> Vec<(
     // Two solutions go with each factorisation, and take less.
     let rest = times * (1.3 * prepared + evaluation(scene));
     let lasting = case.solver.end / period;
-    let equilibrium = assembly.statics.is_some();
+    let equilibrium = built.statics.is_some();
     let advice = if !equilibrium && lasting < PERIODS {
         format!("this run lasts {lasting:.2} first periods, so that inertia counts: kind = \"explicit\"")
     } else {
@@ -96,24 +96,24 @@ const STEP: f64 = 45.0;
 /// Settles a kind of solver that the case leaves open, and says why; nothing where it does not.
 ///
 /// The answer depends on case and mesh alone, so that another machine does the same.
-pub fn choose(case: &Case, assembly: &mut Assembly) -> Option<String> {
+pub fn choose(case: &Case, built: &mut BuiltScene) -> Option<String> {
     if case.solver.kind != SolverKind::Auto {
         return None;
     }
-    let (chosen, why) = if assembly.statics.is_none() {
-        let why = motion_only(case, &assembly.scene).unwrap_or("no solid bodies by themselves");
+    let (chosen, why) = if built.statics.is_none() {
+        let why = motion_only(case, &built.scene).unwrap_or("no solid bodies by themselves");
         ("explicit", why.to_owned())
     } else {
-        decide(case, assembly)
+        decide(case, built)
     };
     if chosen == "explicit" {
-        assembly.statics = None;
+        built.statics = None;
     }
     Some(format!("kind = \"{chosen}\": {why}"))
 }
 
-fn decide(case: &Case, assembly: &mut Assembly) -> (&'static str, String) {
-    let (scene, end) = (&mut assembly.scene, case.solver.end);
+fn decide(case: &Case, built: &mut BuiltScene) -> (&'static str, String) {
+    let (scene, end) = (&mut built.scene, case.solver.end);
     if let Some(why) = inertia_counts(case) {
         return ("explicit", why.to_owned());
     }

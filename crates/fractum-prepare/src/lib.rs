@@ -8,14 +8,14 @@
 //! Nothing moves here: the scene is built by `fractum-io` from what this crate returns, and stepped by `fractum-scene`.
 //!
 //! ```no_run
-//! use fractum_io::assemble::assemble;
+//! use fractum_io::build::build_scene;
 //! use fractum_io::case::read_case;
 //! use fractum_mesh::Mesh;
 //! use fractum_prepare::{Cache, facets, prepare_bodies};
 //! let case = read_case("cases/bonded-box/tension.toml".as_ref(), &[])?;
 //! let mesh = Mesh::default();
 //! let made = prepare_bodies(&case, &mesh, &Cache::new(Some("cache".into())))?;
-//! let assembly = assemble(&case, &mesh, made.prepared, facets(&case)?)?;
+//! let built = build_scene(&case, &mesh, made.prepared, facets(&case)?)?;
 //! # Ok::<(), fractum_io::case::Diagnostics>(())
 //! ```
 

@@ -1,7 +1,7 @@
 //! Loose particles and the facets of rigid bodies made ready: clouds filled, files read.
 
 use fractum_dem::{BeamSection, Particles};
-use fractum_io::assemble::{PreparedBody, PreparedFacets};
+use fractum_io::build::{PreparedBody, PreparedFacets};
 use fractum_io::case::model::{BodyKind, Case, FileContent, LooseBody, LooseSource, Material, Region, RigidShape};
 use fractum_io::case::{Diagnostic, Diagnostics, Place};
 use fractum_math::Vec3;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use fractum_io::assemble::{Assembly, assemble, check_groups};
+use fractum_io::build::{BuiltScene, build_scene, check_groups};
 use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics, read_case};
 use fractum_mesh::{Mesh, read_msh};
@@ -20,7 +20,7 @@ pub struct Input {
     /// Hash of the mesh file; 0 where the case has none.
     pub mesh_hash: u128,
     /// The scene at t = 0.
-    pub assembly: Assembly,
+    pub built: BuiltScene,
     /// What became of the bonded bodies.
     pub bonded: Vec<BondedReport>,
     /// What took how long to make ready.
@@ -44,10 +44,10 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
     };
     check_groups(&case, &mesh)?;
     let made = prepare_bodies(&case, &mesh, cache)?;
-    let mut assembly = assemble(&case, &mesh, made.prepared, facets(&case)?)?;
-    assembly.warnings.extend(made.warnings);
-    let choice = choose(&case, &mut assembly);
-    Ok(Input { case, mesh, mesh_hash, assembly, bonded: made.reports, timings: made.timings, choice })
+    let mut built = build_scene(&case, &mesh, made.prepared, facets(&case)?)?;
+    built.warnings.extend(made.warnings);
+    let choice = choose(&case, &mut built);
+    Ok(Input { case, mesh, mesh_hash, built, bonded: made.reports, timings: made.timings, choice })
 }
 
 /// The mesh in metres, and the hash of its file.

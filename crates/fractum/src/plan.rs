@@ -5,7 +5,7 @@ use std::fmt;
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::Level;
 use fractum_fem::{Formulation, Kinematics, Plane, Shape};
-use fractum_io::assemble::{Assembly, TieReport};
+use fractum_io::build::{BuiltScene, TieReport};
 use fractum_io::case::model::{BodyKind, Case, LoadKind, Material, MeshSource, RigidBody, RigidShape, SolidBody};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
@@ -46,9 +46,9 @@ impl fmt::Display for Plan {
 impl Plan {
     /// The plan of a case that was read.
     pub fn new(input: &Input) -> Self {
-        let Input { case, mesh, assembly, bonded, choice, .. } = input;
+        let Input { case, mesh, built, bonded, choice, .. } = input;
         let mut plan = Plan { lines: Vec::new() };
-        let scene = &assembly.scene;
+        let scene = &built.scene;
         if !case.title.is_empty() {
             plan.add("case", &case.title);
         }
@@ -56,15 +56,15 @@ impl Plan {
             plan.describe_mesh(source, mesh);
         }
         plan.describe_bodies(case, scene, bonded);
-        plan.describe_ties(&assembly.ties);
+        plan.describe_ties(&built.ties);
         plan.describe_conditions(case, mesh, scene);
         plan.describe_physics(case, scene);
         if let Some(choice) = choice {
             plan.add("choice", choice);
         }
-        match &assembly.statics {
+        match &built.statics {
             Some(settings) => plan.describe_statics(scene, settings),
-            None if assembly.bonded_statics.is_some() => {
+            None if built.bonded_statics.is_some() => {
                 let unknowns = 6 * scene.bonded.particles.len() - scene.bonded.held_count();
                 let breaks = scene.bonded.bodies().iter().any(BondedBody::can_break);
                 let path = if breaks { "from break to break" } else { "in one solution, since no bond can break" };
@@ -395,12 +395,12 @@ impl Plan {
     }
 
     /// Adds what motion and equilibrium would cost.
-    pub fn compare_solvers(&mut self, case: &Case, assembly: &mut Assembly) {
-        let (nanoseconds, _, elements) = elements_cost(&assembly.scene);
+    pub fn compare_solvers(&mut self, case: &Case, built: &mut BuiltScene) {
+        let (nanoseconds, _, elements) = elements_cost(&built.scene);
         // Few elements keep one thread busy only.
         let threads = rayon::current_num_threads().min(1 + elements / ELEMENTS_PER_THREAD);
         let seconds = 1e-9 * nanoseconds / threads as f64;
-        for (topic, text) in fractum_prepare::compare(case, assembly, seconds) {
+        for (topic, text) in fractum_prepare::compare(case, built, seconds) {
             self.add(topic, text);
         }
     }

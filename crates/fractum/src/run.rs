@@ -94,18 +94,18 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
     let started = Instant::now();
     let input = load(path, &options.overrides, &options.cache)?;
     let plan = Plan::new(&input);
-    let Input { case, mesh_hash, assembly, timings, .. } = input;
+    let Input { case, mesh_hash, built, timings, .. } = input;
     let folder = options.output.clone().unwrap_or_else(|| default_folder(path));
     let identity = Identity { program: program(), case_hash: case.hash(), mesh_hash };
-    let mut scene = assembly.scene;
+    let mut scene = built.scene;
 
     let checkpoints = folder.join("checkpoint");
-    if options.resume && assembly.bonded_statics.is_some() {
+    if options.resume && built.bonded_statics.is_some() {
         let text = "runs of bonded bodies at rest keep no checkpoints; run without --resume";
         return Err(Failure::input(text));
     }
     // Prepared before anything is put back: a resumed run solves the same systems in the same order.
-    let mut quiet = match &assembly.statics {
+    let mut quiet = match &built.statics {
         Some(settings) => match StaticSolver::new(&scene, settings.clone()) {
             Ok(solver) => Some(Quiet::new(solver)),
             Err(error) => {
@@ -136,12 +136,12 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
         tell!("{plan}");
         tell!("results in {}", folder.display());
     }
-    for warning in &assembly.warnings {
+    for warning in &built.warnings {
         progress.message(warning);
         log.line(warning)?;
     }
 
-    let recorder = Recorder::open(&case, &scene, &assembly.probes, &assembly.file_order, &folder, resumed)?;
+    let recorder = Recorder::open(&case, &scene, &built.probes, &built.file_order, &folder, resumed)?;
     let mut run = Run {
         case: &case,
         folder: &folder,
@@ -152,17 +152,17 @@ fn run_in_pool(path: &Path, options: &Options, threads: usize) -> Result<Outcome
         started,
         saved: Instant::now(),
         warned: false,
-        warnings: assembly.warnings.iter().map(ToString::to_string).collect(),
+        warnings: built.warnings.iter().map(ToString::to_string).collect(),
         phases: [Duration::ZERO; PHASES.len()],
     };
     // The one place where the kind of solver decides.
-    let end = match (&mut quiet, &assembly.bonded_statics) {
+    let end = match (&mut quiet, &built.bonded_statics) {
         (Some(quiet), _) => run.equilibrate(&mut scene, quiet),
         (None, Some(settings)) => run.break_at_rest(&mut scene, *settings),
         (None, None) => run.advance(&mut scene),
     };
-    let at_rest = assembly.bonded_statics.is_some() || quiet.as_ref().is_some_and(|quiet| !quiet.moves());
-    let resumable = assembly.bonded_statics.is_none();
+    let at_rest = built.bonded_statics.is_some() || quiet.as_ref().is_some_and(|quiet| !quiet.moves());
+    let resumable = built.bonded_statics.is_none();
     run.conclude(scene, threads, end, &plan, at_rest).map(|outcome| Outcome { resumable, ..outcome })
 }
 

@@ -258,9 +258,9 @@ fn fracture_text(body: &Fracture) -> String {
 fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, Failure> {
     let mut input = fractum::load(case, set, &cache())?;
     let mut plan = fractum::plan::Plan::new(&input);
-    plan.compare_solvers(&input.case, &mut input.assembly);
+    plan.compare_solvers(&input.case, &mut input.built);
     say!("{plan}");
-    for warning in &input.assembly.warnings {
+    for warning in &input.built.warnings {
         say!("{warning}");
     }
     Ok(ExitCode::Done)

@@ -1,10 +1,10 @@
 //! The charts of the report, from the columns of the history.
 
 use super::{Curve, EnergyColumns};
-use crate::fragments::Fragment;
-use crate::history::Table;
 use crate::number::quantity;
-use crate::plot::{Axis, Chart, Mark, Series, Style, stacked};
+use crate::output::fragments::Fragment;
+use crate::output::history::Table;
+use crate::output::plot::{Axis, Chart, Mark, Series, Style, stacked};
 
 /// The column called `name`, as an axis with that name in words, and its values.
 fn axis(history: &Table, name: &str) -> Option<(Axis, Vec<f64>)> {
@@ -111,7 +111,7 @@ pub(super) fn fragment_sizes(fragments: &[Fragment]) -> Option<Chart> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::history::Column;
+    use crate::output::history::Column;
 
     fn history() -> Table {
         let columns =

@@ -12,12 +12,12 @@ pub use figure::ColourBar;
 
 use crate::atomic;
 use crate::error::WriteError;
-use crate::fragments::Fragment;
-use crate::history::Table;
-use crate::log::duration;
 use crate::number::{grouped, percent, quantity, significant};
-use crate::plot::{Chart, Level};
-use crate::summary::{Status, Summary, Wall};
+use crate::output::fragments::Fragment;
+use crate::output::history::Table;
+use crate::output::log::duration;
+use crate::output::plot::{Chart, Level};
+use crate::output::summary::{Status, Summary, Wall};
 use charts::words;
 
 /// Fragments listed; the file `fragments.csv` has them all.
@@ -354,9 +354,9 @@ fn origin(data: &ReportData) -> Markup {
 mod tests {
     use super::*;
     use crate::case::model::Bound;
-    use crate::expectation::Expectation;
-    use crate::history::Column;
-    use crate::summary::Probe;
+    use crate::output::expectation::Expectation;
+    use crate::output::history::Column;
+    use crate::output::summary::Probe;
 
     fn example() -> ReportData {
         let mut data = ReportData {

@@ -1,8 +1,8 @@
 //! Pictures inside the page, with the bar that tells what the colours mean.
 
-use crate::markup::escape;
 use crate::number::{prefixed, significant};
-use crate::picture::ColourMap;
+use crate::output::markup::escape;
+use crate::output::picture::ColourMap;
 
 /// What the colours of a picture mean.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -22,7 +22,7 @@ use std::fmt::Write;
 pub use axis::Axis;
 use axis::Scale;
 
-use crate::markup::escape;
+use crate::output::markup::escape;
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 340.0;

@@ -2,7 +2,7 @@
 //!
 //! A parallel view of triangle surfaces, flat-shaded and coloured by a field, and of spheres. The same numbers give the
 //! same bytes on any machine and any number of threads. Text is left to the page around the picture: the colour bar and
-//! title are drawn by [`crate::report`].
+//! title are drawn by [`crate::output::report`].
 //!
 //! Left out: perspective, transparency, and filling of cuts (a [`Clip`] shows the inside of a hollow surface; give the
 //! surface of the elements that are kept to see a solid cut).

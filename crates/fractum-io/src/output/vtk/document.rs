@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Field;
 use crate::compress::{Compression, compressor, deflate};
-use crate::markup::escape;
+use crate::output::markup::escape;
 
 /// Bytes compressed at a time. Small enough to share an array among threads, large enough to compress well.
 pub(super) const BLOCK: usize = 1 << 16;

@@ -3,8 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case::model::Bound;
-use crate::number::{percent, quantity};
-use crate::summary::number;
+use crate::number::{or_null, percent, quantity};
 
 /// How a value is held against its reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,19 +30,19 @@ pub struct Expectation {
     /// Unit of value and reference.
     pub unit: String,
     /// What came out.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub value: f64,
     /// What was expected.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub reference: f64,
     /// What error and tolerance mean.
     #[serde(default)]
     pub comparison: Comparison,
     /// (value - reference) / |reference|, or value - reference; beyond limits how far, within them zero.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub error: f64,
     /// Largest |error| that passes.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub tolerance: f64,
     /// Whether it came out as expected; never for NaN.
     pub pass: bool,
@@ -134,7 +133,7 @@ pub struct Verified {
     #[serde(flatten)]
     pub expectation: Expectation,
     /// Time on the clock [s].
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub seconds: f64,
 }
 

@@ -12,7 +12,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::atomic;
 use crate::error::{ReadError, WriteError};
-use crate::expectation::{Expectation, Verified};
+use crate::number::or_null;
+use crate::output::expectation::{Expectation, Verified};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -65,16 +66,16 @@ pub struct Probe {
     /// Unit of the values.
     pub unit: String,
     /// Last value.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub r#final: f64,
     /// Largest value.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub max: f64,
     /// Smallest value.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub min: f64,
     /// When the largest value came first [s].
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub time_of_max: f64,
 }
 
@@ -86,18 +87,18 @@ pub struct Fracture {
     /// Bonds that broke.
     pub broken_bonds: u64,
     /// When the first one broke [s].
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub first_break: f64,
     /// Facets that the broken bonds stand for [m²].
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub crack_area: f64,
     /// Largest load over strength of any particle or bond at the rows of the history: how close it came.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub largest_ratio: f64,
     /// Where that was, in the undeformed body [m].
     pub largest_at: Option<[f64; 3]>,
     /// When that was [s].
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub largest_time: f64,
 }
 
@@ -163,13 +164,13 @@ pub struct Time {
     /// Steps done.
     pub steps: u64,
     /// Last time step.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub dt: f64,
     /// Smallest time step.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub dt_min: f64,
     /// Time reached.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub end: f64,
 }
 
@@ -177,7 +178,7 @@ pub struct Time {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wall {
     /// From the start of the run to its end, over all its resumptions.
-    #[serde(with = "number")]
+    #[serde(with = "or_null")]
     pub total: f64,
     /// By part of the step: `solid`, `damage`, `bonds`, `contact`, `output`, ...
     pub phases: BTreeMap<String, f64>,
@@ -231,19 +232,6 @@ fn json<T: Serialize + ?Sized>(value: &T) -> String {
     let mut text = serde_json::to_string_pretty(value).unwrap_or_default();
     text.push('\n');
     text
-}
-
-/// A number that JSON may lack: `null` stands for NaN and the infinities, and reads back as NaN.
-pub(crate) mod number {
-    use serde::{Deserialize, Deserializer, Serializer};
-
-    pub(crate) fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-        if value.is_finite() { serializer.serialize_f64(*value) } else { serializer.serialize_none() }
-    }
-
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-        Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
-    }
 }
 
 #[cfg(test)]

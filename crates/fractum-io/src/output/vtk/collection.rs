@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::atomic;
 use crate::error::WriteError;
-use crate::markup::escape;
 use crate::number::push_shortest;
+use crate::output::markup::escape;
 
 /// One file of a time series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

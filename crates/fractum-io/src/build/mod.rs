@@ -31,7 +31,7 @@ use crate::case::model::{Case, GroupUse, SolverKind, Support, TimeStep};
 use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction, nearest};
 
 /// A scene with what is needed to speak of it in the user's terms.
-pub struct Assembly {
+pub struct BuiltScene {
     /// The simulation at t = 0.
     pub scene: Scene,
     /// Settings of the quasi-static solver, where the case asks for it.
@@ -54,7 +54,7 @@ pub struct Assembly {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// What all parts of the assembly share.
+/// What all parts of the construction share.
 struct Context<'a> {
     case: &'a Case,
     mesh: &'a Mesh,
@@ -80,19 +80,19 @@ pub fn check_groups(case: &Case, mesh: &Mesh) -> Result<(), Diagnostics> {
 /// # Errors
 /// Everything that does not fit: groups that are missing or of the wrong kind, overlapping bodies, contradictory
 /// supports, elements too large for their fracture energy.
-pub fn assemble(
+pub fn build_scene(
     case: &Case,
     mesh: &Mesh,
     prepared: Vec<PreparedBody>,
     facets: Vec<PreparedFacets>,
-) -> Result<Assembly, Diagnostics> {
+) -> Result<BuiltScene, Diagnostics> {
     let mut context = Context { case, mesh, particle_sets: Vec::new(), diagnostics: Vec::new() };
     context.check_groups();
-    let assembly = context.build(prepared, facets);
-    match assembly {
-        Some(mut assembly) if context.diagnostics.is_empty() => {
-            assembly.warnings.extend(context.case.warnings().iter().cloned());
-            Ok(assembly)
+    let built = context.build(prepared, facets);
+    match built {
+        Some(mut built) if context.diagnostics.is_empty() => {
+            built.warnings.extend(context.case.warnings().iter().cloned());
+            Ok(built)
         }
         _ => Err(Diagnostics(context.diagnostics)),
     }
@@ -131,7 +131,7 @@ impl Context<'_> {
         }
     }
 
-    fn build(&mut self, prepared: Vec<PreparedBody>, facets: Vec<PreparedFacets>) -> Option<Assembly> {
+    fn build(&mut self, prepared: Vec<PreparedBody>, facets: Vec<PreparedFacets>) -> Option<BuiltScene> {
         if !self.diagnostics.is_empty() {
             return None;
         }
@@ -209,7 +209,7 @@ impl Context<'_> {
         if !self.diagnostics.is_empty() {
             return None;
         }
-        Some(Assembly {
+        Some(BuiltScene {
             scene,
             statics,
             bonded_statics,
