@@ -8,7 +8,7 @@
 //!   (`report.html`); while it runs: [`log`] (`run.log` and the progress line)
 //!
 //! Beside them: [`checkpoint`] (stop and go on, bit for bit), [`atomic`] (files that are whole or absent), [`number`]
-//! (numbers and units as text), [`error`].
+//! (numbers and units as text), [`memory`] (what does not fit is refused), [`error`].
 //!
 //! ```
 //! use fractum_io::history::{self, Column, History};
@@ -29,6 +29,7 @@ pub mod case;
 pub mod checkpoint;
 mod compress;
 pub mod error;
+pub mod memory;
 pub mod number;
 mod output;
 

@@ -249,6 +249,7 @@ fn line_ends_comments_blank_lines_and_marks_do_not_matter() {
             text.replace('\n', " \n\n\t"),
             format!("\u{feff}{text}"),
             format!("\n\n{text}\n\n{comment}"),
+            format!("\u{feff}{comment}\n{comment}{text}"),
             text.replacen("$Nodes", &format!("{comment}$Nodes"), 1),
         ];
         for variant in &variants {
@@ -264,6 +265,15 @@ fn line_ends_comments_blank_lines_and_marks_do_not_matter() {
     let names = String::from_utf8(bytes[header_end..text_end].to_vec()).unwrap().replace('\n', "\r\n");
     let mixed = [&bytes[..header_end], names.as_bytes(), &bytes[text_end..]].concat();
     assert_eq!(read_msh(&mixed).unwrap(), read("boxes-41-binary"));
+    let commented = [b"$Comments\n$MeshFormat\n$EndComments\n", &bytes[..]].concat();
+    assert_eq!(read_msh(&commented).unwrap(), read("boxes-41-binary"));
+}
+
+#[test]
+fn comments_alone_are_no_mesh() {
+    for text in ["$Comments\nnothing else\n$EndComments\n", "$Comments\nwithout end\n"] {
+        assert!(matches!(refused(text.as_bytes()).problem, Problem::Truncated { .. }), "{text}");
+    }
 }
 
 #[test]

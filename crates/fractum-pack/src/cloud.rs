@@ -24,15 +24,14 @@ pub fn cloud(
     let mut random = Random::new(seed);
     let largest = radius * (1.0 + 0.5 * dispersion);
     let size = upper - lower;
-    // Cells fill the box exactly, none smaller than wanted.
-    let cells = size.map(|s| (s / (2.0 * largest * SPACING)).floor().max(if s >= 2.0 * largest { 1.0 } else { 0.0 }));
+    let cells = cloud_cells(&size, radius, dispersion);
     let (mut centres, mut radii) = (Vec::new(), Vec::new());
     if cells.min() < 1.0 {
         return (centres, radii);
     }
     let cell = size.component_div(&cells);
     let [nx, ny, nz] = [cells.x as u64, cells.y as u64, cells.z as u64];
-    for index in 0..nx * ny * nz {
+    for index in 0..nx.saturating_mul(ny).saturating_mul(nz) {
         if centres.len() == most {
             break;
         }
@@ -47,6 +46,15 @@ pub fn cloud(
         }
     }
     (centres, radii)
+}
+
+/// Cells of a cloud along x, y, z, of which each has room for one sphere. They fill the box exactly, none smaller than
+/// wanted.
+///
+/// - `size`, `radius` [m]; `dispersion`: as in [`cloud`]
+pub fn cloud_cells(size: &Vec3, radius: f64, dispersion: f64) -> Vec3 {
+    let diameter = 2.0 * radius * (1.0 + 0.5 * dispersion);
+    size.map(|s| (s / (diameter * SPACING)).floor().max(if s >= diameter { 1.0 } else { 0.0 }))
 }
 
 #[cfg(test)]

@@ -166,7 +166,7 @@ fn plan(spec: &PackSpec) -> Result<(usize, f64), PackError> {
             (count, low)
         }
         PackSize::MeanRadius(radius) => {
-            if !(radius.is_finite() && radius > 0.0) {
+            if !(1e-15..=1e15).contains(&radius) {
                 return Err(PackError::BadDimension { what: "mean particle radius", value: radius });
             }
             // From forced insertion to the end of compaction radii shrink by about 0.5 %.
@@ -197,8 +197,7 @@ fn insert(domain: &Domain, radius: &[f64], random: &mut Random) -> Result<Vec<Ve
     let size = [0, 1, 2].map(|a| (((upper[a] - lower[a]) / cell) as usize + 1).min(1 << 20));
     let cells = size.iter().map(|&s| s as f64).product::<f64>();
     if cells > 64.0 * radius.len() as f64 + 1e6 {
-        let what = "fill fraction of its bounding box";
-        return Err(PackError::BadDimension { what, value: domain.volume() / (upper - lower).product() });
+        return Err(PackError::Sparse(domain.volume() / (upper - lower).product()));
     }
     let mut first = vec![u32::MAX; cells as usize];
     let mut next = vec![u32::MAX; radius.len()];
@@ -462,5 +461,35 @@ mod tests {
             .map(|i| Vec3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64) * 0.1 + Vec3::repeat(0.05))
             .collect();
         assert!(matches!(Certificate::of(&packing).check(), Err(PackError::Refused { .. })));
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused() {
+        let lengths = [5e-324, 1e-310, 1e-200, 1e-110, 1e-20, 1e20, 1e110, 1e200, f64::MAX, f64::INFINITY, f64::NAN];
+        let mut specs = Vec::new();
+        for x in lengths {
+            let surface = ClosedSurface::new(&cube(x).0, &cube(x).1);
+            let far = Vec3::repeat(x.max(1e10));
+            specs.extend([Domain::cuboid(x, x, x), Domain::cuboid(1.0, 1.0, x), Domain::cylinder(1.0, x)]);
+            specs.extend([Domain::cylinder(x, x), Domain::sphere(x), Domain::Sphere { centre: far, radius: 1.0 }]);
+            specs.push(Domain::Box { lower: far, upper: far.add_scalar(1.0) });
+            specs.extend(surface.map(Domain::Surface));
+        }
+        for domain in specs {
+            for size in [PackSize::Count(100), PackSize::MeanRadius(0.05), PackSize::MeanRadius(1e-200)] {
+                let spec = PackSpec { size, ..PackSpec::new(domain.clone(), 0, 1) };
+                assert!(pack(&spec).is_err(), "{domain:?} {size:?}");
+            }
+        }
+        for radius in lengths {
+            let size = PackSize::MeanRadius(radius);
+            assert!(
+                pack(&PackSpec { size, ..PackSpec::new(Domain::cuboid(1.0, 1.0, 1.0), 0, 1) }).is_err(),
+                "{radius}"
+            );
+        }
+        for count in [0, 1, usize::MAX] {
+            assert!(pack(&PackSpec::new(Domain::cuboid(1.0, 1.0, 1.0), count, 1)).is_err(), "{count}");
+        }
     }
 }

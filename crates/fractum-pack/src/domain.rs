@@ -60,6 +60,11 @@ pub(crate) struct WallContact {
     pub(crate) inward: Vec3,
 }
 
+/// Lengths that a shape may have [m]: beyond them areas and volumes come near the ends of floating point numbers.
+const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
+/// Largest distance from the origin over the smallest extent: overlaps of 1e-7 radii must be seen.
+const FARTHEST: f64 = 1e6;
+
 /// Directions closer than this count as one wall of a triangulated surface (cosine of about 25°): neighbouring facets
 /// of a curved surface must not push twice.
 const SAME_WALL_COSINE: f64 = 0.9;
@@ -80,10 +85,11 @@ impl Domain {
         Domain::Sphere { centre: Vec3::zeros(), radius }
     }
 
-    /// Refuses dimensions that are not positive and finite.
+    /// Refuses dimensions that are not lengths of bodies, and shapes so far from the origin that positions in them are
+    /// rounded.
     ///
     /// # Errors
-    /// [`PackError::BadDimension`].
+    /// [`PackError::BadDimension`], [`PackError::TooFar`].
     pub fn check(&self) -> Result<(), PackError> {
         let lengths: Vec<(&'static str, f64)> = match self {
             Domain::Box { lower, upper } => {
@@ -94,12 +100,20 @@ impl Domain {
                 vec![("length", *length), ("radius", *radius), ("place", 1.0 + 0.0 * start.sum())]
             }
             Domain::Sphere { radius, centre } => vec![("radius", *radius), ("place", 1.0 + 0.0 * centre.sum())],
-            Domain::Surface(_) => vec![],
+            Domain::Surface(surface) => {
+                let (lower, upper) = surface.bounds();
+                vec![("smallest extent", (upper - lower).min()), ("largest extent", (upper - lower).max())]
+            }
         };
-        match lengths.into_iter().find(|&(_, value)| !(value.is_finite() && value > 0.0)) {
-            Some((what, value)) => Err(PackError::BadDimension { what, value }),
-            None => Ok(()),
+        if let Some((what, value)) = lengths.into_iter().find(|(_, value)| !LENGTHS.contains(value)) {
+            return Err(PackError::BadDimension { what, value });
         }
+        let (lower, upper) = self.bounds();
+        let (extent, distance) = ((upper - lower).min(), lower.amax().max(upper.amax()));
+        if distance > FARTHEST * extent {
+            return Err(PackError::TooFar { distance, extent });
+        }
+        Ok(())
     }
 
     /// Volume [m³].

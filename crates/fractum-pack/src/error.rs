@@ -3,14 +3,28 @@ use thiserror::Error;
 /// Why a packing or a bond network could not be made.
 #[derive(Debug, Error, Clone, PartialEq)]
 pub enum PackError {
-    /// A dimension of the domain is not positive and finite.
-    #[error("the domain's {what} is {value} m; expected a positive, finite length")]
+    /// A dimension of the domain is no length of a body.
+    #[error("the domain's {what} is {value} m; expected between 1e-15 m and 1e15 m")]
     BadDimension {
         /// Which dimension.
         what: &'static str,
         /// The value found [m].
         value: f64,
     },
+    /// Positions in the domain would be rounded.
+    #[error(
+        "the domain reaches {distance:.3e} m from the origin and is {extent:.3e} m wide; move it to the origin, where \
+         floating point numbers are fine enough"
+    )]
+    TooFar {
+        /// Farthest coordinate [m].
+        distance: f64,
+        /// Narrowest extent [m].
+        extent: f64,
+    },
+    /// The bounding box is mostly empty.
+    #[error("the domain fills {0:.3e} of its bounding box; expected a more compact shape")]
+    Sparse(f64),
     /// The size distribution is outside what the cooker packs well.
     #[error(
         "dispersion kappa = {0}; expected between 0 and 1 (0.25 is the usual choice; below 0.15 packings tend to order)"

@@ -30,7 +30,7 @@ mod stl;
 mod surface;
 
 pub use certificate::{Certificate, interior_fraction};
-pub use cloud::cloud;
+pub use cloud::{cloud, cloud_cells};
 pub use cooker::{PackSize, PackSpec, pack, pack_certified};
 pub use domain::{Domain, DomainData};
 pub use error::PackError;

@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::PackError;
 
+/// Largest coordinate [m].
+const FARTHEST: f64 = 1e15;
+
 /// A closed triangulated surface with outward orientation, as a domain to be packed.
 #[derive(Clone)]
 pub struct ClosedSurface {
@@ -38,10 +41,10 @@ impl ClosedSurface {
     /// Checks that the triangles enclose a volume and orients them outward.
     ///
     /// # Errors
-    /// [`PackError::OpenSurface`] with the number of open edges; [`PackError::BadSurface`] for missing or non-finite
-    /// points and for a surface without volume.
+    /// [`PackError::OpenSurface`] with the number of open edges; [`PackError::BadSurface`] for missing points, coordinates
+    /// that are no lengths of bodies, and for a surface without volume.
     pub fn new(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, PackError> {
-        if let Some(point) = points.iter().find(|p| !p.iter().all(|c| c.is_finite())) {
+        if let Some(point) = points.iter().find(|p| !p.iter().all(|c| c.abs() <= FARTHEST)) {
             return Err(PackError::BadSurface(format!("a point has coordinates {:?}", point.as_slice())));
         }
         if let Some(t) = triangles.iter().find(|t| t.iter().any(|&v| v as usize >= points.len())) {
@@ -62,7 +65,8 @@ impl ClosedSurface {
         let corner = |t: &[u32; 3]| t.map(|v| points[v as usize]);
         let signed: f64 = triangles.iter().map(corner).map(|[a, b, c]| a.dot(&b.cross(&c)) / 6.0).sum();
         let area: f64 = triangles.iter().map(corner).map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm()).sum();
-        if signed.abs() <= 1e-9 * area * area.sqrt() || area == 0.0 {
+        // Also where both are too small for a number.
+        if !(area.is_finite() && signed.abs() > 1e-9 * area * area.sqrt()) {
             return Err(PackError::BadSurface(format!("it encloses {signed:.3e} m³")));
         }
         let mut triangles = triangles.to_vec();

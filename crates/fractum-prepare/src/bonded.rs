@@ -13,7 +13,7 @@ use fractum_pack::{
     Certificate, ClosedSurface, Convention, Domain, PackError, PackSize, PackSpec, Packing, pack_certified, read_stl,
 };
 use fractum_scene::BondFracture;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::cache::{Cache, key};
 use crate::region::{Region, region};
@@ -135,13 +135,6 @@ struct StrengthKey {
     criterion: FractureCriterion,
 }
 
-/// Beams as they are kept: with a checksum, so that a damaged entry is not believed.
-#[derive(Serialize, Deserialize)]
-struct KeptBeams {
-    beams: Beams,
-    checksum: u128,
-}
-
 struct Maker<'a> {
     case: &'a Case,
     mesh: &'a Mesh,
@@ -183,7 +176,7 @@ impl Maker<'_> {
         });
         let (beams, beams_from) = match given {
             Some(beams) => (Some(beams), Origin::Given),
-            None => match self.cache.find("beams", beams_key, kept_beams) {
+            None => match self.cache.find("beams", beams_key, |bytes| postcard::from_bytes(bytes).ok()) {
                 Some(beams) => (Some(beams), Origin::Cached),
                 None => (None, Origin::Made),
             },
@@ -201,7 +194,8 @@ impl Maker<'_> {
         )
         .map_err(|error| self.wrong(&error))?;
         if beams_from == Origin::Made {
-            self.cache.keep("beams", beams_key, &beams_bytes(made.beams));
+            // Serialising plain numbers into memory has no way to fail.
+            self.cache.keep("beams", beams_key, &postcard::to_stdvec(&made.beams).unwrap_or_default());
         }
         let fracture = match &material.fracture {
             Some(failure) => Some(self.strengths(&failure.value, &made.sample, made.beams.micro, coordination)?),
@@ -353,15 +347,6 @@ impl Maker<'_> {
         };
         self.refuse(place, format!(": {error}"))
     }
-}
-
-fn beams_bytes(beams: Beams) -> Vec<u8> {
-    postcard::to_stdvec(&KeptBeams { beams, checksum: key(&beams) }).unwrap_or_default()
-}
-
-fn kept_beams(bytes: &[u8]) -> Option<Beams> {
-    let kept: KeptBeams = postcard::from_bytes(bytes).ok()?;
-    (kept.checksum == key(&kept.beams)).then_some(kept.beams)
 }
 
 /// The closed surface of a mesh group, its tetrahedra or triangles; of all tetrahedra without a name.

@@ -3,6 +3,7 @@
 //! - [`prepare_bodies`]: bonded bodies are packed (or their packing is read), bonded, calibrated to the material and given
 //!   their strengths; clouds of loose particles are filled or read. What takes long is kept in a [`Cache`].
 //! - [`facets`]: closed surfaces of rigid bodies from STL files
+//! - [`check_memory`]: bodies larger than the memory are refused before they are made
 //! - [`choose`] and [`compare`]: motion or equilibrium, by what each would cost
 //!
 //! Nothing moves here: the scene is built by `fractum-io` from what this crate returns, and stepped by `fractum-scene`.
@@ -23,9 +24,11 @@ mod bonded;
 mod cache;
 mod choice;
 mod loose;
+mod memory;
 mod region;
 
 pub use bonded::{BondedBodies, BondedReport, Origin, group_surface, prepare_bodies};
 pub use cache::Cache;
 pub use choice::{choose, compare};
 pub use loose::facets;
+pub use memory::check_memory;

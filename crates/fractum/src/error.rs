@@ -1,5 +1,6 @@
 use fractum_io::case::{Diagnostic, Diagnostics};
 use fractum_io::checkpoint::CheckpointError;
+use fractum_io::memory::TooLarge;
 use fractum_io::{OutputError, WriteError};
 use fractum_scene::StepError;
 
@@ -41,6 +42,9 @@ pub enum Failure {
     /// A checkpoint could not be saved or does not fit.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// There is less memory than the case or a state needs.
+    #[error("{0}; choose a coarser mesh or fewer particles, or a machine with more memory")]
+    Memory(#[from] TooLarge),
     /// Threads could not be started.
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -67,9 +71,9 @@ impl Failure {
             Failure::Input(_) | Failure::Unmet(_) => ExitCode::Input,
             Failure::Stopped { .. } => ExitCode::Stopped,
             Failure::Write(WriteError::Busy { .. }) => ExitCode::Input,
-            Failure::Checkpoint(CheckpointError::Write(_)) => ExitCode::Machine,
+            Failure::Checkpoint(CheckpointError::Write(_) | CheckpointError::TooLarge { .. }) => ExitCode::Machine,
             Failure::Checkpoint(_) => ExitCode::Input,
-            Failure::Write(_) | Failure::Output(_) | Failure::Threads(_) => ExitCode::Machine,
+            Failure::Memory(_) | Failure::Write(_) | Failure::Output(_) | Failure::Threads(_) => ExitCode::Machine,
         }
     }
 }

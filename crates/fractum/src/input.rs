@@ -6,10 +6,11 @@ use std::path::Path;
 use fractum_io::build::{BuiltScene, build_scene, check_groups};
 use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics, read_case};
+use fractum_io::memory;
 use fractum_mesh::{Mesh, read_msh};
 
 use crate::error::Failure;
-use fractum_prepare::{BondedReport, Cache, choose, facets, prepare_bodies};
+use fractum_prepare::{BondedReport, Cache, check_memory, choose, facets, prepare_bodies};
 
 /// A case with its mesh and the scene made of both.
 pub struct Input {
@@ -35,7 +36,7 @@ pub struct Input {
 /// - `cache`: where packings and beams are kept
 ///
 /// # Errors
-/// [`Failure::Input`] with everything that is wrong.
+/// [`Failure::Input`] with everything that is wrong; [`Failure::Memory`].
 pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Result<Input, Failure> {
     let case = read_case(path, overrides)?;
     let (mesh, mesh_hash) = match &case.mesh {
@@ -43,6 +44,7 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
         None => (Mesh::default(), 0),
     };
     check_groups(&case, &mesh)?;
+    check_memory(&case, &mesh)?;
     let made = prepare_bodies(&case, &mesh, cache)?;
     let mut built = build_scene(&case, &mesh, made.prepared, facets(&case)?)?;
     built.warnings.extend(made.warnings);
@@ -56,6 +58,9 @@ fn read_mesh(source: &MeshSource) -> Result<(Mesh, u128), Failure> {
     let fail = |found: String, remedy: &str| {
         Failure::Input(Diagnostics(vec![Diagnostic::error(&file.place, found).remedy(remedy)]))
     };
+    // The file and the mesh that is read from it, which is about as large.
+    let length = fs::metadata(&file.value).map_or(0, |known| known.len());
+    memory::require(2 * length, format!("reading {}", file.value.display()))?;
     let bytes = fs::read(&file.value).map_err(|error| {
         let remedy = match error.kind() {
             std::io::ErrorKind::NotFound => "paths are taken from the folder of the case file",

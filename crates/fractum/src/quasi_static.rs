@@ -58,7 +58,7 @@ impl Quiet {
 impl Run<'_> {
     /// Steps from equilibrium to equilibrium, each a row of the history; where there is none, moves to the next if asked to.
     pub(crate) fn equilibrate(&mut self, scene: &mut Scene, quiet: &mut Quiet) -> Result<End, Failure> {
-        let every = Duration::from_secs_f64(self.case.output.checkpoint_every);
+        let every = Duration::try_from_secs_f64(self.case.output.checkpoint_every).unwrap_or(Duration::MAX);
         let end = loop {
             let over = if quiet.moves() { scene.is_finished() } else { quiet.solver.is_finished(scene) };
             if over {

@@ -193,7 +193,7 @@ pub(crate) struct Run<'a> {
 
 impl Run<'_> {
     fn advance(&mut self, scene: &mut Scene) -> Result<End, Failure> {
-        let every = Duration::from_secs_f64(self.case.output.checkpoint_every);
+        let every = Duration::try_from_secs_f64(self.case.output.checkpoint_every).unwrap_or(Duration::MAX);
         while !scene.is_finished() {
             if is_interrupted() {
                 self.save(scene, None)?;

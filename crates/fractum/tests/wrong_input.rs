@@ -370,6 +370,48 @@ fn a_wrong_override_is_refused() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn what_is_larger_than_the_memory_is_refused_with_its_size() {
+    let body = &SMALL[SMALL.find("[[bodies]]").unwrap()..SMALL.find("[solver]").unwrap()];
+    let cloud = r#"[[bodies]]
+name = "dust"
+kind = "particles"
+material = "concrete"
+shape = "SHAPE"
+particle_radius = "0.1 um"
+
+"#;
+    let shapes = [
+        "box\"\nsize = [\"1 m\", \"1 m\", \"1 m\"]",
+        "sphere\"\nradius = \"1 m\"",
+        "cylinder\"\naxis = \"z\"\nradius = \"1 m\"\nlength = \"1 m\"",
+    ];
+    for shape in shapes {
+        let case = SMALL.replace(body, &cloud.replace("SHAPE\"", shape)).replace("[mesh]\nfile = \"bar.msh\"", "");
+        let case = &case[..case.find("[[probes]]").unwrap()];
+        let workplace = Workplace::new(case);
+        let ended = workplace.fractum(&RUN);
+        check_failure(&workplace, &ended, 3, 1, shape);
+        for words in ["body \"dust\" of about ", "e20 particles needs about ", " TiB of memory"] {
+            assert!(ended.stderr.contains(words), "expected {words}: {}", ended.stderr);
+        }
+    }
+    // A mesh of 8 TiB, of which nothing is on the disk.
+    let workplace = Workplace::new(SMALL);
+    fs::File::create(workplace.path("bar.msh")).unwrap().set_len(1 << 43).unwrap();
+    let ended = workplace.fractum(&RUN);
+    check_failure(&workplace, &ended, 3, 1, "mesh");
+    assert!(ended.stderr.starts_with("reading ") && ended.stderr.contains("bar.msh needs about 16 TiB"), "{ended:?}");
+}
+
+#[test]
+fn an_interval_beyond_all_time_is_never_over() {
+    let workplace = Workplace::new(&format!("{SMALL}\n[output.checkpoint]\nevery = \"1e300 s\"\n"));
+    let ended = workplace.fractum(&RUN);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+}
+
+#[test]
 fn a_wrong_option_is_wrong_input() {
     let workplace = Workplace::new(SMALL);
     for arguments in [&["run", "case.toml", "--thread", "2"][..], &["run"], &["walk"], &[]] {

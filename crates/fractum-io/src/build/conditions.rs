@@ -173,7 +173,9 @@ impl<'a> Surface<'a> {
     }
 }
 
+/// The nodes of a facet whatever its direction; an edge, in whatever order, repeats its higher node.
 fn sorted(mut nodes: [u32; 3]) -> [u32; 3] {
+    let edge = nodes[1] == nodes[2];
     nodes.sort_unstable();
-    nodes
+    if edge { [nodes[0], nodes[2], nodes[2]] } else { nodes }
 }

@@ -16,6 +16,7 @@ use serde::de::DeserializeOwned;
 
 use super::{CheckpointError, Header};
 use crate::compress::{Compression, compressor, deflate};
+use crate::memory::{self, TooLarge};
 
 /// Version of the container's format.
 pub const FORMAT: u32 = 1;
@@ -143,6 +144,7 @@ pub(super) enum Refusal {
     Truncated,
     Corrupt(String),
     OtherLayout(String),
+    TooLarge(TooLarge),
 }
 
 impl Refusal {
@@ -154,6 +156,7 @@ impl Refusal {
             Self::Truncated => CheckpointError::Truncated { path },
             Self::Corrupt(what) => CheckpointError::Corrupt { path, what },
             Self::OtherLayout(reason) => CheckpointError::OtherLayout { path, reason },
+            Self::TooLarge(source) => CheckpointError::TooLarge { path, source },
         }
     }
 
@@ -209,18 +212,23 @@ pub(super) fn read_state<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Refusal
     if !rest.is_empty() {
         return Err(Refusal::Corrupt("bytes after the end".into()));
     }
-    let inflated: Vec<Vec<u8>> = blocks
-        .par_iter()
-        .enumerate()
-        .map(|(number, &(raw_length, stored))| {
-            inflate(stored, raw_length).ok_or_else(|| Refusal::Corrupt(format!("block {number}")))
-        })
-        .collect::<Result<_, _>>()?;
-    let state = inflated.concat();
-    drop(inflated);
-    if state.len() as u64 != total {
+    let length: usize = blocks.iter().map(|(raw_length, _)| raw_length).sum();
+    if length as u64 != total {
         return Err(Refusal::Corrupt("length of the state".into()));
     }
+    // The bytes of the state, and the state that is read from them.
+    memory::require(2 * total, "reading the checkpoint").map_err(Refusal::TooLarge)?;
+    let mut state = vec![0; length];
+    let mut rooms = Vec::with_capacity(blocks.len());
+    let mut rest = &mut state[..];
+    for &(raw_length, _) in &blocks {
+        let (room, after) = std::mem::take(&mut rest).split_at_mut(raw_length);
+        rooms.push(room);
+        rest = after;
+    }
+    blocks.par_iter().zip(rooms).enumerate().try_for_each(|(number, (&(_, stored), room))| {
+        inflate(stored, room).ok_or_else(|| Refusal::Corrupt(format!("block {number}")))
+    })?;
     match postcard::take_from_bytes(&state) {
         Ok((state, [])) => Ok(state),
         Ok((_, rest)) => Err(Refusal::OtherLayout(format!("{} bytes too many", rest.len()))),
@@ -228,14 +236,16 @@ pub(super) fn read_state<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Refusal
     }
 }
 
-fn inflate(stored: &[u8], raw_length: usize) -> Option<Vec<u8>> {
-    if stored.len() == raw_length {
-        return Some(stored.to_vec());
+/// Fills `room` with the bytes of a block; none if it holds more or fewer.
+fn inflate(stored: &[u8], room: &mut [u8]) -> Option<()> {
+    if stored.len() == room.len() {
+        room.copy_from_slice(stored);
+        return Some(());
     }
-    let mut raw = Vec::with_capacity(raw_length);
-    // One byte more than allowed is enough to notice a stream that is too long.
-    flate2::read::ZlibDecoder::new(stored).take(raw_length as u64 + 1).read_to_end(&mut raw).ok()?;
-    (raw.len() == raw_length).then_some(raw)
+    let mut stream = flate2::read::ZlibDecoder::new(stored);
+    stream.read_exact(room).ok()?;
+    // The stream must end here.
+    (stream.read(&mut [0]).ok()? == 0).then_some(())
 }
 
 fn take<'a>(rest: &mut &'a [u8], length: usize) -> Result<&'a [u8], Refusal> {
@@ -247,4 +257,21 @@ fn take<'a>(rest: &mut &'a [u8], length: usize) -> Result<&'a [u8], Refusal> {
 fn take_u32(rest: &mut &[u8]) -> Result<u32, Refusal> {
     let bytes = take(rest, 4)?;
     Ok(bytes.try_into().map(u32::from_le_bytes).unwrap_or_default())
+}
+
+/// A checkpoint of so many blocks of zeros.
+#[cfg(test)]
+pub(super) fn inflating_to(header: &Header, blocks: u64) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    assert!(write(&mut bytes, header, &(), Compression::Fast).is_ok());
+    bytes.truncate(bytes.len() - 20);
+    let stored = deflate(&mut compressor(), &[0; BLOCK]);
+    for number in 0..blocks {
+        bytes.extend(block_head(number as u32, BLOCK as u32, &stored));
+        bytes.extend(&stored);
+    }
+    let total = (blocks * BLOCK as u64).to_le_bytes();
+    bytes.extend(block_head(blocks as u32, 0, &total));
+    bytes.extend(total);
+    bytes
 }

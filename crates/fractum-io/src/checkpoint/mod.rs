@@ -31,6 +31,7 @@ pub use container::FORMAT;
 use crate::atomic::{self, UNFINISHED};
 use crate::compress::Compression;
 use crate::error::WriteError;
+use crate::memory::TooLarge;
 
 /// What a state belongs to. A state of another program version, case or mesh is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -161,6 +162,14 @@ pub enum CheckpointError {
         /// What the deserialiser said.
         reason: String,
     },
+    /// The state is larger than the memory.
+    #[error("{}: {source}", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// How much larger.
+        source: TooLarge,
+    },
 }
 
 /// Saves `state` as `state-<step>.fck` in `folder` (created if absent) and returns the file's path.
@@ -285,6 +294,7 @@ fn remove_outdated(folder: &Path, step: u64) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::memory;
     use proptest::prelude::*;
 
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -429,6 +439,19 @@ mod tests {
         let error = save(folder.path(), &header(11), &Endless, Compression::Fast).unwrap_err();
         assert!(matches!(error, CheckpointError::NotStorable { .. }), "{error}");
         assert_eq!(names(folder.path()), ["state-000000010.fck"]);
+    }
+
+    /// Blocks of a thousandth of what they inflate to, as many as the memory does not hold, with all checksums right.
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_state_larger_than_the_memory_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("state-000000010.fck");
+        let blocks = memory::available().unwrap() / (1 << 21) + 1;
+        fs::write(&path, container::inflating_to(&header(10), blocks)).unwrap();
+        let error = load::<State>(&path, &identity()).unwrap_err();
+        assert!(matches!(error, CheckpointError::TooLarge { .. }), "{error}");
+        assert!(error.to_string().contains(".fck: reading the checkpoint needs about "), "{error}");
     }
 
     proptest! {

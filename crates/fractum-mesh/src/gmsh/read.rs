@@ -50,7 +50,12 @@ fn read_format(cursor: &mut Cursor) -> Result<Format, Fault> {
     if cursor.bytes.starts_with(b"\xef\xbb\xbf") {
         cursor.at = 3; // byte order mark of UTF-8
     }
-    let Some((at, line)) = cursor.line() else { return Err(Fault { at: 0, problem: Problem::Empty }) };
+    let Some((mut at, mut line)) = cursor.line() else { return Err(Fault { at: 0, problem: Problem::Empty }) };
+    while line == b"$Comments" {
+        cursor.skip_section("Comments")?;
+        let missing = || Fault::truncated(cursor.bytes.len(), "section $MeshFormat");
+        (at, line) = cursor.line().ok_or_else(missing)?;
+    }
     if line != b"$MeshFormat" {
         return Err(Fault { at, problem: Problem::NotGmsh { found: quote(line), hint: hint_for(line) } });
     }

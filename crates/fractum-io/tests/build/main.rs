@@ -1,0 +1,18 @@
+//! Scenes built from cases on meshes made here: what names, groups and conditions become.
+
+mod sides;
+
+use std::path::Path;
+
+use fractum_io::build::{BuiltScene, build_scene};
+use fractum_io::case::parse_case;
+use fractum_mesh::{Mesh, MshFormat, read_msh, write_msh};
+
+/// The scene of a case on a mesh that went through a file.
+fn build(case: &str, mesh: &Mesh) -> BuiltScene {
+    let case = parse_case(case, Path::new("case.toml"), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    let mut bytes = Vec::new();
+    write_msh(mesh, MshFormat::V4_1Binary, &mut bytes).unwrap();
+    let mesh = read_msh(&bytes).unwrap();
+    build_scene(&case, &mesh, Vec::new(), Vec::new()).unwrap_or_else(|errors| panic!("{errors}"))
+}

@@ -1,0 +1,82 @@
+//! What the bodies of a case need of memory, before any of them is made.
+
+use std::f64::consts::PI;
+
+use fractum_io::case::model::{BodyKind, BondedBody, BondedShape, Case, Formulation, LooseBody, LooseSource};
+use fractum_io::case::model::{PackingSource, ParticleSize, Region, SolidBody};
+use fractum_io::memory::{self, TooLarge};
+use fractum_mesh::Mesh;
+use fractum_pack::cloud_cells;
+
+/// Memory of the scene by its parts [bytes], as measured up to the first step of a run; what a run saves and draws comes
+/// on top.
+const TETRAHEDRON: f64 = 220.0;
+const SMOOTHED_TETRAHEDRON: f64 = 420.0;
+const TRIANGLE: f64 = 120.0;
+const LOOSE_PARTICLE: f64 = 800.0;
+const BONDED_PARTICLE: f64 = 1000.0;
+/// Volume of the particles of a packing over that of its shape.
+const FILLED: f64 = 0.6;
+
+/// Makes sure that the bodies of a case fit into memory.
+///
+/// # Errors
+/// [`TooLarge`], with the body that needs most.
+pub fn check_memory(case: &Case, mesh: &Mesh) -> Result<(), TooLarge> {
+    let needs = case.bodies.iter().map(|body| {
+        let (count, of, each) = match &body.kind {
+            BodyKind::Solid(own) => solid(own, mesh),
+            BodyKind::Bonded(own) => (bonded(own), "particles", BONDED_PARTICLE),
+            BodyKind::Particles(own) => (loose(own), "particles", LOOSE_PARTICLE),
+            BodyKind::Rigid(_) => (0.0, "facets", 0.0),
+        };
+        (count * each, &body.name.value, count, of)
+    });
+    let needs: Vec<_> = needs.collect();
+    let total: f64 = needs.iter().map(|need| need.0).sum();
+    let Some((_, name, count, of)) = needs.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else { return Ok(()) };
+    memory::require(total as u64, format!("body \"{name}\" of about {count:.2e} {of}"))
+}
+
+fn solid(body: &SolidBody, mesh: &Mesh) -> (f64, &'static str, f64) {
+    let groups = mesh.group(&body.group.value);
+    let tetrahedra: usize = groups.iter().map(|group| group.tetrahedra.len()).sum();
+    if tetrahedra == 0 {
+        let triangles: usize = groups.iter().map(|group| group.triangles.len()).sum();
+        return (triangles as f64, "triangles", TRIANGLE);
+    }
+    let smoothed = body.formulation == Formulation::Smoothed || body.damage;
+    (tetrahedra as f64, "tetrahedra", if smoothed { SMOOTHED_TETRAHEDRON } else { TETRAHEDRON })
+}
+
+/// Particles of a bonded body; none where only its surface or file tells.
+fn bonded(body: &BondedBody) -> f64 {
+    let PackingSource::Shape { shape, size, .. } = &body.packing else { return 0.0 };
+    let radius = match size.value {
+        ParticleSize::Count(count) => return count as f64,
+        ParticleSize::Radius(radius) => radius,
+    };
+    let volume = match &shape.value {
+        BondedShape::Box { size, .. } => size.product(),
+        BondedShape::Cylinder { length, radius, .. } => PI * radius * radius * length,
+        BondedShape::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
+        BondedShape::Group(_) | BondedShape::Stl { .. } => 0.0,
+    };
+    FILLED * volume / (4.0 / 3.0 * PI * radius.powi(3))
+}
+
+/// Particles of a cloud.
+fn loose(body: &LooseBody) -> f64 {
+    let LooseSource::Cloud { region, radius, dispersion, count, .. } = &body.source else { return 0.0 };
+    // Of the cells of the box around the region those within it.
+    let (size, share) = match region.value {
+        Region::Box { size, .. } => (size, 1.0),
+        Region::Cylinder { axis, length, radius, .. } => {
+            let size = axis.map(|a| a.abs() * length + 2.0 * radius * (1.0 - a * a).max(0.0).sqrt());
+            (size, PI * radius * radius * length / size.product())
+        }
+        Region::Sphere { radius, .. } => (fractum_math::Vec3::repeat(2.0 * radius), PI / 6.0),
+    };
+    let room = cloud_cells(&size, *radius, *dispersion).product() * share;
+    count.as_ref().map_or(room, |count| room.min(count.value as f64))
+}
