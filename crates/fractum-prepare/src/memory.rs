@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fractum_io::case::model::{BodyKind, BondedBody, BondedShape, Case, Formulation, LooseBody, LooseSource};
+use fractum_io::case::model::{BodyKind, BondedBody, BondedShape, Case, LooseBody, LooseSource};
 use fractum_io::case::model::{PackingSource, ParticleSize, Region, SolidBody};
 use fractum_io::memory::{self, TooLarge};
 use fractum_mesh::Mesh;
@@ -11,7 +11,7 @@ use fractum_pack::cloud_cells;
 /// Memory of the scene by its parts [bytes], as measured up to the first step of a run; what a run saves and draws comes
 /// on top.
 const TETRAHEDRON: f64 = 220.0;
-const SMOOTHED_TETRAHEDRON: f64 = 420.0;
+const DAMAGED_TETRAHEDRON: f64 = 420.0;
 const TRIANGLE: f64 = 120.0;
 const LOOSE_PARTICLE: f64 = 800.0;
 const BONDED_PARTICLE: f64 = 1000.0;
@@ -45,8 +45,7 @@ fn solid(body: &SolidBody, mesh: &Mesh) -> (f64, &'static str, f64) {
         let triangles: usize = groups.iter().map(|group| group.triangles.len()).sum();
         return (triangles as f64, "triangles", TRIANGLE);
     }
-    let smoothed = body.formulation == Formulation::Smoothed || body.damage;
-    (tetrahedra as f64, "tetrahedra", if smoothed { SMOOTHED_TETRAHEDRON } else { TETRAHEDRON })
+    (tetrahedra as f64, "tetrahedra", if body.damage { DAMAGED_TETRAHEDRON } else { TETRAHEDRON })
 }
 
 /// Particles of a bonded body; none where only its surface or file tells.

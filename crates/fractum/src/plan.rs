@@ -6,7 +6,9 @@ use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::Level;
 use fractum_fem::{Formulation, Kinematics, Plane, Shape};
 use fractum_io::build::{BuiltScene, TieReport};
-use fractum_io::case::model::{BodyKind, Case, LoadKind, Material, MeshSource, RigidBody, RigidShape, SolidBody};
+use fractum_io::case::model::{
+    BodyKind, Case, LoadKind, Material, MeshSource, RigidBody, RigidShape, Selection, SolidBody,
+};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
@@ -289,25 +291,26 @@ impl Plan {
             };
             let axes = letters(&|a| support.motion[a].is_some());
             let turning = support.fix_rotation.as_ref().map_or(0, |bits| bits.value);
-            let what = if case.particle_group(&support.group.value).is_some() {
+            let group = support.on.group_name();
+            let what = if case.particle_group(group).is_some() {
                 let held = letters(&|a| turning >> a & 1 == 1);
                 let held = if turning > 0 { format!(", no turning about {held}") } else { String::new() };
                 format!("{axes} of its particles{held}")
             } else {
-                format!("{axes} of {} nodes", mesh.group_nodes(&support.group.value).len())
+                match (&support.on.group, &support.on.within) {
+                    (Some(_), None) => format!("{axes} of {} nodes", mesh.group_nodes(group).len()),
+                    (Some(_), Some(_)) => format!("{axes} of its nodes where the condition holds"),
+                    _ => format!("{axes} of nodes of the solids where the condition holds"),
+                }
             };
-            self.add("support", format!("{}: {what}", support.group.value));
+            self.add("support", format!("{}: {what}", support.on.label()));
         }
         let thickness = plane_thickness(scene);
         for load in &case.loads {
             let text = match &load.kind {
-                LoadKind::Force { group, .. } => format!("force on {}", group.value),
-                LoadKind::Traction { group, .. } => {
-                    format!("traction on {} ({})", group.value, area_of(mesh, &group.value, thickness))
-                }
-                LoadKind::Pressure { group, .. } => {
-                    format!("pressure on {} ({})", group.value, area_of(mesh, &group.value, thickness))
-                }
+                LoadKind::Force { on, .. } => format!("force on {}", on.label()),
+                LoadKind::Traction { on, .. } => format!("traction on {}", facets_of(mesh, on, thickness)),
+                LoadKind::Pressure { on, .. } => format!("pressure on {}", facets_of(mesh, on, thickness)),
                 LoadKind::Gravity { .. } => "gravity on everything".to_owned(),
             };
             self.add("load", text);
@@ -464,6 +467,14 @@ fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
 fn plane_thickness(scene: &Scene) -> f64 {
     let mut bodies = (0..scene.solid.body_count()).map(|index| scene.solid.body(index));
     bodies.find(|body| body.shape == Shape::T3).map_or(0.0, |body| body.thickness)
+}
+
+/// The facets that a load acts on, with their area where a group alone tells them.
+fn facets_of(mesh: &Mesh, on: &Selection, thickness: f64) -> String {
+    match &on.within {
+        None => format!("{} ({})", on.label(), area_of(mesh, on.group_name(), thickness)),
+        Some(_) => format!("{} (facets where the condition holds)", on.label()),
+    }
 }
 
 /// Area of the facets of a group; in the plane its lines times the thickness.

@@ -7,7 +7,7 @@ use fractum_scene::{BondFracture, Bonded, BondedPart, Gravity, Load, PointProbe,
 
 use super::conditions::{motion_of, push_nodal};
 use super::{Context, function};
-use crate::case::model::{BodyKind, LoadKind, ProbeKind, TimeStep};
+use crate::case::model::{BodyKind, LoadKind, ProbeKind, Selection, TimeStep};
 use crate::case::{Diagnostic, Field, Spanned, nearest};
 
 /// The particles of a bonded or loose body, made outside: packed or read, bonded and calibrated.
@@ -92,8 +92,14 @@ impl Context<'_> {
     }
 
     /// Whether a name is that of a bonded body or of one of its sets.
-    pub(super) fn names_particles(&self, group: &Spanned<String>) -> bool {
-        self.case.particle_group(&group.value).is_some()
+    pub(super) fn names_particles(&self, on: &Selection) -> bool {
+        self.case.particle_group(on.group_name()).is_some()
+    }
+
+    /// The particles that are meant, of the group that names them.
+    fn selected_particles(&mut self, on: &Selection, group: &Spanned<String>, bonded: &Bonded) -> Vec<u32> {
+        let particles = self.particles(group);
+        self.keep_within(on, particles, |i| bonded.particles.position[i as usize])
     }
 
     /// The particles that a name of the case means; an error if the body has no such set.
@@ -127,26 +133,25 @@ impl Context<'_> {
         let mut tied: Vec<u32> = attachments.iter().map(|a| a.particle).collect();
         tied.sort_unstable();
         let (mut sets, mut turning) = (Vec::new(), Vec::new());
-        for support in case.supports.iter().filter(|s| case.particle_group(&s.group.value).is_some()) {
-            let mut particles = self.particles(&support.group);
+        for support in case.supports.iter().filter(|s| case.particle_group(s.on.group_name()).is_some()) {
+            let Some(group) = &support.on.group else { continue };
+            let mut particles = self.selected_particles(&support.on, group, bonded);
             let whole = particles.len();
             particles.retain(|i| tied.binary_search(i).is_err());
             if particles.is_empty() && whole > 0 {
-                let found = format!("= \"{}\": all of its {whole} particles are tied to a solid", support.group.value);
-                self.error(&support.group.place, found, "particles that are free; support the solid instead");
+                let found = format!("= \"{}\": all of its {whole} particles are tied to a solid", group.value);
+                self.error(&group.place, found, "particles that are free; support the solid instead");
             } else if particles.len() < whole {
                 let count = whole - particles.len();
-                let found =
-                    format!("= \"{}\": {count} of its {whole} particles are tied to a solid", support.group.value);
-                let warning = Diagnostic::warning(&support.group.place, found);
+                let found = format!("= \"{}\": {count} of its {whole} particles are tied to a solid", group.value);
+                let warning = Diagnostic::warning(&group.place, found);
                 warnings.push(
                     warning.remedy("they follow it, and the support holds the others; support the solid as well"),
                 );
             }
-            let name = &support.name.as_ref().unwrap_or(&support.group).value;
             for (axis, motion) in support.motion.iter().enumerate() {
                 let Some(motion) = motion else { continue };
-                sets.push(Support::new(name, particles.clone(), axis, motion_of(&motion.value)));
+                sets.push(Support::new(support.label(), particles.clone(), axis, motion_of(&motion.value)));
             }
             if let Some(axes) = &support.fix_rotation {
                 turning.extend(particles.iter().map(|&i| (i, axes.value)));
@@ -159,15 +164,18 @@ impl Context<'_> {
         let mut loads = Vec::new();
         for load in &case.loads {
             match &load.kind {
-                LoadKind::Force { group, force } if self.names_particles(group) => {
-                    let particles = self.particles(group);
+                LoadKind::Force { on: on @ Selection { group: Some(group), .. }, force }
+                    if self.names_particles(on) =>
+                {
+                    let particles = self.selected_particles(on, group, bonded);
                     let area = |i: u32| bonded.particles.radius[i as usize].powi(2);
                     let total: f64 = particles.iter().map(|&i| area(i)).sum();
                     let shares: Vec<(u32, f64)> = particles.iter().map(|&i| (i, area(i) / total)).collect();
                     push_nodal(&mut loads, &shares, force);
                 }
-                LoadKind::Traction { group, .. } | LoadKind::Pressure { group, .. } if self.names_particles(group) => {
-                    let diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value));
+                LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } if self.names_particles(on) => {
+                    let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
+                    let diagnostic = Diagnostic::error(&place, format!("= \"{}\"", on.label()));
                     let diagnostic = diagnostic.expected("a mesh group of facets; particles have none");
                     self.diagnostics.push(diagnostic.remedy("use force, which is shared over the set"));
                 }
@@ -186,17 +194,15 @@ impl Context<'_> {
 
     /// A probe of particles; none where it names a mesh group, or measures something else.
     pub(super) fn particle_probe(&mut self, kind: &ProbeKind, bonded: &Bonded) -> Option<Probe> {
-        let group = match kind {
-            ProbeKind::Reaction { group, .. }
-            | ProbeKind::Displacement { group, .. }
-            | ProbeKind::Velocity { group, .. }
-            | ProbeKind::Rotation { group, .. } => group,
+        let on = match kind {
+            ProbeKind::Reaction { on, .. }
+            | ProbeKind::Displacement { on, .. }
+            | ProbeKind::Velocity { on, .. }
+            | ProbeKind::Rotation { on, .. } => on,
             _ => return None,
         };
-        if !self.names_particles(group) {
-            return None;
-        }
-        let particles = self.particles(group);
+        let group = on.group.as_ref().filter(|_| self.names_particles(on))?;
+        let particles = self.selected_particles(on, group, bonded);
         let probe = match kind {
             ProbeKind::Reaction { along, .. } => {
                 let places = bonded.supports().places(&particles);

@@ -7,7 +7,7 @@ use fractum_scene::{Gravity, Load, Motion, NodalForce, Pressure, Support};
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function, use_in_words};
-use crate::case::model::{self, Components, GroupUse, LoadKind};
+use crate::case::model::{self, Components, GroupUse, LoadKind, Selection};
 use crate::case::{Spanned, TimeFunction};
 
 impl Context<'_> {
@@ -15,17 +15,16 @@ impl Context<'_> {
         let case = self.case;
         let mut supports = Vec::new();
         for support in &case.supports {
-            if self.names_particles(&support.group) {
+            if self.names_particles(&support.on) {
                 continue;
             }
             if let Some(axes) = &support.fix_rotation {
                 self.error(&axes.place, ": nodes have no rotation", "a set of particles; remove the key");
             }
-            let nodes = self.group_nodes(&support.group, numbering);
-            let name = support.name.as_ref().unwrap_or(&support.group);
+            let nodes = self.selected_nodes(&support.on, numbering);
             for (axis, motion) in support.motion.iter().enumerate() {
                 let Some(motion) = motion else { continue };
-                supports.push(Support::new(&name.value, nodes.clone(), axis, motion_of(&motion.value)));
+                supports.push(Support::new(support.label(), nodes.clone(), axis, motion_of(&motion.value)));
             }
         }
         supports
@@ -41,18 +40,18 @@ impl Context<'_> {
         let mut loads = Vec::new();
         for load in &case.loads {
             match &load.kind {
-                LoadKind::Force { group, .. } | LoadKind::Traction { group, .. } | LoadKind::Pressure { group, .. }
-                    if self.names_particles(group) => {}
-                LoadKind::Force { group, force } => {
-                    let nodes = self.force_shares(group, numbering, &surface);
+                LoadKind::Force { on, .. } | LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. }
+                    if self.names_particles(on) => {}
+                LoadKind::Force { on, force } => {
+                    let nodes = self.force_shares(on, numbering, &surface);
                     push_nodal(&mut loads, &nodes, force);
                 }
-                LoadKind::Traction { group, traction } => {
-                    let facets = self.group_facets(group, numbering, &surface);
+                LoadKind::Traction { on, traction } => {
+                    let facets = self.selected_facets(on, numbering, &surface);
                     push_nodal(&mut loads, &surface.areas(&facets), traction);
                 }
-                LoadKind::Pressure { group, pressure } => {
-                    let facets = self.group_facets(group, numbering, &surface);
+                LoadKind::Pressure { on, pressure } => {
+                    let facets = self.selected_facets(on, numbering, &surface);
                     loads.push(Load::Pressure(Pressure { facets, thickness, value: function(&pressure.value) }));
                 }
                 LoadKind::Gravity { acceleration } => {
@@ -73,25 +72,37 @@ impl Context<'_> {
         }
     }
 
-    /// Shares of a total force: by area where the group has facets, else equal.
-    fn force_shares(&mut self, group: &Spanned<String>, numbering: &Numbering, surface: &Surface) -> Vec<(u32, f64)> {
-        let facets = self.facets_in_file(group, numbering, surface);
-        let areas = surface.areas(&facets);
+    /// Shares of a total force: by area where facets are meant, else equal.
+    fn force_shares(&mut self, on: &Selection, numbering: &Numbering, surface: &Surface) -> Vec<(u32, f64)> {
+        let areas = surface.areas(&self.facets(on, numbering, surface));
         let total: f64 = areas.iter().map(|(_, area)| area).sum();
         if total > 0.0 {
             return areas.into_iter().map(|(node, area)| (node, area / total)).collect();
         }
-        let nodes = self.group_nodes(group, numbering);
+        let nodes = self.selected_nodes(on, numbering);
         let share = 1.0 / nodes.len().max(1) as f64;
         nodes.into_iter().map(|node| (node, share)).collect()
     }
 
-    /// Outward facets of a group; an error if it has none on the surface.
-    fn group_facets(&mut self, group: &Spanned<String>, numbering: &Numbering, surface: &Surface) -> Vec<[u32; 3]> {
-        let facets = self.facets_in_file(group, numbering, surface);
-        if facets.is_empty() {
-            let found = format!("= \"{}\"", group.value);
-            self.error(&group.place, found, use_in_words(GroupUse::Facets));
+    /// Outward facets that are meant; an error if there are none on the surface.
+    fn selected_facets(&mut self, on: &Selection, numbering: &Numbering, surface: &Surface) -> Vec<[u32; 3]> {
+        let facets = self.facets(on, numbering, surface);
+        if let (true, Some(place)) = (facets.is_empty(), on.place()) {
+            let found = on.group.as_ref().map_or_else(|| "holds for no facet".into(), |g| format!("= \"{}\"", g.value));
+            self.error(&place.clone(), found, use_in_words(GroupUse::Facets));
+        }
+        facets
+    }
+
+    /// Outward facets of a group, or all without one, of which all nodes fulfil the condition.
+    fn facets(&self, on: &Selection, numbering: &Numbering, surface: &Surface) -> Vec<[u32; 3]> {
+        let mut facets = match &on.group {
+            Some(group) => self.facets_in_file(group, numbering, surface),
+            None => surface.facets.to_vec(),
+        };
+        if let Some(within) = &on.within {
+            let inside = |&n: &u32| within.value.holds_at(numbering.positions[n as usize]);
+            facets.retain(|facet| facet.iter().all(inside));
         }
         facets
     }
@@ -131,6 +142,7 @@ pub(super) fn push_nodal(loads: &mut Vec<Load>, points: &[(u32, f64)], component
 
 /// The surface of the solids, searchable by the nodes of a facet.
 struct Surface<'a> {
+    facets: &'a [[u32; 3]],
     by_nodes: HashMap<[u32; 3], [u32; 3]>,
     /// Thickness of plane bodies [m], 0 in space.
     thickness: f64,
@@ -138,9 +150,9 @@ struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    fn new(boundary: &[[u32; 3]], thickness: f64, positions: &'a [Vec3]) -> Self {
+    fn new(boundary: &'a [[u32; 3]], thickness: f64, positions: &'a [Vec3]) -> Self {
         let by_nodes = boundary.iter().map(|&facet| (sorted(facet), facet)).collect();
-        Surface { by_nodes, thickness, positions }
+        Surface { facets: boundary, by_nodes, thickness, positions }
     }
 
     /// The facet with these nodes, oriented outwards.

@@ -285,13 +285,16 @@ impl Context<'_> {
 
     /// A probe of a rigid body; none where it names something else.
     pub(super) fn rigid_body_probe(&mut self, kind: &ProbeKind) -> Option<Probe> {
-        let (ProbeKind::Reaction { group, along }
-        | ProbeKind::Displacement { group, along }
-        | ProbeKind::Velocity { group, along }) = kind
+        let (ProbeKind::Reaction { on, along }
+        | ProbeKind::Displacement { on, along }
+        | ProbeKind::Velocity { on, along }) = kind
         else {
             return None;
         };
-        let (rigid_body, direction) = (self.case.tool(&group.value)?, *along);
+        let (rigid_body, direction) = (self.case.tool(on.group_name())?, *along);
+        if let Some(within) = &on.within {
+            self.error(&within.place, "has no effect on a rigid body", "nodes or particles; remove the key");
+        }
         Some(match kind {
             ProbeKind::Reaction { .. } => Probe::RigidBodyForce { rigid_body, direction },
             ProbeKind::Displacement { .. } => Probe::RigidBodyDisplacement { rigid_body, direction },

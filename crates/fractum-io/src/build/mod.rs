@@ -27,7 +27,7 @@ use fractum_scene::{
 
 use bonded::ParticleSets;
 
-use crate::case::model::{Case, GroupUse, SolverKind, Support, TimeStep};
+use crate::case::model::{Case, GroupUse, Selection, SolverKind, Support, TimeStep};
 use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction, nearest};
 
 /// A scene with what is needed to speak of it in the user's terms.
@@ -226,8 +226,8 @@ impl Context<'_> {
     /// The support that contradicts one above it.
     fn place_of_support(&self, error: &SceneError) -> Place {
         let SceneError::ContradictorySupports { second, .. } = error else { return self.whole_case() };
-        let name = |s: &&Support| s.name.as_ref().unwrap_or(&s.group).value == *second;
-        self.case.supports.iter().rev().find(name).map_or_else(|| self.whole_case(), |s| s.group.place.clone())
+        let support = self.case.supports.iter().rev().find(|s: &&Support| s.label() == second);
+        support.and_then(|s| s.on.place()).cloned().unwrap_or_else(|| self.whole_case())
     }
 
     fn settings(&self) -> SceneSettings {
@@ -256,6 +256,28 @@ impl Context<'_> {
             self.error(&group.place, format!("= \"{}\"", group.value), "a group that touches a solid body");
         }
         nodes
+    }
+
+    /// Nodes of solid bodies that are meant, in the scene's numbering, ascending.
+    fn selected_nodes(&mut self, on: &Selection, numbering: &bodies::Numbering) -> Vec<u32> {
+        let nodes = match &on.group {
+            Some(group) => self.group_nodes(group, numbering),
+            None => (0..numbering.positions.len() as u32).collect(),
+        };
+        self.keep_within(on, nodes, |n| numbering.positions[n as usize])
+    }
+
+    /// Of these nodes or particles those where the condition holds; an error if it holds for none of them.
+    fn keep_within(&mut self, on: &Selection, mut points: Vec<u32>, at: impl Fn(u32) -> Vec3) -> Vec<u32> {
+        let Some(within) = &on.within else { return points };
+        let count = points.len();
+        points.retain(|&point| within.value.holds_at(at(point)));
+        // A group without any has its own error.
+        if points.is_empty() && (count > 0 || on.group.is_none()) {
+            let found = format!("holds for none of {count} nodes or particles");
+            self.error(&within.place, found, "a condition that holds for one at least");
+        }
+        points
     }
 }
 

@@ -38,27 +38,24 @@ impl Context<'_> {
         bonded: &Bonded,
     ) -> Option<Probe> {
         Some(match kind {
-            ProbeKind::Reaction { group, along } => {
-                let places = supports.places(&self.group_nodes(group, numbering));
+            ProbeKind::Reaction { on, along } => {
+                let places = supports.places(&self.selected_nodes(on, numbering));
                 let along_held = places.iter().any(|&(_, _, axis)| along[axis as usize] != 0.0);
-                if !along_held {
-                    self.error(
-                        &group.place,
-                        format!("= \"{}\": nothing holds this group along the direction of the probe", group.value),
-                        "a group that a support prescribes",
-                    );
+                if let (false, Some(place)) = (along_held, on.place()) {
+                    let found = format!("= \"{}\": nothing holds it along the direction of the probe", on.label());
+                    self.error(&place.clone(), found, "nodes that a support prescribes");
                 }
                 on_nodes(PointProbe::Reaction { places, direction: *along })
             }
-            ProbeKind::Displacement { group, along } => {
-                on_nodes(PointProbe::Displacement { points: self.group_nodes(group, numbering), direction: *along })
+            ProbeKind::Displacement { on, along } => {
+                on_nodes(PointProbe::Displacement { points: self.selected_nodes(on, numbering), direction: *along })
             }
-            ProbeKind::Velocity { group, along } => {
-                on_nodes(PointProbe::Velocity { points: self.group_nodes(group, numbering), direction: *along })
+            ProbeKind::Velocity { on, along } => {
+                on_nodes(PointProbe::Velocity { points: self.selected_nodes(on, numbering), direction: *along })
             }
-            ProbeKind::Rotation { group, .. } => {
-                let found = format!("= \"{}\"", group.value);
-                self.error(&group.place, found, "a set of particles of a bonded body");
+            ProbeKind::Rotation { on, .. } => {
+                let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
+                self.error(&place, format!("= \"{}\"", on.label()), "a set of particles of a bonded body");
                 return None;
             }
             ProbeKind::Stress { group, component } => {

@@ -1,5 +1,6 @@
 //! Scenes built from cases on meshes made here: what names, groups and conditions become.
 
+mod selection;
 mod sides;
 
 use std::path::Path;

@@ -1,18 +1,53 @@
 //! Supports and loads.
 
-use crate::case::{Spanned, TimeFunction};
+use crate::case::{Field, Place, Spanned, TimeFunction};
 
-/// Prescribed motion of the nodes of a group.
+/// Which nodes or particles are meant: those of a group, those where a condition holds, or those of the group where it
+/// holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Selection {
+    /// Mesh group, body of particles or set of its particles, or rigid body; all nodes of solid bodies if absent.
+    pub group: Option<Spanned<String>>,
+    /// Condition on the position at the start. At least one of the two is there.
+    pub within: Option<Spanned<Field>>,
+}
+
+impl Selection {
+    /// Name of the group; empty without one.
+    pub fn group_name(&self) -> &str {
+        self.group.as_ref().map_or("", |group| &group.value)
+    }
+
+    /// What stands for it in messages: its group, or the key of its condition.
+    pub fn label(&self) -> &str {
+        self.group.as_ref().map_or("where", |group| &group.value)
+    }
+
+    /// Where it stands in the case.
+    pub fn place(&self) -> Option<&Place> {
+        let condition = self.within.as_ref().map(|within| &within.place);
+        self.group.as_ref().map(|group| &group.place).or(condition)
+    }
+}
+
+/// Prescribed motion of nodes or particles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Support {
     /// Name, where given.
     pub name: Option<Spanned<String>>,
-    /// Mesh group of its nodes, or set of particles.
-    pub group: Spanned<String>,
+    /// Its nodes or particles.
+    pub on: Selection,
     /// Bit a is set where the particles of a bonded body do not turn about axis a.
     pub fix_rotation: Option<Spanned<u8>>,
     /// Motion along x, y, z; `None` leaves the axis free. At least one is prescribed, or a rotation.
     pub motion: [Option<Spanned<Motion>>; 3],
+}
+
+impl Support {
+    /// What stands for it in messages: its name, else its group.
+    pub fn label(&self) -> &str {
+        self.name.as_ref().map_or_else(|| self.on.label(), |name| &name.value)
+    }
 }
 
 /// Motion along one axis.
@@ -43,22 +78,22 @@ pub type Components = [Option<Spanned<TimeFunction>>; 3];
 pub enum LoadKind {
     /// Total force over the group [N].
     Force {
-        /// Mesh group it is shared over.
-        group: Spanned<String>,
+        /// The nodes or particles it is shared over.
+        on: Selection,
         /// Components [N].
         force: Components,
     },
-    /// Force per area of fixed direction over the facets of the group [Pa].
+    /// Force per area of fixed direction over facets [Pa].
     Traction {
-        /// Mesh group of facets.
-        group: Spanned<String>,
+        /// Facets by their group, by their nodes, or both.
+        on: Selection,
         /// Components [Pa].
         traction: Components,
     },
-    /// Pressure that follows the facets of the group [Pa]; positive pushes into the solid.
+    /// Pressure that follows facets [Pa]; positive pushes into the solid.
     Pressure {
-        /// Mesh group of facets.
-        group: Spanned<String>,
+        /// Facets by their group, by their nodes, or both.
+        on: Selection,
         /// Pressure [Pa].
         pressure: Spanned<TimeFunction>,
     },

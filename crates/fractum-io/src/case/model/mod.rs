@@ -21,7 +21,7 @@ pub use body::{Body, BodyKind, SolidBody};
 pub use bonded::{
     BondCriterion, BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource, ParticleSize,
 };
-pub use boundary::{Components, Load, LoadKind, Motion, Support};
+pub use boundary::{Components, Load, LoadKind, Motion, Selection, Support};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Distribution, Material, Scatter};
 pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
@@ -371,17 +371,20 @@ impl Case {
         let is_body = |name: &str| self.bodies.iter().any(|body| body.name.value == name);
         let ties = self.ties.iter().map(|tie| (&tie.solid, GroupUse::Facets));
         let ties = ties.filter(move |(group, _)| !is_body(&group.value));
-        let supports = self.supports.iter().map(|support| (&support.group, GroupUse::Support));
+        let supports = self.supports.iter().filter_map(|support| support.on.group.as_ref());
+        let supports = supports.map(|group| (group, GroupUse::Support));
         let loads = self.loads.iter().filter_map(|load| match &load.kind {
-            LoadKind::Force { group, .. } => Some((group, GroupUse::Force)),
-            LoadKind::Traction { group, .. } | LoadKind::Pressure { group, .. } => Some((group, GroupUse::Facets)),
+            LoadKind::Force { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::Force)),
+            LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } => {
+                on.group.as_ref().map(|group| (group, GroupUse::Facets))
+            }
             LoadKind::Gravity { .. } => None,
         });
         let probes = self.probes.iter().filter_map(|probe| match &probe.kind {
-            ProbeKind::Reaction { group, .. }
-            | ProbeKind::Displacement { group, .. }
-            | ProbeKind::Velocity { group, .. }
-            | ProbeKind::Rotation { group, .. } => Some((group, GroupUse::ProbeNodes)),
+            ProbeKind::Reaction { on, .. }
+            | ProbeKind::Displacement { on, .. }
+            | ProbeKind::Velocity { on, .. }
+            | ProbeKind::Rotation { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::ProbeNodes)),
             ProbeKind::Stress { group, .. } => Some((group, GroupUse::ProbeElements)),
             _ => None,
         });

@@ -3,6 +3,7 @@
 use fractum_math::Vec3;
 use fractum_scene::{CountKind, CrackMeasure, EnergyProbe};
 
+use super::Selection;
 use crate::case::choice::choice;
 use crate::case::expression::Program;
 use crate::case::{Choice, Field, Spanned};
@@ -28,31 +29,31 @@ impl Probe {
 /// What a probe measures.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ProbeKind {
-    /// Sum of support reactions on a group, along a unit vector [N].
+    /// Sum of support reactions, along a unit vector [N].
     Reaction {
-        /// Mesh group.
-        group: Spanned<String>,
+        /// On these nodes or particles.
+        on: Selection,
         /// Unit vector.
         along: Vec3,
     },
-    /// Mean displacement of the nodes of a group, along a unit vector [m].
+    /// Mean displacement, along a unit vector [m].
     Displacement {
-        /// Mesh group.
-        group: Spanned<String>,
+        /// Of these nodes or particles.
+        on: Selection,
         /// Unit vector.
         along: Vec3,
     },
-    /// Mean velocity of the nodes of a group, along a unit vector [m/s].
+    /// Mean velocity, along a unit vector [m/s].
     Velocity {
-        /// Mesh group.
-        group: Spanned<String>,
+        /// Of these nodes or particles.
+        on: Selection,
         /// Unit vector.
         along: Vec3,
     },
     /// Rotation of a set of particles as a whole about an axis through its centre, for small angles [rad].
     Rotation {
         /// Set of particles.
-        group: Spanned<String>,
+        on: Selection,
         /// Unit vector.
         along: Vec3,
     },

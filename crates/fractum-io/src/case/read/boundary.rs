@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
+use super::bodies::optional;
 use super::time_functions::time_function;
-use super::vectors::{AXES, components};
-use crate::case::model::{Load, LoadKind, Motion, Support};
+use super::vectors::{AXES, components, condition};
+use crate::case::model::{Load, LoadKind, Motion, Selection, Support};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned, TimeFunction};
 use fractum_math::Vec3;
@@ -22,10 +23,12 @@ pub(super) fn supports(root: &Table<'_>) -> Option<Vec<Support>> {
         };
         for (axis, motion) in support.motion.iter().enumerate() {
             let Some(motion) = motion else { continue };
-            let key = (support.group.value.clone(), axis);
+            // What two conditions have in common only the mesh can tell.
+            let (Some(group), None) = (&support.on.group, &support.on.within) else { continue };
+            let key = (group.value.clone(), axis);
             let &mut (other, line) = moved.entry(key).or_insert((index, motion.place.line));
             if other != index {
-                let found = format!("moves group \"{}\" along {} too", support.group.value, AXES[axis]);
+                let found = format!("moves group \"{}\" along {} too", group.value, AXES[axis]);
                 let note = Diagnostic::error(&motion.place, found);
                 root.reader.note(note.remedy(format!("the support at line {line} already does")));
                 complete = false;
@@ -53,9 +56,19 @@ fn unique<'s>(root: &Table<'_>, names: impl Iterator<Item = &'s Spanned<String>>
     unique
 }
 
+/// The keys `group` and `where`, of which at least one is there.
+pub(super) fn selection(table: &Table<'_>) -> Option<Selection> {
+    let within = optional(table, "where", |name| condition(table, name).spanned().given());
+    let group = match within {
+        Some(None) => table.text("group").spanned().required().map(Some),
+        _ => optional(table, "group", |name| table.text(name).spanned().given()),
+    };
+    Some(Selection { group: group?, within: within? })
+}
+
 fn support(table: Table<'_>) -> Option<Support> {
     let name = table.text("name").spanned().given();
-    let group = table.text("group").spanned().required();
+    let on = selection(&table);
     let mut motion: [Option<Spanned<Motion>>; 3] = [None, None, None];
     let mut complete = true;
     if table.has("fix") {
@@ -104,7 +117,7 @@ fn support(table: Table<'_>) -> Option<Support> {
         complete = false;
     }
     table.finish("here");
-    Some(Support { name, group: group?, fix_rotation, motion: complete.then_some(motion)? })
+    Some(Support { name, on: on?, fix_rotation, motion: complete.then_some(motion)? })
 }
 
 pub(super) fn fixed_axes(table: &Table<'_>, key: &'static str) -> Option<[Option<Spanned<Motion>>; 3]> {
@@ -138,20 +151,22 @@ fn load(table: Table<'_>) -> Option<Load> {
     const KINDS: [&str; 4] = ["force", "traction", "pressure", "gravity"];
     let name = table.text("name").spanned().given();
     let kind = exactly_one(&table, &KINDS)?;
-    let group = if kind == "gravity" {
-        table.refuse("group", "with gravity, which acts on the whole scene");
+    let on = if kind == "gravity" {
+        for key in ["group", "where"] {
+            table.refuse(key, "with gravity, which acts on the whole scene");
+        }
         None
     } else {
-        table.text("group").spanned().required()
+        selection(&table)
     };
     let by_components = || components(&table, kind, |table, axis| time_function(table, axis).spanned().given());
     let kind = match kind {
-        "force" => by_components().and_then(|force| Some(LoadKind::Force { group: group?, force })),
-        "traction" => by_components().and_then(|traction| Some(LoadKind::Traction { group: group?, traction })),
+        "force" => by_components().and_then(|force| Some(LoadKind::Force { on: on?, force })),
+        "traction" => by_components().and_then(|traction| Some(LoadKind::Traction { on: on?, traction })),
         "gravity" => by_components().map(|acceleration| LoadKind::Gravity { acceleration }),
         _ => {
             let pressure = time_function(&table, "pressure").spanned().required();
-            pressure.and_then(|pressure| Some(LoadKind::Pressure { group: group?, pressure }))
+            pressure.and_then(|pressure| Some(LoadKind::Pressure { on: on?, pressure }))
         }
     };
     table.finish("here");

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use fractum_math::Vec3;
 
 use super::bodies::optional;
-use super::boundary::exactly_one;
+use super::boundary::{exactly_one, selection};
 use super::parameters::check_name;
 use super::vectors::{condition, direction, point};
 use crate::case::expression::{Named, Names, Op, Type, parse_unit};
@@ -126,12 +126,12 @@ fn good_name(table: &Table<'_>, name: &Spanned<String>, is_first: bool) -> bool 
 
 /// Everything but expressions, with its dimension.
 fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimension)> {
-    let group_along = || {
+    let on_along = || {
         let inner = table.table(key)?;
-        let group = inner.text("group").spanned().required();
+        let on = selection(&inner);
         let along = direction(&inner, "along").required();
         inner.finish("here");
-        Some((group?, along?))
+        Some((on?, along?))
     };
     let along = || {
         let inner = table.table(key)?;
@@ -140,14 +140,10 @@ fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimensio
         along
     };
     Some(match key {
-        "reaction" => group_along().map(|(group, along)| (ProbeKind::Reaction { group, along }, Dimension::FORCE))?,
-        "displacement" => {
-            group_along().map(|(group, along)| (ProbeKind::Displacement { group, along }, Dimension::LENGTH))?
-        }
-        "velocity" => {
-            group_along().map(|(group, along)| (ProbeKind::Velocity { group, along }, Dimension::VELOCITY))?
-        }
-        "rotation" => group_along().map(|(group, along)| (ProbeKind::Rotation { group, along }, Dimension::NONE))?,
+        "reaction" => on_along().map(|(on, along)| (ProbeKind::Reaction { on, along }, Dimension::FORCE))?,
+        "displacement" => on_along().map(|(on, along)| (ProbeKind::Displacement { on, along }, Dimension::LENGTH))?,
+        "velocity" => on_along().map(|(on, along)| (ProbeKind::Velocity { on, along }, Dimension::VELOCITY))?,
+        "rotation" => on_along().map(|(on, along)| (ProbeKind::Rotation { on, along }, Dimension::NONE))?,
         "stress" => {
             let inner = table.table(key)?;
             let group = inner.text("group").spanned().required();
