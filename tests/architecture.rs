@@ -21,11 +21,13 @@ const ARROWS: [(&str, &[&str]); 12] = [
 ];
 
 /// Crates whose kernels take numbers: no files, no printing, no wall clock, nothing of the case format.
-const BELOW_IO: [&str; 7] = [
+const BELOW_IO: [&str; 9] = [
     "fractum-math",
     "fractum-mesh",
     "fractum-contact",
     "fractum-dem",
+    "fractum-pack",
+    "fractum-calibrate",
     "fractum-fem",
     "fractum-sparse",
     "fractum-scene",
@@ -144,6 +146,44 @@ fn hash_maps_are_not_walked_through_in_the_solvers() {
         for (path, code) in sources(name) {
             for word in ["HashMap", "HashSet"] {
                 assert!(!code.contains(word), "{}: {word}; use a sorted list or a BTreeMap", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn transcendental_functions_come_from_one_place() {
+    // Those of the standard library, and what of nalgebra and rand_distr calls them, go to the C library: other bits on
+    // another processor. `fractum_math::elementary` and the rotations beside it have the same everywhere.
+    let functions = [
+        "acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "cbrt", "cos", "cosh", "exp", "exp2", "exp_m1",
+        "hypot", "ln", "ln_1p", "log", "log10", "log2", "powf", "sin", "sin_cos", "sinh", "tan", "tanh",
+    ];
+    let of_nalgebra = [
+        "from_scaled_axis",
+        ".scaled_axis(",
+        "::rotation_between",
+        "from_axis_angle",
+        "from_euler_angles",
+        ".axis_angle(",
+        ".angle(",
+        ".slerp(",
+        ".svd(",
+        "SVD::",
+        "Rotation3::from_matrix(",
+    ];
+    let of_rand_distr = ["Weibull::new", "Normal::new", "Exp::new", "Gamma::new", "StandardNormal"];
+    for (name, _) in ARROWS {
+        for (path, code) in sources(name) {
+            if path.ends_with("fractum-math/src/elementary.rs") {
+                continue;
+            }
+            for (number, line) in code.lines().enumerate() {
+                let line = line.split("//").next().unwrap_or_default();
+                let calls = functions.iter().flat_map(|f| [format!(".{f}("), format!("f64::{f}"), format!("f32::{f}")]);
+                for word in calls.chain(of_nalgebra.iter().chain(&of_rand_distr).map(|word| (*word).to_owned())) {
+                    assert!(!line.contains(&word), "{}:{}: {word}; see fractum_math", path.display(), number + 1);
+                }
             }
         }
     }

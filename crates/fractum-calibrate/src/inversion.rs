@@ -1,6 +1,7 @@
 //! Calibration on the packing at hand: ν fixes the beam radius, then E scales their modulus.
 
 use fractum_dem::{Equilibrium, Tolerance};
+use fractum_math::elementary::{exp, ln};
 
 use crate::{CalibrateError, Micro, Sample, lab};
 
@@ -46,7 +47,7 @@ pub fn invert(
     let mut warm: Vec<Option<Equilibrium>> = vec![None; 3];
     let mut solves = 0;
     let mut test = |sample: &mut Sample, log: f64, axes: &[usize]| -> Result<(f64, f64, f64), CalibrateError> {
-        sample.set_micro(Micro { radius_ratio: log.exp(), young_modulus: 1.0 })?;
+        sample.set_micro(Micro { radius_ratio: exp(log), young_modulus: 1.0 })?;
         let (mut young, mut poisson) = (Vec::new(), 0.0);
         for &axis in axes {
             let (tension, rest) = lab::tension(sample, axis, warm[axis].as_ref(), tolerance)?;
@@ -59,18 +60,18 @@ pub fn invert(
         let (low, high) = young.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &y| (l.min(y), h.max(y)));
         Ok((mean, poisson, (high - low) / mean))
     };
-    let [thin, thick] = RADIUS_RATIOS.map(f64::ln);
+    let [thin, thick] = RADIUS_RATIOS.map(ln);
     // ν falls with the radius; (ln r, ν) of the points that bracket the target.
     let mut above: Option<(f64, f64)> = None;
     let mut below: Option<(f64, f64)> = None;
-    let mut log = start.clamp(RADIUS_RATIOS[0], RADIUS_RATIOS[1]).ln();
+    let mut log = ln(start.clamp(RADIUS_RATIOS[0], RADIUS_RATIOS[1]));
     let mut last: Option<(f64, f64)> = None;
     let mut slope: f64 = -0.1;
     for _ in 0..30 {
         let (young, poisson, anisotropy) = test(sample, log, &axes)?;
         let miss = poisson - poisson_ratio;
         if miss.abs() < CLOSE {
-            let micro = Micro { radius_ratio: log.exp(), young_modulus: young_modulus / young };
+            let micro = Micro { radius_ratio: exp(log), young_modulus: young_modulus / young };
             sample.set_micro(micro)?;
             return Ok(Inverted { micro, young_modulus, poisson_ratio: poisson, anisotropy, solves });
         }

@@ -1,5 +1,6 @@
 //! Laws ν = f₁(r_m, cn) and E/E_m = f₂(r_m, cn), fitted to virtual tension tests of our own packings.
 
+use fractum_math::elementary::{exp, ln};
 use std::fmt::Write as _;
 use std::sync::OnceLock;
 
@@ -145,7 +146,7 @@ impl Law {
         let rows: Vec<Vec<f64>> = points.iter().map(|p| law.basis(p.radius_ratio, p.coordination)).collect();
         let right = [
             points.iter().map(|p| p.poisson_ratio).collect(),
-            points.iter().map(|p| (p.young_ratio / p.radius_ratio.powi(2)).ln()).collect(),
+            points.iter().map(|p| ln(p.young_ratio / p.radius_ratio.powi(2))).collect(),
         ];
         [law.poisson, law.young] = least_squares(&rows, right)?;
         let residual = |f: &dyn Fn(&Point) -> f64| {
@@ -173,7 +174,7 @@ impl Law {
 
     /// E/E_m for a beam radius and a coordination (within the ranges of the law).
     pub fn young_ratio(&self, radius_ratio: f64, coordination: f64) -> f64 {
-        radius_ratio.powi(2) * self.sum(&self.young, radius_ratio, coordination).exp()
+        radius_ratio.powi(2) * exp(self.sum(&self.young, radius_ratio, coordination))
     }
 
     /// Highest and lowest ν of a coordination over the range of beam radii.
@@ -205,12 +206,12 @@ impl Law {
                 highest,
             });
         }
-        let (mut low, mut high) = (thin.ln(), thick.ln());
+        let (mut low, mut high) = (ln(thin), ln(thick));
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if self.poisson_ratio(middle.exp(), coordination) > poisson_ratio { low = middle } else { high = middle }
+            if self.poisson_ratio(exp(middle), coordination) > poisson_ratio { low = middle } else { high = middle }
         }
-        let radius_ratio = low.exp();
+        let radius_ratio = exp(low);
         Ok(Micro { radius_ratio, young_modulus: young_modulus / self.young_ratio(radius_ratio, coordination) })
     }
 }
@@ -219,7 +220,7 @@ impl Law {
 /// range that is mapped to [-1, 1]; the second runs fast.
 pub(crate) fn products(degree: (usize, usize), first: (f64, [f64; 2]), second: (f64, [f64; 2])) -> Vec<f64> {
     let unit = |(x, [l, h]): (f64, [f64; 2])| (2.0 * x - l - h) / (h - l);
-    let s = chebyshev(unit((first.0.ln(), first.1.map(f64::ln))), degree.0);
+    let s = chebyshev(unit((ln(first.0), first.1.map(ln))), degree.0);
     let t = chebyshev(unit(second), degree.1);
     s.iter().flat_map(|s| t.iter().map(move |t| s * t)).collect()
 }
@@ -229,12 +230,17 @@ pub(crate) fn least_squares<const N: usize>(
     rows: &[Vec<f64>],
     right: [Vec<f64>; N],
 ) -> Result<[Vec<f64>; N], CalibrateError> {
+    let failed = || CalibrateError::LawTable { line: 0, what: "the fit failed".into() };
     let terms = rows.first().map_or(0, Vec::len);
-    let svd = DMatrix::from_fn(rows.len(), terms, |i, j| rows[i][j]).svd(true, true);
+    let (q, r) = DMatrix::from_fn(rows.len(), terms, |i, j| rows[i][j]).qr().unpack();
+    let diagonal = r.diagonal().map(f64::abs);
+    if diagonal.min() <= 1e-12 * diagonal.max() {
+        return Err(failed());
+    }
     let mut found = [const { Vec::new() }; N];
     for (found, right) in found.iter_mut().zip(right) {
-        let failed = |_| CalibrateError::LawTable { line: 0, what: "the fit failed".into() };
-        *found = svd.solve(&DVector::from_vec(right), 1e-12).map_err(failed)?.as_slice().to_vec();
+        let reduced = q.tr_mul(&DVector::from_vec(right));
+        *found = r.solve_upper_triangular(&reduced).ok_or_else(failed)?.as_slice().to_vec();
     }
     Ok(found)
 }

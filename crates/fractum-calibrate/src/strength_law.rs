@@ -1,5 +1,6 @@
 //! The law k(r_m, cn) = σ_M/σ_m of the principal criterion, fitted to virtual tension tests of our own packings.
 
+use fractum_math::elementary::{exp, ln, pow};
 use std::fmt::Write as _;
 
 use fractum_pack::{Convention, Domain, PackSpec, pack};
@@ -140,14 +141,14 @@ impl StrengthLaw {
         };
         let rows: Vec<Vec<f64>> =
             points.iter().map(|p| law.terms(p.radius_ratio, p.coordination, p.particles)).collect();
-        let right = [0, 1].map(|k| points.iter().map(|p| p.ratio[k].ln()).collect());
+        let right = [0, 1].map(|k| points.iter().map(|p| ln(p.ratio[k])).collect());
         law.coefficients = least_squares(&rows, right)?;
         Ok(law)
     }
 
     fn terms(&self, radius_ratio: f64, coordination: f64, particles: usize) -> Vec<f64> {
         let mut terms = products(DEGREE, (radius_ratio, self.radius_ratio), (coordination, self.coordination));
-        terms.push((particles as f64).powf(-1.0 / 3.0));
+        terms.push(pow(particles as f64, -1.0 / 3.0));
         terms
     }
 
@@ -160,7 +161,7 @@ impl StrengthLaw {
     /// k for a beam radius, a coordination (`all`) and a number of particles, within the ranges of the law.
     pub fn ratio(&self, reading: Reading, radius_ratio: f64, coordination: f64, particles: usize) -> f64 {
         let terms = self.terms(radius_ratio, coordination, particles);
-        terms.iter().zip(&self.coefficients[reading as usize]).map(|(t, c)| t * c).sum::<f64>().exp()
+        exp(terms.iter().zip(&self.coefficients[reading as usize]).map(|(t, c)| t * c).sum())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Centres that are within a body whose facets look outward.
 
-use fractum_math::Vec3;
+use fractum_math::{Vec3, angle_between};
 
 use crate::hierarchy::Foot;
 use crate::surface::{FacetMesh, Feature, area_vector};
@@ -54,7 +54,7 @@ fn outward(surface: &FacetMesh, points: &[Vec3], candidates: &[u32], feature: u3
                 let count = corners.len();
                 let at = points[point as usize];
                 let next = points[corners[(k + 1) % count] as usize] - at;
-                next.angle(&(points[corners[(k + count - 1) % count] as usize] - at))
+                angle_between(&next, &(points[corners[(k + count - 1) % count] as usize] - at))
             }),
             _ => 1.0,
         };

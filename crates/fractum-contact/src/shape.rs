@@ -1,4 +1,5 @@
 use fractum_math::Vec3;
+use fractum_math::elementary::hypot;
 use serde::{Deserialize, Serialize};
 
 use crate::hierarchy::Foot;
@@ -89,7 +90,7 @@ impl Shape {
                 let (away, rho) = direction(Vec3::new(centre.x, centre.y, 0.0), Vec3::x());
                 let (side, cap) = (rho - wide, centre.z.abs() - half_length);
                 if side > 0.0 && cap > 0.0 {
-                    let distance = side.hypot(cap);
+                    let distance = hypot(side, cap);
                     found(-(away * side + axis(2) * cap) / distance, distance, 0.0)
                 } else if side > cap {
                     found(-away, side, 0.5 / wide)

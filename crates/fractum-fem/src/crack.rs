@@ -1,5 +1,6 @@
 //! Where cracks are, and how they lie.
 
+use fractum_math::elementary::asin;
 use fractum_math::{Sym3, Vec3};
 
 use crate::body::Shape;
@@ -62,7 +63,7 @@ impl CrackPlane {
 
     /// Angle between a unit direction and the plane [rad], 0 to π/2.
     pub fn angle_to(&self, direction: &Vec3) -> f64 {
-        self.normal.dot(direction).abs().min(1.0).asin()
+        asin(self.normal.dot(direction).abs().min(1.0))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Constant-gradient simplices.
 
 use fractum_math::Vec3;
+use fractum_math::elementary::cbrt;
 
 use crate::body::Shape;
 
@@ -41,7 +42,7 @@ pub(crate) fn measure_and_gradients(shape: Shape, x: &[Vec3; 4]) -> (f64, [Vec3;
 /// Edge length of the regular simplex of this measure: (6√2 V)^(1/3) or √(4A/√3) [m].
 pub(crate) fn regular_edge(shape: Shape, measure: f64) -> f64 {
     match shape {
-        Shape::T4 => (6.0 * 2f64.sqrt() * measure).cbrt(),
+        Shape::T4 => cbrt(6.0 * 2f64.sqrt() * measure),
         Shape::T3 => (4.0 * measure / 3f64.sqrt()).sqrt(),
     }
 }

@@ -93,28 +93,23 @@ fn slot(local: u16) -> usize {
 }
 
 #[inline(always)]
-fn gradient_columns<const FMA: bool>(values: &[Lane; BLOCK_NODES], local: &[u16], gradients: &[[f64; 3]]) -> [Lane; 3] {
+fn gradient_columns(values: &[Lane; BLOCK_NODES], local: &[u16], gradients: &[[f64; 3]]) -> [Lane; 3] {
     let base = values[slot(local[0])];
     let (mut x, mut y, mut z) = (Lane::ZERO, Lane::ZERO, Lane::ZERO);
     for (&node, g) in local[1..].iter().zip(gradients) {
         let d = values[slot(node)].sub(base);
-        x = x.plus::<FMA>(d, g[0]);
-        y = y.plus::<FMA>(d, g[1]);
-        z = z.plus::<FMA>(d, g[2]);
+        x = x.plus(d, g[0]);
+        y = y.plus(d, g[1]);
+        z = z.plus(d, g[2]);
     }
     [x, y, z]
 }
 
 #[inline(always)]
-fn add_cell_forces<const FMA: bool>(
-    force: &mut [Lane; BLOCK_NODES],
-    local: &[u16],
-    gradients: &[[f64; 3]],
-    stress: [Lane; 3],
-) {
+fn add_cell_forces(force: &mut [Lane; BLOCK_NODES], local: &[u16], gradients: &[[f64; 3]], stress: [Lane; 3]) {
     let mut sum = Lane::ZERO;
     for (&node, g) in local[1..].iter().zip(gradients) {
-        let f = Lane::ZERO.plus::<FMA>(stress[0], g[0]).plus::<FMA>(stress[1], g[1]).plus::<FMA>(stress[2], g[2]);
+        let f = Lane::ZERO.plus(stress[0], g[0]).plus(stress[1], g[1]).plus(stress[2], g[2]);
         force[slot(node)] = force[slot(node)].sub(f);
         sum = sum.add(f);
     }
@@ -139,24 +134,24 @@ fn symmetric_columns(s: Sym3) -> [Lane; 3] {
 /// Cells of a block lie sorted by their number of nodes (`cell.rs`), so that nearly all of them pass through loops of a
 /// length that the compiler knows.
 #[inline(always)]
-fn small_strain_forces<const FMA: bool, L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
+fn small_strain_forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
     for &run in &cells.runs {
         match run.gradients {
-            2 => run_forces::<FMA, 2, L>(cells, scratch, law, run),
-            3 => run_forces::<FMA, 3, L>(cells, scratch, law, run),
-            4 => run_forces::<FMA, 4, L>(cells, scratch, law, run),
-            5 => run_forces::<FMA, 5, L>(cells, scratch, law, run),
-            6 => run_forces::<FMA, 6, L>(cells, scratch, law, run),
-            7 => run_forces::<FMA, 7, L>(cells, scratch, law, run),
-            8 => run_forces::<FMA, 8, L>(cells, scratch, law, run),
-            _ => long_forces::<FMA, L>(cells, scratch, law, run),
+            2 => run_forces::<2, L>(cells, scratch, law, run),
+            3 => run_forces::<3, L>(cells, scratch, law, run),
+            4 => run_forces::<4, L>(cells, scratch, law, run),
+            5 => run_forces::<5, L>(cells, scratch, law, run),
+            6 => run_forces::<6, L>(cells, scratch, law, run),
+            7 => run_forces::<7, L>(cells, scratch, law, run),
+            8 => run_forces::<8, L>(cells, scratch, law, run),
+            _ => long_forces(cells, scratch, law, run),
         }
     }
 }
 
 /// A run of cells of `N` gradients each.
 #[inline(always)]
-fn run_forces<const FMA: bool, const N: usize, L: CellLaw>(
+fn run_forces<const N: usize, L: CellLaw>(
     cells: &Cells,
     scratch: &mut Scratch,
     law: &mut L,
@@ -166,21 +161,21 @@ fn run_forces<const FMA: bool, const N: usize, L: CellLaw>(
     let gradients = cells.gradients[start..].chunks_exact(N);
     let local = cells.local[start + begin..].chunks_exact(N + 1);
     for (((cell, gradients), local), &volume) in (begin..end).zip(gradients).zip(local).zip(&cells.volume[begin..end]) {
-        one_cell::<FMA, L>(scratch, law, cell, local, gradients, volume);
+        one_cell(scratch, law, cell, local, gradients, volume);
     }
 }
 
 /// A run of cells with many nodes: at the axes of structured meshes, and around the long edges of others.
 #[inline(always)]
-fn long_forces<const FMA: bool, L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L, run: Run) {
+fn long_forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L, run: Run) {
     for cell in run.begin..run.end {
         let (local, gradients) = (cells.local_nodes(cell), &cells.gradients[cells.range(cell)]);
-        one_cell::<FMA, L>(scratch, law, cell, local, gradients, cells.volume[cell]);
+        one_cell(scratch, law, cell, local, gradients, cells.volume[cell]);
     }
 }
 
 #[inline(always)]
-fn one_cell<const FMA: bool, L: CellLaw>(
+fn one_cell<L: CellLaw>(
     scratch: &mut Scratch,
     law: &mut L,
     cell: usize,
@@ -188,9 +183,9 @@ fn one_cell<const FMA: bool, L: CellLaw>(
     gradients: &[[f64; 3]],
     volume: f64,
 ) {
-    let [x, y, z] = gradient_columns::<FMA>(&scratch.displacement, local, gradients);
+    let [x, y, z] = gradient_columns(&scratch.displacement, local, gradients);
     let stress = law.scaled_stress(cell, small_strain(x, y, z), volume);
-    add_cell_forces::<FMA>(&mut scratch.force, local, gradients, symmetric_columns(stress));
+    add_cell_forces(&mut scratch.force, local, gradients, symmetric_columns(stress));
 }
 
 /// The small-strain kernel in the widest instruction set of the machine.
@@ -203,19 +198,19 @@ pub(crate) fn forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut
             return forces_avx2(cells, scratch, law);
         }
     }
-    small_strain_forces::<false, L>(cells, scratch, law);
+    small_strain_forces(cells, scratch, law);
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2")]
 fn forces_avx2<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
-    small_strain_forces::<true, L>(cells, scratch, law);
+    small_strain_forces(cells, scratch, law);
 }
 
-/// Whether kernels run in their AVX2 and FMA version on this machine (results differ in the last bits).
+/// Whether kernels run in their AVX2 version on this machine (the same operations, hence the same bits).
 #[cfg(target_arch = "x86_64")]
 pub(crate) fn has_avx2() -> bool {
-    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+    std::arch::is_x86_feature_detected!("avx2")
 }
 
 /// Forces with corotational strains and, if asked for, viscous stress; small strains with viscosity come here as well.
@@ -236,7 +231,7 @@ pub(crate) fn general_forces<L: CellLaw>(
     for cell in 0..cells.len() {
         let (local, gradients) = (cells.local_nodes(cell), &cells.gradients[cells.range(cell)]);
         let volume = cells.volume[cell];
-        let [x, y, z] = gradient_columns::<false>(displacement, local, gradients);
+        let [x, y, z] = gradient_columns(displacement, local, gradients);
         let (strain, rotation) = if corotational {
             corotational_strain(&columns_to_matrix(x, y, z))
         } else {
@@ -244,7 +239,7 @@ pub(crate) fn general_forces<L: CellLaw>(
         };
         let mut stress = law.scaled_stress(cell, strain, volume);
         if let (Some(viscosity), Some(velocity)) = (viscosity, velocity.as_deref()) {
-            let [x, y, z] = gradient_columns::<false>(velocity, local, gradients);
+            let [x, y, z] = gradient_columns(velocity, local, gradients);
             let rate = Sym3::symmetric_part(&(rotation.transpose() * columns_to_matrix(x, y, z)));
             let viscous = viscosity.stress(hooke, rate, law.integrity(cell), volume) * volume;
             // The mean of the stress at both ends of the step, at the rate between them.
@@ -257,7 +252,7 @@ pub(crate) fn general_forces<L: CellLaw>(
         } else {
             symmetric_columns(stress)
         };
-        add_cell_forces::<false>(force, local, gradients, columns);
+        add_cell_forces(force, local, gradients, columns);
     }
     dissipated_power
 }

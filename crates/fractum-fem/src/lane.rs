@@ -29,9 +29,9 @@ impl Lane {
         Lane(std::array::from_fn(|i| self.0[i] - b.0[i]))
     }
 
-    /// `self + a · factor`, fused where the instruction set of the caller has it.
+    /// `self + a · factor`, not fused: processors without fused products must get the same bits.
     #[inline(always)]
-    pub(crate) fn plus<const FMA: bool>(self, a: Lane, factor: f64) -> Lane {
-        Lane(std::array::from_fn(|i| if FMA { a.0[i].mul_add(factor, self.0[i]) } else { a.0[i] * factor + self.0[i] }))
+    pub(crate) fn plus(self, a: Lane, factor: f64) -> Lane {
+        Lane(std::array::from_fn(|i| a.0[i] * factor + self.0[i]))
     }
 }

@@ -12,9 +12,11 @@
 //! ```
 
 mod connected;
+pub mod elementary;
 mod lanczos;
 mod ragged;
 mod reduce;
+mod rotation;
 mod sym3;
 mod work;
 
@@ -22,6 +24,7 @@ pub use connected::{connected, numbered_parts};
 pub use lanczos::largest_eigenvalue;
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};
+pub use rotation::{angle_between, rotation_between, rotation_by, rotation_vector};
 pub use sym3::Sym3;
 pub use work::{HalfSteps, Work};
 

@@ -1,3 +1,4 @@
+use crate::elementary::{acos, cos};
 use std::ops::{Add, AddAssign, Mul, Sub};
 
 use serde::{Deserialize, Serialize};
@@ -74,9 +75,9 @@ impl Sym3 {
         }
         let radius = 2.0 * (j2 / 3.0).sqrt();
         let cos3 = (4.0 * self.j3() / (radius * radius * radius)).clamp(-1.0, 1.0);
-        let angle = cos3.acos() / 3.0;
+        let angle = acos(cos3) / 3.0;
         let third = 2.0 * std::f64::consts::FRAC_PI_3;
-        let (first, last) = (mean + radius * angle.cos(), mean + radius * (angle + third).cos());
+        let (first, last) = (mean + radius * cos(angle), mean + radius * cos(angle + third));
         [first, 3.0 * mean - first - last, last]
     }
 

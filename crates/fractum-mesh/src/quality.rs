@@ -1,5 +1,6 @@
 //! Size and shape of simplices.
 
+use fractum_math::elementary::atan2;
 use fractum_math::{CHUNK, Vec3};
 use rayon::prelude::*;
 
@@ -55,7 +56,7 @@ pub fn tetrahedron(corners: [Vec3; 4]) -> Shape {
     let angle = |extreme: f64| {
         let edge = cosines.iter().position(|&cosine| cosine == extreme).unwrap_or(0);
         let [i, j] = TETRAHEDRON_EDGES[edge];
-        areas[i].cross(&areas[j]).norm().atan2(-areas[i].dot(&areas[j])) // accurate near 0 and π too
+        atan2(areas[i].cross(&areas[j]).norm(), -areas[i].dot(&areas[j])) // accurate near 0 and π too
     };
     Shape {
         size,
@@ -74,7 +75,7 @@ pub fn triangle(corners: [Vec3; 3]) -> Shape {
     let area = vector.norm();
     let sides = [[1, 2], [2, 0], [0, 1]].map(|[i, j]: [usize; 2]| corners[j] - corners[i]);
     let lengths = sides.map(|side| side.norm());
-    let angles = [[1, 2], [2, 0], [0, 1]].map(|[i, j]: [usize; 2]| (2.0 * area).atan2(-sides[i].dot(&sides[j])));
+    let angles = [[1, 2], [2, 0], [0, 1]].map(|[i, j]: [usize; 2]| atan2(2.0 * area, -sides[i].dot(&sides[j])));
     Shape {
         size: if vector.x == 0.0 && vector.y == 0.0 { vector.z } else { area },
         shortest_altitude: ratio(2.0 * area, lengths.into_iter().fold(0.0, f64::max)),

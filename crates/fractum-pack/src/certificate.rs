@@ -1,4 +1,5 @@
 use fractum_math::Vec3;
+use fractum_math::elementary::cbrt;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -151,7 +152,7 @@ pub fn interior_fraction(packing: &Packing) -> Option<f64> {
         return None;
     }
     // About 60 sample points per particle: the lattice is incommensurate with a random packing.
-    let spacing = (packing.domain.volume() / packing.len() as f64 / 60.0).cbrt();
+    let spacing = cbrt(packing.domain.volume() / packing.len() as f64 / 60.0);
     let size = [0, 1, 2].map(|a| (extent[a] / spacing).ceil() as usize);
     let grid = Grid::new(&packing.position, 2.0 * largest);
     let layers: Vec<(usize, usize)> = (0..size[2])

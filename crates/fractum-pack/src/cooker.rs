@@ -1,4 +1,5 @@
 use fractum_math::Vec3;
+use fractum_math::elementary::{cbrt, exp};
 
 use crate::domain::Domain;
 use crate::neighbours::spatial_order;
@@ -102,7 +103,7 @@ pub fn pack(spec: &PackSpec) -> Result<Packing, PackError> {
     // The drawn sizes are scaled to the planned volume, so that the start does not depend on their scatter.
     let cube_mean = shape.iter().map(|r| r.powi(3)).sum::<f64>() / count as f64;
     let expected = 1.0 + half * half;
-    let scale = start_radius * (expected / cube_mean).cbrt();
+    let scale = start_radius * cbrt(expected / cube_mean);
     shape.iter_mut().for_each(|r| *r *= scale);
 
     let position = insert(&spec.domain, &shape, &mut random)?;
@@ -158,7 +159,7 @@ fn plan(spec: &PackSpec) -> Result<(usize, f64), PackError> {
     let sphere = |r: f64| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3) * cube_mean;
     let (count, radius) = match spec.size {
         PackSize::Count(count) => {
-            let (mut low, mut high) = (0.0, (volume / count.max(1) as f64).cbrt());
+            let (mut low, mut high) = (0.0, cbrt(volume / count.max(1) as f64));
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
                 if sphere(middle) * count as f64 > filled(middle) { high = middle } else { low = middle }
@@ -292,7 +293,7 @@ fn compact(assembly: &mut Assembly, asked: f64, iterations: &mut usize) -> Resul
         let part = if round < 6 { 1.0 } else { 0.6 };
         let change = (part * (excess(aim) - excess(reached)) / slope).clamp(-0.01, 0.004);
         scale += change;
-        assembly.scale_radii(change.exp());
+        assembly.scale_radii(exp(change));
     }
     Err(PackError::Refused {
         target: format!("contacts per interior particle {asked} to {:.2}", asked + WINDOW),

@@ -1,3 +1,4 @@
+use fractum_math::elementary::atan2;
 use std::f64::consts::PI;
 
 use fractum_math::Vec3;
@@ -82,7 +83,7 @@ impl Geode {
         let second: Vec<_> = first.iter().flat_map(split).collect();
         let third: Vec<_> = second.iter().flat_map(split).collect();
         // Van Oosterom and Strackee (1983).
-        let angle = |[a, b, c]: &[Vec3; 3]| 2.0 * a.dot(&b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a));
+        let angle = |[a, b, c]: &[Vec3; 3]| 2.0 * atan2(a.dot(&b.cross(c)), 1.0 + a.dot(b) + b.dot(c) + c.dot(a));
         let solid_angle = third.iter().map(angle).collect();
         Geode { levels: [first, second, third], solid_angle }
     }

@@ -1,5 +1,6 @@
 //! What a run will do: bodies, physics on and skipped, time step, size, time.
 
+use fractum_math::elementary::cbrt;
 use std::fmt;
 
 use fractum_dem::FractureCriterion as BondCriterion;
@@ -458,7 +459,7 @@ fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
     let model = scene.solid.body(body);
     let each = volume / model.elements.len() as f64;
     match model.shape {
-        Shape::T4 => (6.0 * 2f64.sqrt() * each).cbrt(),
+        Shape::T4 => cbrt(6.0 * 2f64.sqrt() * each),
         Shape::T3 => (4.0 * each / model.thickness / 3f64.sqrt()).sqrt(),
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use fractum_io::Compression;
 use fractum_io::vtk::{Field, PolyCells, PolyData};
-use fractum_math::Vec3;
+use fractum_math::{Vec3, rotation_vector};
 use fractum_scene::{BondedBody, Scene};
 
 use crate::cracks::lost_bonds;
@@ -22,7 +22,7 @@ pub(crate) fn write_particles(scene: &Scene, path: &Path) -> Result<(), Failure>
     let displacement = vectors(all.position.iter().zip(bonded.reference()).map(|(x, start)| x - start));
     let velocity = vectors(all.velocity.iter().copied());
     let spin = vectors(all.spin.iter().copied());
-    let rotation = vectors(all.orientation.iter().map(|turn| turn.scaled_axis()));
+    let rotation = vectors(all.orientation.iter().map(rotation_vector));
     let mut body = vec![0i32; all.len()];
     for (index, part) in (0..).zip(bonded.bodies()) {
         body[part.range.clone()].fill(index);

@@ -1,3 +1,4 @@
+use fractum_math::elementary::{cos, cosh, sin, sinh};
 use std::f64::consts::PI;
 
 use fractum_dem::{BeamNetwork, BeamSection, CentralDifference, ParticleDamping, Particles};
@@ -46,15 +47,15 @@ pub fn chain(mode: VibrationMode, particles: usize) -> Result<Vibration, Calibra
     let speed = SMALL / wave;
     for i in 1..=particles {
         let place = body.position[i].x / length;
-        let quarter = (0.5 * PI * place).sin();
+        let quarter = sin(0.5 * PI * place);
         match mode {
             VibrationMode::Tension => body.velocity[i].x = speed * quarter,
             VibrationMode::Torsion => body.spin[i].x = speed / length * quarter,
             VibrationMode::Bending => {
                 let (beta, sigma) = CLAMPED_FREE;
                 let b = beta * place;
-                body.velocity[i].y = 0.5 * speed * (b.cosh() - b.cos() - sigma * (b.sinh() - b.sin()));
-                let slope = b.sinh() + b.sin() - sigma * (b.cosh() - b.cos());
+                body.velocity[i].y = 0.5 * speed * (cosh(b) - cos(b) - sigma * (sinh(b) - sin(b)));
+                let slope = sinh(b) + sin(b) - sigma * (cosh(b) - cos(b));
                 body.spin[i].z = 0.5 * speed * beta / length * slope;
             }
         }

@@ -1,5 +1,6 @@
 use fractum_dem::{Equilibrium, LatticeSupports, Tolerance};
 use fractum_math::Vec3;
+use fractum_math::elementary::hypot;
 use fractum_pack::Domain;
 use serde::Serialize;
 
@@ -102,7 +103,7 @@ fn lateral(sample: &Sample, rest: &Equilibrium, axis: usize) -> [f64; 2] {
     let radial = |&i: &u32| {
         let i = i as usize;
         let (y, z) = (sample.packing.position[i].y - start.y, sample.packing.position[i].z - start.z);
-        (y * (rest.state[i][1] - uy) + z * (rest.state[i][2] - uz)) / y.hypot(z)
+        (y * (rest.state[i][1] - uy) + z * (rest.state[i][2] - uz)) / hypot(y, z)
     };
     let radius = sample.cylinder_extents().map_or(f64::NAN, |(_, r)| r);
     [set.iter().map(radial).sum::<f64>() / set.len() as f64 / radius; 2]

@@ -1,7 +1,8 @@
+use fractum_math::elementary::sin;
 use std::f64::consts::PI;
 
 use fractum_dem::{BeamNetwork, CentralDifference, LatticeSupports, ParticleDamping, Particles, Tolerance};
-use fractum_math::{Rotation, Vec3};
+use fractum_math::{Vec3, rotation_by};
 use fractum_pack::Domain;
 use serde::Serialize;
 
@@ -115,7 +116,7 @@ pub fn vibration(
     };
     for (i, u) in rest.state.iter().enumerate() {
         body.particles.position[i] += Vec3::new(u[0], u[1], u[2]);
-        body.particles.orientation[i] = Rotation::from_scaled_axis(Vec3::new(u[3], u[4], u[5]));
+        body.particles.orientation[i] = rotation_by(Vec3::new(u[3], u[4], u[5]));
     }
     held.iter().for_each(|&i| body.particles.held[i as usize] = 0b11_1111);
     body.bonds.add_forces(&mut body.particles);
@@ -200,7 +201,7 @@ pub fn impact(sample: &Sample, density: f64, young_modulus: f64) -> Result<Impac
         // Velocities are those of the middle of the step.
         let time = (step as f64 + 0.5) * dt;
         let phase = time / (PULSE * transit);
-        let pulse = if phase < 1.0 { speed * (PI * phase).sin().powi(2) } else { 0.0 };
+        let pulse = if phase < 1.0 { speed * sin(PI * phase).powi(2) } else { 0.0 };
         near.iter().for_each(|&i| body.particles.velocity[i as usize].x = pulse);
         body.step();
         let value = mean(&body.particles);

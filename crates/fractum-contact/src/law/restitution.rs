@@ -1,3 +1,4 @@
+use fractum_math::elementary::{asin, exp, ln, tan};
 use std::f64::consts::PI;
 
 /// Restitution of a contact with damping ratio ζ whose force never pulls: the contact ends where spring and damper
@@ -9,14 +10,14 @@ use std::f64::consts::PI;
 /// Strictly decreasing from 1 at ζ = 0; e⁻² at ζ = 1; valid for every ζ ≥ 0.
 pub fn restitution_of_damping(ratio: f64) -> f64 {
     if ratio < 1.0 - 1e-9 {
-        let alpha = ratio.asin();
-        (-(PI - 2.0 * alpha) * alpha.tan()).exp()
+        let alpha = asin(ratio);
+        exp(-(PI - 2.0 * alpha) * tan(alpha))
     } else if ratio > 1.0 + 1e-9 {
         let w = (ratio * ratio - 1.0).sqrt();
         // ln((ζ + w)/(ζ - w)) = 2 ln(ζ + w), since (ζ + w)(ζ - w) = 1.
-        (-2.0 * ratio / w * (ratio + w).ln()).exp()
+        exp(-2.0 * ratio / w * ln(ratio + w))
     } else {
-        (-2.0f64).exp()
+        exp(-2.0)
     }
 }
 

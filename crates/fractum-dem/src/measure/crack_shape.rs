@@ -1,5 +1,6 @@
 //! How cracks lie about an axis: the angle of a helix, the angle of a cone.
 
+use fractum_math::elementary::{atan2, exp, hypot, sin, sin_cos, tan};
 use std::f64::consts::FRAC_PI_2;
 
 use fractum_math::Vec3;
@@ -23,7 +24,7 @@ impl Axis {
         let second = n.cross(&first);
         let d = x - point;
         let (a, b) = (d.dot(&first), d.dot(&second));
-        (a.hypot(b), b.atan2(a), d.dot(n))
+        (hypot(a, b), atan2(b, a), d.dot(n))
     }
 }
 
@@ -52,9 +53,9 @@ pub fn helix_angle(points: &[(Vec3, f64)], axis: &Axis, radius: f64) -> Option<f
         return None;
     }
     let strength = |angle: f64| {
-        let slope = angle.tan() / radius;
+        let slope = tan(angle) / radius;
         let (c, s) = outer.iter().fold((0.0, 0.0), |(c, s), (theta, along, weight)| {
-            let (sine, cosine) = (theta - slope * along).sin_cos();
+            let (sine, cosine) = sin_cos(theta - slope * along);
             (c + weight * cosine, s + weight * sine)
         });
         c * c + s * s
@@ -128,7 +129,7 @@ pub fn cone(points: &[(Vec3, f64)], axis: &Axis) -> Option<Cone> {
         line = line.drawn_to(&profile, REACH * width).unwrap_or(line);
     }
     let near: f64 = profile.iter().zip(points).filter(|(p, _)| line.distance(p).abs() <= width).map(|(_, p)| p.1).sum();
-    Some(Cone { angle: line.angle, radius: line.offset / line.angle.sin(), share: near / total })
+    Some(Cone { angle: line.angle, radius: line.offset / sin(line.angle), share: near / total })
 }
 
 /// Distance beyond which a point has no say about the flank, over the width of a crack.
@@ -145,7 +146,7 @@ struct Line {
 
 impl Line {
     fn distance(&self, [r, depth, _]: &[f64; 3]) -> f64 {
-        let (sine, cosine) = self.angle.sin_cos();
+        let (sine, cosine) = sin_cos(self.angle);
         r * sine - depth * cosine - self.offset
     }
 
@@ -162,8 +163,8 @@ impl Line {
         let (rr, dd) = (sum(&|p| (p[0] - r).powi(2)), sum(&|p| (p[1] - d).powi(2)));
         let rd = sum(&|p| (p[0] - r) * (p[1] - d));
         // Direction of the larger moment, from the axis of radii.
-        let angle = 0.5 * (2.0 * rd).atan2(rr - dd);
-        let (sine, cosine) = angle.sin_cos();
+        let angle = 0.5 * atan2(2.0 * rd, rr - dd);
+        let (sine, cosine) = sin_cos(angle);
         (angle > 0.0 && angle < FRAC_PI_2).then_some(Line { angle, offset: r * sine - d * cosine })
     }
 }
@@ -188,7 +189,7 @@ fn densest(profile: &[[f64; 3]], angle: f64, width: f64, sums: &mut Vec<f64>) ->
     }
     let kernel: [f64; 2 * AROUND + 1] = std::array::from_fn(|k| {
         let apart = (k as f64 - AROUND as f64) * cell / width;
-        (-0.5 * apart * apart).exp()
+        exp(-0.5 * apart * apart)
     });
     let mut most = (0.0, low);
     for (k, window) in sums.windows(kernel.len()).enumerate() {

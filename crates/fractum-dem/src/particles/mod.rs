@@ -4,6 +4,7 @@ mod central_difference;
 
 pub use central_difference::{CentralDifference, ParticleDamping, PastForces, TimeStep};
 
+use fractum_math::elementary::{cos, sin};
 use fractum_math::{Rotation, Vec3};
 
 use crate::DemError;
@@ -116,7 +117,7 @@ pub(crate) fn turned(q: &Rotation, theta: Vec3) -> Rotation {
         (c, 0.5 * (1.0 - h / 6.0 * (1.0 - h / 20.0 * (1.0 - h / 42.0 * (1.0 - h / 72.0)))))
     } else {
         let angle = square.sqrt();
-        ((0.5 * angle).cos(), (0.5 * angle).sin() / angle)
+        (cos(0.5 * angle), sin(0.5 * angle) / angle)
     };
     let v = theta * s;
     let (w, u) = (q.w, q.imag());

@@ -1,4 +1,5 @@
 use fractum_math::Sym3;
+use fractum_math::elementary::{asin, cos, sin};
 use serde::{Deserialize, Serialize};
 
 /// The equivalent stress of a criterion, scaled so that uniaxial tension σ gives q = σ.
@@ -35,7 +36,7 @@ impl CriterionKind {
     pub fn least_strength_ratio(self, friction_angle: f64) -> f64 {
         match self {
             // The shear plane cuts off uniaxial tension.
-            Self::MohrCoulomb => (1.0 + friction_angle.sin()) / (1.0 - friction_angle.sin()),
+            Self::MohrCoulomb => (1.0 + sin(friction_angle)) / (1.0 - sin(friction_angle)),
             _ => 1.0,
         }
     }
@@ -63,7 +64,7 @@ impl Criterion {
     ///
     /// - `friction_angle` φ [rad]; `strength_ratio` f_c/f_t; `poisson_ratio` (for Mazars' strains)
     pub fn new(kind: CriterionKind, friction_angle: f64, strength_ratio: f64, poisson_ratio: f64) -> Self {
-        let sin = friction_angle.sin();
+        let sin = sin(friction_angle);
         let n = (1.0 + sin) / (1.0 - sin);
         let first = (1.0, 2.0 / 3f64.sqrt());
         let (bounds, constants) = match kind {
@@ -162,8 +163,8 @@ impl Criterion {
                 let j2 = stress.j2();
                 let sin3 =
                     if j2 > 0.0 { (-1.5 * 3f64.sqrt() * stress.j3() / (j2 * j2.sqrt())).clamp(-1.0, 1.0) } else { 0.0 };
-                let lode = sin3.asin() / 3.0;
-                c[2] * stress.trace() / 3.0 + j2.sqrt() * (c[0] * lode.cos() - c[1] * lode.sin() / 3f64.sqrt())
+                let lode = asin(sin3) / 3.0;
+                c[2] * stress.trace() / 3.0 + j2.sqrt() * (c[0] * cos(lode) - c[1] * sin(lode) / 3f64.sqrt())
             }
         };
         q.max(0.0)

@@ -1,3 +1,4 @@
+use fractum_math::elementary::exp;
 use serde::{Deserialize, Serialize};
 
 /// Shape of the stress-opening curve of a cohesive crack; all enclose the fracture energy.
@@ -36,7 +37,7 @@ impl Softening {
         let brittleness = young_modulus * fracture_energy / (length * strength * strength);
         let line = |x0: f64, y0: f64, x1: f64, y1: f64| y0 + (y1 - y0) * (ratio - x0) / (x1 - x0);
         match *self {
-            Softening::Exponential => ((1.0 - ratio) / (brittleness - 0.5)).exp(),
+            Softening::Exponential => exp((1.0 - ratio) / (brittleness - 0.5)),
             Softening::Linear => line(1.0, 1.0, 2.0 * brittleness, 0.0).max(0.0),
             Softening::Bilinear { stress, opening } => {
                 let kink = opening * brittleness + stress;

@@ -3,10 +3,11 @@
 use fractum_fem as fem;
 use fractum_fem::{DamageZone, Elastic, Formulation, Plane, Region, Solid};
 use fractum_math::Vec3;
+use fractum_math::elementary::{ln, pow};
 use fractum_mesh::renumber::hilbert_order;
 use fractum_mesh::topology;
 use rand::SeedableRng;
-use rand_distr::{Distribution as _, Uniform, Weibull};
+use rand_distr::{Distribution as _, OpenClosed01, Uniform};
 use rand_pcg::Pcg64Mcg;
 
 use super::{Context, use_in_words};
@@ -306,7 +307,10 @@ fn scatter_factor(scatter: &Scatter, edge: u64, midpoint: Vec3) -> f64 {
     let mut generator = Pcg64Mcg::seed_from_u64(place ^ edge);
     match scatter.distribution {
         // Parameters were checked with the case; 1 would be "no scatter".
-        Distribution::Weibull { modulus } => Weibull::new(1.0, modulus).map_or(1.0, |d| d.sample(&mut generator)),
+        Distribution::Weibull { modulus } => {
+            let survival: f64 = OpenClosed01.sample(&mut generator);
+            pow(-ln(survival), 1.0 / modulus)
+        }
         Distribution::Uniform { width } => {
             Uniform::new_inclusive(1.0 - width, 1.0 + width).map_or(1.0, |d| d.sample(&mut generator))
         }

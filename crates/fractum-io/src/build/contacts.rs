@@ -1,7 +1,7 @@
 //! Rigid bodies, the surfaces of solids, and what particles feel of both.
 
 use fractum_fem as fem;
-use fractum_math::{Mat3, Rotation, Vec3};
+use fractum_math::{Mat3, Vec3, rotation_between};
 use fractum_mesh::topology;
 use fractum_scene::{
     ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, NodesOnShape, OverlapWith,
@@ -227,10 +227,9 @@ impl Context<'_> {
         facets: &mut impl Iterator<Item = PreparedFacets>,
     ) -> Option<(Form, Frame)> {
         let shape = |shape| Form::Shape { shape, hollow: rigid.inside };
-        let along_z = |axis: &Vec3| Rotation::rotation_between(&Vec3::z(), axis);
-        let half_turn = || Rotation::from_scaled_axis(Vec3::x() * std::f64::consts::PI);
+        let along_z = |axis: &Vec3| rotation_between(&Vec3::z(), axis);
         let turned = |at: Vec3, axis: &Vec3| {
-            let rotation = along_z(axis).unwrap_or_else(half_turn);
+            let rotation = along_z(axis);
             Frame { rotation, ..Frame::at(at) }
         };
         Some(match &rigid.shape {

@@ -1,6 +1,7 @@
 //! Functions of time and position for supports and loads.
 
 use fractum_math::Vec3;
+use fractum_math::elementary::{exp, exp_m1, sin};
 
 use super::expression::Program;
 
@@ -67,12 +68,12 @@ impl TimeFunction {
             }
             Self::HalfSine { peak, start, duration } => {
                 let s = (t - start) / duration;
-                if (0.0..1.0).contains(&s) { peak * (std::f64::consts::PI * s).sin() } else { 0.0 }
+                if (0.0..1.0).contains(&s) { peak * sin(std::f64::consts::PI * s) } else { 0.0 }
             }
             Self::DoubleExponential { scale, decay, rise, start } => {
                 let tau = t - start;
                 // as a product, since the two exponentials nearly cancel where the rates are close
-                if tau < 0.0 { 0.0 } else { scale * (-decay * tau).exp() * -(-(rise - decay) * tau).exp_m1() }
+                if tau < 0.0 { 0.0 } else { scale * exp(-decay * tau) * -exp_m1(-(rise - decay) * tau) }
             }
             Self::Expression(ref field) => field.value(t, position),
         }
@@ -88,10 +89,10 @@ impl TimeFunction {
             return None;
         }
         // With L = ln(b/a) the peak stands at τ = L/(b - a), so that a τ = L/(e^L - 1).
-        let a_tau = |l: f64| l / l.exp_m1();
-        let left = |l: f64| (-ratio * a_tau(l)).exp() * (-l * (1.0 + ratio)).exp_m1() / (-l).exp_m1();
+        let a_tau = |l: f64| l / exp_m1(l);
+        let left = |l: f64| exp(-ratio * a_tau(l)) * exp_m1(-l * (1.0 + ratio)) / exp_m1(-l);
         let (mut low, mut high) = (1e-6, 30.0);
-        let target = (-1.0f64).exp();
+        let target = exp(-1.0);
         if left(low) > target || left(high) < target {
             return None;
         }
@@ -100,7 +101,7 @@ impl TimeFunction {
             if left(middle) < target { low = middle } else { high = middle }
         }
         let decay = a_tau(low) / rise;
-        let scale = peak / ((-a_tau(low)).exp() * -(-low).exp_m1());
+        let scale = peak / (exp(-a_tau(low)) * -exp_m1(-low));
         Some(Self::DoubleExponential { scale, decay, rise: decay + low / rise, start })
     }
 

@@ -3,6 +3,7 @@
 //! A unit is ten^n × factor of the SI unit of its dimension. Keeping the power of ten apart makes `"0.2 ms"` the very
 //! same number as `0.0002`.
 
+use fractum_math::elementary::pow;
 use std::fmt;
 
 use super::nearest;
@@ -198,8 +199,8 @@ impl Unit {
     pub(super) fn times(self, other: Self, exponent: f64) -> Option<Self> {
         let dimension = self.dimension.times(other.dimension.power(exponent)?)?;
         let ten = f64::from(other.ten) * exponent;
-        let (whole, rest) = if ten == ten.round() { (ten, 1.0) } else { (0.0, 10f64.powf(ten)) };
-        let factor = self.factor * rest * other.factor.powf(exponent);
+        let (whole, rest) = if ten == ten.round() { (ten, 1.0) } else { (0.0, pow(10.0, ten)) };
+        let factor = self.factor * rest * pow(other.factor, exponent);
         let ten = self.ten.checked_add(whole as i32)?;
         (factor.is_finite() && factor > 0.0 && ten.abs() < 1000).then_some(Self { ten, factor, dimension })
     }

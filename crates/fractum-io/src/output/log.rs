@@ -1,5 +1,6 @@
 //! What a run tells while it goes: `run.log` for later, a progress line for now.
 
+use fractum_math::elementary::exp;
 use std::fmt;
 use std::fs::{File, TryLockError};
 use std::io::{self, IsTerminal, Stderr, Write};
@@ -191,7 +192,7 @@ impl<W: Write> Progress<W> {
             let rate = (snapshot.time - time) / seconds;
             if rate.is_finite() && rate >= 0.0 {
                 // Fades over some ten seconds: cracks slow a run down, and the ETA should tell soon.
-                let weight = 1.0 - (-seconds / 10.0).exp();
+                let weight = 1.0 - exp(-seconds / 10.0);
                 self.rate = Some(self.rate.map_or(rate, |old| old + weight * (rate - old)));
             }
         }

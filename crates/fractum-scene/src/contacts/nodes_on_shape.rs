@@ -3,7 +3,7 @@
 use fractum_contact::law::{ContactForce, ContactLaw, ContactMemory, ContactParameters, Linear, PairMotion};
 use fractum_contact::{Frame, Outside, Shape};
 use fractum_fem::Solid;
-use fractum_math::{Rotation, Vec3, Work};
+use fractum_math::{Vec3, Work, rotation_between};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -45,9 +45,7 @@ pub(crate) struct Candidate {
 impl NodesOnShape {
     /// A fixed half space behind the plane through `point` with unit `normal`.
     pub fn plane(point: Vec3, normal: Vec3, surface: ContactParameters) -> Self {
-        let half_turn = || Rotation::from_scaled_axis(Vec3::x() * std::f64::consts::PI);
-        let rotation = Rotation::rotation_between(&Vec3::z(), &normal).unwrap_or_else(half_turn);
-        let frame = Frame { rotation, ..Frame::at(point) };
+        let frame = Frame { rotation: rotation_between(&Vec3::z(), &normal), ..Frame::at(point) };
         NodesOnShape { shape: Shape::HalfSpace, frame, rigid_body: None, surface, candidates: Vec::new() }
     }
 

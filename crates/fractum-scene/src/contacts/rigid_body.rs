@@ -2,7 +2,7 @@
 
 use fractum_contact::law::{ContactParameters, ElasticMaterial};
 use fractum_contact::{FacetMesh, Frame, Shape, Surface};
-use fractum_math::{HalfSteps, Mat3, Rotation, Vec3};
+use fractum_math::{HalfSteps, Mat3, Rotation, Vec3, rotation_by};
 use serde::{Deserialize, Serialize};
 
 use crate::conditions::TimeFunction;
@@ -218,7 +218,7 @@ impl RigidBody {
         self.turn(time, dt_before, dt_after, &mut work);
         self.frame.origin += self.frame.velocity * dt_after;
         if self.frame.spin != Vec3::zeros() {
-            self.frame.rotation = Rotation::from_scaled_axis(self.frame.spin * dt_after) * self.frame.rotation;
+            self.frame.rotation = rotation_by(self.frame.spin * dt_after) * self.frame.rotation;
         }
         work
     }

@@ -2,7 +2,8 @@
 
 use fractum_dem::Particles;
 use fractum_fem::Solid;
-use fractum_math::{Mat3, Rotation, Vec3, largest_eigenvalue};
+use fractum_math::elementary::hypot;
+use fractum_math::{Mat3, Rotation, Vec3, largest_eigenvalue, rotation_by};
 use rayon::prelude::*;
 
 use super::layer::Attachment;
@@ -204,7 +205,7 @@ impl Ties {
             }
             for (k, &i) in free.iter().enumerate() {
                 bonded.particles.position[i] = start.1[i] + step(nodes + k);
-                bonded.particles.orientation[i] = Rotation::from_scaled_axis(step(nodes + free.len() + k));
+                bonded.particles.orientation[i] = rotation_by(step(nodes + free.len() + k));
             }
             ties.follow(&solid, &mut bonded.particles);
             solid.update_internal_forces(0.0, false);
@@ -263,7 +264,7 @@ impl TiedFacet {
             cosine += y.x * x.x + y.y * x.y;
             sine += y.x * x.y - y.y * x.x;
         }
-        let size = cosine.hypot(sine);
+        let size = hypot(cosine, sine);
         let (c, s) = (cosine / size, sine / size);
         let plane = Mat3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0);
         let matrix = now * plane * self.axes.transpose();

@@ -2,7 +2,7 @@
 
 use fractum_dem::criterion::{BeamRankine, EndMoments, FractureCriterion};
 use fractum_dem::{Batch, BeamEnergy, Breaking, Crack, Lattice, LatticeSupports, LoadStage, QuasiStatic, Tolerance};
-use fractum_math::{Rotation, Vec3};
+use fractum_math::{Vec3, rotation_by};
 
 use crate::bonded::{Bonded, BondedBody, Closest};
 use crate::error::{SceneError, StepError};
@@ -117,7 +117,7 @@ impl BondedStatics {
         for (i, u) in self.run.body().state().iter().enumerate() {
             let (shift, turn) = (Vec3::new(u[0], u[1], u[2]), Vec3::new(u[3], u[4], u[5]));
             particles.position[i] = reference[i] + shift * factor;
-            particles.orientation[i] = Rotation::from_scaled_axis(turn * factor);
+            particles.orientation[i] = rotation_by(turn * factor);
         }
         supports.set_reactions(|particle, axis| self.run.body().reaction(particle)[axis] * factor);
         let body = &mut bodies[0];

@@ -1,5 +1,6 @@
 //! The plot of `fractum lab convergence`: E and ν against the number of particles.
 
+use fractum_math::elementary::ln;
 use std::fmt::Write;
 
 /// A series of the plot: number of particles, value, and its standard deviation.
@@ -44,12 +45,12 @@ fn draw(text: &mut String, diagram: &Diagram, top: f64) {
     let range = |f: &dyn Fn(&[f64; 3]) -> [f64; 2]| {
         all().map(f).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], [a, b]| [l.min(a), h.max(b)])
     };
-    let [x0, x1] = range(&|p| [p[0].ln(); 2]);
+    let [x0, x1] = range(&|p| [ln(p[0]); 2]);
     let [y0, y1] = range(&|p| [p[1] - p[2], p[1] + p[2]]);
     if !(x1 > x0 && y1 > y0) {
         return;
     }
-    let place_x = |n: f64| LEFT + (n.ln() - x0) / (x1 - x0) * (WIDTH - LEFT - MARGIN);
+    let place_x = |n: f64| LEFT + (ln(n) - x0) / (x1 - x0) * (WIDTH - LEFT - MARGIN);
     let place_y = |v: f64| top + HEIGHT - MARGIN - (v - y0) / (y1 - y0) * (HEIGHT - 2.0 * MARGIN);
     let (bottom, right) = (top + HEIGHT - MARGIN, WIDTH - MARGIN);
     let _ = writeln!(text, r#"<text x="{LEFT}" y="{}">{}</text>"#, top + 20.0, diagram.title);

@@ -1,3 +1,4 @@
+use fractum_math::elementary::{atan, cos, sin};
 use std::f64::consts::PI;
 
 use fractum_dem::{Dof6, stress};
@@ -13,8 +14,8 @@ pub(super) const HALF_ARC: f64 = 12.0 * PI / 180.0;
 /// 2019, eq. 28).
 pub fn hondros(share: f64) -> f64 {
     let (a, s) = (2.0 * HALF_ARC, share * share);
-    let first = (1.0 - s) * a.sin() / (1.0 - 2.0 * s * a.cos() + s * s);
-    2.0 / PI * (first - (s * a.sin() / (1.0 - s * a.cos())).atan() - HALF_ARC)
+    let first = (1.0 - s) * sin(a) / (1.0 - 2.0 * s * cos(a) + s * s);
+    2.0 / PI * (first - atan(s * sin(a) / (1.0 - s * cos(a))) - HALF_ARC)
 }
 
 /// Horizontal stress in a slice of the loaded diameter.

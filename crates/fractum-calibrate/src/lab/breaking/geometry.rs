@@ -1,5 +1,6 @@
 use fractum_dem::Crack;
 use fractum_dem::crack_shape::{Axis, helix_angle};
+use fractum_math::elementary::acos;
 use fractum_math::{Mat3, Sym3, Vec3};
 use serde::Serialize;
 
@@ -39,11 +40,11 @@ pub fn geometry(sample: &Sample, test: Failure, cracks: &[Crack]) -> Option<Geom
     let middle = early.iter().map(|c| c.position).sum::<Vec3>() / early.len() as f64;
     let (angle, roughness) = match test {
         Failure::Tension | Failure::Bending => plane(cracks.iter().map(|c| c.position))
-            .map_or((None, None), |(normal, rough)| (Some(degrees(normal.x.abs().acos())), Some(rough))),
+            .map_or((None, None), |(normal, rough)| (Some(degrees(acos(normal.x.abs()))), Some(rough))),
         Failure::Brazilian => {
             let trace = |c: &&Crack| (c.position.y - centre.y).abs() < 0.7 * size;
             let flat = cracks.iter().filter(trace).map(|c| Vec3::new(0.0, c.position.y, c.position.z));
-            line(flat).map_or((None, None), |(along, rough)| (Some(degrees(along.y.abs().acos())), Some(rough)))
+            line(flat).map_or((None, None), |(along, rough)| (Some(degrees(acos(along.y.abs()))), Some(rough)))
         }
         Failure::Torsion => {
             let points: Vec<(Vec3, f64)> = cracks.iter().map(|c| (c.position, c.area)).collect();

@@ -2,7 +2,7 @@ use fractum_dem::{
     BeamNetwork, CentralDifference, CrackFaces, CriticalLoad, Dof6, Fracture, LoadPoint, Occasion, ParticleDamping,
     Particles, Piece, StaticBody, pieces,
 };
-use fractum_math::{Rotation, Vec3};
+use fractum_math::{Vec3, rotation_by};
 use serde::Serialize;
 
 use super::setup::Setup;
@@ -280,7 +280,7 @@ fn set_in_motion(particles: &mut Particles, state: &[Dof6], factor: f64, rate: f
     for (i, u) in state.iter().enumerate() {
         let (shift, turn) = (Vec3::new(u[0], u[1], u[2]), Vec3::new(u[3], u[4], u[5]));
         particles.position[i] += shift * factor;
-        particles.orientation[i] = Rotation::from_scaled_axis(turn * factor);
+        particles.orientation[i] = rotation_by(turn * factor);
         particles.velocity[i] = shift * rate;
         particles.spin[i] = turn * rate;
     }

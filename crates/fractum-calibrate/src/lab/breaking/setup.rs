@@ -1,3 +1,4 @@
+use fractum_math::elementary::tan;
 use std::f64::consts::PI;
 
 use fractum_dem::{Dof6, LatticeSupports};
@@ -146,7 +147,7 @@ fn brazilian(sample: &Sample) -> Result<Setup, CalibrateError> {
     let mut held = [0; 2];
     for &i in rim {
         let d = sample.packing.position[i as usize] - centre;
-        if d.z.abs() <= d.y.abs() * HALF_ARC.tan() {
+        if d.z.abs() <= d.y.abs() * tan(HALF_ARC) {
             supports.set(i, 1, -half * d.y.signum());
             held[usize::from(d.y > 0.0)] += 1;
         }

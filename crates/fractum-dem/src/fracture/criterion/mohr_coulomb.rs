@@ -1,3 +1,4 @@
+use fractum_math::elementary::{cos, sin};
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +26,7 @@ pub struct MohrCoulomb {
 impl MohrCoulomb {
     #[inline]
     fn shear(&self, first: f64, last: f64) -> f64 {
-        let sine = self.friction_angle.sin();
+        let sine = sin(self.friction_angle);
         ((1.0 + sine) / (1.0 - sine) * first - last) / self.compressive_strength
     }
 }
@@ -74,7 +75,7 @@ impl StressCriterion for MohrCoulomb {
             return Release::Nearest([along; 2], BreakMode::Tension);
         }
         let angle = std::f64::consts::FRAC_PI_4 - 0.5 * self.friction_angle;
-        let normal = |sign: f64| along * angle.cos() + across * (sign * angle.sin());
+        let normal = |sign: f64| along * cos(angle) + across * (sign * sin(angle));
         Release::Nearest([normal(1.0), normal(-1.0)], BreakMode::Shear)
     }
 }

@@ -1,6 +1,7 @@
 //! A compiled expression: postfix operations on a small fixed stack.
 
 use crate::case::choice::choice;
+use fractum_math::elementary;
 
 /// Deepest stack a program may need; the compiler refuses deeper ones.
 const STACK: usize = 32;
@@ -161,18 +162,18 @@ impl Unary {
                 }
             }
             Unary::Sqrt => a.sqrt(),
-            Unary::Exp => a.exp(),
-            Unary::Log => a.ln(),
-            Unary::Log10 => a.log10(),
-            Unary::Sin => a.sin(),
-            Unary::Cos => a.cos(),
-            Unary::Tan => a.tan(),
-            Unary::Asin => a.asin(),
-            Unary::Acos => a.acos(),
-            Unary::Atan => a.atan(),
-            Unary::Sinh => a.sinh(),
-            Unary::Cosh => a.cosh(),
-            Unary::Tanh => a.tanh(),
+            Unary::Exp => elementary::exp(a),
+            Unary::Log => elementary::ln(a),
+            Unary::Log10 => elementary::log10(a),
+            Unary::Sin => elementary::sin(a),
+            Unary::Cos => elementary::cos(a),
+            Unary::Tan => elementary::tan(a),
+            Unary::Asin => elementary::asin(a),
+            Unary::Acos => elementary::acos(a),
+            Unary::Atan => elementary::atan(a),
+            Unary::Sinh => elementary::sinh(a),
+            Unary::Cosh => elementary::cosh(a),
+            Unary::Tanh => elementary::tanh(a),
             Unary::Floor => a.floor(),
             Unary::Ceil => a.ceil(),
         }
@@ -186,7 +187,7 @@ impl Binary {
             Binary::Subtract => a - b,
             Binary::Multiply => a * b,
             Binary::Divide => a / b,
-            Binary::Power => a.powf(b),
+            Binary::Power => elementary::pow(a, b),
             Binary::Less => truth(a < b),
             Binary::LessEqual => truth(a <= b),
             Binary::Greater => truth(a > b),
@@ -197,8 +198,8 @@ impl Binary {
             Binary::Or => truth(a != 0.0 || b != 0.0),
             Binary::Min => a.min(b),
             Binary::Max => a.max(b),
-            Binary::Atan2 => a.atan2(b),
-            Binary::Hypot => a.hypot(b),
+            Binary::Atan2 => elementary::atan2(a, b),
+            Binary::Hypot => elementary::hypot(a, b),
         }
     }
 }

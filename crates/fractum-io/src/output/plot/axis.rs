@@ -1,6 +1,7 @@
 //! Where the ticks of an axis are and what they say.
 
 use crate::number::{Prefixed, grouped, prefixed};
+use fractum_math::elementary::log10;
 
 /// What an axis shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -86,7 +87,7 @@ impl Scale {
     }
 
     fn logarithmic(axis: &Axis, low: f64, high: f64, ends: [f64; 2]) -> Self {
-        let decades = (low.log10().floor() as i32, (high.log10().ceil() as i32).max(low.log10().floor() as i32 + 1));
+        let decades = (log10(low).floor() as i32, (log10(high).ceil() as i32).max(log10(low).floor() as i32 + 1));
         let prefix = prefixed(high, &axis.unit);
         let step = ((decades.1 - decades.0) / 8 + 1) as usize;
         let ticks = (decades.0..=decades.1).step_by(step).map(|decade| {
@@ -101,7 +102,7 @@ impl Scale {
     /// Where `value` is on paper [pixels].
     pub(super) fn place(&self, value: f64) -> f64 {
         let share = if self.logarithmic {
-            (value / self.low).log10() / (self.high / self.low).log10()
+            log10(value / self.low) / log10(self.high / self.low)
         } else {
             (value - self.low) / (self.high - self.low)
         };
@@ -117,13 +118,13 @@ impl Scale {
 /// Ticks at multiples of 1, 2 or 5 times a power of ten, with as many decimals as they need.
 fn linear_ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
     let rough = (high - low) / count.max(1) as f64;
-    let exponent = rough.log10().floor() as i32;
+    let exponent = log10(rough).floor() as i32;
     // Powers as quotients where possible: 0.1 is 1/10, not an inexact product.
     let unit = |factor: f64| if exponent < 0 { factor / 10f64.powi(-exponent) } else { factor * 10f64.powi(exponent) };
     let Some(step) = [1.0, 2.0, 5.0, 10.0].map(unit).into_iter().find(|&step| step >= rough * 0.999_999) else {
         return Vec::new();
     };
-    let decimals = (-(step.log10() + 1e-9).floor()).max(0.0) as usize;
+    let decimals = (-(log10(step) + 1e-9).floor()).max(0.0) as usize;
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;
     // A range far from zero and narrow beyond the digits of a double has no sensible ticks.
