@@ -99,10 +99,13 @@ pub fn tanh(x: f64) -> f64 {
 mod tests {
     use super::*;
 
+    type OfOne = fn(f64) -> f64;
+    type OfTwo = fn(f64, f64) -> f64;
+
     /// Against 60 digits, rounded to nearest: within one unit in the last place.
     #[test]
     fn values_are_exact_to_one_unit_in_the_last_place() {
-        let of_one: [(fn(f64) -> f64, f64, f64); 14] = [
+        let of_one: [(OfOne, f64, f64); 14] = [
             (acos, 0.3, 1.2661036727794992),
             (asin, 0.7, 0.775397496610753),
             (atan, 2.5, 1.1902899496825317),
@@ -118,7 +121,7 @@ mod tests {
             (tan, 0.9, 1.2601582175503392),
             (tanh, 0.6, 0.5370495669980353),
         ];
-        let of_two: [(fn(f64, f64) -> f64, [f64; 2], f64); 3] = [
+        let of_two: [(OfTwo, [f64; 2], f64); 3] = [
             (pow, [0.37, 1.0 / 12.0], 0.9204852005013249),
             (hypot, [0.3, -0.7], 0.7615773105863908),
             (atan2, [0.3, -0.7], 2.7367008673047097),
