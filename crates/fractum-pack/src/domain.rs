@@ -164,13 +164,22 @@ impl Domain {
         }
     }
 
+    /// Names of the walls of a box.
+    pub const BOX_WALLS: &'static [&'static str] = &["x-", "x+", "y-", "y+", "z-", "z+"];
+    /// Names of the walls of a cylinder.
+    pub const CYLINDER_WALLS: &'static [&'static str] = &["x-", "x+", "radius"];
+    /// Names of the walls of a sphere.
+    pub const SPHERE_WALLS: &'static [&'static str] = &["radius"];
+    /// Names of the walls of a triangulated surface.
+    pub const SURFACE_WALLS: &'static [&'static str] = &["surface"];
+
     /// Names of the walls, in the order of their sets.
     pub fn wall_names(&self) -> &'static [&'static str] {
         match self {
-            Domain::Box { .. } => &["x-", "x+", "y-", "y+", "z-", "z+"],
-            Domain::Cylinder { .. } => &["x-", "x+", "radius"],
-            Domain::Sphere { .. } => &["radius"],
-            Domain::Surface(_) => &["surface"],
+            Domain::Box { .. } => Domain::BOX_WALLS,
+            Domain::Cylinder { .. } => Domain::CYLINDER_WALLS,
+            Domain::Sphere { .. } => Domain::SPHERE_WALLS,
+            Domain::Surface(_) => Domain::SURFACE_WALLS,
         }
     }
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use fractum_io::build::{BuiltScene, build_scene, check_groups};
+use fractum_io::build::{BuiltScene, build_scene, check_before_particles};
 use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics, read_case};
 use fractum_io::memory;
@@ -43,7 +43,7 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
         Some(source) => read_mesh(source)?,
         None => (Mesh::default(), 0),
     };
-    check_groups(&case, &mesh)?;
+    check_before_particles(&case, &mesh)?;
     check_memory(&case, &mesh)?;
     let made = prepare_bodies(&case, &mesh, cache)?;
     let mut built = build_scene(&case, &mesh, made.prepared, facets(&case)?)?;

@@ -113,13 +113,14 @@ impl<'a> Recorder<'a> {
             .into_iter()
             .chain(hands_over.then_some(IN_MOTION))
             .map(|(name, unit)| Column::new(name, unit))
-            .chain(
-                case.probes
-                    .iter()
-                    .filter(|p| !p.is_scalar())
-                    .map(|p| Column::new(p.name.value.clone(), p.unit.clone())),
-            )
             .collect();
+        let of_probes = case.probes.iter().filter(|p| !p.is_scalar()).map(|p| {
+            // A probe may be called like a column of the ledger: no two columns have one name.
+            let taken = columns.iter().any(|column| column.name == p.name.value);
+            let name = if taken { format!("probe.{}", p.name.value) } else { p.name.value.clone() };
+            Column::new(name, p.unit.clone())
+        });
+        let columns: Vec<Column> = columns.iter().cloned().chain(of_probes).collect();
         let path = folder.join("history.csv");
         let (history, state) = match resumed {
             Some(state) => (History::resume(&path, &columns, state.history_length)?, state),

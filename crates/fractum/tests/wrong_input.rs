@@ -443,3 +443,61 @@ fn output_that_nobody_takes_is_no_panic() {
     let said = String::from_utf8(ended.stderr).unwrap();
     assert_eq!((ended.status.code(), said.as_str()), (Some(0), ""));
 }
+
+#[test]
+fn functions_that_are_no_numbers_are_found_before_the_run() {
+    let words = ["is NaN at t = ", "expected a finite number during the whole run"];
+    let case = with("x = \"1 mm/s\"", "x = \"sqrt(1 - t/10 us)*1 mm/s\"");
+    refused(&case, "\"sqrt(1", "supports[1].velocity.x", &words);
+    let case = with("[solver]", "[[loads]]\ngroup = \"x+\"\npressure = \"1 MPa*log(y/1 m - 1)\"\n[solver]");
+    refused(&case, "\"1 MPa*log", "loads[0].pressure", &words);
+    let case = with("[solver]", "[[loads]]\ngravity = { x = \"1 m/s^2/(t/1 s)\" }\n[solver]");
+    refused(&case, "\"1 m/s^2/", "loads[0].gravity.x", &["is inf at t = 0 s"]);
+}
+
+#[test]
+fn steps_and_ends_out_of_all_proportion_are_found_before_the_run() {
+    let case = with("end = \"20 us\"", "end = \"20 us\"\nstep = \"20 us\"");
+    refused(
+        &case,
+        "\"20 us\"\n\n[[probes]]",
+        "solver.step",
+        &["is above the stable step", "lower it, or leave it out"],
+    );
+    let case = with("end = \"20 us\"", "end = \"1e30 s\"");
+    refused(&case, "\"1e30 s\"", "solver.end", &["steps of", "expected an end within 1e15 steps"]);
+}
+
+#[test]
+fn an_unknown_set_of_particles_is_told_before_twenty_million_are_packed() {
+    let body = "[[bodies]]\nname = \"box\"\nkind = \"bonded\"\nshape = \"box\"\nsize = [1, 1, 1]\n\
+                particles = 20000000\nmaterial = \"concrete\"\n\n[[supports]]\ngroup = \"x-\"";
+    let case = with("[[supports]]\ngroup = \"x-\"", body);
+    let of_set = case.replace("reaction = { group = \"x+\"", "reaction = { group = \"box.x=\"");
+    let words = ["expected a set of particles of \"box\": box, box.x-", "did you mean \"box.x-\"?"];
+    refused(&of_set, "\"box.x=\"", "probes[0].reaction.group", &words);
+    let pressed = case.replace("[solver]", "[[loads]]\ngroup = \"box.x+\"\npressure = 1\n[solver]");
+    refused(&pressed, "\"box.x+\"", "loads[0].group", &["particles have none", "use force"]);
+}
+
+#[test]
+fn columns_of_the_history_have_different_names() {
+    let workplace = Workplace::new(&with("name = \"load\"", "name = \"kinetic\""));
+    assert_eq!(workplace.fractum(&RUN).code, Some(0));
+    let history = fs::read_to_string(workplace.path("out/history.csv")).unwrap();
+    let mut columns: Vec<&str> = history.lines().next().unwrap().split(',').collect();
+    assert!(columns.contains(&"kinetic [J]") && columns.contains(&"probe.kinetic [N]"), "{columns:?}");
+    let all = columns.len();
+    columns.sort_unstable();
+    columns.dedup();
+    assert_eq!(columns.len(), all);
+}
+
+#[test]
+fn the_information_on_a_mesh_is_json_where_that_is_asked() {
+    let workplace = Workplace::new(SMALL);
+    let ended = workplace.fractum(&["mesh", "info", "bar.msh", "--format", "json"]);
+    let info: Value = serde_json::from_str(&ended.stdout).unwrap_or_else(|error| panic!("{error}: {}", ended.stdout));
+    assert!(info["nodes"].as_u64().unwrap() > 0 && info["elements"]["tetrahedra"].as_u64().unwrap() > 0, "{info}");
+    assert!(info["groups"].as_array().unwrap().iter().any(|group| group["name"] == "body"), "{info}");
+}

@@ -8,7 +8,7 @@ use fractum_scene::{BondFracture, Bonded, BondedPart, Gravity, Load, PointProbe,
 use super::conditions::{motion_of, push_nodal};
 use super::{Context, function};
 use crate::case::model::{BodyKind, LoadKind, ProbeKind, Selection, TimeStep};
-use crate::case::{Diagnostic, Field, Spanned, nearest};
+use crate::case::{Diagnostic, Field, Spanned};
 
 /// The particles of a bonded or loose body, made outside: packed or read, bonded and calibrated.
 #[derive(Clone, Debug)]
@@ -110,15 +110,9 @@ impl Context<'_> {
         if let Some((_, particles)) = own.sets.iter().find(|(name, _)| name == wanted) {
             return particles.clone();
         }
-        let name = &self.case.bodies[body].name.value;
-        let known: Vec<&str> = own.sets[1..].iter().map(|(name, _)| name.as_str()).collect();
-        let list: Vec<String> = known.iter().map(|set| format!("{name}.{set}")).collect();
-        let mut diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value))
-            .expected(format!("a set of particles of \"{name}\": {name}, {}", list.join(", ")));
-        if let Some(near) = nearest(wanted, known.iter().copied()) {
-            diagnostic = diagnostic.remedy(format!("did you mean \"{name}.{near}\"?"));
-        }
-        self.diagnostics.push(diagnostic);
+        let known: Vec<String> = own.sets[1..].iter().map(|(name, _)| name.clone()).collect();
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        self.unknown_set(group, &self.case.bodies[body].name.value, wanted, &known);
         Vec::new()
     }
 
@@ -172,12 +166,6 @@ impl Context<'_> {
                     let total: f64 = particles.iter().map(|&i| area(i)).sum();
                     let shares: Vec<(u32, f64)> = particles.iter().map(|&i| (i, area(i) / total)).collect();
                     push_nodal(&mut loads, &shares, force);
-                }
-                LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } if self.names_particles(on) => {
-                    let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
-                    let diagnostic = Diagnostic::error(&place, format!("= \"{}\"", on.label()));
-                    let diagnostic = diagnostic.expected("a mesh group of facets; particles have none");
-                    self.diagnostics.push(diagnostic.remedy("use force, which is shared over the set"));
                 }
                 LoadKind::Gravity { acceleration } => {
                     for (axis, value) in acceleration.iter().enumerate() {

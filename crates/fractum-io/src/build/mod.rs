@@ -5,6 +5,7 @@ mod bodies;
 mod bonded;
 mod conditions;
 mod contacts;
+mod precheck;
 mod probes;
 mod statics;
 mod ties;
@@ -28,7 +29,7 @@ use fractum_scene::{
 use bonded::ParticleSets;
 
 use crate::case::model::{Case, GroupUse, Selection, SolverKind, Support, TimeStep};
-use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction, nearest};
+use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction};
 
 /// A scene with what is needed to speak of it in the user's terms.
 pub struct BuiltScene {
@@ -63,13 +64,13 @@ struct Context<'a> {
     diagnostics: Vec<Diagnostic>,
 }
 
-/// Holds the groups that a case names against its mesh.
+/// Checks what case and mesh tell without the bodies of particles, which may take long to make.
 ///
 /// # Errors
-/// Groups that are missing or empty.
-pub fn check_groups(case: &Case, mesh: &Mesh) -> Result<(), Diagnostics> {
+/// Groups and sets of particles that are missing or empty, loads and motions that are not finite numbers.
+pub fn check_before_particles(case: &Case, mesh: &Mesh) -> Result<(), Diagnostics> {
     let mut context = Context { case, mesh, particle_sets: Vec::new(), diagnostics: Vec::new() };
-    context.check_groups();
+    context.check_before_particles();
     if context.diagnostics.is_empty() { Ok(()) } else { Err(Diagnostics(context.diagnostics)) }
 }
 
@@ -87,7 +88,7 @@ pub fn build_scene(
     facets: Vec<PreparedFacets>,
 ) -> Result<BuiltScene, Diagnostics> {
     let mut context = Context { case, mesh, particle_sets: Vec::new(), diagnostics: Vec::new() };
-    context.check_groups();
+    context.check_before_particles();
     let built = context.build(prepared, facets);
     match built {
         Some(mut built) if context.diagnostics.is_empty() => {
@@ -106,29 +107,6 @@ impl Context<'_> {
 
     fn error(&mut self, place: &Place, found: impl Into<String>, expected: impl Into<String>) {
         self.diagnostics.push(Diagnostic::error(place, found).expected(expected));
-    }
-
-    /// Every group that the case names must be in the mesh, with elements.
-    fn check_groups(&mut self) {
-        let names = self.mesh.group_names();
-        for (group, _) in self.case.groups_used() {
-            if names.contains(&group.value.as_str()) {
-                if self.mesh.group_nodes(&group.value).is_empty() {
-                    self.error(&group.place, format!("= \"{}\"", group.value), "the group has no elements in the mesh");
-                }
-                continue;
-            }
-            let list = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-            let mut diagnostic =
-                Diagnostic::error(&group.place, format!("= \"{}\"", group.value)).expected(match &self.case.mesh {
-                    Some(mesh) => format!("a physical group of {}; groups there: {list}", mesh.file.value.display()),
-                    None => "a set of particles of a bonded body, BODY or BODY.SET; the case has no mesh".to_owned(),
-                });
-            if let Some(near) = nearest(&group.value, names.iter().copied()) {
-                diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
-            }
-            self.diagnostics.push(diagnostic);
-        }
     }
 
     fn build(&mut self, prepared: Vec<PreparedBody>, facets: Vec<PreparedFacets>) -> Option<BuiltScene> {
@@ -206,6 +184,9 @@ impl Context<'_> {
         let scene =
             self.with_contacts(scene, &parts, &boundary_of_parts, &surface, rigid_bodies, &tied, &mut warnings)?;
         let statics = statics.filter(|_| self.is_held(&scene));
+        if self.case.solver.kind != SolverKind::Static {
+            self.check_time_step(&scene, &mut warnings);
+        }
         if !self.diagnostics.is_empty() {
             return None;
         }

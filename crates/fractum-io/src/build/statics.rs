@@ -96,22 +96,10 @@ impl Context<'_> {
     pub(super) fn bonded_statics(&mut self, bonded: &Bonded) -> Option<BondedStaticSettings> {
         let solver = &self.case.solver;
         let options = solver.statics.as_ref().filter(|_| solver.kind == SolverKind::Static)?;
-        let [Body { kind: BodyKind::Bonded(body), .. }] = self.case.bodies.as_slice() else { return None };
+        let [Body { kind: BodyKind::Bonded(_), .. }] = self.case.bodies.as_slice() else { return None };
         let place = self.place_of_solver();
-        let found = |what: &str| format!("= \"static\" with a bonded body and {what}");
-        if options.control.is_some() || solver.step.is_some() {
-            let expected = "no control and no step: the load goes straight from break to break";
-            self.error(&place, found("solver.control or solver.step"), expected);
-        }
-        if !self.case.loads.is_empty() {
-            let expected = "supports only, which move in proportion to time; or kind = \"explicit\"";
-            self.error(&place, found("[[loads]]"), expected);
-        }
-        if body.initial_velocity.iter().any(Option::is_some) {
-            self.error(&place, found("initial_velocity"), "a body at rest; or kind = \"explicit\"");
-        }
         if bonded.held_count() == 0 {
-            self.error(&place, found("no support"), "at least one [[supports]]");
+            self.error(&place, "= \"static\" with a bonded body and no support", "at least one [[supports]]");
         }
         if let Err(error) = bonded.check_proportional(solver.end) {
             self.error(&place, format!("= \"static\": {error}"), "");

@@ -17,6 +17,16 @@ pub struct Place {
     pub key: String,
 }
 
+/// What stands for the file of values from the command line.
+pub(super) const COMMAND_LINE: &str = "--set";
+
+impl Place {
+    /// Whether the value comes from the command line.
+    pub(super) fn is_override(&self) -> bool {
+        self.file == COMMAND_LINE
+    }
+}
+
 /// `file:line:column`, without the key.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -392,9 +392,27 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// Notes that a key which is there has no effect while something is switched off: it may stay for later.
+    pub(super) fn set_aside(&self, name: &str, why: &str) {
+        if let Some((entry, used)) = self.entries.iter().find(|(entry, _)| entry.name == name) {
+            used.set(true);
+            self.reader.note(Diagnostic::warning(&entry.key_place, format!("has no effect {why}")));
+        }
+    }
+
+    /// Whether `--set` gives a value of this table.
+    pub(super) fn is_overridden(&self) -> bool {
+        self.entries.iter().any(|(entry, _)| entry.node.place.is_override())
+    }
+
+    /// A key without effect is a mistake; but what the file says may stay where `--set` has switched it off.
     fn no_effect(&self, entry: &Entry, why: &str) {
-        let note = Diagnostic::error(&entry.key_place, format!("has no effect {why}"));
-        self.reader.note(note.remedy("remove it"));
+        let found = format!("has no effect {why}");
+        self.reader.note(if self.is_overridden() && !entry.node.place.is_override() {
+            Diagnostic::warning(&entry.key_place, found)
+        } else {
+            Diagnostic::error(&entry.key_place, found).remedy("remove it")
+        });
     }
 
     /// Reports the keys that nobody asked for: they have no effect, for the reason given.
@@ -485,6 +503,11 @@ impl Reading<'_, '_, f64> {
     /// Above zero.
     pub(super) fn positive(self) -> Self {
         self.check(|value| *value > 0.0, "more than 0")
+    }
+
+    /// Above zero, and within the range in which squares and quotients of such numbers stay numbers.
+    pub(super) fn physical(self) -> Self {
+        self.positive().check(|value| (1e-30..=1e30).contains(value), "from 1e-30 to 1e30 in SI units")
     }
 
     /// At least zero.

@@ -49,6 +49,9 @@ pub enum TimeFunction {
     Expression(Field),
 }
 
+/// Times and positions at which a function is looked at before a run.
+const LOOKS: usize = 1000;
+
 impl TimeFunction {
     /// Value at time `t` [s] and `position` [m].
     pub fn value(&self, t: f64, position: Vec3) -> f64 {
@@ -103,6 +106,25 @@ impl TimeFunction {
         let decay = a_tau(low) / rise;
         let scale = peak / (exp(-a_tau(low)) * -exp_m1(-low));
         Some(Self::DoubleExponential { scale, decay, rise: decay + low / rise, start })
+    }
+
+    /// A time [s] from the start of a run to its `end` [s] at which the value is not a finite number, with the position
+    /// among `positions` [m] and the value. Looks at 1,000 times, or at 10 where it differs among up to 1,000 positions.
+    pub fn not_finite(&self, end: f64, positions: &[Vec3]) -> Option<(f64, Vec3, f64)> {
+        let times = if self.depends_on_time() { LOOKS } else { 0 };
+        let positions = if self.depends_on_position() { positions } else { &[Vec3::zeros()] };
+        let stride = positions.len().div_ceil(LOOKS).max(1);
+        let stride_of_time = if positions.len() > 1 { LOOKS / 10 } else { 1 };
+        for look in (0..=times).step_by(stride_of_time) {
+            let t = end * (look as f64 / LOOKS as f64);
+            for &position in positions.iter().step_by(stride) {
+                let value = self.value(t, position);
+                if !value.is_finite() {
+                    return Some((t, position, value));
+                }
+            }
+        }
+        None
     }
 
     /// Whether the value differs from point to point.
@@ -202,6 +224,23 @@ mod tests {
             assert!(slope.abs() < 1e-6, "{slope}"); // 5 h² from the cubic term
             assert!(curvature.abs() < 20.0 * h, "{curvature}"); // 10 h
         }
+    }
+
+    #[test]
+    fn values_that_are_no_numbers_are_found_with_time_and_place() {
+        use crate::case::expression::Op;
+        let root = |input: u16| {
+            let code = vec![Op::Input(input), Op::Unary(crate::case::expression::Unary::Sqrt)];
+            TimeFunction::Expression(Field(Program::new(code).unwrap()))
+        };
+        assert_eq!(root(0).not_finite(1.0, &[]), None);
+        let (time, _, value) = root(0).not_finite(-1.0, &[]).unwrap();
+        assert!(time == -1e-3 && value.is_nan(), "the root of a negative time");
+        let points: Vec<Vec3> = (0..5000).map(|i| Vec3::x() * (2500.0 - f64::from(i))).collect();
+        assert!(root(1).not_finite(1.0, &points).is_some_and(|(_, x, _)| x.x < 0.0));
+        assert_eq!(root(1).not_finite(1.0, &points[..2500]), None);
+        let steep = TimeFunction::Ramp(vec![(0.0, -1e308), (1.0, 1e308)]);
+        assert!(steep.not_finite(1.0, &[]).is_some());
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use toml::de::{DeTable, DeValue};
 
+use super::place::COMMAND_LINE;
 use super::{Diagnostic, Place};
 
 /// A value of the document.
@@ -83,10 +84,10 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Node, Vec<Diagnostic>> {
 
 /// Reads the value of `--set key=value`: a TOML value, or else a plain string.
 pub(super) fn parse_override(key: &str, text: &str) -> Node {
-    let place = Place { file: "--set".to_string(), line: 0, column: 0, key: key.to_string() };
+    let place = Place { file: COMMAND_LINE.to_string(), line: 0, column: 0, key: key.to_string() };
     let value = match DeValue::parse(text) {
         Ok(value) => {
-            let source = Source { text, file: "--set", lines: Vec::new() };
+            let source = Source { text, file: COMMAND_LINE, lines: Vec::new() };
             source.value(value.get_ref(), key)
         }
         Err(_) => Value::Text(text.to_string()),

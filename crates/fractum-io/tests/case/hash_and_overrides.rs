@@ -37,6 +37,31 @@ fn overrides_set_parameters_and_keys() {
 }
 
 #[test]
+fn what_is_switched_off_may_keep_its_settings() {
+    let text = every_key();
+    let notices = |text: &str, overrides: &[(&str, &str)]| -> Vec<String> {
+        good(text, overrides).warnings().iter().map(|warning| warning.to_string()).collect()
+    };
+    let found = notices(&text, &[("bodies[0].damage", "false")]);
+    assert_eq!(found.len(), 2, "{found:#?}");
+    assert!(found.iter().all(|found| found.contains("warning: bodies[0].") && found.ends_with("has no effect while damage = false")));
+    let elastic = text.replacen("\ndamage = true\n", "\ndamage = false\n", 1);
+    assert_eq!(notices(&elastic, &[]).len(), 2, "the file itself may say so");
+    let pure = notices(&text, &[("materials.concrete.damage.tension_cutoff", "false")]);
+    assert_eq!(pure.len(), 2, "{pure:#?}");
+    let rankine = notices(&text, &[("materials.concrete.damage.criterion", "rankine")]);
+    assert_eq!(rankine.len(), 3, "{rankine:#?}");
+    // What the command line itself says must have an effect.
+    let set = [("materials.mortar.damage.friction_angle", "0.3")];
+    assert!(
+        parse(&text, &set)
+            .unwrap_err()
+            .to_string()
+            .contains("friction_angle has no effect with this criterion; remove it")
+    );
+}
+
+#[test]
 fn the_hash_follows_the_content() {
     let text = every_key();
     let case = good(&text, &[]);

@@ -59,6 +59,11 @@ fn each_mistake_about_a_bonded_body_has_one_clear_message() {
         ),
         (
             "size = [3, 1, 1]",
+            "size = [3, 1, 1]\ngroups = { \"a\\u0007\" = \"x > 1\" }",
+            "12:12: bodies[0].groups.a\\u{7} is a name with control characters",
+        ),
+        (
+            "size = [3, 1, 1]",
             "size = [3, 1, 1]\ndispersion = 1.2",
             "12:14: bodies[0].dispersion = 1.2; expected from 0 to 1 (0.25 is usual; packings below 0.15 tend to order)",
         ),
@@ -124,6 +129,21 @@ fn each_mistake_has_one_clear_message() {
         ("density = 7800", "densty = 7800", "5:1: materials.steel.densty is not a key; did you mean density?"),
         ("density = 7800", "", "4:1: materials.steel.density is missing; expected a density such as \"2400 kg/m^3\""),
         ("density = 7800", "density = -1", "5:11: materials.steel.density = -1; expected more than 0"),
+        (
+            "density = 7800",
+            "density = 1e-300",
+            "5:11: materials.steel.density = 1e-300; expected from 1e-30 to 1e30 in SI units",
+        ),
+        (
+            "name = \"bar\"",
+            "name = \"a\\u001b[31m\"",
+            "9:8: bodies[0].name = \"a\\u001b[31m\"; expected a text of one line without control characters",
+        ),
+        (
+            "fractum = 1",
+            "fractum = 1\ntitle = \"a\\tb\"",
+            "2:9: title = \"a\\tb\"; expected a text of one line without control characters",
+        ),
         ("density = 7800", "density = inf", "5:11: materials.steel.density = inf; expected a finite number"),
         (
             "density = 7800",

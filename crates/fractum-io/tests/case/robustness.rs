@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use crate::{every_key, leaves, parse};
+use crate::{SMALL, every_key, leaves, parse};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
@@ -49,4 +49,28 @@ proptest! {
         leaves(&toml::from_str(&text).unwrap(), "", &mut found);
         let _ = parse(&text, &[(found[index.index(found.len())].as_str(), value)]).map_err(|errors| errors.to_string());
     }
+}
+
+#[test]
+fn huge_cases_are_read_in_seconds_right_or_wrong() {
+    let many = |count: usize, entry: fn(usize) -> String| -> String {
+        SMALL.to_string() + &(0..count).map(entry).collect::<String>()
+    };
+    let start = std::time::Instant::now();
+    let probe = |i: usize| format!("[[probes]]\nname = \"p{i}\"\nreaction = {{ group = \"bar\", along = \"x\" }}\n");
+    assert_eq!(parse(&many(200_000, probe), &[]).unwrap().probes.len(), 200_000);
+    let wrong: [fn(usize) -> String; 4] = [
+        |i| format!("[[probes]]\nname = \"p{i}\"\nexpression = \"q{i}\"\n"),
+        |i| format!("[[expect]]\nquantity = \"q{i}\"\nabove = 1\nsource = \"s\"\n"),
+        |_| "[[supports]]\ngroup = \"bar\"\nname = \"n\"\nfix = \"x\"\n".to_string(),
+        |i| format!("[[bodies]]\nname = \"bar\"\nkind = \"solid\"\ngroup = \"g{i}\"\nmaterial = \"m{i}\"\n"),
+    ];
+    for entry in wrong {
+        let mistakes = parse(&many(80_000, entry), &[]).unwrap_err().0;
+        assert_eq!(mistakes.len(), 101, "the first hundred, and how many more");
+        assert!(mistakes[100].found.ends_with("further mistakes are not listed"), "{}", mistakes[100]);
+    }
+    let syntax = parse(&many(80_000, |i| format!("a{i} = = 1\n")), &[]).unwrap_err().0;
+    assert_eq!(syntax.len(), 101);
+    assert!(start.elapsed().as_secs() < 100, "{:?}", start.elapsed());
 }

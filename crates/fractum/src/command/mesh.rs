@@ -1,11 +1,14 @@
 //! `fractum mesh info` and `fractum mesh convert`.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Subcommand, ValueEnum};
 use fractum::{ExitCode, Failure, say};
-use fractum_mesh::{Mesh, MshFormat, read_msh, write_msh};
+use fractum_io::case::printable;
+use fractum_mesh::{Group, Mesh, MshFormat, read_msh, write_msh};
+use serde_json::{Value, json};
 
 #[derive(Subcommand)]
 pub(crate) enum MeshCommand {
@@ -45,8 +48,10 @@ impl From<Target> for MshFormat {
     }
 }
 
-pub(crate) fn execute(command: MeshCommand) -> Result<ExitCode, Failure> {
+/// - `json`: the information as one JSON value
+pub(crate) fn execute(command: MeshCommand, json: bool) -> Result<ExitCode, Failure> {
     match command {
+        MeshCommand::Info { file } if json => say!("{}", json_info(&file, &read(&file)?)),
         MeshCommand::Info { file } => info(&file, &read(&file)?),
         MeshCommand::Convert { file, output, to } => {
             let mesh = read(&file)?;
@@ -62,16 +67,35 @@ fn read(file: &Path) -> Result<Mesh, Failure> {
     read_msh(&bytes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
 }
 
-fn info(file: &Path, mesh: &Mesh) {
-    say!("{}: {} nodes", file.display(), mesh.nodes.len());
-    let kinds = [
+/// Kinds of elements with their numbers.
+fn element_counts(mesh: &Mesh) -> [(&'static str, usize); 5] {
+    [
         ("points", mesh.points.len()),
         ("lines", mesh.lines.len()),
         ("triangles", mesh.triangles.len()),
         ("quadrilaterals", mesh.quads.len()),
         ("tetrahedra", mesh.tetrahedra.len()),
-    ];
-    for (name, count) in kinds.iter().filter(|(_, count)| *count > 0) {
+    ]
+}
+
+fn json_info(file: &Path, mesh: &Mesh) -> Value {
+    let (low, high) = mesh.bounding_box();
+    let group = |group: &Group| json!({ "name": group.name, "dimension": group.dimension, "tag": group.tag, "elements": group.element_count() });
+    json!({
+        "file": file.display().to_string(),
+        "nodes": mesh.nodes.len(),
+        "elements": BTreeMap::from(element_counts(mesh)),
+        "lower": low.as_slice(),
+        "upper": high.as_slice(),
+        "groups": mesh.groups.iter().map(group).collect::<Vec<_>>(),
+        "notices": mesh.notices,
+    })
+}
+
+/// Names of groups come from the mesh: no terminal must obey them.
+fn info(file: &Path, mesh: &Mesh) {
+    say!("{}: {} nodes", printable(&file.display().to_string()), mesh.nodes.len());
+    for (name, count) in element_counts(mesh).iter().filter(|(_, count)| *count > 0) {
         say!("  {count:>9} {name}");
     }
     let (low, high) = mesh.bounding_box();
@@ -79,13 +103,13 @@ fn info(file: &Path, mesh: &Mesh) {
     for group in &mesh.groups {
         say!(
             "  group \"{}\" (dimension {}, tag {}): {} elements",
-            group.name,
+            printable(&group.name),
             group.dimension,
             group.tag,
             group.element_count()
         );
     }
     for notice in &mesh.notices {
-        say!("  {notice}");
+        say!("  {}", printable(&notice.to_string()));
     }
 }

@@ -23,7 +23,7 @@ use fractum_io::summary::{Fracture, Status};
 pub(crate) struct Arguments {
     #[command(subcommand)]
     command: Command,
-    /// How errors are written to stderr.
+    /// How errors are written to stderr, and the answer of `mesh info` to stdout.
     #[arg(long, global = true, value_enum, default_value = "text")]
     format: Format,
 }
@@ -153,7 +153,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
                 }
             })
         }
-        Command::Mesh { command } => mesh::execute(command),
+        Command::Mesh { command } => mesh::execute(command, json),
         Command::Report { folder } => fractum::report::write(&folder).map(|()| ExitCode::Done),
         Command::Pack(arguments) => pack::run(&arguments),
         Command::Lab { command } => lab::run(&command),

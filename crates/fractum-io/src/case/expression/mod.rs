@@ -12,8 +12,9 @@ mod types;
 mod units;
 
 pub(crate) use compile::{Compiled, compile, functions};
-pub(crate) use program::Op;
-pub(crate) use program::Program;
+#[cfg(test)]
+pub(crate) use program::Unary;
+pub(crate) use program::{Op, Program};
 pub(crate) use types::{Named, Names, NoNames, Type};
 pub(crate) use units::parse_unit;
 

@@ -2,7 +2,7 @@
 
 use fractum_dem::criterion::EndMoments;
 use fractum_math::Vec3;
-use fractum_pack::Convention;
+use fractum_pack::{Convention, Domain};
 
 use crate::case::choice::choice;
 use crate::case::{Field, Spanned};
@@ -26,6 +26,20 @@ pub struct BondedBody {
     pub groups: Vec<(Spanned<String>, Field)>,
     /// Initial velocity [m/s] along x, y, z; `None` = at rest.
     pub initial_velocity: [Option<Field>; 3],
+}
+
+impl BondedBody {
+    /// Names of the sets of its particles at the walls; unknown for a packing made before.
+    pub fn wall_names(&self) -> Option<&'static [&'static str]> {
+        let PackingSource::Shape { shape, .. } = &self.packing else { return None };
+        Some(match shape.value {
+            _ if self.replaces.is_some() => Domain::SURFACE_WALLS,
+            BondedShape::Box { .. } => Domain::BOX_WALLS,
+            BondedShape::Cylinder { .. } => Domain::CYLINDER_WALLS,
+            BondedShape::Sphere { .. } => Domain::SPHERE_WALLS,
+            BondedShape::Group(_) | BondedShape::Stl { .. } => Domain::SURFACE_WALLS,
+        })
+    }
 }
 
 /// Where the particles of a bonded body come from.

@@ -116,6 +116,8 @@ pub struct Solver {
     pub place: Place,
     /// End of the run [s], > 0.
     pub end: f64,
+    /// Where its end is written.
+    pub end_place: Place,
     /// Factor on the stable step [-], within 0..=2.
     pub safety: f64,
     /// How the stable step is found.

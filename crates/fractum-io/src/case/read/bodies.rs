@@ -113,9 +113,12 @@ fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut
         table.refuse("damage", "without damage in its material");
     }
     let damage = may_damage.unwrap_or(false) && table.flag("damage").or(true);
-    if may_damage.is_some() && !damage {
-        table.refuse("damage_where", "without damage");
-        table.refuse("strength_factor", "without damage");
+    for key in ["damage_where", "strength_factor"] {
+        match may_damage {
+            Some(true) if !damage => table.set_aside(key, "while damage = false"),
+            Some(false) => table.refuse(key, "without damage"),
+            _ => {}
+        }
     }
     let damage_where = optional(table, "damage_where", |name| condition(table, name).spanned().given());
     let strength_factor = optional(table, "strength_factor", |name| {

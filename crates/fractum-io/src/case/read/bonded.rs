@@ -182,7 +182,7 @@ pub(super) fn bonds(table: Table<'_>) -> Option<Bonds> {
     let coordination = table.quantity("coordination").between(2.0, 40.0).required();
     let convention = table.choice("convention").required();
     let radius_ratio = table.quantity("radius_ratio").between(0.0, 2.0).required();
-    let young_modulus = table.quantity("young_modulus").positive().required();
+    let young_modulus = table.quantity("young_modulus").physical().required();
     table.finish("here");
     Some(Bonds {
         coordination: coordination?,

@@ -19,8 +19,8 @@ pub(super) fn read(root: &Table<'_>) -> Vec<(String, Option<Material>)> {
 }
 
 fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
-    let density = table.quantity("density").positive().required();
-    let young_modulus = table.quantity("young_modulus").positive().required();
+    let density = table.quantity("density").physical().required();
+    let young_modulus = table.quantity("young_modulus").physical().required();
     let poisson_ratio = table.quantity("poisson_ratio").between(-1.0, 0.5).required();
     let damage = table.table("damage").map(|table| {
         let place = table.place.clone();
@@ -66,8 +66,8 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
         let note = Diagnostic::warning(&node.place, node.found());
         table.reader.note(note.remedy("pure Mohr-Coulomb loses about a fifth of the strength in Brazilian tests"));
     }
-    let tensile_strength = table.quantity("tensile_strength").positive().required();
-    let fracture_energy = table.quantity("fracture_energy").positive().required();
+    let tensile_strength = table.quantity("tensile_strength").physical().required();
+    let fracture_energy = table.quantity("fracture_energy").physical().required();
     let friction_angle = if criterion.uses_friction_angle() {
         read_friction_angle(&table)
     } else {
@@ -203,7 +203,7 @@ fn scatter(table: Table<'_>) -> Option<Scatter> {
 
 /// Young's modulus of contacts; `Some(None)` where nothing is said.
 fn contact_modulus(parent: &Table<'_>) -> Option<Option<f64>> {
-    parent.table_or_empty("contact").quantity("young_modulus").positive().map(Some).or_if_absent(None)
+    parent.table_or_empty("contact").quantity("young_modulus").physical().map(Some).or_if_absent(None)
 }
 
 /// The `contact` table of a material or tool.

@@ -33,6 +33,9 @@ pub(super) fn read(root: &Table<'_>) -> BTreeMap<String, f64> {
 
 /// Notes a name that an expression could not use.
 pub(super) fn check_name(reader: &Reader, name: &str, place: &Place) {
+    if name.contains(char::is_control) {
+        return; // noted where the name was read
+    }
     let starts_well = name.starts_with(|c: char| c.is_alphabetic() || c == '_');
     if !starts_well || !name.chars().all(|c| c.is_alphanumeric() || c == '_') {
         let note = Diagnostic::error(place, "is not a name an expression can use");

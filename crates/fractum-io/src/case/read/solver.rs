@@ -25,8 +25,11 @@ pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>) -> Damping {
         })
     };
     if is("kind", "static") && !is("no_equilibrium", "motion") {
+        let switched = matches!(root.peek("solver").map(|node| &node.value), Some(Value::Table(entries))
+            if entries.iter().any(|entry| entry.name == "kind" && entry.node.place.is_override()));
         for key in ["local", "mass", "stiffness", "bulk_linear", "bulk_quadratic", "tchamwa_wielgosz"] {
-            table.refuse(key, "with solver.kind = \"static\", where nothing moves fast");
+            let why = "with solver.kind = \"static\", where nothing moves fast";
+            if switched { table.set_aside(key, why) } else { table.refuse(key, why) }
         }
     } else if bodies.is_some_and(|bodies| !bodies.iter().any(is_of_particles)) {
         table.refuse("tchamwa_wielgosz", "where no body is made of particles");
@@ -55,6 +58,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     let kind = table.choice("kind").or_if_absent(SolverKind::Explicit);
     let place = table.peek("kind").map_or_else(|| table.place_of("kind"), |node| node.place.clone());
     let end = table.quantity("end").positive().required();
+    let end_place = table.place_below("end");
     let is_static = kind == Some(SolverKind::Static);
     let statics = match kind {
         Some(SolverKind::Static | SolverKind::Auto) => statics(&table, bodies).map(Some),
@@ -104,6 +108,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         kind: kind?,
         place,
         end: end?,
+        end_place,
         safety,
         time_step,
         step,

@@ -1,0 +1,198 @@
+//! What needs no particles is checked before they are made: packing a body may take minutes.
+
+use std::collections::HashMap;
+
+use fractum_math::Vec3;
+use fractum_scene::Scene;
+
+use super::Context;
+use crate::case::model::{Body, BodyKind, LoadKind, Motion, ProbeKind, Selection, SolverKind};
+use crate::case::{Diagnostic, Spanned, TimeFunction, nearest};
+use crate::number::quantity;
+
+/// Steps that a run can count without losing time to rounding.
+const MOST_STEPS: f64 = 1e15;
+
+impl Context<'_> {
+    /// Checks what case and mesh tell by themselves.
+    pub(super) fn check_before_particles(&mut self) {
+        self.check_groups();
+        self.check_particle_sets();
+        self.check_time_functions();
+        self.check_bonded_statics();
+    }
+
+    /// Every group that the case names must be in the mesh, with elements.
+    fn check_groups(&mut self) {
+        let names = self.mesh.group_names();
+        let mut empty: HashMap<&str, bool> = HashMap::new();
+        for (group, _) in self.case.groups_used() {
+            if names.contains(&group.value.as_str()) {
+                let nodes = || self.mesh.group_nodes(&group.value);
+                if *empty.entry(&group.value).or_insert_with(|| nodes().is_empty()) {
+                    self.error(&group.place, format!("= \"{}\"", group.value), "the group has no elements in the mesh");
+                }
+                continue;
+            }
+            let list = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            let mut diagnostic =
+                Diagnostic::error(&group.place, format!("= \"{}\"", group.value)).expected(match &self.case.mesh {
+                    Some(mesh) => format!("a physical group of {}; groups there: {list}", mesh.file.value.display()),
+                    None => "a set of particles of a bonded body, BODY or BODY.SET; the case has no mesh".to_owned(),
+                });
+            if let Some(near) = nearest(&group.value, names.iter().copied()) {
+                diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
+            }
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Sets of particles must be walls of their bodies or named there; a packing made before tells its walls only when
+    /// it is read.
+    fn check_particle_sets(&mut self) {
+        let case = self.case;
+        let mut named: Vec<&Selection> = case.supports.iter().map(|support| &support.on).collect();
+        for load in &case.loads {
+            match &load.kind {
+                LoadKind::Force { on, .. } => named.push(on),
+                LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } if self.names_particles(on) => {
+                    let Some(group) = &on.group else { continue };
+                    let diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value));
+                    let diagnostic = diagnostic.expected("a mesh group of facets; particles have none");
+                    self.diagnostics.push(diagnostic.remedy("use force, which is shared over the set"));
+                }
+                _ => {}
+            }
+        }
+        named.extend(case.probes.iter().filter_map(|probe| match &probe.kind {
+            ProbeKind::Reaction { on, .. }
+            | ProbeKind::Displacement { on, .. }
+            | ProbeKind::Velocity { on, .. }
+            | ProbeKind::Rotation { on, .. } => Some(on),
+            _ => None,
+        }));
+        let groups = named.into_iter().filter_map(|on| on.group.as_ref());
+        let groups = groups.chain(case.ties.iter().map(|tie| &tie.bonded));
+        for group in groups {
+            let Some((body, Some(set))) = case.particle_group(&group.value) else { continue };
+            let (walls, groups) = match &case.bodies[body].kind {
+                BodyKind::Bonded(own) => (own.wall_names(), &own.groups),
+                BodyKind::Particles(own) => (Some(&[][..]), &own.groups),
+                _ => continue,
+            };
+            let Some(walls) = walls else { continue };
+            let known: Vec<&str> =
+                walls.iter().copied().chain(groups.iter().map(|(name, _)| name.value.as_str())).collect();
+            if !known.contains(&set) {
+                self.unknown_set(group, &case.bodies[body].name.value, set, &known);
+            }
+        }
+    }
+
+    /// Notes a set that a body of particles does not have.
+    pub(super) fn unknown_set(&mut self, group: &Spanned<String>, body: &str, set: &str, known: &[&str]) {
+        let list: Vec<String> = known.iter().map(|set| format!("{body}.{set}")).collect();
+        let mut diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value))
+            .expected(format!("a set of particles of \"{body}\": {body}, {}", list.join(", ")));
+        if let Some(near) = nearest(set, known.iter().copied()) {
+            diagnostic = diagnostic.remedy(format!("did you mean \"{body}.{near}\"?"));
+        }
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// Loads and motions must be finite numbers during the whole run, on the nodes that they act on.
+    fn check_time_functions(&mut self) {
+        let case = self.case;
+        let mut functions: Vec<(&Spanned<TimeFunction>, Option<&Selection>)> = Vec::new();
+        for load in &case.loads {
+            match &load.kind {
+                LoadKind::Force { on, force: components } | LoadKind::Traction { on, traction: components } => {
+                    functions.extend(components.iter().flatten().map(|f| (f, Some(on))));
+                }
+                LoadKind::Pressure { on, pressure } => functions.push((pressure, Some(on))),
+                LoadKind::Gravity { acceleration } => {
+                    functions.extend(acceleration.iter().flatten().map(|f| (f, None)))
+                }
+            }
+        }
+        for body in &case.bodies {
+            if let BodyKind::Rigid(rigid) = &body.kind {
+                let all = rigid.velocity.iter().chain(&rigid.spin).chain(&rigid.force);
+                functions.extend(all.flatten().map(|f| (f, None)));
+            }
+        }
+        for (function, on) in functions {
+            self.check_function(&function.value, function, on);
+        }
+        for support in &case.supports {
+            for motion in support.motion.iter().flatten() {
+                if let Motion::Velocity(function) | Motion::Displacement(function) = &motion.value {
+                    self.check_function(function, motion, Some(&support.on));
+                }
+            }
+        }
+    }
+
+    fn check_function<T>(&mut self, function: &TimeFunction, written: &Spanned<T>, on: Option<&Selection>) {
+        let mut positions: Vec<Vec3> = Vec::new();
+        if let Some(on) = on.filter(|_| function.depends_on_position()) {
+            let all = || (0..self.mesh.nodes.len() as u32).collect();
+            let nodes = on.group.as_ref().map_or_else(all, |group| self.mesh.group_nodes(&group.value));
+            positions.extend(nodes.into_iter().map(|n| self.mesh.nodes[n as usize]));
+            positions.retain(|x| on.within.as_ref().is_none_or(|within| within.value.holds_at(*x)));
+        }
+        let Some((time, x, value)) = function.not_finite(self.case.solver.end, &positions) else { return };
+        let at = if function.depends_on_position() {
+            format!(", ({:.4e}, {:.4e}, {:.4e}) m", x.x, x.y, x.z)
+        } else {
+            String::new()
+        };
+        let found = format!("is {value} at t = {}{at}", quantity(time, "s"));
+        self.error(&written.place, found, "a finite number during the whole run");
+    }
+
+    /// What a bonded body at rest cannot have.
+    fn check_bonded_statics(&mut self) {
+        let solver = &self.case.solver;
+        let Some(options) = solver.statics.as_ref().filter(|_| solver.kind == SolverKind::Static) else { return };
+        let [Body { kind: BodyKind::Bonded(body), .. }] = self.case.bodies.as_slice() else { return };
+        let place = solver.place.clone();
+        let found = |what: &str| format!("= \"static\" with a bonded body and {what}");
+        if options.control.is_some() || solver.step.is_some() {
+            let expected = "no control and no step: the load goes straight from break to break";
+            self.error(&place, found("solver.control or solver.step"), expected);
+        }
+        if !self.case.loads.is_empty() {
+            let expected = "supports only, which move in proportion to time; or kind = \"explicit\"";
+            self.error(&place, found("[[loads]]"), expected);
+        }
+        if body.initial_velocity.iter().any(Option::is_some) {
+            self.error(&place, found("initial_velocity"), "a body at rest; or kind = \"explicit\"");
+        }
+    }
+
+    /// The time step of a scene in motion must be stable, and reach the end of the run.
+    pub(super) fn check_time_step(&mut self, scene: &Scene, warnings: &mut Vec<Diagnostic>) {
+        let (solver, stable, dt) = (&self.case.solver, scene.stable_dt(), scene.clock.dt_after);
+        if !stable.is_normal() {
+            let place = self.case.bodies[0].name.place.clone();
+            let found = format!("= \"{}\": the stable time step is {stable} s", self.case.bodies[0].name.value);
+            return self.error(&place, found, "materials, sizes and masses of a real body");
+        }
+        if let Some(step) = solver.step.as_ref().filter(|step| step.value > stable) {
+            let stable = quantity(stable, "s");
+            let found = format!("= {} is above the stable step {stable}", quantity(step.value, "s"));
+            let remedy = "lower it, or leave it out: solver.safety times the stable step is taken then";
+            if step.value > 2.0 * scene.stable_dt() {
+                self.diagnostics.push(Diagnostic::error(&step.place, found).remedy(remedy));
+                return;
+            }
+            warnings.push(Diagnostic::warning(&step.place, found).remedy(remedy));
+        }
+        let steps = solver.end / dt;
+        if steps.is_nan() || steps > MOST_STEPS {
+            let found = format!("= {} needs {steps:.1e} steps of {}", quantity(solver.end, "s"), quantity(dt, "s"));
+            self.error(&solver.end_place.clone(), found, format!("an end within {MOST_STEPS:e} steps"));
+        }
+    }
+}
