@@ -71,4 +71,7 @@ pub enum DemError {
         /// Relative residual asked.
         asked: f64,
     },
+    /// [`Tolerance::stop`](crate::Tolerance::stop) asked for it.
+    #[error("the search for equilibrium was interrupted")]
+    Interrupted,
 }

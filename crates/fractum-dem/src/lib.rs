@@ -41,5 +41,5 @@ pub use measure::{Piece, crack_shape, pieces, strain, stress};
 pub use particles::{CentralDifference, ParticleDamping, Particles, PastForces, TimeStep};
 pub use statics::{
     Batch, Breaking, BreakingOutcome, CriticalLoad, Dof6, Equilibrium, Lattice, LatticeSupports, LoadPoint, LoadStage,
-    QuasiStatic, StaticBody, Tolerance, highest_frequency, quasi_static,
+    QuasiStatic, QuasiStaticState, StaticBody, Tolerance, highest_frequency, quasi_static,
 };

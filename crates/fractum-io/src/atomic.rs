@@ -6,8 +6,10 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
 
 use crate::error::WriteError;
 
@@ -50,12 +52,21 @@ pub fn write_with(path: &Path, content: impl FnOnce(&mut BufWriter<File>) -> io:
     })
 }
 
+/// What a growing file held at a moment: kept with a saved state, and checked when a run goes on from it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Written {
+    /// Bytes.
+    pub length: u64,
+    /// Their CRC-32.
+    pub checksum: u32,
+}
+
 /// A file that grows with the run: `NAME.part` until [`finish`](GrowingFile::finish) gives it its name.
 #[derive(Debug)]
 pub struct GrowingFile {
     path: PathBuf,
     file: File,
-    length: u64,
+    written: Written,
 }
 
 impl GrowingFile {
@@ -65,15 +76,17 @@ impl GrowingFile {
     /// [`WriteError`] where it cannot be created.
     pub fn create(path: &Path) -> Result<Self, WriteError> {
         let file = File::create(unfinished_name(path)).map_err(|error| WriteError::new(path, error))?;
-        Ok(Self { path: path.to_path_buf(), file, length: 0 })
+        Ok(Self { path: path.to_path_buf(), file, written: Written::default() })
     }
 
-    /// Goes on with the file that had `length` bytes when the state was saved; what was written after that is cut off.
+    /// Goes on with the file that held `written` when the state was saved; what was written after that is cut off.
     /// Takes `NAME.part`, or else the finished `NAME`, which becomes unfinished again.
     ///
     /// # Errors
-    /// [`WriteError::Shortened`] if the file is absent or shorter than `length`; else as the operating system says.
-    pub fn resume(path: &Path, length: u64) -> Result<Self, WriteError> {
+    /// [`WriteError::Shortened`] if the file is absent or shorter, [`WriteError::Damaged`] if its bytes are others; else as
+    /// the operating system says.
+    pub fn resume(path: &Path, written: Written) -> Result<Self, WriteError> {
+        let length = written.length;
         let unfinished = unfinished_name(path);
         let shortened = |found| WriteError::Shortened { path: path.to_path_buf(), found, expected: length };
         let source: &Path = if unfinished.exists() { &unfinished } else { path };
@@ -85,6 +98,9 @@ impl GrowingFile {
         if found < length {
             return Err(shortened(found));
         }
+        if checksum(source, length).map_err(|error| WriteError::new(path, error))? != written.checksum {
+            return Err(WriteError::Damaged { path: source.to_path_buf() });
+        }
         let open = || {
             if source != unfinished {
                 rename(source, &unfinished)?;
@@ -95,7 +111,7 @@ impl GrowingFile {
             Ok(file)
         };
         let file = open().map_err(|error| WriteError::new(path, error))?;
-        Ok(Self { path: path.to_path_buf(), file, length })
+        Ok(Self { path: path.to_path_buf(), file, written })
     }
 
     /// The name that the finished file will have.
@@ -110,22 +126,25 @@ impl GrowingFile {
     /// [`WriteError`]; part of `bytes` may then be in the file.
     pub fn append(&mut self, bytes: &[u8]) -> Result<(), WriteError> {
         self.file.write_all(bytes).map_err(|error| WriteError::new(&self.path, error))?;
-        self.length += bytes.len() as u64;
+        let Written { length, checksum } = self.written;
+        let mut hasher = crc32fast::Hasher::new_with_initial(checksum);
+        hasher.update(bytes);
+        self.written = Written { length: length + bytes.len() as u64, checksum: hasher.finalize() };
         Ok(())
     }
 
-    /// The bytes appended so far, those before a resume included.
-    pub fn length(&self) -> u64 {
-        self.length
+    /// What was appended so far, before a resume included.
+    pub fn written(&self) -> Written {
+        self.written
     }
 
-    /// Brings everything to the disk and returns the length [bytes] to be kept with the saved state.
+    /// Brings everything to the disk and returns what is to be kept with the saved state.
     ///
     /// # Errors
     /// [`WriteError`] where the disk refuses.
-    pub fn sync(&mut self) -> Result<u64, WriteError> {
+    pub fn sync(&mut self) -> Result<Written, WriteError> {
         self.file.sync_data().map_err(|error| WriteError::new(&self.path, error))?;
-        Ok(self.length)
+        Ok(self.written)
     }
 
     /// Brings everything to the disk and gives the file its name.
@@ -135,6 +154,21 @@ impl GrowingFile {
     pub fn finish(self) -> Result<(), WriteError> {
         let done = self.file.sync_all().and_then(|()| rename(&unfinished_name(&self.path), &self.path));
         done.map_err(|error| WriteError::new(&self.path, error))
+    }
+}
+
+/// CRC-32 of the first bytes of a file.
+fn checksum(path: &Path, length: u64) -> io::Result<u32> {
+    let mut rest = BufReader::with_capacity(1 << 18, File::open(path)?.take(length));
+    let mut hasher = crc32fast::Hasher::new();
+    loop {
+        let bytes = rest.fill_buf()?;
+        if bytes.is_empty() {
+            return Ok(hasher.finalize());
+        }
+        hasher.update(bytes);
+        let count = bytes.len();
+        rest.consume(count);
     }
 }
 
@@ -226,7 +260,7 @@ mod tests {
         let mut file = GrowingFile::create(&path).unwrap();
         file.append(b"one\n").unwrap();
         assert_eq!(names(folder.path()), ["history.csv.part"]);
-        assert_eq!(file.sync().unwrap(), 4);
+        assert_eq!(file.sync().unwrap().length, 4);
         file.finish().unwrap();
         assert_eq!(names(folder.path()), ["history.csv"]);
     }
@@ -237,32 +271,37 @@ mod tests {
         let path = folder.path().join("history.csv");
         let mut file = GrowingFile::create(&path).unwrap();
         file.append(b"one\n").unwrap();
-        let saved = file.length();
+        let saved = file.written();
         file.append(b"lost\n").unwrap();
         drop(file);
         let mut file = GrowingFile::resume(&path, saved).unwrap();
         file.append(b"two\n").unwrap();
+        let saved = file.written();
         file.finish().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"one\ntwo\n");
 
         // Finished after an interrupt, then taken up again.
-        let mut file = GrowingFile::resume(&path, 8).unwrap();
+        let mut file = GrowingFile::resume(&path, saved).unwrap();
         assert_eq!(names(folder.path()), ["history.csv.part"]);
         file.append(b"three\n").unwrap();
-        assert_eq!(file.length(), 14);
+        assert_eq!(file.written(), Written { length: 14, checksum: crc32fast::hash(b"one\ntwo\nthree\n") });
         file.finish().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"one\ntwo\nthree\n");
     }
 
     #[test]
-    fn resuming_a_shortened_or_absent_file_is_refused() {
+    fn resuming_a_shortened_damaged_or_absent_file_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
-        let error = GrowingFile::resume(&path, 5).unwrap_err();
+        let saved = Written { length: 5, checksum: crc32fast::hash(b"abcde") };
+        let error = GrowingFile::resume(&path, saved).unwrap_err();
         assert!(matches!(error, WriteError::Shortened { found: 0, expected: 5, .. }), "{error}");
         write(&path, b"abc").unwrap();
-        let error = GrowingFile::resume(&path, 5).unwrap_err();
+        let error = GrowingFile::resume(&path, saved).unwrap_err();
         assert!(matches!(error, WriteError::Shortened { found: 3, expected: 5, .. }), "{error}");
+        write(&path, b"abXdefg").unwrap();
+        let error = GrowingFile::resume(&path, saved).unwrap_err();
+        assert!(matches!(error, WriteError::Damaged { .. }), "{error}");
         assert_eq!(names(folder.path()), ["history.csv"]);
     }
 }

@@ -85,6 +85,15 @@ pub enum WriteError {
         /// Its length when the state was saved [bytes].
         expected: u64,
     },
+    /// A growing file holds other bytes than when the state to resume from was saved.
+    #[error(
+        "{}: it was changed or damaged since the state was saved; restore the file or start the run again without --resume",
+        path.display()
+    )]
+    Damaged {
+        /// The growing file.
+        path: PathBuf,
+    },
     /// Anything else the operating system refuses.
     #[error("{}: cannot be written: {source}; check the disk, then try again or choose another folder with -o", path.display())]
     Other {
@@ -121,6 +130,7 @@ impl WriteError {
             | Self::MissingFolder { path, .. }
             | Self::NameTaken { path, .. }
             | Self::Shortened { path, .. }
+            | Self::Damaged { path }
             | Self::Other { path, .. } => path,
         }
     }

@@ -104,6 +104,14 @@ pub enum StepError {
         /// Why.
         error: fractum_dem::DemError,
     },
+    /// The user asked for the end of the run within a step at rest.
+    #[error("step {step}, t = {time:.6e} s: interrupted before the next equilibrium was found")]
+    Interrupted {
+        /// Step number.
+        step: u64,
+        /// Load parameter of the last equilibrium [s].
+        time: f64,
+    },
     /// A piece is held by nothing any more.
     #[error(
         "step {step}, t = {time:.6e} s: the stiffness is singular near ({x:.4e}, {y:.4e}, {z:.4e}) m: a piece has come loose; end the run before with \

@@ -33,5 +33,5 @@ pub use fragment::{Fragment, fragments};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use probe::{Population, Probe};
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
-pub use statics::{BondedStaticSettings, BondedStatics};
+pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::{Phase, StepReport};

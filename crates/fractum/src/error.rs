@@ -48,6 +48,9 @@ pub enum Failure {
     /// Threads could not be started.
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
+    /// The user ended it.
+    #[error("interrupted")]
+    Interrupted,
     /// A quantity of the case did not meet its reference.
     #[error("{0}")]
     Unmet(String),
@@ -70,6 +73,7 @@ impl Failure {
         match self {
             Failure::Input(_) | Failure::Unmet(_) => ExitCode::Input,
             Failure::Stopped { .. } => ExitCode::Stopped,
+            Failure::Interrupted => ExitCode::Interrupted,
             Failure::Write(WriteError::Busy { .. }) => ExitCode::Input,
             Failure::Checkpoint(CheckpointError::Write(_) | CheckpointError::TooLarge { .. }) => ExitCode::Machine,
             Failure::Checkpoint(_) => ExitCode::Input,

@@ -4,6 +4,13 @@ mod command;
 
 use clap::Parser;
 
+/// Ctrl-C and SIGTERM: a simulation saves its state and ends; anything else, and a second signal, ends the program at once.
+fn end_on_signal() {
+    if !fractum::interrupt() {
+        std::process::exit(fractum::ExitCode::Interrupted as i32);
+    }
+}
+
 fn main() {
     let arguments = match command::Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -14,7 +21,7 @@ fn main() {
             std::process::exit(code as i32);
         }
     };
-    let code = match ctrlc::set_handler(fractum::run::interrupt) {
+    let code = match ctrlc::set_handler(end_on_signal) {
         Ok(()) => command::execute(arguments),
         Err(error) => {
             fractum::tell!("the handler for Ctrl-C could not be set: {error}");

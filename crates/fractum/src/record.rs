@@ -1,8 +1,10 @@
 //! What a run leaves behind: history, fields, particles, pictures of numbers over time.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use fractum_io::Compression;
+use fractum_io::atomic::Written;
 use fractum_io::case::model::{Case, ProbeExpression, ProbeInput, ProbeKind, Take};
 use fractum_io::history::{Column, History};
 use fractum_io::vtk::{CellBlock, CellKind, Collection, Field, PolyCells, PolyData, UnstructuredGrid, Values};
@@ -50,7 +52,7 @@ pub(crate) struct RecordState {
     /// Rows and frames written so far.
     rows: u64,
     frames: u64,
-    history_length: u64,
+    history: Written,
     collection: Vec<(f64, u32, String, String)>,
     /// Time of each row [s].
     pub(crate) times: Vec<f64>,
@@ -59,17 +61,17 @@ pub(crate) struct RecordState {
 }
 
 /// Writes the results of a run while it goes.
-pub(crate) struct Recorder<'a> {
-    case: &'a Case,
-    probes: &'a [Option<fractum_scene::Probe>],
+pub(crate) struct Recorder {
+    case: Arc<Case>,
+    probes: Vec<Option<fractum_scene::Probe>>,
     folder: PathBuf,
     history: History,
     collection: Collection,
     state: RecordState,
     grid: GridLayout,
     inputs: Vec<f64>,
-    /// Whether the rows that follow are of motion; none where that is no question.
-    in_motion: Option<bool>,
+    /// Whether rows tell rest from motion.
+    tells_motion: bool,
 }
 
 /// The mesh of the solids as VTK wants it, in the order of the file.
@@ -98,12 +100,12 @@ impl GridLayout {
     }
 }
 
-impl<'a> Recorder<'a> {
+impl Recorder {
     /// Starts recording, or goes on where `resumed` stood.
     pub(crate) fn open(
-        case: &'a Case,
+        case: Arc<Case>,
         scene: &Scene,
-        probes: &'a [Option<fractum_scene::Probe>],
+        probes: Vec<Option<fractum_scene::Probe>>,
         file_order: &[u32],
         folder: &Path,
         resumed: Option<RecordState>,
@@ -123,7 +125,7 @@ impl<'a> Recorder<'a> {
         let columns: Vec<Column> = columns.iter().cloned().chain(of_probes).collect();
         let path = folder.join("history.csv");
         let (history, state) = match resumed {
-            Some(state) => (History::resume(&path, &columns, state.history_length)?, state),
+            Some(state) => (History::resume(&path, &columns, state.history)?, state),
             None => {
                 let series = vec![Vec::new(); case.probes.len()];
                 (History::create(&path, &columns)?, RecordState { series, ..RecordState::default() })
@@ -143,7 +145,7 @@ impl<'a> Recorder<'a> {
             grid: GridLayout::new(scene, file_order),
             state,
             inputs: Vec::new(),
-            in_motion: hands_over.then_some(true),
+            tells_motion: hands_over,
         })
     }
 
@@ -162,13 +164,10 @@ impl<'a> Recorder<'a> {
         &self.state
     }
 
-    /// Says whether the rows that follow are of motion; of no effect where the case does not ask for both.
-    pub(crate) fn set_in_motion(&mut self, moves: bool) {
-        self.in_motion = self.in_motion.map(|_| moves);
-    }
-
     /// Adds a row for the instant `time` that the last step measured.
-    pub(crate) fn row(&mut self, scene: &Scene, time: f64, dt: f64) -> Result<(), Failure> {
+    ///
+    /// - `in_motion`: whether the scene moved then; written where the case may be at rest and in motion
+    pub(crate) fn row(&mut self, scene: &Scene, time: f64, dt: f64, in_motion: bool) -> Result<(), Failure> {
         let ledger = scene.ledger();
         let counts = scene.counts();
         let mut row = vec![time, dt];
@@ -178,10 +177,11 @@ impl<'a> Recorder<'a> {
             row.extend(parts_of_bonds().map(|kind| ledger[kind]));
             row.push(counts.broken_bonds as f64);
         }
-        row.extend(self.in_motion.map(|moves| f64::from(u8::from(moves))));
+        row.extend(self.tells_motion.then_some(f64::from(u8::from(in_motion))));
         self.state.times.push(time);
-        for index in 0..self.case.probes.len() {
-            let value = match (&self.case.probes[index].kind, &self.probes[index]) {
+        let case = Arc::clone(&self.case);
+        for index in 0..case.probes.len() {
+            let value = match (&case.probes[index].kind, &self.probes[index]) {
                 (_, Some(probe)) => probe.value(scene),
                 (ProbeKind::Expression(expression), None) if !expression.scalar => self.expression(expression),
                 _ => continue,
@@ -322,7 +322,7 @@ impl<'a> Recorder<'a> {
 
     /// Brings the rows to the disk; the state that a checkpoint keeps.
     pub(crate) fn sync(&mut self) -> Result<RecordState, Failure> {
-        self.state.history_length = self.history.sync()?;
+        self.state.history = self.history.sync()?;
         Ok(self.state.clone())
     }
 

@@ -7,10 +7,11 @@ use std::time::Instant;
 use fractum_io::case::read_case;
 use fractum_io::expectation::{Expectation, Verified};
 use fractum_io::number::quantity;
-use fractum_io::summary::write_verify;
+use fractum_io::summary::{Status, write_verify};
 
 use crate::error::Failure;
-use crate::run::{Options, run};
+use crate::run::run;
+use crate::simulation::Options;
 use crate::{say, tell};
 use fractum_prepare::Cache;
 
@@ -79,6 +80,7 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
         let seconds = started.elapsed().as_secs_f64();
         let first = lines.len();
         match outcome {
+            Ok(outcome) if outcome.summary.status == Status::Interrupted => return Err(Failure::Interrupted),
             Ok(outcome) => lines.extend(outcome.summary.expect.into_iter().map(|expectation| Verified {
                 case: name.clone(),
                 expectation,

@@ -4,11 +4,10 @@ mod common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command};
 use std::thread;
 use std::time::Duration;
 
-use common::{BREAKING_BAR, Workplace, files_below};
+use common::{BREAKING_BAR, Workplace, checkpoints, files_below, signal, wait_for_checkpoint};
 use serde_json::Value;
 
 /// Everything of a results folder that must not depend on how the run went.
@@ -57,24 +56,6 @@ fn uninterrupted(place: &Workplace, folder: &str, threads: &str) -> Results {
     let ended = place.fractum(&["run", "case.toml", "-o", folder, "--threads", threads, "--quiet"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     Results::read(&place.path(folder))
-}
-
-/// Steps of the checkpoints in a results folder, ascending.
-fn checkpoints(results: &Path) -> Vec<u64> {
-    let step = |path: PathBuf| path.file_stem()?.to_str()?.strip_prefix("state-")?.parse().ok();
-    files_below(&results.join("checkpoint"), ".fck").into_iter().filter_map(step).collect()
-}
-
-/// Waits until the run has saved a step after `step`, or has ended.
-fn wait_for_checkpoint(run: &mut Child, results: &Path, step: u64) {
-    while checkpoints(results).last().is_none_or(|&saved| saved <= step) && run.try_wait().unwrap().is_none() {
-        thread::sleep(Duration::from_millis(1));
-    }
-}
-
-fn signal(run: &Child, name: &str) {
-    let sent = Command::new("sh").args(["-c", &format!("kill -{name} {}", run.id())]).status().unwrap();
-    assert!(sent.success());
 }
 
 /// The same numbers on every machine (SplitMix64).
@@ -264,6 +245,39 @@ fn a_bad_checkpoint_is_refused_with_its_reason() {
 }
 
 #[test]
+fn a_damaged_history_is_refused_before_the_run_goes_on() {
+    let place = Workplace::new(BREAKING_BAR);
+    uninterrupted(&place, "done", "2");
+    let path = place.path("done").join("history.csv");
+    let mut rows = fs::read(&path).unwrap();
+    let middle = rows.len() / 4;
+    rows[middle] ^= 1;
+    fs::write(&path, &rows).unwrap();
+    let log = || fs::read_to_string(place.path("done").join("run.log")).unwrap();
+    let before = log().matches("state saved").count();
+    let ended = place.fractum(&["run", "case.toml", "-o", "done", "--quiet", "--resume"]);
+    assert_eq!(ended.code, Some(3), "{}", ended.stderr);
+    assert!(ended.stderr.contains("history.csv: it was changed or damaged since"), "{}", ended.stderr);
+    assert_eq!(log().matches("state saved").count(), before, "nothing was computed");
+    assert!(fs::read(&path).unwrap() == rows);
+}
+
+#[test]
+fn a_run_that_cannot_go_on_writing_has_a_state_from_its_start() {
+    let place = Workplace::new(&BREAKING_BAR.replace("every = \"5 ms\"", "every = \"1000 s\""));
+    let expected = uninterrupted(&place, "whole", "2");
+    let results = place.path("full");
+    // A name that is taken stands for a disk that is full: the first frame cannot be written.
+    fs::create_dir_all(results.join("fields.pvd/taken")).unwrap();
+    let ended = place.fractum(&["run", "case.toml", "-o", "full", "--quiet"]);
+    assert_eq!(ended.code, Some(3), "{}", ended.stderr);
+    fs::remove_dir_all(results.join("fields.pvd")).unwrap();
+    let ended = place.fractum(&["run", "case.toml", "-o", "full", "--quiet", "--resume"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    expected.assert_same(&Results::read(&results), "from its first state");
+}
+
+#[test]
 fn a_damaged_checkpoint_gives_way_to_the_one_before() {
     let place = Workplace::new(BREAKING_BAR);
     let expected = uninterrupted(&place, "done", "2");
@@ -329,30 +343,82 @@ reaction = { group = "x+", along = "x" }
 every = "20 ms"
 "#;
 
-#[test]
-fn a_run_at_equilibrium_and_in_motion_goes_on_with_the_same_bits() {
-    let place = Workplace::new(SNAPPING_BAR);
-    let expected = uninterrupted(&place, "whole", "2");
-    assert!(expected.history.lines().any(|line| line.contains(",1,")), "it moves");
+/// Results of a case that is ended by these signals in turn, each at least `steps` after the last checkpoint, and resumed.
+fn interrupted(place: &Workplace, signals: &[&str], steps: u64) -> Results {
     let results = place.path("stopped");
     let mut code = None;
-    for round in 0..8 {
+    for name in signals.iter().map(Some).chain([None]) {
         let saved = checkpoints(&results).last().copied().unwrap_or(0);
         let mut arguments = vec!["run", "case.toml", "-o", "stopped", "--quiet", "--threads", "1"];
-        arguments.extend((saved > 0).then_some("--resume"));
-        if round < 7 {
-            let mut run = place.start(&arguments);
-            wait_for_checkpoint(&mut run, &results, saved + 5);
-            signal(&run, if round % 2 == 0 { "INT" } else { "TERM" });
-            code = run.wait().unwrap().code();
-        } else {
-            code = place.fractum(&arguments).code;
+        arguments.extend(results.exists().then_some("--resume"));
+        let mut run = place.start(&arguments);
+        if let Some(name) = name {
+            wait_for_checkpoint(&mut run, &results, saved + steps);
+            signal(&run, name);
         }
-        assert!(matches!(code, Some(0 | 130)), "{code:?}");
+        code = run.wait().unwrap().code();
+        assert!(matches!(code, Some(0 | 130)) || name == Some(&"KILL"), "{name:?}: {code:?}");
         if code == Some(0) {
             break;
         }
     }
     assert_eq!(code, Some(0));
-    expected.assert_same(&Results::read(&results), "at equilibrium, after signals");
+    Results::read(&results)
+}
+
+#[test]
+fn a_run_at_equilibrium_and_in_motion_goes_on_with_the_same_bits() {
+    let place = Workplace::new(SNAPPING_BAR);
+    let expected = uninterrupted(&place, "whole", "2");
+    assert!(expected.history.lines().any(|line| line.contains(",1,")), "it moves");
+    let signals = ["INT", "TERM", "INT", "TERM", "INT", "TERM", "INT"];
+    expected.assert_same(&interrupted(&place, &signals, 5), "at equilibrium, after signals");
+}
+
+/// A bonded bar that is pulled apart at rest, from break to break.
+const BONDED_BAR: &str = r#"fractum = 1
+
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "72 GPa"
+poisson_ratio = 0.23
+[materials.glass.fracture]
+criterion_strength = "60 MPa"
+
+[[bodies]]
+name = "bar"
+kind = "bonded"
+material = "glass"
+shape = "box"
+size = ["2 mm", "1 mm", "1 mm"]
+particles = 600
+coordination = 8
+
+[[supports]]
+group = "bar.x-"
+fix = "x"
+[[supports]]
+group = "bar.x+"
+displacement = { x = "6 um*t/1 s" }
+
+[solver]
+kind = "static"
+end = "1 s"
+
+[[probes]]
+name = "pull"
+reaction = { group = "bar.x+", along = "x" }
+
+[output]
+fields = { every = "0.2 s" }
+checkpoint = { every = "1 ms" }
+"#;
+
+#[test]
+fn a_bonded_body_at_rest_goes_on_with_the_same_bits() {
+    let place = Workplace::new(BONDED_BAR);
+    let expected = uninterrupted(&place, "whole", "2");
+    assert!(expected.summary["counts"]["broken_bonds"].as_u64().unwrap() > 50, "{}", expected.summary);
+    let signals = ["INT", "KILL", "TERM", "KILL", "KILL", "INT"];
+    expected.assert_same(&interrupted(&place, &signals, 2), "from break to break, after signals");
 }

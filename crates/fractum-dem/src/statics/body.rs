@@ -2,6 +2,7 @@
 
 use fractum_math::{Sym3, Vec3};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::conjugate_gradients::Iterate;
 use super::lattice::{BLOCK, Dof6, HalfBond, Lattice, LatticeSupports, Stiffness, Tolerance, clear, dot};
@@ -30,7 +31,30 @@ pub struct StaticBody {
     iterations: usize,
 }
 
+/// What a body remembers beside its lattice: scaled displacements and unbalanced forces, and the work so far.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct BodyMemory {
+    x: Vec<Dof6>,
+    r: Vec<Dof6>,
+    reference: f64,
+    solves: u64,
+    iterations: u64,
+}
+
 impl StaticBody {
+    /// What it remembers, for a checkpoint.
+    pub(super) fn memory(&self) -> BodyMemory {
+        let Iterate { x, r, .. } = &self.iterate;
+        let (solves, iterations) = (self.solves as u64, self.iterations as u64);
+        BodyMemory { x: x.clone(), r: r.clone(), reference: self.reference, solves, iterations }
+    }
+
+    /// Puts it back into a body whose bonds have been broken in the same order.
+    pub(super) fn recall(&mut self, memory: BodyMemory) {
+        (self.iterate.x, self.iterate.r, self.reference) = (memory.x, memory.r, memory.reference);
+        (self.solves, self.iterations) = (memory.solves as usize, memory.iterations as usize);
+    }
+
     /// Brings a lattice to equilibrium under its supports.
     ///
     /// - `guess`: displacements and rotations to start from

@@ -32,7 +32,7 @@ impl Iterate {
     /// they are compared with. Returns the number of iterations.
     ///
     /// # Errors
-    /// [`DemError::NotConverged`].
+    /// [`DemError::NotConverged`], [`DemError::Interrupted`].
     pub(crate) fn solve(
         &mut self,
         lattice: &Lattice,
@@ -53,6 +53,9 @@ impl Iterate {
         while residual > target {
             if iterations == tolerance.iterations || !residual.is_finite() {
                 return failed(iterations, residual);
+            }
+            if (tolerance.stop)() {
+                return Err(DemError::Interrupted);
             }
             iterations += 1;
             p.par_chunks_mut(BLOCK).zip(r.par_chunks(BLOCK)).zip(inverse.par_chunks(BLOCK)).for_each(|((p, r), m)| {

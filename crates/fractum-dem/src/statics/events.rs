@@ -1,6 +1,10 @@
 //! Quasi-static breaking, event by event.
 
-use serde::Serialize;
+mod state;
+
+use serde::{Deserialize, Serialize};
+
+pub use state::QuasiStaticState;
 
 use super::{Dof6, Lattice, LatticeSupports, StaticBody, Tolerance};
 use crate::DemError;
@@ -44,7 +48,7 @@ pub struct Breaking<'a> {
 }
 
 /// The load before bonds break, and what broke since the one before.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoadPoint {
     /// Displacement (or rotation) of the supports.
     pub displacement: f64,
@@ -59,7 +63,7 @@ pub struct LoadPoint {
 }
 
 /// A point of the load curve that matters.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CriticalLoad {
     /// Displacement (or rotation) of the supports.
     pub displacement: f64,
@@ -97,7 +101,7 @@ pub struct BreakingOutcome {
 }
 
 /// What the search for the next failure ended with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoadStage {
     /// A site fails: [`QuasiStatic::break_and_rebalance`] is next.
     Failing,
@@ -127,6 +131,8 @@ pub struct QuasiStatic {
     peak: CriticalLoad,
     effort_to_peak: (usize, usize),
     event: usize,
+    /// Ratio at load factor one at which the last search took a site for overloaded.
+    overload: f64,
     /// Whether sites fail at the present load already.
     cascade: bool,
     cracks: Vec<Crack>,
@@ -165,6 +171,7 @@ impl QuasiStatic {
             peak: CriticalLoad { displacement: 0.0, load: 0.0, broken: 0 },
             effort_to_peak: (0, 0),
             event: 0,
+            overload: f64::INFINITY,
             cascade: false,
             cracks: Vec::new(),
             breaks: Vec::new(),
@@ -198,8 +205,8 @@ impl QuasiStatic {
     pub fn load_to_next_failure(&mut self, separated: impl Fn(&BondGraph) -> bool) -> (LoadPoint, LoadStage) {
         self.event += 1;
         let energy = self.body.energy();
-        let overload = if self.factor > 0.0 { 1.0 / self.factor } else { f64::INFINITY };
-        self.search.search(&self.body, &self.graph, overload);
+        self.overload = if self.factor > 0.0 { 1.0 / self.factor } else { f64::INFINITY };
+        self.search.search(&self.body, &self.graph, self.overload);
         let worst = self.search.worst();
         let load_at = |factor: f64| factor * 2.0 * energy / self.displacement;
         let held = load_at(self.factor);

@@ -85,11 +85,13 @@ pub struct Tolerance {
     pub residual: f64,
     /// Largest number of iterations.
     pub iterations: usize,
+    /// Asked in every iteration: whether to give up with [`DemError::Interrupted`].
+    pub stop: fn() -> bool,
 }
 
 impl Default for Tolerance {
     fn default() -> Self {
-        Tolerance { residual: 1e-5, iterations: 20_000 }
+        Tolerance { residual: 1e-5, iterations: 20_000, stop: || false }
     }
 }
 

@@ -7,6 +7,8 @@ mod frequency;
 mod lattice;
 
 pub use body::StaticBody;
-pub use events::{Batch, Breaking, BreakingOutcome, CriticalLoad, LoadPoint, LoadStage, QuasiStatic, quasi_static};
+pub use events::{
+    Batch, Breaking, BreakingOutcome, CriticalLoad, LoadPoint, LoadStage, QuasiStatic, QuasiStaticState, quasi_static,
+};
 pub use frequency::highest_frequency;
 pub use lattice::{Dof6, Equilibrium, Lattice, LatticeSupports, Tolerance};

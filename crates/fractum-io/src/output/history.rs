@@ -9,7 +9,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::atomic::GrowingFile;
+use crate::atomic::{GrowingFile, Written};
 use crate::error::{ReadError, WriteError};
 use crate::number::push_shortest;
 
@@ -48,12 +48,13 @@ impl History {
         Ok(Self { file, columns: columns.len(), line: String::new() })
     }
 
-    /// Goes on after the first `length` bytes, as [`sync`](Self::sync) told them, with the same columns.
+    /// Goes on after what [`sync`](Self::sync) told, with the same columns.
     ///
     /// # Errors
-    /// [`WriteError::Shortened`] if the file holds less than that; else as the operating system says.
-    pub fn resume(path: &Path, columns: &[Column], length: u64) -> Result<Self, WriteError> {
-        let file = GrowingFile::resume(path, length)?;
+    /// [`WriteError::Shortened`] if the file holds less than that, [`WriteError::Damaged`] if it holds something else; else
+    /// as the operating system says.
+    pub fn resume(path: &Path, columns: &[Column], written: Written) -> Result<Self, WriteError> {
+        let file = GrowingFile::resume(path, written)?;
         Ok(Self { file, columns: columns.len(), line: String::new() })
     }
 
@@ -75,11 +76,11 @@ impl History {
         self.file.append(self.line.as_bytes())
     }
 
-    /// Brings all lines to the disk and returns the length [bytes] that a checkpoint keeps for [`resume`](Self::resume).
+    /// Brings all lines to the disk and returns what a checkpoint keeps for [`resume`](Self::resume).
     ///
     /// # Errors
     /// [`WriteError`].
-    pub fn sync(&mut self) -> Result<u64, WriteError> {
+    pub fn sync(&mut self) -> Result<Written, WriteError> {
         self.file.sync()
     }
 
@@ -208,12 +209,12 @@ mod tests {
                 history.record(&[step as f64 * 0.1, (step as f64).sqrt()]).unwrap();
             }
             if killed {
-                let length = history.sync().unwrap();
+                let written = history.sync().unwrap();
                 for step in 20..27 {
                     history.record(&[step as f64 * 0.1, (step as f64).sqrt()]).unwrap();
                 }
                 drop(history);
-                history = History::resume(&path, &columns(), length).unwrap();
+                history = History::resume(&path, &columns(), written).unwrap();
             }
             for step in 20..40 {
                 history.record(&[step as f64 * 0.1, (step as f64).sqrt()]).unwrap();

@@ -1,8 +1,12 @@
 //! Bonded bodies at rest: the load rises from break to break, see [`fractum_dem::QuasiStatic`].
 
 use fractum_dem::criterion::{BeamRankine, EndMoments, FractureCriterion};
-use fractum_dem::{Batch, BeamEnergy, Breaking, Crack, Lattice, LatticeSupports, LoadStage, QuasiStatic, Tolerance};
+use fractum_dem::{
+    Batch, BeamEnergy, Breaking, Crack, DemError, Lattice, LatticeSupports, LoadStage, QuasiStatic, QuasiStaticState,
+    Tolerance,
+};
 use fractum_math::{Vec3, rotation_by};
+use serde::{Deserialize, Serialize};
 
 use crate::bonded::{Bonded, BondedBody, Closest};
 use crate::error::{SceneError, StepError};
@@ -20,6 +24,16 @@ pub struct BondedStaticSettings {
     pub batch: Batch,
     /// Equilibria after which the run ends in any case.
     pub most_steps: u64,
+}
+
+/// What the solver of a bonded body at rest remembers from break to break, for a checkpoint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BondedStaticState {
+    run: QuasiStaticState,
+    stage: LoadStage,
+    push: f64,
+    work: f64,
+    sudden: f64,
 }
 
 /// Share of the largest load below which a body has lost its strength.
@@ -49,10 +63,12 @@ const UNBREAKABLE: FractureCriterion =
 impl BondedStatics {
     /// Brings the body to its first equilibrium.
     ///
+    /// - `stop`: whether to give up, asked in every iteration to equilibrium
+    ///
     /// # Errors
     /// [`SceneError::NotProportional`] for supports that do not move in proportion to time, an equilibrium that is not
     /// found; a scene without a bonded body.
-    pub fn new(scene: &Scene, settings: BondedStaticSettings) -> Result<Self, SceneError> {
+    pub fn new(scene: &Scene, settings: BondedStaticSettings, stop: fn() -> bool) -> Result<Self, SceneError> {
         let bonded = &scene.bonded;
         let [body] = bonded.bodies.as_slice() else { return Err(SceneError::OneBondedBody) };
         let all = &bonded.particles;
@@ -77,13 +93,37 @@ impl BondedStatics {
             batch: settings.batch,
             limit: 1.0,
             stop: STRENGTHLESS,
-            tolerance: Tolerance { residual: settings.tolerance, iterations: ITERATIONS },
+            tolerance: Tolerance { residual: settings.tolerance, iterations: ITERATIONS, stop },
         };
         let run = QuasiStatic::new(lattice, supports, &guess, &what)?;
         let mut statics =
             BondedStatics { run, settings, prescribed, stage: LoadStage::Failing, push: 0.0, work: 0.0, sudden: 0.0 };
         statics.push = statics.push_of_supports();
         Ok(statics)
+    }
+
+    /// What it remembers, for a checkpoint.
+    pub fn state(&self) -> BondedStaticState {
+        let BondedStatics { run, stage, push, work, sudden, .. } = self;
+        BondedStaticState { run: run.state(), stage: *stage, push: *push, work: *work, sudden: *sudden }
+    }
+
+    /// Goes on from what a solver of the same scene remembered.
+    pub fn restore(&mut self, state: BondedStaticState) {
+        self.run.restore(state.run);
+        (self.stage, self.push, self.work, self.sudden) = (state.stage, state.push, state.work, state.sudden);
+    }
+
+    /// Breaks what fails, finds equilibrium again, and moves the supports on to the next failure.
+    ///
+    /// # Errors
+    /// [`StepError::NoBondedEquilibrium`], [`StepError::Interrupted`].
+    pub fn step(&mut self, scene: &mut Scene) -> Result<(), StepError> {
+        if scene.clock.step > 0 && self.stage == LoadStage::Failing {
+            self.break_and_rebalance(scene)?;
+        }
+        self.load_to_next_failure(scene);
+        Ok(())
     }
 
     /// Whether the body has come apart, holds at the end, or has used up its steps.
@@ -102,7 +142,7 @@ impl BondedStatics {
     }
 
     /// Moves the supports on to the next failure and brings the scene there.
-    pub fn rise(&mut self, scene: &mut Scene) {
+    fn load_to_next_failure(&mut self, scene: &mut Scene) {
         let before = self.run.factor();
         let (point, stage) = self.run.load_to_next_failure(|_| false);
         self.stage = stage;
@@ -138,21 +178,15 @@ impl BondedStatics {
         scene.ledger.update_maxima();
     }
 
-    /// Breaks what fails and finds equilibrium again, unless the run is over.
-    ///
-    /// # Errors
-    /// [`StepError::NoBondedEquilibrium`].
-    pub fn release(&mut self, scene: &mut Scene) -> Result<(), StepError> {
-        if self.stage != LoadStage::Failing {
-            return Ok(());
-        }
+    /// Breaks what fails and finds equilibrium again.
+    fn break_and_rebalance(&mut self, scene: &mut Scene) -> Result<(), StepError> {
         let before = self.run.cracks().len();
         let square = self.run.factor().powi(2);
         let elastic = square * self.run.body().energy();
-        self.run.break_and_rebalance().map_err(|error| StepError::NoBondedEquilibrium {
-            step: scene.clock.step,
-            time: scene.clock.time,
-            error,
+        let (step, time) = (scene.clock.step, scene.clock.time);
+        self.run.break_and_rebalance().map_err(|error| match error {
+            DemError::Interrupted => StepError::Interrupted { step, time },
+            error => StepError::NoBondedEquilibrium { step, time, error },
         })?;
         let lost: f64 = self.run.cracks()[before..].iter().map(|crack| crack.energy).sum();
         self.sudden += elastic - square * self.run.body().energy() - lost;

@@ -21,7 +21,7 @@ use fractum_math::{Sym3, Vec3};
 use fractum_sparse::SparseError;
 use serde::{Deserialize, Serialize};
 
-pub use bonded::{BondedStaticSettings, BondedStatics};
+pub use bonded::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use opening::Opening;
 pub use period::Stiffness;
 pub use static_dynamic::DynamicPhase;
@@ -179,6 +179,7 @@ impl Dimension {
 /// The quasi-static solver of a scene.
 pub struct StaticSolver {
     settings: StaticSettings,
+    stop: fn() -> bool,
     system: Dimension,
     /// The matrix is that of an undamaged solid and stays so.
     elastic: bool,
@@ -238,6 +239,7 @@ impl StaticSolver {
         let zero = vec![Vec3::zeros(); solid.reference.len()];
         Ok(StaticSolver {
             settings,
+            stop: || false,
             system,
             elastic,
             prepared: false,
@@ -263,6 +265,11 @@ impl StaticSolver {
             largest_forces: 0.0,
             iterations: 0,
         })
+    }
+
+    /// Gives up with [`StepError::Interrupted`] when `stop` says so, which is asked in every iteration.
+    pub fn with_stop(self, stop: fn() -> bool) -> Self {
+        StaticSolver { stop, ..self }
     }
 
     /// Settings of the solution.
@@ -418,6 +425,9 @@ impl StaticSolver {
         self.place.clone_from(&scene.solid.displacement);
         let mut found_at = present;
         for iteration in 1..=if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] } {
+            if (self.stop)() {
+                return Err(StepError::Interrupted { step: scene.clock.step, time: present });
+            }
             self.iterations += 1;
             scene.debris.meet(&scene.solid, &self.place);
             self.springs = scene.springs(&self.place, [present, found_at], longest, iteration == 1);

@@ -13,8 +13,7 @@ mod shape;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use fractum::run::{Options, Outcome};
-use fractum::{ExitCode, Failure, say, tell};
+use fractum::{ExitCode, Failure, Options, Outcome, say, tell};
 use fractum_io::summary::{Fracture, Status};
 
 /// Fracture of solids: finite elements with damage, discrete elements, and the transition between them.
@@ -209,16 +208,10 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
         quiet: run.quiet,
         cache: cache(),
     };
-    let Outcome { summary, folder, resumable } = fractum::run::run(&run.case, &options)?;
+    let Outcome { summary, folder } = fractum::run(&run.case, &options)?;
     if summary.status == Status::Interrupted {
         let results = folder.display();
-        if resumable {
-            tell!("interrupted; state saved, go on with: fractum run {} -o {results} --resume", run.case.display());
-        } else {
-            tell!(
-                "interrupted; the run of a bonded body at rest keeps no state to go on from; what it reached is in {results}"
-            );
-        }
+        tell!("interrupted; state saved, go on with: fractum run {} -o {results} --resume", run.case.display());
         return Ok(ExitCode::Interrupted);
     }
     if !run.quiet {

@@ -5,6 +5,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::Duration;
 
 use fractum_math::Vec3;
 use fractum_mesh::generate::structured_box;
@@ -176,4 +178,23 @@ pub(crate) fn run(place: &Workplace, folder: &str, threads: &str) -> Value {
 /// The summary in a results folder.
 pub(crate) fn summary(place: &Workplace, folder: &str) -> Value {
     serde_json::from_str(&fs::read_to_string(place.path(folder).join("summary.json")).unwrap()).unwrap()
+}
+
+/// Steps of the checkpoints in a results folder, ascending.
+pub(crate) fn checkpoints(results: &Path) -> Vec<u64> {
+    let step = |path: PathBuf| path.file_stem()?.to_str()?.strip_prefix("state-")?.parse().ok();
+    files_below(&results.join("checkpoint"), ".fck").into_iter().filter_map(step).collect()
+}
+
+/// Waits until the run has saved a step after `step`, or has ended.
+pub(crate) fn wait_for_checkpoint(run: &mut Child, results: &Path, step: u64) {
+    while checkpoints(results).last().is_none_or(|&saved| saved <= step) && run.try_wait().unwrap().is_none() {
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Sends a signal such as `INT`.
+pub(crate) fn signal(run: &Child, name: &str) {
+    let sent = Command::new("sh").args(["-c", &format!("kill -{name} {}", run.id())]).status().unwrap();
+    assert!(sent.success());
 }

@@ -1,0 +1,246 @@
+//! One run that can be driven step by step.
+
+mod finish;
+mod messages;
+mod open;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use fractum_io::Compression;
+use fractum_io::case::Case;
+use fractum_io::checkpoint::{self, Header, Identity};
+use fractum_io::log::Snapshot;
+use fractum_io::summary::Summary;
+use fractum_prepare::Cache;
+use fractum_scene::{EnergyKind, Scene, SceneState, StepError};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Failure;
+use crate::interrupt::{UnderWay, is_interrupted};
+use crate::phases::{Part, Phases};
+use crate::plan::Plan;
+use crate::record::{RecordState, Recorder};
+use crate::solver::{Measured, Solver, SolverState};
+use messages::Messages;
+
+/// How a case is run.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Results folder; `results/<folder of the case>/<case>` if none is given.
+    pub output: Option<PathBuf>,
+    /// Threads of [`run`](crate::run); all cores if none is given.
+    pub threads: Option<usize>,
+    /// Overrides of parameters.
+    pub overrides: Vec<(String, String)>,
+    /// Go on from the last checkpoint.
+    pub resume: bool,
+    /// No plan and no progress line.
+    pub quiet: bool,
+    /// Where packings and beams of bonded bodies are kept.
+    pub cache: Cache,
+}
+
+/// A run that ended by itself or was interrupted.
+#[derive(Debug)]
+pub struct Outcome {
+    /// What `summary.json` says.
+    pub summary: Summary,
+    /// Results folder.
+    pub folder: PathBuf,
+}
+
+/// A case under way: its scene, its solver and its results folder.
+///
+/// [`open`](Simulation::open), then [`step`](Simulation::step) and [`record`](Simulation::record) in turn until it
+/// [is over](Simulation::is_over), then [`finish`](Simulation::finish). Parallel loops use the rayon pool that the
+/// caller is in; results do not depend on its number of threads.
+pub struct Simulation {
+    case: Arc<Case>,
+    scene: Scene,
+    solver: Solver,
+    recorder: Recorder,
+    folder: PathBuf,
+    identity: Identity,
+    plan: Plan,
+    messages: Messages,
+    phases: Phases,
+    started: Instant,
+    saved: Option<Instant>,
+    /// The instant that the last step measured, until its row is written.
+    measured: Option<Measured>,
+    end: Option<End>,
+    /// A signal leaves the program the time to save the state.
+    _under_way: UnderWay,
+}
+
+/// Why a run is over.
+enum End {
+    Finished,
+    Interrupted,
+    Failed(StepError),
+}
+
+/// The whole state of a run: what a checkpoint holds.
+#[derive(Serialize, Deserialize)]
+struct RunState {
+    scene: SceneState,
+    record: RecordState,
+    solver: SolverState,
+}
+
+impl Simulation {
+    /// The case.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// The scene at the present instant: displacements, stresses, damage, particles, energies.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Present time [s]; the load parameter at rest.
+    pub fn time(&self) -> f64 {
+        self.scene.clock.time
+    }
+
+    /// Steps done.
+    pub fn steps(&self) -> u64 {
+        self.scene.clock.step
+    }
+
+    /// Results folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Times [s] and values of a probe that is a column of the history, row by row; none for an unknown name.
+    pub fn probe(&self, name: &str) -> Option<(&[f64], &[f64])> {
+        let index = self.case.probes.iter().position(|probe| probe.name.value == name)?;
+        let record = self.recorder.state();
+        Some((&record.times, &record.series[index]))
+    }
+
+    /// Whether the run is over: its end is reached, it was interrupted, or a step failed.
+    pub fn is_over(&self) -> bool {
+        self.end.is_some()
+    }
+
+    /// Brings the scene to the next instant or the next equilibrium; of no effect once the run is over.
+    ///
+    /// A step that fails ends the run; [`finish`](Simulation::finish) says why. The search for an equilibrium ends early
+    /// by an interrupt, with the state before it saved.
+    ///
+    /// # Errors
+    /// [`Failure`] where that state cannot be written.
+    pub fn step(&mut self) -> Result<(), Failure> {
+        if self.is_over() {
+            return Ok(());
+        }
+        let measure = self.recorder.row_is_due(self.scene.clock.time);
+        let before = (!self.solver.moves()).then(|| (self.scene.state(), self.solver.state()));
+        match (self.solver.step(&mut self.scene, measure, &mut self.phases), before) {
+            (Ok(advance), _) => {
+                self.measured = advance.measured;
+                self.messages.event = advance.event;
+            }
+            (Err(StepError::Interrupted { .. }), Some((scene, solver))) => {
+                self.save_state(scene, solver)?;
+                self.end = Some(End::Interrupted);
+            }
+            (Err(error), _) => self.end = Some(End::Failed(error)),
+        }
+        Ok(())
+    }
+
+    /// Writes what is due: the row of the instant that the step measured, a checkpoint, a frame of the fields; shows
+    /// progress and notices an interrupt.
+    ///
+    /// # Errors
+    /// [`Failure`] where something cannot be written.
+    pub fn record(&mut self) -> Result<(), Failure> {
+        if let Some(Measured { time, dt, in_motion }) = self.measured.take() {
+            let Simulation { recorder, scene, phases, .. } = self;
+            phases.timed(Part::Output, || recorder.row(scene, time, dt, in_motion))?;
+            self.messages.warn_of_balance(&self.scene, self.case.solver.balance_warning)?;
+            if self.falls_below() {
+                self.end.get_or_insert(End::Finished);
+            }
+        }
+        self.messages.tell_event()?;
+        self.prepare_step()?;
+        if !self.is_over() && self.messages.progress.due(self.started.elapsed()) {
+            self.messages.progress.show(&self.snapshot(), self.started.elapsed());
+        }
+        Ok(())
+    }
+
+    /// What is due before a step, unless the run is over.
+    fn prepare_step(&mut self) -> Result<(), Failure> {
+        if self.is_over() {
+            return Ok(());
+        }
+        if self.solver.is_finished(&self.scene) {
+            self.end = Some(End::Finished);
+            return Ok(());
+        }
+        if is_interrupted() {
+            self.save()?;
+            self.end = Some(End::Interrupted);
+            return Ok(());
+        }
+        let every = Duration::try_from_secs_f64(self.case.output.checkpoint_every).unwrap_or(Duration::MAX);
+        if self.saved.is_none_or(|saved| saved.elapsed() >= every) {
+            self.save()?;
+        }
+        if self.recorder.frame_is_due(self.scene.clock.time) {
+            let Simulation { recorder, scene, phases, .. } = self;
+            phases.timed(Part::Output, || recorder.frame(scene))?;
+        }
+        Ok(())
+    }
+
+    /// The early end that the case asks for.
+    fn falls_below(&self) -> bool {
+        let Some(stop) = &self.case.solver.stop_when else { return false };
+        let record = self.recorder.state();
+        let (values, time) = (&record.series[stop.probe], record.times.last().copied().unwrap_or(0.0));
+        let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        largest > 0.0 && time >= stop.after && values.last().is_some_and(|&v| v < stop.below * largest)
+    }
+
+    fn save(&mut self) -> Result<(), Failure> {
+        self.save_state(self.scene.state(), self.solver.state())
+    }
+
+    fn save_state(&mut self, scene: SceneState, solver: SolverState) -> Result<(), Failure> {
+        let state = RunState { scene, record: self.recorder.sync()?, solver };
+        let clock = self.scene.clock;
+        let header = Header { identity: self.identity.clone(), step: clock.step, time: clock.time };
+        let file = checkpoint::save(&self.folder.join("checkpoint"), &header, &state, Compression::Fast)?;
+        self.messages.log.line(format!("step {}: state saved in {}", clock.step, file.display()))?;
+        self.saved = Some(Instant::now());
+        Ok(())
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let ledger = self.scene.ledger();
+        let counts = self.scene.counts();
+        let clock = self.scene.clock;
+        Snapshot {
+            step: clock.step,
+            time: clock.time,
+            end: self.case.solver.end,
+            dt: clock.dt_before,
+            kinetic: ledger[EnergyKind::Kinetic],
+            elastic: ledger[EnergyKind::Elastic],
+            dissipated: ledger.spent(),
+            balance_error: ledger.relative_residual(),
+            broken_edges: counts.broken_edges as u64,
+            broken_bonds: counts.broken_bonds as u64,
+            particles: counts.particles as u64,
+        }
+    }
+}

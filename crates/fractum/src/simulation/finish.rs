@@ -1,0 +1,123 @@
+//! The end of a run: last frame, last row, summary, report and final names.
+
+use std::path::Path;
+
+use fractum_io::fragments::{self, Fragment};
+use fractum_io::summary::{Status, Summary};
+use fractum_scene::{BondedBody, Scene};
+
+use super::{End, Outcome, Simulation};
+use crate::cracks::{self, Columns};
+use crate::error::Failure;
+use crate::phases::Part;
+use crate::report::{self, Notes};
+use crate::summary::{self, state_hash};
+
+impl Simulation {
+    /// Writes the last frame and row, summary, fragments, cracks and report, and gives the history its final name.
+    ///
+    /// A simulation that is not over ends as if interrupted, with its state saved.
+    ///
+    /// # Errors
+    /// [`Failure::Stopped`] for a step that failed, with its results written all the same; what cannot be written.
+    pub fn finish(mut self) -> Result<Outcome, Failure> {
+        let end = match self.end.take() {
+            Some(end) => end,
+            None => {
+                self.save()?;
+                End::Interrupted
+            }
+        };
+        if let Some(effort) = self.solver.effort() {
+            self.messages.log.line(effort)?;
+        }
+        let status = match &end {
+            End::Finished => Status::Completed,
+            End::Interrupted => Status::Interrupted,
+            End::Failed(_) => Status::Stopped,
+        };
+        let state_hash = state_hash(&self.scene.state());
+        let clock = self.scene.clock;
+        self.record_last(&end)?;
+        self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
+        fragments::write(&self.folder.join("fragments.csv"), &fragments_of(&self.scene))?;
+        write_cracks(&self.scene, &self.folder)?;
+        let mut summary = Summary {
+            title: self.case.title.clone(),
+            status,
+            case_hash: fractum_io::summary::hash_text(self.identity.case_hash),
+            state_hash: fractum_io::summary::hash_text(state_hash),
+            probes: summary::probes(&self.case, &self.recorder),
+            time: summary::time(&clock),
+            wall: summary::wall(self.started.elapsed(), &self.phases),
+            ..summary::of_scene(&self.scene)
+        };
+        summary.expect = self.case.expect.iter().map(|e| summary::expectation(e, &summary)).collect();
+        summary.write(&self.folder.join("summary.json"))?;
+        let (steps, seconds) = (clock.step, summary.wall.total);
+        self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
+        let notes = Notes {
+            case_file: self.case.source.path.display().to_string(),
+            plan: self.plan.to_string(),
+            warnings: self.messages.warnings,
+            pictures: crate::gallery::draw(&self.scene, &self.folder),
+        };
+        self.recorder.finish()?;
+        report::keep(&self.folder, &notes)?;
+        report::write(&self.folder)?;
+        match end {
+            End::Failed(error) => {
+                self.messages.log.line(&error)?;
+                Err(Failure::Stopped { error, folder: self.folder.display().to_string() })
+            }
+            _ => Ok(Outcome { summary, folder: self.folder }),
+        }
+    }
+
+    /// The frame of the last instant, and its row.
+    fn record_last(&mut self, end: &End) -> Result<(), Failure> {
+        let Simulation { solver, scene, recorder, phases, .. } = self;
+        if !matches!(end, End::Interrupted) {
+            phases.timed(Part::Output, || recorder.frame(scene))?;
+        }
+        if matches!(end, End::Finished) && solver.moves() {
+            // The forces and energies of the last instant: one more step, of which nothing else is kept.
+            let (time, dt) = (scene.clock.time, scene.clock.dt_after);
+            if scene.step(true).is_ok() {
+                recorder.row(scene, time, dt, true)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The bonds that broke, where some could.
+fn write_cracks(scene: &Scene, folder: &Path) -> Result<(), Failure> {
+    let bodies = scene.bonded.bodies();
+    if !bodies.iter().any(BondedBody::can_break) {
+        return Ok(());
+    }
+    let all = bodies.iter().flat_map(|body| body.cracks().iter().map(|crack| (Some(body.name.as_str()), crack)));
+    let columns = Columns { time: "time [s]", load: None };
+    cracks::write_table(&folder.join("cracks.csv"), all.clone(), columns)?;
+    let points: Vec<[f64; 3]> = scene.bonded.reference().iter().map(|x| (*x).into()).collect();
+    cracks::write_lines(&folder.join("cracks.vtp"), &points, all.map(|(_, crack)| crack))
+}
+
+fn fragments_of(scene: &Scene) -> Vec<Fragment> {
+    scene
+        .fragments()
+        .into_iter()
+        .zip(1..)
+        .map(|(piece, id)| Fragment {
+            id,
+            mass: piece.mass,
+            volume: piece.volume,
+            nodes: piece.nodes.len() as u64,
+            elements: piece.elements as u64,
+            centroid: piece.centroid.into(),
+            velocity: piece.velocity.into(),
+            largest_extent: piece.extent(),
+        })
+        .collect()
+}

@@ -1,0 +1,53 @@
+//! What a run tells its user, on the terminal and in its log.
+
+use std::io::Stderr;
+
+use fractum_io::log::{Progress, RunLog};
+use fractum_scene::Scene;
+
+use crate::error::Failure;
+
+/// Terminal, log, and the warnings for the report.
+pub(super) struct Messages {
+    pub(super) progress: Progress<Stderr>,
+    pub(super) log: RunLog,
+    pub(super) warnings: Vec<String>,
+    /// What the last step brought, until it is told.
+    pub(super) event: Option<String>,
+    warned_of_balance: bool,
+}
+
+impl Messages {
+    pub(super) fn new(log: RunLog, quiet: bool) -> Self {
+        let progress = Progress::on_stderr(quiet);
+        Messages { progress, log, warnings: Vec::new(), event: None, warned_of_balance: false }
+    }
+
+    pub(super) fn tell(&mut self, text: &str) -> Result<(), Failure> {
+        self.progress.message(text);
+        Ok(self.log.line(text)?)
+    }
+
+    pub(super) fn warn(&mut self, text: String) -> Result<(), Failure> {
+        self.tell(&text)?;
+        self.warnings.push(text);
+        Ok(())
+    }
+
+    pub(super) fn tell_event(&mut self) -> Result<(), Failure> {
+        self.event.take().map_or(Ok(()), |event| self.tell(&event))
+    }
+
+    /// - `allowed`: relative residual of the energy balance above which to warn, once in a run
+    pub(super) fn warn_of_balance(&mut self, scene: &Scene, allowed: f64) -> Result<(), Failure> {
+        let relative = scene.ledger().relative_residual();
+        if self.warned_of_balance || relative <= allowed {
+            return Ok(());
+        }
+        self.warned_of_balance = true;
+        let time = scene.clock.time;
+        self.warn(format!(
+            "warning: t = {time:.4e} s: the energy balance is off by {relative:.1e} of the energy put in"
+        ))
+    }
+}

@@ -1,0 +1,129 @@
+//! What brings a scene from one instant to the next: motion, or equilibrium of solids or of a bonded body.
+
+mod breaking;
+mod equilibrium;
+mod motion;
+
+use fractum_io::build::BuiltScene;
+use fractum_scene::{BondedStaticState, Scene, StepError};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Failure;
+use crate::phases::Phases;
+use breaking::BreakingRun;
+use equilibrium::{EquilibriumRun, EquilibriumState};
+
+/// The solver of a run.
+pub(crate) enum Solver {
+    /// Explicit motion.
+    Explicit,
+    /// Solids from equilibrium to equilibrium, or in motion between two of them.
+    Static(Box<EquilibriumRun>),
+    /// A bonded body from break to break.
+    BondedStatic(Box<BreakingRun>),
+}
+
+/// What a solver remembers beside the scene, for a checkpoint.
+#[derive(Serialize, Deserialize)]
+pub(crate) enum SolverState {
+    Explicit,
+    Static(EquilibriumState),
+    BondedStatic(BondedStaticState),
+}
+
+/// An instant at which the ledger was measured: a row of the history.
+pub(crate) struct Measured {
+    /// Time [s].
+    pub(crate) time: f64,
+    /// The step that belongs to it [s].
+    pub(crate) dt: f64,
+    /// Whether the scene moved then.
+    pub(crate) in_motion: bool,
+}
+
+/// What a step brought, beside the new state of the scene.
+#[derive(Default)]
+pub(crate) struct Advance {
+    pub(crate) measured: Option<Measured>,
+    /// What the user should hear of it.
+    pub(crate) event: Option<String>,
+}
+
+impl Advance {
+    fn measured(time: f64, dt: f64, in_motion: bool) -> Self {
+        Advance { measured: Some(Measured { time, dt, in_motion }), event: None }
+    }
+}
+
+impl Solver {
+    /// The solver that a case asks for, before the first step of its scene.
+    ///
+    /// # Errors
+    /// A linear system that is too large; a bonded body without a first equilibrium.
+    pub(crate) fn new(scene: &Scene, built: &BuiltScene, phases: &mut Phases) -> Result<Self, Failure> {
+        Ok(match (&built.statics, built.bonded_statics) {
+            (Some(settings), _) => Solver::Static(Box::new(EquilibriumRun::new(scene, settings.clone())?)),
+            (None, Some(settings)) => Solver::BondedStatic(Box::new(BreakingRun::new(scene, settings, phases)?)),
+            (None, None) => Solver::Explicit,
+        })
+    }
+
+    /// Goes on where a checkpoint of the same case stood; the scene has been put back.
+    pub(crate) fn restore(&mut self, scene: &mut Scene, state: SolverState) {
+        match (self, state) {
+            (Solver::Static(run), SolverState::Static(state)) => run.restore(scene, state),
+            (Solver::BondedStatic(run), SolverState::BondedStatic(state)) => run.restore(state),
+            _ => {}
+        }
+    }
+
+    /// What it remembers, for a checkpoint.
+    pub(crate) fn state(&self) -> SolverState {
+        match self {
+            Solver::Explicit => SolverState::Explicit,
+            Solver::Static(run) => SolverState::Static(run.state()),
+            Solver::BondedStatic(run) => SolverState::BondedStatic(run.state()),
+        }
+    }
+
+    /// Whether the run is over.
+    pub(crate) fn is_finished(&self, scene: &Scene) -> bool {
+        match self {
+            Solver::Explicit => scene.is_finished(),
+            Solver::Static(run) => run.is_finished(scene),
+            Solver::BondedStatic(run) => run.is_finished(scene),
+        }
+    }
+
+    /// Whether the scene moves.
+    pub(crate) fn moves(&self) -> bool {
+        match self {
+            Solver::Explicit => true,
+            Solver::Static(run) => run.moves(),
+            Solver::BondedStatic(_) => false,
+        }
+    }
+
+    /// Brings the scene to the next instant.
+    ///
+    /// - `measure`: whether motion should measure the ledger of the present instant; equilibria always have theirs
+    ///
+    /// # Errors
+    /// As the step of the scene or the search for equilibrium says.
+    pub(crate) fn step(&mut self, scene: &mut Scene, measure: bool, phases: &mut Phases) -> Result<Advance, StepError> {
+        match self {
+            Solver::Explicit => motion::step(scene, measure, phases),
+            Solver::Static(run) => run.step(scene, phases),
+            Solver::BondedStatic(run) => run.step(scene, phases),
+        }
+    }
+
+    /// How much work it was, in words.
+    pub(crate) fn effort(&self) -> Option<String> {
+        match self {
+            Solver::Explicit => None,
+            Solver::Static(run) => Some(run.effort()),
+            Solver::BondedStatic(run) => Some(run.effort()),
+        }
+    }
+}
