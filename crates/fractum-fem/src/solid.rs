@@ -395,32 +395,60 @@ impl Solid {
     /// Nominal stress [Pa] and damage of every element of a body: means over its edges where it is smoothed.
     pub fn element_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
         let model = &self.bodies[index];
-        let corotational = model.body.kinematics == Kinematics::Corotational;
-        let cell_field = |&(block, cell): &(u32, u32)| {
-            let (block, cell) = (&self.blocks[block as usize], cell as usize);
-            let h = block.cells.gradient(cell, &self.displacement);
-            let strain = if corotational { kernel::corotational_strain(&h).0 } else { Sym3::symmetric_part(&h) };
-            let damage = block.damage_of(cell);
-            (model.hooke.stress(strain) * (1.0 - damage), damage)
-        };
-        let cells: Vec<(Sym3, f64)> = model.location.par_iter().map(cell_field).collect();
-        let Some(edges) = model.edges.as_ref().filter(|_| model.body.formulation == Formulation::Smoothed) else {
-            return cells;
-        };
-        let count = model.body.shape.edge_count();
-        let mean = |of: &[u32; 6]| {
-            let mut sum = (Sym3::ZERO, 0.0);
-            for &edge in &of[..count] {
-                let (stress, damage) = cells[edge as usize];
-                sum = (sum.0 + stress, sum.1 + damage);
+        let cells: Vec<(Sym3, f64)> = model.location.par_iter().map(|cell| self.cell_field(model, cell)).collect();
+        match model.smoothed_edges() {
+            None => cells,
+            Some(edges) => {
+                let mean = |of: &[u32; 6]| model.mean_of_edges(of, |edge| cells[edge as usize]);
+                edges.of_element.par_iter().map(mean).collect()
             }
-            (sum.0 * (1.0 / count as f64), sum.1 / count as f64)
-        };
-        edges.of_element.par_iter().map(mean).collect()
+        }
+    }
+
+    /// As [`Solid::element_fields`] of one element.
+    pub fn element_field(&self, index: usize, element: u32) -> (Sym3, f64) {
+        let model = &self.bodies[index];
+        let cell = |cell: u32| self.cell_field(model, &model.location[cell as usize]);
+        match model.smoothed_edges() {
+            None => cell(element),
+            Some(edges) => model.mean_of_edges(&edges.of_element[element as usize], cell),
+        }
+    }
+
+    fn cell_field(&self, model: &BodyModel, &(block, cell): &(u32, u32)) -> (Sym3, f64) {
+        let (block, cell) = (&self.blocks[block as usize], cell as usize);
+        let h = block.cells.gradient(cell, &self.displacement);
+        let corotational = model.body.kinematics == Kinematics::Corotational;
+        let strain = if corotational { kernel::corotational_strain(&h).0 } else { Sym3::symmetric_part(&h) };
+        let damage = block.damage_of(cell);
+        (model.hooke.stress(strain) * (1.0 - damage), damage)
+    }
+
+    /// Centre of an element without load [m].
+    pub fn element_middle(&self, index: usize, element: u32) -> Vec3 {
+        let body = &self.bodies[index].body;
+        let corners = &body.elements[element as usize][..body.shape.node_count()];
+        corners.iter().map(|&n| self.reference[n as usize]).sum::<Vec3>() / corners.len() as f64
     }
 }
 
 impl BodyModel {
+    /// Edges that hold the strain of the body; none where its elements do.
+    fn smoothed_edges(&self) -> Option<&BodyEdges> {
+        self.edges.as_ref().filter(|_| self.body.formulation == Formulation::Smoothed)
+    }
+
+    /// Mean of stress and damage over the edges of an element.
+    fn mean_of_edges(&self, of: &[u32; 6], field: impl Fn(u32) -> (Sym3, f64)) -> (Sym3, f64) {
+        let count = self.body.shape.edge_count();
+        let mut sum = (Sym3::ZERO, 0.0);
+        for &edge in &of[..count] {
+            let (stress, damage) = field(edge);
+            sum = (sum.0 + stress, sum.1 + damage);
+        }
+        (sum.0 * (1.0 / count as f64), sum.1 / count as f64)
+    }
+
     /// The body with its blocks; `first_block` is the index that its first block will have.
     fn new(
         body: Body,

@@ -20,7 +20,9 @@ mod step;
 
 pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest};
 pub use clock::{Clock, TimeStepSettings};
-pub use conditions::{Gravity, Load, Loads, Motion, NodalForce, PointProbe, Pressure, Support, Supports, TimeFunction};
+pub use conditions::{
+    Along, Gravity, Load, Loads, Motion, NodalForce, PointProbe, Pressure, Support, Supports, TimeFunction,
+};
 pub use contacts::{
     ContactMaterial, Contacts, Drive, Form, Inertia, NodesOnShape, Overlap, OverlapWith, RigidBody, SolidSurface,
     pieces,

@@ -1,7 +1,7 @@
 use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 
-use crate::conditions::PointProbe;
+use crate::conditions::{Along, PointProbe};
 use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
 use crate::ledger::EnergyProbe;
 use crate::scene::{CountKind, Scene};
@@ -29,12 +29,12 @@ pub enum Probe {
     Energy(EnergyProbe),
     /// A count.
     Count(CountKind),
-    /// Volume mean of a stress component (xx yy zz xy yz zx) over elements [Pa].
+    /// Volume mean of a stress component over elements [Pa].
     Stress {
         /// Bodies and their elements.
         elements: Vec<(usize, u32)>,
-        /// Voigt index.
-        component: usize,
+        /// The stress on a plane with the first normal along the second, at the middle of the element without load.
+        between: [Along; 2],
     },
     /// Linear momentum along a direction [kg m/s].
     Momentum(Vec3),
@@ -94,12 +94,12 @@ impl Probe {
             }
             Probe::Energy(kind) => scene.ledger().probe(*kind),
             Probe::Count(kind) => scene.count(*kind) as f64,
-            Probe::Stress { elements, component } => {
-                let fields: Vec<_> = (0..solid.body_count()).map(|body| solid.element_fields(body)).collect();
+            Probe::Stress { elements, between: [normal, along] } => {
                 let (mut sum, mut volume) = (0.0, 0.0);
                 for &(body, element) in elements {
-                    let v = solid.element_volume(body, element);
-                    sum += v * fields[body][element as usize].0.0[*component];
+                    let (v, middle) = (solid.element_volume(body, element), solid.element_middle(body, element));
+                    let stress = solid.element_field(body, element).0.to_matrix();
+                    sum += v * normal.at(&middle).dot(&(stress * along.at(&middle)));
                     volume += v;
                 }
                 sum / volume

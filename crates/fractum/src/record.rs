@@ -222,6 +222,7 @@ impl Recorder {
             Take::AbsMax => values.iter().map(|v| v.abs()).fold(f64::NAN, f64::max),
             Take::TimeOfMax => times[index_of_max(values).unwrap_or(0)],
             Take::Mean => time_mean(times, values),
+            Take::Speed => speed(times, values),
             Take::At(time) => interpolate(times, values, time),
         }
     }
@@ -388,6 +389,21 @@ fn time_mean(times: &[f64], values: &[f64]) -> f64 {
     (0..values.len().saturating_sub(1)).map(trapezoid).sum::<f64>() / span
 }
 
+/// Least squares slope through the rows in which the value is another than in the row before, so that waiting before the
+/// first change and after the last does not count; not a number where there are fewer than two such rows.
+fn speed(times: &[f64], values: &[f64]) -> f64 {
+    let changed = |&i: &usize| values[i].is_finite() && (i == 0 || values[i] != values[i - 1]);
+    let rows: Vec<usize> = (0..values.len()).filter(changed).collect();
+    let mean = |of: &[f64]| rows.iter().map(|&i| of[i]).sum::<f64>() / rows.len() as f64;
+    let (t, x) = (mean(times), mean(values));
+    let (mut slope, mut weight) = (0.0, 0.0);
+    for &i in &rows {
+        slope += (times[i] - t) * (values[i] - x);
+        weight += (times[i] - t).powi(2);
+    }
+    slope / weight
+}
+
 fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
     let next = times.partition_point(|&t| t <= time);
     match (next.checked_sub(1), values.get(next)) {
@@ -410,5 +426,17 @@ mod tests {
         let unbonded = ledger_columns(false);
         let names: Vec<&str> = unbonded.iter().map(|(name, _)| *name).chain([IN_MOTION.0, "load"]).collect();
         assert_eq!(count_ledger_columns(&names), unbonded.len() + 1);
+    }
+
+    #[test]
+    fn speed_is_the_slope_of_the_steps_of_a_front() {
+        let nan = f64::NAN;
+        let times: Vec<f64> = (0..12).map(f64::from).collect();
+        // Waits for three rows, goes on by 5 every second row, and has arrived in row 9.
+        let front = [nan, nan, nan, 10.0, 10.0, 15.0, 15.0, 20.0, 20.0, 25.0, 25.0, 25.0];
+        assert!((speed(&times, &front) - 2.5).abs() < 1e-12);
+        assert!(speed(&times, &[nan; 12]).is_nan());
+        let late = [nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, 3.0];
+        assert!(speed(&times, &late).is_nan(), "one place is no way");
     }
 }

@@ -6,6 +6,7 @@ use fractum_scene::coupling::Attachment;
 use fractum_scene::{BondFracture, Bonded, BondedPart, Gravity, Load, PointProbe, Population, Probe, Support};
 
 use super::conditions::{motion_of, push_nodal};
+use super::probes::is_held;
 use super::{Context, function};
 use crate::case::model::{BodyKind, LoadKind, ProbeKind, Selection, TimeStep};
 use crate::case::{Diagnostic, Field, Spanned};
@@ -194,15 +195,15 @@ impl Context<'_> {
         let probe = match kind {
             ProbeKind::Reaction { along, .. } => {
                 let places = bonded.supports().places(&particles);
-                let along_held = places.iter().any(|&(_, _, axis)| along[axis as usize] != 0.0);
+                let along_held = is_held(&places, along);
                 if !particles.is_empty() && !along_held {
                     let found = format!("= \"{}\": nothing holds it along the direction of the probe", group.value);
                     self.error(&group.place, found, "a set that a support prescribes");
                 }
-                PointProbe::Reaction { places, direction: *along }
+                PointProbe::Reaction { places, along: *along }
             }
-            ProbeKind::Displacement { along, .. } => PointProbe::Displacement { points: particles, direction: *along },
-            ProbeKind::Velocity { along, .. } => PointProbe::Velocity { points: particles, direction: *along },
+            ProbeKind::Displacement { along, .. } => PointProbe::Displacement { points: particles, along: *along },
+            ProbeKind::Velocity { along, .. } => PointProbe::Velocity { points: particles, along: *along },
             ProbeKind::Rotation { along, .. } => PointProbe::Rotation { points: particles, axis: *along },
             _ => return None,
         };

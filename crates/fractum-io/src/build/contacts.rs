@@ -4,8 +4,8 @@ use fractum_fem as fem;
 use fractum_math::{Mat3, Vec3, rotation_between};
 use fractum_mesh::topology;
 use fractum_scene::{
-    ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, NodesOnShape, OverlapWith,
-    Probe, RigidBody, Scene, Shape, SolidSurface, pieces,
+    Along, ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, NodesOnShape,
+    OverlapWith, Probe, RigidBody, Scene, Shape, SolidSurface, pieces,
 };
 
 use super::bodies::{Numbering, Part};
@@ -290,7 +290,12 @@ impl Context<'_> {
         else {
             return None;
         };
-        let (rigid_body, direction) = (self.case.tool(on.group_name())?, *along);
+        let rigid_body = self.case.tool(on.group_name())?;
+        let Along::Direction(direction) = *along else {
+            let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
+            self.error(&place, format!("= \"{}\": a rigid body", on.label()), "a direction with it, such as \"x\"");
+            return None;
+        };
         if let Some(within) = &on.within {
             self.error(&within.place, "has no effect on a rigid body", "nodes or particles; remove the key");
         }

@@ -2,7 +2,7 @@
 
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
-use fractum_scene::{Bonded, BondedBody, InsideCracks, PointProbe, Population, Probe, Supports};
+use fractum_scene::{Along, Bonded, BondedBody, InsideCracks, PointProbe, Population, Probe, Supports};
 
 use super::Context;
 use super::bodies::{Numbering, Part};
@@ -40,25 +40,25 @@ impl Context<'_> {
         Some(match kind {
             ProbeKind::Reaction { on, along } => {
                 let places = supports.places(&self.selected_nodes(on, numbering));
-                let along_held = places.iter().any(|&(_, _, axis)| along[axis as usize] != 0.0);
+                let along_held = is_held(&places, along);
                 if let (false, Some(place)) = (along_held, on.place()) {
                     let found = format!("= \"{}\": nothing holds it along the direction of the probe", on.label());
                     self.error(&place.clone(), found, "nodes that a support prescribes");
                 }
-                on_nodes(PointProbe::Reaction { places, direction: *along })
+                on_nodes(PointProbe::Reaction { places, along: *along })
             }
             ProbeKind::Displacement { on, along } => {
-                on_nodes(PointProbe::Displacement { points: self.selected_nodes(on, numbering), direction: *along })
+                on_nodes(PointProbe::Displacement { points: self.selected_nodes(on, numbering), along: *along })
             }
             ProbeKind::Velocity { on, along } => {
-                on_nodes(PointProbe::Velocity { points: self.selected_nodes(on, numbering), direction: *along })
+                on_nodes(PointProbe::Velocity { points: self.selected_nodes(on, numbering), along: *along })
             }
             ProbeKind::Rotation { on, .. } => {
                 let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
                 self.error(&place, format!("= \"{}\"", on.label()), "a set of particles of a bonded body");
                 return None;
             }
-            ProbeKind::Stress { group, component } => {
+            ProbeKind::Stress { group, between } => {
                 let wanted: Vec<&fractum_mesh::Group> = self.mesh.group(&group.value);
                 let mut elements = Vec::new();
                 for (body, part) in parts.iter().enumerate() {
@@ -76,7 +76,7 @@ impl Context<'_> {
                     let expected = use_in_words(GroupUse::ProbeElements);
                     self.error(&group.place, format!("= \"{}\"", group.value), expected);
                 }
-                Probe::Stress { elements, component: *component as usize }
+                Probe::Stress { elements, between: *between }
             }
             ProbeKind::Energy(kind) => Probe::Energy(*kind),
             ProbeKind::Count(kind) => Probe::Count(*kind),
@@ -100,6 +100,14 @@ impl Context<'_> {
             ProbeKind::Expression(_) => return None,
         })
     }
+}
+
+/// Whether a support holds one of these degrees of freedom along a component.
+pub(super) fn is_held(places: &[(u32, u32, u32)], along: &Along) -> bool {
+    places.iter().any(|&(_, _, axis)| match along {
+        Along::Direction(direction) => direction[axis as usize] != 0.0,
+        Along::Radial(_) | Along::Tangential(_) => true,
+    })
 }
 
 fn on_nodes(probe: PointProbe) -> Probe {

@@ -58,6 +58,8 @@ pub enum KeyKind {
     Choice(fn() -> Vec<&'static str>),
     /// A signed axis such as `-y`, or three numbers.
     Direction,
+    /// A direction, or one of those about an axis.
+    DirectionOrAbout,
     /// Three quantities.
     Point(Dimension),
     /// A quantity, an expression of t, x, y, z, or one of the tables of `TIME_FUNCTION`.
@@ -87,6 +89,9 @@ impl KeyKind {
             Self::Unit(Some(dimension)) => format!("a unit of {}, such as \"{dimension}\"", without_article(dimension)),
             Self::Unit(None) => "a unit such as \"Pa\"".to_string(),
             Self::Choice(names) => one_of(&names()),
+            Self::DirectionOrAbout => {
+                "an axis such as \"x\" or \"-y\", three numbers, \"radial\" or \"tangential\"".to_string()
+            }
             Self::Direction => "an axis such as \"x\" or \"-y\", or three numbers".to_string(),
             Self::Point(dimension) => format!("three numbers, each {}", dimension.expected()),
             Self::TimeFunction(dimension) => {
@@ -113,6 +118,7 @@ impl KeyKind {
             Self::Unit(_) => "unit".to_string(),
             Self::Choice(names) => names().join(", "),
             Self::Direction => "direction".to_string(),
+            Self::DirectionOrAbout => "direction, radial, tangential".to_string(),
             Self::Point(dimension) => format!("three of [{dimension}]"),
             Self::TimeFunction(dimension) => format!("time function [{dimension}]"),
             Self::Field(Dimension::NONE) => "expression".to_string(),
@@ -449,15 +455,24 @@ static KEYS: &[KeyDoc] = &[
     key("probes[].reaction", K::Table, "", "Sum of the support reactions on a group, or force of a rigid body on particles, in N"),
     key("probes[].reaction.group", K::Text, "", "Mesh group, set of particles or rigid body; required without `where`"),
     key("probes[].reaction.where", K::Condition, "", "Which nodes or particles, by their positions at the start; without `group`: which nodes of all solid bodies"),
-    key("probes[].reaction.along", K::Direction, "required", "Direction"),
+    key("probes[].reaction.along", K::DirectionOrAbout, "required", "Direction; or \"radial\" or \"tangential\": away from the axis, or around it by the right hand"),
+    key("probes[].reaction.about", K::Table, "", "radial and tangential only: the axis"),
+    key("probes[].reaction.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
+    key("probes[].reaction.about.axis", K::Direction, "\"z\"", "Its direction"),
     key("probes[].displacement", K::Table, "", "Mean displacement of a group's nodes or particles, in m"),
     key("probes[].displacement.group", K::Text, "", "Mesh group, set of particles or rigid body; required without `where`"),
     key("probes[].displacement.where", K::Condition, "", "Which nodes or particles, by their positions at the start; without `group`: which nodes of all solid bodies"),
-    key("probes[].displacement.along", K::Direction, "required", "Direction"),
+    key("probes[].displacement.along", K::DirectionOrAbout, "required", "Direction; or \"radial\" or \"tangential\": away from the axis, or around it by the right hand"),
+    key("probes[].displacement.about", K::Table, "", "radial and tangential only: the axis"),
+    key("probes[].displacement.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
+    key("probes[].displacement.about.axis", K::Direction, "\"z\"", "Its direction"),
     key("probes[].velocity", K::Table, "", "Mean velocity of a group's nodes or particles, in m/s"),
     key("probes[].velocity.group", K::Text, "", "Mesh group, set of particles or rigid body; required without `where`"),
     key("probes[].velocity.where", K::Condition, "", "Which nodes or particles, by their positions at the start; without `group`: which nodes of all solid bodies"),
-    key("probes[].velocity.along", K::Direction, "required", "Direction"),
+    key("probes[].velocity.along", K::DirectionOrAbout, "required", "Direction; or \"radial\" or \"tangential\": away from the axis, or around it by the right hand"),
+    key("probes[].velocity.about", K::Table, "", "radial and tangential only: the axis"),
+    key("probes[].velocity.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
+    key("probes[].velocity.about.axis", K::Direction, "\"z\"", "Its direction"),
     key("probes[].rotation", K::Table, "", "Rotation of a set of particles as a whole about an axis through its centre, for small angles, in rad"),
     key("probes[].rotation.group", K::Text, "", "Set of particles; required"),
     key("probes[].rotation.where", K::Condition, "", "Which of its particles, by their positions at the start"),
@@ -465,6 +480,9 @@ static KEYS: &[KeyDoc] = &[
     key("probes[].stress", K::Table, "", "Volume mean of a stress component, in Pa"),
     key("probes[].stress.group", K::Text, "required", "Mesh group of elements"),
     key("probes[].stress.component", K::Choice(names::<StressComponent>), "required", "Component; tension is positive"),
+    key("probes[].stress.about", K::Table, "", "radial, tangential and radial_tangential only: the axis"),
+    key("probes[].stress.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
+    key("probes[].stress.about.axis", K::Direction, "\"z\"", "Its direction"),
     key("probes[].energy", K::Choice(names::<EnergyProbe>), "", "An entry of the energy ledger, in J"),
     key("probes[].count", K::Choice(names::<CountKind>), "", "A count"),
     key("probes[].momentum", K::Table, "", "Linear momentum of the scene, in kg m/s"),
@@ -477,7 +495,7 @@ static KEYS: &[KeyDoc] = &[
     key("probes[].crack.along", K::Direction, "required", "Direction"),
     key("probes[].crack.point", K::Point(D::LENGTH), "[0, 0, 0]", "helix, cone and cone_share only: a point of the axis; for a cone the one in the surface, with the direction out of it"),
     key("probes[].crack.where", K::Condition, "", "Which edges and bonds count, by their middles; absent means all"),
-    key("probes[].expression", K::ProbeExpression, "", "Expression of t and probes above it; max, min, absmax, mean, final, time_of_max (of a probe) and at(probe, time) make it one number at the end of the run"),
+    key("probes[].expression", K::ProbeExpression, "", "Expression of t and probes above it; max, min, absmax, mean, final, time_of_max, speed (of a probe) and at(probe, time) make it one number at the end of the run"),
     key("probes[].unit", K::Unit(None), "from the expression", "Expression only: its SI unit; required where a factor without unit leaves it open"),
 
     key("output", K::Table, "", "What is written, and how often"),

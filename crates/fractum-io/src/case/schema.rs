@@ -60,6 +60,9 @@ fn value(path: &str, kind: KeyKind, doc: &str, default: &str) -> Value {
             let table = object(path, doc);
             if table.get("properties").is_some() { json!({ "anyOf": [names, table] }) } else { names }
         }
+        KeyKind::DirectionOrAbout => {
+            json!({ "anyOf": [{ "type": "string", "pattern": "^([-+]?[xyz]|radial|tangential)$" }, triple()] })
+        }
         KeyKind::Direction => json!({ "anyOf": [{ "type": "string", "pattern": "^[-+]?[xyz]$" }, triple()] }),
         KeyKind::Point(_) => triple(),
         KeyKind::TimeFunction(_) => {

@@ -1,5 +1,6 @@
 //! Scenes built from cases on meshes made here: what names, groups and conditions become.
 
+mod about_axis;
 mod selection;
 mod sides;
 

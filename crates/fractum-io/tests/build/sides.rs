@@ -10,14 +10,14 @@ use fractum_mesh::{Group, Mesh};
 
 use crate::build;
 
-const AROUND: u32 = 32;
-const RADIUS: [f64; 2] = [1.0, 2.0];
-const THICKNESS: f64 = 0.3;
+pub(crate) const AROUND: u32 = 32;
+pub(crate) const RADIUS: [f64; 2] = [1.0, 2.0];
+pub(crate) const THICKNESS: f64 = 0.3;
 const PRESSURE: f64 = 2e6;
 
 /// How the sides of a group are listed: as the first number says, as it says not, or in turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Listed {
+pub(crate) enum Listed {
     Along,
     Against,
     InTurn,
@@ -36,7 +36,7 @@ impl Listed {
 }
 
 /// A ring about the origin with groups `body` and, of the half with x > 0, `inner` and `outer`.
-fn ring(lines_listed: Listed, triangles_listed: Listed) -> Mesh {
+pub(crate) fn ring(lines_listed: Listed, triangles_listed: Listed) -> Mesh {
     let node = |ring: u32, place: u32| ring * AROUND + place % AROUND;
     let nodes: Vec<Vec3> = RADIUS
         .iter()
@@ -118,7 +118,7 @@ fn hollow_cube(listed: Listed) -> Mesh {
     mesh
 }
 
-/// Nodal forces of a load on a body at rest, with the positions of the nodes: what one step, too short for elastic
+/// Nodal forces of a load on a body at rest, with the positions of the nodes: what half a step, too short for elastic
 /// forces, gives of momentum.
 fn nodal_forces(mesh: &Mesh, load: &str) -> Vec<(Vec3, Vec3)> {
     const STEP: f64 = 1e-12;
@@ -147,7 +147,7 @@ step = "{STEP} s"
     let mut scene = build(&case, mesh).scene;
     scene.step(true).unwrap();
     let solid = &scene.solid;
-    (0..solid.mass.len()).map(|n| (solid.reference[n], solid.velocity[n] * (solid.mass[n] / STEP))).collect()
+    (0..solid.mass.len()).map(|n| (solid.reference[n], solid.velocity[n] * (2.0 * solid.mass[n] / STEP))).collect()
 }
 
 fn check(forces: &[(Vec3, Vec3)], expected: Vec3, what: &str) {

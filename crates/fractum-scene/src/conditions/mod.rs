@@ -11,7 +11,7 @@ use fractum_math::Vec3;
 
 pub use load::{Gravity, Load, Loads, NodalForce, Pressure};
 pub(crate) use points::{DrivenPoints, Points};
-pub use probe::PointProbe;
+pub use probe::{Along, PointProbe};
 pub(crate) use support::integral;
 pub use support::{Motion, Support, Supports};
 

@@ -1,30 +1,58 @@
+use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 
 use super::{Points, Supports};
 
+/// The direction of a component of a vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Along {
+    /// The same everywhere: a unit vector.
+    Direction(Vec3),
+    /// Away from an axis.
+    Radial(Axis),
+    /// Around an axis, by the right hand.
+    Tangential(Axis),
+}
+
+impl Along {
+    /// Unit vector at a place; zero on the axis.
+    pub fn at(&self, place: &Vec3) -> Vec3 {
+        let away = |axis: &Axis| {
+            let from = place - axis.point;
+            (from - axis.direction * from.dot(&axis.direction)).try_normalize(0.0).unwrap_or_default()
+        };
+        match self {
+            Along::Direction(direction) => *direction,
+            Along::Radial(axis) => away(axis),
+            Along::Tangential(axis) => axis.direction.cross(&away(axis)),
+        }
+    }
+}
+
 /// What is measured on a set of points, ascending: nodes of solids, or particles.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PointProbe {
-    /// Force of the supports along a direction [N].
+    /// Force of the supports [N]; directions about an axis are those of the places without load.
     Reaction {
         /// Prescribed degrees of freedom; see [`Supports::places`].
         places: Vec<(u32, u32, u32)>,
-        /// Unit direction.
-        direction: Vec3,
+        /// Which component.
+        along: Along,
     },
-    /// Mean displacement along a direction at the instant of the last step, as its reactions are [m].
+    /// Mean displacement at the instant of the last step, as its reactions are [m]; directions about an axis are those of
+    /// the places without load.
     Displacement {
         /// The points.
         points: Vec<u32>,
-        /// Unit direction.
-        direction: Vec3,
+        /// Which component.
+        along: Along,
     },
-    /// Mean velocity along a direction [m/s].
+    /// Mean velocity [m/s]; directions about an axis are those of the present places.
     Velocity {
         /// The points.
         points: Vec<u32>,
-        /// Unit direction.
-        direction: Vec3,
+        /// Which component.
+        along: Along,
     },
     /// Rotation of the set as a whole about an axis through its centre, for small angles [rad].
     Rotation {
@@ -40,9 +68,16 @@ impl PointProbe {
     pub(crate) fn value(&self, population: &impl Points, supports: &Supports, dt: f64) -> f64 {
         let displacement = |i: usize| population.displacement_before(i, dt);
         match self {
-            PointProbe::Reaction { places, direction } => supports.reaction(places, direction),
-            PointProbe::Displacement { points, direction } => mean(points, displacement).dot(direction),
-            PointProbe::Velocity { points, direction } => mean(points, |i| *population.velocity(i)).dot(direction),
+            PointProbe::Reaction { places, along: Along::Direction(direction) } => supports.reaction(places, direction),
+            PointProbe::Reaction { places, along } => {
+                supports.reaction_by(places, |point| along.at(population.reference(point)))
+            }
+            PointProbe::Displacement { points, along } => {
+                component(points, along, |i| *population.reference(i), displacement)
+            }
+            PointProbe::Velocity { points, along } => {
+                component(points, along, |i| population.position(i), |i| *population.velocity(i))
+            }
             PointProbe::Rotation { points, axis } => {
                 let centre = mean(points, |i| *population.reference(i));
                 let shift = mean(points, displacement);
@@ -58,6 +93,36 @@ impl PointProbe {
     }
 }
 
+/// Mean component of a vector over points at these places.
+fn component(points: &[u32], along: &Along, place: impl Fn(usize) -> Vec3, of: impl Fn(usize) -> Vec3) -> f64 {
+    match along {
+        Along::Direction(direction) => mean(points, of).dot(direction),
+        _ => {
+            let own = |&i: &u32| of(i as usize).dot(&along.at(&place(i as usize)));
+            points.iter().map(own).sum::<f64>() / points.len().max(1) as f64
+        }
+    }
+}
+
 fn mean(points: &[u32], of: impl Fn(usize) -> Vec3) -> Vec3 {
     points.iter().map(|&i| of(i as usize)).sum::<Vec3>() / points.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_about_an_axis_are_unit_vectors_by_the_right_hand() {
+        let axis = Axis { point: Vec3::new(1.0, 2.0, 3.0), direction: Vec3::z() };
+        let place = Vec3::new(1.0, 4.0, -7.0);
+        assert_eq!(Along::Radial(axis).at(&place), Vec3::y());
+        assert_eq!(Along::Tangential(axis).at(&place), -Vec3::x());
+        assert_eq!(Along::Direction(Vec3::x()).at(&place), Vec3::x());
+        let on_axis = Vec3::new(1.0, 2.0, 9.0);
+        assert_eq!(
+            (Along::Radial(axis).at(&on_axis), Along::Tangential(axis).at(&on_axis)),
+            (Vec3::zeros(), Vec3::zeros())
+        );
+    }
 }

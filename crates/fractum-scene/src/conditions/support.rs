@@ -121,6 +121,15 @@ impl Supports {
         places.iter().map(|&(s, e, a)| self.sets[s as usize].reaction[e as usize] * direction[a as usize]).sum()
     }
 
+    /// Force of the supports on these places, each along the direction at its point, at the last step [N].
+    pub(crate) fn reaction_by(&self, places: &[(u32, u32, u32)], direction: impl Fn(usize) -> Vec3) -> f64 {
+        let own = |&(s, e, a): &(u32, u32, u32)| {
+            let set = &self.sets[s as usize];
+            set.reaction[e as usize] * direction(set.points[e as usize] as usize)[a as usize]
+        };
+        places.iter().map(own).sum()
+    }
+
     /// Writes the displacements prescribed at `time` into `displacement`; those of supports with a velocity go on from
     /// the present values at `present`.
     pub(crate) fn prescribe(&self, displacement: &mut [Vec3], reference: &[Vec3], present: f64, time: f64) {

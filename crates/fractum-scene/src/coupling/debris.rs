@@ -264,13 +264,18 @@ impl Debris {
                 self.state.attached[particle] = self.holders.is_held(solid, node);
             }
         }
-        for edge in solid.edges_without_elements(removed) {
-            if let Err(place) = self.state.pairs.binary_search_by_key(&edge, |p| p.nodes) {
-                let pair = self.new_pair(solid, edge, true);
-                self.state.pairs.insert(place, pair);
-            }
-        }
+        let opened = solid.edges_without_elements(removed);
+        self.add_pairs(solid, opened, true);
         self.state.stale = true;
+    }
+
+    /// Adds those of these pairs, ascending, that are not in the list, in one pass over it.
+    fn add_pairs(&mut self, solid: &Solid, mut nodes: Vec<[u32; 2]>, neighbours: bool) {
+        nodes.retain(|nodes| self.state.pairs.binary_search_by_key(nodes, |p| p.nodes).is_err());
+        let added: Vec<Pair> = nodes.into_iter().map(|nodes| self.new_pair(solid, nodes, neighbours)).collect();
+        self.state.pairs.extend(added);
+        // Two ascending runs: the sort merges them.
+        self.state.pairs.sort_by_key(|pair| pair.nodes);
     }
 
     /// A pair that touches no nearer than now, so that it brings no energy.

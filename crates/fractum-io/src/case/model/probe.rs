@@ -1,7 +1,7 @@
 //! Probes: the numbers a run records.
 
 use fractum_math::Vec3;
-use fractum_scene::{CountKind, CrackMeasure, EnergyProbe};
+use fractum_scene::{Along, CountKind, CrackMeasure, EnergyProbe};
 
 use super::Selection;
 use crate::case::choice::choice;
@@ -29,26 +29,26 @@ impl Probe {
 /// What a probe measures.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ProbeKind {
-    /// Sum of support reactions, along a unit vector [N].
+    /// Sum of support reactions [N].
     Reaction {
         /// On these nodes or particles.
         on: Selection,
-        /// Unit vector.
-        along: Vec3,
+        /// Which component.
+        along: Along,
     },
-    /// Mean displacement, along a unit vector [m].
+    /// Mean displacement [m].
     Displacement {
         /// Of these nodes or particles.
         on: Selection,
-        /// Unit vector.
-        along: Vec3,
+        /// Which component.
+        along: Along,
     },
-    /// Mean velocity, along a unit vector [m/s].
+    /// Mean velocity [m/s].
     Velocity {
         /// Of these nodes or particles.
         on: Selection,
-        /// Unit vector.
-        along: Vec3,
+        /// Which component.
+        along: Along,
     },
     /// Rotation of a set of particles as a whole about an axis through its centre, for small angles [rad].
     Rotation {
@@ -61,8 +61,8 @@ pub enum ProbeKind {
     Stress {
         /// Mesh group of elements.
         group: Spanned<String>,
-        /// Component.
-        component: StressComponent,
+        /// Normal of the plane, and direction of the stress on it.
+        between: [Along; 2],
     },
     /// An entry of the energy ledger, or its residual [J].
     Energy(EnergyProbe),
@@ -143,6 +143,8 @@ pub enum Take {
     Final,
     /// Time of the largest value [s].
     TimeOfMax,
+    /// Least squares slope over the rows in which the value is another than in the row before.
+    Speed,
     /// Value at this time [s], interpolated.
     At(f64),
 }
@@ -167,9 +169,18 @@ pub enum StressComponent {
     Yz,
     /// σzx
     Zx,
+    /// Normal stress away from an axis.
+    Radial,
+    /// Normal stress around an axis.
+    Tangential,
+    /// Shear stress between both.
+    RadialTangential,
 }
 
-choice!(StressComponent { "xx" => Xx, "yy" => Yy, "zz" => Zz, "xy" => Xy, "yz" => Yz, "zx" => Zx });
+choice!(StressComponent {
+    "xx" => Xx, "yy" => Yy, "zz" => Zz, "xy" => Xy, "yz" => Yz, "zx" => Zx,
+    "radial" => Radial, "tangential" => Tangential, "radial_tangential" => RadialTangential,
+});
 
 impl Choice for EnergyProbe {
     const NAMES: &'static [(&'static str, Self)] = &EnergyProbe::NAMES;

@@ -2,19 +2,20 @@
 
 use std::collections::HashMap;
 
+use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
+use fractum_scene::{Along, CrackMeasure};
 
 use super::bodies::optional;
 use super::boundary::{exactly_one, selection};
 use super::parameters::check_name;
 use super::vectors::{condition, direction, point};
 use crate::case::expression::{Named, Names, Op, Type, parse_unit};
-use crate::case::model::{Probe, ProbeExpression, ProbeInput, ProbeKind, Take};
+use crate::case::model::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
 use crate::case::reader::{ParameterNames, Table};
 use crate::case::tree::{Node, Value};
 use crate::case::unit::Dimension;
 use crate::case::{Diagnostic, Spanned};
-use fractum_scene::CrackMeasure;
 
 /// A probe as far as it could be read.
 pub(super) struct ReadProbe {
@@ -41,13 +42,14 @@ impl ReadProbes {
 }
 
 /// Functions that reduce the history of a probe to a number.
-const REDUCTIONS: [(&str, Take); 6] = [
+const REDUCTIONS: [(&str, Take); 7] = [
     ("max", Take::Max),
     ("min", Take::Min),
     ("absmax", Take::AbsMax),
     ("mean", Take::Mean),
     ("final", Take::Final),
     ("time_of_max", Take::TimeOfMax),
+    ("speed", Take::Speed),
 ];
 
 /// Reads all probes in order.
@@ -129,7 +131,7 @@ fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimensio
     let on_along = || {
         let inner = table.table(key)?;
         let on = selection(&inner);
-        let along = direction(&inner, "along").required();
+        let along = along_or_about(&inner);
         inner.finish("here");
         Some((on?, along?))
     };
@@ -143,13 +145,20 @@ fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimensio
         "reaction" => on_along().map(|(on, along)| (ProbeKind::Reaction { on, along }, Dimension::FORCE))?,
         "displacement" => on_along().map(|(on, along)| (ProbeKind::Displacement { on, along }, Dimension::LENGTH))?,
         "velocity" => on_along().map(|(on, along)| (ProbeKind::Velocity { on, along }, Dimension::VELOCITY))?,
-        "rotation" => on_along().map(|(on, along)| (ProbeKind::Rotation { on, along }, Dimension::NONE))?,
+        "rotation" => {
+            let inner = table.table(key)?;
+            let on = selection(&inner);
+            let along = direction(&inner, "along").required();
+            inner.finish("here");
+            (ProbeKind::Rotation { on: on?, along: along? }, Dimension::NONE)
+        }
         "stress" => {
             let inner = table.table(key)?;
             let group = inner.text("group").spanned().required();
             let component = inner.choice("component").required();
+            let between = component.and_then(|component| stress_between(&inner, component));
             inner.finish("here");
-            (ProbeKind::Stress { group: group?, component: component? }, Dimension::PRESSURE)
+            (ProbeKind::Stress { group: group?, between: between? }, Dimension::PRESSURE)
         }
         "energy" => (ProbeKind::Energy(table.choice("energy").required()?), Dimension::ENERGY),
         "count" => (ProbeKind::Count(table.choice("count").required()?), Dimension::NONE),
@@ -161,6 +170,54 @@ fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimensio
             (ProbeKind::CrackArea, Dimension::AREA)
         }
     })
+}
+
+/// The key `along`: a direction, or "radial" or "tangential" with the axis `about`.
+fn along_or_about(table: &Table<'_>) -> Option<Along> {
+    let about: fn(Axis) -> Along = match table.peek("along").map(|node| &node.value) {
+        Some(Value::Text(text)) if text == "radial" => Along::Radial,
+        Some(Value::Text(text)) if text == "tangential" => Along::Tangential,
+        _ => {
+            table.refuse("about", "with a direction");
+            return direction(table, "along").required().map(Along::Direction);
+        }
+    };
+    table.node("along");
+    axis(table).map(about)
+}
+
+/// The table `about`: an axis through a point, by default that of z.
+fn axis(table: &Table<'_>) -> Option<Axis> {
+    let inner = table.table_or_empty("about");
+    let point = point(&inner, "point").or_if_absent(Vec3::zeros());
+    let direction = direction(&inner, "axis").or_if_absent(Vec3::z());
+    inner.finish("here");
+    Some(Axis { point: point?, direction: direction? })
+}
+
+/// Normal of the plane and direction of a stress component.
+fn stress_between(table: &Table<'_>, component: StressComponent) -> Option<[Along; 2]> {
+    use StressComponent::{Radial, RadialTangential, Tangential, Xx, Xy, Yy, Yz, Zx, Zz};
+    let [x, y, z] = [Vec3::x(), Vec3::y(), Vec3::z()].map(Along::Direction);
+    let fixed = match component {
+        Xx => [x, x],
+        Yy => [y, y],
+        Zz => [z, z],
+        Xy => [x, y],
+        Yz => [y, z],
+        Zx => [z, x],
+        Radial | Tangential | RadialTangential => {
+            let axis = axis(table)?;
+            let (radial, tangential) = (Along::Radial(axis), Along::Tangential(axis));
+            return Some(match component {
+                Radial => [radial, radial],
+                Tangential => [tangential, tangential],
+                _ => [radial, tangential],
+            });
+        }
+    };
+    table.refuse("about", "with this component");
+    Some(fixed)
 }
 
 fn crack(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
@@ -335,6 +392,14 @@ impl Names for ProbeNames<'_> {
                 found.map(|(_, take)| *take).ok_or_else(|| format!("unknown function \"{function}\""))?
             }
         };
-        self.take(probe, take, if take == Take::TimeOfMax { Type::number(Dimension::TIME) } else { kind })
+        let kind = match (take, kind) {
+            (Take::TimeOfMax, _) => Type::number(Dimension::TIME),
+            (Take::Speed, Type::Number { dimension, .. }) => {
+                let out_of_range = || format!("speed({name}) has a dimension out of range");
+                Type::number(dimension.over(Dimension::TIME).ok_or_else(out_of_range)?)
+            }
+            _ => kind,
+        };
+        self.take(probe, take, kind)
     }
 }

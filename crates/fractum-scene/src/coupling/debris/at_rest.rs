@@ -44,14 +44,9 @@ impl Debris {
             return;
         }
         let centres: Vec<Vec3> = state.nodes.iter().map(|&n| place(n)).collect();
-        for nodes in self.near(&centres, state.skin) {
-            if let Err(place) = self.state.pairs.binary_search_by_key(&nodes, |p| p.nodes)
-                && !solid.is_live_edge(nodes)
-            {
-                let pair = self.new_pair(solid, nodes, false);
-                self.state.pairs.insert(place, pair);
-            }
-        }
+        let mut near = self.near(&centres, state.skin);
+        near.retain(|&nodes| !solid.is_live_edge(nodes));
+        self.add_pairs(solid, near, false);
     }
 
     /// Whether an element holds both particles of a pair.
