@@ -4,7 +4,7 @@ use fractum_math::elementary::cbrt;
 use std::fmt;
 
 use fractum_dem::FractureCriterion as BondCriterion;
-use fractum_dem::criterion::Level;
+use fractum_dem::criterion::{CriterionParameter, Level};
 use fractum_fem::{Formulation, Kinematics, Plane, Shape};
 use fractum_io::build::{BuiltScene, TieReport};
 use fractum_io::case::model::{
@@ -504,38 +504,22 @@ fn megabytes(bytes: f64) -> String {
 
 /// A criterion for bonds in words, with its own strengths.
 fn criterion_text(criterion: &BondCriterion) -> String {
-    let level = |level: Level| match level {
-        Level::Own => "of each particle",
-        Level::Neighbours => "of each particle and its neighbours",
-        Level::Second => "of each particle and two rings of neighbours",
+    let (kind, numbers) = (criterion.kind(), criterion.numbers());
+    let level = match numbers.level {
+        _ if !kind.takes(CriterionParameter::Level) => "",
+        Level::Own => " of each particle",
+        Level::Neighbours => " of each particle and its neighbours",
+        Level::Second => " of each particle and two rings of neighbours",
     };
-    let both = |tension: f64, compression: f64| {
-        format!("{} in tension, {} in compression", quantity(tension, "Pa"), quantity(compression, "Pa"))
-    };
-    match criterion {
-        BondCriterion::BeamRankine(c) => {
-            format!("the largest principal stress in the beam: {}", quantity(c.strength, "Pa"))
-        }
-        BondCriterion::Hydrostatic(c) => {
-            format!("the mean virial stress of the particle: {}", quantity(c.strength, "Pa"))
-        }
-        BondCriterion::Principal(c) => {
-            let strengths = match c.compressive_strength {
-                Some(compression) => both(c.tensile_strength, compression),
-                None => format!("{} in tension", quantity(c.tensile_strength, "Pa")),
-            };
-            format!("principal virial stresses {}: {strengths}", level(c.level))
-        }
-        BondCriterion::MohrCoulomb(c) => format!(
-            "Mohr-Coulomb on the virial stress {}: {}, friction angle {:.1} deg",
-            level(c.level),
-            both(c.tensile_strength, c.compressive_strength),
-            c.friction_angle.to_degrees()
-        ),
-        BondCriterion::DruckerPrager(c) => format!(
-            "Drucker-Prager on the virial stress {}: {}",
-            level(c.level),
-            both(c.tensile_strength, c.compressive_strength)
-        ),
+    let mut text = format!("{}{level}: {}", kind.words, quantity(numbers.tensile_strength, "Pa"));
+    if kind.takes(CriterionParameter::CompressiveStrength) {
+        text += " in tension";
     }
+    if let Some(compression) = numbers.compressive_strength {
+        text += &format!(", {} in compression", quantity(compression, "Pa"));
+    }
+    if kind.takes(CriterionParameter::FrictionAngle) {
+        text += &format!(", friction angle {:.1} deg", numbers.friction_angle.to_degrees());
+    }
+    text
 }

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use fractum_dem::Batch;
+use fractum_dem::FractureCriterion;
 use fractum_dem::criterion::EndMoments;
 use fractum_fem::{CriterionKind, Formulation, Kinematics, Plane};
 use fractum_pack::Convention;
@@ -307,7 +308,7 @@ static KEYS: &[KeyDoc] = &[
     key("materials.NAME.bonds.radius_ratio", K::Quantity(D::NONE), "required", "Beam radius over mean particle radius, within 0 and 2"),
     key("materials.NAME.bonds.young_modulus", K::Quantity(D::PRESSURE), "required", "Young's modulus of the beams, > 0"),
     key("materials.NAME.fracture", K::Table, "", "When the bonds of bonded bodies break; without this table they hold"),
-    key("materials.NAME.fracture.criterion", K::Choice(names::<BondCriterion>), "\"principal\"", "Largest principal virial stress of a particle with its neighbours; largest principal stress in the beam; mean virial stress of a particle, which loses all its bonds; Mohr-Coulomb with tension cut-off or Drucker-Prager on the virial stress"),
+    key("materials.NAME.fracture.criterion", K::Choice(bond_criteria), "\"principal\"", "Largest principal virial stress of a particle with its neighbours; largest principal stress in the beam; mean virial stress of a particle, which loses all its bonds; Mohr-Coulomb with tension cut-off or Drucker-Prager on the virial stress"),
     key("materials.NAME.fracture.tensile_strength", K::Quantity(D::PRESSURE), "required", "Tensile strength of the material, > 0; the criterion's own strengths are found by breaking two boxes in tension"),
     key("materials.NAME.fracture.criterion_strength", K::Quantity(D::PRESSURE), "", "Instead: strength of the criterion itself in tension, > 0, as `fractum calibrate --strength` writes it"),
     key("materials.NAME.fracture.compressive_strength", K::Quantity(D::PRESSURE), "none with principal, else 10 times that in tension", "In compression, above that in tension and of the same kind; for principal, mohr-coulomb, drucker-prager"),
@@ -532,6 +533,10 @@ static KEYS: &[KeyDoc] = &[
     key("TIME_FUNCTION.rise_time", K::Quantity(D::TIME), "", "Double-exponential, required there: time from begin to peak, > 0"),
     key("TIME_FUNCTION.decay_time", K::Quantity(D::TIME), "", "Double-exponential, required there: time from the peak to 1/e of it, above 2.1462 rise_time"),
 ];
+
+fn bond_criteria() -> Vec<&'static str> {
+    FractureCriterion::KINDS.iter().map(|kind| kind.name).collect()
+}
 
 fn softenings() -> Vec<&'static str> {
     vec!["exponential", "linear", "bilinear"]

@@ -9,8 +9,9 @@ use fractum_calibrate::strength_law::{self, READINGS, StrengthLaw, Survey};
 use fractum_calibrate::{Calibration, Request, StrengthCriterion, calibrate, laws, published};
 use fractum_io::atomic;
 use fractum_io::case::{Dimension, parse_quantity};
+use fractum_pack::Convention;
 
-use super::shape::{Convention, pressure};
+use super::shape::{choice, pressure};
 
 /// Arguments of `fractum calibrate`.
 #[derive(Args)]
@@ -34,7 +35,7 @@ pub(crate) struct CalibrateArguments {
     #[arg(long)]
     coordination: Option<f64>,
     /// How the coordination is counted.
-    #[arg(long, value_enum, default_value = "interior")]
+    #[arg(long, value_parser = choice::<Convention>(), default_value = "interior")]
     convention: Convention,
     /// Particles of the calibration packings.
     #[arg(long, default_value_t = 10_000)]
@@ -72,7 +73,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<ExitCode, Failure> {
     if arguments.refit {
         let points = laws::survey(&laws::Survey::default()).map_err(wrong)?;
         let fit = |convention| laws::Law::fit(&points, convention).map_err(wrong);
-        let laws = [fit(fractum_pack::Convention::All)?, fit(fractum_pack::Convention::Interior)?];
+        let laws = [fit(Convention::All)?, fit(Convention::Interior)?];
         atomic::create_folder(folder)?;
         atomic::write(&folder.join("laws.csv"), laws::write(&laws).as_bytes())?;
         atomic::write(&folder.join("database.csv"), laws::write_database(&points).as_bytes())?;
@@ -102,7 +103,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<ExitCode, Failure> {
     let strength = arguments.strength.as_deref().map(pressure).transpose()?;
     request.tensile_strength = strength.map(|strength| (strength, criterion));
     request.coordination = arguments.coordination;
-    request.convention = arguments.convention.into();
+    request.convention = arguments.convention;
     request.particles = arguments.particles;
     request.seed = arguments.seed;
     request.packings = arguments.packings;

@@ -8,12 +8,12 @@ use fractum_calibrate::{CalibrateError, Micro, Sample, lab, published};
 use fractum_dem::Tolerance;
 use fractum_io::atomic;
 use fractum_io::case::{Dimension, parse_quantity};
-use fractum_pack::{Domain, PackSpec, Packing, pack};
+use fractum_pack::{Convention, Domain, PackSpec, Packing, pack};
 
 use super::convergence::{Diagram, Series, svg};
 use super::lab_break::{self, BreakArguments};
 use super::lab_strength::{self, StrengthArguments};
-use super::shape::{Convention, ShapeArguments, pressure};
+use super::shape::{ShapeArguments, choice, pressure};
 
 /// Arguments of `fractum lab`.
 #[derive(Subcommand)]
@@ -62,7 +62,7 @@ pub(crate) struct TestArguments {
     #[arg(long, default_value_t = 10.0)]
     coordination: f64,
     /// How the coordination is counted.
-    #[arg(long, value_enum, default_value = "interior")]
+    #[arg(long, value_parser = choice::<Convention>(), default_value = "interior")]
     convention: Convention,
     /// Beam radius over the mean particle radius.
     #[arg(long, default_value_t = 0.4)]
@@ -127,7 +127,7 @@ fn test(arguments: &TestArguments) -> Result<(), Failure> {
     }
     let packing = arguments.shape.packing()?;
     let result = (|| -> Result<serde_json::Value, CalibrateError> {
-        let mut sample = Sample::new(packing, arguments.coordination, arguments.convention.into())?;
+        let mut sample = Sample::new(packing, arguments.coordination, arguments.convention)?;
         sample.set_micro(micro)?;
         let tolerance = Tolerance::default();
         let value = match arguments.test {
@@ -178,7 +178,7 @@ fn tables(seeds: u64) -> Result<(), CalibrateError> {
     );
     for a in published::anchors() {
         let bonded = |packing: &Packing| -> Result<Sample, CalibrateError> {
-            let mut sample = Sample::new(packing.clone(), a.coordination, fractum_pack::Convention::All)?;
+            let mut sample = Sample::new(packing.clone(), a.coordination, Convention::All)?;
             sample.set_micro(Micro { radius_ratio: a.radius_ratio, young_modulus: a.beam_modulus })?;
             Ok(sample)
         };
@@ -231,7 +231,7 @@ const STUDY: (f64, Micro) = (10.0, Micro { radius_ratio: 0.348, young_modulus: 6
 fn convergence(seeds: u64, largest: usize, output: &Path) -> Result<(), Failure> {
     let mut text =
         String::from("particles,convention,packings,E [Pa],E scatter [%],nu,nu scatter [%],gauge E [Pa],gauge nu\n");
-    let conventions = [(fractum_pack::Convention::All, "#b42"), (fractum_pack::Convention::Interior, "#06c")];
+    let conventions = [(Convention::All, "#b42"), (Convention::Interior, "#06c")];
     let series = || conventions.map(|(c, colour)| Series { name: c.to_string(), colour, points: Vec::new() }).into();
     let mut young = Diagram { title: "Young's modulus [GPa] against particles", series: series() };
     let mut poisson = Diagram { title: "Poisson's ratio against particles", series: series() };

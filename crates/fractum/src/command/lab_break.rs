@@ -4,13 +4,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use fractum::cracks::{self, Columns};
 use fractum::{Failure, say};
 use fractum_calibrate::{Micro, Sample, lab, published};
-use fractum_dem::criterion::{
-    BeamRankine, BreakMode, DruckerPrager, EndMoments, FractureCriterion, Hydrostatic, Level, MohrCoulomb, Principal,
-};
+use fractum_dem::criterion::{BreakMode, CriterionNumbers, EndMoments, FractureCriterion, Level};
 use fractum_dem::{Batch, CrackFaces, Dof6, LoadPoint, Particles, Piece, pieces};
 use fractum_io::case::{Dimension, parse_quantity};
 use fractum_io::fragments::{self, Fragment};
@@ -19,8 +18,9 @@ use fractum_io::plot::{Axis, Chart, Mark, Series, Style};
 use fractum_io::vtk::{Field, PolyCells, PolyData};
 use fractum_io::{Compression, atomic};
 use fractum_math::Vec3;
+use fractum_pack::Convention;
 
-use super::shape::{Convention, ShapeArguments, pressure};
+use super::shape::{ShapeArguments, choice, pressure};
 
 /// Arguments of `fractum lab break`.
 #[derive(Args)]
@@ -34,7 +34,7 @@ pub(crate) struct BreakArguments {
     #[arg(long, default_value_t = 10.0)]
     coordination: f64,
     /// How the coordination is counted.
-    #[arg(long, value_enum, default_value = "interior")]
+    #[arg(long, value_parser = choice::<Convention>(), default_value = "interior")]
     convention: Convention,
     /// Beam radius over the mean particle radius.
     #[arg(long, default_value_t = 0.348)]
@@ -43,8 +43,8 @@ pub(crate) struct BreakArguments {
     #[arg(long, default_value = "678 GPa")]
     beam_young: String,
     /// When bonds break.
-    #[arg(long, value_enum, default_value = "principal")]
-    criterion: Kind,
+    #[arg(long, value_parser = criterion_names(), default_value = "principal")]
+    criterion: String,
     /// Strength of the criterion, in tension, such as "60 MPa"; by default the one that gives the material 50 MPa
     /// by eq. (22) of Nguyen et al. (2019).
     #[arg(long)]
@@ -59,11 +59,11 @@ pub(crate) struct BreakArguments {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(0..=2))]
     level: u8,
     /// Bending moment that the beam criterion takes.
-    #[arg(long, value_enum, default_value = "mean")]
-    moments: Moments,
+    #[arg(long, value_parser = choice::<EndMoments>(), default_value = "mean")]
+    moments: EndMoments,
     /// What breaks between two equilibria: for every overloaded particle, or one bond only.
-    #[arg(long, value_enum, default_value = "site")]
-    batch: BatchArgument,
+    #[arg(long, value_parser = choice::<Batch>(), default_value = "site")]
+    batch: Batch,
     /// Largest nominal strain; a sample that holds says how close it came.
     #[arg(long)]
     limit: Option<f64>,
@@ -106,30 +106,9 @@ enum Test {
     Brazilian,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Kind {
-    /// Largest principal stress in the beam.
-    Beam,
-    /// Mean stress of the particle, which loses all its bonds.
-    Hydrostatic,
-    /// Largest principal stress of the neighbourhood.
-    Principal,
-    /// Mohr-Coulomb with tension cut-off.
-    MohrCoulomb,
-    /// Drucker-Prager.
-    DruckerPrager,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Moments {
-    Mean,
-    Largest,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum BatchArgument {
-    One,
-    Site,
+/// Names of the criteria.
+fn criterion_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(FractureCriterion::KINDS.iter().map(|kind| kind.name))
 }
 
 impl From<Test> for lab::Failure {
@@ -154,36 +133,18 @@ impl BreakArguments {
             None => DEFAULT_STRENGTH / published::strength_ratio(self.radius_ratio, sample.network.coordination_all),
         };
         let given = self.compressive.as_deref().map(pressure).transpose()?;
-        let compressive_strength = given.unwrap_or(10.0 * tensile_strength);
-        let level = Level::from_number(self.level).unwrap_or_default();
-        Ok(match self.criterion {
-            Kind::Beam => {
-                let moments = match self.moments {
-                    Moments::Mean => EndMoments::Mean,
-                    Moments::Largest => EndMoments::Largest,
-                };
-                FractureCriterion::BeamRankine(BeamRankine { strength: tensile_strength, moments })
-            }
-            Kind::Hydrostatic => FractureCriterion::Hydrostatic(Hydrostatic { strength: tensile_strength }),
-            Kind::Principal => {
-                // Pressed samples need a strength in compression; elsewhere it is there when asked for.
-                let pressed = matches!(self.test, Test::Compression).then_some(compressive_strength);
-                FractureCriterion::Principal(Principal {
-                    tensile_strength,
-                    compressive_strength: given.or(pressed),
-                    level,
-                })
-            }
-            Kind::MohrCoulomb => FractureCriterion::MohrCoulomb(MohrCoulomb {
-                tensile_strength,
-                compressive_strength,
-                friction_angle: self.friction_angle.to_radians(),
-                level,
-            }),
-            Kind::DruckerPrager => {
-                FractureCriterion::DruckerPrager(DruckerPrager { tensile_strength, compressive_strength, level })
-            }
-        })
+        // Pressed samples need a strength in compression; elsewhere it is there when asked for.
+        let pressed = matches!(self.test, Test::Compression).then_some(10.0 * tensile_strength);
+        let numbers = CriterionNumbers {
+            tensile_strength,
+            compressive_strength: given.or(pressed),
+            friction_angle: self.friction_angle.to_radians(),
+            level: Level::from_number(self.level).unwrap_or_default(),
+            moments: self.moments,
+        };
+        let kind = FractureCriterion::KINDS.iter().find(|kind| kind.name == self.criterion);
+        let unknown = || Failure::input(format!("no criterion \"{}\"", self.criterion));
+        kind.map(|kind| (kind.make)(&numbers)).ok_or_else(unknown)
     }
 }
 
@@ -193,15 +154,12 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
     let micro = Micro { radius_ratio: arguments.radius_ratio, young_modulus: pressure(&arguments.beam_young)? };
     let packing = arguments.shape.packing()?;
     let started = Instant::now();
-    let mut sample = Sample::new(packing, arguments.coordination, arguments.convention.into()).map_err(wrong)?;
+    let mut sample = Sample::new(packing, arguments.coordination, arguments.convention).map_err(wrong)?;
     sample.set_micro(micro).map_err(|error| Failure::input(error.to_string()))?;
     let criterion = arguments.criterion(&sample)?;
     let test: lab::Failure = arguments.test.into();
     let mut options = lab::FailureOptions::new(test, criterion);
-    options.batch = match arguments.batch {
-        BatchArgument::One => Batch::One,
-        BatchArgument::Site => Batch::PerSite,
-    };
+    options.batch = arguments.batch;
     options.limit = arguments.limit.unwrap_or(f64::INFINITY);
     options.stop = arguments.stop.unwrap_or(options.stop);
     options.tolerance.residual = arguments.residual;

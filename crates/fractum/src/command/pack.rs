@@ -6,9 +6,9 @@ use clap::Args;
 use fractum::{ExitCode, Failure, say, tell};
 use fractum_calibrate::{Micro, Sample, lab};
 use fractum_io::atomic;
-use fractum_pack::{Certificate, Packing, bond};
+use fractum_pack::{Certificate, Convention, Packing, bond};
 
-use super::shape::{Convention, ShapeArguments};
+use super::shape::{ShapeArguments, choice};
 
 /// Arguments of `fractum pack`.
 #[derive(Args)]
@@ -19,7 +19,7 @@ pub(crate) struct PackArguments {
     #[arg(long)]
     coordination: Option<f64>,
     /// How the coordination is counted.
-    #[arg(long, value_enum, default_value = "interior")]
+    #[arg(long, value_parser = choice::<Convention>(), default_value = "interior")]
     convention: Convention,
     /// Write a packing that misses its targets too, such as one in a part only a few particles thick.
     #[arg(long)]
@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
     }
     let bonds = match arguments.coordination {
         Some(asked) => {
-            let network = bond(&packing, asked, arguments.convention.into()).map_err(|error| wrong(&error))?;
+            let network = bond(&packing, asked, arguments.convention).map_err(|error| wrong(&error))?;
             say!(
                 "{} bonds up to {:.4} times the touching distance: coordination {:.3} (all), {:.3} (interior)",
                 network.pairs.len(),
@@ -71,7 +71,7 @@ fn elastic_isotropy(packing: &Packing) -> Result<Option<[f64; 3]>, fractum_calib
     if !matches!(packing.domain, fractum_pack::Domain::Box { .. }) {
         return Ok(None);
     }
-    let mut sample = Sample::new(packing.clone(), 8.0, fractum_pack::Convention::Interior)?;
+    let mut sample = Sample::new(packing.clone(), 8.0, Convention::Interior)?;
     sample.set_micro(Micro { radius_ratio: 0.5, young_modulus: 1.0 })?;
     let mut young = [0.0; 3];
     for (axis, value) in young.iter_mut().enumerate() {

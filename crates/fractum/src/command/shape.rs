@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fractum::Failure;
-use fractum_io::case::{Dimension, parse_quantity};
+use fractum_io::case::{Choice, Dimension, parse_quantity};
 use fractum_mesh::read_msh;
 use fractum_pack::{ClosedSurface, Domain, PackError, PackSize, PackSpec, Packing, pack, pack_certified, read_stl};
 
@@ -53,22 +54,10 @@ pub(crate) struct ShapeArguments {
     packing: Option<PathBuf>,
 }
 
-/// How coordination is counted.
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum Convention {
-    /// 2 x bonds / particles.
-    All,
-    /// Mean over the particles that touch no wall.
-    Interior,
-}
-
-impl From<Convention> for fractum_pack::Convention {
-    fn from(convention: Convention) -> Self {
-        match convention {
-            Convention::All => fractum_pack::Convention::All,
-            Convention::Interior => fractum_pack::Convention::Interior,
-        }
-    }
+/// A parser of the names that case files have for these values.
+pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    let names = PossibleValuesParser::new(T::NAMES.iter().map(|(name, _)| *name));
+    names.map(|text| T::NAMES.iter().find(|(name, _)| *name == text).unwrap_or(&T::NAMES[0]).1)
 }
 
 impl ShapeArguments {

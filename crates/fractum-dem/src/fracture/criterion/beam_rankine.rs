@@ -1,6 +1,8 @@
 use serde::{Deserialize, Serialize};
 
-use super::{BondLoad, BreakMode, LoadCriterion, Strengths, positive};
+use super::{
+    BondLoad, BreakMode, CriterionNumbers, CriterionParameter, LoadCriterion, NamedCriterion, Strengths, positive,
+};
 use crate::DemError;
 
 /// Largest principal stress in a cohesive beam against its strength (Jebahi et al. 2015, eqs. 4.1–4.3):
@@ -23,6 +25,20 @@ pub enum EndMoments {
     Mean,
     /// M = max(|M₁|, |M₂|): the largest in the beam.
     Largest,
+}
+
+impl NamedCriterion for BeamRankine {
+    const NAME: &'static str = "beam";
+    const WORDS: &'static str = "the largest principal stress in the beam";
+    const TAKES: &'static [CriterionParameter] = &[CriterionParameter::Moments];
+
+    fn from_numbers(numbers: &CriterionNumbers) -> Self {
+        BeamRankine { strength: numbers.tensile_strength, moments: numbers.moments }
+    }
+
+    fn numbers(&self) -> CriterionNumbers {
+        CriterionNumbers { moments: self.moments, ..CriterionNumbers::new(self.strength) }
+    }
 }
 
 impl Strengths for BeamRankine {

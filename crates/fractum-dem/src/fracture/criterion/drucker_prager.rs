@@ -1,7 +1,10 @@
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use super::{BreakMode, Level, Release, Strengths, StressCriterion, positive};
+use super::{
+    BreakMode, CriterionNumbers, CriterionParameter, Level, NamedCriterion, Release, Strengths, StressCriterion,
+    positive,
+};
 use crate::DemError;
 
 /// Drucker–Prager on the virial stress: (α I₁ + √J₂)/k with α = (f_c − f_t)/(√3 (f_c + f_t)) and
@@ -16,6 +19,22 @@ pub struct DruckerPrager {
     /// Over which particles stress is taken.
     #[serde(default)]
     pub level: Level,
+}
+
+impl NamedCriterion for DruckerPrager {
+    const NAME: &'static str = "drucker-prager";
+    const WORDS: &'static str = "Drucker-Prager on the virial stress";
+    const TAKES: &'static [CriterionParameter] = &[CriterionParameter::CompressiveStrength, CriterionParameter::Level];
+
+    fn from_numbers(numbers: &CriterionNumbers) -> Self {
+        let &CriterionNumbers { tensile_strength, level, .. } = numbers;
+        DruckerPrager { tensile_strength, compressive_strength: numbers.compressive_or_usual(), level }
+    }
+
+    fn numbers(&self) -> CriterionNumbers {
+        let compressive_strength = Some(self.compressive_strength);
+        CriterionNumbers { compressive_strength, level: self.level, ..CriterionNumbers::new(self.tensile_strength) }
+    }
 }
 
 impl Strengths for DruckerPrager {

@@ -1,7 +1,10 @@
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use super::{BreakMode, Level, Release, Strengths, StressCriterion, positive};
+use super::{
+    BreakMode, CriterionNumbers, CriterionParameter, Level, NamedCriterion, Release, Strengths, StressCriterion,
+    positive,
+};
 use crate::DemError;
 
 /// Mean virial stress of a particle against a strength; the particle loses all its bonds (Jebahi et al. 2015, eqs.
@@ -10,6 +13,20 @@ use crate::DemError;
 pub struct Hydrostatic {
     /// Strength [Pa].
     pub strength: f64,
+}
+
+impl NamedCriterion for Hydrostatic {
+    const NAME: &'static str = "hydrostatic";
+    const WORDS: &'static str = "the mean virial stress of the particle";
+    const TAKES: &'static [CriterionParameter] = &[];
+
+    fn from_numbers(numbers: &CriterionNumbers) -> Self {
+        Hydrostatic { strength: numbers.tensile_strength }
+    }
+
+    fn numbers(&self) -> CriterionNumbers {
+        CriterionNumbers::new(self.strength)
+    }
 }
 
 impl Strengths for Hydrostatic {

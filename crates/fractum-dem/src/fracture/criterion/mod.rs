@@ -8,6 +8,7 @@ mod batch;
 mod beam_rankine;
 mod drucker_prager;
 mod hydrostatic;
+mod kind;
 mod mohr_coulomb;
 mod principal;
 
@@ -16,6 +17,7 @@ pub(super) use batch::{LoadBatch, Neighbourhoods, StressBatch};
 pub use beam_rankine::{BeamRankine, EndMoments};
 pub use drucker_prager::DruckerPrager;
 pub use hydrostatic::Hydrostatic;
+pub use kind::{BondCriterionKind, CriterionNumbers, CriterionParameter, NamedCriterion};
 pub use mohr_coulomb::MohrCoulomb;
 pub use principal::Principal;
 
@@ -162,6 +164,27 @@ macro_rules! criteria {
         }
 
         impl FractureCriterion {
+            /// Every kind of criterion, by the names that users give.
+            pub const KINDS: &'static [BondCriterionKind] = &[$(BondCriterionKind {
+                name: $name::NAME,
+                words: $name::WORDS,
+                takes: $name::TAKES,
+                make: |numbers| FractureCriterion::$name($name::from_numbers(numbers)),
+            },)*];
+
+            /// Its numbers.
+            pub fn numbers(&self) -> CriterionNumbers {
+                match self {
+                    $(FractureCriterion::$name(c) => c.numbers(),)*
+                }
+            }
+
+            fn name(&self) -> &'static str {
+                match self {
+                    $(FractureCriterion::$name(_) => $name::NAME,)*
+                }
+            }
+
             pub(super) fn rule(&self) -> Rule<'_> {
                 match self {
                     $(FractureCriterion::$name(c) => Rule::$rule(c),)*
@@ -203,6 +226,12 @@ impl FractureCriterion {
     /// [`DemError::BadCriterion`].
     pub fn check(&self) -> Result<(), DemError> {
         self.strengths().check()
+    }
+
+    /// Which kind it is.
+    pub fn kind(&self) -> &'static BondCriterionKind {
+        let own = |kind: &&BondCriterionKind| kind.name == self.name();
+        Self::KINDS.iter().find(own).unwrap_or(&Self::KINDS[0])
     }
 
     /// The same criterion with all its strengths multiplied.

@@ -2,7 +2,10 @@ use fractum_math::elementary::{cos, sin};
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::{BreakMode, Level, Release, Strengths, StressCriterion, first_bound, last_bound, positive};
+use super::{
+    BreakMode, CriterionNumbers, CriterionParameter, Level, NamedCriterion, Release, Strengths, StressCriterion,
+    first_bound, last_bound, positive,
+};
 use crate::DemError;
 
 /// Mohr–Coulomb with tension cut-off on the virial stress: max(σ₁/f_t, (N σ₁ − σ₃)/f_c) with
@@ -28,6 +31,24 @@ impl MohrCoulomb {
     fn shear(&self, first: f64, last: f64) -> f64 {
         let sine = sin(self.friction_angle);
         ((1.0 + sine) / (1.0 - sine) * first - last) / self.compressive_strength
+    }
+}
+
+impl NamedCriterion for MohrCoulomb {
+    const NAME: &'static str = "mohr-coulomb";
+    const WORDS: &'static str = "Mohr-Coulomb on the virial stress";
+    const TAKES: &'static [CriterionParameter] =
+        &[CriterionParameter::CompressiveStrength, CriterionParameter::FrictionAngle, CriterionParameter::Level];
+
+    fn from_numbers(numbers: &CriterionNumbers) -> Self {
+        let &CriterionNumbers { tensile_strength, friction_angle, level, .. } = numbers;
+        MohrCoulomb { tensile_strength, compressive_strength: numbers.compressive_or_usual(), friction_angle, level }
+    }
+
+    fn numbers(&self) -> CriterionNumbers {
+        let (friction_angle, level) = (self.friction_angle, self.level);
+        let compressive_strength = Some(self.compressive_strength);
+        CriterionNumbers { compressive_strength, friction_angle, level, ..CriterionNumbers::new(self.tensile_strength) }
     }
 }
 

@@ -1,7 +1,10 @@
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use super::{BreakMode, Level, Release, Strengths, StressCriterion, first_bound, last_bound, positive};
+use super::{
+    BreakMode, CriterionNumbers, CriterionParameter, Level, NamedCriterion, Release, Strengths, StressCriterion,
+    first_bound, last_bound, positive,
+};
 use crate::DemError;
 
 /// Largest principal virial stress against a strength; the bond of the particle nearest to that principal direction
@@ -21,6 +24,22 @@ impl Principal {
     #[inline]
     fn crushing(&self, last: f64) -> f64 {
         self.compressive_strength.map_or(0.0, |strength| -last / strength)
+    }
+}
+
+impl NamedCriterion for Principal {
+    const NAME: &'static str = "principal";
+    const WORDS: &'static str = "principal virial stresses";
+    const TAKES: &'static [CriterionParameter] = &[CriterionParameter::CompressiveStrength, CriterionParameter::Level];
+
+    fn from_numbers(numbers: &CriterionNumbers) -> Self {
+        let &CriterionNumbers { tensile_strength, compressive_strength, level, .. } = numbers;
+        Principal { tensile_strength, compressive_strength, level }
+    }
+
+    fn numbers(&self) -> CriterionNumbers {
+        let (compressive_strength, level) = (self.compressive_strength, self.level);
+        CriterionNumbers { compressive_strength, level, ..CriterionNumbers::new(self.tensile_strength) }
     }
 }
 

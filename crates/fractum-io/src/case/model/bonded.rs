@@ -140,24 +140,4 @@ pub struct BondFailure {
     pub tensile_strength: Option<f64>,
 }
 
-/// Criteria for bonds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BondCriterion {
-    /// Largest principal virial stress of a neighbourhood.
-    Principal,
-    /// Largest principal stress in the beam.
-    Beam,
-    /// Mean virial stress of a particle.
-    Hydrostatic,
-    /// Mohr-Coulomb with tension cut-off on the virial stress.
-    MohrCoulomb,
-    /// Drucker-Prager on the virial stress.
-    DruckerPrager,
-}
-
-choice!(BondCriterion {
-    "principal" => Principal, "beam" => Beam, "hydrostatic" => Hydrostatic, "mohr-coulomb" => MohrCoulomb,
-    "drucker-prager" => DruckerPrager,
-});
-
 choice!(EndMoments { "mean" => Mean, "largest" => Largest });

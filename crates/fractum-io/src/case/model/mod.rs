@@ -18,9 +18,7 @@ use fractum_scene::EnergyKind;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
 pub use body::{Body, BodyKind, SolidBody};
-pub use bonded::{
-    BondCriterion, BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource, ParticleSize,
-};
+pub use bonded::{BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource, ParticleSize};
 pub use boundary::{Components, Load, LoadKind, Motion, Selection, Support};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Distribution, Material, Scatter};

@@ -1,17 +1,20 @@
 //! `[materials.NAME.fracture]`: when bonds break.
 
 use fractum_dem::FractureCriterion;
-use fractum_dem::criterion::{BeamRankine, DruckerPrager, EndMoments, Hydrostatic, Level, MohrCoulomb, Principal};
+use fractum_dem::criterion::{
+    BondCriterionKind, CriterionNumbers, CriterionParameter, EndMoments, Level, NamedCriterion, Principal,
+};
 
-use super::materials::{STRENGTH_RATIO, read_friction_angle};
-use crate::case::model::{BondCriterion, BondFailure};
+use super::materials::read_friction_angle;
+use crate::case::model::BondFailure;
 use crate::case::reader::Table;
 
-/// Reads the table.
+/// Reads the table: the strength, and what the criterion says that it takes.
 pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
-    use BondCriterion as C;
-    let kind = table.choice("criterion").or(C::Principal);
-    let refuse = |key: &'static str| table.refuse(key, "with this criterion");
+    let kinds: Vec<(&'static str, &BondCriterionKind)> =
+        FractureCriterion::KINDS.iter().map(|kind| (kind.name, kind)).collect();
+    let usual = kinds.iter().find(|(name, _)| *name == Principal::NAME).map(|(_, kind)| *kind);
+    let kind = table.one_of("criterion", &kinds).map(Some).or_if_absent(usual).flatten();
     let own = table.has("criterion_strength");
     let strength = if own {
         table.refuse("tensile_strength", "beside criterion_strength, which is the criterion's own");
@@ -19,55 +22,34 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
     } else {
         table.quantity("tensile_strength").positive().required()
     };
-    let above = |limit: f64| move |value: &f64| *value > limit;
-    let least = strength.unwrap_or(0.0);
-    let given =
-        || table.quantity("compressive_strength").positive().check(above(least), "more than the tensile strength");
-    let compressive_strength = match kind {
-        C::Beam | C::Hydrostatic => {
-            refuse("compressive_strength");
-            None
+    let Some(kind) = kind else {
+        table.pass_over(&["compressive_strength", "friction_angle", "level", "moments"]);
+        table.finish("here");
+        return None;
+    };
+    let takes = |parameter: CriterionParameter, key: &'static str| {
+        if !kind.takes(parameter) {
+            table.refuse(key, "with this criterion");
         }
-        C::Principal => given().given(),
-        C::MohrCoulomb | C::DruckerPrager => Some(given().or(STRENGTH_RATIO * least)),
+        kind.takes(parameter)
     };
-    let level = if matches!(kind, C::Beam | C::Hydrostatic) {
-        refuse("level");
-        Level::default()
-    } else {
+    let mut numbers = CriterionNumbers::new(strength.unwrap_or(0.0));
+    if takes(CriterionParameter::CompressiveStrength, "compressive_strength") {
+        let given = table.quantity("compressive_strength").positive();
+        let given = given.check(|value| *value > numbers.tensile_strength, "more than the tensile strength");
+        numbers.compressive_strength = given.given();
+    }
+    if takes(CriterionParameter::Level, "level") {
         let level = table.integer("level").check(|level| *level <= 2, "0, 1 or 2").or(1);
-        Level::from_number(level as u8).unwrap_or_default()
-    };
-    let friction_angle = if kind == C::MohrCoulomb {
-        read_friction_angle(&table)
-    } else {
-        refuse("friction_angle");
-        0.0
-    };
-    let moments = if kind == C::Beam {
-        table.choice("moments").or(EndMoments::Mean)
-    } else {
-        refuse("moments");
-        EndMoments::Mean
-    };
+        numbers.level = Level::from_number(level as u8).unwrap_or_default();
+    }
+    if takes(CriterionParameter::FrictionAngle, "friction_angle") {
+        numbers.friction_angle = read_friction_angle(&table);
+    }
+    if takes(CriterionParameter::Moments, "moments") {
+        numbers.moments = table.choice("moments").or(EndMoments::Mean);
+    }
     table.finish("here");
     let tensile_strength = strength?;
-    let compressed = compressive_strength.unwrap_or(STRENGTH_RATIO * tensile_strength);
-    let criterion = match kind {
-        C::Principal => FractureCriterion::Principal(Principal { tensile_strength, compressive_strength, level }),
-        C::Beam => FractureCriterion::BeamRankine(BeamRankine { strength: tensile_strength, moments }),
-        C::Hydrostatic => FractureCriterion::Hydrostatic(Hydrostatic { strength: tensile_strength }),
-        C::MohrCoulomb => FractureCriterion::MohrCoulomb(MohrCoulomb {
-            tensile_strength,
-            compressive_strength: compressed,
-            friction_angle,
-            level,
-        }),
-        C::DruckerPrager => FractureCriterion::DruckerPrager(DruckerPrager {
-            tensile_strength,
-            compressive_strength: compressed,
-            level,
-        }),
-    };
-    Some(BondFailure { criterion, tensile_strength: (!own).then_some(tensile_strength) })
+    Some(BondFailure { criterion: (kind.make)(&numbers), tensile_strength: (!own).then_some(tensile_strength) })
 }
