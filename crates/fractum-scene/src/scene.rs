@@ -37,10 +37,17 @@ pub struct Scene {
     pub(crate) ledger: Ledger,
     pub(crate) books: Books,
     pub(crate) stable: StableStep,
-    /// Elements removed in the last step.
-    pub(crate) removed: Vec<(usize, u32)>,
-    pub(crate) removed_since_check: usize,
+    pub(crate) removals: Removals,
     pub(crate) contact_frequency_square: f64,
+}
+
+/// Elements that have left the solids.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Removals {
+    /// Bodies and elements of the last step.
+    pub(crate) last: Vec<(usize, u32)>,
+    /// How many since the stable step was looked at.
+    pub(crate) since_check: usize,
 }
 
 /// What stays the same through a run, beside bodies and boundary conditions.
@@ -138,8 +145,7 @@ impl Scene {
             ledger: Ledger::default(),
             books: Books::default(),
             stable,
-            removed: Vec::new(),
-            removed_since_check: 0,
+            removals: Removals::default(),
             contact_frequency_square: 0.0,
         };
         scene.update_contact_frequency();
@@ -327,7 +333,7 @@ impl Scene {
             books: self.books,
             frequency: self.stable.frequency,
             governing: self.stable.governing,
-            removed_since_check: self.removed_since_check,
+            removed_since_check: self.removals.since_check,
             contact_frequency_square: self.contact_frequency_square,
         }
     }
@@ -350,7 +356,7 @@ impl Scene {
         self.ledger = state.ledger;
         self.books = state.books;
         self.stable = StableStep { frequency: state.frequency, governing: state.governing };
-        self.removed_since_check = state.removed_since_check;
+        self.removals.since_check = state.removed_since_check;
         self.contact_frequency_square = state.contact_frequency_square;
     }
 }

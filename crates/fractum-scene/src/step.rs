@@ -170,26 +170,26 @@ impl Scene {
 
     /// Elements that a crack has cut through leave; their nodes get discrete elements.
     pub(crate) fn release_cut_elements(&mut self) -> StepReport {
-        self.removed.clear();
-        let energy = self.solid.remove_cut_elements(&mut self.removed);
-        let mut report = StepReport { removed: self.removed.len(), particles_born: 0 };
+        self.removals.last.clear();
+        let energy = self.solid.remove_cut_elements(&mut self.removals.last);
+        let mut report = StepReport { removed: self.removals.last.len(), particles_born: 0 };
         if report.removed > 0 {
             self.books.removed += energy;
             let before = self.debris.len();
-            self.debris.release(&self.solid, &self.removed);
+            self.debris.release(&self.solid, &self.removals.last);
             report.particles_born = self.debris.len() - before;
             for ground in &mut self.shape_contacts {
                 for &node in &self.debris.state().nodes[before..] {
                     ground.watch_node(node, &self.solid, &self.debris);
                 }
             }
-            let Scene { contacts, solid, debris, bonded, removed, .. } = self;
-            contacts.release(solid, debris, &bonded.particles, removed, before);
-            self.removed_since_check += report.removed;
+            let Scene { contacts, solid, debris, bonded, removals, .. } = self;
+            contacts.release(solid, debris, &bonded.particles, &removals.last, before);
+            self.removals.since_check += report.removed;
         }
         // Cells that lost elements may be stiffer for their mass than any before.
-        if self.removed_since_check > 0 && self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS) {
-            self.removed_since_check = 0;
+        if self.removals.since_check > 0 && self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS) {
+            self.removals.since_check = 0;
             if !self.settings.time_step.element_bound {
                 let present = self.solid.stable_step();
                 if present.frequency > self.stable.frequency {

@@ -3,8 +3,9 @@
 use fractum_math::Vec3;
 use fractum_sparse::SparseError;
 
+use super::LinearSolver;
 use super::contact::Spring;
-use super::{Dimension, LinearSolver};
+use super::linear_system::LinearSystem;
 use crate::scene::Scene;
 
 /// Solutions that one matrix serves.
@@ -18,7 +19,7 @@ const TOLERANCE: f64 = 1e-3;
 
 /// The undamaged stiffness of a scene, ready to be solved with.
 pub struct Stiffness {
-    system: Dimension,
+    system: LinearSystem,
 }
 
 impl Stiffness {
@@ -30,15 +31,15 @@ impl Stiffness {
         let held = scene.supports().held();
         let springs = scene.springs(&scene.solid.displacement, [scene.clock.time; 2], 1.0, true);
         let touching: Vec<[u32; 2]> = springs.iter().filter_map(Spring::pair).collect();
-        let system = Dimension::new(&scene.solid, held, LinearSolver::Auto, ITERATIONS, TOLERANCE, &touching)?;
+        let system = LinearSystem::new(&scene.solid, held, LinearSolver::Auto, ITERATIONS, TOLERANCE, &touching)?;
         Ok(Stiffness { system })
     }
 
     /// Entries of the Cholesky factor, or of the matrix where the solution is iterative.
     pub fn entries(&self) -> (usize, bool) {
         match &self.system {
-            Dimension::Plane(system) => system.entries(),
-            Dimension::Space(system) => system.entries(),
+            LinearSystem::Plane(system) => system.entries(),
+            LinearSystem::Space(system) => system.entries(),
         }
     }
 
@@ -111,7 +112,7 @@ impl Scene {
     pub fn fastest_change(&mut self, duration: f64, end: f64) -> f64 {
         let step = duration.max(end / SAMPLES);
         let (mut change, mut largest) = ([0.0f64; 2], [0.0f64; 2]);
-        let mut last: Option<super::Boundary> = None;
+        let mut last: Option<super::equilibrium::Boundary> = None;
         for sample in 0..=(end / step).ceil() as usize {
             let now = self.boundary_at(0.0, (step * sample as f64).min(end));
             let far = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);

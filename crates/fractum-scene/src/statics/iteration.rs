@@ -1,0 +1,232 @@
+//! The fixed-point iteration of one step.
+
+use fractum_fem::{DamagePoint, Solid};
+use fractum_math::Vec3;
+
+use super::contact::Spring;
+use super::equilibrium::Boundary;
+use super::{Control, Edges, GROWTH, ITERATIONS, MONOTONE_ITERATIONS, NO_FORCE, Response, StaticSolver, path};
+use crate::error::StepError;
+use crate::scene::Scene;
+
+impl StaticSolver {
+    /// Whether the state found lies beyond states that are no equilibrium: some edge went further down its softening curve
+    /// than any step of a path takes it.
+    pub(super) fn jumps(&self, points: &[DamagePoint]) -> bool {
+        let far = |(point, q): (&DamagePoint, &f64)| !point.broken && *q > path::limit(point, GROWTH[2]) * (1.0 + 1e-9);
+        self.settings.control == Control::Time && points.iter().zip(&self.edges.q).any(far)
+    }
+
+    /// Iterates to equilibrium from the present state; the new load parameter, with the displacements in the response and
+    /// the equivalent stresses that the edges have seen, or nothing if the iteration does not get there.
+    ///
+    /// - `by_damage`: go as far as `growth` allows, whatever the control
+    /// - `monotone`: damage only grows from iterate to iterate. As no edge passes `growth` this always ends, with edges
+    ///   that may have seen a little more than they bear in the end
+    pub(super) fn iterate(
+        &mut self,
+        scene: &mut Scene,
+        points: &[DamagePoint],
+        longest: f64,
+        growth: f64,
+        by_damage: bool,
+        monotone: bool,
+    ) -> Result<Option<(f64, usize)>, StepError> {
+        let present = scene.clock.time;
+        self.begin(scene, points, growth, by_damage && !monotone);
+        let (mut tau, mut found_at) = (longest, present);
+        for iteration in 1..=if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] } {
+            if (self.stop)() {
+                return Err(StepError::Interrupted { step: scene.clock.step, time: present });
+            }
+            self.iterations += 1;
+            self.find_contacts(scene, [present, found_at], longest, iteration == 1)?;
+            let ahead = if tau.abs() > 1e-9 * self.settings.end { tau } else { longest };
+            let here = scene.boundary_at(present, present);
+            let there = scene.boundary_at(present, present + ahead);
+            self.respond(scene, &here, &there, ahead, present - found_at)?;
+            let Some(found) = self.step_of_load(scene, points, longest, growth, by_damage) else { return Ok(None) };
+            tau = found;
+            self.advance(&scene.solid, points, tau, monotone);
+            let mut exact = scene.boundary_at(present, present + tau);
+            if scene.has_contacts() {
+                found_at = present + tau;
+                self.touching.place.clone_from(&self.response.start);
+                scene.debris.meet(&scene.solid, &self.touching.place);
+                for spring in scene.springs(&self.touching.place, [present, found_at], longest, false) {
+                    spring.push(spring.force, &mut exact.force);
+                }
+            }
+            let (missing, forces) =
+                scene.unbalance(&self.trial, &self.response.start, &exact.force, &mut self.response.right);
+            if missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
+                self.largest_forces = self.largest_forces.max(forces);
+                return Ok(Some((present + tau, iteration)));
+            }
+            let Edges { q, loading, image } = &mut self.edges;
+            image.clear();
+            image.extend(points.iter().zip(&*q).map(|(point, q)| (q / point.kappa).max(1.0)));
+            if !monotone {
+                self.anderson.next(loading, image);
+                loading.iter_mut().for_each(|ratio| *ratio = ratio.max(1.0));
+                self.set_trial(&scene.solid, points);
+            } else if self.jumps(points) {
+                return Ok(None);
+            } else {
+                self.edges.loading.copy_from_slice(&self.edges.image);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Starts from the damage of the last equilibrium, or from what the last step added to it, scaled to this one's growth.
+    ///
+    /// - `ahead`: whether to begin with the last step's trend
+    fn begin(&mut self, scene: &Scene, points: &[DamagePoint], growth: f64, ahead: bool) {
+        self.trial.clone_from(&self.damage);
+        self.anderson.reset();
+        self.edges.loading.clear();
+        self.edges.loading.resize(points.len(), 1.0);
+        if ahead && self.pace.trend.len() == points.len() {
+            for ((ratio, trend), point) in self.edges.loading.iter_mut().zip(&self.pace.trend).zip(points) {
+                *ratio = if point.damage > 0.0 { 1.0 + trend * growth } else { 1.0 };
+            }
+            self.edges.q.resize(points.len(), 0.0);
+            self.set_trial(&scene.solid, points);
+        }
+        self.touching.place.clone_from(&scene.solid.displacement);
+    }
+
+    /// Takes the damage of the trial from the loading of the edges.
+    fn set_trial(&mut self, solid: &Solid, points: &[DamagePoint]) {
+        let Edges { q, loading, .. } = &mut self.edges;
+        for ((q, ratio), point) in q.iter_mut().zip(&*loading).zip(points) {
+            *q = ratio * point.kappa;
+        }
+        solid.trial_damage(q, &mut self.trial);
+    }
+
+    /// Finds what touches in the last iterate, and brings the matrix up to date.
+    fn find_contacts(&mut self, scene: &mut Scene, times: [f64; 2], longest: f64, near: bool) -> Result<(), StepError> {
+        scene.debris.meet(&scene.solid, &self.touching.place);
+        self.touching.springs = scene.springs(&self.touching.place, times, longest, near);
+        self.couple(scene)?;
+        if !(self.elastic && self.prepared && scene.shape_contacts.is_empty()) {
+            let prepared = self.system.prepare(scene, &self.trial, &self.touching.springs);
+            prepared.map_err(|e| scene.come_apart(e))?;
+            self.prepared = true;
+        }
+        Ok(())
+    }
+
+    /// The step of the load parameter that the control asks for; none where there is no such step.
+    fn step_of_load(
+        &mut self,
+        scene: &Scene,
+        points: &[DamagePoint],
+        longest: f64,
+        growth: f64,
+        by_damage: bool,
+    ) -> Option<f64> {
+        if points.is_empty() {
+            return Some(longest);
+        }
+        let Response { start, slope, start_stress, slope_stress, .. } = &mut self.response;
+        scene.solid.effective_stresses(start, start_stress);
+        scene.solid.effective_stresses(slope, slope_stress);
+        match &self.settings.control {
+            Control::Time => Some(longest),
+            Control::Opening(opening) if !by_damage => {
+                let target = opening.of(&scene.solid.displacement) + opening.step * self.pace.part;
+                let found = opening.find(target.min(opening.end), start, slope)?;
+                Some(found.min(self.settings.end - scene.clock.time))
+            }
+            Control::Path | Control::Opening(_) => {
+                path::largest_step(&scene.solid, points, start_stress, slope_stress, growth, longest)
+            }
+        }
+    }
+
+    /// Goes on by τ: displacements, what the edges see there, and the damage of that.
+    fn advance(&mut self, solid: &Solid, points: &[DamagePoint], tau: f64, monotone: bool) {
+        let Response { start, slope, start_stress, slope_stress, .. } = &mut self.response;
+        for (u, b) in start.iter_mut().zip(&*slope) {
+            *u += b * tau;
+        }
+        for (a, &b) in start_stress.iter_mut().zip(&*slope_stress) {
+            *a += b * tau;
+        }
+        let Edges { q, loading, .. } = &mut self.edges;
+        solid.equivalent_stresses(points, start_stress, |point| point.kappa, q);
+        if monotone {
+            for ((q, ratio), point) in q.iter_mut().zip(&*loading).zip(points) {
+                *q = q.max(ratio * point.kappa);
+            }
+        }
+        solid.trial_damage(q, &mut self.trial);
+    }
+
+    /// Gives the system places for all pairs of nodes that touch.
+    fn couple(&mut self, scene: &Scene) -> Result<(), StepError> {
+        let missing = |pair: &[u32; 2]| !self.system.couples(*pair) && !self.touching.pairs.contains(pair);
+        let found: Vec<[u32; 2]> = self.touching.springs.iter().filter_map(Spring::pair).filter(missing).collect();
+        self.touching.pairs.extend(found);
+        if self.touching.pairs.len() > self.touching.coupled {
+            let work = *self.system.work();
+            self.system = self.settings.lay_out(scene, &self.touching.pairs).map_err(|e| scene.come_apart(e))?;
+            *self.system.work() = work;
+            (self.touching.coupled, self.prepared) = (self.touching.pairs.len(), false);
+        }
+        Ok(())
+    }
+
+    /// Displacements at the present load parameter and their slope, for the damage of the trial.
+    ///
+    /// - `since`: from the iterate at which the springs were found to the present load parameter [s]
+    fn respond(
+        &mut self,
+        scene: &Scene,
+        here: &Boundary,
+        there: &Boundary,
+        ahead: f64,
+        since: f64,
+    ) -> Result<(), StepError> {
+        let solid = &scene.solid;
+        let mut field = here.displacement.clone();
+        solid.secant_force(&self.trial, &field, &mut self.response.right);
+        for (right, force) in self.response.right.iter_mut().zip(&here.force) {
+            *right = force - *right;
+        }
+        for spring in &self.touching.springs {
+            let moved = spring.of(&field) - spring.of(&self.touching.place);
+            spring.push(spring.force + spring.rate * since - spring.stiffness * moved, &mut self.response.right);
+        }
+        for (i, anchor) in self.system.anchors().iter().enumerate() {
+            self.response.right[i] += (self.touching.place[i] - field[i]) * *anchor;
+        }
+        self.system.solve(&self.response.right, &mut self.response.start).map_err(|e| scene.come_apart(e))?;
+        scene.check_loose(&self.response.start, 1.0)?;
+        for (u, p) in self.response.start.iter_mut().zip(&field) {
+            *u += p;
+        }
+        let held = scene.supports().held();
+        for (i, p) in field.iter_mut().enumerate() {
+            let bits = held.get(i).copied().unwrap_or(0);
+            let change = (there.displacement[i] - here.displacement[i]) / ahead;
+            *p = Vec3::from_fn(|a, _| if bits & (1 << a) == 0 { 0.0 } else { change[a] });
+        }
+        solid.secant_force(&self.trial, &field, &mut self.response.right);
+        for (i, right) in self.response.right.iter_mut().enumerate() {
+            *right = (there.force[i] - here.force[i]) / ahead - *right;
+        }
+        for spring in &self.touching.springs {
+            spring.push(spring.rate - spring.stiffness * spring.of(&field), &mut self.response.right);
+        }
+        self.system.solve(&self.response.right, &mut self.response.slope).map_err(|e| scene.come_apart(e))?;
+        scene.check_loose(&self.response.slope, ahead)?;
+        for (u, p) in self.response.slope.iter_mut().zip(&field) {
+            *u += p;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,73 @@
+use fractum_fem::LocalDamping;
+use fractum_sparse::SparseError;
+
+use super::linear_system::LinearSystem;
+use super::opening::Opening;
+use crate::scene::Scene;
+
+/// How the load parameter proceeds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Control {
+    /// In steps of the load parameter.
+    Time,
+    /// In steps of damage, through snap-back.
+    Path,
+    /// In steps of the opening of a crack, through snap-back.
+    Opening(Opening),
+}
+
+/// How linear systems are solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinearSolver {
+    /// By size and reuse.
+    Auto,
+    /// Sparse Cholesky factorisation.
+    Direct,
+    /// Conjugate gradients.
+    Iterative,
+}
+
+/// What happens where a step has no equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoEquilibrium {
+    /// The run ends.
+    Stop,
+    /// The scene moves until it has come to rest.
+    Motion,
+}
+
+/// Settings of the quasi-static solution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StaticSettings {
+    /// How the load parameter proceeds.
+    pub control: Control,
+    /// Largest step of the load parameter [s].
+    pub step: f64,
+    /// End of the load parameter [s].
+    pub end: f64,
+    /// Steps after which the run ends in any case.
+    pub most_steps: u64,
+    /// Unbalanced force over the internal forces at which a step is accepted.
+    pub tolerance: f64,
+    /// Relative residual of iterative linear solutions.
+    pub linear_tolerance: f64,
+    /// How linear systems are solved.
+    pub linear: LinearSolver,
+    /// What happens where a step has no equilibrium.
+    pub no_equilibrium: NoEquilibrium,
+    /// Damping of the motion between two states of equilibrium; without it, twice the critical damping of the first period, so
+    /// that it creeps to the next one instead of shooting past it.
+    pub damping: Option<LocalDamping>,
+}
+
+impl StaticSettings {
+    /// The linear system of a scene.
+    ///
+    /// - `touching`: nodes coupled beside those of cells
+    pub(super) fn lay_out(&self, scene: &Scene, touching: &[[u32; 2]]) -> Result<LinearSystem, SparseError> {
+        let elastic = !scene.solid.has_damage();
+        let reuse = if elastic { (self.end / self.step).ceil() as usize } else { 2 };
+        let held = scene.supports().held();
+        LinearSystem::new(&scene.solid, held, self.linear, reuse, self.linear_tolerance, touching)
+    }
+}
