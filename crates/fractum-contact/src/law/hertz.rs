@@ -2,6 +2,7 @@ use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::rolling::{Rolling, RollingMemory};
+use super::slip::slip_to_cone;
 use super::{ContactForce, ContactLaw, ContactParameters, PairMotion};
 
 /// Elastic constants of a material in contact.
@@ -151,13 +152,13 @@ impl ContactLaw for Hertz {
         let limit = self.friction * normal_force;
         let reach_square = stiffness * stiffness * trial.norm_squared();
         let (slip, drag) = if reach_square > limit * limit {
-            (trial * (limit / reach_square.sqrt()), Vec3::zeros())
+            (slip_to_cone(trial, reach_square.sqrt(), limit), Vec3::zeros())
         } else {
             // The damper acts within what friction leaves.
             let drag = across * (viscosity * self.damping_share);
             let whole = trial * stiffness + drag;
             let size = whole.norm();
-            (trial, if size > limit { whole * (limit / size) - trial * stiffness } else { drag })
+            (trial, if size > limit { slip_to_cone(whole, size, limit) - trial * stiffness } else { drag })
         };
         *memory = HertzMemory { slip, drag, root, damper, rolling: old.rolling, overlap_offset };
 

@@ -3,6 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ContactParameters;
 use super::rolling::{Rolling, RollingMemory};
+use super::slip::slip_to_cone;
 
 /// Linear springs along and across the normal with viscous damping, Coulomb friction, and friction against [`Rolling`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -187,8 +188,7 @@ impl Linear {
     /// Stretch of the tangential spring that a largest force [N] leaves of `trial`, and the energy that slipping took since the
     /// stretch was `before` [J].
     fn slide(&self, before: Vec3, trial: Vec3, limit: f64) -> (Vec3, f64) {
-        let reach = self.tangential_stiffness * trial.norm();
-        let after = if reach > limit { trial * (limit / reach) } else { trial };
+        let after = slip_to_cone(trial, self.tangential_stiffness * trial.norm(), limit);
         let mean_force = (before + after) * (0.5 * self.tangential_stiffness);
         (after, mean_force.dot(&(trial - after)).max(0.0))
     }

@@ -5,12 +5,14 @@ mod linear;
 mod parameters;
 mod restitution;
 mod rolling;
+mod slip;
 
 pub use hertz::{ElasticMaterial, Hertz, HertzMemory, MaterialPair};
 pub use linear::{ContactForce, ContactMemory, Linear, PairMotion};
 pub use parameters::ContactParameters;
 pub use restitution::{damping_of_restitution, restitution_of_damping};
 pub use rolling::{Rolling, RollingMemory};
+pub use slip::slip_to_cone;
 
 /// A law of contact between two bodies at one point.
 pub trait ContactLaw: Copy + Send + Sync {

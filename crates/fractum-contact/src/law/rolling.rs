@@ -2,6 +2,7 @@ use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::PairMotion;
+use super::slip::slip_to_cone;
 
 /// Friction against rolling: an elastic-plastic spring between the rotations of both bodies.
 ///
@@ -64,8 +65,7 @@ impl Rolling {
         // A spring that stiffens keeps its moment, one that softens loses it in proportion: neither gains energy.
         let kept = if stiffness < old.stiffness { flat * (stiffness / old.stiffness) } else { flat };
         let trial = kept + rolling * (stiffness * dt);
-        let (size, limit) = (trial.norm(), self.arm * normal_force);
-        let moment = if size > limit { trial * (limit / size) } else { trial };
+        let moment = slip_to_cone(trial, trial.norm(), self.arm * normal_force);
         *memory = RollingMemory { moment, stiffness };
         let stored = memory.stored();
         let work = 0.5 * (flat + moment).dot(&rolling) * *dt;

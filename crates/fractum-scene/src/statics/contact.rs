@@ -3,6 +3,7 @@
 //! The springs are those of motion: the tangential one remembers its stretch at the last equilibrium and slips where Coulomb's
 //! law lets it. The iteration takes them linear about its last iterate, what slips by its secant.
 
+use fractum_contact::law::slip_to_cone;
 use fractum_contact::{Frame, Outside};
 use fractum_math::{Mat3, Vec3};
 
@@ -73,8 +74,7 @@ fn sense(ground: &NodesOnShape, frame: &Frame, c: &Candidate, place: &Vec3) -> (
 fn tangential(c: &Candidate, normal: &Vec3, pressure: f64, moved: Vec3) -> Tangential {
     let across = |v: Vec3| v - normal * v.dot(normal);
     let trial = across(c.memory.slip + moved);
-    let (reach, limit) = (c.law.tangential_stiffness * trial.norm(), c.law.friction * pressure);
-    let slip = if reach > limit { trial * (limit / reach) } else { trial };
+    let slip = slip_to_cone(trial, c.law.tangential_stiffness * trial.norm(), c.law.friction * pressure);
     Tangential { slip, slid: trial - slip }
 }
 

@@ -3,10 +3,11 @@
 //! A tangential spring would need the torques on the elements that hold the particles to leave the moment of the pair in balance.
 //! Particles that no element holds have no equilibrium of their own, and touch nothing here.
 
+use fractum_contact::law::ContactMemory;
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 
-use super::{ContactMemory, Debris, Pair};
+use super::{Debris, Pair};
 
 /// Part of the closing distance by which rounding may bring nodes nearer.
 const ROUNDING: f64 = 1e-9;
