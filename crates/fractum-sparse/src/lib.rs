@@ -1,7 +1,7 @@
 //! Sparse symmetric positive definite systems in small dense blocks, one block row per node.
 //!
 //! - [`Pattern`] and [`BlockMatrix`]: who is coupled with whom, and how; assembly from cliques of nodes;
-//! - [`Factor`]: supernodal Cholesky factorisation (faer) in a nested-dissection ordering of our own;
+//! - [`Factor`]: Cholesky factorisation by panels in a nested-dissection ordering, alike on every processor;
 //! - [`Preconditioner`], [`conjugate_gradients`]: an iterative solver with an incomplete factorisation and a coarse
 //!   space of rigid motions.
 //!
@@ -34,8 +34,10 @@ mod block;
 mod cholesky;
 mod coarse;
 mod conjugate;
+mod dense;
 mod incomplete;
 mod ordering;
+mod supernodes;
 
 pub use block::{BlockMatrix, Pattern};
 pub use cholesky::{Factor, SparseError};
