@@ -4,6 +4,7 @@
 //! - [`Simulation`]: the same, step by step
 //! - [`plan`]: what a run will do, before it does it
 //! - [`report`]: the page of a results folder
+//! - [`stress`]: random scenes of every kind of body
 //! - [`terminal`]: lines on stdout and stderr
 //! - [`verify`]: the gallery against its references
 //!
@@ -55,6 +56,7 @@ pub mod report;
 mod run;
 mod simulation;
 mod solver;
+pub mod stress;
 mod summary;
 pub mod terminal;
 pub mod verify;

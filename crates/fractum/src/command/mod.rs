@@ -71,6 +71,15 @@ enum Command {
         /// Threads per case; all cores by default.
         #[arg(long, value_parser = thread_count)]
         threads: Option<usize>,
+        /// Random scenes of every kind of body instead of the gallery.
+        #[arg(long, conflicts_with_all = ["names", "quick"])]
+        stress: bool,
+        /// Number of random scenes.
+        #[arg(long, default_value_t = 300, requires = "stress")]
+        scenes: usize,
+        /// Seed of the random scenes.
+        #[arg(long, default_value_t = 1, requires = "stress")]
+        seed: u64,
     },
     /// Look at a mesh, or write it in another format.
     Mesh {
@@ -143,7 +152,18 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Run(run) => run_case(run),
         Command::Check { case, set } => check(&case, &set),
         Command::New { template, output } => new::new(template.as_deref(), output),
-        Command::Verify { names, quick, cases, output, threads } => {
+        Command::Verify { stress: true, scenes, seed, output, threads, .. } => {
+            let settings = fractum::stress::Settings { scenes, seed, output, threads, cache: cache() };
+            fractum::stress::stress(&settings).and_then(|lines| {
+                match lines.iter().filter(|line| line.end == fractum::stress::End::Silent).count() {
+                    0 => Ok(ExitCode::Done),
+                    silent => {
+                        Err(Failure::Unmet(format!("{silent} of {} scenes went wrong without a word", lines.len())))
+                    }
+                }
+            })
+        }
+        Command::Verify { names, quick, cases, output, threads, .. } => {
             let selection = fractum::verify::Selection { cases, names, quick, output, threads, cache: cache() };
             fractum::verify::verify(&selection).and_then(|lines| {
                 match lines.iter().filter(|l| !l.expectation.pass).count() {

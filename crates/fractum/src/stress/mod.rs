@@ -1,0 +1,180 @@
+//! `fractum verify --stress`: random scenes of every kind of body, run briefly, and what became of them.
+//!
+//! A scene may end in three honest ways: with a balance of energy within 1e-3, with a warning of the balance, or stopped with
+//! a reason. Everything else is a silent failure: a balance that is off without a warning, a number that is none, energy that
+//! dissipation gave back.
+
+pub mod draw;
+pub mod scenes;
+
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use fractum_io::atomic;
+use fractum_mesh::{MshFormat, write_msh};
+use fractum_prepare::Cache;
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::error::Failure;
+use crate::run::{Options, Outcome, run};
+use crate::say;
+use scenes::{KINDS, RandomScene, scene};
+
+/// Relative residual of the energy balance below which a run is good.
+const GOOD_RESIDUAL: f64 = 1e-3;
+
+/// What is drawn, and where results go.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Number of scenes.
+    pub scenes: usize,
+    /// Seed of all of them.
+    pub seed: u64,
+    /// Folder for `stress.json` and the cases that did not end well.
+    pub output: PathBuf,
+    /// Threads per case; all cores if none is given.
+    pub threads: Option<usize>,
+    /// Where packings and beams of bonded bodies are kept.
+    pub cache: Cache,
+}
+
+/// How a scene ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum End {
+    /// Completed, balance within 1e-3.
+    Good,
+    /// Completed with a warning.
+    Warned,
+    /// Stopped itself with a reason.
+    Stopped,
+    /// Refused before its first step.
+    Refused,
+    /// Wrong without a word.
+    Silent,
+}
+
+/// One scene of `stress.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Line {
+    /// Number; with the seed it gives the scene again.
+    pub scene: usize,
+    /// Kind of scene.
+    pub kind: &'static str,
+    /// How it ended.
+    pub end: End,
+    /// Largest relative residual; null where it did not complete.
+    pub residual: Option<f64>,
+    /// What was said, or what is wrong.
+    pub words: String,
+    /// Wall time [s].
+    pub seconds: f64,
+}
+
+/// Runs the scenes, prints the table by kind and writes `stress.json`; cases that did not end well are kept beside it.
+///
+/// # Errors
+/// [`Failure::Write`] if a file cannot be written.
+pub fn stress(settings: &Settings) -> Result<Vec<Line>, Failure> {
+    atomic::create_folder(&settings.output)?;
+    let mut lines = Vec::new();
+    for number in 0..settings.scenes {
+        let folder = settings.output.join(format!("scene-{}-{number}", settings.seed));
+        let scene = scene(settings.seed, number);
+        write_case(&scene, &folder)?;
+        let started = Instant::now();
+        let (end, residual, words) = judge(&folder, settings);
+        let line =
+            Line { scene: number, kind: scene.kind, end, residual, words, seconds: started.elapsed().as_secs_f64() };
+        if line.end == End::Good {
+            // A folder that stays is no harm.
+            let _ = fs::remove_dir_all(&folder);
+        } else {
+            say!("{} ({}): {:?}: {}", folder.join("case.toml").display(), line.kind, line.end, line.words);
+        }
+        lines.push(line);
+    }
+    print_table(&lines);
+    let file = settings.output.join("stress.json");
+    atomic::write(&file, &serde_json::to_vec_pretty(&lines).unwrap_or_default())?;
+    say!("{}", file.display());
+    Ok(lines)
+}
+
+fn write_case(scene: &RandomScene, folder: &Path) -> Result<(), Failure> {
+    atomic::create_folder(folder)?;
+    atomic::write(&folder.join("case.toml"), scene.case.as_bytes())?;
+    if let Some(mesh) = &scene.mesh {
+        let mut bytes = Vec::new();
+        // Writing to memory does not fail.
+        let _ = write_msh(mesh, MshFormat::V4_1Binary, &mut bytes);
+        atomic::write(&folder.join("mesh.msh"), &bytes)?;
+    }
+    Ok(())
+}
+
+/// Runs a case; how it ended, its residual, and what there is to say.
+fn judge(folder: &Path, settings: &Settings) -> (End, Option<f64>, String) {
+    let results = folder.join("results");
+    let options = Options {
+        output: Some(results.clone()),
+        threads: settings.threads,
+        quiet: true,
+        cache: settings.cache.clone(),
+        ..Options::default()
+    };
+    match catch_unwind(AssertUnwindSafe(|| run(&folder.join("case.toml"), &options))) {
+        Err(_) => (End::Silent, None, "the program panicked".into()),
+        Ok(Err(failure @ Failure::Input(_))) => (End::Refused, None, failure.to_string()),
+        Ok(Err(failure)) => (End::Stopped, None, failure.to_string()),
+        Ok(Ok(outcome)) => {
+            let log = fs::read_to_string(results.join("run.log")).unwrap_or_default();
+            let warning = log.lines().find(|line| line.contains("warning: ")).map(str::to_owned);
+            completed(&outcome, warning)
+        }
+    }
+}
+
+/// Judges a run that came to its end.
+fn completed(outcome: &Outcome, warning: Option<String>) -> (End, Option<f64>, String) {
+    let energy = serde_json::to_value(&outcome.summary).map(|summary| summary["energy"].clone()).unwrap_or_default();
+    let of = |name: &str| energy.get(name).and_then(Value::as_f64);
+    let residual = of("residual_max_relative");
+    let missing = energy.as_object().is_none_or(|all| all.is_empty() || all.values().any(|v| v.as_f64().is_none()));
+    if missing {
+        return (End::Silent, residual, format!("an energy is no number: {energy}"));
+    }
+    let largest =
+        energy.as_object().into_iter().flatten().filter_map(|(_, v)| v.as_f64()).fold(0.0, |m: f64, v| m.max(v.abs()));
+    let gains = ["damage", "friction", "damping", "kinetic"].into_iter().find(|name| of(name) < Some(-1e-6 * largest));
+    if let Some(name) = gains {
+        return (End::Silent, residual, format!("{name} energy is negative: {:e} J", of(name).unwrap_or(f64::NAN)));
+    }
+    match (residual.is_some_and(|r| r < GOOD_RESIDUAL), warning) {
+        (true, warning) => (End::Good, residual, warning.unwrap_or_default()),
+        (false, Some(warning)) => (End::Warned, residual, warning),
+        (false, None) => {
+            (End::Silent, residual, format!("residual {:e} without a warning", residual.unwrap_or(f64::NAN)))
+        }
+    }
+}
+
+fn print_table(lines: &[Line]) {
+    let header = ["kind", "scenes", "residual < 1e-3", "warned", "stopped", "refused", "silent failures", "seconds"];
+    let print = |cells: [String; 8]| {
+        let [kind, rest @ ..] = cells;
+        say!("{kind:<16}{}", rest.map(|cell| format!("{cell:>17}")).concat());
+    };
+    print(header.map(str::to_owned));
+    for kind in KINDS.into_iter().chain(["all"]) {
+        let of: Vec<&Line> = lines.iter().filter(|line| line.kind == kind || kind == "all").collect();
+        let count = |end: End| of.iter().filter(|line| line.end == end).count().to_string();
+        let seconds: f64 = of.iter().map(|line| line.seconds).sum();
+        let [good, warned, stopped, refused, silent] =
+            [End::Good, End::Warned, End::Stopped, End::Refused, End::Silent].map(count);
+        print([kind.into(), of.len().to_string(), good, warned, stopped, refused, silent, format!("{seconds:.1}")]);
+    }
+}

@@ -1,0 +1,242 @@
+//! Random scenes as case files: materials, loads and bodies over decades, on small structured meshes.
+
+use fractum_math::Vec3;
+use fractum_mesh::Mesh;
+use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
+
+use super::draw::Draw;
+
+/// What the table of results has a line for.
+pub const KINDS: [&str; 10] = [
+    "elastic solid",
+    "damaged solid",
+    "gate",
+    "unilateral",
+    "solid at rest",
+    "impact",
+    "rigid body",
+    "particles",
+    "bonded",
+    "breaking bonded",
+];
+
+/// A case file and its mesh.
+pub struct RandomScene {
+    /// One of [`KINDS`].
+    pub kind: &'static str,
+    /// Text of the case; it names its mesh `mesh.msh`.
+    pub case: String,
+    /// Its mesh, where it has one.
+    pub mesh: Option<Mesh>,
+}
+
+/// The scene of a seed and a number.
+pub fn scene(seed: u64, number: usize) -> RandomScene {
+    let mut draw = Draw::new(seed, number as u64);
+    // Solids outnumber bodies that must be packed.
+    let kind = KINDS[[0, 1, 2, 3, 4, 5, 6, 7, 1, 5, 8, 9][number % 12]];
+    match kind {
+        "particles" => loose(&mut draw),
+        "bonded" | "breaking bonded" => bonded(&mut draw, kind),
+        _ => solid(&mut draw, kind),
+    }
+}
+
+/// A number as a case file reads it back.
+fn number(value: f64) -> String {
+    format!("{value:e}")
+}
+
+struct Elastic {
+    density: f64,
+    young_modulus: f64,
+    poisson_ratio: f64,
+}
+
+impl Elastic {
+    fn draw(draw: &mut Draw) -> Self {
+        Elastic {
+            density: draw.decades(100.0, 1e4),
+            young_modulus: draw.decades(1e6, 1e12),
+            poisson_ratio: draw.between(0.0, 0.4),
+        }
+    }
+
+    /// Speed of a wave in a bar [m/s].
+    fn wave_speed(&self) -> f64 {
+        (self.young_modulus / self.density).sqrt()
+    }
+
+    fn text(&self) -> String {
+        format!(
+            "[materials.stuff]\ndensity = \"{} kg/m^3\"\nyoung_modulus = \"{} Pa\"\npoisson_ratio = {}\n",
+            number(self.density),
+            number(self.young_modulus),
+            number(self.poisson_ratio)
+        )
+    }
+}
+
+fn header(kind: &str, mesh: bool) -> String {
+    let mesh = if mesh { "[mesh]\nfile = \"mesh.msh\"\n\n" } else { "" };
+    format!("fractum = 1\ntitle = \"Random scene: {kind}\"\n\n{mesh}")
+}
+
+fn footer(kind: &str, end: f64, safety: f64) -> String {
+    let end = number(end);
+    format!(
+        "\n[solver]\nkind = \"{kind}\"\nend = \"{end} s\"\n{}\n[output]\nfields = {{ every = \"{end} s\" }}\n\
+         history = {{ every = \"{end} s/100\" }}\n",
+        if kind == "static" { String::new() } else { format!("safety = {}\n", number(safety)) }
+    )
+}
+
+/// A block of tetrahedra or triangles, held, pulled, hit, thrown or struck, with damage as the kind says.
+fn solid(draw: &mut Draw, kind: &'static str) -> RandomScene {
+    let material = Elastic::draw(draw);
+    let size = draw.decades(1e-3, 10.0);
+    let plane = kind != "impact" && kind != "rigid body" && draw.chance(0.4);
+    let jitter = draw.chance(0.6).then(|| Jitter { fraction: draw.between(0.02, 0.15), seed: draw.whole(1000) });
+    let cells = 3 + draw.whole(4) as u32;
+    let mesh = if plane {
+        structured_rectangle([2 * cells, cells], [2.0 * size, size], jitter)
+    } else {
+        structured_box([2 * cells, cells, cells], Vec3::new(2.0, 1.0, 1.0) * size, jitter)
+    };
+    let damaged = kind != "elastic solid" && (kind != "rigid body" || draw.chance(0.5));
+    let strain = draw.decades(1e-6, 1e-3);
+    let mut case = header(kind, true) + &material.text();
+    if kind == "impact" || kind == "rigid body" {
+        let contact = [("friction", 0.0, 0.8), ("damping_ratio", 0.0, 0.5)]
+            .map(|(key, low, high)| format!("{key} = {}", number(draw.between(low, high))));
+        case += &format!("contact = {{ {} }}\n", contact.join(", "));
+    }
+    if damaged {
+        case += &damage(draw, kind, &material, strain, size / f64::from(cells));
+    }
+    let gated = kind == "gate";
+    let formulation = if gated || damaged || draw.chance(0.5) { "smoothed" } else { "standard" };
+    let formulation = if damaged && !gated && draw.chance(0.3) { "standard" } else { formulation };
+    let kinematics = if kind != "solid at rest" && draw.chance(0.4) { "corotational" } else { "small" };
+    case += &format!(
+        "\n[[bodies]]\nname = \"block\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stuff\"\n\
+         formulation = \"{formulation}\"\nkinematics = \"{kinematics}\"\n"
+    );
+    // Amplitudes from far below to far above the strength.
+    let amplitude = strain * draw.decades(0.1, 10.0);
+    let speed = amplitude * material.wave_speed();
+    let transit = 2.0 * size / material.wave_speed();
+    if kind == "impact" {
+        case += &format!("initial_velocity = {{ x = \"{} m/s\" }}\n", number(-speed));
+        case += "\n[[bodies]]\nname = \"wall\"\nkind = \"rigid\"\nshape = \"plane\"\npoint = [\"0 m\", \"0 m\", \"0 m\"]\n\
+                 normal = \"x\"\ncontact = { friction = 0.3, damping_ratio = 0.1 }\n";
+        return RandomScene { kind, case: case + &footer("explicit", 4.0 * transit, 0.8), mesh: Some(mesh) };
+    }
+    if kind == "rigid body" {
+        let mass = material.density * size.powi(3) * draw.decades(0.1, 10.0);
+        case += &format!(
+            "\n[[bodies]]\nname = \"ball\"\nkind = \"rigid\"\nshape = \"sphere\"\nradius = \"{r} m\"\nfree = \"xyz\"\n\
+             point = [\"{} m\", \"{} m\", \"{} m\"]\nmass = \"{} kg\"\ninitial_velocity = {{ z = \"{} m/s\" }}\n\
+             contact = {{ friction = 0.3, damping_ratio = 0.1 }}\n",
+            number(size),
+            number(0.5 * size),
+            number(1.401 * size),
+            number(mass),
+            number(-speed),
+            r = number(0.4 * size),
+        );
+        case += "\n[[supports]]\ngroup = \"z-\"\nfix = \"xyz\"\n";
+        return RandomScene { kind, case: case + &footer("explicit", 6.0 * transit, 0.8), mesh: Some(mesh) };
+    }
+    let fix = if plane { "xy" } else { "xyz" };
+    case += &format!("\n[[supports]]\ngroup = \"x-\"\nfix = \"{fix}\"\n");
+    if kind == "solid at rest" {
+        let pull = number(2.0 * size * amplitude.min(5.0 * strain));
+        case += &format!("\n[[supports]]\ngroup = \"x+\"\ndisplacement = {{ x = \"{pull} m*t/1 s\" }}\n");
+        return RandomScene { kind, case: case + &footer("static", 1.0, 0.8), mesh: Some(mesh) };
+    }
+    let (speed, pressure, transit_text) = (number(speed), number(material.young_modulus * amplitude), number(transit));
+    case += &match draw.whole(4) {
+        0 => format!("\n[[supports]]\ngroup = \"x+\"\nvelocity = {{ x = \"{speed} m/s\" }}\n"),
+        1 => format!(
+            "\n[[supports]]\ngroup = \"x+\"\nvelocity = {{ x = {{ ramp = [[\"0 s\", \"0 m/s\"], [\"{transit_text} s\", \"{speed} m/s\"]] }} }}\n"
+        ),
+        2 => format!("\n[[loads]]\ngroup = \"x+\"\npressure = \"if(t < {transit_text} s, {pressure} Pa, 0)\"\n"),
+        _ => format!("\n[[loads]]\ngroup = \"x+\"\ntraction = {{ y = \"{pressure} Pa\" }}\n"),
+    };
+    if draw.chance(0.3) {
+        case += &format!("\n[damping]\nlocal = {}\n", number(draw.between(0.0, 0.5)));
+    }
+    RandomScene { kind, case: case + &footer("explicit", 6.0 * transit, 0.8), mesh: Some(mesh) }
+}
+
+/// `[materials.stuff.damage]`: strong enough for its elements, tough over decades.
+fn damage(draw: &mut Draw, kind: &str, material: &Elastic, strain: f64, edge: f64) -> String {
+    let strength = material.young_modulus * strain;
+    let toughness = strength * strain * edge * draw.decades(3.0, 100.0);
+    let softening = draw.one_of(&["exponential", "linear"]);
+    let mut text = format!(
+        "[materials.stuff.damage]\ncriterion = \"rankine\"\ntensile_strength = \"{} Pa\"\nfracture_energy = \"{} J/m^2\"\n\
+         softening = \"{softening}\"\n",
+        number(strength),
+        number(toughness)
+    );
+    if kind == "gate" {
+        text += "crack_plane_gate = true\n";
+    }
+    if kind == "unilateral" {
+        text += "unilateral = true\n";
+    }
+    text
+}
+
+/// A cloud that falls into a box.
+fn loose(draw: &mut Draw) -> RandomScene {
+    let material = Elastic { young_modulus: draw.decades(1e5, 1e8), ..Elastic::draw(draw) };
+    let radius = draw.decades(1e-4, 1e-2);
+    let [side, friction, restitution] = [draw.between(8.0, 14.0), draw.between(0.0, 0.8), draw.between(0.2, 1.0)];
+    let contact = format!("contact = {{ friction = {}, restitution = {} }}\n", number(friction), number(restitution));
+    let length = |factor: f64| format!("\"{} m\"", number(factor * radius));
+    let case = header("particles", false)
+        + &material.text()
+        + &contact
+        + &format!(
+            "\n[[bodies]]\nname = \"beads\"\nkind = \"particles\"\nmaterial = \"stuff\"\nshape = \"box\"\n\
+             point = [{zero}, {zero}, {up}]\nsize = [{side}, {side}, {side}]\nparticle_radius = {r}\ndispersion = 0.2\n\
+             initial_velocity = {{ z = \"{speed} m/s\" }}\n\
+             \n[[bodies]]\nname = \"walls\"\nkind = \"rigid\"\nshape = \"box\"\ninside = true\npoint = [{zero}, {zero}, {zero}]\n\
+             size = [{side}, {side}, {height}]\n{contact}\n[[loads]]\ngravity = {{ z = \"-9.81 m/s^2\" }}\n",
+            zero = length(0.0),
+            up = length(1.0),
+            side = length(side),
+            height = length(8.0 * side),
+            r = length(1.0),
+            speed = number(-draw.decades(0.01, 1.0) * (9.81 * radius * side).sqrt()),
+        );
+    let end = 2.0 * (2.0 * side * radius / 9.81).sqrt();
+    RandomScene { kind: "particles", case: case + &footer("explicit", end, 0.3), mesh: None }
+}
+
+/// A packed box, pulled or thrown; few different packings, so that they are made once.
+fn bonded(draw: &mut Draw, kind: &'static str) -> RandomScene {
+    let material = Elastic { poisson_ratio: 0.2, ..Elastic::draw(draw) };
+    let side = 1e-3;
+    let breaking = kind == "breaking bonded";
+    let strain = draw.decades(1e-5, 1e-3);
+    let mut case = header(kind, false) + &material.text();
+    if breaking {
+        let strength = number(material.young_modulus * strain);
+        case += &format!("[materials.stuff.fracture]\ntensile_strength = \"{strength} Pa\"\n");
+    }
+    let speed = strain * draw.decades(0.1, 5.0) * material.wave_speed();
+    let size = format!("\"{} m\"", number(side));
+    case += &format!(
+        "\n[[bodies]]\nname = \"block\"\nkind = \"bonded\"\nmaterial = \"stuff\"\nshape = \"box\"\nsize = [{size}, {size}, {size}]\n\
+         particles = 800\ncoordination = 8\nseed = {}\n\n[[supports]]\ngroup = \"block.x-\"\nfix = \"xyz\"\n\
+         \n[[supports]]\ngroup = \"block.x+\"\nvelocity = {{ x = \"{} m/s\" }}\n",
+        1 + draw.whole(2),
+        number(speed)
+    );
+    let end = 6.0 * side / material.wave_speed();
+    RandomScene { kind, case: case + &footer("explicit", end, 0.5), mesh: None }
+}
