@@ -303,6 +303,17 @@ impl Solid {
         model.location.iter().map(of).collect()
     }
 
+    /// Share of its strength that every edge of a body has lost, 0 to 1, in the order of its edges; empty without damage.
+    ///
+    /// This is 1 − χ of the softening curve; damage measures the loss of stiffness and comes close to 1 long before.
+    pub fn lost_strength(&self, body: usize) -> Vec<f64> {
+        let lost = |(index, edge): (usize, EdgeDamage)| match edge.damage {
+            0.0 => 0.0,
+            damage => (1.0 - (1.0 - damage) * edge.kappa / self.strength_and_length(body, index).0).clamp(0.0, 1.0),
+        };
+        self.edge_damage(body).into_iter().enumerate().map(lost).collect()
+    }
+
     fn body_state(&self, body: usize) -> BodyState {
         let model = &self.bodies[body];
         let of = |&(block, cell): &(u32, u32)| match &self.blocks[block as usize].law {

@@ -1,18 +1,23 @@
 use fractum_fem::Solid;
 use fractum_math::{Vec3, connected};
 
-/// A connected piece of a solid or of a bonded body, or a single discrete element that nothing holds any more.
+/// Share of its strength that an edge may have lost and still join its nodes, where nothing is said.
+pub(crate) const JOINED_BELOW: f64 = 0.95;
+
+/// A connected piece of a solid or of a bonded body. A fragment has at least two nodes or particles; what is left are
+/// single ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fragment {
     /// Nodes in the piece; particles in that of a bonded body, and after the nodes where both are tied.
     pub nodes: Vec<u32>,
-    /// Elements that are still there.
+    /// Elements that are still there with all their nodes in the piece.
     pub elements: usize,
     /// Bonds that still hold.
     pub bonds: usize,
     /// Mass [kg].
     pub mass: f64,
-    /// Volume of its elements, or of the continuum that its particles stand for [m³]; 0 for a single discrete element.
+    /// Volume [m³]: every element that is still there gives each of its nodes an equal part; of the continuum that its
+    /// particles stand for in a bonded body.
     pub volume: f64,
     /// Centre of mass [m].
     pub centroid: Vec3,
@@ -76,17 +81,21 @@ pub(crate) fn joined(
     whole.into_iter().flatten().collect()
 }
 
-/// Pieces connected by elements, heaviest first.
-pub fn fragments(solid: &Solid) -> Vec<Fragment> {
-    let part = parts(solid);
+/// Pieces of solids connected by edges that have lost less than `joined_below` of their strength, heaviest first; bodies
+/// without damage hold together as long as their elements. Single nodes are pieces of their own.
+pub fn solid_pieces(solid: &Solid, joined_below: f64) -> Vec<Fragment> {
+    let part = joined_nodes(solid, joined_below);
     let mut elements = vec![0usize; part.len()];
     let mut volume = vec![0.0; part.len()];
     for body in 0..solid.body_count() {
+        let corners = solid.body(body).shape.node_count();
         let alive = solid.alive(body);
         for (index, nodes) in solid.body(body).elements.iter().enumerate().filter(|(e, _)| alive[*e]) {
-            let place = part[nodes[0] as usize] as usize;
-            elements[place] += 1;
-            volume[place] += solid.element_volume(body, index as u32);
+            let share = solid.element_volume(body, index as u32) / corners as f64;
+            let of_nodes = nodes[..corners].iter().map(|&node| part[node as usize] as usize);
+            of_nodes.clone().for_each(|place| volume[place] += share);
+            let first = part[nodes[0] as usize] as usize;
+            elements[first] += usize::from(of_nodes.clone().all(|place| place == first));
         }
     }
     let mut members: Vec<Vec<u32>> = vec![Vec::new(); part.len()];
@@ -103,14 +112,52 @@ pub fn fragments(solid: &Solid) -> Vec<Fragment> {
     pieces
 }
 
+/// Share of the mass of every solid body that is in single nodes.
+pub(crate) fn single_share(solid: &Solid, joined_below: f64) -> Vec<f64> {
+    let part = joined_nodes(solid, joined_below);
+    let mut members = vec![0u32; part.len()];
+    part.iter().for_each(|&place| members[place as usize] += 1);
+    let of_body = |body: usize| {
+        let corners = solid.body(body).shape.node_count();
+        let mut nodes: Vec<u32> = solid.body(body).elements.iter().flat_map(|e| &e[..corners]).copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let (mut single, mut whole) = (0.0, 0.0);
+        for node in nodes.into_iter().map(|node| node as usize) {
+            whole += solid.mass[node];
+            single += if members[part[node] as usize] == 1 { solid.mass[node] } else { 0.0 };
+        }
+        single / whole
+    };
+    (0..solid.body_count()).map(of_body).collect()
+}
+
 /// The smallest node that live elements connect each node to.
 pub(crate) fn parts(solid: &Solid) -> Vec<u32> {
-    let links = (0..solid.body_count()).flat_map(|body| {
-        let corners = solid.body(body).shape.node_count();
-        let alive = solid.body(body).elements.iter().zip(solid.alive(body)).filter(|(_, alive)| **alive);
-        alive.flat_map(move |(nodes, _)| nodes[1..corners].iter().map(|&node| [nodes[0], node]))
-    });
-    connected(solid.reference.len(), links)
+    connected(solid.reference.len(), (0..solid.body_count()).flat_map(|body| element_links(solid, body)))
+}
+
+/// The smallest node that edges with some strength left connect each node to.
+fn joined_nodes(solid: &Solid, joined_below: f64) -> Vec<u32> {
+    let mut links = Vec::new();
+    for body in 0..solid.body_count() {
+        let lost = solid.lost_strength(body);
+        let Some(edges) = solid.body_edges(body).filter(|_| !lost.is_empty()) else {
+            links.extend(element_links(solid, body));
+            continue;
+        };
+        let count = solid.body(body).shape.edge_count();
+        let alive = edges.of_element.iter().zip(solid.alive(body)).filter(|(_, alive)| **alive);
+        let joining = alive.flat_map(|(of, _)| &of[..count]).filter(|&&edge| lost[edge as usize] < joined_below);
+        links.extend(joining.map(|&edge| edges.nodes[edge as usize]));
+    }
+    connected(solid.reference.len(), links.into_iter())
+}
+
+fn element_links(solid: &Solid, body: usize) -> impl Iterator<Item = [u32; 2]> + '_ {
+    let corners = solid.body(body).shape.node_count();
+    let alive = solid.body(body).elements.iter().zip(solid.alive(body)).filter(|(_, alive)| **alive);
+    alive.flat_map(move |(nodes, _)| nodes[1..corners].iter().map(|&node| [nodes[0], node]))
 }
 
 fn piece(solid: &Solid, nodes: Vec<u32>, elements: usize, volume: f64) -> Fragment {
@@ -126,4 +173,51 @@ fn piece(solid: &Solid, nodes: Vec<u32>, elements: usize, volume: f64) -> Fragme
     }
     let bounds = [low, high];
     Fragment { nodes, elements, bonds: 0, mass, volume, centroid: centroid / mass, velocity: velocity / mass, bounds }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fractum_fem::{Body, Criterion, DamageLaw, Elastic, Shape, Softening};
+    use fractum_mesh::generate::structured_box;
+
+    /// Three cubes in a row; the elements of the middle one are pulled apart.
+    fn pulled_bar() -> Solid {
+        let law = DamageLaw {
+            criterion: Criterion::rankine(),
+            tensile_strength: 3e6,
+            fracture_energy: 100.0,
+            softening: Softening::Exponential,
+            residual: 0.02,
+            unilateral: false,
+            rate_time: 0.0,
+        };
+        let mesh = structured_box([3, 1, 1], Vec3::new(0.03, 0.01, 0.01), None);
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
+        let body = Body::new("bar", Shape::T4, mesh.tetrahedra, elastic).smoothed().with_damage(law);
+        Solid::new(mesh.nodes, vec![body]).unwrap()
+    }
+
+    #[test]
+    fn pieces_are_joined_by_edges_that_keep_some_strength() {
+        let mut solid = pulled_bar();
+        let counted =
+            |solid: &Solid, limit: f64| solid_pieces(solid, limit).iter().filter(|p| p.nodes.len() > 1).count();
+        assert_eq!(counted(&solid, 0.5), 1);
+        let far: Vec<usize> = (0..solid.reference.len()).filter(|&i| solid.reference[i].x > 0.015).collect();
+        let mut opening = 1e-6;
+        while counted(&solid, 0.5) == 1 && opening < 1e-3 {
+            opening *= 1.05;
+            far.iter().for_each(|&i| solid.displacement[i].x = opening);
+            solid.update_internal_forces(1e-7, false);
+        }
+        // Half the strength is gone across the bar: by far not all of it, and every element is still there.
+        assert_eq!((counted(&solid, 0.5), counted(&solid, 0.9)), (2, 1));
+        let halves = solid_pieces(&solid, 0.5);
+        let (mass, volume) = halves.iter().fold((0.0, 0.0), |(m, v), p| (m + p.mass, v + p.volume));
+        assert!((mass / (2400.0 * 3e-6) - 1.0).abs() < 1e-12 && (volume / 3e-6 - 1.0).abs() < 1e-12);
+        assert_eq!(halves.iter().map(|p| p.elements).sum::<usize>(), solid.body(0).elements.len() * 2 / 3);
+        assert_eq!(single_share(&solid, 0.5), [0.0]);
+        assert_eq!(single_share(&solid, 0.0), [1.0]);
+    }
 }

@@ -31,7 +31,7 @@ pub use crack_measure::{CrackMeasure, InsideCracks};
 pub use error::{SceneError, StepError};
 pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution};
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
-pub use fragment::{Fragment, fragments};
+pub use fragment::{Fragment, solid_pieces};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use probe::{Population, Probe};
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};

@@ -179,7 +179,8 @@ impl Context<'_> {
             self.settings(),
         )
         .with_bonded(bonded)
-        .with_ties(&ties.attachments);
+        .with_ties(&ties.attachments)
+        .with_fragments_joined_below(self.case.output.joined_below);
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
         let scene =
             self.with_contacts(scene, &parts, &boundary_of_parts, &surface, rigid_bodies, &tied, &mut warnings)?;

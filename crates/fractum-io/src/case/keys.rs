@@ -506,6 +506,8 @@ static KEYS: &[KeyDoc] = &[
     key("output.history.every", K::Quantity(D::TIME), "1/1000 of the run", "Time between rows, > 0"),
     key("output.checkpoint", K::Table, "", "Checkpoints to resume from"),
     key("output.checkpoint.every", K::Quantity(D::TIME), "\"10 min\"", "Wall time between checkpoints, > 0"),
+    key("output.fragments", K::Table, "", "What counts as a fragment"),
+    key("output.fragments.joined_below", K::Quantity(D::NONE), "0.95", "Edges join a fragment while the share of their strength that they have lost is below this, within 0 and 1"),
 
     key("expect[]", K::Tables, "", "Reference values for `fractum verify`: value and tolerance, or above and below"),
     key("expect[].quantity", K::Text, "required", "A probe, or a path into summary.json such as energy.residual_max_relative"),

@@ -41,6 +41,7 @@ impl Simulation {
         self.record_last(&end)?;
         self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
         fragments::write(&self.folder.join("fragments.csv"), &fragments_of(&self.scene))?;
+        self.warn_of_single_nodes()?;
         write_cracks(&self.scene, &self.folder)?;
         let mut summary = Summary {
             title: self.case.title.clone(),
@@ -103,6 +104,23 @@ fn write_cracks(scene: &Scene, folder: &Path) -> Result<(), Failure> {
     let points: Vec<[f64; 3]> = scene.bonded.reference().iter().map(|x| (*x).into()).collect();
     cracks::write_lines(&folder.join("cracks.vtp"), &points, all.map(|(_, crack)| crack))
 }
+
+impl Simulation {
+    /// Warns of bodies that came apart into single nodes.
+    fn warn_of_single_nodes(&mut self) -> Result<(), Failure> {
+        let shares = self.scene.single_share().into_iter().enumerate();
+        for (body, share) in shares.filter(|(_, share)| *share > MOSTLY_SINGLE) {
+            let (name, percent) = (&self.scene.solid.body(body).name, 100.0 * share);
+            self.messages.warn(format!(
+                "warning: body \"{name}\": {percent:.0} % of its mass is in single nodes, which are no fragments; a finer mesh resolves them"
+            ))?;
+        }
+        Ok(())
+    }
+}
+
+/// Share of a body's mass in single nodes above which its fragments tell little.
+const MOSTLY_SINGLE: f64 = 0.5;
 
 fn fragments_of(scene: &Scene) -> Vec<Fragment> {
     scene

@@ -19,8 +19,8 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::error::Failure;
-use crate::run::{Options, Outcome, run};
 use crate::say;
+use crate::{Options, Outcome, run};
 use scenes::{KINDS, RandomScene, scene};
 
 /// Relative residual of the energy balance below which a run is good.

@@ -242,6 +242,8 @@ pub struct Output {
     pub history_every: f64,
     /// Wall time between checkpoints [s].
     pub checkpoint_every: f64,
+    /// Share of its strength that an edge may have lost and still join a fragment, above 0 up to 1.
+    pub joined_below: f64,
 }
 
 /// A reference value of the case.

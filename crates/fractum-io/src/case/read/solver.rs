@@ -185,6 +185,8 @@ const FRAMES: f64 = 50.0;
 const ROWS: f64 = 1000.0;
 /// Wall time between checkpoints where nothing is said [s].
 const CHECKPOINT: f64 = 600.0;
+/// Share of the strength lost at which an edge joins fragments no longer, where nothing is said.
+const JOINED_BELOW: f64 = 0.95;
 
 /// Reads what is written; `end` is that of the run, where it is known.
 pub(super) fn output(root: &Table<'_>, end: Option<f64>) -> Option<Output> {
@@ -204,11 +206,15 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>) -> Option<Output> {
     let fields = every("fields", end);
     let history = every("history", end);
     let checkpoint = every("checkpoint", None);
+    let fragments = table.table_or_empty("fragments");
+    let joined_below = fragments.quantity("joined_below").between(0.0, 1.0).or(JOINED_BELOW);
+    fragments.finish("here");
     table.finish("here");
     let end = end?;
     Some(Output {
         fields_every: fields.unwrap_or(end / FRAMES),
         history_every: history.unwrap_or(end / ROWS),
         checkpoint_every: checkpoint.unwrap_or(CHECKPOINT),
+        joined_below,
     })
 }
