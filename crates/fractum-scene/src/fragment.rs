@@ -151,7 +151,7 @@ fn joined_nodes(solid: &Solid, joined_below: f64) -> Vec<u32> {
         let joining = alive.flat_map(|(of, _)| &of[..count]).filter(|&&edge| lost[edge as usize] < joined_below);
         links.extend(joining.map(|&edge| edges.nodes[edge as usize]));
     }
-    connected(solid.reference.len(), links.into_iter())
+    connected(solid.reference.len(), links)
 }
 
 fn element_links(solid: &Solid, body: usize) -> impl Iterator<Item = [u32; 2]> + '_ {
