@@ -1,7 +1,7 @@
 //! Bonded packings: one tension solve, and explicit steps, on the threads given by `RAYON_NUM_THREADS`.
 
 use fractum_calibrate::{Micro, Sample, lab};
-use fractum_dem::{BeamNetwork, CentralDifference, ParticleDamping, Particles, Tolerance};
+use fractum_dem::{Bonds, CentralDifference, ParticleDamping, Particles, Tolerance};
 use fractum_pack::{Convention, Domain, PackSpec, pack};
 
 fn main() {
@@ -27,12 +27,8 @@ fn tension_solve_10000(bencher: divan::Bencher) {
 fn explicit_step(bencher: divan::Bencher, count: usize) {
     let Some(sample) = sample(count) else { return };
     let Sample { packing, network, lattice, .. } = sample;
-    let (Ok(mut bonds), Ok(mut particles)) = (
-        BeamNetwork::new(&packing.position, &network.pairs, lattice.section()),
-        Particles::at_rest(packing.position.clone(), packing.radius, 2500.0 * 8e-9),
-    ) else {
-        return;
-    };
+    let Ok(mut particles) = Particles::at_rest(packing.position, packing.radius, 2500.0 * 8e-9) else { return };
+    let Ok(mut bonds) = Bonds::new(&particles, &network.pairs, lattice.section()) else { return };
     let dt = bonds.stable_step(&particles, 0.7);
     let mut motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
     particles.velocity.iter_mut().enumerate().for_each(|(i, v)| v.x = 1e-3 * (i as f64).sin());

@@ -5,8 +5,7 @@
 
 use fractum_dem::criterion::{FractureCriterion, Level, Principal};
 use fractum_dem::{
-    BeamNetwork, BeamSection, CentralDifference, CrackFaces, Dof6, Fracture, Lattice, Occasion, ParticleDamping,
-    Particles,
+    BeamSection, Bonds, CentralDifference, CrackFaces, Dof6, Fracture, Lattice, Occasion, ParticleDamping, Particles,
 };
 use fractum_math::Vec3;
 
@@ -51,11 +50,8 @@ fn body(side: usize) -> (Vec<Vec3>, Vec<[u32; 2]>) {
 fn step(bencher: divan::Bencher, side: usize) {
     let (position, pairs) = body(side);
     let (Ok(section), n) = (BeamSection::new(1e9, 0.3), position.len()) else { return };
-    let (Ok(mut bonds), Ok(mut particles)) =
-        (BeamNetwork::new(&position, &pairs, section), Particles::at_rest(position, vec![0.5; n], n as f64))
-    else {
-        return;
-    };
+    let Ok(mut particles) = Particles::at_rest(position, vec![0.5; n], n as f64) else { return };
+    let Ok(mut bonds) = Bonds::new(&particles, &pairs, section) else { return };
     let dt = bonds.stable_step(&particles, 0.7);
     let mut motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
     particles.velocity.iter_mut().enumerate().for_each(|(i, v)| v.x = 1e-3 * (i as f64).sin());
@@ -76,11 +72,11 @@ fn static_product(bencher: divan::Bencher, side: usize) {
 }
 
 /// A body far from failure: its bonds, and a criterion that watches them.
-fn watched(side: usize) -> Option<(BeamNetwork, Particles, Fracture)> {
+fn watched(side: usize) -> Option<(Bonds, Particles, Fracture)> {
     let (position, pairs) = body(side);
     let n = position.len();
-    let bonds = BeamNetwork::new(&position, &pairs, BeamSection::new(1e9, 0.3).ok()?).ok()?;
     let mut particles = Particles::at_rest(position, vec![0.5; n], n as f64).ok()?;
+    let bonds = Bonds::new(&particles, &pairs, BeamSection::new(1e9, 0.3).ok()?).ok()?;
     let principal = Principal { tensile_strength: 1e12, compressive_strength: None, level: Level::Neighbours };
     let faces = CrackFaces::default();
     let fracture =

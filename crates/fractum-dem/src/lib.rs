@@ -1,9 +1,37 @@
-//! Discrete elements: particles joined by cohesive beams, in motion and at rest.
+//! Discrete elements: particles joined by bonds, in motion and at rest.
 //!
-//! [`BeamSection`] is the material of a bond. [`BeamNetwork`] moves [`Particles`] through time, with large rotations;
-//! [`Lattice`] finds the static equilibrium of a bonded body for small
-//! displacements in one solve. [`stress`] and [`strain`] turn its state into macroscopic fields.
+//! What it models: spheres that move and turn ([`Particles`]), [`Bonds`] between them under a [`BondLaw`] (the cohesive beam
+//! of a [`BeamSection`], with large rotations), criteria by which bonds break ([`FractureCriterion`]), contact of the crack
+//! faces ([`Fracture`]), and static equilibria for small displacements in one solve ([`Lattice`], [`QuasiStatic`]).
+//! [`stress`] and [`strain`] turn its state into macroscopic fields. What it leaves out: contact with other bodies and loads,
+//! which a scene adds; packing and calibration, which make the particles and the numbers of the law.
 //!
+//! A new law of bonds is a file in `bond/law` and a line in `bond/kinds.rs`; a new criterion is a file in
+//! `fracture/criterion` and a line in its `mod.rs`.
+//!
+//! A pair of particles in motion, its bond stretched by one per cent:
+//! ```
+//! use fractum_dem::{BeamSection, Bonds, CentralDifference, ParticleDamping, Particles};
+//! use fractum_math::Vec3;
+//! let mut particles = Particles::at_rest(vec![Vec3::zeros(), Vec3::x()], vec![0.5; 2], 2.0)?;
+//! let mut bonds = Bonds::new(&particles, &[[0, 1]], BeamSection::new(1e9, 0.2)?)?;
+//! particles.position[1].x = 1.01;
+//! let dt = bonds.stable_step(&particles, 0.7);
+//! bonds.add_forces(&mut particles);
+//! particles.start_half_a_step_early(dt);
+//! let mut motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
+//! let energy = bonds.energy(&particles).total();
+//! for _ in 0..100 {
+//!     motion.kick_and_drift(&mut particles);
+//!     particles.clear_forces();
+//!     bonds.add_forces(&mut particles);
+//! }
+//! let kinetic = motion.kick_drift_and_measure(&mut particles.clone()).before.kinetic;
+//! assert!(((kinetic + bonds.energy(&particles).total()) / energy - 1.0).abs() < 1e-9);
+//! # Ok::<(), fractum_dem::DemError>(())
+//! ```
+//!
+//! The same pair at rest:
 //! ```
 //! use fractum_dem::{BeamSection, Lattice, LatticeSupports, Tolerance};
 //! use fractum_math::Vec3;
@@ -29,8 +57,8 @@ mod particles;
 mod statics;
 
 pub use bond::{
-    BeamEnergy, BeamForces, BeamNetwork, BeamSection, BondGraph, BondedPair, HalfEdge, Parts, cohesive_beam,
-    cohesive_beam_energy,
+    AnyBondLaw, BeamSection, BondEnergy, BondForces, BondGraph, BondLanes, BondLaw, BondMemory, BondNetwork,
+    BondStiffness, BondedPair, Bonds, ForceLanes, HalfEdge, Parts, Turn, cohesive_beam, cohesive_beam_energy, lanes,
 };
 pub use error::DemError;
 pub use fracture::{

@@ -2,26 +2,26 @@
 
 use std::f64::consts::PI;
 
-use fractum_dem::{BeamNetwork, BeamSection, CentralDifference, ParticleDamping, Particles, highest_frequency};
+use fractum_dem::{BeamSection, Bonds, CentralDifference, ParticleDamping, Particles, highest_frequency};
 use fractum_math::Vec3;
 
 /// Particles, bonds and their motion.
 struct Run {
     particles: Particles,
-    bonds: BeamNetwork,
+    bonds: Bonds,
     motion: CentralDifference,
 }
 
 impl Run {
     /// With velocities of t = 0.
-    fn new((mut particles, mut bonds): (Particles, BeamNetwork), dt: f64, damping: ParticleDamping) -> Self {
+    fn new((mut particles, mut bonds): (Particles, Bonds), dt: f64, damping: ParticleDamping) -> Self {
         particles.clear_forces();
         bonds.add_forces(&mut particles);
         particles.start_half_a_step_early(dt);
         Run { motion: CentralDifference::new(&particles, dt, damping), particles, bonds }
     }
 
-    fn free(body: (Particles, BeamNetwork), dt: f64) -> Self {
+    fn free(body: (Particles, Bonds), dt: f64) -> Self {
         Run::new(body, dt, ParticleDamping::default())
     }
 
@@ -53,7 +53,7 @@ fn noise(k: usize) -> f64 {
 }
 
 /// A jittered lattice bonded to near neighbours.
-fn assembly(side: usize) -> (Particles, BeamNetwork) {
+fn assembly(side: usize) -> (Particles, Bonds) {
     let sites = side.pow(3);
     let place = |i: usize| {
         let site = Vec3::new((i % side) as f64, (i / side % side) as f64, (i / side / side) as f64);
@@ -68,8 +68,9 @@ fn assembly(side: usize) -> (Particles, BeamNetwork) {
         })
         .collect();
     let radius = (0..sites).map(|i| 0.5 + 0.05 * noise(7 * i)).collect();
-    let bonds = BeamNetwork::new(&position, &pairs, BeamSection::new(1e3, 0.3).unwrap()).unwrap();
-    (Particles::at_rest(position, radius, sites as f64).unwrap(), bonds)
+    let particles = Particles::at_rest(position, radius, sites as f64).unwrap();
+    let bonds = Bonds::new(&particles, &pairs, BeamSection::new(1e3, 0.3).unwrap()).unwrap();
+    (particles, bonds)
 }
 
 fn shake(particles: &mut Particles, size: f64) {
@@ -175,8 +176,8 @@ fn the_period_converges_with_second_order_in_the_step() {
     let exact = 2.0 * PI / (section.axial() * 2.0).sqrt();
     let error = |dt: f64| {
         let position = vec![Vec3::zeros(), Vec3::x()];
-        let bonds = BeamNetwork::new(&position, &[[0, 1]], section).unwrap();
         let mut particles = Particles::at_rest(position, vec![0.3; 2], 2.0).unwrap();
+        let bonds = Bonds::new(&particles, &[[0, 1]], section).unwrap();
         particles.velocity = vec![Vec3::x() * 1e-5, Vec3::x() * -1e-5];
         let mut run = Run::free((particles, bonds), dt);
         let measured = period(dt, 50, || {
@@ -218,15 +219,15 @@ const YOUNG: f64 = 1e9;
 const DENSITY: f64 = 1000.0;
 
 /// `n` particles in a row after a clamped one, with the mass of a bar; beams of the bar's own section.
-fn chain(n: usize, poisson_ratio: f64) -> (Particles, BeamNetwork) {
+fn chain(n: usize, poisson_ratio: f64) -> (Particles, Bonds) {
     let spacing = 2.0 / n as f64;
     let position: Vec<Vec3> = (0..=n).map(|i| Vec3::x() * (spacing * i as f64)).collect();
     let pairs: Vec<[u32; 2]> = (0..n as u32).map(|i| [i, i + 1]).collect();
     let section = BeamSection { young_modulus: YOUNG, poisson_ratio, radius: RADIUS };
-    let bonds = BeamNetwork::new(&position, &pairs, section).unwrap();
     let mass = DENSITY * PI * RADIUS * RADIUS * spacing * (n + 1) as f64;
     let mut particles = Particles::at_rest(position, vec![RADIUS; n + 1], mass).unwrap();
     particles.held[0] = 0b111111;
+    let bonds = Bonds::new(&particles, &pairs, section).unwrap();
     (particles, bonds)
 }
 

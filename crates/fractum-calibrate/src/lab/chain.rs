@@ -1,7 +1,7 @@
 use fractum_math::elementary::{cos, cosh, sin, sinh};
 use std::f64::consts::PI;
 
-use fractum_dem::{BeamNetwork, BeamSection, CentralDifference, ParticleDamping, Particles};
+use fractum_dem::{BeamSection, Bonds, CentralDifference, ParticleDamping, Particles};
 use fractum_math::Vec3;
 
 use super::vibration::{SAFETY, follow};
@@ -38,10 +38,10 @@ pub fn chain(mode: VibrationMode, particles: usize) -> Result<Vibration, Calibra
     let position: Vec<Vec3> = (0..=particles).map(|i| Vec3::x() * (spacing * i as f64)).collect();
     let pairs: Vec<[u32; 2]> = (0..particles as u32).map(|i| [i, i + 1]).collect();
     let section = BeamSection { young_modulus: young, poisson_ratio: poisson, radius: RADIUS };
-    let mut bonds = BeamNetwork::new(&position, &pairs, section)?;
     let mass = density * PI * RADIUS * RADIUS * spacing * (particles + 1) as f64;
     let mut body = Particles::at_rest(position, vec![RADIUS; particles + 1], mass)?;
     body.held[0] = 0b11_1111;
+    let mut bonds = Bonds::new(&body, &pairs, section)?;
 
     let wave = (density / young).sqrt();
     let speed = SMALL / wave;

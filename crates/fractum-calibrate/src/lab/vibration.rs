@@ -1,7 +1,7 @@
 use fractum_math::elementary::sin;
 use std::f64::consts::PI;
 
-use fractum_dem::{BeamNetwork, CentralDifference, LatticeSupports, ParticleDamping, Particles, Tolerance};
+use fractum_dem::{Bonds, CentralDifference, LatticeSupports, ParticleDamping, Particles, Tolerance};
 use fractum_math::{Vec3, rotation_by};
 use fractum_pack::Domain;
 use serde::Serialize;
@@ -54,7 +54,7 @@ pub(super) const SAFETY: f64 = 0.7;
 /// A cylinder sample in motion: particles with the mass of the measured cylinder, and bonds.
 struct Body {
     particles: Particles,
-    bonds: BeamNetwork,
+    bonds: Bonds,
     motion: CentralDifference,
     length: f64,
     radius: f64,
@@ -69,7 +69,7 @@ fn body(sample: &Sample, density: f64, test: &'static str) -> Result<Body, Calib
     };
     let mass = density * PI * radius * radius * length;
     let particles = Particles::at_rest(sample.packing.position.clone(), sample.packing.radius.clone(), mass)?;
-    let bonds = BeamNetwork::new(&particles.position, &sample.network.pairs, sample.lattice.section())?;
+    let bonds = Bonds::new(&particles, &sample.network.pairs, sample.lattice.section())?;
     let dt = bonds.stable_step(&particles, SAFETY);
     let motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
     Ok(Body { particles, bonds, motion, length, radius, axis: *start })

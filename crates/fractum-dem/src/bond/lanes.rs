@@ -1,12 +1,15 @@
+//! Numbers and vectors side by side, for laws that handle several bonds at once.
+
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// `W` numbers handled side by side: plain arrays that the compiler turns into vector instructions.
 #[derive(Clone, Copy)]
-pub(super) struct Lanes<const W: usize>(pub(super) [f64; W]);
+pub struct Lanes<const W: usize>(pub [f64; W]);
 
 impl<const W: usize> Lanes<W> {
+    /// The same number in all lanes.
     #[inline(always)]
-    pub(super) fn splat(value: f64) -> Self {
+    pub fn splat(value: f64) -> Self {
         Lanes([value; W])
     }
 
@@ -20,13 +23,15 @@ impl<const W: usize> Lanes<W> {
         Lanes(std::array::from_fn(|k| f(self.0[k], other.0[k])))
     }
 
+    /// Square roots.
     #[inline(always)]
-    pub(super) fn sqrt(self) -> Self {
+    pub fn sqrt(self) -> Self {
         self.map(f64::sqrt)
     }
 
+    /// Reciprocals.
     #[inline(always)]
-    pub(super) fn recip(self) -> Self {
+    pub fn recip(self) -> Self {
         self.map(|v| 1.0 / v)
     }
 }
@@ -64,36 +69,41 @@ impl<const W: usize> Neg for Lanes<W> {
 }
 
 /// Vectors in space, `W` side by side.
-pub(super) type Vector<const W: usize> = [Lanes<W>; 3];
+pub type Vector<const W: usize> = [Lanes<W>; 3];
 
+/// a + b.
 #[inline(always)]
-pub(super) fn add<const W: usize>(a: Vector<W>, b: Vector<W>) -> Vector<W> {
+pub fn add<const W: usize>(a: Vector<W>, b: Vector<W>) -> Vector<W> {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
+/// a − b.
 #[inline(always)]
-pub(super) fn sub<const W: usize>(a: Vector<W>, b: Vector<W>) -> Vector<W> {
+pub fn sub<const W: usize>(a: Vector<W>, b: Vector<W>) -> Vector<W> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
+/// s a.
 #[inline(always)]
-pub(super) fn scale<const W: usize>(a: Vector<W>, s: Lanes<W>) -> Vector<W> {
+pub fn scale<const W: usize>(a: Vector<W>, s: Lanes<W>) -> Vector<W> {
     [a[0] * s, a[1] * s, a[2] * s]
 }
 
+/// a · b.
 #[inline(always)]
-pub(super) fn dot<const W: usize>(a: Vector<W>, b: Vector<W>) -> Lanes<W> {
+pub fn dot<const W: usize>(a: Vector<W>, b: Vector<W>) -> Lanes<W> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// a × b.
 #[inline(always)]
-pub(super) fn cross<const W: usize>(a: Vector<W>, b: Vector<W>) -> Vector<W> {
+pub fn cross<const W: usize>(a: Vector<W>, b: Vector<W>) -> Vector<W> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// `v` turned by the unit quaternion (w, u): v + 2 u × (u × v + w v).
 #[inline(always)]
-pub(super) fn rotate<const W: usize>(w: Lanes<W>, u: Vector<W>, v: Vector<W>) -> Vector<W> {
+pub fn rotate<const W: usize>(w: Lanes<W>, u: Vector<W>, v: Vector<W>) -> Vector<W> {
     let inner = add(cross(u, v), scale(v, w));
     let outer = cross(u, inner);
     add(v, add(outer, outer))

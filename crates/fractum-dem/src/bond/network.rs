@@ -1,82 +1,45 @@
 use std::ops::Add;
 
-use fractum_math::{Rotation, Sym3, Vec3};
+use fractum_math::{Sym3, Vec3};
 use nalgebra::Matrix6;
 use rayon::prelude::*;
 
-use super::lanes::{Lanes, Vector, dot};
-use super::law::{BeamEnergy, BeamForces, BeamSection, BondedPair, beam, cohesive_beam, cohesive_beam_energy};
+use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, WIDTH};
+use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair};
 use crate::DemError;
 use crate::particles::Particles;
 
-/// Bonds computed side by side.
-const WIDTH: usize = 8;
 /// Particles whose bonds form one block of parallel work.
 const BLOCK: usize = 2048;
 
-/// The cohesive beams of a body, ready for many time steps.
+/// The bonds of a body under one law, ready for many time steps.
 ///
 /// Bonds are grouped in blocks by their first particle. A block sums into a local array over its own particles and
 /// their foreign partners; the partners' sums are then added by the blocks that own them, in a fixed order. Every bond
 /// is computed once, and the result has the same bits for any number of threads.
 #[derive(Clone, Debug)]
-pub struct BeamNetwork {
-    section: BeamSection,
+pub struct BondNetwork<L: BondLaw> {
+    law: L,
     pairs: Vec<[u32; 2]>,
     axis: Vec<Vec3>,
     length: Vec<f64>,
+    own: Vec<L::Parameters>,
     live: Vec<bool>,
-    blocks: Vec<Block>,
-    /// Where each bond sits: block, group in the block.
-    place: Vec<(u32, u32)>,
+    blocks: Vec<Block<L>>,
+    /// Block, group in the block and lane of each bond.
+    index: Vec<[u32; 3]>,
 }
 
-#[derive(Clone, Debug)]
-struct Block {
-    /// First particle of the block.
-    start: usize,
-    /// Number of particles of the block.
-    count: usize,
-    groups: Vec<Group>,
-    /// Particles of other blocks that this block's bonds reach, ascending.
-    partners: Vec<u32>,
-    /// Sums of forces and moments: own particles, then partners.
-    sums: Vec<[f64; 6]>,
-    /// Sums of the virials of forces and arms, where they are wanted.
-    virials: Vec<[f64; 6]>,
-    /// Sums of the bounds of these virials, where they are wanted.
-    virial_bounds: Vec<[f64; 2]>,
-    /// Sums that other blocks hold for particles of this one: (block, slot, own particle).
-    incoming: Vec<(u32, u32, u32)>,
-}
-
-/// `WIDTH` bonds; unused places repeat a bond with `live` = 0.
-#[derive(Clone, Debug)]
-struct Group {
-    first: [u32; WIDTH],
-    second: [u32; WIDTH],
-    /// Slots in the block's sums.
-    slots: [[u32; WIDTH]; 2],
-    axis: [[f64; WIDTH]; 3],
-    inverse: [f64; WIDTH],
-    live: [f64; WIDTH],
-}
-
-/// What a pass over the bonds sums beside forces.
-const NOTHING: u8 = 0;
-const VIRIALS: u8 = 1;
-const BOUNDS: u8 = 2;
-
-impl BeamNetwork {
+impl<L: BondLaw> BondNetwork<L> {
     /// Bonds particles at their present distances; their orientations count from now on.
     ///
-    /// - `position`: centres [m]
     /// - `pairs`: the particles of each bond
     ///
     /// # Errors
-    /// A section that is no beam; a bond that joins nothing.
-    pub fn new(position: &[Vec3], pairs: &[[u32; 2]], section: BeamSection) -> Result<Self, DemError> {
-        section.check()?;
+    /// Numbers of the law that make no bond; a bond that joins nothing.
+    pub fn new(particles: &Particles, pairs: &[[u32; 2]], law: L) -> Result<Self, DemError> {
+        law.check()?;
+        let position = &particles.position;
         let count = position.len();
         let mut pairs: Vec<[u32; 2]> = pairs.to_vec();
         for (bond, pair) in pairs.iter_mut().enumerate() {
@@ -94,8 +57,14 @@ impl BeamNetwork {
         let gap = |p: &[u32; 2]| position[p[1] as usize] - position[p[0] as usize];
         let length: Vec<f64> = pairs.iter().map(|p| gap(p).norm()).collect();
         let axis: Vec<Vec3> = pairs.iter().zip(&length).map(|(p, l)| gap(p) / *l).collect();
+        let own: Vec<L::Parameters> = pairs
+            .iter()
+            .zip(&length)
+            .map(|(pair, l)| law.parameters(*l, pair.map(|i| particles.radius[i as usize])))
+            .collect();
+        let made = Made::<L> { pairs: &pairs, axis: &axis, length: &length, own: &own };
         let mut blocks = Vec::new();
-        let mut place = Vec::with_capacity(pairs.len());
+        let mut index = Vec::with_capacity(pairs.len());
         let mut bond = 0;
         for start in (0..count).step_by(BLOCK) {
             let end = (start + BLOCK).min(count);
@@ -103,8 +72,9 @@ impl BeamNetwork {
             while bond < pairs.len() && (pairs[bond][0] as usize) < end {
                 bond += 1;
             }
-            let block = Block::new(start, end - start, first..bond, &pairs, &axis, &length);
-            place.extend((0..bond - first).map(|k| (blocks.len() as u32, (k / WIDTH) as u32)));
+            let block = Block::new(start, end - start, first..bond, &made);
+            let position = |k: usize| [blocks.len(), k / WIDTH, k % WIDTH].map(|i| i as u32);
+            index.extend((0..bond - first).map(position));
             blocks.push(block);
         }
         let mut incoming = vec![Vec::new(); blocks.len()];
@@ -116,7 +86,7 @@ impl BeamNetwork {
         }
         blocks.iter_mut().zip(incoming).for_each(|(block, list)| block.incoming = list);
         let live = vec![true; pairs.len()];
-        Ok(BeamNetwork { section, pairs, axis, length, live, blocks, place })
+        Ok(BondNetwork { law, pairs, axis, length, own, live, blocks, index })
     }
 
     /// Number of bonds, broken ones included.
@@ -139,17 +109,46 @@ impl BeamNetwork {
         self.live[bond]
     }
 
-    /// The beam of all bonds.
-    pub fn section(&self) -> BeamSection {
-        self.section
+    /// The law of all bonds.
+    pub fn law(&self) -> &L {
+        &self.law
     }
 
     /// Breaks a bond for ever.
     pub fn break_bond(&mut self, bond: usize) {
         self.live[bond] = false;
-        let (block, group) = self.place[bond];
-        let first = self.place[..bond].iter().rev().take(WIDTH).take_while(|&&p| p == (block, group)).count();
-        self.blocks[block as usize].groups[group as usize].live[first] = 0.0;
+        let [block, group, lane] = self.index[bond].map(|i| i as usize);
+        self.blocks[block].groups[group].live[lane] = 0.0;
+    }
+
+    /// What a bond remembers.
+    pub fn memory_of(&self, bond: usize) -> &L::Memory {
+        let [block, group, lane] = self.index[bond].map(|i| i as usize);
+        &self.blocks[block].groups[group].memory[lane]
+    }
+
+    /// What all bonds remember, for a checkpoint; nothing where the law has no memory.
+    pub fn memory(&self) -> Vec<L::Memory> {
+        if size_of::<L::Memory>() == 0 {
+            return Vec::new();
+        }
+        (0..self.len()).map(|bond| *self.memory_of(bond)).collect()
+    }
+
+    /// Puts a saved memory back into bonds made from the same case.
+    pub fn restore_memory(&mut self, saved: &[L::Memory]) {
+        for (&[block, group, lane], memory) in self.index.iter().zip(saved) {
+            self.blocks[block as usize].groups[group as usize].memory[lane as usize] = *memory;
+        }
+    }
+
+    /// Energy that all bonds have dissipated so far, broken ones included [J].
+    pub fn dissipated(&self) -> f64 {
+        if size_of::<L::Memory>() == 0 {
+            return 0.0;
+        }
+        let of = |bond: usize| self.law.dissipated(self.length[bond], &self.own[bond], self.memory_of(bond));
+        fractum_math::sum_chunks(self.len(), of)
     }
 
     /// Adds the forces and moments of all live bonds to the particles'.
@@ -157,12 +156,12 @@ impl BeamNetwork {
         self.add_forces_of::<NOTHING>(particles);
     }
 
-    /// [`BeamNetwork::add_forces`], which also keeps what [`BeamNetwork::virials`] tells of these forces.
+    /// [`BondNetwork::add_forces`], which also keeps what [`BondNetwork::virials`] tells of these forces.
     pub fn add_forces_and_virials(&mut self, particles: &mut Particles) {
         self.add_forces_of::<VIRIALS>(particles);
     }
 
-    /// [`BeamNetwork::add_forces`], which also keeps what [`BeamNetwork::virial_bounds`] tells of these forces: a third of the work
+    /// [`BondNetwork::add_forces`], which also keeps what [`BondNetwork::virial_bounds`] tells of these forces: a third of the work
     /// that virials are.
     pub fn add_forces_and_virial_bounds(&mut self, particles: &mut Particles) {
         self.add_forces_of::<BOUNDS>(particles);
@@ -171,11 +170,11 @@ impl BeamNetwork {
     /// Finds the virials at the present positions, and leaves forces as they are.
     pub fn find_virials(&mut self, particles: &Particles) {
         let Particles { position, orientation, .. } = particles;
-        let section = self.section;
-        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<false, VIRIALS>(position, orientation, &section));
+        let law = self.law;
+        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<false, VIRIALS>(position, orientation, &law));
     }
 
-    /// Bounds of the principal values of the virials [N m], as at the last [`BeamNetwork::add_forces_and_virial_bounds`]: the sums of
+    /// Bounds of the principal values of the virials [N m], as at the last [`BondNetwork::add_forces_and_virial_bounds`]: the sums of
     /// the largest ones of each bond, and of the smallest ones with their sign changed. ½ sym(r ⊗ f) has the principal
     /// values ¼ (r·f ± |r| |f|) and 0, and the largest one of a sum is at most the sum of the largest ones.
     pub fn virial_bounds(&self, out: &mut [[f64; 2]]) {
@@ -192,7 +191,7 @@ impl BeamNetwork {
     }
 
     /// Half the sums of sym(r_ij ⊗ f_ij) over the bonds of each particle [N m], as at the last
-    /// [`BeamNetwork::add_forces_and_virials`] or [`BeamNetwork::find_virials`]; zero before it.
+    /// [`BondNetwork::add_forces_and_virials`] or [`BondNetwork::find_virials`]; zero before it.
     pub fn virials(&self, out: &mut [Sym3]) {
         let blocks = &self.blocks;
         out.par_chunks_mut(BLOCK).zip(blocks).for_each(|(out, block)| {
@@ -207,10 +206,10 @@ impl BeamNetwork {
         });
     }
 
-    fn add_forces_of<const BESIDE: u8>(&mut self, particles: &mut Particles) {
-        let section = self.section;
+    fn add_forces_of<const DETAIL: u8>(&mut self, particles: &mut Particles) {
+        let law = self.law;
         let Particles { position, orientation, force, moment, .. } = particles;
-        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<true, BESIDE>(position, orientation, &section));
+        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<true, DETAIL>(position, orientation, &law));
         let blocks = &self.blocks;
         let owned = force.par_chunks_mut(BLOCK).zip(moment.par_chunks_mut(BLOCK));
         owned.zip(blocks).for_each(|((force, moment), block)| {
@@ -243,26 +242,27 @@ impl BeamNetwork {
         self.length[bond]
     }
 
-    /// Force of a live bond on its second particle and the moments on both; see [`cohesive_beam`].
-    pub fn forces_of(&self, bond: usize, particles: &Particles) -> BeamForces {
-        cohesive_beam(&self.pair(bond, particles), &self.section)
+    /// Force of a live bond on its second particle and the moments on both.
+    pub fn forces_of(&self, bond: usize, particles: &Particles) -> BondForces {
+        let mut memory = [*self.memory_of(bond)];
+        self.law.forces(&self.pair(bond, particles).lanes(), &[self.own[bond]], &mut memory).into()
     }
 
-    /// Elastic energy of a bond, live or not, by parts [J].
-    pub fn energy_of(&self, bond: usize, particles: &Particles) -> BeamEnergy {
-        cohesive_beam_energy(&self.pair(bond, particles), &self.section)
+    /// Energy that a bond, live or not, would give back, by parts [J].
+    pub fn energy_of(&self, bond: usize, particles: &Particles) -> BondEnergy {
+        self.law.energy(&self.pair(bond, particles), &self.own[bond], self.memory_of(bond))
     }
 
-    /// Elastic energy of all live bonds, by parts [J].
-    pub fn energy(&self, particles: &Particles) -> BeamEnergy {
+    /// Energy that all live bonds would give back, by parts [J].
+    pub fn energy(&self, particles: &Particles) -> BondEnergy {
         let chunk = |bonds: std::ops::Range<usize>| {
-            bonds.filter(|&b| self.live[b]).fold(BeamEnergy::default(), |sum, b| sum + self.energy_of(b, particles))
+            bonds.filter(|&b| self.live[b]).fold(BondEnergy::default(), |sum, b| sum + self.energy_of(b, particles))
         };
-        let parts: Vec<BeamEnergy> = (0..self.len().div_ceil(BLOCK))
+        let parts: Vec<BondEnergy> = (0..self.len().div_ceil(BLOCK))
             .into_par_iter()
             .map(|c| chunk(c * BLOCK..((c + 1) * BLOCK).min(self.len())))
             .collect();
-        parts.into_iter().fold(BeamEnergy::default(), BeamEnergy::add)
+        parts.into_iter().fold(BondEnergy::default(), BondEnergy::add)
     }
 
     /// A time step that is certainly stable, 2/ω with a bound on ω from the assembled stiffness, times `safety`
@@ -275,8 +275,9 @@ impl BeamNetwork {
         for bond in (0..self.len()).filter(|&b| self.live[b]) {
             let [i, j] = self.pairs[bond].map(|i| i as usize);
             let n = (particles.position[j] - particles.position[i]).normalize();
-            add_stiffness(&mut own[i], &n, self.length[bond], &self.section);
-            add_stiffness(&mut own[j], &-n, self.length[bond], &self.section);
+            let (length, stiffness) = (self.length[bond], self.law.stiffness(self.length[bond], &self.own[bond]));
+            add_stiffness(&mut own[i], &n, length, &stiffness);
+            add_stiffness(&mut own[j], &-n, length, &stiffness);
         }
         let omega2: Vec<f64> = own
             .par_iter()
@@ -293,153 +294,20 @@ impl BeamNetwork {
     }
 }
 
-/// Adds a beam's stiffness at one end, with `n` from that end to the other.
-fn add_stiffness(k: &mut Matrix6<f64>, n: &Vec3, l: f64, section: &BeamSection) {
+/// Adds the stiffness of a bond at one end, with `n` from that end to the other.
+fn add_stiffness(k: &mut Matrix6<f64>, n: &Vec3, l: f64, bond: &BondStiffness) {
     let along = n * n.transpose();
     let across = fractum_math::Mat3::identity() - along;
-    let (ea, ei, gj) = (section.axial() / l, section.bending() / l, section.torsion() / l);
-    let translation = along * ea + across * (12.0 * ei / (l * l));
-    let rotation = along * gj + across * (4.0 * ei);
-    // Force from rotation: 6 E I/l² θ × n.
-    let mixed = -n.cross_matrix() * (6.0 * ei / l);
+    let translation = along * bond.axial + across * bond.shear(l);
+    let rotation = along * bond.twist + across * bond.bending;
+    // Force from rotation θ: coupling θ × n.
+    let mixed = -n.cross_matrix() * bond.coupling(l);
     for a in 0..3 {
         for b in 0..3 {
             k[(a, b)] += translation[(a, b)];
             k[(a + 3, b + 3)] += rotation[(a, b)];
             k[(a, b + 3)] += mixed[(a, b)];
             k[(b + 3, a)] += mixed[(a, b)];
-        }
-    }
-}
-
-impl Block {
-    fn new(
-        start: usize,
-        count: usize,
-        bonds: std::ops::Range<usize>,
-        pairs: &[[u32; 2]],
-        axis: &[Vec3],
-        length: &[f64],
-    ) -> Self {
-        let own = |i: u32| (start..start + count).contains(&(i as usize));
-        let mut partners: Vec<u32> = pairs[bonds.clone()].iter().map(|p| p[1]).filter(|&j| !own(j)).collect();
-        partners.sort_unstable();
-        partners.dedup();
-        let slot = |i: u32| {
-            let slot = if own(i) { i as usize - start } else { count + partners.binary_search(&i).unwrap_or_default() };
-            slot as u32
-        };
-        let groups = bonds
-            .clone()
-            .step_by(WIDTH)
-            .map(|begin| {
-                let bond = |k: usize| (begin + k).min(bonds.end - 1);
-                let lane = |f: &dyn Fn(usize) -> f64| std::array::from_fn(|k| f(bond(k)));
-                Group {
-                    first: std::array::from_fn(|k| pairs[bond(k)][0]),
-                    second: std::array::from_fn(|k| pairs[bond(k)][1]),
-                    slots: [0, 1].map(|e| std::array::from_fn(|k| slot(pairs[bond(k)][e]))),
-                    axis: [0, 1, 2].map(|a| lane(&|b| axis[b][a])),
-                    inverse: lane(&|b| 1.0 / length[b]),
-                    live: std::array::from_fn(|k| if begin + k < bonds.end { 1.0 } else { 0.0 }),
-                }
-            })
-            .collect();
-        let sums = vec![[0.0; 6]; count + partners.len()];
-        Block {
-            start,
-            count,
-            groups,
-            partners,
-            sums,
-            virials: Vec::new(),
-            virial_bounds: Vec::new(),
-            incoming: Vec::new(),
-        }
-    }
-
-    /// Sums what is wanted of the bonds.
-    fn sum_bonds<const FORCES: bool, const BESIDE: u8>(
-        &mut self,
-        position: &[Vec3],
-        orientation: &[Rotation],
-        section: &BeamSection,
-    ) {
-        debug_assert!(self.start + self.count <= position.len());
-        let Block { groups, sums, virials, virial_bounds, .. } = self;
-        if FORCES {
-            sums.fill([0.0; 6]);
-        }
-        if BESIDE != NOTHING {
-            // Both at once, so that no later step allocates.
-            virials.resize(sums.len(), [0.0; 6]);
-            virial_bounds.resize(sums.len(), [0.0; 2]);
-        }
-        if BESIDE == VIRIALS {
-            virials.fill([0.0; 6]);
-        }
-        if BESIDE == BOUNDS {
-            virial_bounds.fill([0.0; 2]);
-        }
-        for group in groups {
-            let (mut gap, mut turns) = ([[0.0; WIDTH]; 3], [[[0.0; WIDTH]; 4]; 2]);
-            for k in 0..WIDTH {
-                let (i, j) = (group.first[k] as usize, group.second[k] as usize);
-                let (xi, xj) = (&position[i], &position[j]);
-                for a in 0..3 {
-                    gap[a][k] = xj[a] - xi[a];
-                }
-                let (qi, qj) = (&orientation[i].coords, &orientation[j].coords);
-                for a in 0..4 {
-                    turns[0][a][k] = qi[a];
-                    turns[1][a][k] = qj[a];
-                }
-            }
-            // nalgebra stores a quaternion as i, j, k, w.
-            let turn = |t: [[f64; WIDTH]; 4]| (Lanes(t[3]), [Lanes(t[0]), Lanes(t[1]), Lanes(t[2])]);
-            let axis: Vector<WIDTH> = group.axis.map(Lanes);
-            let arm = gap.map(Lanes);
-            let (force, first, second) =
-                beam(arm, turns.map(turn), axis, Lanes(group.inverse), Lanes(group.live), section);
-            for k in 0..if FORCES { WIDTH } else { 0 } {
-                let (i, j) = (group.slots[0][k] as usize, group.slots[1][k] as usize);
-                let own = &mut sums[i];
-                for a in 0..3 {
-                    own[a] -= force[a].0[k];
-                    own[a + 3] += first[a].0[k];
-                }
-                let other = &mut sums[j];
-                for a in 0..3 {
-                    other[a] += force[a].0[k];
-                    other[a + 3] += second[a].0[k];
-                }
-            }
-            if BESIDE == BOUNDS {
-                let quarter = Lanes::splat(0.25);
-                // The force on the first particle is the opposite of `force`.
-                let along = dot(arm, force) * quarter;
-                let size = (dot(arm, arm) * dot(force, force)).sqrt() * quarter;
-                let (most, least) = (size - along, size + along);
-                for k in 0..WIDTH {
-                    for end in 0..2 {
-                        let sum = &mut virial_bounds[group.slots[end][k] as usize];
-                        sum[0] += most.0[k];
-                        sum[1] += least.0[k];
-                    }
-                }
-            }
-            if BESIDE == VIRIALS {
-                // ½ sym(r ⊗ f) is the same at both ends; the force on the first particle is the opposite of `force`.
-                let quarter = Lanes::splat(-0.25);
-                let part = |a: usize, b: usize| (arm[a] * force[b] + arm[b] * force[a]) * quarter;
-                let virial = [part(0, 0), part(1, 1), part(2, 2), part(0, 1), part(1, 2), part(2, 0)];
-                for k in 0..WIDTH {
-                    for end in 0..2 {
-                        let sum = &mut virials[group.slots[end][k] as usize];
-                        (0..6).for_each(|c| sum[c] += virial[c].0[k]);
-                    }
-                }
-            }
         }
     }
 }

@@ -4,7 +4,7 @@ use fractum_contact::law::{ContactMemory, Linear, PairMotion, Rolling};
 use fractum_math::Work;
 use serde::{Deserialize, Serialize};
 
-use crate::bond::BeamSection;
+use crate::bond::Bonds;
 use crate::particles::Particles;
 
 /// The faces of a crack against one another.
@@ -52,7 +52,7 @@ impl Face {
     ///
     /// - `rest` [m]: the distance at which they touch, once they have parted as far
     pub(crate) fn new(
-        section: BeamSection,
+        bonds: &Bonds,
         particles: &Particles,
         pair: [u32; 2],
         rest: f64,
@@ -60,11 +60,11 @@ impl Face {
         stranger: bool,
     ) -> Self {
         let [i, j] = pair.map(|i| i as usize);
-        let normal_stiffness = section.axial() / rest;
+        let [normal_stiffness, tangential_stiffness] = bonds.face_stiffness(rest);
         let reduced = particles.mass[i] * particles.mass[j] / (particles.mass[i] + particles.mass[j]);
         let law = Linear {
             normal_stiffness,
-            tangential_stiffness: 12.0 * section.bending() / rest.powi(3),
+            tangential_stiffness,
             normal_damping: 2.0 * faces.damping_ratio * (reduced * normal_stiffness).sqrt(),
             friction: faces.friction,
             rolling: Rolling::default(),

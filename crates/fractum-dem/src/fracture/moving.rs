@@ -11,7 +11,7 @@ use super::criterion::{BondLoad, FailureSite, FractureCriterion};
 use super::faces::{CrackFaces, Face, FaceWork};
 use super::search::{Break, FailureSearch, LoadedBonds};
 use crate::DemError;
-use crate::bond::{BeamForces, BeamNetwork, BondGraph};
+use crate::bond::{BondForces, BondGraph, Bonds};
 use crate::particles::Particles;
 
 /// Gap up to which strangers are listed, over the smallest radius.
@@ -33,7 +33,7 @@ pub struct Fracture {
     cracks: Vec<Crack>,
     released: f64,
     /// What the bonds that broke last still exert, with the index of their crack.
-    acting: Vec<(usize, BeamForces)>,
+    acting: Vec<(usize, BondForces)>,
     sites: Vec<FailureSite>,
     breaks: Vec<Break>,
     /// What was summed of virials with the last forces.
@@ -74,7 +74,7 @@ pub struct Occasion {
 
 /// A network and its particles as a criterion sees them.
 struct Moving<'a> {
-    bonds: &'a BeamNetwork,
+    bonds: &'a Bonds,
     particles: &'a Particles,
 }
 
@@ -92,7 +92,7 @@ impl LoadedBonds for Moving<'_> {
             normal: -forces.force.dot(&n),
             bending: [across(first), across(second)],
             torsion: first.dot(&n),
-            radius: self.bonds.section().radius,
+            radius: self.bonds.section_radius(),
         }
     }
 
@@ -111,7 +111,7 @@ impl Fracture {
     /// # Errors
     /// An impossible criterion.
     pub fn new(
-        bonds: &BeamNetwork,
+        bonds: &Bonds,
         particles: &Particles,
         criterion: FractureCriterion,
         faces: CrackFaces,
@@ -159,7 +159,7 @@ impl Fracture {
     }
 
     /// Adds the forces of the bonds, and sums with them what the criterion needs: far from failure bounds of the virials.
-    pub fn add_bond_forces(&mut self, bonds: &mut BeamNetwork, particles: &mut Particles) {
+    pub fn add_bond_forces(&mut self, bonds: &mut Bonds, particles: &mut Particles) {
         self.detail = match self.search.criterion().level() {
             None => VirialDetail::Nothing,
             Some(_) if self.steps_with_tensor > 0 => VirialDetail::Tensor,
@@ -173,7 +173,7 @@ impl Fracture {
     }
 
     /// Sums the virials at the present positions unless that was done with the forces.
-    fn need_virials(&mut self, bonds: &mut BeamNetwork, particles: &Particles) {
+    fn need_virials(&mut self, bonds: &mut Bonds, particles: &Particles) {
         if self.detail == VirialDetail::Bounds {
             bonds.find_virials(particles);
             self.detail = VirialDetail::Tensor;
@@ -183,7 +183,7 @@ impl Fracture {
     /// The site that is nearest to failure; none where nothing bears anything.
     ///
     /// The forces must be those that [`Fracture::add_bond_forces`] found at these positions.
-    pub fn closest(&mut self, bonds: &mut BeamNetwork, particles: &Particles) -> Option<FailureSite> {
+    pub fn closest(&mut self, bonds: &mut Bonds, particles: &Particles) -> Option<FailureSite> {
         self.need_virials(bonds, particles);
         self.search.search(&Moving { bonds, particles }, &self.graph, f64::INFINITY);
         self.search.worst()
@@ -205,7 +205,7 @@ impl Fracture {
     /// The forces must be those that [`Fracture::add_bond_forces`] found at these positions. They stay as they
     /// are and act on the kick that follows: taken away at once, a force would cost the balance its square, whatever the
     /// motion. [`Fracture::book_last_work`] takes what they do in it off the energies of the cracks.
-    pub fn break_overloaded(&mut self, bonds: &mut BeamNetwork, particles: &Particles, occasion: Occasion) -> usize {
+    pub fn break_overloaded(&mut self, bonds: &mut Bonds, particles: &Particles, occasion: Occasion) -> usize {
         if self.detail == VirialDetail::Bounds {
             if !self.search.virial_bounds_may_fail(bonds, 1.0) {
                 return 0;
@@ -240,7 +240,7 @@ impl Fracture {
             let pair = bonds.pairs()[bond as usize];
             let [i, j] = pair.map(|i| i as usize);
             let rest = bonds.length(bond as usize);
-            self.pairs.push(Face::new(bonds.section(), particles, pair, rest, self.faces, false));
+            self.pairs.push(Face::new(bonds, particles, pair, rest, self.faces, false));
             bonds.break_bond(bond as usize);
             self.search.bond_broken(bond, &self.graph);
             self.released += energy;
@@ -268,7 +268,7 @@ impl Fracture {
     }
 
     /// Takes over bonds that broke at rest, which leave no faces in contact.
-    pub fn adopt(&mut self, cracks: impl Iterator<Item = Crack>, bonds: &mut BeamNetwork) {
+    pub fn adopt(&mut self, cracks: impl Iterator<Item = Crack>, bonds: &mut Bonds) {
         for crack in cracks {
             if self.graph.break_bond(crack.bond) {
                 bonds.break_bond(crack.bond as usize);
@@ -284,7 +284,7 @@ impl Fracture {
     }
 
     /// Puts a saved state back, into the network too, which must be unbroken.
-    pub fn restore(&mut self, state: FractureState, bonds: &mut BeamNetwork) {
+    pub fn restore(&mut self, state: FractureState, bonds: &mut Bonds) {
         FractureState { faces: self.pairs, cracks: self.cracks, released: self.released } = state;
         for crack in &self.cracks {
             self.graph.break_bond(crack.bond);
@@ -307,7 +307,7 @@ impl Fracture {
     /// that goes on from a saved state.
     ///
     /// - `range`: the particles of the body
-    pub fn find_new_pairs(&mut self, bonds: &BeamNetwork, particles: &Particles, range: Range<usize>) {
+    pub fn find_new_pairs(&mut self, bonds: &Bonds, particles: &Particles, range: Range<usize>) {
         let Fracture { graph, pairs, cracks, .. } = self;
         if cracks.is_empty() {
             return;
@@ -326,7 +326,7 @@ impl Fracture {
             let concerned = lost[i as usize] || lost[j as usize];
             if concerned && !graph.were_bonded(pair) && known.binary_search(&pair).is_err() {
                 let rest = radii[i as usize] + radii[j as usize];
-                pairs.push(Face::new(bonds.section(), particles, pair, rest, self.faces, true));
+                pairs.push(Face::new(bonds, particles, pair, rest, self.faces, true));
             }
         }
     }
@@ -335,14 +335,14 @@ impl Fracture {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bond::BeamSection;
+    use crate::bond::{AnyBondLaw, BeamSection};
     use crate::fracture::criterion::{BeamRankine, Level, Principal};
     use crate::particles::{CentralDifference, ParticleDamping};
 
-    fn pair(length: f64) -> (Particles, BeamNetwork) {
+    fn pair(length: f64) -> (Particles, Bonds) {
         let position = vec![Vec3::zeros(), Vec3::x()];
-        let bonds = BeamNetwork::new(&position, &[[0, 1]], BeamSection::new(1e4, 0.3).unwrap()).unwrap();
         let mut particles = Particles::at_rest(position, vec![0.45; 2], 2.0).unwrap();
+        let bonds = Bonds::new(&particles, &[[0, 1]], BeamSection::new(1e4, 0.3).unwrap()).unwrap();
         particles.position[1] *= length;
         (particles, bonds)
     }
@@ -415,8 +415,8 @@ mod tests {
         // The bond of the first two is overstretched and breaks; the second one flies at the other pair.
         let position: Vec<Vec3> = [0.0, 1.0, 2.5, 3.5].map(|x| Vec3::x() * x).to_vec();
         let section = BeamSection::new(1e4, 0.3).unwrap();
-        let mut bonds = BeamNetwork::new(&position, &[[0, 1], [2, 3]], section).unwrap();
         let mut particles = Particles::at_rest(position, vec![0.45; 4], 4.0).unwrap();
+        let mut bonds = Bonds::new(&particles, &[[0, 1], [2, 3]], section).unwrap();
         let faces = CrackFaces { friction: 0.5, damping_ratio: 0.0 };
         let mut fracture = Fracture::new(&bonds, &particles, beam(50.0), faces, 0.6, 1.0).unwrap();
         particles.position[0].x -= 0.01;
@@ -453,7 +453,7 @@ mod tests {
         particles.position[1] = Vec3::new(1.0 + 1e-6, 2e-6, 0.0);
         particles.orientation[1] = fractum_math::Rotation::from_scaled_axis(Vec3::new(3e-6, 0.0, 5e-6));
         let load = Moving { bonds: &bonds, particles: &particles }.load(0);
-        let section = bonds.section();
+        let AnyBondLaw::CohesiveBeam(section) = bonds.law();
         let chord = 2e-6;
         let (first, second) = (-chord, 5e-6 - chord);
         let ei = section.bending();
@@ -477,8 +477,8 @@ mod tests {
             .filter(|&(i, j)| apart(i, j) < 1.5)
             .map(|(i, j)| [i as u32, j as u32])
             .collect();
-        let mut bonds = BeamNetwork::new(&position, &pairs, BeamSection::new(1e4, 0.3).unwrap()).unwrap();
         let mut particles = Particles::at_rest(position.clone(), vec![0.5; 60], 1.0).unwrap();
+        let mut bonds = Bonds::new(&particles, &pairs, BeamSection::new(1e4, 0.3).unwrap()).unwrap();
         particles.position.iter_mut().enumerate().for_each(|(i, x)| x.x *= 1.0 + 1e-3 * (i as f64).sin());
         for level in [Level::Own, Level::Neighbours, Level::Second] {
             let principal = Principal { tensile_strength: 1.0, compressive_strength: Some(3.0), level };

@@ -4,7 +4,7 @@ use fractum_math::{Sym3, Vec3};
 
 use super::criterion::{BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule};
 use crate::DemError;
-use crate::bond::{BeamNetwork, BondGraph};
+use crate::bond::{BondGraph, Bonds};
 
 /// What a criterion needs to know of a bonded body.
 pub trait LoadedBonds: Sync {
@@ -168,8 +168,8 @@ impl FailureSearch {
         criterion.virials_reach(&self.virials, &self.volume, self.fraction, limit)
     }
 
-    /// The same from [`BeamNetwork::virial_bounds`], without a tensor: cheaper still, and a coarser bound.
-    pub fn virial_bounds_may_fail(&mut self, bonds: &BeamNetwork, limit: f64) -> bool {
+    /// The same from [`Bonds::virial_bounds`], without a tensor: cheaper still, and a coarser bound.
+    pub fn virial_bounds_may_fail(&mut self, bonds: &Bonds, limit: f64) -> bool {
         let Rule::Stress(criterion) = self.criterion.rule() else { return true };
         bonds.virial_bounds(&mut self.virial_bounds);
         criterion.bounds_reach(&self.virial_bounds, &self.volume, self.fraction, limit)

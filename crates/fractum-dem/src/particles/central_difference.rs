@@ -184,12 +184,12 @@ impl CentralDifference {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BeamNetwork, BeamSection};
+    use crate::{BeamSection, Bonds};
 
-    fn pair() -> (Particles, BeamNetwork) {
+    fn pair() -> (Particles, Bonds) {
         let position = vec![Vec3::zeros(), Vec3::new(1.0, 0.2, -0.1)];
-        let bonds = BeamNetwork::new(&position, &[[0, 1]], BeamSection::new(1e3, 0.3).unwrap()).unwrap();
         let mut particles = Particles::at_rest(position, vec![0.4, 0.5], 2.0).unwrap();
+        let bonds = Bonds::new(&particles, &[[0, 1]], BeamSection::new(1e3, 0.3).unwrap()).unwrap();
         particles.velocity = vec![Vec3::new(0.3, -0.2, 0.1), Vec3::new(-0.1, 0.4, 0.2)];
         particles.spin = vec![Vec3::new(0.5, 0.1, -0.3), Vec3::new(-0.2, 0.3, 0.6)];
         (particles, bonds)

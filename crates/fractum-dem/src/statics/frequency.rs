@@ -7,7 +7,7 @@ use nalgebra::Vector6;
 
 use super::Lattice;
 use crate::DemError;
-use crate::bond::BeamNetwork;
+use crate::bond::{AnyBondLaw, Bonds};
 use crate::particles::Particles;
 
 /// Products of the Lanczos process.
@@ -19,14 +19,16 @@ const LANCZOS_STEPS: usize = 48;
 ///
 /// # Errors
 /// A section that is no beam, a bond that joins nothing.
-pub fn highest_frequency(bonds: &BeamNetwork, particles: &Particles, range: Range<usize>) -> Result<f64, DemError> {
+pub fn highest_frequency(bonds: &Bonds, particles: &Particles, range: Range<usize>) -> Result<f64, DemError> {
+    // Laws without a lattice keep the bound.
+    let AnyBondLaw::CohesiveBeam(section) = bonds.law();
     let own = |i: u32| i - range.start as u32;
     let live = (0..bonds.len()).filter(|&bond| bonds.is_live(bond));
     let pairs: Vec<[u32; 2]> = live.map(|bond| bonds.pairs()[bond].map(own)).collect();
     let position = &particles.position[range.clone()];
     // Rotations times this length have the inertia of a displacement of the largest particle.
     let scale = particles.radius[range.clone()].iter().copied().fold(0.0, f64::max);
-    let lattice = Lattice::new(position, &pairs, bonds.section(), scale)?;
+    let lattice = Lattice::new(position, &pairs, section, scale)?;
     let root = |i: usize| {
         let (mass, inertia) = (particles.mass[range.start + i], particles.inertia[range.start + i]);
         (1.0 / mass.sqrt(), scale / inertia.sqrt())

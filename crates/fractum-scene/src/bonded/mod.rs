@@ -7,7 +7,7 @@ mod points;
 use std::ops::Range;
 
 use fractum_dem::{
-    BeamEnergy, BeamNetwork, BeamSection, Crack, CrackFaces, Fracture, FractureCriterion, FractureState, Occasion,
+    BeamSection, BondEnergy, Bonds, Crack, CrackFaces, Fracture, FractureCriterion, FractureState, Occasion,
     ParticleDamping, Particles, PastForces, TimeStep, highest_frequency,
 };
 use fractum_fem::LocalDamping;
@@ -70,7 +70,7 @@ pub struct BondedBody {
     /// Its particles among those of the scene.
     pub range: Range<usize>,
     /// Its bonds; they name particles of the scene.
-    pub bonds: BeamNetwork,
+    pub bonds: Bonds,
     /// Density of the continuum that it stands for [kg/m³].
     pub density: f64,
     pub(crate) plan: Option<BondFracture>,
@@ -120,7 +120,7 @@ pub struct Bonded {
     /// Particles that follow the facets of a solid, ascending; their mass is the nodes'.
     tied: Vec<u32>,
     /// Elastic energy of the bonds when last measured.
-    pub(crate) energy: BeamEnergy,
+    pub(crate) energy: BondEnergy,
     /// Elastic energy that bonds which broke before tⁿ held [J].
     released: f64,
     /// Highest natural frequency, or a bound on it [rad/s].
@@ -172,7 +172,7 @@ impl Bonded {
         }
         all.reference = all.particles.position.clone();
         for (name, range, pairs, section, density, plan) in plans {
-            let bonds = BeamNetwork::new(&all.reference, &pairs, section)?;
+            let bonds = Bonds::new(&all.particles, &pairs, section)?;
             let fracture = match plan {
                 Some(BondFracture { criterion, faces, fraction, volume }) => {
                     Some(Fracture::new(&bonds, &all.particles, criterion, faces, fraction, volume)?)
@@ -309,7 +309,7 @@ impl Bonded {
     }
 
     /// Elastic energy of the bonds when last measured, by parts [J].
-    pub fn energy(&self) -> BeamEnergy {
+    pub fn energy(&self) -> BondEnergy {
         self.energy
     }
 
@@ -338,7 +338,7 @@ impl Bonded {
             *released += fracture.released();
         }
         if measure {
-            *energy = bodies.iter().fold(BeamEnergy::default(), |sum, body| sum + body.bonds.energy(particles));
+            *energy = bodies.iter().fold(BondEnergy::default(), |sum, body| sum + body.bonds.energy(particles));
         }
         work
     }

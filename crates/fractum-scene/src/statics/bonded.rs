@@ -2,8 +2,8 @@
 
 use fractum_dem::criterion::{BeamRankine, EndMoments, FractureCriterion};
 use fractum_dem::{
-    Batch, BeamEnergy, Breaking, Crack, DemError, Lattice, LatticeSupports, LoadStage, QuasiStatic, QuasiStaticState,
-    Tolerance,
+    AnyBondLaw, Batch, BondEnergy, Breaking, Crack, DemError, Lattice, LatticeSupports, LoadStage, QuasiStatic,
+    QuasiStaticState, Tolerance,
 };
 use fractum_math::{Vec3, rotation_by};
 use serde::{Deserialize, Serialize};
@@ -73,7 +73,8 @@ impl BondedStatics {
         let [body] = bonded.bodies.as_slice() else { return Err(SceneError::OneBondedBody) };
         let all = &bonded.particles;
         let mean_radius = all.radius.iter().sum::<f64>() / all.len().max(1) as f64;
-        let lattice = Lattice::new(&bonded.reference, body.bonds.pairs(), body.bonds.section(), mean_radius)?;
+        let AnyBondLaw::CohesiveBeam(section) = body.bonds.law();
+        let lattice = Lattice::new(&bonded.reference, body.bonds.pairs(), section, mean_radius)?;
         let mut supports = LatticeSupports::none(all.len());
         for (i, held) in (0..).zip(&all.held) {
             (0..6).filter(|d| held >> d & 1 == 1).for_each(|d| supports.set(i, d, 0.0));
@@ -166,7 +167,7 @@ impl BondedStatics {
         let parts = body.bonds.energy(particles);
         let scale = if parts.total() > 0.0 { point.elastic / parts.total() } else { 0.0 };
         let [tension, bending, torsion] = [parts.tension, parts.bending, parts.torsion].map(|part| part * scale);
-        *energy = BeamEnergy { tension, bending, torsion };
+        *energy = BondEnergy { tension, bending, torsion };
         let broken: f64 = self.run.cracks().iter().map(|crack| crack.energy).sum();
         scene.ledger[EnergyKind::External] = self.work;
         scene.ledger[EnergyKind::Elastic] = point.elastic;

@@ -1,5 +1,5 @@
 use fractum_dem::{
-    BeamNetwork, CentralDifference, CrackFaces, CriticalLoad, Dof6, Fracture, LoadPoint, Occasion, ParticleDamping,
+    Bonds, CentralDifference, CrackFaces, CriticalLoad, Dof6, Fracture, LoadPoint, Occasion, ParticleDamping,
     Particles, Piece, StaticBody, pieces,
 };
 use fractum_math::{Vec3, rotation_by};
@@ -139,7 +139,7 @@ pub fn break_in_motion(
 /// A sample between supports that move at constant speed.
 struct MovingSample {
     particles: Particles,
-    bonds: BeamNetwork,
+    bonds: Bonds,
     fracture: Fracture,
     motion: CentralDifference,
     /// Prescribed displacements (particle, axis) at load factor one.
@@ -175,7 +175,7 @@ impl MovingSample {
         let volume = sample.measured_volume();
         let (position, radius) = (sample.packing.position.clone(), sample.packing.radius.clone());
         let mut particles = Particles::at_rest(position, radius, motion.density * volume)?;
-        let mut bonds = BeamNetwork::new(&particles.position, &sample.network.pairs, sample.lattice.section())?;
+        let mut bonds = Bonds::new(&particles, &sample.network.pairs, sample.lattice.section())?;
         let mut fracture = Fracture::new(&bonds, &particles, options.criterion, motion.faces, sample.fraction, volume)?;
         // Wave speed from the stiffness that the sample shows: c² = E/ρ with E = stress per strain.
         let first_factor = first.displacement / displacement;

@@ -1,6 +1,6 @@
-use fractum_math::{Rotation, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::{BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, ForceLanes};
 use crate::DemError;
 use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, scale, sub};
 
@@ -63,57 +63,6 @@ impl BeamSection {
     }
 }
 
-/// What a bond does to its two particles.
-#[derive(Clone, Copy, Debug)]
-pub struct BeamForces {
-    /// Force on the second particle [N]; the first gets the opposite.
-    pub force: Vec3,
-    /// Moments on the first and the second particle [N m].
-    pub moment: [Vec3; 2],
-}
-
-/// Elastic energy of a bond [J] by the way it deforms.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct BeamEnergy {
-    /// ½ (E S/l₀) (l − l₀)².
-    pub tension: f64,
-    /// (2 E I/l₀) (θ₁² + θ₁·θ₂ + θ₂²).
-    pub bending: f64,
-    /// ½ (G I₀/l₀) τ².
-    pub torsion: f64,
-}
-
-impl BeamEnergy {
-    /// Sum of the three.
-    pub fn total(&self) -> f64 {
-        self.tension + self.bending + self.torsion
-    }
-}
-
-impl std::ops::Add for BeamEnergy {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        BeamEnergy {
-            tension: self.tension + other.tension,
-            bending: self.bending + other.bending,
-            torsion: self.torsion + other.torsion,
-        }
-    }
-}
-
-/// The two particles of a bond.
-#[derive(Clone, Copy, Debug)]
-pub struct BondedPair {
-    /// Centres [m].
-    pub position: [Vec3; 2],
-    /// Rotations since the bond was made.
-    pub rotation: [Rotation; 2],
-    /// Unit vector from the first to the second particle when the bond was made.
-    pub axis: Vec3,
-    /// Distance then [m].
-    pub length: f64,
-}
-
 /// Forces of a cohesive beam: the derivative of its energy
 ///
 /// U = ½ (E S/l₀)(l − l₀)² + (2 E I/l₀)(θ₁² + θ₁·θ₂ + θ₂²) + ½ (G I₀/l₀) τ²
@@ -123,70 +72,89 @@ pub struct BondedPair {
 /// U depends on relative quantities only, so that rigid motion gives no force and momentum and angular momentum are
 /// kept to round-off at any rotation. For small motion it is the 12 × 12 Euler–Bernoulli stiffness.
 ///
-/// After Jebahi et al. (2015), 2.4.1, with the signs corrected.
-pub fn cohesive_beam(pair: &BondedPair, section: &BeamSection) -> BeamForces {
-    let lanes = |v: Vec3| [Lanes([v.x]), Lanes([v.y]), Lanes([v.z])];
-    let vector = |v: Vector<1>| Vec3::new(v[0].0[0], v[1].0[0], v[2].0[0]);
-    let turn = |r: &Rotation| (Lanes([r.w]), [Lanes([r.i]), Lanes([r.j]), Lanes([r.k])]);
-    let gap = lanes(pair.position[1] - pair.position[0]);
-    let inverse = Lanes([1.0 / pair.length]);
-    let turns = [turn(&pair.rotation[0]), turn(&pair.rotation[1])];
-    let (force, first, second) = beam(gap, turns, lanes(pair.axis), inverse, Lanes([1.0]), section);
-    BeamForces { force: vector(force), moment: [vector(first), vector(second)] }
+/// The beam as a bond of discrete elements: André, Iordanoff, Charles and Néauport, *Comput. Methods Appl. Mech. Eng.*
+/// 213–216 (2012) 113–125; forces after Jebahi et al. (2015), 2.4.1, with the signs corrected.
+pub fn cohesive_beam(pair: &BondedPair, section: &BeamSection) -> BondForces {
+    section.forces(&pair.lanes(), &[()], &mut [()]).into()
 }
 
-/// A rotation as a unit quaternion: scalar and vector part.
-pub(in crate::bond) type Turn<const W: usize> = (Lanes<W>, Vector<W>);
+impl BondLaw for BeamSection {
+    type Parameters = ();
+    type Memory = ();
 
-/// The law for `W` bonds side by side: force on the second particles, moments on the first and on the second.
-///
-/// - `gap`: x₂ − x₁; `inverse`: 1/l₀; `live`: 1 for a bond, 0 for a broken one
-#[inline(always)]
-pub(in crate::bond) fn beam<const W: usize>(
-    gap: Vector<W>,
-    turns: [Turn<W>; 2],
-    axis: Vector<W>,
-    inverse: Lanes<W>,
-    live: Lanes<W>,
-    section: &BeamSection,
-) -> (Vector<W>, Vector<W>, Vector<W>) {
-    let stiffness = inverse * live;
-    let axial = stiffness * Lanes::splat(section.axial());
-    let bend = stiffness * Lanes::splat(2.0 * section.bending());
-    let twist = stiffness * Lanes::splat(section.torsion());
-    let [(w1, u1), (w2, u2)] = turns;
-    let square = dot(gap, gap);
-    let l = square.sqrt();
-    let over = l.recip();
-    let n = scale(gap, over);
-    let (t1, t2) = (rotate(w1, u1, axis), rotate(w2, u2, axis));
-    let (a, b) = (cross(n, t1), cross(n, t2));
-    let sum = add(a, b);
-    // Derivatives of the bending energy with respect to θ₁ and θ₂.
-    let (m1, m2) = (scale(add(a, sum), bend), scale(add(b, sum), bend));
-    // Twist: relative rotation seen from the first particle, v·n₀ and its derivative s n₀ + v × n₀.
-    let s = w1 * w2 + dot(u1, u2);
-    let v = sub(sub(scale(u2, w1), scale(u1, w2)), cross(u1, u2));
-    let torque = twist * (dot(v, axis) + dot(v, axis));
-    let torque = scale(rotate(w1, u1, add(scale(axis, s), cross(v, axis))), torque);
-    // Shear from the moments over the length, so that angular momentum is kept exactly.
-    let h = add(cross(t1, m1), cross(t2, m2));
-    let h = scale(sub(h, scale(n, dot(h, n))), over);
-    let rest = inverse.recip();
-    let force = sub(scale(n, -(axial * (l - rest))), h);
-    let end = |m: Vector<W>, t: Vector<W>| sub(scale(n, dot(t, m)), scale(m, dot(t, n)));
-    (force, add(end(m1, t1), torque), sub(end(m2, t2), torque))
+    fn check(&self) -> Result<(), DemError> {
+        BeamSection::check(self)
+    }
+
+    fn parameters(&self, _: f64, _: [f64; 2]) {}
+
+    #[inline(always)]
+    fn forces<const W: usize>(&self, bonds: &BondLanes<W>, _: &[(); W], _: &mut [(); W]) -> ForceLanes<W> {
+        let BondLanes { gap, turns, axis, inverse, live } = *bonds;
+        let stiffness = inverse * live;
+        let axial = stiffness * Lanes::splat(self.axial());
+        let bend = stiffness * Lanes::splat(2.0 * self.bending());
+        let twist = stiffness * Lanes::splat(self.torsion());
+        let [(w1, u1), (w2, u2)] = turns;
+        let square = dot(gap, gap);
+        let l = square.sqrt();
+        let over = l.recip();
+        let n = scale(gap, over);
+        let (t1, t2) = (rotate(w1, u1, axis), rotate(w2, u2, axis));
+        let (a, b) = (cross(n, t1), cross(n, t2));
+        let sum = add(a, b);
+        // Derivatives of the bending energy with respect to θ₁ and θ₂.
+        let (m1, m2) = (scale(add(a, sum), bend), scale(add(b, sum), bend));
+        // Twist: relative rotation seen from the first particle, v·n₀ and its derivative s n₀ + v × n₀.
+        let s = w1 * w2 + dot(u1, u2);
+        let v = sub(sub(scale(u2, w1), scale(u1, w2)), cross(u1, u2));
+        let torque = twist * (dot(v, axis) + dot(v, axis));
+        let torque = scale(rotate(w1, u1, add(scale(axis, s), cross(v, axis))), torque);
+        // Shear from the moments over the length, so that angular momentum is kept exactly.
+        let h = add(cross(t1, m1), cross(t2, m2));
+        let h = scale(sub(h, scale(n, dot(h, n))), over);
+        let rest = inverse.recip();
+        let force = sub(scale(n, -(axial * (l - rest))), h);
+        let end = |m: Vector<W>, t: Vector<W>| sub(scale(n, dot(t, m)), scale(m, dot(t, n)));
+        ForceLanes { force, moment: [add(end(m1, t1), torque), sub(end(m2, t2), torque)] }
+    }
+
+    fn energy(&self, pair: &BondedPair, _: &(), _: &()) -> BondEnergy {
+        cohesive_beam_energy(pair, self)
+    }
+
+    fn dissipated(&self, _: f64, _: &(), _: &()) -> f64 {
+        0.0
+    }
+
+    fn stiffness(&self, length: f64, _: &()) -> BondStiffness {
+        let bending = self.bending() / length;
+        BondStiffness {
+            axial: self.axial() / length,
+            bending: 4.0 * bending,
+            carry_over: 2.0 * bending,
+            twist: self.torsion() / length,
+        }
+    }
+
+    fn face_stiffness(&self, rest: f64) -> [f64; 2] {
+        [self.axial() / rest, 12.0 * self.bending() / rest.powi(3)]
+    }
+
+    fn section_radius(&self) -> f64 {
+        self.radius
+    }
 }
 
 /// Elastic energy of a cohesive beam, by parts; see [`cohesive_beam`].
-pub fn cohesive_beam_energy(pair: &BondedPair, section: &BeamSection) -> BeamEnergy {
+pub fn cohesive_beam_energy(pair: &BondedPair, section: &BeamSection) -> BondEnergy {
     let gap = pair.position[1] - pair.position[0];
     let l = gap.norm();
     let n = gap / l;
     let [a, b] = pair.rotation.map(|r| n.cross(&(r * pair.axis)));
     let relative = pair.rotation[0].inverse() * pair.rotation[1];
     let twist = 2.0 * relative.imag().dot(&pair.axis);
-    BeamEnergy {
+    BondEnergy {
         tension: 0.5 * section.axial() / pair.length * (l - pair.length).powi(2),
         bending: 2.0 * section.bending() / pair.length * (a.dot(&a) + a.dot(&b) + b.dot(&b)),
         torsion: 0.5 * section.torsion() / pair.length * twist * twist,
@@ -197,6 +165,7 @@ pub fn cohesive_beam_energy(pair: &BondedPair, section: &BeamSection) -> BeamEne
 mod tests {
     use super::*;
     use crate::Lattice;
+    use fractum_math::{Rotation, Vec3};
     use proptest::prelude::*;
 
     fn pair_of(x: [f64; 3], r: [f64; 3], s: [f64; 3], axis: [f64; 3]) -> BondedPair {
@@ -246,7 +215,7 @@ mod tests {
             x in prop::array::uniform3(UNIT), r in prop::array::uniform3(UNIT), s in prop::array::uniform3(UNIT), n in prop::array::uniform3(UNIT),
         ) {
             let pair = pair_of(x, r, s, n);
-            let BeamForces { force, moment } = cohesive_beam(&pair, &section());
+            let BondForces { force, moment } = cohesive_beam(&pair, &section());
             let arm = pair.position[1] - pair.position[0];
             let total = arm.cross(&force) + moment[0] + moment[1];
             prop_assert!(total.norm() < 1e-13 * (arm.norm() * force.norm() + moment[0].norm() + moment[1].norm()));
@@ -260,7 +229,7 @@ mod tests {
             let axis = (Vec3::from(n) + Vec3::new(2.5, 0.0, 0.0)).normalize();
             let start = Vec3::from(x);
             let pair = BondedPair { position: [start, start + rotation * axis * 1.2], rotation: [rotation; 2], axis, length: 1.2 };
-            let BeamForces { force, moment } = cohesive_beam(&pair, &section());
+            let BondForces { force, moment } = cohesive_beam(&pair, &section());
             let stiff = section().axial() / 1.2;
             prop_assert!(force.norm() + moment[0].norm() + moment[1].norm() < 3e-14 * stiff * (1.0 + start.norm()));
         }
@@ -293,7 +262,7 @@ mod tests {
                 rotation: [Rotation::from_scaled_axis(shift(0, 3)), Rotation::from_scaled_axis(shift(1, 3))],
                 ..start
             };
-            let BeamForces { force, moment } = cohesive_beam(&moved, &section());
+            let BondForces { force, moment } = cohesive_beam(&moved, &section());
             let expected = lattice.internal(&state);
             for a in 0..3 {
                 for (found, row) in [

@@ -1,6 +1,191 @@
-//! Laws of bonds, each in its file.
+//! Laws of bonds, each in its file, behind one trait.
 
 mod cohesive_beam;
+#[cfg(test)]
+mod softening_spring;
 
-pub(super) use cohesive_beam::beam;
-pub use cohesive_beam::{BeamEnergy, BeamForces, BeamSection, BondedPair, cohesive_beam, cohesive_beam_energy};
+pub use cohesive_beam::{BeamSection, cohesive_beam, cohesive_beam_energy};
+
+use std::fmt::Debug;
+
+use fractum_math::{Rotation, Vec3};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::lanes::{Lanes, Vector};
+use crate::DemError;
+
+/// How a bond pulls, bends and dissipates. A law sees one bond and what this remembers, never its neighbours.
+///
+/// The law itself holds what all bonds of a body share. Forces are written for `W` bonds side by side
+/// ([`super::lanes`]); a network is compiled for each law, so that what a law does not use costs nothing.
+pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// What a bond has of its own; `()` where the bonds of a body differ by length and direction only.
+    type Parameters: Copy + Debug + Send + Sync;
+
+    /// What a bond remembers from step to step, zero when it is made; `()` for an elastic one.
+    type Memory: Copy + Debug + Default + PartialEq + Send + Sync + Serialize + DeserializeOwned;
+
+    /// Refuses numbers that make no bond.
+    ///
+    /// # Errors
+    /// Which number is wrong.
+    fn check(&self) -> Result<(), DemError>;
+
+    /// Parameters of a bond when it is made.
+    ///
+    /// - `length` l₀ [m]; `radius` of its particles [m]
+    fn parameters(&self, length: f64, radius: [f64; 2]) -> Self::Parameters;
+
+    /// Forces and moments of `W` bonds side by side at their present state, which also carries memory on. A second call
+    /// at the same state must give the same forces and leave memory as it is.
+    fn forces<const W: usize>(
+        &self,
+        bonds: &BondLanes<W>,
+        own: &[Self::Parameters; W],
+        memory: &mut [Self::Memory; W],
+    ) -> ForceLanes<W>;
+
+    /// Energy that a bond would give back [J]; its derivative at fixed memory is the force.
+    fn energy(&self, pair: &BondedPair, own: &Self::Parameters, memory: &Self::Memory) -> BondEnergy;
+
+    /// Energy that a bond has dissipated so far [J]; never decreases.
+    fn dissipated(&self, length: f64, own: &Self::Parameters, memory: &Self::Memory) -> f64;
+
+    /// Stiffness of a bond without load, which no later state exceeds.
+    fn stiffness(&self, length: f64, own: &Self::Parameters) -> BondStiffness;
+
+    /// Normal and tangential stiffness of two crack faces that touch, as stiff as the bond was [N/m].
+    ///
+    /// - `rest` [m]: distance of the particles at which they touch
+    fn face_stiffness(&self, rest: f64) -> [f64; 2];
+
+    /// Radius of the section for stresses in the bond itself [m].
+    fn section_radius(&self) -> f64;
+}
+
+/// `W` bonds side by side at their present state.
+#[derive(Clone, Copy)]
+pub struct BondLanes<const W: usize> {
+    /// From the first to the second particle [m].
+    pub gap: Vector<W>,
+    /// Rotations of both particles since the bond was made.
+    pub turns: [Turn<W>; 2],
+    /// Unit vector from the first to the second particle when the bond was made.
+    pub axis: Vector<W>,
+    /// 1/l₀ [1/m].
+    pub inverse: Lanes<W>,
+    /// 1 for a bond, 0 for a broken one, which must give no force.
+    pub live: Lanes<W>,
+}
+
+/// A rotation as a unit quaternion: scalar and vector part.
+pub type Turn<const W: usize> = (Lanes<W>, Vector<W>);
+
+/// Forces of `W` bonds side by side.
+#[derive(Clone, Copy)]
+pub struct ForceLanes<const W: usize> {
+    /// Force on the second particles [N]; the first get the opposite.
+    pub force: Vector<W>,
+    /// Moments on the first and on the second particles [N m].
+    pub moment: [Vector<W>; 2],
+}
+
+/// What a bond does to its two particles.
+#[derive(Clone, Copy, Debug)]
+pub struct BondForces {
+    /// Force on the second particle [N]; the first gets the opposite.
+    pub force: Vec3,
+    /// Moments on the first and the second particle [N m].
+    pub moment: [Vec3; 2],
+}
+
+/// Energy of a bond [J] by the way it deforms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct BondEnergy {
+    /// Of its change of length.
+    pub tension: f64,
+    /// Of bending and shear.
+    pub bending: f64,
+    /// Of its twist.
+    pub torsion: f64,
+}
+
+impl BondEnergy {
+    /// Sum of the three.
+    pub fn total(&self) -> f64 {
+        self.tension + self.bending + self.torsion
+    }
+}
+
+impl std::ops::Add for BondEnergy {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        BondEnergy {
+            tension: self.tension + other.tension,
+            bending: self.bending + other.bending,
+            torsion: self.torsion + other.torsion,
+        }
+    }
+}
+
+/// Stiffness of a bond. Shear follows, since moments balance it: a bond with shear stiffness k and no bending of its own has
+/// `bending` and `carry_over` k l²/4.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BondStiffness {
+    /// Axial force per change of length [N/m]; E S/l of a beam.
+    pub axial: f64,
+    /// Moment at an end per rotation of that end across the axis [N m]; 4 E I/l of a beam.
+    pub bending: f64,
+    /// Moment at an end per rotation of the other end [N m]; 2 E I/l of a beam.
+    pub carry_over: f64,
+    /// Moment per relative rotation about the axis [N m]; G I₀/l of a beam.
+    pub twist: f64,
+}
+
+impl BondStiffness {
+    /// Transverse force per transverse displacement of an end [N/m]; 12 E I/l³ of a beam.
+    pub fn shear(&self, length: f64) -> f64 {
+        2.0 * (self.bending + self.carry_over) / (length * length)
+    }
+
+    /// Transverse force per rotation of an end [N]; 6 E I/l² of a beam.
+    pub fn coupling(&self, length: f64) -> f64 {
+        (self.bending + self.carry_over) / length
+    }
+}
+
+/// The two particles of a bond.
+#[derive(Clone, Copy, Debug)]
+pub struct BondedPair {
+    /// Centres [m].
+    pub position: [Vec3; 2],
+    /// Rotations since the bond was made.
+    pub rotation: [Rotation; 2],
+    /// Unit vector from the first to the second particle when the bond was made.
+    pub axis: Vec3,
+    /// Distance then [m].
+    pub length: f64,
+}
+
+impl BondedPair {
+    /// The pair as the only one of its lanes.
+    pub(crate) fn lanes(&self) -> BondLanes<1> {
+        let vector = |v: Vec3| [Lanes([v.x]), Lanes([v.y]), Lanes([v.z])];
+        let turn = |r: &Rotation| (Lanes([r.w]), [Lanes([r.i]), Lanes([r.j]), Lanes([r.k])]);
+        BondLanes {
+            gap: vector(self.position[1] - self.position[0]),
+            turns: [turn(&self.rotation[0]), turn(&self.rotation[1])],
+            axis: vector(self.axis),
+            inverse: Lanes([1.0 / self.length]),
+            live: Lanes([1.0]),
+        }
+    }
+}
+
+impl From<ForceLanes<1>> for BondForces {
+    fn from(lanes: ForceLanes<1>) -> Self {
+        let vector = |v: Vector<1>| Vec3::new(v[0].0[0], v[1].0[0], v[2].0[0]);
+        BondForces { force: vector(lanes.force), moment: lanes.moment.map(vector) }
+    }
+}

@@ -1,0 +1,210 @@
+//! The bonds of one block of particles, and what they sum in one pass.
+
+use std::ops::Range;
+
+use fractum_math::{Rotation, Vec3};
+
+use super::lanes::{Lanes, Vector, dot};
+use super::law::{BondLanes, BondLaw, ForceLanes};
+
+/// Bonds computed side by side.
+pub(super) const WIDTH: usize = 8;
+
+/// What a pass over the bonds sums beside forces: nothing, virials, or bounds of them.
+pub(super) const NOTHING: u8 = 0;
+pub(super) const VIRIALS: u8 = 1;
+pub(super) const BOUNDS: u8 = 2;
+
+/// Bonds of a block of particles, each with its first particle in it.
+#[derive(Clone, Debug)]
+pub(super) struct Block<L: BondLaw> {
+    /// First particle of the block.
+    start: usize,
+    /// Number of particles of the block.
+    pub(super) count: usize,
+    pub(super) groups: Vec<Group<L>>,
+    /// Particles of other blocks that this block's bonds reach, ascending.
+    pub(super) partners: Vec<u32>,
+    /// Sums of forces and moments: own particles, then partners.
+    pub(super) sums: Vec<[f64; 6]>,
+    /// Sums of virials, where they are wanted.
+    pub(super) virials: Vec<[f64; 6]>,
+    /// Sums of bounds of the virials, where they are wanted.
+    pub(super) virial_bounds: Vec<[f64; 2]>,
+    /// Sums that other blocks hold for particles of this one: (block, slot, own particle).
+    pub(super) incoming: Vec<(u32, u32, u32)>,
+}
+
+/// `WIDTH` bonds; unused lanes repeat a bond with `live` = 0.
+#[derive(Clone, Debug)]
+pub(super) struct Group<L: BondLaw> {
+    first: [u32; WIDTH],
+    second: [u32; WIDTH],
+    /// Slots in the block's sums.
+    slots: [[u32; WIDTH]; 2],
+    axis: [[f64; WIDTH]; 3],
+    inverse: [f64; WIDTH],
+    pub(super) live: [f64; WIDTH],
+    own: [L::Parameters; WIDTH],
+    pub(super) memory: [L::Memory; WIDTH],
+}
+
+/// Bonds as they were made.
+pub(super) struct Made<'a, L: BondLaw> {
+    pub(super) pairs: &'a [[u32; 2]],
+    pub(super) axis: &'a [Vec3],
+    pub(super) length: &'a [f64],
+    pub(super) own: &'a [L::Parameters],
+}
+
+impl<L: BondLaw> Block<L> {
+    /// A block of particles `start..start + count`, and the bonds that have their first particle there.
+    pub(super) fn new(start: usize, count: usize, bonds: Range<usize>, made: &Made<'_, L>) -> Self {
+        let Made { pairs, axis, length, own: parameters } = made;
+        let own = |i: u32| (start..start + count).contains(&(i as usize));
+        let mut partners: Vec<u32> = pairs[bonds.clone()].iter().map(|p| p[1]).filter(|&j| !own(j)).collect();
+        partners.sort_unstable();
+        partners.dedup();
+        let slot = |i: u32| {
+            let slot = if own(i) { i as usize - start } else { count + partners.binary_search(&i).unwrap_or_default() };
+            slot as u32
+        };
+        let groups = bonds
+            .clone()
+            .step_by(WIDTH)
+            .map(|begin| {
+                let bond = |k: usize| (begin + k).min(bonds.end - 1);
+                let lane = |f: &dyn Fn(usize) -> f64| std::array::from_fn(|k| f(bond(k)));
+                Group {
+                    first: std::array::from_fn(|k| pairs[bond(k)][0]),
+                    second: std::array::from_fn(|k| pairs[bond(k)][1]),
+                    slots: [0, 1].map(|e| std::array::from_fn(|k| slot(pairs[bond(k)][e]))),
+                    axis: [0, 1, 2].map(|a| lane(&|b| axis[b][a])),
+                    inverse: lane(&|b| 1.0 / length[b]),
+                    live: std::array::from_fn(|k| if begin + k < bonds.end { 1.0 } else { 0.0 }),
+                    own: std::array::from_fn(|k| parameters[bond(k)]),
+                    memory: [L::Memory::default(); WIDTH],
+                }
+            })
+            .collect();
+        let sums = vec![[0.0; 6]; count + partners.len()];
+        let (virials, virial_bounds, incoming) = (Vec::new(), Vec::new(), Vec::new());
+        Block { start, count, groups, partners, sums, virials, virial_bounds, incoming }
+    }
+
+    /// Sums what is wanted of the bonds.
+    pub(super) fn sum_bonds<const FORCES: bool, const DETAIL: u8>(
+        &mut self,
+        position: &[Vec3],
+        orientation: &[Rotation],
+        law: &L,
+    ) {
+        debug_assert!(self.start + self.count <= position.len());
+        let Block { groups, sums, virials, virial_bounds, .. } = self;
+        if FORCES {
+            sums.fill([0.0; 6]);
+        }
+        if DETAIL != NOTHING {
+            // Both at once, so that no later step allocates.
+            virials.resize(sums.len(), [0.0; 6]);
+            virial_bounds.resize(sums.len(), [0.0; 2]);
+        }
+        if DETAIL == VIRIALS {
+            virials.fill([0.0; 6]);
+        }
+        if DETAIL == BOUNDS {
+            virial_bounds.fill([0.0; 2]);
+        }
+        for group in groups {
+            let bonds = group.lanes(position, orientation);
+            let forces = law.forces(&bonds, &group.own, &mut group.memory);
+            if FORCES {
+                add_forces(&group.slots, &forces, sums);
+            }
+            if DETAIL == BOUNDS {
+                add_bounds(&group.slots, &bonds.gap, &forces.force, virial_bounds);
+            }
+            if DETAIL == VIRIALS {
+                add_virials(&group.slots, &bonds.gap, &forces.force, virials);
+            }
+        }
+    }
+}
+
+impl<L: BondLaw> Group<L> {
+    /// The bonds at the present positions and orientations.
+    #[inline(always)]
+    fn lanes(&self, position: &[Vec3], orientation: &[Rotation]) -> BondLanes<WIDTH> {
+        let (mut gap, mut turns) = ([[0.0; WIDTH]; 3], [[[0.0; WIDTH]; 4]; 2]);
+        for k in 0..WIDTH {
+            let (i, j) = (self.first[k] as usize, self.second[k] as usize);
+            let (xi, xj) = (&position[i], &position[j]);
+            for a in 0..3 {
+                gap[a][k] = xj[a] - xi[a];
+            }
+            let (qi, qj) = (&orientation[i].coords, &orientation[j].coords);
+            for a in 0..4 {
+                turns[0][a][k] = qi[a];
+                turns[1][a][k] = qj[a];
+            }
+        }
+        // nalgebra stores a quaternion as i, j, k, w.
+        let turn = |t: [[f64; WIDTH]; 4]| (Lanes(t[3]), [Lanes(t[0]), Lanes(t[1]), Lanes(t[2])]);
+        BondLanes {
+            gap: gap.map(Lanes),
+            turns: turns.map(turn),
+            axis: self.axis.map(Lanes),
+            inverse: Lanes(self.inverse),
+            live: Lanes(self.live),
+        }
+    }
+}
+
+#[inline(always)]
+fn add_forces(slots: &[[u32; WIDTH]; 2], forces: &ForceLanes<WIDTH>, sums: &mut [[f64; 6]]) {
+    let ForceLanes { force, moment: [first, second] } = forces;
+    for k in 0..WIDTH {
+        let (i, j) = (slots[0][k] as usize, slots[1][k] as usize);
+        let own = &mut sums[i];
+        for a in 0..3 {
+            own[a] -= force[a].0[k];
+            own[a + 3] += first[a].0[k];
+        }
+        let other = &mut sums[j];
+        for a in 0..3 {
+            other[a] += force[a].0[k];
+            other[a + 3] += second[a].0[k];
+        }
+    }
+}
+
+/// Largest principal values of the virials ½ sym(r ⊗ f) of bonds, and smallest ones with their sign changed.
+#[inline(always)]
+fn add_bounds(slots: &[[u32; WIDTH]; 2], arm: &Vector<WIDTH>, force: &Vector<WIDTH>, bounds: &mut [[f64; 2]]) {
+    let quarter = Lanes::splat(0.25);
+    // The force on the first particle is the opposite of `force`.
+    let along = dot(*arm, *force) * quarter;
+    let size = (dot(*arm, *arm) * dot(*force, *force)).sqrt() * quarter;
+    let (most, least) = (size - along, size + along);
+    for k in 0..WIDTH {
+        for end in slots {
+            let sum = &mut bounds[end[k] as usize];
+            sum[0] += most.0[k];
+            sum[1] += least.0[k];
+        }
+    }
+}
+
+/// ½ sym(r ⊗ f) of bonds, which is the same at both ends; the force on the first particle is the opposite of `force`.
+#[inline(always)]
+fn add_virials(slots: &[[u32; WIDTH]; 2], arm: &Vector<WIDTH>, force: &Vector<WIDTH>, virials: &mut [[f64; 6]]) {
+    let quarter = Lanes::splat(-0.25);
+    let part = |a: usize, b: usize| (arm[a] * force[b] + arm[b] * force[a]) * quarter;
+    let virial = [part(0, 0), part(1, 1), part(2, 2), part(0, 1), part(1, 2), part(2, 0)];
+    for k in 0..WIDTH {
+        for end in slots {
+            let sum = &mut virials[end[k] as usize];
+            (0..6).for_each(|c| sum[c] += virial[c].0[k]);
+        }
+    }
+}

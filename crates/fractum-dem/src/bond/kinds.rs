@@ -1,0 +1,189 @@
+//! The choice of a bond law: the only place that names every law, matched once per batch of bonds.
+
+use fractum_math::Sym3;
+use serde::{Deserialize, Serialize};
+
+use super::law::{BeamSection, BondEnergy, BondForces, BondLaw};
+use super::network::BondNetwork;
+use crate::DemError;
+use crate::particles::Particles;
+
+macro_rules! laws {
+    ($($(#[$doc:meta])* $name:ident($law:ty),)*) => {
+        /// A law for the bonds of a body.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum AnyBondLaw {
+            $($(#[$doc])* $name($law),)*
+        }
+
+        $(impl From<$law> for AnyBondLaw {
+            fn from(law: $law) -> Self {
+                AnyBondLaw::$name(law)
+            }
+        })*
+
+        /// The bonds of a body under the law that was chosen for them.
+        #[derive(Clone, Debug)]
+        pub enum Bonds {
+            $($(#[$doc])* $name(BondNetwork<$law>),)*
+        }
+
+        /// What the bonds of a body remember, for a checkpoint.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        pub enum BondMemory {
+            $($(#[$doc])* $name(Vec<<$law as BondLaw>::Memory>),)*
+        }
+
+        /// The network of any law, under a name, with an expression for it.
+        macro_rules! each {
+            ($bonds:expr, $network:ident => $result:expr) => {
+                match $bonds {
+                    $(Bonds::$name($network) => $result,)*
+                }
+            };
+        }
+
+        impl Bonds {
+            /// Bonds particles at their present distances; their orientations count from now on.
+            ///
+            /// - `pairs`: the particles of each bond
+            ///
+            /// # Errors
+            /// Numbers of the law that make no bond; a bond that joins nothing.
+            pub fn new(
+                particles: &Particles,
+                pairs: &[[u32; 2]],
+                law: impl Into<AnyBondLaw>,
+            ) -> Result<Self, DemError> {
+                Ok(match law.into() {
+                    $(AnyBondLaw::$name(law) => Bonds::$name(BondNetwork::new(particles, pairs, law)?),)*
+                })
+            }
+
+            /// The law of the bonds.
+            pub fn law(&self) -> AnyBondLaw {
+                match self {
+                    $(Bonds::$name(network) => AnyBondLaw::$name(*network.law()),)*
+                }
+            }
+
+            /// What the bonds remember.
+            pub fn memory(&self) -> BondMemory {
+                match self {
+                    $(Bonds::$name(network) => BondMemory::$name(network.memory()),)*
+                }
+            }
+
+            /// Puts a saved memory back into bonds made from the same case; one of another law is left out.
+            pub fn restore_memory(&mut self, saved: &BondMemory) {
+                match (self, saved) {
+                    $((Bonds::$name(network), BondMemory::$name(saved)) => network.restore_memory(saved),)*
+                    #[allow(unreachable_patterns)]
+                    _ => {}
+                }
+            }
+        }
+    };
+}
+
+laws! {
+    /// Cohesive beams.
+    CohesiveBeam(BeamSection),
+}
+
+impl Bonds {
+    /// Number of bonds, broken ones included.
+    pub fn len(&self) -> usize {
+        self.pairs().len()
+    }
+
+    /// Whether there are no bonds.
+    pub fn is_empty(&self) -> bool {
+        self.pairs().is_empty()
+    }
+
+    /// The particles of each bond, first < second, ascending.
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        each!(self, network => network.pairs())
+    }
+
+    /// Whether a bond still holds.
+    pub fn is_live(&self, bond: usize) -> bool {
+        each!(self, network => network.is_live(bond))
+    }
+
+    /// Distance of the particles of a bond when it was made [m].
+    pub fn length(&self, bond: usize) -> f64 {
+        each!(self, network => network.length(bond))
+    }
+
+    /// Breaks a bond for ever.
+    pub fn break_bond(&mut self, bond: usize) {
+        each!(self, network => network.break_bond(bond));
+    }
+
+    /// See [`BondNetwork::add_forces`].
+    pub fn add_forces(&mut self, particles: &mut Particles) {
+        each!(self, network => network.add_forces(particles));
+    }
+
+    /// See [`BondNetwork::add_forces_and_virials`].
+    pub fn add_forces_and_virials(&mut self, particles: &mut Particles) {
+        each!(self, network => network.add_forces_and_virials(particles));
+    }
+
+    /// See [`BondNetwork::add_forces_and_virial_bounds`].
+    pub fn add_forces_and_virial_bounds(&mut self, particles: &mut Particles) {
+        each!(self, network => network.add_forces_and_virial_bounds(particles));
+    }
+
+    /// See [`BondNetwork::find_virials`].
+    pub fn find_virials(&mut self, particles: &Particles) {
+        each!(self, network => network.find_virials(particles));
+    }
+
+    /// See [`BondNetwork::virial_bounds`].
+    pub fn virial_bounds(&self, out: &mut [[f64; 2]]) {
+        each!(self, network => network.virial_bounds(out));
+    }
+
+    /// See [`BondNetwork::virials`].
+    pub fn virials(&self, out: &mut [Sym3]) {
+        each!(self, network => network.virials(out));
+    }
+
+    /// Force of a live bond on its second particle and the moments on both.
+    pub fn forces_of(&self, bond: usize, particles: &Particles) -> BondForces {
+        each!(self, network => network.forces_of(bond, particles))
+    }
+
+    /// Energy that a bond, live or not, would give back, by parts [J].
+    pub fn energy_of(&self, bond: usize, particles: &Particles) -> BondEnergy {
+        each!(self, network => network.energy_of(bond, particles))
+    }
+
+    /// Energy that all live bonds would give back, by parts [J].
+    pub fn energy(&self, particles: &Particles) -> BondEnergy {
+        each!(self, network => network.energy(particles))
+    }
+
+    /// Energy that all bonds have dissipated so far, broken ones included [J].
+    pub fn dissipated(&self) -> f64 {
+        each!(self, network => network.dissipated())
+    }
+
+    /// See [`BondNetwork::stable_step`].
+    pub fn stable_step(&self, particles: &Particles, safety: f64) -> f64 {
+        each!(self, network => network.stable_step(particles, safety))
+    }
+
+    /// Normal and tangential stiffness of crack faces that touch at a distance [m] of their particles [N/m].
+    pub fn face_stiffness(&self, rest: f64) -> [f64; 2] {
+        each!(self, network => network.law().face_stiffness(rest))
+    }
+
+    /// Radius of the section for stresses in the bond itself [m].
+    pub fn section_radius(&self) -> f64 {
+        each!(self, network => network.law().section_radius())
+    }
+}
