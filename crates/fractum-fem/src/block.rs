@@ -79,13 +79,13 @@ impl Cells {
         self.local_nodes(cell).iter().map(|&l| self.nodes[l as usize] as usize)
     }
 
-    /// Displacement gradient of a cell from global displacements.
-    pub(crate) fn gradient(&self, cell: usize, displacement: &[Vec3]) -> fractum_math::Mat3 {
+    /// Displacement gradient of a cell from the displacements of global nodes.
+    pub(crate) fn gradient(&self, cell: usize, displacement: impl Fn(usize) -> Vec3) -> fractum_math::Mat3 {
         let mut nodes = self.global_nodes(cell);
-        let base = displacement[nodes.next().expect("a cell has a base node")];
+        let base = displacement(nodes.next().expect("a cell has a base node"));
         let mut h = fractum_math::Mat3::zeros();
         for (node, g) in nodes.zip(&self.gradients[self.range(cell)]) {
-            h += (displacement[node] - base) * Vec3::from(*g).transpose();
+            h += (displacement(node) - base) * Vec3::from(*g).transpose();
         }
         h
     }

@@ -74,18 +74,22 @@ impl Solid {
         for (index, model) in self.bodies.iter().enumerate() {
             let share = 1.0 / model.body.shape.edge_count() as f64;
             let Some(edges) = &model.edges else { continue };
-            for (edge, state) in self.edge_damage(index).iter().enumerate().filter(|(_, e)| e.damage > 0.0) {
+            for edge in 0..edges.nodes.len() {
+                let Some((field, at)) = self.edge(index, edge as u32) else { continue };
+                let state = &field.state[at];
+                if state.damage <= 0.0 {
+                    continue;
+                }
                 let elements = model.elements_of_edge.row(edge);
                 let volume: f64 = elements.iter().map(|&e| share * self.element_volume(index, e)).sum();
-                let (strength, length) = self.strength_and_length(index, edge);
                 let [i, j] = edges.nodes[edge];
                 found.push(CrackEdge {
                     body: index,
                     edge: edge as u32,
                     middle: (self.reference[i as usize] + self.reference[j as usize]) * 0.5,
-                    area: volume / length,
+                    area: volume / field.length[at],
                     damage: state.damage,
-                    softened: 1.0 - (1.0 - state.damage) * state.kappa / strength,
+                    softened: 1.0 - (1.0 - state.damage) * state.kappa / field.strength[at],
                 });
             }
         }

@@ -1,12 +1,15 @@
-//! Damage on the edges of a smoothed body.
+//! Damage on the edges of a body.
 
 use std::sync::Arc;
 
-use fractum_math::Sym3;
+use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::kernel::{CellLaw, Hooke};
-use crate::material::DamageLaw;
+use crate::block::Cells;
+use crate::body::Kinematics;
+use crate::kernel::{self, CellLaw, Hooke};
+use crate::material::{Criterion, DamageLaw, Softening};
+use crate::threshold::Threshold;
 
 /// History of one edge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,18 +36,33 @@ impl EdgeDamage {
     }
 }
 
-/// Law and constants shared by all edges of a body.
+/// What the edges of a body share: the law but for the strength, of which each edge has its own.
 #[derive(Clone, Debug)]
 pub(crate) struct Softens {
-    pub(crate) law: DamageLaw,
+    pub(crate) criterion: Criterion,
     pub(crate) hooke: Hooke,
-    pub(crate) young_modulus: f64,
+    young_modulus: f64,
+    softening: Softening,
+    fracture_energy: f64,
+    residual: f64,
+    unilateral: bool,
+    rate_time: f64,
 }
 
 impl Softens {
+    pub(crate) fn new(law: &DamageLaw, hooke: Hooke, young_modulus: f64) -> Self {
+        let &DamageLaw { criterion, softening, fracture_energy, residual, unilateral, rate_time, .. } = law;
+        Softens { criterion, hooke, young_modulus, softening, fracture_energy, residual, unilateral, rate_time }
+    }
+
+    /// Effective stress that damage acts on [Pa].
+    pub(crate) fn opening_stress(&self, strain: Sym3) -> Sym3 {
+        self.hooke.stress(strain) - self.closed_stress(strain)
+    }
+
     /// Part of the effective stress that damage leaves alone.
     fn closed_stress(&self, strain: Sym3) -> Sym3 {
-        if self.law.unilateral { compressive_stress(&self.hooke, strain) } else { Sym3::ZERO }
+        if self.unilateral { compressive_stress(&self.hooke, strain) } else { Sym3::ZERO }
     }
 
     /// Advances the history of an edge to the equivalent stress `q`; returns the growth of damage.
@@ -52,106 +70,187 @@ impl Softens {
         if q <= edge.kappa {
             return 0.0;
         }
-        let law = &self.law;
-        edge.kappa += (q - edge.kappa) * if law.rate_time > 0.0 { (dt / law.rate_time).min(1.0) } else { 1.0 };
-        let chi = law.softening.residual_ratio(edge.kappa, strength, length, self.young_modulus, law.fracture_energy);
+        edge.kappa += (q - edge.kappa) * if self.rate_time > 0.0 { (dt / self.rate_time).min(1.0) } else { 1.0 };
+        let chi = self.softening.residual_ratio(edge.kappa, strength, length, self.young_modulus, self.fracture_energy);
         let before = edge.damage;
         edge.damage = before.max(1.0 - strength / edge.kappa * chi);
-        edge.broken = edge.broken || chi <= law.residual;
+        edge.broken = edge.broken || chi <= self.residual;
         edge.damage - before
     }
 }
 
-/// The edges of one block.
+/// Damage of a set of edges: those of a block of smoothed cells, or all of a standard body.
 #[derive(Clone, Debug)]
-pub(crate) struct EdgeCells {
+pub(crate) struct EdgeField {
     pub(crate) softens: Arc<Softens>,
-    pub(crate) edges: Vec<EdgeDamage>,
-    /// Equivalent stress [Pa] below which an edge is known to stay intact; negative once it is damaged.
+    /// Numbers of the edges in their body.
+    pub(crate) edges: Vec<u32>,
+    pub(crate) state: Vec<EdgeDamage>,
+    /// Equivalent stress [Pa] below which an edge of a cell is known to stay intact; negative once it is damaged, infinite
+    /// while a gate keeps it from being damaged.
     pub(crate) threshold: Vec<f64>,
     /// Strength [Pa] of each edge; infinite where damage may not occur.
     pub(crate) strength: Vec<f64>,
     /// Characteristic length [m] of each edge.
     pub(crate) length: Vec<f64>,
+    /// An edge broke since removal last looked.
+    pub(crate) fresh: bool,
+}
+
+impl EdgeField {
+    /// Intact edges of a body.
+    pub(crate) fn new(softens: Arc<Softens>, edges: Vec<u32>, threshold: &Threshold) -> Self {
+        let strength: Vec<f64> = edges.iter().map(|&e| threshold.strength[e as usize]).collect();
+        EdgeField {
+            softens,
+            state: strength.iter().map(|&s| EdgeDamage::intact(s)).collect(),
+            threshold: strength.clone(),
+            length: edges.iter().map(|&e| threshold.length[e as usize]).collect(),
+            strength,
+            edges,
+            fresh: false,
+        }
+    }
+
+    /// Advances the history of an edge to the equivalent stress `q` [Pa]; returns the growth of damage.
+    pub(crate) fn load(&mut self, index: usize, q: f64, dt: f64) -> f64 {
+        let edge = &mut self.state[index];
+        let was_broken = edge.broken;
+        let growth = self.softens.load(edge, q, self.strength[index], self.length[index], dt);
+        self.threshold[index] = edge.threshold();
+        self.fresh |= edge.broken && !was_broken;
+        growth
+    }
+
+    /// Equivalent stress from which on damage grows [Pa]; infinite behind a closed gate.
+    pub(crate) fn onset(&self, index: usize) -> f64 {
+        self.state[index].kappa.max(self.threshold[index])
+    }
+
+    /// Damage that an edge would have after the equivalent stress `q` [Pa].
+    pub(crate) fn trial(&self, index: usize, q: f64) -> f64 {
+        let mut edge = self.state[index];
+        if q > self.onset(index) {
+            self.softens.load(&mut edge, q, self.strength[index], self.length[index], 0.0);
+        }
+        edge.damage
+    }
+
+    /// Takes over saved histories, by edge of the body. Removal looks at all of them once more, and finds nothing new.
+    pub(crate) fn restore(&mut self, saved: &[EdgeDamage]) {
+        let EdgeField { edges, state, threshold, .. } = self;
+        for ((edge, state), threshold) in edges.iter().zip(state).zip(threshold) {
+            *state = saved[*edge as usize];
+            *threshold = state.threshold();
+        }
+        self.fresh = true;
+    }
+}
+
+/// The edges of one block of smoothed cells.
+#[derive(Clone, Debug)]
+pub(crate) struct EdgeCells {
+    pub(crate) field: EdgeField,
     /// Energy dissipated in this block so far [J].
     pub(crate) dissipated: f64,
-    /// An edge of this block broke in the last step.
-    pub(crate) fresh: bool,
-    pub(crate) dt: f64,
     /// Elastic energy of the last step, where it was asked for [J].
     pub(crate) energy: Option<f64>,
 }
 
-impl EdgeCells {
-    /// Energy density that damage acts on [J/m³].
-    pub(crate) fn opening_energy_density(&self, strain: Sym3) -> f64 {
-        0.5 * (self.softens.hooke.stress(strain) - self.softens.closed_stress(strain)).dot(strain)
+/// The step that led to the present displacements.
+#[derive(Clone, Copy)]
+pub(crate) struct Advance<'a> {
+    /// Displacements now [m].
+    pub(crate) displacement: &'a [Vec3],
+    /// Velocities since the step before [m/s].
+    pub(crate) velocity: &'a [Vec3],
+    /// Time since the step before [s]; 0 if nothing has moved.
+    pub(crate) dt: f64,
+    pub(crate) kinematics: Kinematics,
+}
+
+impl Advance<'_> {
+    /// Strain of a cell now.
+    pub(crate) fn strain_now(&self, cells: &Cells, cell: usize) -> Sym3 {
+        kernel::strain(&cells.gradient(cell, |node| self.displacement[node]), self.kinematics)
     }
 
-    /// Takes over the strain that an edge has all at once because elements around it left; what damage this brings acts at
-    /// that strain.
-    pub(crate) fn settle(&mut self, cell: usize, strain: Sym3, volume: f64) {
-        let stress = self.softens.hooke.stress(strain);
-        if self.softens.law.criterion.surely_below(stress, self.threshold[cell]) {
+    /// Strain of a cell at the step before.
+    pub(crate) fn strain_before(&self, cells: &Cells, cell: usize) -> Sym3 {
+        let h = cells.gradient(cell, |node| self.displacement[node] - self.velocity[node] * self.dt);
+        kernel::strain(&h, self.kinematics)
+    }
+}
+
+/// The edges of one block in one step, as the law of their cells.
+pub(crate) struct EdgesInStep<'a> {
+    pub(crate) edges: &'a mut EdgeCells,
+    pub(crate) cells: &'a Cells,
+    pub(crate) step: Advance<'a>,
+}
+
+impl EdgesInStep<'_> {
+    /// Takes over the strain that an edge has all at once because elements around it left.
+    ///
+    /// Nothing is booked as damage: the energy belongs to the removal.
+    pub(crate) fn settle(&mut self, cell: usize) {
+        let strain = self.step.strain_now(self.cells, cell);
+        let field = &self.edges.field;
+        let stress = field.softens.hooke.stress(strain);
+        if field.softens.criterion.surely_below(stress, field.threshold[cell]) {
             return;
         }
-        let energy = self.energy.take();
-        self.edges[cell].strain = strain;
-        self.loaded_stress(cell, strain, stress, volume, Some(strain));
-        self.energy = energy;
+        let booked = (self.edges.dissipated, self.edges.energy);
+        self.loaded_stress(cell, strain, stress, self.cells.volume[cell]);
+        (self.edges.dissipated, self.edges.energy) = booked;
+        // The next forces belong to the same step.
+        self.edges.field.state[cell].strain = self.step.strain_before(self.cells, cell);
     }
 
     /// The path of an edge that is damaged or may become so.
-    ///
-    /// - `before`: strain at the last step, where it is known better than by the edge's own history
     #[inline(never)]
-    fn loaded_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3, volume: f64, before: Option<Sym3>) -> Sym3 {
-        let softens = Arc::as_ref(&self.softens);
-        let edge = &mut self.edges[cell];
-        let (was_broken, was_intact) = (edge.broken, edge.damage == 0.0);
-        let closed = softens.closed_stress(strain);
+    fn loaded_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3, volume: f64) -> Sym3 {
+        let EdgeCells { field, dissipated, energy } = &mut *self.edges;
+        let closed = field.softens.closed_stress(strain);
         let opening = stress - closed;
+        let was_intact = field.state[cell].damage == 0.0;
         // Below its history an edge only unloads: no eigenvalues.
-        let (q, growth) = if softens.law.criterion.surely_below(stress, edge.kappa) {
-            (0.0, 0.0)
-        } else {
-            let q = softens.law.criterion.equivalent_stress(stress);
-            (q, softens.load(edge, q, self.strength[cell], self.length[cell], self.dt))
-        };
-        self.threshold[cell] = edge.threshold();
+        let below = field.softens.criterion.surely_below(stress, field.state[cell].kappa);
+        let q = if below { 0.0 } else { field.softens.criterion.equivalent_stress(stress) };
+        let growth = field.load(cell, q, self.step.dt);
+        let edge = &mut field.state[cell];
         if growth > 0.0 {
             // The work of the step between the strains ε⁰ and ε¹ minus the change of the stored energy is exactly
-            // ½ σ¹ : ε⁰ per damage. An edge that was intact has kept no strain: it is taken at its strength.
-            let kept = if was_intact { strain * (self.strength[cell] / q) } else { edge.strain };
-            let before = before.unwrap_or(kept);
-            self.dissipated += 0.5 * opening.dot(before) * growth * volume;
+            // ½ σ¹ : ε⁰ per damage. An edge that was intact has kept no strain.
+            let before = if was_intact { self.step.strain_before(self.cells, cell) } else { edge.strain };
+            *dissipated += 0.5 * opening.dot(before) * growth * volume;
         }
         edge.strain = strain;
-        self.fresh |= edge.broken && !was_broken;
         let nominal = opening * (1.0 - edge.damage) + closed;
-        if let Some(energy) = &mut self.energy {
+        if let Some(energy) = energy {
             *energy += 0.5 * nominal.dot(strain) * volume;
         }
         nominal * volume
     }
 }
 
-impl CellLaw for EdgeCells {
+impl CellLaw for EdgesInStep<'_> {
     #[inline(always)]
     fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
-        let stress = self.softens.hooke.stress(strain);
-        if self.softens.law.criterion.surely_below(stress, self.threshold[cell]) {
-            if let Some(energy) = &mut self.energy {
+        let EdgeCells { field, energy, .. } = &mut *self.edges;
+        let stress = field.softens.hooke.stress(strain);
+        if field.softens.criterion.surely_below(stress, field.threshold[cell]) {
+            if let Some(energy) = energy {
                 *energy += 0.5 * stress.dot(strain) * volume;
             }
             return stress * volume;
         }
-        self.loaded_stress(cell, strain, stress, volume, None)
+        self.loaded_stress(cell, strain, stress, volume)
     }
 
     #[inline(always)]
     fn integrity(&self, cell: usize) -> f64 {
-        1.0 - self.edges[cell].damage
+        1.0 - self.edges.field.state[cell].damage
     }
 }
 

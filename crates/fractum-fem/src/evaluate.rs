@@ -4,7 +4,7 @@ use fractum_math::{Sym3, Vec3};
 
 use crate::block::{Cells, Scratch};
 use crate::body::Kinematics;
-use crate::damage::EdgeCells;
+use crate::damage::{Advance, EdgeCells, EdgeField, EdgesInStep};
 use crate::kernel::{self, ElasticCells};
 use crate::lane::Lane;
 use crate::solid::BodyModel;
@@ -31,6 +31,8 @@ pub(crate) struct Block {
     pub(crate) viscous_power: f64,
     /// Viscous stress times volume of each cell at the last step; empty without viscosity.
     pub(crate) viscous: Vec<Sym3>,
+    /// A corotational cell that is turned inside out and still carries.
+    pub(crate) inverted: Option<usize>,
 }
 
 impl Block {
@@ -43,22 +45,23 @@ impl Block {
         dt: f64,
         measure: bool,
     ) {
-        let Block { cells, scratch, law, viscous_power, viscous, .. } = self;
+        let Block { cells, scratch, law, viscous_power, viscous, inverted, .. } = self;
         scratch.load(&cells.nodes, displacement);
         if model.viscosity.is_some() {
             scratch.load_velocity(&cells.nodes, velocity);
         }
         let start = measure.then_some(0.0);
-        *viscous_power = match law {
+        (*viscous_power, *inverted) = match law {
             BlockLaw::Elastic { energy } => {
                 let mut law = ElasticCells { hooke: model.hooke, energy: start };
-                let power = run(model, cells, scratch, &mut law, viscous);
+                let outcome = run(model, cells, scratch, &mut law, viscous);
                 *energy = law.energy;
-                power
+                outcome
             }
             BlockLaw::Edges(law) => {
-                (law.dt, law.energy) = (dt, start);
-                run(model, cells, scratch, law, viscous)
+                law.energy = start;
+                let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
+                run(model, cells, scratch, &mut EdgesInStep { edges: law, cells, step }, viscous)
             }
             BlockLaw::Standard(law) => {
                 law.energy = start;
@@ -77,11 +80,7 @@ impl Block {
     pub(crate) fn effective_stress(&mut self, model: &BodyModel, displacement: &[Vec3]) {
         let Block { cells, law: BlockLaw::Standard(law), .. } = self else { return };
         for cell in 0..cells.len() {
-            let h = cells.gradient(cell, displacement);
-            let strain = match model.body.kinematics {
-                Kinematics::Small => Sym3::symmetric_part(&h),
-                Kinematics::Corotational => kernel::corotational_strain(&h).0,
-            };
+            let strain = kernel::strain(&cells.gradient(cell, |node| displacement[node]), model.body.kinematics);
             law.mixed_energy[cell] = 0.5 * law.stress[cell].dot(strain);
             law.stress[cell] = model.hooke.stress(strain);
         }
@@ -97,6 +96,15 @@ impl Block {
         }
     }
 
+    /// Damage of the edges that its cells are.
+    pub(crate) fn edge_field(&self) -> Option<&EdgeField> {
+        if let BlockLaw::Edges(law) = &self.law { Some(&law.field) } else { None }
+    }
+
+    pub(crate) fn edge_field_mut(&mut self) -> Option<&mut EdgeField> {
+        if let BlockLaw::Edges(law) = &mut self.law { Some(&mut law.field) } else { None }
+    }
+
     pub(crate) fn dissipated(&self) -> f64 {
         match &self.law {
             BlockLaw::Elastic { .. } => 0.0,
@@ -108,7 +116,7 @@ impl Block {
     pub(crate) fn damage_of(&self, cell: usize) -> f64 {
         match &self.law {
             BlockLaw::Elastic { .. } => 0.0,
-            BlockLaw::Edges(law) => law.edges[cell].damage,
+            BlockLaw::Edges(law) => law.field.state[cell].damage,
             BlockLaw::Standard(law) => law.damage[cell],
         }
     }
@@ -119,14 +127,14 @@ impl Block {
     }
 }
 
-/// Runs the cheapest kernel that the body allows; returns the viscous power [W].
+/// Runs the cheapest kernel that the body allows; returns the viscous power [W] and a cell that is turned inside out.
 fn run<L: kernel::CellLaw>(
     model: &BodyModel,
     cells: &Cells,
     scratch: &mut Scratch,
     law: &mut L,
     viscous: &mut [Sym3],
-) -> f64 {
+) -> (f64, Option<usize>) {
     let corotational = model.body.kinematics == Kinematics::Corotational;
     if corotational || model.viscosity.is_some() {
         return kernel::general_forces(
@@ -140,5 +148,5 @@ fn run<L: kernel::CellLaw>(
         );
     }
     kernel::forces(cells, scratch, law);
-    0.0
+    (0.0, None)
 }

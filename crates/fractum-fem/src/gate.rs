@@ -11,8 +11,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Shape;
+use crate::damage::EdgeField;
 use crate::element::regular_edge;
-use crate::evaluate::{Block, BlockLaw};
+use crate::evaluate::Block;
 use crate::solid::{BodyModel, Solid};
 
 /// How far an edge sees, over the size of its elements.
@@ -153,8 +154,8 @@ impl Solid {
         let model = &self.bodies[body];
         let mut damaged = Vec::new();
         for block in self.blocks.iter().filter(|block| block.body == body) {
-            let BlockLaw::Edges(law) = &block.law else { continue };
-            damaged.extend(block.items.iter().zip(&law.edges).filter(|(_, e)| e.damage > 0.0).map(|(&edge, _)| edge));
+            let Some(field) = block.edge_field() else { continue };
+            damaged.extend(field.edges.iter().zip(&field.state).filter(|(_, e)| e.damage > 0.0).map(|(&edge, _)| edge));
         }
         if damaged.is_empty() {
             return;
@@ -201,8 +202,7 @@ impl Solid {
     fn cracked(&self, model: &BodyModel, gate: &Gate, edge: u32) -> Option<Cracked> {
         let (block, cell) = model.location[edge as usize];
         let (block, cell) = (&self.blocks[block as usize], cell as usize);
-        let BlockLaw::Edges(law) = &block.law else { return None };
-        let state = &law.edges[cell];
+        let state = &block.edge_field()?.state[cell];
         let strain = block.strain_of(cell, model.body.kinematics, &self.displacement);
         Some(Cracked {
             middle: gate.middle[edge as usize],
@@ -225,10 +225,10 @@ impl Solid {
     pub(crate) fn close_edges(&mut self, body: usize) {
         let Solid { bodies, blocks, .. } = self;
         let Some(gate) = &bodies[body].gate else { return };
-        for Block { items, law, .. } in blocks.iter_mut().filter(|block| block.body == body) {
-            let BlockLaw::Edges(law) = law else { continue };
-            for (cell, &edge) in items.iter().enumerate() {
-                law.threshold[cell] = if gate.is_closed(edge) { f64::INFINITY } else { law.edges[cell].threshold() };
+        let blocks = blocks.iter_mut().filter(|block| block.body == body);
+        for EdgeField { edges, state, threshold, .. } in blocks.filter_map(Block::edge_field_mut) {
+            for ((&edge, state), threshold) in edges.iter().zip(state).zip(threshold) {
+                *threshold = if gate.is_closed(edge) { f64::INFINITY } else { state.threshold() };
             }
         }
     }

@@ -3,6 +3,7 @@
 use fractum_math::{Mat3, Sym3};
 
 use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
+use crate::body::{Body, Kinematics, Plane, Shape};
 use crate::lane::Lane;
 use crate::viscosity::BodyViscosity;
 
@@ -24,6 +25,15 @@ pub(crate) struct Hooke {
 }
 
 impl Hooke {
+    /// The law of a body, with the Lamé parameter of plane stress where it is one.
+    pub(crate) fn of(body: &Body) -> Self {
+        let (lambda, mu) = (body.elastic.lame_lambda(), body.elastic.shear_modulus());
+        if body.shape == Shape::T3 && body.plane == Plane::Stress {
+            return Hooke { lambda: 2.0 * lambda * mu / (lambda + 2.0 * mu), mu, zz: 0.0 };
+        }
+        Hooke { lambda, mu, zz: 1.0 }
+    }
+
     #[inline(always)]
     pub(crate) fn stress(&self, strain: Sym3) -> Sym3 {
         let [xx, yy, zz, xy, yz, zx] = strain.0;
@@ -72,11 +82,28 @@ pub(crate) fn polar_rotation(f: &Mat3) -> Mat3 {
     if r.determinant() > 0.0 && r.iter().all(|c| c.is_finite()) { r } else { Mat3::identity() }
 }
 
+/// Stiffness over the undamaged one above which a cell carries: what is turned inside out below it changes no energy to
+/// speak of.
+const CARRIES: f64 = 0.02;
+
+/// Whether a cell with this displacement gradient is turned inside out or flat.
+pub(crate) fn is_inverted(h: &Mat3) -> bool {
+    (Mat3::identity() + h).determinant() <= 0.0
+}
+
 /// Strain of a displacement gradient, and the rotation of the cell.
 pub(crate) fn corotational_strain(h: &Mat3) -> (Sym3, Mat3) {
     let f = Mat3::identity() + h;
     let r = polar_rotation(&f);
     (Sym3::symmetric_part(&(r.transpose() * f - Mat3::identity())), r)
+}
+
+/// Strain of a displacement gradient.
+pub(crate) fn strain(h: &Mat3, kinematics: Kinematics) -> Sym3 {
+    match kinematics {
+        Kinematics::Small => Sym3::symmetric_part(h),
+        Kinematics::Corotational => corotational_strain(h).0,
+    }
 }
 
 /// Columns of a displacement gradient from lanes.
@@ -216,7 +243,8 @@ pub(crate) fn has_avx2() -> bool {
 /// Forces with corotational strains and, if asked for, viscous stress; small strains with viscosity come here as well.
 ///
 /// - `viscous_before`: viscous stress times volume of the last step; replaced by that of this one
-/// - returns the mean power of the viscous stress over the step [W]
+/// - returns the mean power of the viscous stress over the step [W], and the first corotational cell that is turned inside
+///   out while it still carries
 pub(crate) fn general_forces<L: CellLaw>(
     cells: &Cells,
     scratch: &mut Scratch,
@@ -225,15 +253,19 @@ pub(crate) fn general_forces<L: CellLaw>(
     viscosity: Option<&BodyViscosity>,
     hooke: &Hooke,
     viscous_before: &mut [Sym3],
-) -> f64 {
+) -> (f64, Option<usize>) {
     let Scratch { displacement, velocity, force } = scratch;
-    let mut dissipated_power = 0.0;
+    let (mut dissipated_power, mut inverted) = (0.0, None);
     for cell in 0..cells.len() {
         let (local, gradients) = (cells.local_nodes(cell), &cells.gradients[cells.range(cell)]);
         let volume = cells.volume[cell];
         let [x, y, z] = gradient_columns(displacement, local, gradients);
         let (strain, rotation) = if corotational {
-            corotational_strain(&columns_to_matrix(x, y, z))
+            let h = columns_to_matrix(x, y, z);
+            if inverted.is_none() && is_inverted(&h) && volume > 0.0 && law.integrity(cell) > CARRIES {
+                inverted = Some(cell);
+            }
+            corotational_strain(&h)
         } else {
             (small_strain(x, y, z), Mat3::identity())
         };
@@ -254,5 +286,5 @@ pub(crate) fn general_forces<L: CellLaw>(
         };
         add_cell_forces(force, local, gradients, columns);
     }
-    dissipated_power
+    (dissipated_power, inverted)
 }

@@ -3,6 +3,10 @@
 //! A solid is a set of *cells*: small patches of nodes over which the strain is constant. In the standard formulation
 //! a cell is an element; in the smoothed one it is the domain of an edge (a share of every element around it), which
 //! makes the elements less stiff and gives damage a place to live without any heuristics. Both run through one kernel.
+//! The smoothed element is the ES-FEM of Liu, Nguyen-Thoi and Lam, *J. Sound Vib.* 320 (2009) 1100-1130, in the plane, and
+//! its tetrahedral form (He et al., *Comput. Mech.* 52 (2013) 221-236) in space; the face-based relative is that of
+//! Nguyen-Thoi et al., *Int. J. Numer. Meth. Eng.* 78 (2009) 324-353. Softening is scaled with the size of the elements as
+//! in the crack band of Bažant and Oh, *Mater. Struct.* 16 (1983) 155-177.
 //! Elements that a crack has cut through are removed; their mass stays on the nodes.
 //!
 //! Left out on purpose: discrete elements and contact (the coupling knows both), files, and the wall clock.
@@ -24,11 +28,13 @@ mod block;
 mod body;
 mod cell;
 mod crack;
+mod crack_surface;
 mod damage;
 mod element;
 mod error;
 mod evaluate;
 mod gate;
+mod inverted;
 mod kernel;
 mod lane;
 pub mod material;
@@ -37,19 +43,23 @@ mod removal;
 mod secant;
 mod solid;
 mod standard;
+mod state;
 mod threshold;
 mod time_step;
 mod viscosity;
 
 pub use body::{Body, DamageZone, Formulation, Kinematics, Plane, Region, Shape};
 pub use crack::{CrackEdge, CrackPlane};
+pub use crack_surface::{CrackFacet, CrackSurface};
 pub use damage::EdgeDamage;
 pub use element::CUT_MODES;
 pub use error::SolidError;
 pub use gate::GateState;
+pub use inverted::InvertedElement;
 pub use material::{Criterion, CriterionKind, DamageLaw, Elastic, Softening};
 pub use nodes::LocalDamping;
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
-pub use solid::{BodyState, Fracture, Solid, SolidState};
+pub use solid::{Fracture, Solid};
+pub use state::{BodyState, SolidState};
 pub use time_step::StableStep;
 pub use viscosity::Viscosity;

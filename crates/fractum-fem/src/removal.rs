@@ -4,19 +4,23 @@ use fractum_math::{Sym3, Vec3};
 
 use crate::body::{Formulation, Kinematics};
 use crate::cell::Geometry;
+use crate::damage::{Advance, EdgesInStep};
 use crate::element::cut_modes;
 use crate::evaluate::{Block, BlockLaw};
 use crate::kernel;
 use crate::solid::{BodyModel, Solid};
 
 impl Solid {
-    /// Removes every element for which all edges of one cut are broken, and returns the energy that went with them.
+    /// Removes every element for which all edges of one cut are broken, and returns the energy that went with them [J].
     ///
-    /// The energy is the difference of the stored energy of the touched cells before and after [J]: an edge that keeps
-    /// some of its elements averages over these from now on.
+    /// The energy is what the forces of the touched cells do less work in the step that led here, and what these cells
+    /// store less after it: ½ σ : ε⁰ with the stress of now and the strain of the step before, as it was and as it is
+    /// without the elements. An edge that keeps some of its elements averages over these from now on; the damage that its
+    /// jump in strain brings is part of the energy.
     ///
+    /// - `dt`: time since the forces were last computed, in which the nodes moved with their present velocities [s]
     /// - `removed`: gets (body, element) of what was removed in this call
-    pub fn remove_cut_elements(&mut self, removed: &mut Vec<(usize, u32)>) -> f64 {
+    pub fn remove_cut_elements(&mut self, dt: f64, removed: &mut Vec<(usize, u32)>) -> f64 {
         let first = removed.len();
         for body in 0..self.bodies.len() {
             self.find_cut_elements(body, removed);
@@ -31,63 +35,47 @@ impl Solid {
                 continue;
             }
             let touched = self.cells_around(body, &elements);
-            energy += self.stored_energy(&touched);
+            energy += self.step_energy(dt, &touched);
             elements.iter().for_each(|&e| self.bodies[body].alive[e as usize] = false);
             self.rebuild_cells_around(body, &elements);
-            energy -= self.stored_energy(&touched);
-            self.settle(&touched);
+            self.settle(dt, &touched);
+            energy -= self.step_energy(dt, &touched);
         }
         energy
     }
 
     /// Lets damage follow the strains that rebuilt edges jumped to.
-    fn settle(&mut self, cells: &[(u32, u32)]) {
-        let Solid { blocks, bodies, displacement, .. } = self;
+    fn settle(&mut self, dt: f64, cells: &[(u32, u32)]) {
+        let Solid { blocks, bodies, displacement, velocity, .. } = self;
         for &(block, cell) in cells {
-            let (block, cell) = (&mut blocks[block as usize], cell as usize);
-            let strain = block.strain_of(cell, bodies[block.body].body.kinematics, displacement);
-            if let BlockLaw::Edges(law) = &mut block.law {
-                law.settle(cell, strain, block.cells.volume[cell]);
-            }
+            let Block { body, cells, law: BlockLaw::Edges(edges), .. } = &mut blocks[block as usize] else { continue };
+            let step = Advance { displacement, velocity, dt, kinematics: bodies[*body].body.kinematics };
+            EdgesInStep { edges, cells, step }.settle(cell as usize);
         }
     }
 
-    /// Elements of a body that are newly cut through; only blocks in which an edge broke are looked at.
+    /// Elements of a body that are newly cut through; only fields in which an edge broke are looked at.
     fn find_cut_elements(&mut self, body: usize, removed: &mut Vec<(usize, u32)>) {
-        let Solid { bodies, blocks, .. } = self;
-        let fresh = bodies[body].standard.as_mut().is_some_and(|standard| std::mem::take(&mut standard.fresh));
-        let model = &bodies[body];
-        let (Some(edges), Some(_)) = (&model.edges, &model.body.damage) else { return };
-        let modes = cut_modes(model.body.shape);
+        if self.bodies[body].body.damage.is_none() {
+            return;
+        }
         let mut candidates: Vec<u32> = Vec::new();
-        match &model.standard {
-            Some(standard) if fresh => {
-                let broken = (0..).zip(&standard.edges).filter(|(_, edge)| edge.broken);
-                broken.for_each(|(e, _)| candidates.extend(model.elements_of_edge.row(e)));
-            }
-            Some(_) => {}
-            None => {
-                for block in blocks.iter_mut().filter(|b| b.body == body) {
-                    let BlockLaw::Edges(law) = &mut block.law else { continue };
-                    if !std::mem::take(&mut law.fresh) {
-                        continue;
-                    }
-                    for (edge, _) in block.items.iter().zip(&law.edges).filter(|(_, edge)| edge.broken) {
-                        candidates.extend(model.elements_of_edge.row(*edge as usize));
-                    }
-                }
+        let Solid { bodies, blocks, .. } = self;
+        let BodyModel { standard, elements_of_edge, .. } = &mut bodies[body];
+        let cells = blocks.iter_mut().filter(|b| b.body == body).filter_map(Block::edge_field_mut);
+        for field in cells.chain(standard.as_mut().map(|standard| &mut standard.field)) {
+            if std::mem::take(&mut field.fresh) {
+                let broken = field.edges.iter().zip(&field.state).filter(|(_, edge)| edge.broken);
+                broken.for_each(|(&edge, _)| candidates.extend(elements_of_edge.row(edge as usize)));
             }
         }
+        let model = &self.bodies[body];
+        let Some(edges) = &model.edges else { return };
+        let modes = cut_modes(model.body.shape);
         candidates.retain(|&e| model.alive[e as usize]);
         candidates.sort_unstable();
         candidates.dedup();
-        let is_broken = |edge: u32| match &model.standard {
-            Some(standard) => standard.edges[edge as usize].broken,
-            None => {
-                let (block, cell) = model.location[edge as usize];
-                matches!(&blocks[block as usize].law, BlockLaw::Edges(law) if law.edges[cell as usize].broken)
-            }
-        };
+        let is_broken = |edge: u32| self.edge(body, edge).is_some_and(|(field, index)| field.state[index].broken);
         let is_cut = |element: u32| {
             let of = &edges.of_element[element as usize];
             modes.iter().any(|mode| mode.iter().all(|&local| is_broken(of[local])))
@@ -106,16 +94,17 @@ impl Solid {
         }
     }
 
-    /// Elastic energy stored in these cells at the present displacements [J].
-    fn stored_energy(&self, cells: &[(u32, u32)]) -> f64 {
-        let mut sum = 0.0;
-        for &(block, cell) in cells {
+    /// ½ σ : ε⁰ over these cells, with the present stress and the strain of the step before [J].
+    fn step_energy(&self, dt: f64, cells: &[(u32, u32)]) -> f64 {
+        let Solid { displacement, velocity, .. } = self;
+        let of = |&(block, cell): &(u32, u32)| {
             let (block, cell) = (&self.blocks[block as usize], cell as usize);
             let model = &self.bodies[block.body];
-            let strain = block.strain_of(cell, model.body.kinematics, &self.displacement);
-            sum += block.energy_of(cell, &model.hooke, strain);
-        }
-        sum
+            let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
+            let stress = block.nominal_stress(cell, &model.hooke, step.strain_now(&block.cells, cell));
+            0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
+        };
+        cells.iter().map(of).sum()
     }
 
     /// Recomputes the cells in which dead elements had a share, from the elements that are alive.
@@ -182,27 +171,19 @@ impl Solid {
 }
 
 impl Block {
-    /// Strain of one cell at these displacements.
+    /// Strain of one cell at the present displacements.
     pub(crate) fn strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
-        let h = self.cells.gradient(cell, displacement);
-        match kinematics {
-            Kinematics::Small => Sym3::symmetric_part(&h),
-            Kinematics::Corotational => kernel::corotational_strain(&h).0,
-        }
+        kernel::strain(&self.cells.gradient(cell, |node| displacement[node]), kinematics)
     }
 
-    /// Elastic energy of one cell [J].
-    fn energy_of(&self, cell: usize, hooke: &kernel::Hooke, strain: Sym3) -> f64 {
-        let full = 0.5 * hooke.stress(strain).dot(strain);
-        let density = match &self.law {
-            // With unilateral damage the closed part keeps its energy.
-            BlockLaw::Edges(law) => {
-                let open = law.opening_energy_density(strain);
-                full - law.edges[cell].damage * open
-            }
+    /// Stress of one cell with its damage [Pa].
+    fn nominal_stress(&self, cell: usize, hooke: &kernel::Hooke, strain: Sym3) -> Sym3 {
+        let full = hooke.stress(strain);
+        match &self.law {
+            // With unilateral damage the closed part keeps its stress.
+            BlockLaw::Edges(law) => full - law.field.softens.opening_stress(strain) * law.field.state[cell].damage,
             _ => full * (1.0 - self.damage_of(cell)),
-        };
-        density * self.cells.volume[cell]
+        }
     }
 }
 

@@ -139,41 +139,23 @@ impl Solid {
     /// The edges that may be damaged, in the order of [`Solid::effective_stresses`].
     pub fn damage_points(&self) -> Vec<DamagePoint> {
         let mut points = Vec::new();
-        self.for_each_point(|body, edge, kappa, strength, length| {
+        for (body, field) in self.edge_fields() {
             let model = &self.bodies[body].body;
             let energy = model.damage.as_ref().map_or(0.0, |zone| zone.law.fracture_energy);
-            let softening = model.elastic.young_modulus * energy / (length * strength);
-            let EdgeDamage { broken, damage, .. } = *edge;
-            points.push(DamagePoint { body, kappa, softening, broken, damage });
-        });
+            for (index, &EdgeDamage { broken, damage, .. }) in field.state.iter().enumerate() {
+                let kappa = field.onset(index);
+                let softening = model.elastic.young_modulus * energy / (field.length[index] * field.strength[index]);
+                points.push(DamagePoint { body, kappa, softening, broken, damage });
+            }
+        }
         points
-    }
-
-    /// Visits (body, edge, κ, strength, length) of every edge that may be damaged; κ is infinite while a gate is closed.
-    fn for_each_point(&self, mut work: impl FnMut(usize, &EdgeDamage, f64, f64, f64)) {
-        for block in &self.blocks {
-            if let BlockLaw::Edges(law) = &block.law {
-                for cell in 0..law.edges.len() {
-                    let kappa = law.edges[cell].kappa.max(law.threshold[cell]);
-                    work(block.body, &law.edges[cell], kappa, law.strength[cell], law.length[cell]);
-                }
-            }
-        }
-        for (body, model) in self.bodies.iter().enumerate() {
-            if let Some(standard) = &model.standard {
-                for edge in 0..standard.edges.len() {
-                    let state = &standard.edges[edge];
-                    work(body, state, state.kappa, standard.strength[edge], standard.length[edge]);
-                }
-            }
-        }
     }
 
     /// Effective stress of every edge that may be damaged under a displacement field [Pa]; linear in it.
     pub fn effective_stresses(&self, field: &[Vec3], stresses: &mut Vec<Sym3>) {
         stresses.clear();
         let stress = |block: &Block, cell: usize| {
-            let strain = Sym3::symmetric_part(&block.cells.gradient(cell, field));
+            let strain = Sym3::symmetric_part(&block.cells.gradient(cell, |node| field[node]));
             self.bodies[block.body].hooke.stress(strain)
         };
         for block in self.blocks.iter().filter(|b| matches!(b.law, BlockLaw::Edges(_))) {
@@ -185,7 +167,7 @@ impl Solid {
                 let (block, cell) = model.location[e as usize];
                 stress(&self.blocks[block as usize], cell as usize)
             };
-            for edge in 0..standard.edges.len() {
+            for edge in 0..standard.field.state.len() {
                 let (mut sum, mut count) = (Sym3::ZERO, 0);
                 for &e in standard.elements_of_edge.row(edge).iter().filter(|&&e| model.alive[e as usize]) {
                     sum += element(e);
@@ -219,31 +201,26 @@ impl Solid {
 
     /// Damage of the cells once every edge has seen its equivalent stress `q`.
     pub fn trial_damage(&self, q: &[f64], trial: &mut CellDamage) {
-        let mut next = 0;
         trial.0.resize(self.blocks.len(), Vec::new());
+        let mut of_edges =
+            self.edge_fields().flat_map(|(_, field)| (0..field.state.len()).map(move |i| (field, i))).zip(q);
+        let mut next = |count: usize, damage: &mut Vec<f64>| {
+            damage.clear();
+            damage.extend(of_edges.by_ref().take(count).map(|((field, index), &q)| field.trial(index, q)));
+        };
         for (block, trial) in self.blocks.iter().zip(&mut trial.0) {
-            let BlockLaw::Edges(law) = &block.law else { continue };
-            trial.clear();
-            for cell in 0..law.edges.len() {
-                let mut edge = law.edges[cell];
-                if q[next] > law.threshold[cell] {
-                    law.softens.load(&mut edge, q[next], law.strength[cell], law.length[cell], 0.0);
-                }
-                trial.push(edge.damage);
-                next += 1;
+            if let Some(field) = block.edge_field() {
+                next(field.state.len(), trial);
             }
         }
+        let mut damage = Vec::new();
         for (body, model) in self.bodies.iter().enumerate() {
-            let Some(standard) = &model.standard else { continue };
-            let mut after = standard.clone();
-            for (edge, state) in after.edges.iter_mut().enumerate() {
-                standard.softens.load(state, q[next], standard.strength[edge], standard.length[edge], 0.0);
-                next += 1;
-            }
-            let edges = model.edges.as_ref().expect("a body with damage has edges");
+            let (Some(standard), Some(edges)) = (&model.standard, &model.edges) else { continue };
+            next(standard.field.state.len(), &mut damage);
             for (block, trial) in self.blocks.iter().zip(&mut trial.0).filter(|(b, _)| b.body == body) {
                 let of = |(cell, &e): (usize, &u32)| {
-                    after.element_damage(&edges.of_element[e as usize]).max(block.damage_of(cell))
+                    let of_element = &edges.of_element[e as usize];
+                    standard.element_damage(of_element, |edge| damage[edge as usize]).max(block.damage_of(cell))
                 };
                 *trial = block.items.iter().enumerate().map(of).collect();
             }
@@ -260,28 +237,21 @@ impl Solid {
         for block in blocks {
             let hooke = bodies[block.body].hooke;
             let BlockLaw::Edges(law) = &mut block.law else { continue };
-            for cell in 0..law.edges.len() {
+            for cell in 0..law.field.state.len() {
                 let seen = q[next];
                 next += 1;
-                if seen <= law.edges[cell].kappa.max(law.threshold[cell]) {
+                if seen <= law.field.onset(cell) {
                     continue;
                 }
-                let strain = |field: &[Vec3]| Sym3::symmetric_part(&block.cells.gradient(cell, field));
-                let edge = &mut law.edges[cell];
-                let was_broken = edge.broken;
-                let growth = law.softens.load(edge, seen, law.strength[cell], law.length[cell], 0.0);
+                let strain = |field: &[Vec3]| Sym3::symmetric_part(&block.cells.gradient(cell, |node| field[node]));
+                let growth = law.field.load(cell, seen, 0.0);
                 let work = 0.5 * hooke.stress(strain(after)).dot(strain(before));
                 law.dissipated += work * growth * block.cells.volume[cell];
-                law.threshold[cell] = edge.threshold();
-                law.fresh |= edge.broken && !was_broken;
             }
         }
         for standard in bodies.iter_mut().filter_map(|model| model.standard.as_mut()) {
-            for edge in 0..standard.edges.len() {
-                let state = &mut standard.edges[edge];
-                let was_broken = state.broken;
-                standard.softens.load(state, q[next], standard.strength[edge], standard.length[edge], 0.0);
-                standard.fresh |= state.broken && !was_broken;
+            for edge in 0..standard.field.state.len() {
+                standard.field.load(edge, q[next], 0.0);
                 next += 1;
             }
         }

@@ -2,16 +2,15 @@ use std::sync::Arc;
 
 use fractum_math::{CHUNK, HalfSteps, Ragged, Sym3, Vec3};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use crate::block::{NodeSlots, Scratch};
-use crate::body::{Body, BodyEdges, Formulation, Kinematics, Plane, Shape};
+use crate::body::{Body, BodyEdges, Formulation};
 use crate::cell::Geometry;
-use crate::damage::{EdgeCells, EdgeDamage, Softens};
+use crate::damage::{EdgeCells, EdgeField, Softens};
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
-use crate::gate::{Gate, GateState};
-use crate::kernel::{self, Hooke};
+use crate::gate::Gate;
+use crate::kernel::Hooke;
 use crate::standard::{StandardCells, StandardDamage};
 use crate::threshold::Threshold;
 use crate::viscosity::{BodyViscosity, Viscosity};
@@ -57,36 +56,6 @@ pub struct Solid {
     pub(crate) slots: NodeSlots,
     pub(crate) chunk_work: Vec<HalfSteps>,
     pub(crate) viscous_dissipation: f64,
-}
-
-/// What changes in a body during a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BodyState {
-    /// Elements that are still there.
-    pub alive: Vec<bool>,
-    /// Edge histories; empty without damage.
-    pub edges: Vec<EdgeDamage>,
-    /// Damage and last effective stress of elements (standard formulation with damage).
-    pub elements: Vec<(f64, Sym3)>,
-    /// Crack-plane gate; empty without one.
-    pub gate: GateState,
-}
-
-/// What changes in a solid during a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SolidState {
-    /// Displacement [m].
-    pub displacement: Vec<Vec3>,
-    /// Velocity at the half step [m/s].
-    pub velocity: Vec<Vec3>,
-    /// Bodies in order.
-    pub bodies: Vec<BodyState>,
-    /// Energy dissipated by damage, block by block [J].
-    pub dissipated: Vec<f64>,
-    /// Energy dissipated by viscosity [J].
-    pub viscous_dissipation: f64,
-    /// Viscous stress times volume of the cells, block by block; empty without viscosity.
-    pub viscous: Vec<Vec<Sym3>>,
 }
 
 /// How far the damage of a solid has come.
@@ -205,18 +174,20 @@ impl Solid {
         blocks.par_iter_mut().for_each(|block| block.effective_stress(&bodies[block.body], displacement));
         for (index, model) in bodies.iter_mut().enumerate() {
             let BodyModel { standard: Some(standard), alive, location, edges, .. } = model else { continue };
-            let fresh = standard.update_edges(dt, |element| {
+            standard.update_edges(dt, |element| {
                 let (block, cell) = location[element as usize];
                 match &blocks[block as usize].law {
                     BlockLaw::Standard(law) if alive[element as usize] => Some(law.stress[cell as usize]),
                     _ => None,
                 }
             });
-            standard.fresh |= fresh;
             let edges = edges.as_ref().expect("a body with damage has edges");
             let standard = &*standard;
             blocks.par_iter_mut().filter(|b| b.body == index).for_each(|block| {
-                block.take_element_damage(|element| standard.element_damage(&edges.of_element[element as usize]));
+                let damage = |edge: u32| standard.field.state[edge as usize].damage;
+                block.take_element_damage(|element| {
+                    standard.element_damage(&edges.of_element[element as usize], damage)
+                });
             });
         }
     }
@@ -244,137 +215,30 @@ impl Solid {
     /// Counts damaged and broken edges and removed elements.
     pub fn fracture(&self) -> Fracture {
         let mut count = Fracture::default();
-        let mut add = |edge: &EdgeDamage| {
+        for edge in self.edge_fields().flat_map(|(_, field)| &field.state) {
             count.damaged_edges += usize::from(edge.damage > 0.0);
             count.broken_edges += usize::from(edge.broken);
-        };
-        for block in &self.blocks {
-            if let BlockLaw::Edges(law) = &block.law {
-                law.edges.iter().for_each(&mut add);
-            }
-        }
-        for model in &self.bodies {
-            if let Some(standard) = &model.standard {
-                standard.edges.iter().for_each(&mut add);
-            }
         }
         count.removed_elements = self.bodies.iter().map(|b| b.alive.iter().filter(|a| !**a).count()).sum();
         count
     }
 
-    /// Strength [Pa] and characteristic length [m] of an edge; infinite where it may not be damaged.
-    pub(crate) fn strength_and_length(&self, body: usize, edge: usize) -> (f64, f64) {
+    /// Damage of the edges of all bodies: blocks of smoothed cells first, then standard bodies.
+    pub(crate) fn edge_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
+        let cells = self.blocks.iter().filter_map(|block| Some((block.body, block.edge_field()?)));
+        let standard =
+            (0..).zip(&self.bodies).filter_map(|(body, model)| Some((body, &model.standard.as_ref()?.field)));
+        cells.chain(standard)
+    }
+
+    /// Where the damage of an edge of a body is kept; none where it may not be damaged.
+    pub(crate) fn edge(&self, body: usize, edge: u32) -> Option<(&EdgeField, usize)> {
         let model = &self.bodies[body];
         if let Some(standard) = &model.standard {
-            return (standard.strength[edge], standard.length[edge]);
+            return Some((&standard.field, edge as usize));
         }
-        let (block, cell) = model.location[edge];
-        match &self.blocks[block as usize].law {
-            BlockLaw::Edges(law) => (law.strength[cell as usize], law.length[cell as usize]),
-            _ => (f64::INFINITY, f64::INFINITY),
-        }
-    }
-
-    /// Everything that changes, for a checkpoint.
-    pub fn state(&self) -> SolidState {
-        SolidState {
-            displacement: self.displacement.clone(),
-            velocity: self.velocity.clone(),
-            bodies: (0..self.bodies.len()).map(|b| self.body_state(b)).collect(),
-            dissipated: self.blocks.iter().map(Block::dissipated).collect(),
-            viscous_dissipation: self.viscous_dissipation,
-            viscous: self.blocks.iter().map(|b| b.viscous.clone()).collect(),
-        }
-    }
-
-    /// Edge histories of a body in the order of its edges; empty without damage.
-    pub fn edge_damage(&self, body: usize) -> Vec<EdgeDamage> {
-        let model = &self.bodies[body];
-        if let Some(standard) = &model.standard {
-            return standard.edges.clone();
-        }
-        if model.body.damage.is_none() || model.body.formulation == Formulation::Standard {
-            return Vec::new();
-        }
-        let of = |&(block, cell): &(u32, u32)| match &self.blocks[block as usize].law {
-            BlockLaw::Edges(law) => law.edges[cell as usize],
-            _ => EdgeDamage::intact(f64::INFINITY),
-        };
-        model.location.iter().map(of).collect()
-    }
-
-    /// Share of its strength that every edge of a body has lost, 0 to 1, in the order of its edges; empty without damage.
-    ///
-    /// This is 1 − χ of the softening curve; damage measures the loss of stiffness and comes close to 1 long before.
-    pub fn lost_strength(&self, body: usize) -> Vec<f64> {
-        let lost = |(index, edge): (usize, EdgeDamage)| match edge.damage {
-            0.0 => 0.0,
-            damage => (1.0 - (1.0 - damage) * edge.kappa / self.strength_and_length(body, index).0).clamp(0.0, 1.0),
-        };
-        self.edge_damage(body).into_iter().enumerate().map(lost).collect()
-    }
-
-    fn body_state(&self, body: usize) -> BodyState {
-        let model = &self.bodies[body];
-        let of = |&(block, cell): &(u32, u32)| match &self.blocks[block as usize].law {
-            BlockLaw::Standard(law) => (law.damage[cell as usize], law.stress[cell as usize]),
-            _ => (0.0, Sym3::ZERO),
-        };
-        let elements = if model.standard.is_some() { model.location.iter().map(of).collect() } else { Vec::new() };
-        let gate = model.gate.as_ref().map_or_else(GateState::default, Gate::state);
-        BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements, gate }
-    }
-
-    /// Puts a saved state back. The solid must have been built from the same bodies.
-    ///
-    /// # Panics
-    /// If the sizes of the state are those of another solid.
-    pub fn restore(&mut self, state: SolidState) {
-        assert_eq!(state.displacement.len(), self.reference.len(), "state of another solid");
-        self.displacement = state.displacement;
-        self.velocity = state.velocity;
-        self.viscous_dissipation = state.viscous_dissipation;
-        for (index, body) in state.bodies.into_iter().enumerate() {
-            let Solid { bodies, blocks, .. } = self;
-            let model = &mut bodies[index];
-            for (place, &(block, cell)) in model.location.iter().enumerate() {
-                match &mut blocks[block as usize].law {
-                    BlockLaw::Edges(law) => {
-                        law.edges[cell as usize] = body.edges[place];
-                        law.threshold[cell as usize] = body.edges[place].threshold();
-                    }
-                    BlockLaw::Standard(law) => {
-                        (law.damage[cell as usize], law.stress[cell as usize]) = body.elements[place];
-                    }
-                    BlockLaw::Elastic { .. } => {}
-                }
-            }
-            if let Some(standard) = &mut model.standard {
-                standard.edges = body.edges;
-                standard.fresh = true;
-            }
-            if let Some(gate) = &mut model.gate {
-                gate.restore(&body.gate);
-            }
-            model.alive = body.alive;
-            let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
-            self.rebuild_cells_around(index, &removed);
-            self.close_edges(index);
-        }
-        for (block, viscous) in self.blocks.iter_mut().zip(state.viscous) {
-            block.viscous = viscous;
-        }
-        for (block, dissipated) in self.blocks.iter_mut().zip(state.dissipated) {
-            match &mut block.law {
-                BlockLaw::Edges(law) => {
-                    law.dissipated = dissipated;
-                    // Edges that broke when others left are looked at in the next step; a second look finds nothing new.
-                    law.fresh = true;
-                }
-                BlockLaw::Standard(law) => law.dissipated = dissipated,
-                BlockLaw::Elastic { .. } => {}
-            }
-        }
+        let &(block, cell) = model.location.get(edge as usize)?;
+        Some((self.blocks[block as usize].edge_field()?, cell as usize))
     }
 
     /// Number of bodies.
@@ -428,9 +292,7 @@ impl Solid {
 
     fn cell_field(&self, model: &BodyModel, &(block, cell): &(u32, u32)) -> (Sym3, f64) {
         let (block, cell) = (&self.blocks[block as usize], cell as usize);
-        let h = block.cells.gradient(cell, &self.displacement);
-        let corotational = model.body.kinematics == Kinematics::Corotational;
-        let strain = if corotational { kernel::corotational_strain(&h).0 } else { Sym3::symmetric_part(&h) };
+        let strain = block.strain_of(cell, model.body.kinematics, &self.displacement);
         let damage = block.damage_of(cell);
         (model.hooke.stress(strain) * (1.0 - damage), damage)
     }
@@ -468,14 +330,7 @@ impl BodyModel {
         volumes: &[f64],
         first_block: usize,
     ) -> Result<(Self, Vec<Block>), SolidError> {
-        let elastic = body.elastic;
-        let (lambda, mu) = (elastic.lame_lambda(), elastic.shear_modulus());
-        let plane_stress = body.shape == Shape::T3 && body.plane == Plane::Stress;
-        let hooke = if plane_stress {
-            Hooke { lambda: 2.0 * lambda * mu / (lambda + 2.0 * mu), mu, zz: 0.0 }
-        } else {
-            Hooke { lambda, mu, zz: 1.0 }
-        };
+        let hooke = Hooke::of(&body);
         let smoothed = body.formulation == Formulation::Smoothed;
         let geometry = Geometry { body: &body, nodes };
         let edges = (smoothed || body.damage.is_some()).then(|| body.edges());
@@ -488,10 +343,8 @@ impl BodyModel {
             (Some(zone), Some(edges)) => Some(Threshold::new(&body, zone, edges, &elements_of_edge, nodes, volumes)?),
             _ => None,
         };
-        let softens = body
-            .damage
-            .as_ref()
-            .map(|zone| Arc::new(Softens { law: zone.law.clone(), hooke, young_modulus: elastic.young_modulus }));
+        let softens =
+            body.damage.as_ref().map(|zone| Arc::new(Softens::new(&zone.law, hooke, body.elastic.young_modulus)));
         let cells = match &edges {
             Some(edges) if smoothed => geometry.edge_blocks(edges, &elements_of_edge, |edge| {
                 threshold.as_ref().is_some_and(|t| t.strength[edge as usize].is_finite())
@@ -506,43 +359,25 @@ impl BodyModel {
             }
             let law = match (&softens, &threshold) {
                 (Some(softens), Some(t)) if smoothed && t.strength[items[0] as usize].is_finite() => {
-                    let strength: Vec<f64> = items.iter().map(|&e| t.strength[e as usize]).collect();
-                    BlockLaw::Edges(EdgeCells {
-                        softens: softens.clone(),
-                        edges: strength.iter().map(|&s| EdgeDamage::intact(s)).collect(),
-                        length: items.iter().map(|&e| t.length[e as usize]).collect(),
-                        threshold: strength.clone(),
-                        strength,
-                        dissipated: 0.0,
-                        fresh: false,
-                        dt: 0.0,
-                        energy: None,
-                    })
+                    let field = EdgeField::new(softens.clone(), items.clone(), t);
+                    BlockLaw::Edges(EdgeCells { field, dissipated: 0.0, energy: None })
                 }
-                (Some(softens), Some(_)) if !smoothed => BlockLaw::Standard(StandardCells {
-                    softens: softens.clone(),
-                    stress: vec![Sym3::ZERO; items.len()],
-                    damage: vec![0.0; items.len()],
-                    mixed_energy: vec![0.0; items.len()],
-                    dissipated: 0.0,
-                    energy: None,
-                }),
+                (Some(softens), Some(_)) if !smoothed => {
+                    BlockLaw::Standard(StandardCells::new(softens.clone(), items.len()))
+                }
                 _ => BlockLaw::Elastic { energy: None },
             };
             let scratch = Scratch::new();
-            blocks.push(Block { body: index, cells, items, law, scratch, viscous_power: 0.0, viscous: Vec::new() });
+            let (viscous, inverted) = (Vec::new(), None);
+            blocks.push(Block { body: index, cells, items, law, scratch, viscous_power: 0.0, viscous, inverted });
         }
         let (reduced_edges, largest_length_ratio) =
             threshold.as_ref().map_or((0, 0.0), |t| (t.reduced_edges, t.largest_length_ratio));
         let standard = match (softens, threshold) {
             (Some(softens), Some(t)) if !smoothed => Some(StandardDamage {
-                softens,
+                field: EdgeField::new(softens, (0..edge_count as u32).collect(), &t),
                 shape: body.shape,
-                edges: t.strength.iter().map(|&s| EdgeDamage::intact(s)).collect(),
-                strength: t.strength,
-                length: t.length,
                 elements_of_edge: elements_of_edge.clone(),
-                fresh: false,
             }),
             _ => None,
         };

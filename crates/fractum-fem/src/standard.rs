@@ -7,41 +7,46 @@ use fractum_math::{Ragged, Sym3};
 use rayon::prelude::*;
 
 use crate::body::Shape;
-use crate::damage::{EdgeDamage, Softens};
+use crate::damage::{EdgeField, Softens};
 use crate::element::cut_modes;
 use crate::kernel::CellLaw;
 
 /// Damage state of a standard body.
 #[derive(Clone, Debug)]
 pub(crate) struct StandardDamage {
-    pub(crate) softens: Arc<Softens>,
+    pub(crate) field: EdgeField,
     pub(crate) shape: Shape,
-    pub(crate) edges: Vec<EdgeDamage>,
-    pub(crate) strength: Vec<f64>,
-    pub(crate) length: Vec<f64>,
     pub(crate) elements_of_edge: Ragged,
-    /// An edge broke since removal last looked.
-    pub(crate) fresh: bool,
 }
 
 /// The element cells of one block of a standard body with damage.
 #[derive(Clone, Debug)]
 pub(crate) struct StandardCells {
     pub(crate) softens: Arc<Softens>,
-    /// Effective stress of each cell; written by the first pass, read by the edges.
+    /// Effective stress of each cell [Pa]; written by the first pass, read by the edges.
     pub(crate) stress: Vec<Sym3>,
-    /// ½ σ : ε between the stress before and the strain after the step: what damage dissipates per volume.
     pub(crate) damage: Vec<f64>,
+    /// ½ σ : ε between the stress before and the strain after the step: what damage dissipates per volume [J/m³].
     pub(crate) mixed_energy: Vec<f64>,
     pub(crate) dissipated: f64,
     pub(crate) energy: Option<f64>,
 }
 
+impl StandardCells {
+    /// Undamaged cells without stress.
+    pub(crate) fn new(softens: Arc<Softens>, count: usize) -> Self {
+        let (stress, damage, mixed_energy) = (vec![Sym3::ZERO; count], vec![0.0; count], vec![0.0; count]);
+        StandardCells { softens, stress, damage, mixed_energy, dissipated: 0.0, energy: None }
+    }
+}
+
 impl StandardDamage {
-    /// Edge histories from the stresses of the elements (`stress_of`, none for a removed one); true if an edge broke.
-    pub(crate) fn update_edges(&mut self, dt: f64, stress_of: impl Fn(u32) -> Option<Sym3> + Sync) -> bool {
-        let Self { softens, edges, strength, length, elements_of_edge, .. } = self;
-        edges
+    /// Edge histories from the stresses of the elements (`stress_of`, none for a removed one).
+    pub(crate) fn update_edges(&mut self, dt: f64, stress_of: impl Fn(u32) -> Option<Sym3> + Sync) {
+        let StandardDamage {
+            field: EdgeField { softens, state, strength, length, fresh, .. }, elements_of_edge, ..
+        } = self;
+        let broke = state
             .par_iter_mut()
             .enumerate()
             .with_min_len(1024)
@@ -55,20 +60,23 @@ impl StandardDamage {
                     return false;
                 }
                 let mean = sum * (1.0 / f64::from(count));
-                if softens.law.criterion.surely_below(mean, edge.kappa) {
+                if softens.criterion.surely_below(mean, edge.kappa) {
                     return false;
                 }
                 let was_broken = edge.broken;
-                let q = softens.law.criterion.equivalent_stress(mean);
+                let q = softens.criterion.equivalent_stress(mean);
                 softens.load(edge, q, strength[index], length[index], dt);
                 edge.broken && !was_broken
             })
-            .reduce(|| false, |a, b| a || b)
+            .reduce(|| false, |a, b| a || b);
+        *fresh |= broke;
     }
 
     /// Damage of an element with these edges: the largest mean over the ways a crack cuts it.
-    pub(crate) fn element_damage(&self, edges: &[u32]) -> f64 {
-        let of = |local: usize| self.edges[edges[local] as usize].damage;
+    ///
+    /// - `damage`: of an edge of the body
+    pub(crate) fn element_damage(&self, edges: &[u32], damage: impl Fn(u32) -> f64) -> f64 {
+        let of = |local: usize| damage(edges[local]);
         cut_modes(self.shape)
             .iter()
             .map(|mode| mode.iter().map(|&local| of(local)).sum::<f64>() / mode.len() as f64)

@@ -158,6 +158,34 @@ pub enum StepError {
         /// Where the kinetic energy is largest.
         culprit: String,
     },
+    /// An element of a corotational body is turned inside out while it carries load.
+    #[error(
+        "step {step}, t = {time:.6e} s: element {element} of body {body} at ({x:.4e}, {y:.4e}, {z:.4e}) m is inverted: its volume is {volume_ratio:.3} of \
+         that without load; \u{394}t = {dt:.3e} s, stable limit {limit:.3e} s - lower solver.safety; if it still inverts, refine the mesh there, spread \
+         the load, or let the body break (damage)"
+    )]
+    Inverted {
+        /// Step number.
+        step: u64,
+        /// Time [s].
+        time: f64,
+        /// Name of the body.
+        body: String,
+        /// Index of the element in the body.
+        element: u32,
+        /// Present position of its centre [m].
+        x: f64,
+        /// Present position of its centre [m].
+        y: f64,
+        /// Present position of its centre [m].
+        z: f64,
+        /// Present volume over that without load.
+        volume_ratio: f64,
+        /// Step size [s].
+        dt: f64,
+        /// Estimated stable step [s].
+        limit: f64,
+    },
     /// The energy balance does not close.
     #[error(
         "step {step}, t = {time:.6e} s: the energy balance is off by {relative:.2e} of the energy put in (limit {allowed:.0e}); largest kinetic \

@@ -232,7 +232,8 @@ impl Scene {
         let divisor = self.bonded.step_divisor();
         let frequency = self.stable.frequency.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
         let contacts = self.contact_frequency_square + self.contacts.frequency_square() * divisor * divisor;
-        let frequency = (frequency * frequency + contacts).sqrt();
+        // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
+        let frequency = ((frequency * frequency + contacts) * (1.0 + self.settings.damping.local)).sqrt();
         let contact = if self.contact_frequency_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
         let contact = contact.max(self.bonded.damping_ratio());
         let damping = self.settings.damping;

@@ -1,10 +1,11 @@
-//! Broken bonds as data: a table for scripts, lines for ParaView.
+//! Cracks as data: broken bonds in a table for scripts and as lines for ParaView, and the facets that removal has exposed.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
 use fractum_dem::Crack;
 use fractum_dem::criterion::BreakMode;
+use fractum_fem::{CrackSurface, Solid};
 use fractum_io::vtk::{Field, PolyCells, PolyData};
 use fractum_io::{Compression, atomic};
 
@@ -90,6 +91,39 @@ pub fn write_lines<'a>(
             Field::scalar("load", &load),
             Field::scalar("area", &area),
             Field::scalar("energy", &energy),
+        ],
+        time: None,
+    };
+    data.write(path, Compression::default()).map_err(|e| Failure::Output(e.into()))
+}
+
+/// Writes the facets that the removal of elements has exposed, without load and with their displacement, normal, opening and
+/// body.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_facets(path: &Path, solid: &Solid, crack: &CrackSurface) -> Result<(), Failure> {
+    let mut nodes: Vec<u32> = crack.facets.iter().flat_map(|facet| facet.nodes).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let points: Vec<[f64; 3]> = nodes.iter().map(|&n| solid.reference[n as usize].into()).collect();
+    let displacement: Vec<[f64; 3]> = nodes.iter().map(|&n| solid.displacement[n as usize].into()).collect();
+    let place = |node: u32| nodes.binary_search(&node).map_or(0, |place| place as u32);
+    let triangles: Vec<[u32; 3]> = crack.facets.iter().map(|facet| facet.nodes.map(place)).collect();
+    let lines: Vec<[u32; 2]> = triangles.iter().map(|&[a, b, _]| [a, b]).collect();
+    let plane = triangles.iter().all(|[_, b, c]| b == c);
+    let cells = if plane { PolyCells::Lines(&lines) } else { PolyCells::Triangles(&triangles) };
+    let normal: Vec<[f64; 3]> = crack.facets.iter().map(|facet| facet.normal.into()).collect();
+    let opening: Vec<f64> = crack.facets.iter().map(|facet| facet.opening).collect();
+    let bodies: Vec<i32> = crack.facets.iter().map(|facet| facet.body as i32).collect();
+    let data = PolyData {
+        points: &points,
+        cells,
+        point_data: &[Field::vector("displacement", &displacement)],
+        cell_data: &[
+            Field::vector("normal", &normal),
+            Field::scalar("opening", &opening),
+            Field::integer("body", &bodies),
         ],
         time: None,
     };

@@ -12,6 +12,7 @@ use fractum_scene::statics::NoEquilibrium;
 use fractum_scene::{EnergyKind, EnergyRole, Scene};
 use serde::{Deserialize, Serialize};
 
+use crate::cracks;
 use crate::error::Failure;
 use crate::record_bonded as bonds;
 
@@ -263,6 +264,13 @@ impl Recorder {
             let name = format!("bonds/bonds-{:05}.vtp", self.state.frames);
             bonds::write_bonds(scene, &self.folder.join(&name))?;
             self.add_to_collection(time, 3, "bonds", name);
+        }
+        let crack = scene.solid.crack_surface();
+        if !crack.facets.is_empty() {
+            fractum_io::atomic::create_folder(&self.folder.join("cracks"))?;
+            let name = format!("cracks/cracks-{:05}.vtp", self.state.frames);
+            cracks::write_facets(&self.folder.join(&name), &scene.solid, &crack)?;
+            self.add_to_collection(time, 4, "cracks", name);
         }
         self.collection.write(&self.folder.join("fields.pvd"))?;
         self.state.frames = next_index(time, self.case.output.fields_every);

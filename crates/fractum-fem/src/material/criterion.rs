@@ -5,17 +5,20 @@ use serde::{Deserialize, Serialize};
 /// The equivalent stress of a criterion, scaled so that uniaxial tension σ gives q = σ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CriterionKind {
-    /// Largest principal stress, max(σ₁, 0).
+    /// Largest principal stress, max(σ₁, 0). Rankine, *Phil. Trans. R. Soc.* 147 (1857) 9-27.
     Rankine,
     /// Mohr-Coulomb with tension cut-off, max(σ₁, (N σ₁ - σ₃) f_t/f_c), N = (1 + sin φ)/(1 - sin φ).
+    /// Chen, *Plasticity in Reinforced Concrete* (1982), ch. 5.
     MohrCoulomb,
     /// Mohr-Coulomb through the tensile strength, σ₁ - σ₃/N: no cut-off, loses strength where σ₃ is compressive.
     PureMohrCoulomb,
-    /// Drucker-Prager cone through the tensile and the compressive strength.
+    /// Drucker-Prager cone through the tensile and the compressive strength. Drucker and Prager, *Q. Appl. Math.* 10 (1952)
+    /// 157-165.
     DruckerPrager,
-    /// Mazars' equivalent strain times E, E √(Σ ⟨ε_i⟩²).
+    /// Mazars' equivalent strain times E, E √(Σ ⟨ε_i⟩²). Mazars, *Eng. Fract. Mech.* 25 (1986) 729-737.
     Mazars,
-    /// Modified Mohr-Coulomb of Oller with independent tensile and compressive strength.
+    /// Modified Mohr-Coulomb with independent tensile and compressive strength. Oller, doctoral thesis, Universitat
+    /// Politècnica de Catalunya (1988).
     ModifiedMohrCoulomb,
 }
 

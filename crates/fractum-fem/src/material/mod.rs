@@ -60,10 +60,3 @@ pub struct DamageLaw {
     /// Relaxation time of the damage driving force [s]; 0 is rate-independent.
     pub rate_time: f64,
 }
-
-impl DamageLaw {
-    /// Characteristic length above which the softening branch would snap back inside one element [m].
-    pub fn largest_length(&self, young_modulus: f64) -> f64 {
-        self.softening.largest_length(young_modulus, self.tensile_strength, self.fracture_energy)
-    }
-}

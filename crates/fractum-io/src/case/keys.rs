@@ -418,7 +418,7 @@ static KEYS: &[KeyDoc] = &[
     key("loads[].gravity.z", K::TimeFunction(D::ACCELERATION), "0", "Component along z"),
 
     key("damping", K::Table, "", "Damping of solids and particles"),
-    key("damping.local", K::Quantity(D::NONE), "0", "Fraction of the unbalanced force that opposes motion, from 0 to below 1; for quasi-static runs"),
+    key("damping.local", K::Quantity(D::NONE), "0", "Fraction a of the unbalanced force that opposes motion, from 0 to below 1; for quasi-static runs; divides the stable step by √(1 + a)"),
     key("damping.mass", K::Quantity(D::RATE), "\"0 1/s\"", "Mass-proportional damping, ≥ 0"),
     key("damping.stiffness", K::Quantity(D::TIME), "\"0 s\"", "Stiffness-proportional damping, ≥ 0"),
     key("damping.bulk_linear", K::Quantity(D::NONE), "0", "Linear bulk viscosity, ≥ 0; for shocks"),

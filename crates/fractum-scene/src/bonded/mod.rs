@@ -364,6 +364,11 @@ impl Bonded {
         }
     }
 
+    /// Kinetic energy of the particles that no solid carries [J].
+    pub(crate) fn kinetic_energy(&self) -> f64 {
+        self.particles.kinetic_energy() - energy_of(&self.particles, &self.tied)
+    }
+
     /// Adds the loads of `time`; returns their work in the half step before [J].
     pub(crate) fn add_loads(&mut self, time: f64, dt_before: f64) -> f64 {
         let Bonded { particles, reference, loads, tied, .. } = self;

@@ -266,6 +266,11 @@ impl Contacts {
         sum
     }
 
+    /// Kinetic energy of the rigid bodies that move freely [J].
+    pub(crate) fn kinetic_energy(&self) -> f64 {
+        self.rigid_bodies.iter().map(RigidBody::kinetic_energy).sum()
+    }
+
     pub(crate) fn start_half_a_step_early(&mut self, dt: f64) {
         let gravity = self.gravity(0.0);
         self.rigid_bodies.iter_mut().for_each(|rigid_body| rigid_body.start_half_a_step_early(dt, &gravity));

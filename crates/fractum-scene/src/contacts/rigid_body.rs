@@ -172,6 +172,15 @@ impl RigidBody {
         }
     }
 
+    /// Kinetic energy along the axes that no drive prescribes [J].
+    pub(super) fn kinetic_energy(&self) -> f64 {
+        let Some(inertia) = self.inertia else { return 0.0 };
+        let free = |axis: &usize| matches!(self.along[*axis], Drive::Force(_) | Drive::Free);
+        let moving: f64 = (0..3).filter(free).map(|axis| inertia.mass * self.frame.velocity[axis].powi(2)).sum();
+        let spin = if self.turns_freely() { self.frame.spin } else { Vec3::zeros() };
+        0.5 * (moving + spin.dot(&(inertia_in_space(&inertia, &self.frame.rotation) * spin)))
+    }
+
     /// The velocities given at t = 0 become those of half a step before it.
     pub(super) fn start_half_a_step_early(&mut self, dt: f64, gravity: &Vec3) {
         for axis in 0..3 {

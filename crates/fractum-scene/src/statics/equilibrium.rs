@@ -94,7 +94,7 @@ impl Scene {
         self.clock.time = time;
         self.clock.step += 1;
         self.book_equilibrium()?;
-        let report = self.release_cut_elements();
+        let report = self.release_cut_elements(0.0);
         if report.removed > 0 {
             // `inner` is the negative of the forces that held the displacements.
             let mut held = vec![Vec3::zeros(); displacement.len()];

@@ -1,0 +1,182 @@
+//! The surface that the removal of elements has opened.
+//!
+//! Nothing is kept for it: it follows from the mesh and from which elements are left, so that a solid that loses none pays
+//! nothing.
+
+use fractum_math::{Ragged, Vec3};
+
+use crate::body::Shape;
+use crate::solid::{BodyModel, Solid};
+
+/// Sides of a tetrahedron as its neighbours see them, counter-clockwise from inside it: nodes, the opposite node, and an
+/// edge of the side by its local number, with the node of the side that is not on it.
+const SIDES_T4: [([usize; 3], usize, usize, usize); 4] =
+    [([0, 1, 2], 3, 0, 2), ([0, 3, 1], 2, 0, 3), ([0, 2, 3], 1, 1, 3), ([1, 3, 2], 0, 3, 3)];
+
+/// Sides of a triangle as its neighbours see them; a side is an edge.
+const SIDES_T3: [([usize; 3], usize, usize, usize); 3] =
+    [([1, 0, 0], 2, 0, 0), ([2, 1, 1], 0, 1, 1), ([0, 2, 2], 1, 2, 2)];
+
+/// A facet of an element that is still there, exposed by the removal of the element before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrackFacet {
+    /// Body it belongs to.
+    pub body: usize,
+    /// Element behind it.
+    pub element: u32,
+    /// Removed element that was before it.
+    pub removed: u32,
+    /// Nodes, counter-clockwise as seen from the crack; a side of a triangle repeats its second node.
+    pub nodes: [u32; 3],
+    /// Present centre [m].
+    pub centre: Vec3,
+    /// Present area; length times thickness in the plane [m²].
+    pub area: f64,
+    /// Present unit normal, into the crack.
+    pub normal: Vec3,
+    /// Distance along the normal by which the far node of the removed element has moved away [m]; negative if it came nearer.
+    pub opening: f64,
+}
+
+/// All facets exposed by removal.
+#[derive(Clone, Debug, Default)]
+pub struct CrackSurface {
+    /// Body by body, in the order of the removed elements.
+    pub facets: Vec<CrackFacet>,
+    /// Facets that share an edge with each facet (an end, in the plane), ascending.
+    pub neighbours: Ragged,
+}
+
+impl CrackSurface {
+    /// Area of both faces together [m²].
+    pub fn area(&self) -> f64 {
+        self.facets.iter().map(|facet| facet.area).sum::<f64>() + 0.0
+    }
+
+    fn new(facets: Vec<CrackFacet>) -> Self {
+        // Edges with their facets; in the plane the ends of the sides.
+        let mut shared: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * facets.len());
+        for (index, facet) in (0..).zip(&facets) {
+            let [a, b, c] = facet.nodes;
+            let pairs = if b == c { vec![[a, a], [b, b]] } else { vec![[a, b], [b, c], [c, a]] };
+            shared.extend(pairs.into_iter().map(|[i, j]| ([i.min(j), i.max(j)], index)));
+        }
+        shared.sort_unstable();
+        let mut rows = vec![Vec::new(); facets.len()];
+        for group in shared.chunk_by(|a, b| a.0 == b.0) {
+            for &(_, one) in group {
+                rows[one as usize].extend(group.iter().map(|&(_, other)| other).filter(|&other| other != one));
+            }
+        }
+        for row in &mut rows {
+            row.sort_unstable();
+            row.dedup();
+        }
+        CrackSurface { facets, neighbours: Ragged::from_rows(&rows) }
+    }
+}
+
+impl Solid {
+    /// The surface that the removal of elements has opened, at the present displacements.
+    pub fn crack_surface(&self) -> CrackSurface {
+        let mut facets = Vec::new();
+        for (body, model) in self.bodies.iter().enumerate() {
+            for removed in (0u32..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(element, _)| element) {
+                self.add_exposed(body, removed, &mut facets);
+            }
+        }
+        CrackSurface::new(facets)
+    }
+
+    /// Adds the facets that the removal of one element exposes.
+    fn add_exposed(&self, body: usize, removed: u32, facets: &mut Vec<CrackFacet>) {
+        let model = &self.bodies[body];
+        let Some(edges) = &model.edges else { return };
+        let element = model.body.elements[removed as usize];
+        let sides = if model.body.shape == Shape::T4 { &SIDES_T4[..] } else { &SIDES_T3[..] };
+        for &(local, opposite, edge, third) in sides {
+            let around = model.elements_of_edge.row(edges.of_element[removed as usize][edge] as usize);
+            if let Some(behind) = behind(model, around, element[third]) {
+                let nodes = local.map(|k| element[k]);
+                facets.push(self.crack_facet(body, behind, removed, nodes, element[opposite]));
+            }
+        }
+    }
+
+    fn crack_facet(&self, body: usize, element: u32, removed: u32, nodes: [u32; 3], opposite: u32) -> CrackFacet {
+        let [a, b, c] = nodes.map(|node| self.position(node as usize));
+        let moved = nodes.map(|node| self.displacement[node as usize]);
+        let (area, centre, mean) = if nodes[1] == nodes[2] {
+            let along = b - a;
+            let thickness = self.bodies[body].body.thickness;
+            (Vec3::new(along.y, -along.x, 0.0) * thickness, (a + b) * 0.5, (moved[0] + moved[1]) * 0.5)
+        } else {
+            ((b - a).cross(&(c - a)) * 0.5, (a + b + c) / 3.0, (moved[0] + moved[1] + moved[2]) / 3.0)
+        };
+        let normal = area.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
+        let opening = (self.displacement[opposite as usize] - mean).dot(&normal);
+        CrackFacet { body, element, removed, nodes, centre, area: area.norm(), normal, opening }
+    }
+}
+
+/// The element with the node `third` among those around an edge that are still there.
+fn behind(model: &BodyModel, around: &[u32], third: u32) -> Option<u32> {
+    let has = |&&e: &&u32| model.alive[e as usize] && model.body.elements[e as usize].contains(&third);
+    around.iter().find(has).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Body;
+    use crate::material::{Criterion, DamageLaw, Elastic, Softening};
+    use fractum_mesh::generate::{structured_box, structured_rectangle};
+
+    fn broken(shape: Shape, nodes: Vec<Vec3>, elements: Vec<[u32; 4]>) -> Solid {
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
+        let law = DamageLaw {
+            criterion: Criterion::rankine(),
+            tensile_strength: 3e6,
+            fracture_energy: 100.0,
+            softening: Softening::Exponential,
+            residual: 0.02,
+            unilateral: false,
+            rate_time: 0.0,
+        };
+        let mut body = Body::new("bar", shape, elements, elastic).smoothed().with_damage(law);
+        body.thickness = 0.3;
+        let mut solid = Solid::new(nodes, vec![body]).unwrap();
+        assert!(solid.crack_surface().facets.is_empty());
+        // The column of elements between x = 2 and 3 opens by 5 mm.
+        for (u, p) in solid.displacement.iter_mut().zip(&solid.reference) {
+            u.x = if p.x > 0.25 { 5e-3 } else { 0.0 };
+        }
+        solid.update_internal_forces(0.0, false);
+        solid.remove_cut_elements(0.0, &mut Vec::new());
+        solid
+    }
+
+    #[test]
+    fn a_bar_torn_in_two_shows_both_faces_of_its_cross_section() {
+        let flat = structured_rectangle([5, 3], [0.5, 0.2], None);
+        let elements = flat.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
+        let deep = structured_box([5, 3, 2], Vec3::new(0.5, 0.2, 0.3), None);
+        let solids = [broken(Shape::T3, flat.nodes, elements), broken(Shape::T4, deep.nodes, deep.tetrahedra)];
+        for solid in &solids {
+            let crack = solid.crack_surface();
+            let section = 0.2 * 0.3;
+            assert!((crack.area() / (2.0 * section) - 1.0).abs() < 1e-12, "{}", crack.area());
+            for (index, facet) in crack.facets.iter().enumerate() {
+                assert!((facet.opening - 5e-3).abs() < 1e-12 && facet.normal.x.abs() > 1.0 - 1e-12, "{facet:?}");
+                assert!(solid.alive(0)[facet.element as usize] && !solid.alive(0)[facet.removed as usize]);
+                let side = if facet.centre.x < 0.25 { 1.0 } else { -1.0 };
+                assert_eq!(facet.normal.x.signum(), side);
+                for &other in crack.neighbours.row(index) {
+                    assert_eq!(crack.facets[other as usize].normal.x.signum(), side);
+                    assert!(crack.neighbours.row(other as usize).contains(&(index as u32)));
+                }
+                assert!(!crack.neighbours.row(index).is_empty());
+            }
+        }
+    }
+}

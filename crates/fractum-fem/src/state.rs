@@ -1,0 +1,127 @@
+//! What changes in a solid during a run, for checkpoints.
+
+use fractum_math::{Sym3, Vec3};
+use serde::{Deserialize, Serialize};
+
+use crate::damage::EdgeDamage;
+use crate::evaluate::{Block, BlockLaw};
+use crate::gate::{Gate, GateState};
+use crate::solid::Solid;
+
+/// What changes in a body during a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodyState {
+    /// Elements that are still there.
+    pub alive: Vec<bool>,
+    /// Edge histories; empty without damage.
+    pub edges: Vec<EdgeDamage>,
+    /// Damage and last effective stress of elements (standard formulation with damage).
+    pub elements: Vec<(f64, Sym3)>,
+    /// Crack-plane gate; empty without one.
+    pub gate: GateState,
+}
+
+/// What changes in a solid during a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SolidState {
+    /// Displacement [m].
+    pub displacement: Vec<Vec3>,
+    /// Velocity at the half step [m/s].
+    pub velocity: Vec<Vec3>,
+    /// Bodies in order.
+    pub bodies: Vec<BodyState>,
+    /// Energy dissipated by damage, block by block [J].
+    pub dissipated: Vec<f64>,
+    /// Energy dissipated by viscosity [J].
+    pub viscous_dissipation: f64,
+    /// Viscous stress times volume of the cells, block by block; empty without viscosity.
+    pub viscous: Vec<Vec<Sym3>>,
+}
+
+impl Solid {
+    /// Everything that changes, for a checkpoint.
+    pub fn state(&self) -> SolidState {
+        SolidState {
+            displacement: self.displacement.clone(),
+            velocity: self.velocity.clone(),
+            bodies: (0..self.bodies.len()).map(|b| self.body_state(b)).collect(),
+            dissipated: self.blocks.iter().map(Block::dissipated).collect(),
+            viscous_dissipation: self.viscous_dissipation,
+            viscous: self.blocks.iter().map(|b| b.viscous.clone()).collect(),
+        }
+    }
+
+    /// Edge histories of a body in the order of its edges; empty without damage.
+    pub fn edge_damage(&self, body: usize) -> Vec<EdgeDamage> {
+        let model = &self.bodies[body];
+        let Some(edges) = model.edges.as_ref().filter(|_| model.body.damage.is_some()) else { return Vec::new() };
+        let mut all = vec![EdgeDamage::intact(f64::INFINITY); edges.nodes.len()];
+        for (_, field) in self.edge_fields().filter(|(of, _)| *of == body) {
+            field.edges.iter().zip(&field.state).for_each(|(&edge, state)| all[edge as usize] = *state);
+        }
+        all
+    }
+
+    /// Share of its strength that every edge of a body has lost, 0 to 1, in the order of its edges; empty without damage.
+    ///
+    /// This is 1 − χ of the softening curve; damage measures the loss of stiffness and comes close to 1 long before.
+    pub fn lost_strength(&self, body: usize) -> Vec<f64> {
+        let strength = |edge: u32| self.edge(body, edge).map_or(f64::INFINITY, |(field, index)| field.strength[index]);
+        let lost = |(index, edge): (u32, EdgeDamage)| match edge.damage {
+            0.0 => 0.0,
+            damage => (1.0 - (1.0 - damage) * edge.kappa / strength(index)).clamp(0.0, 1.0),
+        };
+        (0..).zip(self.edge_damage(body)).map(lost).collect()
+    }
+
+    fn body_state(&self, body: usize) -> BodyState {
+        let model = &self.bodies[body];
+        let of = |&(block, cell): &(u32, u32)| match &self.blocks[block as usize].law {
+            BlockLaw::Standard(law) => (law.damage[cell as usize], law.stress[cell as usize]),
+            _ => (0.0, Sym3::ZERO),
+        };
+        let elements = if model.standard.is_some() { model.location.iter().map(of).collect() } else { Vec::new() };
+        let gate = model.gate.as_ref().map_or_else(GateState::default, Gate::state);
+        BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements, gate }
+    }
+
+    /// Puts a saved state back. The solid must have been built from the same bodies.
+    ///
+    /// # Panics
+    /// If the sizes of the state are those of another solid.
+    pub fn restore(&mut self, state: SolidState) {
+        assert_eq!(state.displacement.len(), self.reference.len(), "state of another solid");
+        self.displacement = state.displacement;
+        self.velocity = state.velocity;
+        self.viscous_dissipation = state.viscous_dissipation;
+        for (index, body) in state.bodies.into_iter().enumerate() {
+            let Solid { bodies, blocks, .. } = self;
+            let model = &mut bodies[index];
+            let cells = blocks.iter_mut().filter(|block| block.body == index).filter_map(Block::edge_field_mut);
+            let standard = model.standard.as_mut().map(|standard| &mut standard.field);
+            cells.chain(standard).for_each(|field| field.restore(&body.edges));
+            for (&(block, cell), saved) in model.location.iter().zip(&body.elements) {
+                if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
+                    (law.damage[cell as usize], law.stress[cell as usize]) = *saved;
+                }
+            }
+            if let Some(gate) = &mut model.gate {
+                gate.restore(&body.gate);
+            }
+            model.alive = body.alive;
+            let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
+            self.rebuild_cells_around(index, &removed);
+            self.close_edges(index);
+        }
+        for (block, viscous) in self.blocks.iter_mut().zip(state.viscous) {
+            block.viscous = viscous;
+        }
+        for (block, dissipated) in self.blocks.iter_mut().zip(state.dissipated) {
+            match &mut block.law {
+                BlockLaw::Edges(law) => law.dissipated = dissipated,
+                BlockLaw::Standard(law) => law.dissipated = dissipated,
+                BlockLaw::Elastic { .. } => {}
+            }
+        }
+    }
+}
