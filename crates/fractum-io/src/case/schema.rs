@@ -2,7 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use super::keys::{KeyKind, TIME_FUNCTION, keys};
+use super::key_kind::KeyKind;
+use super::keys::{TIME_FUNCTION, keys};
 
 /// The schema (JSON Schema draft 2020-12) of a case file, made from the list of keys.
 pub fn schema() -> Value {

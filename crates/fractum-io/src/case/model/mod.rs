@@ -63,7 +63,6 @@ pub struct Case {
     pub expect: Vec<Expect>,
     /// Whether `fractum verify --quick` runs this case.
     pub verify_quick: bool,
-    pub(super) warnings: Vec<Diagnostic>,
 }
 
 /// The input of a case.
@@ -77,6 +76,7 @@ pub struct CaseSource {
     pub overrides: Vec<(String, String)>,
     /// Files that it reads besides the mesh, as written there, with their contents.
     pub tables: Vec<(String, Vec<u8>)>,
+    pub(super) warnings: Vec<Diagnostic>,
 }
 
 /// Where the mesh comes from.
@@ -330,7 +330,7 @@ pub enum GroupUse {
 impl Case {
     /// Doubtful choices that do not keep the case from running.
     pub fn warnings(&self) -> &[Diagnostic] {
-        &self.warnings
+        &self.source.warnings
     }
 
     /// Splits the name of a set of particles, `BODY` or `BODY.SET`, into the index of its body and the set.

@@ -73,6 +73,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
         text: text.to_string(),
         overrides: overrides.to_vec(),
         tables: Vec::new(),
+        warnings: Vec::new(),
     };
     let case = case(&reader, &root, source);
     parameters::report_unused(&reader);
@@ -83,7 +84,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
     match case {
         Some(mut case) if !wrong => {
             case.source.tables = tables;
-            case.warnings = diagnostics.0;
+            case.source.warnings = diagnostics.0;
             Ok(case)
         }
         _ => Err(diagnostics),
@@ -165,7 +166,6 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
         output: output?,
         expect: expect?,
         verify_quick,
-        warnings: Vec::new(),
     })
 }
 
