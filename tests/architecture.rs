@@ -203,3 +203,126 @@ fn every_crate_has_a_front_page_and_the_rules_of_the_workspace() {
         assert!(manifest["package"]["description"].as_str().is_some_and(|text| !text.is_empty()), "{name}");
     }
 }
+
+/// What is larger than [`FUNCTION`], [`FIELDS`] or [`FILE`] allow, and why: file, and the function or type (none for a file).
+const LARGER: [(&str, &str, &str); 12] = [
+    (
+        "fractum-calibrate/src/inversion.rs",
+        "invert",
+        "one iteration with its limits; to be cut with the next change there",
+    ),
+    ("fractum-dem/src/bond/network.rs", "sum_bonds", "one loop over bonds with what it measures"),
+    ("fractum-dem/src/statics/events.rs", "QuasiStatic", "the state of a cascade at rest, saved as one value"),
+    (
+        "fractum-fem/src/solid.rs",
+        "",
+        "bodies, state and restore of solids; edge damage moves out with the next formulation",
+    ),
+    ("fractum-fem/src/solid.rs", "new", "checks and layout of all bodies"),
+    ("fractum-io/src/build/contacts.rs", "with_contacts", "pairs of every kind in one order, which decides the bits"),
+    ("fractum-io/src/build/mod.rs", "build", "the order in which a scene is put together"),
+    ("fractum-io/src/case/keys.rs", "", "the table of all keys"),
+    ("fractum-io/src/case/model/mod.rs", "Case", "one field per table of a case file"),
+    ("fractum-pack/src/certificate.rs", "Certificate", "one field per figure of the certificate"),
+    ("fractum-prepare/src/bonded.rs", "make", "the way from a shape to a bonded body"),
+    ("fractum/src/command/lab_break.rs", "BreakArguments", "one field per option of the command line"),
+];
+/// Lines of a function, fields of a type and lines of a file without its tests, at most.
+const FUNCTION: usize = 80;
+const FIELDS: usize = 15;
+const FILE: usize = 450;
+
+/// Lines of every function and fields of every type of a source, by name; rustfmt sets the closing brace under the first word.
+fn extents(code: &str) -> Vec<(String, &'static str, usize)> {
+    let lines: Vec<&str> = code.lines().collect();
+    let mut found = Vec::new();
+    for (first, line) in lines.iter().enumerate() {
+        let indent = &line[..line.len() - line.trim_start().len()];
+        let words: Vec<&str> =
+            line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|w| !w.is_empty()).collect();
+        let named = |keyword: &str| {
+            let at = words.iter().position(|w| *w == keyword)?;
+            let only =
+                words[..at].iter().all(|w| ["pub", "crate", "super", "in", "const", "unsafe", "async"].contains(w));
+            only.then(|| words.get(at + 1).map(|w| (*w).to_owned())).flatten()
+        };
+        let Some((kind, name)) =
+            named("fn").map(|name| ("function", name)).or_else(|| named("struct").map(|name| ("type", name)))
+        else {
+            continue;
+        };
+        // The body begins after the signature; what ends before has none.
+        let Some(opening) = (first..lines.len()).find(|&l| lines[l].ends_with(['{', ';', '}'])) else { continue };
+        if !lines[opening].ends_with('{') {
+            continue;
+        }
+        let end = format!("{indent}}}");
+        let Some(last) = (opening..lines.len()).find(|&l| lines[l] == end) else { continue };
+        let field = |l: &&&str| l.starts_with(&format!("{indent}    ")) && !l.trim_start().starts_with(['/', '#', '}']);
+        let size =
+            if kind == "type" { lines[opening + 1..last].iter().filter(field).count() } else { last - first + 1 };
+        found.push((name, kind, size));
+    }
+    found
+}
+
+#[test]
+fn functions_types_and_files_stay_small() {
+    let mut wrong = Vec::new();
+    for (name, _) in ARROWS {
+        for (path, code) in sources(name) {
+            let file = path.strip_prefix(crates()).unwrap_or(&path).to_string_lossy().into_owned();
+            let is_known = |of: &str| LARGER.iter().any(|(known, name, _)| *known == file && *name == of);
+            if code.lines().count() > FILE && !is_known("") {
+                wrong.push(format!("{file}: {} lines", code.lines().count()));
+            }
+            for (of, kind, size) in extents(&code) {
+                let limit = if kind == "type" { FIELDS } else { FUNCTION };
+                if size > limit && !is_known(&of) {
+                    wrong.push(format!("{file}: {kind} {of}: {size}, at most {limit}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn sizes_are_measured_as_they_are_written() {
+    let code = "pub(crate) struct A {\n    /// x\n    pub a: f64,\n    b: u8,\n}\n\nimpl A {\n    fn f(\n        &self,\n    ) -> f64 {\n        1.0\n    }\n    fn g(&self);\n}\n";
+    assert_eq!(extents(code), [("A".to_owned(), "type", 2), ("f".to_owned(), "function", 5)]);
+}
+
+/// The crates from the top down, each with those it names that no other one of its names leads to.
+fn drawing() -> String {
+    let below =
+        |name: &str| ARROWS.iter().find(|(n, _)| n.trim_start_matches("fractum-") == name).map_or(&[][..], |a| a.1);
+    let mut text = String::new();
+    for (name, named) in ARROWS.iter().rev() {
+        let short = name.trim_start_matches("fractum-");
+        let implied = |part: &str| named.iter().any(|other| *other != part && reaches(below, other, part));
+        let direct: Vec<&str> = named.iter().copied().filter(|part| !implied(part)).collect();
+        text.push_str(format!("{short:<10} → {}", direct.join(", ")).trim_end_matches([' ', '→']));
+        text.push('\n');
+    }
+    text
+}
+
+fn reaches(below: impl Fn(&str) -> &'static [&'static str] + Copy, from: &str, to: &str) -> bool {
+    below(from).iter().any(|next| *next == to || reaches(below, next, to))
+}
+
+#[test]
+fn the_drawing_in_the_docs_is_that_of_the_table() {
+    // `FRACTUM_BLESS=1 cargo test -p fractum-tests --test architecture` writes it again.
+    let path = crates().join("../docs/architecture.md");
+    let text = fs::read_to_string(&path).unwrap();
+    let start =
+        text.find("## Crates and arrows").and_then(|at| text[at..].find("```\n").map(|fence| at + fence + 4)).unwrap();
+    let end = start + text[start..].find("```").unwrap();
+    if std::env::var_os("FRACTUM_BLESS").is_some() {
+        fs::write(&path, [&text[..start], &drawing(), &text[end..]].concat()).unwrap();
+        return;
+    }
+    assert_eq!(&text[start..end], drawing(), "FRACTUM_BLESS=1 writes it again");
+}

@@ -116,6 +116,7 @@ fn crash(target: Target, particles: bool) -> Scene {
         damping: LocalDamping::default(),
         stiffness_time: 0.0,
         balance_stop: 1e-2,
+        joined_below: 0.95,
     };
     let (loads, supports) = (Loads::new(Vec::new(), solid.mass.len()), Supports::new(Vec::new(), &solid.reference));
     Scene::new(solid, supports.unwrap(), loads, debris, Vec::new(), &surface, settings)

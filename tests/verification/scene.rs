@@ -17,6 +17,7 @@ fn settings(end: f64) -> SceneSettings {
         damping: LocalDamping::default(),
         stiffness_time: 0.0,
         balance_stop: 1e-2,
+        joined_below: 0.95,
     }
 }
 

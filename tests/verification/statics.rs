@@ -42,6 +42,7 @@ fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>) -> Scene {
         damping: LocalDamping::default(),
         stiffness_time: 0.0,
         balance_stop: 1e-2,
+        joined_below: 0.95,
     };
     Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
 }

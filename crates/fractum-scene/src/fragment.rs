@@ -1,9 +1,6 @@
 use fractum_fem::Solid;
 use fractum_math::{Vec3, connected};
 
-/// Share of its strength that an edge may have lost and still join its nodes, where nothing is said.
-pub(crate) const JOINED_BELOW: f64 = 0.95;
-
 /// A connected piece of a solid or of a bonded body. A fragment has at least two nodes or particles; what is left are
 /// single ones.
 #[derive(Clone, Debug, PartialEq)]

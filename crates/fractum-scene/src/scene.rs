@@ -7,7 +7,7 @@ use crate::conditions::{Loads, Supports};
 use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
-use crate::fragment::{Fragment, JOINED_BELOW, joined, single_share, solid_pieces};
+use crate::fragment::{Fragment, joined, single_share, solid_pieces};
 use crate::ledger::{Books, Ledger};
 
 /// How much faster than it is a wall contact counts in the stable step: the whole weight of a body may come on few of
@@ -39,7 +39,6 @@ pub struct Scene {
     pub(crate) stable: StableStep,
     pub(crate) removals: Removals,
     pub(crate) contact_frequency_square: f64,
-    joined_below: f64,
 }
 
 /// Elements that have left the solids.
@@ -62,6 +61,8 @@ pub struct SceneSettings {
     pub stiffness_time: f64,
     /// Relative residual of the energy balance that stops the run.
     pub balance_stop: f64,
+    /// Share of its strength that an edge may have lost and still join a fragment, 0 to 1.
+    pub joined_below: f64,
 }
 
 /// Everything that changes during a run.
@@ -148,17 +149,10 @@ impl Scene {
             stable,
             removals: Removals::default(),
             contact_frequency_square: 0.0,
-            joined_below: JOINED_BELOW,
         };
         scene.update_contact_frequency();
         scene.clock = Clock::new(scene.next_dt(0.0));
         scene
-    }
-
-    /// The same scene whose fragments are joined by edges that have lost less than this share of their strength.
-    pub fn with_fragments_joined_below(mut self, share: f64) -> Self {
-        self.joined_below = share;
-        self
     }
 
     /// The same scene with bonded bodies, before its first step.
@@ -322,7 +316,7 @@ impl Scene {
     /// Fragments of solids and bonded bodies, heaviest first: pieces of at least two nodes or particles, joined by edges
     /// that keep some of their strength, by bonds and by ties.
     pub fn fragments(&self) -> Vec<Fragment> {
-        let mut found = solid_pieces(&self.solid, self.joined_below);
+        let mut found = solid_pieces(&self.solid, self.settings.joined_below);
         if !self.bonded.is_empty() {
             found = joined(found, self.bonded.fragments(), self.ties.links());
             found.sort_by(|a, b| b.mass.total_cmp(&a.mass));
@@ -333,7 +327,7 @@ impl Scene {
 
     /// Share of the mass of every solid body that has come apart into single nodes.
     pub fn single_share(&self) -> Vec<f64> {
-        single_share(&self.solid, self.joined_below)
+        single_share(&self.solid, self.settings.joined_below)
     }
 
     /// Everything that changes, for a checkpoint.

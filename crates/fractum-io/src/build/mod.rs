@@ -179,8 +179,7 @@ impl Context<'_> {
             self.settings(),
         )
         .with_bonded(bonded)
-        .with_ties(&ties.attachments)
-        .with_fragments_joined_below(self.case.output.joined_below);
+        .with_ties(&ties.attachments);
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
         let scene =
             self.with_contacts(scene, &parts, &boundary_of_parts, &surface, rigid_bodies, &tied, &mut warnings)?;
@@ -225,6 +224,7 @@ impl Context<'_> {
             damping: LocalDamping { local: self.case.damping.local, mass_rate: self.case.damping.mass },
             stiffness_time: self.case.damping.stiffness,
             balance_stop: solver.balance_stop,
+            joined_below: self.case.output.joined_below,
         }
     }
 

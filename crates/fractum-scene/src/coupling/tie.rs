@@ -352,6 +352,7 @@ mod tests {
             damping: LocalDamping::default(),
             stiffness_time: 0.0,
             balance_stop: 1e-2,
+            joined_below: 0.95,
         };
         let loads = Loads::new(loads, solid.reference.len());
         let supports = Supports::new(Vec::new(), &solid.reference).unwrap();
