@@ -32,6 +32,7 @@ fn settings(end: f64) -> SceneSettings {
         damping: LocalDamping::default(),
         stiffness_time: 0.0,
         balance_stop: f64::INFINITY,
+        joined_below: 0.95,
     }
 }
 
