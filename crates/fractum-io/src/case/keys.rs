@@ -369,7 +369,7 @@ static KEYS: &[KeyDoc] = &[
     key("probes[].crack.along", K::Direction, "required", "Direction"),
     key("probes[].crack.point", K::Point(D::LENGTH), "[0, 0, 0]", "helix, cone and cone_share only: a point of the axis; for a cone the one in the surface, with the direction out of it"),
     key("probes[].crack.where", K::Condition, "", "Which edges and bonds count, by their middles; absent means all"),
-    key("probes[].expression", K::ProbeExpression, "", "Expression of t and probes above it; max, min, absmax, mean, final, time_of_max, speed (of a probe) and at(probe, time) make it one number at the end of the run"),
+    key("probes[].expression", K::ProbeExpression, "", "Expression of t and probes above it; max, min, absmax, mean, final, time_of_max, front_speed (of a probe) and at(probe, time) make it one number at the end of the run"),
     key("probes[].unit", K::Unit(None), "from the expression", "Expression only: its SI unit; required where a factor without unit leaves it open"),
 
     key("output", K::Table, "", "What is written, and how often"),

@@ -49,7 +49,7 @@ const REDUCTIONS: [(&str, Take); 7] = [
     ("mean", Take::Mean),
     ("final", Take::Final),
     ("time_of_max", Take::TimeOfMax),
-    ("speed", Take::Speed),
+    ("front_speed", Take::Speed),
 ];
 
 /// Reads all probes in order.
@@ -395,7 +395,7 @@ impl Names for ProbeNames<'_> {
         let kind = match (take, kind) {
             (Take::TimeOfMax, _) => Type::number(Dimension::TIME),
             (Take::Speed, Type::Number { dimension, .. }) => {
-                let out_of_range = || format!("speed({name}) has a dimension out of range");
+                let out_of_range = || format!("front_speed({name}) has a dimension out of range");
                 Type::number(dimension.over(Dimension::TIME).ok_or_else(out_of_range)?)
             }
             _ => kind,
