@@ -178,7 +178,9 @@ fn what_cannot_be_packed_bonded_or_calibrated_is_refused_with_a_remedy() {
         assert!(ended.stderr.starts_with("case.toml:"), "{to}: {}", ended.stderr);
     }
     let shape = &small[small.find("shape = ").unwrap()..small.find("particles").unwrap()];
-    let place = Workplace::new(&small.replace(shape, "shape = \"stl\"\nfile = \"open.stl\"\n"));
+    let small = small.replace(shape, "shape = \"stl\"\nfile = \"open.stl\"\n");
+    // A triangulated surface is one wall.
+    let place = Workplace::new(&small.replace("bar.x-", "bar.surface").replace("bar.x+", "bar.surface"));
     let open = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
     fs::write(place.path("open.stl"), open).unwrap();
     let ended = place.fractum(&["check", "case.toml"]);
@@ -210,8 +212,9 @@ fn the_scheme_of_tchamwa_and_wielgosz_damps_a_front_and_closes_the_balance() {
         assert_eq!(common::summary(&place, "out")["state_hash"], summary["state_hash"]);
         [energy("damping"), energy("external")]
     };
-    let [none, _] = energies("");
-    assert_eq!(none, 0.0);
+    // Without damping, only the half step before the start loses the rounding of the forces at rest.
+    let [none, work] = energies("");
+    assert!(none.abs() < 1e-12 * work, "{none} of {work}");
     let [little, work] = energies("tchamwa_wielgosz = 1.05");
     let [much, more_work] = energies("tchamwa_wielgosz = 1.3");
     let (little, much) = (little / work, much / more_work);

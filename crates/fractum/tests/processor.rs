@@ -17,7 +17,7 @@ fn assert_same_bits_on_an_older_processor(case: &str) {
         let output = command.env("GLIBC_TUNABLES", capabilities).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         let summary = summary(&place, folder);
-        assert!(summary["counts"]["broken_edges"].as_u64() > Some(0), "{}", summary["counts"]);
+        assert!(summary["energy"]["damage"].as_f64() > Some(0.0), "{}", summary["energy"]);
         summary["state_hash"].as_str().unwrap().to_owned()
     };
     assert_eq!(hash("all", ""), hash("fewer", OLDER_PROCESSOR));

@@ -29,15 +29,17 @@ pub struct BondedBody {
 }
 
 impl BondedBody {
-    /// Names of the sets of its particles at the walls; unknown for a packing made before.
+    /// Names of the sets of its particles at the walls; unknown for a packing made before, and for mesh groups, whose walls
+    /// are those of a box or a cylinder where they are one.
     pub fn wall_names(&self) -> Option<&'static [&'static str]> {
         let PackingSource::Shape { shape, .. } = &self.packing else { return None };
         Some(match shape.value {
-            _ if self.replaces.is_some() => Domain::SURFACE_WALLS,
+            BondedShape::Group(_) => return None,
+            _ if self.replaces.is_some() => return None,
             BondedShape::Box { .. } => Domain::BOX_WALLS,
             BondedShape::Cylinder { .. } => Domain::CYLINDER_WALLS,
             BondedShape::Sphere { .. } => Domain::SPHERE_WALLS,
-            BondedShape::Group(_) | BondedShape::Stl { .. } => Domain::SURFACE_WALLS,
+            BondedShape::Stl { .. } => Domain::SURFACE_WALLS,
         })
     }
 }
