@@ -179,6 +179,11 @@ impl Scene {
         self
     }
 
+    /// Goes on with the supports, loads and settings of another scene of the same solids.
+    pub fn begin_stage(&mut self, next: Scene) {
+        (self.supports, self.loads, self.settings) = (next.supports, next.loads, next.settings);
+    }
+
     /// Takes everything that overlaps as it stands, before the first step: it gives no force, and touches no nearer than now until
     /// it has parted.
     pub fn accept_initial_overlaps(&mut self) {

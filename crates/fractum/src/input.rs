@@ -22,6 +22,8 @@ pub struct Input {
     pub mesh_hash: u128,
     /// The scene at t = 0.
     pub built: BuiltScene,
+    /// The later stages: their case, with the scene at t = 0 that has their supports and loads.
+    pub later: Vec<(Case, BuiltScene)>,
     /// What became of the bonded bodies.
     pub bonded: Vec<BondedReport>,
     /// What took how long to make ready.
@@ -48,8 +50,13 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
     let made = prepare_bodies(&case, &mesh, cache)?;
     let mut built = build_scene(&case, &mesh, made.prepared, facets(&case)?)?;
     built.warnings.extend(made.warnings);
+    let stage = |stage: &Case| {
+        let built = build_scene(stage, &mesh, Vec::new(), facets(stage)?)?;
+        Ok((stage.clone(), built))
+    };
+    let later = case.later.iter().map(stage).collect::<Result<_, Diagnostics>>()?;
     let choice = choose(&case, &mut built);
-    Ok(Input { case, mesh, mesh_hash, built, bonded: made.reports, timings: made.timings, choice })
+    Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, timings: made.timings, choice })
 }
 
 /// The mesh in metres, and the hash of its file.

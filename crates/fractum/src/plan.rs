@@ -1,22 +1,18 @@
 //! What a run will do: bodies, physics on and skipped, time step, size, time.
 
-use fractum_math::elementary::cbrt;
+mod bodies;
+
 use std::fmt;
 
-use fractum_dem::FractureCriterion as BondCriterion;
-use fractum_dem::criterion::{CriterionParameter, Level};
-use fractum_fem::{Formulation, Kinematics, Plane, Shape};
+use fractum_fem::{Formulation, Kinematics, Shape};
 use fractum_io::build::{BuiltScene, TieReport};
-use fractum_io::case::model::{
-    BodyKind, Case, LoadKind, Material, MeshSource, RigidBody, RigidShape, Selection, SolidBody,
-};
+use fractum_io::case::model::{Case, LoadKind, MeshSource, Selection};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
 use fractum_scene::{BondedBody, Scene};
 
 use crate::input::Input;
-use fractum_prepare::{BondedReport, Origin};
 
 /// Nanoseconds per element and step on one core of a common machine: standard, smoothed, smoothed with damage.
 const COST: [f64; 3] = [20.0, 45.0, 50.0];
@@ -49,7 +45,7 @@ impl fmt::Display for Plan {
 impl Plan {
     /// The plan of a case that was read.
     pub fn new(input: &Input) -> Self {
-        let Input { case, mesh, built, bonded, choice, .. } = input;
+        let Input { case, mesh, built, later, bonded, choice, .. } = input;
         let mut plan = Plan { lines: Vec::new() };
         let scene = &built.scene;
         if !case.title.is_empty() {
@@ -60,26 +56,39 @@ impl Plan {
         }
         plan.describe_bodies(case, scene, bonded);
         plan.describe_ties(&built.ties);
+        if !case.source.stage.is_empty() {
+            plan.add("stage", &case.source.stage);
+        }
         plan.describe_conditions(case, mesh, scene);
         plan.describe_physics(case, scene);
         if let Some(choice) = choice {
             plan.add("choice", choice);
         }
+        plan.describe_solver(case, built);
+        for (case, built) in later {
+            plan.add("stage", &case.source.stage);
+            plan.describe_conditions(case, mesh, &built.scene);
+            plan.describe_solver(case, built);
+        }
+        plan
+    }
+
+    fn describe_solver(&mut self, case: &Case, built: &BuiltScene) {
+        let scene = &built.scene;
         match &built.statics {
-            Some(settings) => plan.describe_statics(scene, settings),
+            Some(settings) => self.describe_statics(scene, settings),
             None if built.bonded_statics.is_some() => {
                 let unknowns = 6 * scene.bonded.particles.len() - scene.bonded.held_count();
                 let breaks = scene.bonded.bodies().iter().any(BondedBody::can_break);
                 let path = if breaks { "from break to break" } else { "in one solution, since no bond can break" };
                 let end = quantity(case.solver.end, "s");
-                plan.add("equilibrium", format!("{unknowns} unknowns, {path}, to t = {end}"));
+                self.add("equilibrium", format!("{unknowns} unknowns, {path}, to t = {end}"));
             }
             None => {
-                plan.describe_time(case, scene);
-                plan.describe_size(case, scene);
+                self.describe_time(case, scene);
+                self.describe_size(case, scene);
             }
         }
-        plan
     }
 
     fn add(&mut self, topic: &str, text: impl Into<String>) {
@@ -104,176 +113,6 @@ impl Plan {
         );
         for notice in &mesh.notices {
             self.add("", notice.clone());
-        }
-    }
-
-    fn describe_bodies(&mut self, case: &Case, scene: &Scene, bonded: &[BondedReport]) {
-        let (mut index, mut reports) = (0, bonded.iter());
-        for body in &case.bodies {
-            match &body.kind {
-                BodyKind::Solid(solid) => {
-                    self.describe_solid(case, scene, &body.name.value, solid, index);
-                    index += 1;
-                }
-                BodyKind::Bonded(body) => {
-                    if let Some(report) = reports.next() {
-                        self.describe_bonded(&case.materials[body.material], report);
-                    }
-                }
-                BodyKind::Particles(loose) => {
-                    let found = scene.bonded.bodies().iter().find(|part| part.name == body.name.value);
-                    if let Some(part) = found {
-                        let all = &scene.bonded.particles;
-                        let (radius, mass) = (&all.radius[part.range.clone()], &all.mass[part.range.clone()]);
-                        let of =
-                            |best: fn(f64, f64) -> f64| quantity(radius.iter().copied().fold(radius[0], best), "m");
-                        let text = format!(
-                            "{}: {} loose particles of radius {} to {}, {}, mass {}",
-                            part.name,
-                            radius.len(),
-                            of(f64::min),
-                            of(f64::max),
-                            case.materials[loose.material].name.value,
-                            quantity(mass.iter().sum(), "kg")
-                        );
-                        self.add("body", text);
-                    }
-                }
-                BodyKind::Rigid(rigid) => self.describe_rigid(case, scene, &body.name.value, rigid),
-            }
-        }
-    }
-
-    fn describe_rigid(&mut self, case: &Case, scene: &Scene, name: &str, rigid: &RigidBody) {
-        let shape = match &rigid.shape {
-            RigidShape::Plane { .. } => "plane".to_owned(),
-            RigidShape::Box { .. } => "box".to_owned(),
-            RigidShape::Cylinder { .. } => "cylinder".to_owned(),
-            RigidShape::Sphere { .. } => "sphere".to_owned(),
-            RigidShape::Group { .. } | RigidShape::Stl { .. } => {
-                let rigid_body = scene.contacts.rigid_bodies().iter().find(|rigid_body| rigid_body.name == name);
-                let facets = rigid_body.map_or(0, |rigid_body| rigid_body.facets());
-                format!("mesh of {facets} facets")
-            }
-        };
-        let inside = if rigid.inside { ", around its particles" } else { "" };
-        let motion = match (&rigid.mass, rigid.velocity.iter().chain(&rigid.spin).any(Option::is_some)) {
-            (Some(mass), _) => format!("free, mass {}", quantity(*mass, "kg")),
-            (None, true) => "driven".to_owned(),
-            (None, false) => "at rest".to_owned(),
-        };
-        let made = rigid.material.map_or("rigid", |material| case.materials[material].name.value.as_str());
-        let friction = rigid.contact.friction;
-        self.add("body", format!("{name}: {made} {shape}{inside}, {motion}, friction {friction}"));
-    }
-
-    fn describe_bonded(&mut self, material: &Material, report: &BondedReport) {
-        let from = |origin, made: &str| match origin {
-            Origin::Made => made.to_owned(),
-            Origin::Cached => "from the cache".to_owned(),
-            Origin::Given => "as given".to_owned(),
-        };
-        self.add(
-            "body",
-            format!(
-                "{}: {} bonded particles of mean radius {}, {}, mass {}; packing {}",
-                report.name,
-                report.particles,
-                quantity(report.mean_radius, "m"),
-                material.name.value,
-                quantity(report.mass, "kg"),
-                from(report.packing, "made now")
-            ),
-        );
-        self.add(
-            "",
-            format!(
-                "{} bonds, coordination {:.2} off the walls, {:.2} of all (asked: {})",
-                report.bonds, report.coordination_interior, report.coordination_all, report.convention
-            ),
-        );
-        let beams = &report.beams;
-        let micro = beams.micro;
-        let reached = match beams.reached {
-            Some((young, poisson)) => format!(
-                ": E = {} and Poisson's ratio {poisson:.4}, E along the axes within {:.2} %, {}",
-                quantity(young, "Pa"),
-                100.0 * beams.anisotropy,
-                if beams.own_packing { "on this packing" } else { "on a box of the same kind" }
-            ),
-            None => ", not calibrated".to_owned(),
-        };
-        self.add(
-            "",
-            format!(
-                "beams {}: radius {:.4} mean radii, modulus {}{reached}",
-                from(report.beams_from, "calibrated now"),
-                micro.radius_ratio,
-                quantity(micro.young_modulus, "Pa"),
-            ),
-        );
-        let breaking = match &report.fracture {
-            Some((criterion, origin)) => {
-                let found = match origin {
-                    Origin::Made => "found now by breaking two boxes in tension",
-                    Origin::Cached => "from the cache",
-                    Origin::Given => "as given",
-                };
-                format!("bonds break by {}; strengths {found}", criterion_text(criterion))
-            }
-            None => "bonds hold: the material has no fracture".to_owned(),
-        };
-        self.add("", breaking);
-        let sets: Vec<String> = report.walls.iter().map(|(wall, n)| format!("{}.{wall} {n}", report.name)).collect();
-        self.add("", format!("sets of particles: {} {}, {}", report.name, report.particles, sets.join(", ")));
-    }
-
-    fn describe_solid(&mut self, case: &Case, scene: &Scene, name: &str, solid: &SolidBody, index: usize) {
-        let body = scene.solid.body(index);
-        let material = &case.materials[solid.material];
-        let formulation = match body.formulation {
-            Formulation::Standard => "standard",
-            Formulation::Smoothed => "smoothed",
-        };
-        let shape = match (body.shape, body.plane) {
-            (Shape::T4, _) => "tetrahedra".to_owned(),
-            (Shape::T3, plane) => {
-                let plane = if plane == Plane::Stress { "plane stress" } else { "plane strain" };
-                format!("triangles in {plane}, {} thick", quantity(body.thickness, "m"))
-            }
-        };
-        let kinematics = match body.kinematics {
-            Kinematics::Small => "small strains",
-            Kinematics::Corotational => "corotational",
-        };
-        let count = body.elements.len();
-        let volume: f64 = (0..count as u32).map(|e| scene.solid.element_volume(index, e)).sum();
-        self.add(
-            "body",
-            format!(
-                "{name}: {count} {formulation} {shape}, {kinematics}, {}, mass {}, mean size {}",
-                material.name.value,
-                quantity(volume * material.density, "kg"),
-                quantity(mean_size(scene, index, volume), "m")
-            ),
-        );
-        if let Some(damage) = material.damage.as_ref().filter(|_| solid.damage) {
-            let d = &damage.value;
-            let law = &d.law;
-            let zone = material.young_modulus * law.fracture_energy / (law.tensile_strength * law.tensile_strength);
-            let (_, ratio) = scene.solid.length_report(index);
-            self.add(
-                "",
-                format!(
-                    "process zone E Gf/ft\u{b2} = {}; longest element at {:.1} % of the snap-back length",
-                    quantity(zone, "m"),
-                    100.0 * ratio
-                ),
-            );
-            if d.crack_plane_gate {
-                let tried = if body.shape == Shape::T3 { "" } else { "; in space tried on a tension bar only" };
-                self.add("", format!("crack-plane gate: for few, separate, straight cracks{tried}"));
-            }
         }
     }
 
@@ -400,6 +239,9 @@ impl Plan {
 
     /// Adds what motion and equilibrium would cost.
     pub fn compare_solvers(&mut self, case: &Case, built: &mut BuiltScene) {
+        if !case.later.is_empty() {
+            return;
+        }
         let (nanoseconds, _, elements) = elements_cost(&built.scene);
         // Few elements keep one thread busy only.
         let threads = rayon::current_num_threads().min(1 + elements / ELEMENTS_PER_THREAD);
@@ -455,15 +297,6 @@ fn elements_cost(scene: &Scene) -> (f64, f64, usize) {
     (nanoseconds, bytes, elements)
 }
 
-fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
-    let model = scene.solid.body(body);
-    let each = volume / model.elements.len() as f64;
-    match model.shape {
-        Shape::T4 => cbrt(6.0 * 2f64.sqrt() * each),
-        Shape::T3 => (4.0 * each / model.thickness / 3f64.sqrt()).sqrt(),
-    }
-}
-
 /// Thickness of the first plane body [m], 0 in space.
 fn plane_thickness(scene: &Scene) -> f64 {
     let mut bodies = (0..scene.solid.body_count()).map(|index| scene.solid.body(index));
@@ -500,26 +333,4 @@ fn area_of(mesh: &Mesh, group: &str, thickness: f64) -> String {
 
 fn megabytes(bytes: f64) -> String {
     format!("{} MB", (bytes / 1e6).ceil())
-}
-
-/// A criterion for bonds in words, with its own strengths.
-fn criterion_text(criterion: &BondCriterion) -> String {
-    let (kind, numbers) = (criterion.kind(), criterion.numbers());
-    let level = match numbers.level {
-        _ if !kind.takes(CriterionParameter::Level) => "",
-        Level::Own => " of each particle",
-        Level::Neighbours => " of each particle and its neighbours",
-        Level::Second => " of each particle and two rings of neighbours",
-    };
-    let mut text = format!("{}{level}: {}", kind.words, quantity(numbers.tensile_strength, "Pa"));
-    if kind.takes(CriterionParameter::CompressiveStrength) {
-        text += " in tension";
-    }
-    if let Some(compression) = numbers.compressive_strength {
-        text += &format!(", {} in compression", quantity(compression, "Pa"));
-    }
-    if kind.takes(CriterionParameter::FrictionAngle) {
-        text += &format!(", friction angle {:.1} deg", numbers.friction_angle.to_degrees());
-    }
-    text
 }

@@ -112,9 +112,10 @@ impl Recorder {
         resumed: Option<RecordState>,
     ) -> Result<Self, Failure> {
         let hands_over = case.solver.statics.as_ref().is_some_and(|s| s.no_equilibrium == NoEquilibrium::Motion);
+        let tells_motion = hands_over || !case.later.is_empty();
         let columns: Vec<Column> = ledger_columns(!scene.bonded.is_empty())
             .into_iter()
-            .chain(hands_over.then_some(IN_MOTION))
+            .chain(tells_motion.then_some(IN_MOTION))
             .map(|(name, unit)| Column::new(name, unit))
             .collect();
         let of_probes = case.probes.iter().filter(|p| !p.is_scalar()).map(|p| {
@@ -146,8 +147,13 @@ impl Recorder {
             grid: GridLayout::new(scene, file_order),
             state,
             inputs: Vec::new(),
-            tells_motion: hands_over,
+            tells_motion,
         })
+    }
+
+    /// The probes of a further stage, whose supports are others.
+    pub(crate) fn set_probes(&mut self, probes: Vec<Option<fractum_scene::Probe>>) {
+        self.probes = probes;
     }
 
     /// Whether a row of the history is due at `time`.

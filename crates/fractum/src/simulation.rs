@@ -4,14 +4,17 @@ mod finish;
 mod messages;
 mod open;
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use fractum_io::Compression;
+use fractum_io::build::BuiltScene;
 use fractum_io::case::Case;
 use fractum_io::checkpoint::{self, Header, Identity};
 use fractum_io::log::Snapshot;
+use fractum_io::number::quantity;
 use fractum_io::summary::Summary;
 use fractum_prepare::Cache;
 use fractum_scene::{EnergyKind, Scene, SceneState, StepError};
@@ -60,6 +63,8 @@ pub struct Simulation {
     case: Arc<Case>,
     scene: Scene,
     solver: Solver,
+    /// What follows the present stage.
+    later: VecDeque<(Case, BuiltScene)>,
     recorder: Recorder,
     folder: PathBuf,
     identity: Identity,
@@ -87,6 +92,8 @@ enum End {
 struct RunState {
     scene: SceneState,
     record: RecordState,
+    /// Stages that were still to come.
+    later: usize,
     solver: SolverState,
 }
 
@@ -166,7 +173,7 @@ impl Simulation {
             phases.timed(Part::Output, || recorder.row(scene, time, dt, in_motion))?;
             self.messages.warn_of_balance(&self.scene, self.case.solver.balance_warning)?;
             if self.falls_below() {
-                self.end.get_or_insert(End::Finished);
+                self.end_stage()?;
             }
         }
         self.messages.tell_event()?;
@@ -183,7 +190,9 @@ impl Simulation {
             return Ok(());
         }
         if self.solver.is_finished(&self.scene) {
-            self.end = Some(End::Finished);
+            self.end_stage()?;
+        }
+        if self.is_over() {
             return Ok(());
         }
         if is_interrupted() {
@@ -202,7 +211,26 @@ impl Simulation {
         Ok(())
     }
 
-    /// The early end that the case asks for.
+    /// Goes on with the next stage, if there is one.
+    fn end_stage(&mut self) -> Result<(), Failure> {
+        let Some((case, built)) = self.later.pop_front() else {
+            self.end.get_or_insert(End::Finished);
+            return Ok(());
+        };
+        let text = format!("t = {}: stage \"{}\"", quantity(self.time(), "s"), case.source.stage);
+        self.messages.tell(&text)?;
+        self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
+        let was_moving = self.solver.moves();
+        // From the state at t = 0, as a resumed run does.
+        self.solver = Solver::new(&built.scene, &built, &mut self.phases)?;
+        self.scene.begin_stage(built.scene);
+        self.solver.take_over(&mut self.scene, was_moving);
+        self.recorder.set_probes(built.probes);
+        self.case = Arc::new(case);
+        Ok(())
+    }
+
+    /// The early end that the stage asks for.
     fn falls_below(&self) -> bool {
         let Some(stop) = &self.case.solver.stop_when else { return false };
         let record = self.recorder.state();
@@ -216,7 +244,7 @@ impl Simulation {
     }
 
     fn save_state(&mut self, scene: SceneState, solver: SolverState) -> Result<(), Failure> {
-        let state = RunState { scene, record: self.recorder.sync()?, solver };
+        let state = RunState { scene, record: self.recorder.sync()?, later: self.later.len(), solver };
         let clock = self.scene.clock;
         let header = Header { identity: self.identity.clone(), step: clock.step, time: clock.time };
         let file = checkpoint::save(&self.folder.join("checkpoint"), &header, &state, Compression::Fast)?;

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Workplace, run};
+use common::{Workplace, history, run};
 
 /// A bar with a weak slab in its middle, pulled apart at equilibrium.
 const BAR: &str = r#"fractum = 1
@@ -122,19 +122,6 @@ fn brittle_bar(solver: &str) -> String {
             &format!("kind = \"static\"\nend = \"1 s\"\n{solver}"),
         )
         .replace("0.4 mm*t", "0.06 mm*t")
-}
-
-/// Columns of the history.
-fn history(place: &Workplace, folder: &str, names: &[&str]) -> Vec<Vec<f64>> {
-    let text = std::fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
-    let mut lines = text.lines();
-    let header: Vec<&str> = lines.next().unwrap().split(',').map(|name| name.split(' ').next().unwrap()).collect();
-    let places: Vec<usize> = names.iter().map(|name| header.iter().position(|h| h == name).unwrap()).collect();
-    let row = |line: &str| {
-        let values: Vec<&str> = line.split(',').collect();
-        places.iter().map(|&place| values[place].parse().unwrap()).collect()
-    };
-    lines.map(row).collect()
 }
 
 #[test]

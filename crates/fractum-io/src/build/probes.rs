@@ -40,7 +40,8 @@ impl Context<'_> {
         Some(match kind {
             ProbeKind::Reaction { on, along } => {
                 let places = supports.places(&self.selected_nodes(on, numbering));
-                let along_held = is_held(&places, along);
+                // Another stage may hold it.
+                let along_held = !self.case.source.stage.is_empty() || is_held(&places, along);
                 if let (false, Some(place)) = (along_held, on.place()) {
                     let found = format!("= \"{}\": nothing holds it along the direction of the probe", on.label());
                     self.error(&place.clone(), found, "nodes that a support prescribes");

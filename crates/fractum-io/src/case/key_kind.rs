@@ -57,6 +57,8 @@ pub enum KeyKind {
     ProbeExpression,
     /// Pairs of time and value.
     Points,
+    /// Several names.
+    Names,
 }
 
 impl KeyKind {
@@ -85,6 +87,7 @@ impl KeyKind {
             Self::Field(dimension) => format!("{}, or an expression of x, y, z", dimension.expected()),
             Self::Condition => "a condition such as \"abs(y) < 8 cm\"".to_string(),
             Self::ProbeExpression => "an expression of probes such as \"2*max(load)\"".to_string(),
+            Self::Names => "a list of names such as [\"rest\", \"release\"]".to_string(),
             Self::Points => "pairs such as [[\"0 s\", \"0 m/s\"], [\"1 ms\", \"2 m/s\"]]".to_string(),
         }
     }
@@ -111,6 +114,7 @@ impl KeyKind {
             Self::Condition => "condition".to_string(),
             Self::ProbeExpression => "probe expression".to_string(),
             Self::Points => "list of pairs".to_string(),
+            Self::Names => "list of names".to_string(),
         }
     }
 }

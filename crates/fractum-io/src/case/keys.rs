@@ -260,6 +260,7 @@ static KEYS: &[KeyDoc] = &[
     key("supports[]", K::Tables, "", "Prescribed motion of groups; one of fix, velocity, displacement per axis"),
     key("supports[].name", K::Text, "", "Name, unique among supports"),
     key("supports[].group", K::Text, "", "Mesh group of the nodes, or set of particles; required without `where`"),
+    key("supports[].stages", K::Names, "all", "Stages in which it acts"),
     key("supports[].where", K::Condition, "", "Which of them, by their positions at the start; without `group`: which nodes of all solid bodies"),
     key("supports[].fix", K::Text, "", "Axes held at rest: any of x, y, z, such as \"xy\""),
     key("supports[].fix_rotation", K::Text, "", "Sets of particles only: axes about which they do not turn, such as \"xyz\""),
@@ -274,6 +275,7 @@ static KEYS: &[KeyDoc] = &[
 
     key("loads[]", K::Tables, "", "Loads; one of force, traction, pressure, gravity each"),
     key("loads[].name", K::Text, "", "Name, unique among loads"),
+    key("loads[].stages", K::Names, "all", "Stages in which it acts"),
     key("loads[].group", K::Text, "", "Mesh group or set of particles; required without `where`, but for gravity, which acts on the whole scene"),
     key("loads[].where", K::Condition, "", "Which nodes or particles, by their positions at the start, and which facets, by all of their nodes; without `group`: which of all solid bodies"),
     key("loads[].force", K::Table, "", "Total force over the group, by components; particles share it by their cross-sections"),
@@ -298,7 +300,10 @@ static KEYS: &[KeyDoc] = &[
     key("damping.bulk_quadratic", K::Quantity(D::NONE), "0", "Quadratic bulk viscosity, ≥ 0; for shocks"),
     key("damping.tchamwa_wielgosz", K::Quantity(D::NONE), "", "φ of the scheme of Tchamwa and Wielgosz on bodies of particles, between 1 and 2: damps their highest frequencies; 1.05 to 1.3 are usual"),
 
-    key("solver", K::Table, "required", "Time and its steps"),
+    key("stages[]", K::Tables, "", "Parts of a run, one after the other, instead of [solver]: stages at rest first, then in motion"),
+    key("stages[].name", K::Text, "required", "Name, unique among stages"),
+    key("stages[].solver", K::Table, "required", "As [solver]; end is the time at which the stage ends, on the one clock of the run"),
+    key("solver", K::Table, "", "Time and its steps; required where there are no stages"),
     key("solver.kind", K::Choice(names::<SolverKind>), "\"explicit\"", "Kind of solver: motion over time, equilibrium under a load that grows slowly, or whichever suits the scene and its loads"),
     key("solver.end", K::Quantity(D::TIME), "required", "End of the run, > 0"),
     key("solver.safety", K::Quantity(D::NONE), "0.8", "Factor on the stable time step, > 0 and at most 2; above 1 is unstable"),

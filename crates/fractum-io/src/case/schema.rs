@@ -49,9 +49,12 @@ fn object(pattern: &str, doc: &str) -> Value {
 /// Schema of the value of a key.
 fn value(path: &str, kind: KeyKind, doc: &str, default: &str) -> Value {
     let mut schema = match kind {
+        // Its keys are those of [solver].
+        KeyKind::Table if path == "stages[].solver" => return object("solver", doc),
         KeyKind::Table | KeyKind::NamedTables => return object(path, doc),
         KeyKind::Tables => return json!({ "type": "array", "description": doc, "items": object(path, doc) }),
         KeyKind::Text | KeyKind::Unit(_) | KeyKind::Condition | KeyKind::ProbeExpression => json!({ "type": "string" }),
+        KeyKind::Names => json!({ "type": "array", "items": { "type": "string" }, "minItems": 1 }),
         KeyKind::Flag => json!({ "type": "boolean" }),
         KeyKind::Integer | KeyKind::Quantity(_) | KeyKind::Angle | KeyKind::AnyQuantity | KeyKind::Field(_) => {
             json!({ "type": ["number", "string"] })

@@ -137,7 +137,7 @@ impl Supports {
             for &point in &set.points {
                 let (value, place) = (&mut displacement[point as usize][set.axis], &reference[point as usize]);
                 match &set.motion {
-                    Motion::Fixed => *value = 0.0,
+                    Motion::Fixed => {}
                     Motion::Displacement(u) => *value = u(time, place),
                     Motion::Velocity(v) => *value += integral(|t| v(t, place), present, time),
                 }

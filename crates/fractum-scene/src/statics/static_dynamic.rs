@@ -57,13 +57,7 @@ impl Scene {
         let critical = 4.0 * std::f64::consts::PI / period;
         let damping = damping.unwrap_or(LocalDamping { local: 0.0, mass_rate: DAMPING * critical });
         self.settings.damping = damping;
-        self.stable = self.solid.stable_step();
-        self.debris.search(&self.solid);
-        self.update_contact_frequency();
-        let dt = self.next_dt(time);
-        let clock = &mut self.clock;
-        (clock.dt_before, clock.dt_after, clock.dt_min) = (dt, dt, clock.dt_min.min(dt));
-        clock.motion_since = clock.step;
+        self.move_from_rest(false);
         DynamicPhase {
             begin: time,
             period,
@@ -72,6 +66,30 @@ impl Scene {
             damping,
             next_look: time + period / LOOKS,
         }
+    }
+
+    /// Lets motion begin at the present state, which is at rest, with the next step.
+    pub fn start_from_rest(&mut self) {
+        self.move_from_rest(self.settings.time_step.element_bound);
+    }
+
+    fn move_from_rest(&mut self, element_bound: bool) {
+        self.find_step(element_bound);
+        let clock = &mut self.clock;
+        (clock.dt_before, clock.dt_min) = (clock.dt_after, clock.dt_min.min(clock.dt_after));
+        clock.motion_since = clock.step;
+    }
+
+    /// Finds the time step anew, for the solids as they are and the settings of the scene.
+    pub fn renew_step(&mut self) {
+        self.find_step(self.settings.time_step.element_bound);
+    }
+
+    fn find_step(&mut self, element_bound: bool) {
+        self.stable = if element_bound { self.solid.stable_step_bound() } else { self.solid.stable_step() };
+        self.debris.search(&self.solid);
+        self.update_contact_frequency();
+        self.clock.dt_after = self.next_dt(self.clock.time);
     }
 
     /// Goes on with motion that a checkpoint interrupted.

@@ -28,9 +28,7 @@ impl Simulation {
                 End::Interrupted
             }
         };
-        if let Some(effort) = self.solver.effort() {
-            self.messages.log.line(effort)?;
-        }
+        self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         let status = match &end {
             End::Finished => Status::Completed,
             End::Interrupted => Status::Interrupted,

@@ -1,5 +1,6 @@
 //! From a case file to a simulation before its next step.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -29,7 +30,7 @@ impl Simulation {
         let started = Instant::now();
         let input = load(path, &options.overrides, &options.cache)?;
         let plan = Plan::new(&input);
-        let Input { case, mesh_hash, built, timings, .. } = input;
+        let Input { case, mesh_hash, built, later, timings, .. } = input;
         let folder = options.output.clone().unwrap_or_else(|| default_folder(path));
         let identity = Identity { program: program(), case_hash: case.hash(), mesh_hash };
         let loaded = if options.resume { Some(find_checkpoint(&folder, &identity)?) } else { None };
@@ -40,11 +41,22 @@ impl Simulation {
         // Prepared before anything is put back: a resumed run solves the same systems in the same order.
         let mut phases = Phases::default();
         let mut solver = Solver::new(&built.scene, &built, &mut phases)?;
-        let mut scene = built.scene;
-        let resumed = loaded.map(|Loaded { state: RunState { scene: saved, record, solver: progress }, .. }| {
-            scene.restore(saved);
-            solver.restore(&mut scene, progress);
-            record
+        let (mut scene, mut probes) = (built.scene, built.probes);
+        let case = Arc::new(case);
+        let (mut stage, mut later) = (Arc::clone(&case), VecDeque::from(later));
+        // Stages that a resumed run has behind it.
+        let left = loaded.as_ref().map_or(later.len(), |loaded| loaded.state.later);
+        while later.len() > left
+            && let Some((next, built)) = later.pop_front()
+        {
+            solver = Solver::new(&built.scene, &built, &mut phases)?;
+            scene.begin_stage(built.scene);
+            (stage, probes) = (Arc::new(next), built.probes);
+        }
+        let resumed = loaded.map(|Loaded { state, .. }| {
+            scene.restore(state.scene);
+            solver.restore(&mut scene, state.solver);
+            state.record
         });
         let mut messages = Messages::new(open_folder(&folder, resumed.is_none())?, options.quiet);
         let threads = rayon::current_num_threads();
@@ -53,12 +65,12 @@ impl Simulation {
         messages.log.line(&plan)?;
         timings.iter().try_for_each(|timing| messages.log.line(timing))?;
         built.warnings.iter().try_for_each(|warning| messages.warn(warning.to_string()))?;
-        let case = Arc::new(case);
-        let recorder = Recorder::open(Arc::clone(&case), &scene, built.probes, &built.file_order, &folder, resumed)?;
+        let recorder = Recorder::open(case, &scene, probes, &built.file_order, &folder, resumed)?;
         let mut simulation = Simulation {
-            case,
+            case: stage,
             scene,
             solver,
+            later,
             recorder,
             folder,
             identity,

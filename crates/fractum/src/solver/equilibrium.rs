@@ -62,6 +62,11 @@ impl EquilibriumRun {
         EquilibriumState { solver: solver.state(), phase: *phase, rested_at: *rested_at, periods: *periods }
     }
 
+    /// The next step begins at a state that another solver has found.
+    pub(super) fn take_over(&mut self) {
+        self.phase = Phase::Rested;
+    }
+
     pub(super) fn moves(&self) -> bool {
         matches!(self.phase, Phase::Moving(_))
     }

@@ -68,6 +68,18 @@ impl Solver {
         })
     }
 
+    /// Goes on from the present state of the scene, in which another solver has left it.
+    ///
+    /// - `moving`: whether the scene moved then
+    pub(crate) fn take_over(&mut self, scene: &mut Scene, moving: bool) {
+        match self {
+            Solver::Explicit if moving => scene.renew_step(),
+            Solver::Explicit => scene.start_from_rest(),
+            Solver::Static(run) => run.take_over(),
+            Solver::BondedStatic(_) => {}
+        }
+    }
+
     /// Goes on where a checkpoint of the same case stood; the scene has been put back.
     pub(crate) fn restore(&mut self, scene: &mut Scene, state: SolverState) {
         match (self, state) {

@@ -198,3 +198,16 @@ pub(crate) fn signal(run: &Child, name: &str) {
     let sent = Command::new("sh").args(["-c", &format!("kill -{name} {}", run.id())]).status().unwrap();
     assert!(sent.success());
 }
+
+/// Columns of the history.
+pub(crate) fn history(place: &Workplace, folder: &str, names: &[&str]) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').map(|name| name.split(' ').next().unwrap()).collect();
+    let places: Vec<usize> = names.iter().map(|name| header.iter().position(|h| h == name).unwrap()).collect();
+    let row = |line: &str| {
+        let values: Vec<&str> = line.split(',').collect();
+        places.iter().map(|&place| values[place].parse().unwrap()).collect()
+    };
+    lines.map(row).collect()
+}

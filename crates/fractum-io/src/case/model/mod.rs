@@ -37,8 +37,6 @@ pub struct Case {
     pub source: CaseSource,
     /// Title; empty where none was given.
     pub title: String,
-    /// Values of `[parameters]` in SI, after overrides.
-    pub parameters: BTreeMap<String, f64>,
     /// The mesh, where a body needs one.
     pub mesh: Option<MeshSource>,
     /// Materials, in the order of the file.
@@ -63,6 +61,8 @@ pub struct Case {
     pub expect: Vec<Expect>,
     /// Whether `fractum verify --quick` runs this case.
     pub verify_quick: bool,
+    /// The same case with the solver, supports and loads of each later stage.
+    pub later: Vec<Case>,
 }
 
 /// The input of a case.
@@ -76,6 +76,10 @@ pub struct CaseSource {
     pub overrides: Vec<(String, String)>,
     /// Files that it reads besides the mesh, as written there, with their contents.
     pub tables: Vec<(String, Vec<u8>)>,
+    /// Values of `[parameters]` in SI, after overrides.
+    pub parameters: BTreeMap<String, f64>,
+    /// Name of the stage that the case is; empty where there is one only.
+    pub stage: String,
     pub(super) warnings: Vec<Diagnostic>,
 }
 

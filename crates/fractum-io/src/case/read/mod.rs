@@ -11,11 +11,13 @@ mod parameters;
 mod probes;
 mod rigid;
 mod solver;
+mod stages;
 mod table_file;
 mod ties;
 mod time_functions;
 mod vectors;
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -73,9 +75,16 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
         text: text.to_string(),
         overrides: overrides.to_vec(),
         tables: Vec::new(),
+        parameters: BTreeMap::new(),
+        stage: String::new(),
         warnings: Vec::new(),
     };
-    let case = case(&reader, &root, source);
+    let mut cases = Vec::new();
+    for (stage, mut tree) in stages::split(&reader, root) {
+        remove_unknown(&mut tree, "", &mut |unknown| reader.note_unknown(unknown));
+        cases.push(case(&reader, &tree, source.clone(), stage));
+    }
+    let case = stages::joined(&reader, cases);
     parameters::report_unused(&reader);
     let tables = reader.tables.take();
     let diagnostics = reader.into_diagnostics();
@@ -128,7 +137,7 @@ fn sorted(mut diagnostics: Vec<Diagnostic>, file: &str) -> Diagnostics {
 }
 
 /// Reads every part, so that all mistakes are found; gives the case where none is missing.
-fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
+fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Option<Case> {
     let table = Table::new(reader, root, "");
     let version = table.integer("fractum").check(|version| *version == VERSION, "1, the version this program reads");
     let version = version.required();
@@ -140,7 +149,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
     let mesh = mesh(&table, bodies.as_deref());
     let supports = boundary::supports(&table);
     let loads = boundary::loads(&table);
-    let damping = solver::damping(&table, bodies.as_deref());
+    let damping = solver::damping(&table, bodies.as_deref(), !stage.is_empty());
     let probes = probes::read(&table);
     let solver = solver::read(&table, &probes.list, bodies.as_deref());
     let output = solver::output(&table, solver.as_ref().map(|solver| solver.end));
@@ -150,10 +159,10 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
     verify.finish("here");
     table.finish("here");
     version?;
+    let source = CaseSource { parameters, stage, ..source };
     Some(Case {
         source,
         title,
-        parameters,
         mesh: mesh?,
         materials: materials.into_iter().map(|(_, material)| material).collect::<Option<_>>()?,
         bodies: bodies?,
@@ -166,6 +175,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource) -> Option<Case> {
         output: output?,
         expect: expect?,
         verify_quick,
+        later: Vec::new(),
     })
 }
 

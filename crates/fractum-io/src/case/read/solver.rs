@@ -12,8 +12,8 @@ use crate::case::tree::Value;
 use fractum_dem::Batch;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
-/// Reads the damping; which keys have an effect depends on the solver, and on the bodies where they are known.
-pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>) -> Damping {
+/// Reads the damping, which may belong to another stage; which keys have an effect depends on the solver, and on the bodies where they are known.
+pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>, staged: bool) -> Damping {
     let table = root.table_or_empty("damping");
     let tchamwa_wielgosz = table.quantity("tchamwa_wielgosz").between(1.0, 2.0).given();
     let is = |key: &str, value: &str| {
@@ -24,7 +24,7 @@ pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>) -> Damping {
             _ => false,
         })
     };
-    if is("kind", "static") && !is("no_equilibrium", "motion") {
+    if !staged && is("kind", "static") && !is("no_equilibrium", "motion") {
         let switched = matches!(root.peek("solver").map(|node| &node.value), Some(Value::Table(entries))
             if entries.iter().any(|entry| entry.name == "kind" && entry.node.place.is_override()));
         for key in ["local", "mass", "stiffness", "bulk_linear", "bulk_quadratic", "tchamwa_wielgosz"] {

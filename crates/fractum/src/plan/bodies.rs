@@ -1,0 +1,215 @@
+//! Bodies in the plan of a run.
+
+use fractum_dem::FractureCriterion as BondCriterion;
+use fractum_dem::criterion::{CriterionParameter, Level};
+use fractum_fem::{Formulation, Kinematics, Plane, Shape};
+use fractum_io::case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody};
+use fractum_io::number::quantity;
+use fractum_math::elementary::cbrt;
+use fractum_prepare::{BondedReport, Origin};
+use fractum_scene::Scene;
+
+use super::Plan;
+
+impl Plan {
+    pub(super) fn describe_bodies(&mut self, case: &Case, scene: &Scene, bonded: &[BondedReport]) {
+        let (mut index, mut reports) = (0, bonded.iter());
+        for body in &case.bodies {
+            match &body.kind {
+                BodyKind::Solid(solid) => {
+                    self.describe_solid(case, scene, &body.name.value, solid, index);
+                    index += 1;
+                }
+                BodyKind::Bonded(body) => {
+                    if let Some(report) = reports.next() {
+                        self.describe_bonded(&case.materials[body.material], report);
+                    }
+                }
+                BodyKind::Particles(loose) => {
+                    let found = scene.bonded.bodies().iter().find(|part| part.name == body.name.value);
+                    if let Some(part) = found {
+                        let all = &scene.bonded.particles;
+                        let (radius, mass) = (&all.radius[part.range.clone()], &all.mass[part.range.clone()]);
+                        let of =
+                            |best: fn(f64, f64) -> f64| quantity(radius.iter().copied().fold(radius[0], best), "m");
+                        let text = format!(
+                            "{}: {} loose particles of radius {} to {}, {}, mass {}",
+                            part.name,
+                            radius.len(),
+                            of(f64::min),
+                            of(f64::max),
+                            case.materials[loose.material].name.value,
+                            quantity(mass.iter().sum(), "kg")
+                        );
+                        self.add("body", text);
+                    }
+                }
+                BodyKind::Rigid(rigid) => self.describe_rigid(case, scene, &body.name.value, rigid),
+            }
+        }
+    }
+
+    fn describe_rigid(&mut self, case: &Case, scene: &Scene, name: &str, rigid: &RigidBody) {
+        let shape = match &rigid.shape {
+            RigidShape::Plane { .. } => "plane".to_owned(),
+            RigidShape::Box { .. } => "box".to_owned(),
+            RigidShape::Cylinder { .. } => "cylinder".to_owned(),
+            RigidShape::Sphere { .. } => "sphere".to_owned(),
+            RigidShape::Group { .. } | RigidShape::Stl { .. } => {
+                let rigid_body = scene.contacts.rigid_bodies().iter().find(|rigid_body| rigid_body.name == name);
+                let facets = rigid_body.map_or(0, |rigid_body| rigid_body.facets());
+                format!("mesh of {facets} facets")
+            }
+        };
+        let inside = if rigid.inside { ", around its particles" } else { "" };
+        let motion = match (&rigid.mass, rigid.velocity.iter().chain(&rigid.spin).any(Option::is_some)) {
+            (Some(mass), _) => format!("free, mass {}", quantity(*mass, "kg")),
+            (None, true) => "driven".to_owned(),
+            (None, false) => "at rest".to_owned(),
+        };
+        let made = rigid.material.map_or("rigid", |material| case.materials[material].name.value.as_str());
+        let friction = rigid.contact.friction;
+        self.add("body", format!("{name}: {made} {shape}{inside}, {motion}, friction {friction}"));
+    }
+
+    fn describe_bonded(&mut self, material: &Material, report: &BondedReport) {
+        let from = |origin, made: &str| match origin {
+            Origin::Made => made.to_owned(),
+            Origin::Cached => "from the cache".to_owned(),
+            Origin::Given => "as given".to_owned(),
+        };
+        self.add(
+            "body",
+            format!(
+                "{}: {} bonded particles of mean radius {}, {}, mass {}; packing {}",
+                report.name,
+                report.particles,
+                quantity(report.mean_radius, "m"),
+                material.name.value,
+                quantity(report.mass, "kg"),
+                from(report.packing, "made now")
+            ),
+        );
+        self.add(
+            "",
+            format!(
+                "{} bonds, coordination {:.2} off the walls, {:.2} of all (asked: {})",
+                report.bonds, report.coordination_interior, report.coordination_all, report.convention
+            ),
+        );
+        let beams = &report.beams;
+        let micro = beams.micro;
+        let reached = match beams.reached {
+            Some((young, poisson)) => format!(
+                ": E = {} and Poisson's ratio {poisson:.4}, E along the axes within {:.2} %, {}",
+                quantity(young, "Pa"),
+                100.0 * beams.anisotropy,
+                if beams.own_packing { "on this packing" } else { "on a box of the same kind" }
+            ),
+            None => ", not calibrated".to_owned(),
+        };
+        self.add(
+            "",
+            format!(
+                "beams {}: radius {:.4} mean radii, modulus {}{reached}",
+                from(report.beams_from, "calibrated now"),
+                micro.radius_ratio,
+                quantity(micro.young_modulus, "Pa"),
+            ),
+        );
+        let breaking = match &report.fracture {
+            Some((criterion, origin)) => {
+                let found = match origin {
+                    Origin::Made => "found now by breaking two boxes in tension",
+                    Origin::Cached => "from the cache",
+                    Origin::Given => "as given",
+                };
+                format!("bonds break by {}; strengths {found}", criterion_text(criterion))
+            }
+            None => "bonds hold: the material has no fracture".to_owned(),
+        };
+        self.add("", breaking);
+        let sets: Vec<String> = report.walls.iter().map(|(wall, n)| format!("{}.{wall} {n}", report.name)).collect();
+        self.add("", format!("sets of particles: {} {}, {}", report.name, report.particles, sets.join(", ")));
+    }
+
+    fn describe_solid(&mut self, case: &Case, scene: &Scene, name: &str, solid: &SolidBody, index: usize) {
+        let body = scene.solid.body(index);
+        let material = &case.materials[solid.material];
+        let formulation = match body.formulation {
+            Formulation::Standard => "standard",
+            Formulation::Smoothed => "smoothed",
+        };
+        let shape = match (body.shape, body.plane) {
+            (Shape::T4, _) => "tetrahedra".to_owned(),
+            (Shape::T3, plane) => {
+                let plane = if plane == Plane::Stress { "plane stress" } else { "plane strain" };
+                format!("triangles in {plane}, {} thick", quantity(body.thickness, "m"))
+            }
+        };
+        let kinematics = match body.kinematics {
+            Kinematics::Small => "small strains",
+            Kinematics::Corotational => "corotational",
+        };
+        let count = body.elements.len();
+        let volume: f64 = (0..count as u32).map(|e| scene.solid.element_volume(index, e)).sum();
+        self.add(
+            "body",
+            format!(
+                "{name}: {count} {formulation} {shape}, {kinematics}, {}, mass {}, mean size {}",
+                material.name.value,
+                quantity(volume * material.density, "kg"),
+                quantity(mean_size(scene, index, volume), "m")
+            ),
+        );
+        if let Some(damage) = material.damage.as_ref().filter(|_| solid.damage) {
+            let d = &damage.value;
+            let law = &d.law;
+            let zone = material.young_modulus * law.fracture_energy / (law.tensile_strength * law.tensile_strength);
+            let (_, ratio) = scene.solid.length_report(index);
+            self.add(
+                "",
+                format!(
+                    "process zone E Gf/ft\u{b2} = {}; longest element at {:.1} % of the snap-back length",
+                    quantity(zone, "m"),
+                    100.0 * ratio
+                ),
+            );
+            if d.crack_plane_gate {
+                let tried = if body.shape == Shape::T3 { "" } else { "; in space tried on a tension bar only" };
+                self.add("", format!("crack-plane gate: for few, separate, straight cracks{tried}"));
+            }
+        }
+    }
+}
+
+fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
+    let model = scene.solid.body(body);
+    let each = volume / model.elements.len() as f64;
+    match model.shape {
+        Shape::T4 => cbrt(6.0 * 2f64.sqrt() * each),
+        Shape::T3 => (4.0 * each / model.thickness / 3f64.sqrt()).sqrt(),
+    }
+}
+
+/// A criterion for bonds in words, with its own strengths.
+fn criterion_text(criterion: &BondCriterion) -> String {
+    let (kind, numbers) = (criterion.kind(), criterion.numbers());
+    let level = match numbers.level {
+        _ if !kind.takes(CriterionParameter::Level) => "",
+        Level::Own => " of each particle",
+        Level::Neighbours => " of each particle and its neighbours",
+        Level::Second => " of each particle and two rings of neighbours",
+    };
+    let mut text = format!("{}{level}: {}", kind.words, quantity(numbers.tensile_strength, "Pa"));
+    if kind.takes(CriterionParameter::CompressiveStrength) {
+        text += " in tension";
+    }
+    if let Some(compression) = numbers.compressive_strength {
+        text += &format!(", {} in compression", quantity(compression, "Pa"));
+    }
+    if kind.takes(CriterionParameter::FrictionAngle) {
+        text += &format!(", friction angle {:.1} deg", numbers.friction_angle.to_degrees());
+    }
+    text
+}

@@ -1,0 +1,141 @@
+//! Stages: a bar pulled at rest, then released.
+
+mod common;
+
+use std::fs;
+
+use common::{Workplace, checkpoints, history, run, signal, summary, wait_for_checkpoint};
+
+/// A bar of 0.4 m without lateral strain, pulled at rest by 10 um and let go.
+const RELEASED: &str = r#"fractum = 1
+
+[parameters]
+end = "1.3 ms"
+
+[mesh]
+file = "bar.msh"
+
+[materials.concrete]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0
+
+[[bodies]]
+name = "bar"
+kind = "solid"
+formulation = "standard"
+group = "body"
+material = "concrete"
+
+[[supports]]
+group = "x-"
+fix = "x"
+[[supports]]
+group = "body"
+fix = "yz"
+[[supports]]
+group = "x+"
+displacement = { x = "10 um*t/1 ms" }
+stages = ["pull"]
+
+[[stages]]
+name = "pull"
+solver = { kind = "static", end = "1 ms" }
+[[stages]]
+name = "release"
+solver = { kind = "explicit", end = "end", step = "2 us" }
+
+[[probes]]
+name = "tip"
+displacement = { group = "x+", along = "x" }
+[[probes]]
+name = "pulled"
+reaction = { group = "x+", along = "x" }
+
+[output]
+history = { every = "2 us" }
+fields = { every = "0.1 ms" }
+checkpoint = { every = "1 ms" }
+"#;
+
+#[test]
+fn a_bar_released_from_rest_swings_with_its_own_period_and_keeps_its_energy() {
+    let place = Workplace::new(RELEASED);
+    let one = run(&place, "one", "1");
+    let rows = history(&place, "one", &["time", "tip", "pulled", "in_motion", "elastic", "kinetic", "external"]);
+    let released = rows.iter().find(|row| row[3] == 0.0).expect("a row at rest");
+    // E A u / L, and half of its product with u.
+    let force = 30e9 * 0.12 * 0.12 * 10e-6 / 0.4;
+    assert!((released[2] / force - 1.0).abs() < 1e-6 && (released[1] / 10e-6 - 1.0).abs() < 1e-6, "{released:?}");
+    let work = 0.5 * force * 10e-6;
+    assert!((released[4] / work - 1.0).abs() < 1e-6, "{released:?}");
+    // Motion begins at that state, without the force that held it; the energy swings and stays.
+    let moving: Vec<_> = rows.iter().filter(|row| row[3] == 1.0).collect();
+    assert!((moving[0][1] / 10e-6 - 1.0).abs() < 0.05 && moving[0][2] == 0.0, "{:?}", moving[0]);
+    assert!(moving.iter().all(|row| (row[6] / work - 1.0).abs() < 1e-6), "no work after the release");
+    assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-7, "{}", one["energy"]);
+    // To -u in half of the period 4 L / c.
+    let half = 2.0 * 0.4 / (30e9f64 / 2400.0).sqrt();
+    let least = moving.iter().map(|row| row[1]).fold(0.0, f64::min);
+    assert!((least / -10e-6 - 1.0).abs() < 0.06, "{least:e}");
+    let crossing = moving.windows(2).find(|w| w[0][1] > 0.0 && w[1][1] <= 0.0).unwrap()[1][0] - 1e-3;
+    assert!((crossing / (0.5 * half) - 1.0).abs() < 0.03, "{crossing:e} {half:e}");
+    assert_eq!(one["state_hash"], run(&place, "two", "2")["state_hash"]);
+}
+
+#[test]
+fn a_run_with_stages_goes_on_in_either_with_the_same_bits() {
+    let place =
+        Workplace::new(&RELEASED.replace("static\", end = \"1 ms\"", "static\", end = \"1 ms\", step = \"2 us\""));
+    let arguments = ["run", "case.toml", "--threads", "1", "--quiet", "--set", "end=40 ms"];
+    let go = |folder: &str, more: &[&str]| place.start(&[&arguments[..], &["-o", folder], more].concat());
+    assert!(go("whole", &[]).wait().unwrap().success());
+    let results = place.path("stopped");
+    let mut code = None;
+    for name in ["INT", "KILL", "TERM", "KILL", "INT"] {
+        let saved = checkpoints(&results).last().copied().unwrap_or(0);
+        let mut one = go("stopped", if results.exists() { &["--resume"] } else { &[] });
+        wait_for_checkpoint(&mut one, &results, saved + 20);
+        signal(&one, name);
+        code = one.wait().unwrap().code();
+        if code == Some(0) {
+            break;
+        }
+    }
+    if code != Some(0) {
+        assert!(go("stopped", &["--resume"]).wait().unwrap().success());
+    }
+    let [whole, stopped] = ["whole", "stopped"].map(|folder| summary(&place, folder));
+    assert_eq!(whole["state_hash"], stopped["state_hash"]);
+    let rows = |folder: &str| fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
+    assert_eq!(rows("whole"), rows("stopped"));
+}
+
+#[test]
+fn wrong_stages_are_explained() {
+    for (from, to, words) in [
+        ("stages = [\"pull\"]", "stages = [\"pul\"]", "expected some of \"pull\", \"release\""),
+        ("kind = \"static\"", "kind = \"auto\"", "\"static\" or \"explicit\""),
+        (
+            "kind = \"explicit\", end = \"end\", step = \"2 us\"",
+            "kind = \"explicit\", end = \"1 us\"",
+            "one clock runs",
+        ),
+        ("kind = \"explicit\"", "kin = \"explicit\"", "did you mean kind?"),
+        ("name = \"release\"", "name = \"pull\"", "names are unique"),
+        ("[[probes]]\nname = \"tip\"", "[solver]\nend = 1\n[[probes]]\nname = \"tip\"", "has no effect beside stages"),
+    ] {
+        let place = Workplace::new(&RELEASED.replacen(from, to, 1));
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert!(ended.code == Some(1) && ended.stderr.contains(words), "{words}: {ended:?}");
+    }
+    let swapped = RELEASED
+        .replace("kind = \"static\"", "kind = \"KIND\"")
+        .replace("explicit\", end = \"end\", step = \"2 us\"", "static\", end = \"end\"");
+    let place = Workplace::new(&swapped.replace("KIND", "explicit"));
+    let ended = place.fractum(&["check", "case.toml"]);
+    assert!(ended.code == Some(1) && ended.stderr.contains("cannot follow a stage in motion"), "{ended:?}");
+    let planned = Workplace::new(RELEASED).fractum(&["check", "case.toml"]);
+    assert_eq!(planned.code, Some(0), "{}", planned.stderr);
+    assert!(planned.stdout.contains("stage        release"), "{}", planned.stdout);
+}
