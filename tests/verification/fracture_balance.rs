@@ -159,7 +159,8 @@ fn a_hole_under_a_pulse_closes_its_balance() {
             balances.push((name, ledger));
         }
     }
-    // Contacts of the debris begin and end at 50 m/s within a step, which nothing books.
+    // 1e-3 is the aim, and these meshes reach 3.5e-3 (docs/targets.md); contacts of debris that begin or end within a step are
+    // the likely cause, which is not shown yet.
     assert_closed(&balances, 4e-3);
 }
 
