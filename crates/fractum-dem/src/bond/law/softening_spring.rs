@@ -84,12 +84,13 @@ mod tests {
     use crate::bond::BondNetwork;
     use crate::particles::Particles;
     use fractum_math::Vec3;
+    use fractum_math::elementary::{cos, sin};
 
     const SPRING: SofteningSpring = SofteningSpring { stiffness: 100.0, onset: 0.01, end: 0.05 };
 
     /// Nine particles along a crooked line, and springs between neighbours.
     fn line() -> (Particles, BondNetwork<SofteningSpring>) {
-        let place = |i: usize| Vec3::new(i as f64, 0.3 * (i as f64).sin(), 0.2 * (i as f64).cos());
+        let place = |i: usize| Vec3::new(i as f64, 0.3 * sin(i as f64), 0.2 * cos(i as f64));
         let particles = Particles::at_rest((0..9).map(place).collect(), vec![0.4; 9], 9.0).unwrap();
         let pairs: Vec<[u32; 2]> = (0..8).map(|i| [i, i + 1]).collect();
         let springs = BondNetwork::new(&particles, &pairs, SPRING).unwrap();
