@@ -75,6 +75,10 @@ fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, grounds: Vec<No
 
 /// Fails with all balances that do not close.
 fn assert_closed(balances: &[(String, Ledger)], allowed: f64) {
+    for (name, ledger) in balances {
+        let (residual, removed) = (ledger.residual_max_relative, ledger[EnergyKind::Removed]);
+        println!("{name}: residual {residual:.2e}, removed {removed:.3} J of {:.3} J", ledger.scale);
+    }
     let open = balances
         .iter()
         .filter(|(_, ledger)| ledger.residual_max_relative.is_nan() || ledger.residual_max_relative >= allowed);

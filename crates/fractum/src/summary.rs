@@ -26,6 +26,8 @@ pub(crate) fn of_scene(scene: &Scene) -> Summary {
             bonds: counts.bonds as u64,
             broken_bonds: counts.broken_bonds as u64,
             broken_edges: counts.broken_edges as u64,
+            damaged_edges: counts.damaged_edges as u64,
+            contacts: counts.contacts as u64,
             fragments: scene.count(CountKind::Fragments) as u64,
         },
         fracture: scene.bonded.bodies().iter().filter(|body| body.can_break()).map(fracture_of).collect(),

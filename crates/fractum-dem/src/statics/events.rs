@@ -4,6 +4,7 @@ mod state;
 
 use serde::{Deserialize, Serialize};
 
+use state::Progress;
 pub use state::QuasiStaticState;
 
 use super::{Dof6, Lattice, LatticeSupports, StaticBody, Tolerance};
@@ -125,17 +126,7 @@ pub struct QuasiStatic {
     batch: Batch,
     limit: f64,
     stop: f64,
-    factor: f64,
-    last: Option<LoadPoint>,
-    first: Option<CriticalLoad>,
-    peak: CriticalLoad,
-    effort_to_peak: (usize, usize),
-    event: usize,
-    /// Ratio at load factor one at which the last search took a site for overloaded.
-    overload: f64,
-    /// Whether sites fail at the present load already.
-    cascade: bool,
-    cracks: Vec<Crack>,
+    progress: Progress,
     breaks: Vec<Break>,
     sites: Vec<FailureSite>,
 }
@@ -165,15 +156,7 @@ impl QuasiStatic {
             batch: what.batch,
             limit: what.limit,
             stop: what.stop,
-            factor: 0.0,
-            last: None,
-            first: None,
-            peak: CriticalLoad { displacement: 0.0, load: 0.0, broken: 0 },
-            effort_to_peak: (0, 0),
-            event: 0,
-            overload: f64::INFINITY,
-            cascade: false,
-            cracks: Vec::new(),
+            progress: Progress::default(),
             breaks: Vec::new(),
             sites: Vec::new(),
         })
@@ -186,59 +169,59 @@ impl QuasiStatic {
 
     /// The present load factor.
     pub fn factor(&self) -> f64 {
-        self.factor
+        self.progress.factor
     }
 
     /// What broke so far, in order.
     pub fn cracks(&self) -> &[Crack] {
-        &self.cracks
+        &self.progress.cracks
     }
 
     /// The site nearest to failure, with its ratio at the present load.
     pub fn closest(&self) -> Option<FailureSite> {
-        self.search.worst().map(|site| FailureSite { ratio: site.ratio * self.factor, ..site })
+        self.search.worst().map(|site| FailureSite { ratio: site.ratio * self.progress.factor, ..site })
     }
 
     /// Moves the supports on to the next failure, unless sites fail where they are.
     ///
     /// - `separated`: whether the body has come apart; asked once something has broken
     pub fn load_to_next_failure(&mut self, separated: impl Fn(&BondGraph) -> bool) -> (LoadPoint, LoadStage) {
-        self.event += 1;
+        self.progress.event += 1;
         let energy = self.body.energy();
-        self.overload = if self.factor > 0.0 { 1.0 / self.factor } else { f64::INFINITY };
-        self.search.search(&self.body, &self.graph, self.overload);
+        self.progress.overload = if self.progress.factor > 0.0 { 1.0 / self.progress.factor } else { f64::INFINITY };
+        self.search.search(&self.body, &self.graph, self.progress.overload);
         let worst = self.search.worst();
         let load_at = |factor: f64| factor * 2.0 * energy / self.displacement;
-        let held = load_at(self.factor);
+        let held = load_at(self.progress.factor);
         // Where nothing is over at this load, the load rises to the next failure.
-        self.cascade = worst.is_some() && !self.search.overloaded().is_empty();
-        let weak = !self.cascade && held < self.stop * self.peak.load;
-        let apart = !self.cracks.is_empty() && (weak || separated(&self.graph));
-        let before = self.factor;
-        if !self.cascade && !apart {
-            self.factor = worst.map_or(self.limit, |w| (1.0 / w.ratio).max(before)).min(self.limit);
+        self.progress.cascade = worst.is_some() && !self.search.overloaded().is_empty();
+        let weak = !self.progress.cascade && held < self.stop * self.progress.peak.load;
+        let apart = !self.progress.cracks.is_empty() && (weak || separated(&self.graph));
+        let before = self.progress.factor;
+        if !self.progress.cascade && !apart {
+            self.progress.factor = worst.map_or(self.limit, |w| (1.0 / w.ratio).max(before)).min(self.limit);
         }
-        let (displacement, load) = (self.factor * self.displacement, load_at(self.factor));
-        let mut work = self.last.map_or(0.0, |l| l.work);
-        if self.factor > before {
+        let (displacement, load) = (self.progress.factor * self.displacement, load_at(self.progress.factor));
+        let mut work = self.progress.last.map_or(0.0, |l| l.work);
+        if self.progress.factor > before {
             // Between two breaks the load is proportional; at a break the supports stand still.
-            work += 0.5 * (load + held) * (self.factor - before) * self.displacement;
+            work += 0.5 * (load + held) * (self.progress.factor - before) * self.displacement;
         }
-        let (elastic, broken) = (self.factor * self.factor * energy, self.graph.broken());
+        let (elastic, broken) = (self.progress.factor * self.progress.factor * energy, self.graph.broken());
         let point = LoadPoint { displacement, load, elastic, work, broken };
-        self.last = Some(point);
-        if load > self.peak.load {
-            self.peak = CriticalLoad { displacement, load, broken };
-            self.effort_to_peak = self.body.effort();
+        self.progress.last = Some(point);
+        if load > self.progress.peak.load {
+            self.progress.peak = CriticalLoad { displacement, load, broken };
+            self.progress.effort_to_peak = self.body.effort();
         }
-        let holds = !self.cascade && worst.is_none_or(|w| w.ratio * self.limit < 1.0);
+        let holds = !self.progress.cascade && worst.is_none_or(|w| w.ratio * self.limit < 1.0);
         let stage = match (apart, holds) {
             (true, _) => LoadStage::Separated,
             (false, true) => LoadStage::LimitReached,
             (false, false) => LoadStage::Failing,
         };
         if stage == LoadStage::Failing {
-            self.first.get_or_insert(CriticalLoad { displacement, load, broken: 0 });
+            self.progress.first.get_or_insert(CriticalLoad { displacement, load, broken: 0 });
         }
         (point, stage)
     }
@@ -248,23 +231,23 @@ impl QuasiStatic {
     /// # Errors
     /// [`DemError::NotConverged`].
     pub fn break_and_rebalance(&mut self) -> Result<(), DemError> {
-        let QuasiStatic { graph, search, body, sites, breaks, factor, .. } = self;
+        let QuasiStatic { graph, search, body, sites, breaks, progress, batch, area, .. } = self;
         sites.clear();
-        match (self.cascade, self.batch) {
+        match (progress.cascade, *batch) {
             (true, Batch::PerSite) => sites.extend_from_slice(search.overloaded()),
             _ => sites.extend(search.worst()),
         }
         breaks.clear();
         sites.iter().for_each(|site| search.breaks(site, body, graph, breaks));
-        let load = self.last.map_or(0.0, |l| l.load);
+        let load = progress.last.map_or(0.0, |l| l.load);
         for &Break { bond, mode } in breaks.iter() {
-            let energy = *factor * *factor * body.bond_energy(bond);
+            let energy = progress.factor * progress.factor * body.bond_energy(bond);
             if graph.break_bond(bond) {
                 let pair = graph.pairs()[bond as usize];
                 let [a, b] = pair.map(|i| body.lattice().position()[i as usize]);
                 let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
-                let (event, area, time) = (self.event, self.area, *factor);
-                self.cracks.push(Crack { bond, pair, event, time, load, position, normal, area, mode, energy });
+                let (event, area, time) = (progress.event, *area, progress.factor);
+                progress.cracks.push(Crack { bond, pair, event, time, load, position, normal, area, mode, energy });
                 body.break_bond(bond);
                 search.bond_broken(bond, graph);
             }
@@ -300,16 +283,16 @@ pub fn quasi_static(
         run.break_and_rebalance()?;
     };
     Ok(BreakingOutcome {
-        first: run.first,
-        peak: run.peak,
+        first: run.progress.first,
+        peak: run.progress.peak,
         curve,
         separated: stage == LoadStage::Separated,
         closest: run.closest(),
         first_state,
         last_state: run.body.state(),
         effort: run.body.effort(),
-        effort_to_peak: run.effort_to_peak,
-        cracks: run.cracks,
+        effort_to_peak: run.progress.effort_to_peak,
+        cracks: run.progress.cracks,
         graph: run.graph,
     })
 }

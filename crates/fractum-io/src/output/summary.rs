@@ -154,6 +154,10 @@ pub struct Counts {
     pub broken_bonds: u64,
     /// Edges that broke.
     pub broken_edges: u64,
+    /// Edges with damage, broken ones included.
+    pub damaged_edges: u64,
+    /// Contacts that touch at the end.
+    pub contacts: u64,
     /// Connected pieces.
     pub fragments: u64,
 }

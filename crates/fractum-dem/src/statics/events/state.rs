@@ -6,50 +6,61 @@ use super::super::body::BodyMemory;
 use super::{CriticalLoad, LoadPoint, QuasiStatic};
 use crate::fracture::Crack;
 
+/// How far the load has come, and what it has broken.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Progress {
+    pub(super) factor: f64,
+    pub(super) last: Option<LoadPoint>,
+    pub(super) first: Option<CriticalLoad>,
+    pub(super) peak: CriticalLoad,
+    pub(super) effort_to_peak: (usize, usize),
+    pub(super) event: usize,
+    /// Ratio at load factor one at which the last search took a site for overloaded.
+    pub(super) overload: f64,
+    /// Whether sites fail at the present load already.
+    pub(super) cascade: bool,
+    pub(super) cracks: Vec<Crack>,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Progress {
+            factor: 0.0,
+            last: None,
+            first: None,
+            peak: CriticalLoad { displacement: 0.0, load: 0.0, broken: 0 },
+            effort_to_peak: (0, 0),
+            event: 0,
+            overload: f64::INFINITY,
+            cascade: false,
+            cracks: Vec::new(),
+        }
+    }
+}
+
 /// Everything that changes from break to break, once the load has reached a failure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct QuasiStaticState {
     body: BodyMemory,
-    factor: f64,
-    last: Option<LoadPoint>,
-    first: Option<CriticalLoad>,
-    peak: CriticalLoad,
-    effort_to_peak: (usize, usize),
-    event: usize,
-    overload: f64,
-    cascade: bool,
-    cracks: Vec<Crack>,
+    progress: Progress,
 }
 
 impl QuasiStatic {
     /// What it remembers.
     pub fn state(&self) -> QuasiStaticState {
-        QuasiStaticState {
-            body: self.body.memory(),
-            factor: self.factor,
-            last: self.last,
-            first: self.first,
-            peak: self.peak,
-            effort_to_peak: self.effort_to_peak,
-            event: self.event,
-            overload: self.overload,
-            cascade: self.cascade,
-            cracks: self.cracks.clone(),
-        }
+        QuasiStaticState { body: self.body.memory(), progress: self.progress.clone() }
     }
 
     /// Goes on from a state of a run of the same body, in place of the first equilibrium.
     pub fn restore(&mut self, state: QuasiStaticState) {
         // Neighbourhoods and stiffness follow the bonds that broke, in their order.
-        for crack in &state.cracks {
+        for crack in &state.progress.cracks {
             self.graph.break_bond(crack.bond);
             self.body.break_bond(crack.bond);
             self.search.bond_broken(crack.bond, &self.graph);
         }
         self.body.recall(state.body);
-        self.search.search(&self.body, &self.graph, state.overload);
-        (self.factor, self.last, self.first, self.peak) = (state.factor, state.last, state.first, state.peak);
-        (self.effort_to_peak, self.event, self.overload) = (state.effort_to_peak, state.event, state.overload);
-        (self.cascade, self.cracks) = (state.cascade, state.cracks);
+        self.search.search(&self.body, &self.graph, state.progress.overload);
+        self.progress = state.progress;
     }
 }

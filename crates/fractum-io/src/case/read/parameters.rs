@@ -23,8 +23,11 @@ pub(super) fn read(root: &Table<'_>) -> BTreeMap<String, f64> {
     for entry in table.entries() {
         check_name(reader, &entry.name, &entry.key_place);
         if let Some((value, kind)) = reader.constant(&entry.node, "a quantity such as \"21 GPa\"") {
-            let parameter = Parameter { value, kind, place: entry.node.place.clone(), used: false };
-            reader.parameters.borrow_mut().insert(entry.name.clone(), parameter);
+            let mut parameters = reader.parameters.borrow_mut();
+            // Read once for every stage: what one of them uses stays used.
+            let used = parameters.get(&entry.name).is_some_and(|known| known.used);
+            let parameter = Parameter { value, kind, place: entry.node.place.clone(), used };
+            parameters.insert(entry.name.clone(), parameter);
         }
     }
     table.finish("here");
