@@ -1,6 +1,6 @@
 //! Helpers shared by the verification and validation tests.
 
-use fractum_fem::{Body, Elastic, Shape};
+use fractum_fem::{Body, Elastic, ElementKind};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 
@@ -10,7 +10,7 @@ pub const CONCRETE: Elastic = Elastic { density: 2400.0, young_modulus: 30e9, po
 /// Nodes and elastic body of a box of tetrahedra with jittered inner nodes.
 pub fn jittered_box(cells: [u32; 3], size: Vec3) -> (Vec<Vec3>, Body) {
     let mesh = structured_box(cells, size, Some(Jitter { fraction: 0.15, seed: 7 }));
-    (mesh.nodes, Body::new("box", Shape::T4, mesh.tetrahedra, CONCRETE))
+    (mesh.nodes, Body::new("box", ElementKind::T4, mesh.tetrahedra, CONCRETE))
 }
 
 /// A reproducible number in -0.5..0.5.

@@ -1,6 +1,6 @@
 //! The standard and the smoothed element: patch test, zero modes, forces as derivatives of the energy, rotations.
 
-use fractum_fem::{Body, Formulation, Kinematics, Plane, Shape, Solid};
+use fractum_fem::{Body, ElementKind, Formulation, Kinematics, Plane, Solid};
 use fractum_math::{Mat3, Vec3};
 use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_tests::{CONCRETE, jittered_box, noise};
@@ -79,7 +79,7 @@ fn plane_rigid_motions_are_the_only_zero_modes() {
     for formulation in FORMULATIONS {
         let mesh = structured_rectangle([4, 3], [1.0, 0.8], Some(Jitter { fraction: 0.15, seed: 3 }));
         let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
-        let body = Body::new("sheet", Shape::T3, elements, CONCRETE);
+        let body = Body::new("sheet", ElementKind::T3, elements, CONCRETE);
         let mut solid =
             Solid::new(mesh.nodes, vec![Body { formulation, plane: Plane::Stress, thickness: 0.1, ..body }]).unwrap();
         let values = stiffness_eigenvalues(&mut solid, 2);

@@ -6,7 +6,9 @@
 
 use std::sync::Arc;
 
-use fractum_fem::{Body, Criterion, DamageLaw, Formulation, Kinematics, LocalDamping, Plane, Shape, Softening, Solid};
+use fractum_fem::{
+    Body, Criterion, DamageLaw, ElementKind, Formulation, Kinematics, LocalDamping, Plane, Softening, Solid,
+};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_scene::coupling::Debris;
@@ -55,10 +57,10 @@ fn block(cells: [u32; 3], size: Vec3) -> (Vec<Vec3>, Body) {
     if cells[2] == 0 {
         let mesh = structured_rectangle([cells[0], cells[1]], [size.x, size.y], jitter);
         let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
-        return (mesh.nodes, Body { plane: Plane::Strain, thickness: size.z, ..body(Shape::T3, elements) });
+        return (mesh.nodes, Body { plane: Plane::Strain, thickness: size.z, ..body(ElementKind::T3, elements) });
     }
     let mesh = structured_box(cells, size, jitter);
-    (mesh.nodes, body(Shape::T4, mesh.tetrahedra))
+    (mesh.nodes, body(ElementKind::T4, mesh.tetrahedra))
 }
 
 fn nodes_where(solid: &Solid, keep: impl Fn(&Vec3) -> bool) -> Vec<u32> {

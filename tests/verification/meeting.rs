@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use fractum_dem::Particles;
-use fractum_fem::{Body, Criterion, DamageLaw, Elastic, Kinematics, LocalDamping, Shape, Softening, Solid};
+use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, Kinematics, LocalDamping, Softening, Solid};
 use fractum_math::{Rotation, Vec3};
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
@@ -51,7 +51,7 @@ fn crash(target: Target, particles: bool) -> Scene {
         unilateral: false,
         rate_time: 0.0,
     };
-    let mut brittle = Body::new("block", Shape::T4, elements, elastic()).smoothed().with_damage(law);
+    let mut brittle = Body::new("block", ElementKind::T4, elements, elastic()).smoothed().with_damage(law);
     brittle.kinematics = Kinematics::Corotational;
     brittle.damage.as_mut().unwrap().reduce_strength_to_fit = true;
     let (mut bodies, mut all_facets, mut rigid_bodies) = (vec![brittle], vec![facets], Vec::new());
@@ -62,7 +62,7 @@ fn crash(target: Target, particles: bool) -> Scene {
         Target::Solid => {
             let (points, elements, facets) = block([6, 6, 2], size, count as u32);
             nodes.extend(points.iter().map(|x| x - shift));
-            let mut anvil = Body::new("anvil", Shape::T4, elements, elastic());
+            let mut anvil = Body::new("anvil", ElementKind::T4, elements, elastic());
             anvil.kinematics = Kinematics::Corotational;
             bodies.push(anvil);
             all_facets.push(facets);

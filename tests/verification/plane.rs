@@ -1,6 +1,6 @@
 //! Plane bodies: patch test of both plane states, the two-triangle tension test, discs as discrete elements.
 
-use fractum_fem::{Body, Criterion, DamageLaw, Elastic, Formulation, Plane, Shape, Softening, Solid};
+use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, Formulation, Plane, Softening, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_scene::ContactParameters;
@@ -16,7 +16,7 @@ fn constant_plane_strain_gives_constant_stress_and_no_inner_force() {
         for plane in [Plane::Strain, Plane::Stress] {
             let mesh = structured_rectangle([5, 4], [1.0, 0.8], Some(Jitter { fraction: 0.15, seed: 5 }));
             let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
-            let body = Body::new("sheet", Shape::T3, elements, CONCRETE);
+            let body = Body::new("sheet", ElementKind::T3, elements, CONCRETE);
             let mut solid = Solid::new(mesh.nodes, vec![Body { formulation, plane, thickness, ..body }]).unwrap();
             for i in 0..solid.reference.len() {
                 let p = solid.reference[i];
@@ -64,7 +64,7 @@ fn two_triangles_in_tension_follow_the_softening_curve() {
         };
         let nodes: Vec<Vec3> = NODES.iter().map(|p| Vec3::new(p[0], p[1], 0.0)).collect();
         let elements = vec![[3, 1, 2, 2], [1, 0, 2, 2]];
-        let body = Body::new("pair", Shape::T3, elements, steel).with_damage(law);
+        let body = Body::new("pair", ElementKind::T3, elements, steel).with_damage(law);
         let mut solid = Solid::new(nodes, vec![Body { formulation, plane: Plane::Stress, ..body }]).unwrap();
         let mut stretch = |u: f64| {
             let strain = u / (4.38654 - 2.43214);
@@ -95,7 +95,7 @@ fn two_triangles_in_tension_follow_the_softening_curve() {
 fn particles_of_a_plane_body_are_discs_of_its_thickness() {
     let mesh = structured_rectangle([2, 2], [1.0, 1.0], None);
     let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
-    let body = Body::new("sheet", Shape::T3, elements, CONCRETE);
+    let body = Body::new("sheet", ElementKind::T3, elements, CONCRETE);
     let solid = Solid::new(mesh.nodes, vec![Body { thickness: 0.07, ..body }]).unwrap();
     let debris = Debris::new(&solid, vec![ContactParameters::default()]);
     assert!((0..solid.reference.len() as u32).all(|node| debris.thickness(node) == 0.07));

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use fractum_fem::{
-    Body, Criterion, DamageLaw, DamageZone, Elastic, Formulation, LocalDamping, Plane, Region, Shape, Softening, Solid,
+    Body, Criterion, DamageLaw, DamageZone, Elastic, ElementKind, Formulation, LocalDamping, Plane, Region, Softening,
+    Solid,
 };
 use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_mesh::generate::{Jitter, structured_rectangle};
@@ -95,7 +96,7 @@ fn bar(formulation: Formulation) -> Solid {
     let mesh = structured_rectangle([40, 4], [1.0, 0.1], Some(Jitter { fraction: 0.1, seed: 2 }));
     let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
     let elastic = Elastic { poisson_ratio: 0.0, ..CONCRETE };
-    let body = Body::new("bar", Shape::T3, elements, elastic);
+    let body = Body::new("bar", ElementKind::T3, elements, elastic);
     let body = Body { formulation, plane: Plane::Stress, thickness: 0.1, ..body };
     let near = |p: &Vec3| (p.x - 0.5).abs() < 0.03;
     let region = Region::Edges(body.edge_midpoints(&mesh.nodes).iter().map(near).collect());
@@ -190,7 +191,7 @@ fn the_first_period_of_a_clamped_bar_is_four_transits() {
     let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
     let elastic = Elastic { poisson_ratio: 0.0, ..CONCRETE };
     let speed = (elastic.young_modulus / elastic.density).sqrt();
-    let body = Body { plane: Plane::Stress, ..Body::new("bar", Shape::T3, elements, elastic) };
+    let body = Body { plane: Plane::Stress, ..Body::new("bar", ElementKind::T3, elements, elastic) };
     let solid = Solid::new(mesh.nodes, vec![body]).unwrap();
     let supports = vec![
         Support::new("left", nodes_where(&solid, |p| p.x < 1e-9), 0, Motion::Fixed),

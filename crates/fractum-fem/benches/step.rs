@@ -5,7 +5,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as run_benches};
-use fractum_fem::{Body, Criterion, DamageLaw, Elastic, LocalDamping, Shape, Softening, Solid};
+use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, LocalDamping, Softening, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::renumber::renumber_along_hilbert_curve;
@@ -23,7 +23,7 @@ fn solid(cells: u32, prepare: impl Fn(Body) -> Body) -> (Solid, usize, f64) {
     let mesh = structured_box([cells; 3], Vec3::new(1.0, 1.0, 1.0), Some(Jitter { fraction: 0.1, seed: 1 }));
     let (mesh, _) = renumber_along_hilbert_curve(&mesh);
     let count = mesh.tetrahedra.len();
-    let body = prepare(Body::new("box", Shape::T4, mesh.tetrahedra, CONCRETE));
+    let body = prepare(Body::new("box", ElementKind::T4, mesh.tetrahedra, CONCRETE));
     let mut solid = Solid::new(mesh.nodes, vec![body]).expect("a structured mesh makes a solid");
     for (i, u) in solid.displacement.iter_mut().enumerate() {
         u.x = 1e-7 * (0.1 * i as f64).sin();

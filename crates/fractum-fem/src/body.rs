@@ -3,29 +3,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::material::{DamageLaw, Elastic};
 
-/// Shape of all elements of a body.
+/// Kind of all elements of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Shape {
+pub enum ElementKind {
     /// Four-node tetrahedra.
     T4,
     /// Three-node triangles in the xy-plane (the fourth entry of an element repeats the third).
     T3,
 }
 
-impl Shape {
+impl ElementKind {
     /// Nodes of an element.
     pub fn node_count(self) -> usize {
         match self {
-            Shape::T4 => 4,
-            Shape::T3 => 3,
+            ElementKind::T4 => 4,
+            ElementKind::T3 => 3,
         }
     }
 
     /// Edges of an element.
     pub fn edge_count(self) -> usize {
         match self {
-            Shape::T4 => 6,
-            Shape::T3 => 3,
+            ElementKind::T4 => 6,
+            ElementKind::T3 => 3,
         }
     }
 }
@@ -87,7 +87,7 @@ pub struct Body {
     /// The user's name for it.
     pub name: String,
     /// Shape of its elements.
-    pub shape: Shape,
+    pub shape: ElementKind,
     /// Node indices of its elements, positively oriented.
     pub elements: Vec<[u32; 4]>,
     /// Elasticity.
@@ -106,7 +106,7 @@ pub struct Body {
 
 impl Body {
     /// An elastic body of plain elements with small strains.
-    pub fn new(name: &str, shape: Shape, elements: Vec<[u32; 4]>, elastic: Elastic) -> Self {
+    pub fn new(name: &str, shape: ElementKind, elements: Vec<[u32; 4]>, elastic: Elastic) -> Self {
         Body {
             name: name.to_owned(),
             shape,
@@ -140,11 +140,11 @@ impl Body {
     /// The edges of the body, as pairs of node indices, and the edges of each element.
     pub fn edges(&self) -> BodyEdges {
         match self.shape {
-            Shape::T4 => {
+            ElementKind::T4 => {
                 let edges = fractum_mesh::topology::edges_of_tetrahedra(&self.elements);
                 BodyEdges { nodes: edges.nodes, of_element: edges.of_element }
             }
-            Shape::T3 => {
+            ElementKind::T3 => {
                 let triangles: Vec<[u32; 3]> = self.elements.iter().map(|e| [e[0], e[1], e[2]]).collect();
                 let edges = fractum_mesh::topology::edges_of_triangles(&triangles);
                 let of_element = edges.of_element.iter().map(|e| [e[0], e[1], e[2], 0, 0, 0]).collect();

@@ -3,7 +3,7 @@
 use fractum_math::elementary::asin;
 use fractum_math::{Sym3, Vec3};
 
-use crate::body::Shape;
+use crate::body::ElementKind;
 use crate::solid::Solid;
 
 /// An edge that a crack runs through.
@@ -103,7 +103,7 @@ impl Solid {
 
     /// Whether the solid is plane.
     pub fn is_plane(&self) -> bool {
-        self.bodies.iter().any(|model| model.body.shape == Shape::T3)
+        self.bodies.iter().any(|model| model.body.shape == ElementKind::T3)
     }
 }
 

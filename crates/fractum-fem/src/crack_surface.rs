@@ -5,7 +5,7 @@
 
 use fractum_math::{Ragged, Vec3};
 
-use crate::body::Shape;
+use crate::body::ElementKind;
 use crate::solid::{BodyModel, Solid};
 
 /// Sides of a tetrahedron as its neighbours see them, counter-clockwise from inside it: nodes, the opposite node, and an
@@ -93,7 +93,7 @@ impl Solid {
         let model = &self.bodies[body];
         let Some(edges) = &model.edges else { return };
         let element = model.body.elements[removed as usize];
-        let sides = if model.body.shape == Shape::T4 { &SIDES_T4[..] } else { &SIDES_T3[..] };
+        let sides = if model.body.shape == ElementKind::T4 { &SIDES_T4[..] } else { &SIDES_T3[..] };
         for &(local, opposite, edge, third) in sides {
             let around = model.elements_of_edge.row(edges.of_element[removed as usize][edge] as usize);
             if let Some(behind) = behind(model, around, element[third]) {
@@ -132,7 +132,7 @@ mod tests {
     use crate::material::{Criterion, DamageLaw, Elastic, Softening};
     use fractum_mesh::generate::{structured_box, structured_rectangle};
 
-    fn broken(shape: Shape, nodes: Vec<Vec3>, elements: Vec<[u32; 4]>) -> Solid {
+    fn broken(shape: ElementKind, nodes: Vec<Vec3>, elements: Vec<[u32; 4]>) -> Solid {
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
         let law = DamageLaw {
             criterion: Criterion::rankine(),
@@ -161,7 +161,8 @@ mod tests {
         let flat = structured_rectangle([5, 3], [0.5, 0.2], None);
         let elements = flat.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
         let deep = structured_box([5, 3, 2], Vec3::new(0.5, 0.2, 0.3), None);
-        let solids = [broken(Shape::T3, flat.nodes, elements), broken(Shape::T4, deep.nodes, deep.tetrahedra)];
+        let solids =
+            [broken(ElementKind::T3, flat.nodes, elements), broken(ElementKind::T4, deep.nodes, deep.tetrahedra)];
         for solid in &solids {
             let crack = solid.crack_surface();
             let section = 0.2 * 0.3;

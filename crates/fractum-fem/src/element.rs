@@ -3,7 +3,7 @@
 use fractum_math::Vec3;
 use fractum_math::elementary::cbrt;
 
-use crate::body::Shape;
+use crate::body::ElementKind;
 
 /// The seven ways a plane cuts a tetrahedron, as sets of its local edges (01)(02)(03)(12)(13)(23).
 pub const CUT_MODES: [&[usize]; 7] =
@@ -13,23 +13,23 @@ pub const CUT_MODES: [&[usize]; 7] =
 const CUT_MODES_T3: [&[usize]; 3] = [&[0, 2], &[0, 1], &[1, 2]];
 
 /// The ways a crack separates an element of this shape.
-pub(crate) fn cut_modes(shape: Shape) -> &'static [&'static [usize]] {
+pub(crate) fn cut_modes(shape: ElementKind) -> &'static [&'static [usize]] {
     match shape {
-        Shape::T4 => &CUT_MODES,
-        Shape::T3 => &CUT_MODES_T3,
+        ElementKind::T4 => &CUT_MODES,
+        ElementKind::T3 => &CUT_MODES_T3,
     }
 }
 
 /// Volume (T4) or area (T3) of an element, and the gradients of its shape functions [1/m].
-pub(crate) fn measure_and_gradients(shape: Shape, x: &[Vec3; 4]) -> (f64, [Vec3; 4]) {
+pub(crate) fn measure_and_gradients(shape: ElementKind, x: &[Vec3; 4]) -> (f64, [Vec3; 4]) {
     match shape {
-        Shape::T4 => {
+        ElementKind::T4 => {
             let (a, b, c) = (x[1] - x[0], x[2] - x[0], x[3] - x[0]);
             let det = a.dot(&b.cross(&c));
             let (g1, g2, g3) = (b.cross(&c) / det, c.cross(&a) / det, a.cross(&b) / det);
             (det / 6.0, [-(g1 + g2 + g3), g1, g2, g3])
         }
-        Shape::T3 => {
+        ElementKind::T3 => {
             let (a, b) = (x[1] - x[0], x[2] - x[0]);
             let det = a.x * b.y - a.y * b.x;
             let g1 = Vec3::new(b.y, -b.x, 0.0) / det;
@@ -40,10 +40,10 @@ pub(crate) fn measure_and_gradients(shape: Shape, x: &[Vec3; 4]) -> (f64, [Vec3;
 }
 
 /// Edge length of the regular simplex of this measure: (6√2 V)^(1/3) or √(4A/√3) [m].
-pub(crate) fn regular_edge(shape: Shape, measure: f64) -> f64 {
+pub(crate) fn regular_edge(shape: ElementKind, measure: f64) -> f64 {
     match shape {
-        Shape::T4 => cbrt(6.0 * 2f64.sqrt() * measure),
-        Shape::T3 => (4.0 * measure / 3f64.sqrt()).sqrt(),
+        ElementKind::T4 => cbrt(6.0 * 2f64.sqrt() * measure),
+        ElementKind::T3 => (4.0 * measure / 3f64.sqrt()).sqrt(),
     }
 }
 
@@ -56,7 +56,7 @@ mod tests {
         let x =
             [Vec3::new(0.1, 0.2, 0.0), Vec3::new(1.1, 0.1, 0.3), Vec3::new(0.2, 1.3, 0.1), Vec3::new(0.0, 0.3, 0.9)];
         let slope = Vec3::new(2.0, -3.0, 0.5);
-        let (volume, gradients) = measure_and_gradients(Shape::T4, &x);
+        let (volume, gradients) = measure_and_gradients(ElementKind::T4, &x);
         let sum: Vec3 = x.iter().zip(gradients).map(|(p, g)| g * slope.dot(p)).sum();
         assert!(volume > 0.0 && (sum - slope).norm() < 1e-14);
     }
@@ -64,7 +64,7 @@ mod tests {
     #[test]
     fn regular_tetrahedron_has_its_own_edge() {
         let a = 0.7f64;
-        assert!((regular_edge(Shape::T4, a.powi(3) / (6.0 * 2f64.sqrt())) - a).abs() < 1e-14);
-        assert!((regular_edge(Shape::T3, 3f64.sqrt() / 4.0 * a * a) - a).abs() < 1e-14);
+        assert!((regular_edge(ElementKind::T4, a.powi(3) / (6.0 * 2f64.sqrt())) - a).abs() < 1e-14);
+        assert!((regular_edge(ElementKind::T3, 3f64.sqrt() / 4.0 * a * a) - a).abs() < 1e-14);
     }
 }

@@ -10,7 +10,7 @@ use fractum_math::{Sym3, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::body::Shape;
+use crate::body::ElementKind;
 use crate::damage::EdgeField;
 use crate::element::regular_edge;
 use crate::evaluate::Block;
@@ -65,7 +65,7 @@ impl Gate {
     ) -> Gate {
         let body = &model.body;
         let edges = model.edges.as_ref().map_or(&[][..], |edges| edges.nodes.as_slice());
-        let thickness = if body.shape == Shape::T3 { body.thickness } else { 1.0 };
+        let thickness = if body.shape == ElementKind::T3 { body.thickness } else { 1.0 };
         let middle: Vec<Vec3> = edges.iter().map(|&[i, j]| (nodes[i as usize] + nodes[j as usize]) * 0.5).collect();
         let size = |edge: usize| {
             let elements = model.elements_of_edge.row(edge);
@@ -259,7 +259,7 @@ mod tests {
             unilateral: false,
             rate_time: 0.0,
         };
-        let mut body = Body::new("plate", Shape::T3, elements, elastic).smoothed().with_damage(law);
+        let mut body = Body::new("plate", ElementKind::T3, elements, elastic).smoothed().with_damage(law);
         body.plane = Plane::Stress;
         body.damage.as_mut().unwrap().crack_plane_gate = gate;
         let mut solid = Solid::new(centred, vec![body]).unwrap();

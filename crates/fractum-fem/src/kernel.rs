@@ -3,7 +3,7 @@
 use fractum_math::{Mat3, Sym3};
 
 use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
-use crate::body::{Body, Kinematics, Plane, Shape};
+use crate::body::{Body, ElementKind, Kinematics, Plane};
 use crate::lane::Lane;
 use crate::viscosity::BodyViscosity;
 
@@ -28,7 +28,7 @@ impl Hooke {
     /// The law of a body, with the Lamé parameter of plane stress where it is one.
     pub(crate) fn of(body: &Body) -> Self {
         let (lambda, mu) = (body.elastic.lame_lambda(), body.elastic.shear_modulus());
-        if body.shape == Shape::T3 && body.plane == Plane::Stress {
+        if body.shape == ElementKind::T3 && body.plane == Plane::Stress {
             return Hooke { lambda: 2.0 * lambda * mu / (lambda + 2.0 * mu), mu, zz: 0.0 };
         }
         Hooke { lambda, mu, zz: 1.0 }

@@ -12,11 +12,11 @@
 //! Left out on purpose: discrete elements and contact (the coupling knows both), files, and the wall clock.
 //!
 //! ```
-//! use fractum_fem::{Body, Elastic, Kinematics, Plane, Region, Shape, Solid};
+//! use fractum_fem::{Body, Elastic, Kinematics, Plane, Region, ElementKind, Solid};
 //! use fractum_math::Vec3;
 //! let nodes = vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
 //! let steel = Elastic { density: 7850.0, young_modulus: 210e9, poisson_ratio: 0.3 };
-//! let body = Body::new("tetrahedron", Shape::T4, vec![[0, 1, 2, 3]], steel);
+//! let body = Body::new("tetrahedron", ElementKind::T4, vec![[0, 1, 2, 3]], steel);
 //! let mut solid = Solid::new(nodes, vec![body]).unwrap();
 //! solid.displacement[1].x = 1e-6;
 //! solid.update_internal_forces(1e-9, true);
@@ -27,6 +27,7 @@
 mod block;
 mod body;
 mod cell;
+mod central_difference;
 mod crack;
 mod crack_surface;
 mod damage;
@@ -38,7 +39,6 @@ mod inverted;
 mod kernel;
 mod lane;
 pub mod material;
-mod nodes;
 mod removal;
 mod secant;
 mod solid;
@@ -48,7 +48,8 @@ mod threshold;
 mod time_step;
 mod viscosity;
 
-pub use body::{Body, DamageZone, Formulation, Kinematics, Plane, Region, Shape};
+pub use body::{Body, DamageZone, ElementKind, Formulation, Kinematics, Plane, Region};
+pub use central_difference::LocalDamping;
 pub use crack::{CrackEdge, CrackPlane};
 pub use crack_surface::{CrackFacet, CrackSurface};
 pub use damage::EdgeDamage;
@@ -57,7 +58,6 @@ pub use error::SolidError;
 pub use gate::GateState;
 pub use inverted::InvertedElement;
 pub use material::{Criterion, CriterionKind, DamageLaw, Elastic, Softening};
-pub use nodes::LocalDamping;
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::{Fracture, Solid};
 pub use state::{BodyState, SolidState};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fractum_math::{Ragged, Sym3};
 use rayon::prelude::*;
 
-use crate::body::Shape;
+use crate::body::ElementKind;
 use crate::damage::{EdgeField, Softens};
 use crate::element::cut_modes;
 use crate::kernel::CellLaw;
@@ -15,7 +15,7 @@ use crate::kernel::CellLaw;
 #[derive(Clone, Debug)]
 pub(crate) struct StandardDamage {
     pub(crate) field: EdgeField,
-    pub(crate) shape: Shape,
+    pub(crate) shape: ElementKind,
     pub(crate) elements_of_edge: Ragged,
 }
 

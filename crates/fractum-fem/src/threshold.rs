@@ -1,7 +1,7 @@
 use fractum_math::{Ragged, Vec3};
 use rayon::prelude::*;
 
-use crate::body::{Body, BodyEdges, DamageZone, Formulation, Region, Shape};
+use crate::body::{Body, BodyEdges, DamageZone, ElementKind, Formulation, Region};
 use crate::element::regular_edge;
 use crate::error::SolidError;
 
@@ -30,12 +30,12 @@ impl Threshold {
         // Measured on the tension bars of the gallery (aligned, jittered and Delaunay meshes of two sizes), never on other
         // cases: the middle of the range in which all of them dissipate G_f times the area within 6 %.
         let factor = match (body.formulation, body.shape) {
-            (Formulation::Smoothed, Shape::T4) => 1.09,
-            (Formulation::Smoothed, Shape::T3) => 1.124,
-            (Formulation::Standard, Shape::T4) => 1.11,
-            (Formulation::Standard, Shape::T3) => 1.28,
+            (Formulation::Smoothed, ElementKind::T4) => 1.09,
+            (Formulation::Smoothed, ElementKind::T3) => 1.124,
+            (Formulation::Standard, ElementKind::T4) => 1.11,
+            (Formulation::Standard, ElementKind::T3) => 1.28,
         };
-        let thickness = if body.shape == Shape::T3 { body.thickness } else { 1.0 };
+        let thickness = if body.shape == ElementKind::T3 { body.thickness } else { 1.0 };
         let length = |edge: usize| {
             let elements = elements_of_edge.row(edge);
             let sum: f64 = elements.iter().map(|&e| regular_edge(body.shape, volumes[e as usize] / thickness)).sum();

@@ -1,7 +1,7 @@
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use crate::body::Shape;
+use crate::body::ElementKind;
 use crate::element::regular_edge;
 use crate::kernel::Hooke;
 
@@ -38,7 +38,7 @@ impl BodyViscosity {
         let mut stress = hooke.stress(rate) * (stiffness_time * integrity);
         let volumetric = rate.trace();
         if volumetric < 0.0 {
-            let length = regular_edge(Shape::T4, volume);
+            let length = regular_edge(ElementKind::T4, volume);
             let quadratic = bulk_quadratic * bulk_quadratic * length * volumetric * volumetric;
             let pressure = self.density * length * (bulk_linear * self.wave_speed * -volumetric + quadratic);
             stress += Sym3::isotropic(-pressure);

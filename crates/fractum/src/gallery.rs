@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fractum_fem::Shape;
+use fractum_fem::ElementKind;
 use fractum_io::number::quantity;
 use fractum_io::picture::{ColourMap, Paint, Picture, Spheres, Surface, View, range};
 use fractum_math::Vec3;
@@ -150,13 +150,13 @@ fn skin(scene: &Scene, shown: &dyn Fn(usize) -> [f64; 3]) -> Skin {
             skin.stress.push(stress.principal_values()[0]);
         };
         match model.shape {
-            Shape::T4 => {
+            ElementKind::T4 => {
                 let elements: Vec<[u32; 4]> = alive.iter().map(|&e| model.elements[e]).collect();
                 for facet in boundary_of_tetrahedra(&elements) {
                     push(facet.nodes, alive[facet.element as usize]);
                 }
             }
-            Shape::T3 => {
+            ElementKind::T3 => {
                 for &element in &alive {
                     let [a, b, c, _] = model.elements[element];
                     push([a, b, c], element);

@@ -4,7 +4,7 @@ mod bodies;
 
 use std::fmt;
 
-use fractum_fem::{Formulation, Kinematics, Shape};
+use fractum_fem::{ElementKind, Formulation, Kinematics};
 use fractum_io::build::{BuiltScene, TieReport};
 use fractum_io::case::model::{Case, LoadKind, MeshSource, Selection};
 use fractum_io::number::quantity;
@@ -214,7 +214,7 @@ impl Plan {
     }
 
     fn describe_statics(&mut self, scene: &Scene, settings: &StaticSettings) {
-        let plane = scene.solid.body(0).shape == Shape::T3;
+        let plane = scene.solid.body(0).shape == ElementKind::T3;
         let unknowns = scene.solid.reference.len() * if plane { 2 } else { 3 } - scene.supports().count();
         let control = match &settings.control {
             Control::Time => "by steps of the load parameter".to_owned(),
@@ -300,7 +300,7 @@ fn elements_cost(scene: &Scene) -> (f64, f64, usize) {
 /// Thickness of the first plane body [m], 0 in space.
 fn plane_thickness(scene: &Scene) -> f64 {
     let mut bodies = (0..scene.solid.body_count()).map(|index| scene.solid.body(index));
-    bodies.find(|body| body.shape == Shape::T3).map_or(0.0, |body| body.thickness)
+    bodies.find(|body| body.shape == ElementKind::T3).map_or(0.0, |body| body.thickness)
 }
 
 /// The facets that a load acts on, with their area where a group alone tells them.

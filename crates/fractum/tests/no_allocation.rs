@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use fractum_dem::{BeamSection, Particles};
-use fractum_fem::{Body, Criterion, DamageLaw, Elastic, Kinematics, Shape, Softening, Solid, Viscosity};
+use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, Kinematics, Softening, Solid, Viscosity};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
@@ -61,7 +61,7 @@ const STRENGTH: f64 = 3e6;
 /// Nodes and a body large enough for several blocks and several chunks of nodes.
 fn block() -> (Vec<Vec3>, Body) {
     let mesh = structured_box([32, 12, 12], SIZE, Some(Jitter { fraction: 0.1, seed: 1 }));
-    (mesh.nodes, Body::new("block", Shape::T4, mesh.tetrahedra, ELASTIC))
+    (mesh.nodes, Body::new("block", ElementKind::T4, mesh.tetrahedra, ELASTIC))
 }
 
 fn armed(body: Body) -> Body {
@@ -144,7 +144,7 @@ fn tied_bar() -> Scene {
     let nodes: Vec<Vec3> = mesh.nodes.iter().map(|x| x + Vec3::z() * 9.5).collect();
     let elastic = Elastic { density: 1.0, young_modulus: 1e3, poisson_ratio: 0.2 };
     let facets: Vec<[u32; 3]> = boundary_of_tetrahedra(&mesh.tetrahedra).iter().map(|f| f.nodes).collect();
-    let solid = Solid::new(nodes, vec![Body::new("block", Shape::T4, mesh.tetrahedra, elastic)]).unwrap();
+    let solid = Solid::new(nodes, vec![Body::new("block", ElementKind::T4, mesh.tetrahedra, elastic)]).unwrap();
     let bonded = lattice();
     let free: Vec<u32> = (0..3000).filter(|i| (1..29).contains(&(i % 30))).collect();
     let layer = Layer::find(&solid, &facets, &bonded.particles, &free, 0.2).unwrap();

@@ -19,7 +19,7 @@ pub(super) struct Part<'a> {
     pub(super) body: &'a SolidBody,
     pub(super) name: &'a str,
     pub(super) place: Place,
-    pub(super) shape: fem::Shape,
+    pub(super) shape: fem::ElementKind,
     /// Tetrahedra or triangles of the mesh.
     pub(super) elements: Vec<u32>,
 }
@@ -51,9 +51,9 @@ impl<'a> Context<'a> {
             let (tetrahedra, triangles) = (collect(|g| &g.tetrahedra), collect(|g| &g.triangles));
             let place = solid.group.place.clone();
             let (shape, elements) = if !tetrahedra.is_empty() {
-                (fem::Shape::T4, tetrahedra)
+                (fem::ElementKind::T4, tetrahedra)
             } else if !triangles.is_empty() {
-                (fem::Shape::T3, triangles)
+                (fem::ElementKind::T3, triangles)
             } else {
                 let found = format!("= \"{}\"", solid.group.value);
                 let wanted = format!("tetrahedra or triangles as {}", use_in_words(GroupUse::Body));
@@ -81,7 +81,7 @@ impl<'a> Context<'a> {
 
     fn check_dimension(&mut self, part: &Part) {
         let body = part.body;
-        if part.shape == fem::Shape::T3 {
+        if part.shape == fem::ElementKind::T3 {
             let flat = part.elements.iter().flat_map(|&t| self.mesh.triangles[t as usize]);
             let z0 = flat.clone().next().map_or(0.0, |n| self.mesh.nodes[n as usize].z);
             let (low, high) = self.mesh.bounding_box();
@@ -119,8 +119,8 @@ impl<'a> Context<'a> {
                     self.error(&part.place, found, "all solid bodies of triangles, or all of tetrahedra");
                 } else if let Some(&element) = part.elements.iter().find(|e| other.elements.binary_search(e).is_ok()) {
                     let tags = match part.shape {
-                        fem::Shape::T4 => &self.mesh.tetrahedron_tags,
-                        fem::Shape::T3 => &self.mesh.triangle_tags,
+                        fem::ElementKind::T4 => &self.mesh.tetrahedron_tags,
+                        fem::ElementKind::T3 => &self.mesh.triangle_tags,
                     };
                     let found = format!(
                         "= \"{}\": element {} also belongs to body \"{}\"",
@@ -153,8 +153,8 @@ impl<'a> Context<'a> {
     /// Mesh nodes of the elements of a part; triangles repeat their last node.
     pub(super) fn element_nodes(&self, part: &Part) -> Vec<[u32; 4]> {
         let of = |&e: &u32| match part.shape {
-            fem::Shape::T4 => self.mesh.tetrahedra[e as usize],
-            fem::Shape::T3 => {
+            fem::ElementKind::T4 => self.mesh.tetrahedra[e as usize],
+            fem::ElementKind::T3 => {
                 let [a, b, c] = self.mesh.triangles[e as usize];
                 [a, b, c, c]
             }
@@ -291,7 +291,7 @@ impl<'a> Context<'a> {
     pub(super) fn boundary(&self, parts: &[Part], numbering: &Numbering) -> Vec<[u32; 3]> {
         let scene = |n: u32| numbering.scene_node[n as usize];
         let elements: Vec<[u32; 4]> = parts.iter().flat_map(|part| self.element_nodes(part)).collect();
-        if parts.iter().all(|part| part.shape == fem::Shape::T4) {
+        if parts.iter().all(|part| part.shape == fem::ElementKind::T4) {
             topology::boundary_of_tetrahedra(&elements).iter().map(|f| f.nodes.map(scene)).collect()
         } else {
             let triangles: Vec<[u32; 3]> = elements.iter().map(|e| [e[0], e[1], e[2]]).collect();

@@ -34,7 +34,7 @@ impl Context<'_> {
         let case = self.case;
         let thickness = parts
             .iter()
-            .find(|p| p.shape == fractum_fem::Shape::T3)
+            .find(|p| p.shape == fractum_fem::ElementKind::T3)
             .map_or(0.0, |part| part.body.thickness.as_ref().map_or(1.0, |t| t.value));
         let surface = Surface::new(boundary, thickness, &numbering.positions);
         let mut loads = Vec::new();

@@ -31,8 +31,8 @@ impl Context<'_> {
     pub(super) fn facets_of_parts(&self, parts: &[Part], numbering: &Numbering) -> Vec<Vec<[u32; 3]>> {
         let scene = |n: u32| numbering.scene_node[n as usize];
         let of = |part: &Part| match part.shape {
-            fem::Shape::T3 => Vec::new(),
-            fem::Shape::T4 => {
+            fem::ElementKind::T3 => Vec::new(),
+            fem::ElementKind::T4 => {
                 let facets = topology::boundary_of_tetrahedra(&self.element_nodes(part));
                 facets.iter().map(|f| f.nodes.map(scene)).collect()
             }

@@ -65,7 +65,8 @@ impl Context<'_> {
                 for (body, part) in parts.iter().enumerate() {
                     for (index, &element) in (0..).zip(&part.elements) {
                         let inside = wanted.iter().any(|g| {
-                            let list = if part.shape == fractum_fem::Shape::T4 { &g.tetrahedra } else { &g.triangles };
+                            let list =
+                                if part.shape == fractum_fem::ElementKind::T4 { &g.tetrahedra } else { &g.triangles };
                             list.binary_search(&element).is_ok()
                         });
                         if inside {

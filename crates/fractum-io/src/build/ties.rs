@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use fractum_fem::{Shape, Solid};
+use fractum_fem::{ElementKind, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::topology;
 use fractum_scene::Bonded;
@@ -71,7 +71,7 @@ impl Context<'_> {
             gone.extend(elements);
             gone.sort_unstable();
         }
-        for part in parts.iter_mut().filter(|part| part.shape == Shape::T4) {
+        for part in parts.iter_mut().filter(|part| part.shape == ElementKind::T4) {
             part.elements.retain(|e| gone.binary_search(e).is_err());
             if part.elements.is_empty() {
                 let place = part.place.clone();

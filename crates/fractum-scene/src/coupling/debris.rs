@@ -73,7 +73,7 @@ impl Debris {
         for index in bodies.clone().rev() {
             let body = solid.body(index);
             let pair = (body.elastic.young_modulus, body.elastic.poisson_ratio);
-            let own = if body.shape == fractum_fem::Shape::T3 { body.thickness } else { 0.0 };
+            let own = if body.shape == fractum_fem::ElementKind::T3 { body.thickness } else { 0.0 };
             for &node in body.elements.iter().flatten() {
                 (elasticity[node as usize], body_of[node as usize]) = (pair, index as u32);
                 thickness[node as usize] = own;
@@ -82,7 +82,7 @@ impl Debris {
         Debris {
             surfaces,
             body: body_of,
-            planar: bodies.clone().all(|b| solid.body(b).shape == fractum_fem::Shape::T3),
+            planar: bodies.clone().all(|b| solid.body(b).shape == fractum_fem::ElementKind::T3),
             elasticity,
             thickness,
             radius: Vec::new(),

@@ -309,7 +309,7 @@ mod tests {
     use crate::coupling::Layer;
     use crate::{Scene, SceneSettings};
     use fractum_dem::BeamSection;
-    use fractum_fem::{Body, Elastic, Kinematics, LocalDamping, Shape};
+    use fractum_fem::{Body, Elastic, ElementKind, Kinematics, LocalDamping};
     use fractum_mesh::generate::{Jitter, structured_box};
     use fractum_mesh::topology;
     use std::sync::Arc;
@@ -323,7 +323,7 @@ mod tests {
         let nodes: Vec<Vec3> = mesh.nodes.iter().map(|x| x - Vec3::z() * 4e-3).collect();
         let facets: Vec<[u32; 3]> =
             topology::boundary_of_tetrahedra(&mesh.tetrahedra).iter().map(|f| f.nodes).collect();
-        let mut body = Body::new("block", Shape::T4, mesh.tetrahedra, ELASTIC);
+        let mut body = Body::new("block", ElementKind::T4, mesh.tetrahedra, ELASTIC);
         body.kinematics = Kinematics::Corotational;
         let solid = Solid::new(nodes, vec![body]).unwrap();
         let mut position = Vec::new();

@@ -1,6 +1,6 @@
 //! Rigid motions that nothing prevents.
 
-use fractum_fem::{Shape, Solid};
+use fractum_fem::{ElementKind, Solid};
 use fractum_math::Vec3;
 use nalgebra::{Matrix6, Vector6};
 
@@ -15,7 +15,7 @@ use crate::fragment::parts;
 /// # Errors
 /// [`SceneError::FreeBody`] with the body and the motion.
 pub fn check_supports(solid: &Solid, held: &[u8], touched: &[(u32, Vec3)]) -> Result<(), SceneError> {
-    let plane = solid.body(0).shape == Shape::T3;
+    let plane = solid.body(0).shape == ElementKind::T3;
     for (body, nodes) in pieces(solid) {
         let holds = |&n: &u32| held.get(n as usize).copied().unwrap_or(0);
         let centre = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / nodes.len() as f64;

@@ -2,7 +2,7 @@
 
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
-use fractum_fem::{Formulation, Kinematics, Plane, Shape};
+use fractum_fem::{ElementKind, Formulation, Kinematics, Plane};
 use fractum_io::case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody};
 use fractum_io::number::quantity;
 use fractum_math::elementary::cbrt;
@@ -141,8 +141,8 @@ impl Plan {
             Formulation::Smoothed => "smoothed",
         };
         let shape = match (body.shape, body.plane) {
-            (Shape::T4, _) => "tetrahedra".to_owned(),
-            (Shape::T3, plane) => {
+            (ElementKind::T4, _) => "tetrahedra".to_owned(),
+            (ElementKind::T3, plane) => {
                 let plane = if plane == Plane::Stress { "plane stress" } else { "plane strain" };
                 format!("triangles in {plane}, {} thick", quantity(body.thickness, "m"))
             }
@@ -176,7 +176,7 @@ impl Plan {
                 ),
             );
             if d.crack_plane_gate {
-                let tried = if body.shape == Shape::T3 { "" } else { "; in space tried on a tension bar only" };
+                let tried = if body.shape == ElementKind::T3 { "" } else { "; in space tried on a tension bar only" };
                 self.add("", format!("crack-plane gate: for few, separate, straight cracks{tried}"));
             }
         }
@@ -187,8 +187,8 @@ fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
     let model = scene.solid.body(body);
     let each = volume / model.elements.len() as f64;
     match model.shape {
-        Shape::T4 => cbrt(6.0 * 2f64.sqrt() * each),
-        Shape::T3 => (4.0 * each / model.thickness / 3f64.sqrt()).sqrt(),
+        ElementKind::T4 => cbrt(6.0 * 2f64.sqrt() * each),
+        ElementKind::T3 => (4.0 * each / model.thickness / 3f64.sqrt()).sqrt(),
     }
 }
 
