@@ -288,7 +288,7 @@ pub enum Bound {
 
 /// Paths of `summary.json` that a reference value may name, besides `probes.NAME.(final|max|min|time_of_max)`.
 pub fn summary_quantities() -> impl Iterator<Item = (String, Dimension)> {
-    let energies = EnergyKind::written().map(|kind| (format!("energy.{}", kind.name()), Dimension::ENERGY));
+    let energies = EnergyKind::ALL.into_iter().map(|kind| (format!("energy.{}", kind.name()), Dimension::ENERGY));
     energies.chain(SUMMARY_QUANTITIES.iter().map(|(path, dimension)| ((*path).to_owned(), *dimension)))
 }
 

@@ -1,0 +1,28 @@
+//! Results and references.
+
+use super::key;
+use crate::case::key_kind::{KeyDoc, KeyKind as K};
+use crate::case::unit::Dimension as D;
+
+#[rustfmt::skip] // a table reads best with one row per line
+pub(super) static KEYS: &[KeyDoc] = &[
+    key("output", K::Table, "", "What is written, and how often"),
+    key("output.fields", K::Table, "", "Fields for ParaView"),
+    key("output.fields.every", K::Quantity(D::TIME), "1/50 of the run", "Time between fields, > 0"),
+    key("output.history", K::Table, "", "Rows of history.csv"),
+    key("output.history.every", K::Quantity(D::TIME), "1/1000 of the run", "Time between rows, > 0"),
+    key("output.checkpoint", K::Table, "", "Checkpoints to resume from"),
+    key("output.checkpoint.every", K::Quantity(D::TIME), "\"10 min\"", "Wall time between checkpoints, > 0"),
+    key("output.fragments", K::Table, "", "What counts as a fragment"),
+    key("output.fragments.joined_below", K::Quantity(D::NONE), "0.95", "Edges join a fragment while the share of their strength that they have lost is below this, within 0 and 1"),
+    key("expect[]", K::Tables, "", "Reference values for `fractum verify`: value and tolerance, or above and below"),
+    key("expect[].quantity", K::Text, "required", "A probe, or a path into summary.json such as energy.residual_max_relative"),
+    key("expect[].value", K::AnyQuantity, "", "Reference value"),
+    key("expect[].tolerance", K::AnyQuantity, "", "Required with value: \"5 %\" of it, or a difference in its unit"),
+    key("expect[].above", K::AnyQuantity, "", "Lower limit, instead of value"),
+    key("expect[].below", K::AnyQuantity, "", "Upper limit, instead of value"),
+    key("expect[].source", K::Text, "required", "Where the reference comes from"),
+    key("expect[].note", K::Text, "", "Remark"),
+    key("verify", K::Table, "", "How `fractum verify` takes this case"),
+    key("verify.quick", K::Flag, "false", "Run with --quick too"),
+];
