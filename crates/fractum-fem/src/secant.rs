@@ -194,6 +194,21 @@ impl Solid {
         }));
     }
 
+    /// The edge that is closest to damage, or furthest beyond it: its body, its middle without load [m], and its equivalent
+    /// stress over the one at which damage begins. None where nothing may be damaged or all stress is far from it.
+    pub fn most_strained_edge(&self) -> Option<(usize, Vec3, f64)> {
+        let points = self.damage_points();
+        let (mut stresses, mut q) = (Vec::new(), Vec::new());
+        self.effective_stresses(&self.displacement, &mut stresses);
+        self.equivalent_stresses(&points, &stresses, |point| point.kappa, &mut q);
+        let ratios = q.iter().zip(&points).map(|(q, point)| q / point.kappa);
+        let (index, ratio) = ratios.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let edges = self.edge_fields().flat_map(|(body, field)| field.edges.iter().map(move |&edge| (body, edge)));
+        let (body, edge) = edges.skip(index).next()?;
+        let [a, b] = self.bodies[body].edges.as_ref()?.nodes[edge as usize].map(|n| self.reference[n as usize]);
+        Some((body, (a + b) * 0.5, ratio))
+    }
+
     fn criterion(&self, body: usize) -> &crate::material::Criterion {
         let zone = self.bodies[body].body.damage.as_ref();
         &zone.expect("a damage point belongs to a body with damage").law.criterion

@@ -44,6 +44,8 @@ pub struct Solid {
     pub reference: Vec<Vec3>,
     /// Displacement at tⁿ [m].
     pub displacement: Vec<Vec3>,
+    /// Displacement at the start under in-situ stress, from which results count [m]; empty where that is zero.
+    pub initial_displacement: Vec<Vec3>,
     /// Velocity at the half step before tⁿ [m/s].
     pub velocity: Vec<Vec3>,
     /// Force at tⁿ [N]: internal after [`Solid::update_internal_forces`], then whatever is added.
@@ -100,6 +102,7 @@ impl Solid {
         let zero = vec![Vec3::zeros(); nodes.len()];
         Ok(Solid {
             displacement: zero.clone(),
+            initial_displacement: Vec::new(),
             velocity: zero.clone(),
             force: zero,
             inverse_mass: mass.iter().map(|m| 1.0 / m).collect(),
@@ -138,6 +141,12 @@ impl Solid {
     #[inline]
     pub fn position(&self, node: usize) -> Vec3 {
         self.reference[node] + self.displacement[node]
+    }
+
+    /// Displacement of a node since the start, which in-situ stress may have loaded [m].
+    #[inline]
+    pub fn displacement_from_start(&self, node: usize) -> Vec3 {
+        self.displacement[node] - self.initial_displacement.get(node).copied().unwrap_or_default()
     }
 
     /// Replaces `force` by the internal forces of the present displacements, and advances damage.

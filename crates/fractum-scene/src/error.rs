@@ -52,6 +52,42 @@ pub enum SceneError {
     /// A scene that cannot be solved from break to break.
     #[error("one bonded body and nothing else can be solved from break to break")]
     OneBondedBody,
+    /// Loads at the start are out of balance.
+    #[error(
+        "the forces of t = 0 do not balance: a force of ({x:.4e}, {y:.4e}, {z:.4e}) N is left for nothing to carry; the in-situ stress must act \
+         on every outer facet that no support holds, and a stress that changes from place to place needs the weight that goes with it"
+    )]
+    InSituUnbalanced {
+        /// Force on one node [N].
+        x: f64,
+        /// Force on one node [N].
+        y: f64,
+        /// Force on one node [N].
+        z: f64,
+    },
+    /// The in-situ stress is more than the material bears.
+    #[error(
+        "body {body}: in the state of t = 0 an edge at ({x:.4e}, {y:.4e}, {z:.4e}) m is at {ratio:.3} times its strength; a run begins with intact \
+         material: lower the stress, or leave out damage there with damage_where"
+    )]
+    InSituBreaks {
+        /// Name of the body.
+        body: String,
+        /// Middle of the edge [m].
+        x: f64,
+        /// Middle of the edge [m].
+        y: f64,
+        /// Middle of the edge [m].
+        z: f64,
+        /// Equivalent stress over strength.
+        ratio: f64,
+    },
+    /// The state of in-situ stress was not found.
+    #[error("the equilibrium of t = 0 was not found: {reason}")]
+    InSituUnsolved {
+        /// Why.
+        reason: String,
+    },
     /// The solid cannot be built.
     #[error(transparent)]
     Solid(#[from] fractum_fem::SolidError),

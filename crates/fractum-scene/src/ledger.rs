@@ -35,6 +35,8 @@ pub enum EnergyKind {
     Friction,
     /// Energy that left through absorbing boundaries.
     Absorbed,
+    /// Energy stored in the springs of elastic supports.
+    Foundation,
 }
 
 /// What an entry is to the energy balance.
@@ -58,12 +60,10 @@ struct Entry {
     /// As it is called in the report.
     label: &'static str,
     role: EnergyRole,
-    /// Whether some scene can write it. The others stand in `summary.json` as zero and are not offered elsewhere.
-    written: bool,
 }
 
 const fn entry(kind: EnergyKind, name: &'static str, label: &'static str, role: EnergyRole) -> Entry {
-    Entry { kind, name, label, role, written: true }
+    Entry { kind, name, label, role }
 }
 
 impl EnergyKind {
@@ -82,7 +82,7 @@ impl EnergyKind {
         all
     };
 
-    const TABLE: [Entry; 12] = [
+    const TABLE: [Entry; 13] = [
         entry(EnergyKind::External, "external", "External work", EnergyRole::Supplied),
         entry(EnergyKind::Kinetic, "kinetic", "Kinetic", EnergyRole::Stored),
         entry(EnergyKind::Elastic, "elastic", "Elastic", EnergyRole::Stored),
@@ -94,7 +94,8 @@ impl EnergyKind {
         entry(EnergyKind::Damping, "damping", "Damping", EnergyRole::Spent),
         entry(EnergyKind::Contact, "contact", "Contact", EnergyRole::Stored),
         entry(EnergyKind::Friction, "friction", "Friction", EnergyRole::Spent),
-        Entry { written: false, ..entry(EnergyKind::Absorbed, "absorbed", "Absorbed", EnergyRole::Spent) },
+        entry(EnergyKind::Absorbed, "absorbed", "Absorbed by boundaries", EnergyRole::Spent),
+        entry(EnergyKind::Foundation, "foundation", "Elastic supports", EnergyRole::Stored),
     ];
 
     const fn entry(self) -> &'static Entry {
@@ -124,16 +125,6 @@ impl EnergyKind {
             EnergyRole::PartOfBonds => 0,
         }
     }
-
-    /// Whether some scene can write it.
-    pub const fn is_written(self) -> bool {
-        self.entry().written
-    }
-
-    /// Every entry that some scene can write.
-    pub fn written() -> impl Iterator<Item = EnergyKind> {
-        Self::ALL.into_iter().filter(|kind| kind.is_written())
-    }
 }
 
 /// What a probe of energies shows: an entry of the ledger, or what does not add up.
@@ -146,36 +137,26 @@ pub enum EnergyProbe {
 }
 
 impl EnergyProbe {
-    /// Every entry that some scene can write, and the residual, with their names.
-    pub const NAMES: [(&'static str, EnergyProbe); 1 + WRITTEN] = {
-        let mut names = [("residual", EnergyProbe::Residual); 1 + WRITTEN];
-        let (mut i, mut next) = (0, 0);
+    /// Every entry, and the residual, with their names.
+    pub const NAMES: [(&'static str, EnergyProbe); 1 + EnergyKind::COUNT] = {
+        let mut names = [("residual", EnergyProbe::Residual); 1 + EnergyKind::COUNT];
+        let mut i = 0;
         while i < EnergyKind::COUNT {
             let kind = EnergyKind::ALL[i];
-            if kind.is_written() {
-                names[next] = (kind.name(), EnergyProbe::Entry(kind));
-                next += 1;
-            }
+            names[i] = (kind.name(), EnergyProbe::Entry(kind));
             i += 1;
         }
         names
     };
 }
 
-const WRITTEN: usize = {
-    let (mut i, mut count) = (0, 0);
-    while i < EnergyKind::COUNT {
-        count += EnergyKind::ALL[i].is_written() as usize;
-        i += 1;
-    }
-    count
-};
-
 /// Where the energy of a run is, all in joule; `ledger[EnergyKind::Damage]` is one entry.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     /// Energy at the start, kinetic and elastic.
     pub initial: f64,
+    /// The part of it that in-situ stress has stored: it is there, but not in play.
+    pub in_situ: f64,
     entries: [f64; EnergyKind::COUNT],
     /// Largest |residual| over [`Ledger::scale`] so far.
     pub residual_max_relative: f64,
@@ -190,6 +171,7 @@ pub(crate) struct Books {
     pub(crate) removed: f64,
     pub(crate) damping: f64,
     pub(crate) friction: f64,
+    pub(crate) absorbed: f64,
 }
 
 impl AddAssign<Work> for Books {
@@ -197,6 +179,7 @@ impl AddAssign<Work> for Books {
         self.external += work.external;
         self.damping += work.damping;
         self.friction += work.friction;
+        self.absorbed += work.absorbed;
     }
 }
 
@@ -241,7 +224,7 @@ impl Ledger {
 
     /// Takes the present values into the running maxima.
     pub(crate) fn update_maxima(&mut self) {
-        self.scale = self.scale.max(self.initial).max(self[EnergyKind::External].abs());
+        self.scale = self.scale.max(self.initial - self.in_situ).max(self[EnergyKind::External].abs());
         self.residual_max_relative = self.residual_max_relative.max(self.relative_residual());
     }
 }
@@ -261,9 +244,9 @@ mod tests {
     }
 
     #[test]
-    fn names_are_unique_and_probes_offer_what_can_be_written() {
+    fn names_are_unique_and_probes_offer_every_entry() {
         let names: Vec<&str> = EnergyProbe::NAMES.iter().map(|(name, _)| *name).collect();
         assert!(names.iter().enumerate().all(|(i, name)| !names[..i].contains(name)), "{names:?}");
-        assert!(EnergyKind::ALL.iter().all(|kind| kind.is_written() == names.contains(&kind.name())));
+        assert!(EnergyKind::ALL.iter().all(|kind| names.contains(&kind.name())));
     }
 }

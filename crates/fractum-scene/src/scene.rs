@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::bonded::{Bonded, BondedState};
 use crate::clock::{Clock, TimeStepSettings};
-use crate::conditions::{Loads, Supports};
+use crate::conditions::{Loads, Supports, SurfaceSupports};
 use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
@@ -33,6 +33,7 @@ pub struct Scene {
     pub clock: Clock,
     pub(crate) supports: Supports,
     pub(crate) loads: Loads,
+    pub(crate) surface_supports: SurfaceSupports,
     pub(crate) settings: SceneSettings,
     pub(crate) ledger: Ledger,
     pub(crate) books: Books,
@@ -143,6 +144,7 @@ impl Scene {
             clock: Clock::new(0.0),
             supports,
             loads,
+            surface_supports: SurfaceSupports::default(),
             settings,
             ledger: Ledger::default(),
             books: Books::default(),
@@ -179,9 +181,17 @@ impl Scene {
         self
     }
 
+    /// The same scene with supports on facets of its solids, before its first step.
+    pub fn with_surface_supports(mut self, supports: SurfaceSupports) -> Self {
+        self.surface_supports = supports;
+        self.clock = Clock::new(self.next_dt(0.0));
+        self
+    }
+
     /// Goes on with the supports, loads and settings of another scene of the same solids.
     pub fn begin_stage(&mut self, next: Scene) {
         (self.supports, self.loads, self.settings) = (next.supports, next.loads, next.settings);
+        self.surface_supports = next.surface_supports;
     }
 
     /// Takes everything that overlaps as it stands, before the first step: it gives no force, and touches no nearer than now until
@@ -231,6 +241,7 @@ impl Scene {
         let divisor = self.bonded.step_divisor();
         let frequency = self.stable.frequency.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
         let contacts = self.contact_frequency_square + self.contacts.frequency_square() * divisor * divisor;
+        let contacts = contacts + self.surface_supports.frequency_square();
         // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
         let frequency = ((frequency * frequency + contacts) * (1.0 + self.settings.damping.local)).sqrt();
         let contact = if self.contact_frequency_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };

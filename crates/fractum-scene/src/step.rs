@@ -10,6 +10,9 @@ use crate::scene::Scene;
 /// stable step reaches 10.
 const UNSTABLE_RATIO: f64 = 20.0;
 
+/// Part of the energy of in-situ stress below which an energy is what rounding leaves.
+const IN_SITU_ROUND_OFF: f64 = 1e-9;
+
 /// Steps between two looks at where cracks may go on.
 const STEPS_BETWEEN_GATES: u64 = 25;
 /// Removals after which the stable step is looked at again, and the steps that must lie between two looks.
@@ -72,9 +75,11 @@ impl Scene {
         self.ties.pass_on(&mut self.solid, &mut self.bonded.particles);
         passed(Phase::Contact);
         let load = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
+        let absorbed = self.add_surface_support_forces(first);
         let given = if first { self.start_half_a_step_early(dt_before) } else { 0.0 };
         let mut work = self.advance(measure); // vⁿ⁺½, uⁿ⁺¹
         work.before.external += load;
+        work.before += absorbed;
 
         self.books += contact;
         if !first {
@@ -116,6 +121,7 @@ impl Scene {
         work += self.move_bonded(time, dt_before, dt_after, measure);
         work += self.contacts.move_bodies(time, dt_before, dt_after);
         work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
+        work.after += self.surface_supports.absorbed_after(&self.solid, dt_after);
         work
     }
 
@@ -154,6 +160,14 @@ impl Scene {
         }
         let faces = self.bonded.update_bond_forces(elapsed, measure);
         (self.bonded.add_loads(time, dt_before), faces)
+    }
+
+    /// Forces of supports on facets; what the absorbing ones take in the half step before.
+    fn add_surface_support_forces(&mut self, first: bool) -> Work {
+        let Scene { surface_supports, solid, supports, clock, .. } = self;
+        surface_supports.push(solid);
+        let dt_kick = 0.5 * (clock.dt_before + clock.dt_after);
+        surface_supports.absorb(solid, supports.held(), [clock.dt_before, dt_kick], first)
     }
 
     fn move_bonded(&mut self, time: f64, dt_before: f64, dt_after: f64, measure: bool) -> HalfSteps {
@@ -220,7 +234,7 @@ impl Scene {
 
     /// Completes the ledger of tⁿ and holds it against the guard.
     fn close_balance(&mut self) -> Result<(), StepError> {
-        let Scene { ledger, solid, bonded, books, contacts, .. } = self;
+        let Scene { ledger, solid, bonded, books, contacts, surface_supports, .. } = self;
         let bonds = bonded.energy();
         ledger[EnergyKind::BondTension] = bonds.tension;
         ledger[EnergyKind::BondBending] = bonds.bending;
@@ -232,10 +246,16 @@ impl Scene {
         ledger[EnergyKind::Removed] = books.removed + bonded.released_energy();
         ledger[EnergyKind::Friction] = books.friction;
         ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
+        ledger[EnergyKind::Absorbed] = books.absorbed;
+        ledger[EnergyKind::Foundation] = surface_supports.stored(&*solid);
         if self.clock.step == 0 {
             ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];
-            // Less than this is no energy: bodies that wait for a rigid body move by what rounding leaves.
-            ledger.scale = bonded.round_off_energy(self.clock.dt_after);
+            if !solid.initial_displacement.is_empty() {
+                ledger.in_situ = ledger[EnergyKind::Elastic];
+            }
+            // Less than this is no energy: bodies that wait for a rigid body move by what rounding leaves, and so does rock
+            // under stress.
+            ledger.scale = bonded.round_off_energy(self.clock.dt_after) + IN_SITU_ROUND_OFF * ledger.in_situ;
         }
         // The first touch of a rigid body is found to a step only; it is measured by what a particle takes from it, not by the little
         // work done so far.

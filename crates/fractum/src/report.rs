@@ -79,7 +79,7 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
         curves: curves(&history),
         energy: Some(EnergyColumns {
             external: EnergyKind::External.name().into(),
-            parts: EnergyKind::written().filter(|kind| kind.sign() < 0).map(|kind| kind.name().into()).collect(),
+            parts: EnergyKind::ALL.into_iter().filter(|kind| kind.sign() < 0).map(|kind| kind.name().into()).collect(),
         }),
         cracks: ["removed_elements", "particles", "broken_bonds"].map(String::from).into(),
         fragments,

@@ -10,7 +10,7 @@ pub(crate) trait Points {
     /// Present place [m].
     fn position(&self, point: usize) -> Vec3;
 
-    /// Present displacement [m].
+    /// Present displacement, counted from the start [m].
     fn displacement(&self, point: usize) -> Vec3;
 
     /// Displacement a time `dt` [s] earlier, at the present velocity [m].
@@ -55,11 +55,11 @@ impl Points for Solid {
     }
 
     fn displacement(&self, point: usize) -> Vec3 {
-        self.displacement[point]
+        self.displacement_from_start(point)
     }
 
     fn displacement_before(&self, point: usize, dt: f64) -> Vec3 {
-        self.displacement[point] - self.velocity[point] * dt
+        self.displacement_from_start(point) - self.velocity[point] * dt
     }
 
     fn velocity(&self, point: usize) -> &Vec3 {

@@ -9,6 +9,7 @@ mod anderson;
 mod bonded;
 mod contact;
 mod equilibrium;
+mod in_situ;
 mod iteration;
 mod linear_system;
 mod opening;

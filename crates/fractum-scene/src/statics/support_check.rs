@@ -1,11 +1,14 @@
 //! Rigid motions that nothing prevents.
 
-use fractum_fem::{ElementKind, Solid};
+use fractum_fem::Solid;
 use fractum_math::Vec3;
 use nalgebra::{Matrix6, Vector6};
 
 use crate::error::SceneError;
 use crate::fragment::parts;
+
+/// Eigenvalue of the supports of a piece, over its size, below which a rigid motion counts as free.
+const FREE: f64 = 1e-9;
 
 /// Fails if some connected piece of the solid can move as a rigid body.
 ///
@@ -15,36 +18,13 @@ use crate::fragment::parts;
 /// # Errors
 /// [`SceneError::FreeBody`] with the body and the motion.
 pub fn check_supports(solid: &Solid, held: &[u8], touched: &[(u32, Vec3)]) -> Result<(), SceneError> {
-    let plane = solid.body(0).shape == ElementKind::T3;
     for (body, nodes) in pieces(solid) {
-        let holds = |&n: &u32| held.get(n as usize).copied().unwrap_or(0);
-        let centre = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / nodes.len() as f64;
-        let spread = |&n: &u32| (solid.reference[n as usize] - centre).norm();
-        let size = nodes.iter().map(spread).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
-        let mut gram = Matrix6::zeros();
-        let mut hold = |node: u32, along: Vec3| {
-            let x = (solid.reference[node as usize] - centre) / size;
-            let turn = |about: Vec3| about.cross(&x).dot(&along);
-            let row = Vector6::new(along.x, along.y, along.z, turn(Vec3::x()), turn(Vec3::y()), turn(Vec3::z()));
-            gram += row * row.transpose();
-        };
-        for node in nodes.iter().filter(|n| holds(n) != 0) {
-            (0..3).filter(|axis| holds(node) & (1 << axis) != 0).for_each(|axis| hold(*node, Vec3::ith(axis, 1.0)));
-        }
+        let mut piece = Piece::new(solid, &nodes, held);
         let mut members = nodes.clone();
         members.sort_unstable();
-        touched.iter().filter(|(node, _)| members.binary_search(node).is_ok()).for_each(|&(n, along)| hold(n, along));
-        if plane {
-            // What leaves the plane is no motion of a plane body.
-            for mode in [2, 3, 4] {
-                gram.row_mut(mode).fill(0.0);
-                gram.column_mut(mode).fill(0.0);
-                gram[(mode, mode)] = 1.0;
-            }
-        }
-        let eigen = gram.symmetric_eigen();
-        let Some(free) = (0..6).find(|&m| eigen.eigenvalues[m] < 1e-9) else { continue };
-        let motion = eigen.eigenvectors.column(free);
+        let own = touched.iter().filter(|(node, _)| members.binary_search(node).is_ok());
+        own.for_each(|&(node, along)| piece.hold(solid.reference[node as usize], along));
+        let Some(motion) = piece.free_motion() else { continue };
         let largest = (0..6).max_by(|&a, &b| motion[a].abs().total_cmp(&motion[b].abs())).unwrap_or(0);
         const NAMES: [&str; 6] = [
             "move along x",
@@ -54,15 +34,84 @@ pub fn check_supports(solid: &Solid, held: &[u8], touched: &[(u32, Vec3)]) -> Re
             "turn about an axis along y",
             "turn about an axis along z",
         ];
-        return Err(SceneError::FreeBody {
-            body: solid.body(body).name.clone(),
-            motion: NAMES[largest],
-            x: centre.x,
-            y: centre.y,
-            z: centre.z,
-        });
+        let (name, [x, y, z]) = (solid.body(body).name.clone(), piece.centre.into());
+        return Err(SceneError::FreeBody { body: name, motion: NAMES[largest], x, y, z });
     }
     Ok(())
+}
+
+/// The degrees of freedom that are prescribed, with as few more as keep every piece from moving as a rigid body.
+///
+/// - `held`: bit a of a node is set where its axis a is prescribed; empty without supports
+pub(super) fn pins(solid: &Solid, held: &[u8]) -> Vec<u8> {
+    let mut pinned = if held.is_empty() { vec![0; solid.reference.len()] } else { held.to_vec() };
+    for (_, nodes) in pieces(solid) {
+        let mut piece = Piece::new(solid, &nodes, held);
+        while let Some(motion) = piece.free_motion() {
+            let of = |&node: &u32| {
+                let v = piece.velocity(&motion, solid.reference[node as usize]);
+                (0..3).map(move |axis| (node, axis, v[axis].abs()))
+            };
+            let fastest = nodes.iter().flat_map(of).max_by(|a, b| a.2.total_cmp(&b.2));
+            let Some((node, axis, _)) = fastest else { break };
+            pinned[node as usize] |= 1 << axis;
+            piece.hold(solid.reference[node as usize], Vec3::ith(axis, 1.0));
+        }
+    }
+    pinned
+}
+
+/// The supports of a connected piece as a quadratic form over its six rigid motions.
+struct Piece {
+    centre: Vec3,
+    size: f64,
+    gram: Matrix6<f64>,
+    plane: bool,
+}
+
+impl Piece {
+    fn new(solid: &Solid, nodes: &[u32], held: &[u8]) -> Self {
+        let centre = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / nodes.len() as f64;
+        let spread = |&n: &u32| (solid.reference[n as usize] - centre).norm();
+        let size = nodes.iter().map(spread).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+        let mut piece = Piece { centre, size, gram: Matrix6::zeros(), plane: solid.is_plane() };
+        for &node in nodes {
+            let bits = held.get(node as usize).copied().unwrap_or(0);
+            let axes = (0..3).filter(|axis| bits & (1 << axis) != 0);
+            axes.for_each(|axis| piece.hold(solid.reference[node as usize], Vec3::ith(axis, 1.0)));
+        }
+        piece
+    }
+
+    /// Prevents motion of a place along a direction.
+    fn hold(&mut self, place: Vec3, along: Vec3) {
+        let x = (place - self.centre) / self.size;
+        let turn = |about: Vec3| about.cross(&x).dot(&along);
+        let row = Vector6::new(along.x, along.y, along.z, turn(Vec3::x()), turn(Vec3::y()), turn(Vec3::z()));
+        self.gram += row * row.transpose();
+    }
+
+    /// A rigid motion that nothing prevents: translation, and rotation times the size of the piece.
+    fn free_motion(&self) -> Option<Vector6<f64>> {
+        let mut gram = self.gram;
+        if self.plane {
+            // What leaves the plane is no motion of a plane body.
+            for mode in [2, 3, 4] {
+                gram.row_mut(mode).fill(0.0);
+                gram.column_mut(mode).fill(0.0);
+                gram[(mode, mode)] = 1.0;
+            }
+        }
+        let eigen = gram.symmetric_eigen();
+        let free = (0..6).find(|&m| eigen.eigenvalues[m] < FREE)?;
+        Some(eigen.eigenvectors.column(free).into_owned())
+    }
+
+    /// Velocity of a place in a rigid motion.
+    fn velocity(&self, motion: &Vector6<f64>, place: Vec3) -> Vec3 {
+        let turn = Vec3::new(motion[3], motion[4], motion[5]);
+        Vec3::new(motion[0], motion[1], motion[2]) + turn.cross(&((place - self.centre) / self.size))
+    }
 }
 
 /// Connected pieces: the body of their first element, and their nodes.

@@ -1,0 +1,166 @@
+//! Supports on facets: absorbing boundaries and elastic foundations.
+//!
+//! An absorbing facet has the dashpots of Lysmer and Kuhlemeyer, *J. Eng. Mech. Div. ASCE* 95 (1969) 859-877: the traction
+//! −ρ c_P v_n n − ρ c_S v_t, which a plane wave at normal incidence does not feel as a border. An elastic one has springs,
+//! −k_n u_n n − k_t u_t. Both are lumped at the nodes, a third of every facet (half of an edge in the plane) each.
+
+use fractum_fem::Solid;
+use fractum_math::{Vec3, Work};
+use nalgebra::Matrix3;
+
+use super::Points;
+
+/// A facet on which something outside answers to the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupportedFacet {
+    /// Its nodes; an edge in the plane repeats its second one.
+    pub nodes: [u32; 3],
+    /// Unit normal.
+    pub normal: Vec3,
+    /// Area [m²].
+    pub area: f64,
+    /// What answers along the normal and across it, per area: ρ c_P and ρ c_S of dashpots [Pa s/m], stiffnesses of
+    /// springs [Pa/m].
+    pub along_and_across: [f64; 2],
+}
+
+/// Matrices at nodes, the sums over their facets.
+#[derive(Clone, Debug, Default)]
+struct NodeMatrices {
+    nodes: Vec<u32>,
+    matrix: Vec<Matrix3<f64>>,
+}
+
+impl NodeMatrices {
+    fn new(facets: &[SupportedFacet]) -> Self {
+        let mut shares: Vec<(u32, Matrix3<f64>)> = Vec::new();
+        for SupportedFacet { nodes, normal, area, along_and_across: [along, across] } in facets {
+            let corners = if nodes[1] == nodes[2] { 2 } else { 3 };
+            let dyad = normal * normal.transpose();
+            let share = (dyad * *along + (Matrix3::identity() - dyad) * *across) * (area / corners as f64);
+            shares.extend(nodes[..corners].iter().map(|&node| (node, share)));
+        }
+        shares.sort_by_key(|share| share.0);
+        let mut own = NodeMatrices::default();
+        for (node, share) in shares {
+            if own.nodes.last() == Some(&node) {
+                *own.matrix.last_mut().expect("there is a node") += share;
+            } else {
+                own.nodes.push(node);
+                own.matrix.push(share);
+            }
+        }
+        own
+    }
+}
+
+/// All supports on facets of the solids.
+#[derive(Clone, Debug, Default)]
+pub struct SurfaceSupports {
+    dashpots: NodeMatrices,
+    /// Forces of the dashpots at tⁿ [N].
+    absorbing: Vec<Vec3>,
+    springs: NodeMatrices,
+    /// Largest square of a frequency that springs add, K/m [1/s²].
+    frequency_square: f64,
+}
+
+impl SurfaceSupports {
+    /// - `absorbing`, `elastic`: facets with dashpots and with springs
+    /// - `mass`: of all nodes [kg]
+    pub fn new(absorbing: &[SupportedFacet], elastic: &[SupportedFacet], mass: &[f64]) -> Self {
+        let (dashpots, springs) = (NodeMatrices::new(absorbing), NodeMatrices::new(elastic));
+        let square = |(&node, k): (&u32, &Matrix3<f64>)| k.symmetric_eigenvalues().max() / mass[node as usize];
+        let frequency_square = springs.nodes.iter().zip(&springs.matrix).map(square).fold(0.0, f64::max);
+        SurfaceSupports { absorbing: vec![Vec3::zeros(); dashpots.nodes.len()], dashpots, springs, frequency_square }
+    }
+
+    /// Number of nodes with dashpots, and with springs.
+    pub fn counts(&self) -> [usize; 2] {
+        [self.dashpots.nodes.len(), self.springs.nodes.len()]
+    }
+
+    /// What springs add to the square of the highest frequency at most, by Weyl's inequality [1/s²].
+    pub(crate) fn frequency_square(&self) -> f64 {
+        self.frequency_square
+    }
+
+    /// Energy in the springs [J].
+    pub(crate) fn stored(&self, points: &impl Points) -> f64 {
+        let energy = |(&node, k): (&u32, &Matrix3<f64>)| {
+            let u = points.displacement(node as usize);
+            0.5 * u.dot(&(k * u))
+        };
+        self.springs.nodes.iter().zip(&self.springs.matrix).map(energy).sum()
+    }
+
+    /// Adds the forces of the springs.
+    pub(crate) fn push(&self, solid: &mut Solid) {
+        for (&node, k) in self.springs.nodes.iter().zip(&self.springs.matrix) {
+            let force = k * solid.displacement_from_start(node as usize);
+            solid.force[node as usize] -= force;
+        }
+    }
+
+    /// Adds the forces of the dashpots, once all others are known; returns what they take in the half step before tⁿ.
+    ///
+    /// They answer to the mean of the velocities before and after, (v⁻ + v⁺)/2, which a system of three unknowns per node
+    /// gives: the step stays as large as without them, and what they take is never negative.
+    ///
+    /// - `held`: bit a is set where axis a of a node is prescribed; empty if none is
+    /// - `first`: at the start the velocities are those of t = 0 and not of a half step before
+    pub(crate) fn absorb(
+        &mut self,
+        solid: &mut Solid,
+        held: &[u8],
+        [dt_before, dt_kick]: [f64; 2],
+        first: bool,
+    ) -> Work {
+        let mut taken = 0.0;
+        for ((&node, c), own) in self.dashpots.nodes.iter().zip(&self.dashpots.matrix).zip(&mut self.absorbing) {
+            let i = node as usize;
+            let (before, mass) = (solid.velocity[i], solid.mass[i]);
+            let c = among_free_axes(c, held.get(i).copied().unwrap_or(0));
+            let mean = if first {
+                before
+            } else {
+                // m (v⁺ - v⁻)/Δt = F - C (v⁺ + v⁻)/2, so that (m/Δt + C/2) (v⁺ + v⁻)/2 = (m/Δt) v⁻ + F/2.
+                let matrix = Matrix3::identity() * (mass / dt_kick) + c * 0.5;
+                let right = before * (mass / dt_kick) + solid.force[i] * 0.5;
+                matrix.cholesky().map_or(before, |factor| factor.solve(&right))
+            };
+            *own = -(c * mean);
+            taken -= 0.5 * dt_before * own.dot(&before);
+            solid.force[i] += *own;
+        }
+        Work { absorbed: taken, ..Work::default() }
+    }
+
+    /// What the dashpots take in the half step after tⁿ, with the velocities after the kick.
+    pub(crate) fn absorbed_after(&self, solid: &Solid, dt_after: f64) -> Work {
+        let power = |(&node, own): (&u32, &Vec3)| own.dot(&solid.velocity[node as usize]);
+        let taken: f64 = self.dashpots.nodes.iter().zip(&self.absorbing).map(power).sum();
+        Work { absorbed: -0.5 * dt_after * taken, ..Work::default() }
+    }
+}
+
+/// The matrix without the axes that are prescribed.
+fn among_free_axes(matrix: &Matrix3<f64>, held: u8) -> Matrix3<f64> {
+    let free = |axis: usize| held & (1 << axis) == 0;
+    Matrix3::from_fn(|a, b| if free(a) && free(b) { matrix[(a, b)] } else { 0.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn facets_share_their_matrices_with_their_nodes() {
+        let facet = |nodes, normal| SupportedFacet { nodes, normal, area: 6.0, along_and_across: [4.0, 1.0] };
+        let own = NodeMatrices::new(&[facet([3, 1, 1], Vec3::x()), facet([1, 5, 7], Vec3::y())]);
+        assert_eq!(own.nodes, [1, 3, 5, 7]);
+        assert_eq!(own.matrix[1], Matrix3::from_diagonal(&Vec3::new(12.0, 3.0, 3.0)));
+        assert_eq!(own.matrix[2], Matrix3::from_diagonal(&Vec3::new(2.0, 8.0, 2.0)));
+        assert_eq!(own.matrix[0], own.matrix[1] + own.matrix[2]);
+    }
+}

@@ -1,0 +1,82 @@
+//! Equilibrium before motion: the state of rock under in-situ stress, from which a run begins.
+
+use fractum_math::Vec3;
+
+use super::linear_system::LinearSystem;
+use super::settings::LinearSolver;
+use super::support_check::pins;
+use crate::error::SceneError;
+use crate::scene::Scene;
+
+/// Relative residual of linear solutions, and unbalanced force over all forces at which the state is at rest.
+const TOLERANCES: [f64; 2] = [1e-12, 1e-10];
+/// Solutions with the stiffness of the unloaded state: one where strains are small, a few where elements turn.
+const MOST_SOLUTIONS: usize = 30;
+/// Force on what only keeps the solids from moving as rigid bodies, over all forces, above which loads do not balance.
+const UNBALANCED: f64 = 1e-6;
+
+impl Scene {
+    /// Brings the solids to rest under the loads of t = 0, before the first step, and counts displacements from there.
+    ///
+    /// Rigid motions that no support prevents are left out: loads in balance need nothing to hold them.
+    ///
+    /// # Errors
+    /// [`SceneError::InSituUnbalanced`], [`SceneError::InSituBreaks`] and [`SceneError::InSituUnsolved`].
+    pub fn start_at_rest(&mut self) -> Result<(), SceneError> {
+        let unsolved = |reason: String| SceneError::InSituUnsolved { reason };
+        let held = pins(&self.solid, self.supports.held());
+        let mut system = LinearSystem::new(&self.solid, &held, LinearSolver::Auto, 2, TOLERANCES[0], &[])
+            .map_err(|error| unsolved(error.to_string()))?;
+        system.prepare(self, &self.solid.cell_damage(), &[]).map_err(|error| unsolved(error.to_string()))?;
+        let mut change = vec![Vec3::zeros(); self.solid.reference.len()];
+        for _ in 0..MOST_SOLUTIONS {
+            let (missing, scale) = self.forces_at_start(&held);
+            if missing <= TOLERANCES[1] * scale {
+                self.check_pins(&held, scale)?;
+                self.solid.initial_displacement = self.solid.displacement.clone();
+                return Ok(());
+            }
+            system.solve(&self.solid.force, &mut change).map_err(|error| unsolved(error.to_string()))?;
+            self.solid.displacement.iter_mut().zip(&change).for_each(|(u, change)| *u += change);
+            self.check_strength()?;
+        }
+        Err(unsolved(format!("forces did not balance after {MOST_SOLUTIONS} solutions")))
+    }
+
+    /// Leaves all forces of t = 0 in `solid.force`; those that are missing on free unknowns, and all that act [N].
+    fn forces_at_start(&mut self, held: &[u8]) -> (f64, f64) {
+        self.solid.update_internal_forces(0.0, false);
+        let inner = self.solid.force.clone();
+        self.loads.add_forces(&mut self.solid, 0.0, 0.0);
+        let (mut missing, mut scale) = (0.0, 0.0);
+        for ((force, inner), bits) in self.solid.force.iter().zip(&inner).zip(held) {
+            scale += (force - inner).norm_squared();
+            missing += (0..3).filter(|axis| bits & (1 << axis) == 0).map(|axis| force[axis] * force[axis]).sum::<f64>();
+        }
+        (f64::sqrt(missing), f64::sqrt(scale))
+    }
+
+    /// What only keeps the solids in place must carry nothing.
+    fn check_pins(&self, held: &[u8], scale: f64) -> Result<(), SceneError> {
+        for (node, (&all, force)) in held.iter().zip(&self.solid.force).enumerate() {
+            let own = all & !self.supports.held().get(node).copied().unwrap_or(0);
+            let carried = Vec3::from_fn(|axis, _| if own & (1 << axis) == 0 { 0.0 } else { force[axis] });
+            if carried.norm() > UNBALANCED * scale {
+                let [x, y, z] = carried.into();
+                return Err(SceneError::InSituUnbalanced { x, y, z });
+            }
+        }
+        Ok(())
+    }
+
+    /// No edge may be over its strength.
+    fn check_strength(&self) -> Result<(), SceneError> {
+        match self.solid.most_strained_edge() {
+            Some((body, at, ratio)) if ratio > 1.0 => {
+                let [x, y, z] = at.into();
+                Err(SceneError::InSituBreaks { body: self.solid.body(body).name.clone(), x, y, z, ratio })
+            }
+            _ => Ok(()),
+        }
+    }
+}
