@@ -203,8 +203,8 @@ impl Solid {
         self.equivalent_stresses(&points, &stresses, |point| point.kappa, &mut q);
         let ratios = q.iter().zip(&points).map(|(q, point)| q / point.kappa);
         let (index, ratio) = ratios.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let edges = self.edge_fields().flat_map(|(body, field)| field.edges.iter().map(move |&edge| (body, edge)));
-        let (body, edge) = edges.skip(index).next()?;
+        let mut edges = self.edge_fields().flat_map(|(body, field)| field.edges.iter().map(move |&edge| (body, edge)));
+        let (body, edge) = edges.nth(index)?;
         let [a, b] = self.bodies[body].edges.as_ref()?.nodes[edge as usize].map(|n| self.reference[n as usize]);
         Some((body, (a + b) * 0.5, ratio))
     }
