@@ -3,12 +3,12 @@
 use fractum_dem::{BeamSection, Particles};
 use fractum_math::Vec3;
 use fractum_scene::coupling::Attachment;
-use fractum_scene::{BondFracture, Bonded, BondedPart, Gravity, Load, PointProbe, Population, Probe, Support};
+use fractum_scene::{BondFracture, Bonded, BondedPart, PointProbe, Population, Probe, Support};
 
-use super::conditions::{motion_of, push_nodal};
+use super::Context;
+use super::conditions::{LoadedPoints, motion_of};
 use super::probes::is_held;
-use super::{Context, function};
-use crate::case::model::{BodyKind, LoadKind, ProbeKind, Selection, TimeStep};
+use crate::case::model::{BodyKind, ProbeKind, Selection, TimeStep};
 use crate::case::{Diagnostic, Field, Spanned};
 
 /// The particles of a bonded or loose body, made outside: packed or read, bonded and calibrated.
@@ -98,7 +98,7 @@ impl Context<'_> {
     }
 
     /// The particles that are meant, of the group that names them.
-    fn selected_particles(&mut self, on: &Selection, group: &Spanned<String>, bonded: &Bonded) -> Vec<u32> {
+    pub(super) fn selected_particles(&mut self, on: &Selection, group: &Spanned<String>, bonded: &Bonded) -> Vec<u32> {
         let particles = self.particles(group);
         self.keep_within(on, particles, |i| bonded.particles.position[i as usize])
     }
@@ -156,28 +156,7 @@ impl Context<'_> {
             let place = self.place_of_support(&error);
             self.error(&place, format!(": {error}"), "");
         }
-        let mut loads = Vec::new();
-        for load in &case.loads {
-            match &load.kind {
-                LoadKind::Force { on: on @ Selection { group: Some(group), .. }, force }
-                    if self.names_particles(on) =>
-                {
-                    let particles = self.selected_particles(on, group, bonded);
-                    let area = |i: u32| bonded.particles.radius[i as usize].powi(2);
-                    let total: f64 = particles.iter().map(|&i| area(i)).sum();
-                    let shares: Vec<(u32, f64)> = particles.iter().map(|&i| (i, area(i) / total)).collect();
-                    push_nodal(&mut loads, &shares, force);
-                }
-                LoadKind::Gravity { acceleration } => {
-                    for (axis, value) in acceleration.iter().enumerate() {
-                        if let Some(value) = value {
-                            loads.push(Load::Gravity(Gravity { axis, value: function(&value.value) }));
-                        }
-                    }
-                }
-                _ => {}
-            }
-        }
+        let loads = self.loads(&LoadedPoints::Particles(bonded));
         bonded.set_loads(loads);
     }
 

@@ -2,13 +2,14 @@
 
 use std::collections::HashMap;
 
+use fractum_fem::ElementKind;
 use fractum_math::Vec3;
-use fractum_scene::{Gravity, Load, Motion, NodalForce, Pressure, Support};
+use fractum_scene::{Bonded, Gravity, Load, Motion, NodalForce, Pressure, Support};
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function, use_in_words};
+use crate::case::Spanned;
 use crate::case::model::{self, Components, GroupUse, LoadKind, Selection};
-use crate::case::{Spanned, TimeFunction};
 
 impl Context<'_> {
     pub(super) fn supports(&mut self, numbering: &Numbering) -> Vec<Support> {
@@ -30,58 +31,56 @@ impl Context<'_> {
         supports
     }
 
-    pub(super) fn loads(&mut self, parts: &[Part], numbering: &Numbering, boundary: &[[u32; 3]]) -> Vec<Load> {
-        let case = self.case;
-        let thickness = parts
-            .iter()
-            .find(|p| p.shape == fractum_fem::ElementKind::T3)
-            .map_or(0.0, |part| part.body.thickness.as_ref().map_or(1.0, |t| t.value));
-        let surface = Surface::new(boundary, thickness, &numbering.positions);
+    /// The loads on nodes, or on particles.
+    pub(super) fn loads(&mut self, points: &LoadedPoints) -> Vec<Load> {
+        let (case, of_particles) = (self.case, matches!(points, LoadedPoints::Particles(_)));
         let mut loads = Vec::new();
         for load in &case.loads {
-            match &load.kind {
-                LoadKind::Force { on, .. } | LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. }
-                    if self.names_particles(on) => {}
-                LoadKind::Force { on, force } => {
-                    let nodes = self.force_shares(on, numbering, &surface);
-                    push_nodal(&mut loads, &nodes, force);
-                }
-                LoadKind::Traction { on, traction } => {
-                    let facets = self.selected_facets(on, numbering, &surface);
-                    push_nodal(&mut loads, &surface.areas(&facets), traction);
-                }
-                LoadKind::Pressure { on, pressure } => {
-                    let facets = self.selected_facets(on, numbering, &surface);
-                    loads.push(Load::Pressure(Pressure { facets, thickness, value: function(&pressure.value) }));
-                }
-                LoadKind::Gravity { acceleration } => {
+            if load.kind.on().is_some_and(|(on, _)| self.names_particles(on) != of_particles) {
+                continue;
+            }
+            match (&load.kind, points) {
+                (LoadKind::Force { on, force }, _) => push_nodal(&mut loads, &self.shares(on, points), force),
+                (LoadKind::Gravity { acceleration }, _) => {
                     for (axis, value) in acceleration.iter().enumerate() {
                         let Some(value) = value else { continue };
-                        self.refuse_position(value);
                         loads.push(Load::Gravity(Gravity { axis, value: function(&value.value) }));
                     }
                 }
+                (LoadKind::Traction { on, traction }, LoadedPoints::Nodes(numbering, surface)) => {
+                    let facets = self.selected_facets(on, numbering, surface);
+                    push_nodal(&mut loads, &surface.areas(&facets), traction);
+                }
+                (LoadKind::Pressure { on, pressure }, LoadedPoints::Nodes(numbering, surface)) => {
+                    let (facets, thickness) = (self.selected_facets(on, numbering, surface), surface.thickness);
+                    loads.push(Load::Pressure(Pressure { facets, thickness, value: function(&pressure.value) }));
+                }
+                // Particles have no facets: refused before.
+                (LoadKind::Traction { .. } | LoadKind::Pressure { .. }, LoadedPoints::Particles(_)) => {}
             }
         }
         loads
     }
 
-    fn refuse_position(&mut self, gravity: &Spanned<TimeFunction>) {
-        if gravity.value.depends_on_position() {
-            self.error(&gravity.place, "depends on the position", "a function of time only");
-        }
-    }
-
-    /// Shares of a total force: by area where facets are meant, else equal.
-    fn force_shares(&mut self, on: &Selection, numbering: &Numbering, surface: &Surface) -> Vec<(u32, f64)> {
-        let areas = surface.areas(&self.facets(on, numbering, surface));
+    /// Shares of a total force: by area where facets or particles are meant, else equal.
+    fn shares(&mut self, on: &Selection, points: &LoadedPoints) -> Vec<(u32, f64)> {
+        let areas = match (points, &on.group) {
+            (LoadedPoints::Nodes(numbering, surface), _) => surface.areas(&self.facets(on, numbering, surface)),
+            (LoadedPoints::Particles(bonded), Some(group)) => {
+                let particles = self.selected_particles(on, group, bonded);
+                particles.into_iter().map(|i| (i, bonded.particles.radius[i as usize].powi(2))).collect()
+            }
+            (LoadedPoints::Particles(_), None) => Vec::new(),
+        };
         let total: f64 = areas.iter().map(|(_, area)| area).sum();
-        if total > 0.0 {
-            return areas.into_iter().map(|(node, area)| (node, area / total)).collect();
+        match points {
+            LoadedPoints::Nodes(numbering, _) if total <= 0.0 => {
+                let nodes = self.selected_nodes(on, numbering);
+                let share = 1.0 / nodes.len().max(1) as f64;
+                nodes.into_iter().map(|node| (node, share)).collect()
+            }
+            _ => areas.into_iter().map(|(point, area)| (point, area / total)).collect(),
         }
-        let nodes = self.selected_nodes(on, numbering);
-        let share = 1.0 / nodes.len().max(1) as f64;
-        nodes.into_iter().map(|node| (node, share)).collect()
     }
 
     /// Outward facets that are meant; an error if there are none on the surface.
@@ -132,7 +131,7 @@ pub(super) fn motion_of(motion: &model::Motion) -> Motion {
     }
 }
 
-pub(super) fn push_nodal(loads: &mut Vec<Load>, points: &[(u32, f64)], components: &Components) {
+fn push_nodal(loads: &mut Vec<Load>, points: &[(u32, f64)], components: &Components) {
     for (axis, value) in components.iter().enumerate() {
         if let Some(value) = value {
             loads.push(Load::Nodal(NodalForce { points: points.to_vec(), axis, value: function(&value.value) }));
@@ -140,8 +139,16 @@ pub(super) fn push_nodal(loads: &mut Vec<Load>, points: &[(u32, f64)], component
     }
 }
 
+/// The points that loads act on.
+pub(super) enum LoadedPoints<'a> {
+    /// Nodes of solids, with their surface.
+    Nodes(&'a Numbering, Surface<'a>),
+    /// Particles.
+    Particles(&'a Bonded),
+}
+
 /// The surface of the solids, searchable by the nodes of a facet.
-struct Surface<'a> {
+pub(super) struct Surface<'a> {
     facets: &'a [[u32; 3]],
     by_nodes: HashMap<[u32; 3], [u32; 3]>,
     /// Thickness of plane bodies [m], 0 in space.
@@ -150,7 +157,9 @@ struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    fn new(boundary: &'a [[u32; 3]], thickness: f64, positions: &'a [Vec3]) -> Self {
+    pub(super) fn new(boundary: &'a [[u32; 3]], parts: &[Part], positions: &'a [Vec3]) -> Self {
+        let plane = parts.iter().find(|part| part.shape == ElementKind::T3);
+        let thickness = plane.map_or(0.0, |part| part.body.thickness.as_ref().map_or(1.0, |t| t.value));
         let by_nodes = boundary.iter().map(|&facet| (sorted(facet), facet)).collect();
         Surface { facets: boundary, by_nodes, thickness, positions }
     }

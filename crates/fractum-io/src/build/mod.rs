@@ -27,6 +27,7 @@ use fractum_scene::{
 };
 
 use bonded::ParticleSets;
+use conditions::{LoadedPoints, Surface};
 
 use crate::case::model::{Case, GroupUse, Selection, SolverKind, Support, TimeStep};
 use crate::case::{Diagnostic, Diagnostics, Place, Spanned, TimeFunction};
@@ -142,7 +143,8 @@ impl Context<'_> {
         let boundary = self.boundary(&parts, &numbering);
         let mut boundary_of_parts = self.facets_of_parts(&parts, &numbering);
         let supports = self.supports(&numbering);
-        let loads = self.loads(&parts, &numbering, &boundary);
+        let surface = Surface::new(&boundary, &parts, &numbering.positions);
+        let loads = self.loads(&LoadedPoints::Nodes(&numbering, surface));
         let supports = match Supports::new(supports, &solid.reference) {
             Ok(supports) => supports,
             Err(error) => {

@@ -6,7 +6,7 @@ use fractum_math::Vec3;
 use fractum_scene::Scene;
 
 use super::Context;
-use crate::case::model::{Body, BodyKind, LoadKind, Motion, ProbeKind, Selection, SolverKind};
+use crate::case::model::{Body, BodyKind, GroupUse, Motion, ProbeKind, Selection, SolverKind};
 use crate::case::{Diagnostic, Spanned, TimeFunction, nearest};
 use crate::number::quantity;
 
@@ -53,15 +53,15 @@ impl Context<'_> {
         let case = self.case;
         let mut named: Vec<&Selection> = case.supports.iter().map(|support| &support.on).collect();
         for load in &case.loads {
-            match &load.kind {
-                LoadKind::Force { on, .. } => named.push(on),
-                LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } if self.names_particles(on) => {
+            match load.kind.on() {
+                Some((on, GroupUse::Facets)) if self.names_particles(on) => {
                     let Some(group) = &on.group else { continue };
                     let diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value));
                     let diagnostic = diagnostic.expected("a mesh group of facets; particles have none");
                     self.diagnostics.push(diagnostic.remedy("use force, which is shared over the set"));
                 }
-                _ => {}
+                Some((on, _)) => named.push(on),
+                None => {}
             }
         }
         named.extend(case.probes.iter().filter_map(|probe| match &probe.kind {
@@ -105,14 +105,11 @@ impl Context<'_> {
         let case = self.case;
         let mut functions: Vec<(&Spanned<TimeFunction>, Option<&Selection>)> = Vec::new();
         for load in &case.loads {
-            match &load.kind {
-                LoadKind::Force { on, force: components } | LoadKind::Traction { on, traction: components } => {
-                    functions.extend(components.iter().flatten().map(|f| (f, Some(on))));
-                }
-                LoadKind::Pressure { on, pressure } => functions.push((pressure, Some(on))),
-                LoadKind::Gravity { acceleration } => {
-                    functions.extend(acceleration.iter().flatten().map(|f| (f, None)))
-                }
+            let on = load.kind.on().map(|(on, _)| on);
+            functions.extend(load.kind.functions().into_iter().map(|function| (function, on)));
+            // What acts on everything acts everywhere alike.
+            for function in load.kind.functions().iter().filter(|f| on.is_none() && f.value.depends_on_position()) {
+                self.error(&function.place, "depends on the position", "a function of time only");
             }
         }
         for body in &case.bodies {

@@ -1,5 +1,6 @@
 //! Supports and loads.
 
+use super::GroupUse;
 use crate::case::{Field, Place, Spanned, TimeFunction};
 
 /// Which nodes or particles are meant: those of a group, those where a condition holds, or those of the group where it
@@ -102,4 +103,25 @@ pub enum LoadKind {
         /// Components [m/s²].
         acceleration: Components,
     },
+}
+
+impl LoadKind {
+    /// What it acts on, and as what it uses a group of the mesh; none where it acts on everything.
+    pub fn on(&self) -> Option<(&Selection, GroupUse)> {
+        match self {
+            LoadKind::Force { on, .. } => Some((on, GroupUse::Force)),
+            LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } => Some((on, GroupUse::Facets)),
+            LoadKind::Gravity { .. } => None,
+        }
+    }
+
+    /// The functions of time that it is made of.
+    pub fn functions(&self) -> Vec<&Spanned<TimeFunction>> {
+        match self {
+            LoadKind::Force { force: components, .. }
+            | LoadKind::Traction { traction: components, .. }
+            | LoadKind::Gravity { acceleration: components } => components.iter().flatten().collect(),
+            LoadKind::Pressure { pressure, .. } => vec![pressure],
+        }
+    }
 }

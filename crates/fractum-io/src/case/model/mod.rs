@@ -379,13 +379,8 @@ impl Case {
         let ties = ties.filter(move |(group, _)| !is_body(&group.value));
         let supports = self.supports.iter().filter_map(|support| support.on.group.as_ref());
         let supports = supports.map(|group| (group, GroupUse::Support));
-        let loads = self.loads.iter().filter_map(|load| match &load.kind {
-            LoadKind::Force { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::Force)),
-            LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } => {
-                on.group.as_ref().map(|group| (group, GroupUse::Facets))
-            }
-            LoadKind::Gravity { .. } => None,
-        });
+        let loads = self.loads.iter().filter_map(|load| load.kind.on());
+        let loads = loads.filter_map(|(on, group_use)| on.group.as_ref().map(|group| (group, group_use)));
         let probes = self.probes.iter().filter_map(|probe| match &probe.kind {
             ProbeKind::Reaction { on, .. }
             | ProbeKind::Displacement { on, .. }
