@@ -59,6 +59,9 @@ pub enum DemError {
         /// The valid range.
         expected: &'static str,
     },
+    /// Bonds at rest that are no beams.
+    #[error("bodies at rest need bonds that are cohesive beams; these are of another law")]
+    NoLattice,
     /// The static solve did not converge.
     #[error(
         "the lattice is not in equilibrium after {iterations} iterations: residual {residual:.2e} of the applied forces, asked {asked:.2e}; is a part held by nothing?"

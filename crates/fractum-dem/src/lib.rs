@@ -58,10 +58,7 @@ mod measure;
 mod particles;
 mod statics;
 
-pub use bond::{
-    AnyBondLaw, BeamSection, BondEnergy, BondForces, BondGraph, BondLanes, BondLaw, BondMemory, BondNetwork,
-    BondStiffness, BondedPair, Bonds, ForceLanes, HalfEdge, Parts, Turn, cohesive_beam, cohesive_beam_energy, lanes,
-};
+pub use bond::*;
 pub use error::DemError;
 pub use fracture::{
     Break, Crack, CrackFaces, FaceWork, FailureSearch, FailureSite, Fracture, FractureCriterion, FractureState,

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use fractum_io::build::{BuiltScene, may_rest};
 use fractum_io::case::TimeFunction;
-use fractum_io::case::model::{Body, BodyKind, Case, Components, LoadKind, Motion, SolverKind};
+use fractum_io::case::model::{Body, BodyKind, Case, Motion, SolverKind};
 use fractum_io::number::quantity;
 use fractum_scene::Scene;
 use fractum_scene::statics::Stiffness;
@@ -156,13 +156,7 @@ fn inertia_counts(case: &Case) -> Option<&'static str> {
         let kinds = matches!(function, TimeFunction::Triangle { .. } | TimeFunction::HalfSine { .. });
         kinds || matches!(function, TimeFunction::DoubleExponential { .. })
     };
-    let any = |of: &Components| of.iter().flatten().any(|function| pulse(&function.value));
-    let loads = case.loads.iter().any(|load| match &load.kind {
-        LoadKind::Force { force, .. } => any(force),
-        LoadKind::Traction { traction, .. } => any(traction),
-        LoadKind::Pressure { pressure, .. } => pulse(&pressure.value),
-        LoadKind::Gravity { acceleration } => any(acceleration),
-    });
+    let loads = case.loads.iter().any(|load| load.kind.functions().iter().any(|function| pulse(&function.value)));
     let supports = case
         .supports
         .iter()

@@ -82,7 +82,7 @@ impl EnergyKind {
         all
     };
 
-    const TABLE: [Entry; 13] = [
+    const TABLE: &[Entry] = &[
         entry(EnergyKind::External, "external", "External work", EnergyRole::Supplied),
         entry(EnergyKind::Kinetic, "kinetic", "Kinetic", EnergyRole::Stored),
         entry(EnergyKind::Elastic, "elastic", "Elastic", EnergyRole::Stored),

@@ -20,10 +20,7 @@ mod step;
 
 pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest};
 pub use clock::{Clock, TimeStepSettings};
-pub use conditions::{
-    Along, Gravity, Load, Loads, Motion, NodalForce, PointProbe, Pressure, Support, SupportedFacet, Supports,
-    SurfaceSupports, TimeFunction,
-};
+pub use conditions::*;
 pub use contacts::{
     ContactMaterial, Contacts, Drive, Form, Inertia, NodesOnShape, Overlap, OverlapWith, RigidBody, SolidSurface,
     pieces,

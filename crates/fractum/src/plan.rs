@@ -6,7 +6,7 @@ use std::fmt;
 
 use fractum_fem::{ElementKind, Formulation, Kinematics};
 use fractum_io::build::{BuiltScene, TieReport};
-use fractum_io::case::model::{Case, LoadKind, MeshSource, Selection};
+use fractum_io::case::model::{Case, GroupUse, MeshSource, Selection};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
@@ -147,13 +147,12 @@ impl Plan {
         }
         let thickness = plane_thickness(scene);
         for load in &case.loads {
-            let text = match &load.kind {
-                LoadKind::Force { on, .. } => format!("force on {}", on.label()),
-                LoadKind::Traction { on, .. } => format!("traction on {}", facets_of(mesh, on, thickness)),
-                LoadKind::Pressure { on, .. } => format!("pressure on {}", facets_of(mesh, on, thickness)),
-                LoadKind::Gravity { .. } => "gravity on everything".to_owned(),
+            let on = match load.kind.on() {
+                Some((on, GroupUse::Facets)) => facets_of(mesh, on, thickness),
+                Some((on, _)) => on.label().to_owned(),
+                None => "everything".to_owned(),
             };
-            self.add("load", text);
+            self.add("load", format!("{} on {on}", load.kind.name()));
         }
         if scene.supports().count() == 0 && scene.bonded.held_count() == 0 && case.loads.is_empty() {
             self.add("load", "none: only initial velocities move this scene");

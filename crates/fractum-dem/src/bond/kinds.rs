@@ -186,4 +186,9 @@ impl Bonds {
     pub fn section_radius(&self) -> f64 {
         each!(self, network => network.law().section_radius())
     }
+
+    /// See [`BondLaw::beam`].
+    pub fn beam(&self) -> Option<BeamSection> {
+        each!(self, network => network.law().beam())
+    }
 }

@@ -9,8 +9,5 @@ mod network;
 
 pub use graph::{BondGraph, HalfEdge, Parts};
 pub use kinds::{AnyBondLaw, BondMemory, Bonds};
-pub use law::{
-    BeamSection, BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, ForceLanes, Turn,
-    cohesive_beam, cohesive_beam_energy,
-};
+pub use law::*;
 pub use network::BondNetwork;

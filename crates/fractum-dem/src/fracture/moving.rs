@@ -335,7 +335,7 @@ impl Fracture {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bond::{AnyBondLaw, BeamSection};
+    use crate::bond::BeamSection;
     use crate::fracture::criterion::{BeamRankine, Level, Principal};
     use crate::particles::{CentralDifference, ParticleDamping};
 
@@ -453,7 +453,7 @@ mod tests {
         particles.position[1] = Vec3::new(1.0 + 1e-6, 2e-6, 0.0);
         particles.orientation[1] = fractum_math::Rotation::from_scaled_axis(Vec3::new(3e-6, 0.0, 5e-6));
         let load = Moving { bonds: &bonds, particles: &particles }.load(0);
-        let AnyBondLaw::CohesiveBeam(section) = bonds.law();
+        let section = bonds.beam().unwrap();
         let chord = 2e-6;
         let (first, second) = (-chord, 5e-6 - chord);
         let ei = section.bending();

@@ -7,7 +7,7 @@ use nalgebra::Vector6;
 
 use super::Lattice;
 use crate::DemError;
-use crate::bond::{AnyBondLaw, Bonds};
+use crate::bond::Bonds;
 use crate::particles::Particles;
 
 /// Products of the Lanczos process.
@@ -21,7 +21,7 @@ const LANCZOS_STEPS: usize = 48;
 /// A section that is no beam, a bond that joins nothing.
 pub fn highest_frequency(bonds: &Bonds, particles: &Particles, range: Range<usize>) -> Result<f64, DemError> {
     // Laws without a lattice keep the bound.
-    let AnyBondLaw::CohesiveBeam(section) = bonds.law();
+    let Some(section) = bonds.beam() else { return Ok(2.0 / bonds.stable_step(particles, 1.0)) };
     let own = |i: u32| i - range.start as u32;
     let live = (0..bonds.len()).filter(|&bond| bonds.is_live(bond));
     let pairs: Vec<[u32; 2]> = live.map(|bond| bonds.pairs()[bond].map(own)).collect();

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use fractum_math::Vec3;
 
-pub use load::{Gravity, Load, Loads, NodalForce, Pressure};
+pub use load::*;
 pub(crate) use points::{DrivenPoints, Points};
 pub use probe::{Along, PointProbe};
 pub(crate) use support::integral;

@@ -2,8 +2,8 @@
 
 use fractum_dem::criterion::{BeamRankine, EndMoments, FractureCriterion};
 use fractum_dem::{
-    AnyBondLaw, Batch, BondEnergy, Breaking, Crack, DemError, Lattice, LatticeSupports, LoadStage, QuasiStatic,
-    QuasiStaticState, Tolerance,
+    Batch, BondEnergy, Breaking, Crack, DemError, Lattice, LatticeSupports, LoadStage, QuasiStatic, QuasiStaticState,
+    Tolerance,
 };
 use fractum_math::{Vec3, rotation_by};
 use serde::{Deserialize, Serialize};
@@ -73,7 +73,7 @@ impl BondedStatics {
         let [body] = bonded.bodies.as_slice() else { return Err(SceneError::OneBondedBody) };
         let all = &bonded.particles;
         let mean_radius = all.radius.iter().sum::<f64>() / all.len().max(1) as f64;
-        let AnyBondLaw::CohesiveBeam(section) = body.bonds.law();
+        let section = body.bonds.beam().ok_or(DemError::NoLattice)?;
         let lattice = Lattice::new(&bonded.reference, body.bonds.pairs(), section, mean_radius)?;
         let mut supports = LatticeSupports::none(all.len());
         for (i, held) in (0..).zip(&all.held) {

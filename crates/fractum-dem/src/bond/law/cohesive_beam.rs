@@ -144,6 +144,10 @@ impl BondLaw for BeamSection {
     fn section_radius(&self) -> f64 {
         self.radius
     }
+
+    fn beam(&self) -> Option<BeamSection> {
+        Some(*self)
+    }
 }
 
 /// Elastic energy of a cohesive beam, by parts; see [`cohesive_beam`].

@@ -62,6 +62,11 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
 
     /// Radius of the section for stresses in the bond itself [m].
     fn section_radius(&self) -> f64;
+
+    /// The beam that a bond is for small displacements, as the static lattice knows it; none of other laws.
+    fn beam(&self) -> Option<BeamSection> {
+        None
+    }
 }
 
 /// `W` bonds side by side at their present state.

@@ -79,6 +79,7 @@ impl BondLaw for SofteningSpring {
     }
 }
 
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::bond::BondNetwork;

@@ -50,7 +50,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("materials.NAME.bonds.radius_ratio", K::Quantity(D::NONE), "required", "Beam radius over mean particle radius, within 0 and 2"),
     key("materials.NAME.bonds.young_modulus", K::Quantity(D::PRESSURE), "required", "Young's modulus of the beams, > 0"),
     key("materials.NAME.fracture", K::Table, "", "When the bonds of bonded bodies break; without this table they hold"),
-    key("materials.NAME.fracture.criterion", K::Choice(bond_criteria), "\"principal\"", "Largest principal virial stress of a particle with its neighbours; largest principal stress in the beam; mean virial stress of a particle, which loses all its bonds; Mohr-Coulomb with tension cut-off or Drucker-Prager on the virial stress"),
+    key("materials.NAME.fracture.criterion", K::Choice(bond_criteria), "\"principal\"", "What is compared with the strength, and which bonds break; see the list below"),
     key("materials.NAME.fracture.tensile_strength", K::Quantity(D::PRESSURE), "required", "Tensile strength of the material, > 0; the criterion's own strengths are found by breaking two boxes in tension"),
     key("materials.NAME.fracture.criterion_strength", K::Quantity(D::PRESSURE), "", "Instead: strength of the criterion itself in tension, > 0, as `fractum calibrate --strength` writes it"),
     key("materials.NAME.fracture.compressive_strength", K::Quantity(D::PRESSURE), "none with principal, else 10 times that in tension", "In compression, above that in tension and of the same kind; for principal, mohr-coulomb, drucker-prager"),

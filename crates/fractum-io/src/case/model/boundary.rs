@@ -106,6 +106,16 @@ pub enum LoadKind {
 }
 
 impl LoadKind {
+    /// Its key in the case.
+    pub fn name(&self) -> &'static str {
+        match self {
+            LoadKind::Force { .. } => "force",
+            LoadKind::Traction { .. } => "traction",
+            LoadKind::Pressure { .. } => "pressure",
+            LoadKind::Gravity { .. } => "gravity",
+        }
+    }
+
     /// What it acts on, and as what it uses a group of the mesh; none where it acts on everything.
     pub fn on(&self) -> Option<(&Selection, GroupUse)> {
         match self {

@@ -148,9 +148,9 @@ pub(super) fn loads(root: &Table<'_>) -> Option<Vec<Load>> {
 }
 
 fn load(table: Table<'_>) -> Option<Load> {
-    const KINDS: [&str; 4] = ["force", "traction", "pressure", "gravity"];
+    const KINDS: &[&str] = &["force", "traction", "pressure", "gravity"];
     let name = table.text("name").spanned().given();
-    let kind = exactly_one(&table, &KINDS)?;
+    let kind = exactly_one(&table, KINDS)?;
     let on = if kind == "gravity" {
         for key in ["group", "where"] {
             table.refuse(key, "with gravity, which acts on the whole scene");
