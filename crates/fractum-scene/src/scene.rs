@@ -1,4 +1,4 @@
-use fractum_fem::{LocalDamping, Solid, SolidState, StableStep};
+use fractum_fem::{CrackNetworkState, LocalDamping, Solid, SolidState, StableStep};
 use serde::{Deserialize, Serialize};
 
 use crate::bonded::{Bonded, BondedState};
@@ -37,9 +37,17 @@ pub struct Scene {
     pub(crate) settings: SceneSettings,
     pub(crate) ledger: Ledger,
     pub(crate) books: Books,
-    pub(crate) stable: StableStep,
+    pub(crate) frequencies: Frequencies,
     pub(crate) removals: Removals,
-    pub(crate) contact_frequency_square: f64,
+}
+
+/// What limits the step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frequencies {
+    /// Of the solids by themselves.
+    pub(crate) stable: StableStep,
+    /// Square of that of nodes in contact [1/s²].
+    contact_square: f64,
 }
 
 /// Elements that have left the solids.
@@ -81,6 +89,7 @@ pub struct SceneState {
     governing: (usize, u32),
     removed_since_check: usize,
     contact_frequency_square: f64,
+    cracks: Option<CrackNetworkState>,
 }
 
 /// What a probe counts.
@@ -119,7 +128,7 @@ impl Scene {
     pub fn new(
         mut solid: Solid,
         supports: Supports,
-        loads: Loads,
+        mut loads: Loads,
         mut debris: Debris,
         mut shape_contacts: Vec<NodesOnShape>,
         surface: &[u32],
@@ -134,6 +143,7 @@ impl Scene {
             debris.prepare(&solid);
             shape_contacts.iter_mut().for_each(|ground| ground.watch(surface, &solid, &debris));
         }
+        loads.open_cracks(&solid);
         let mut scene = Scene {
             solid,
             debris,
@@ -148,9 +158,8 @@ impl Scene {
             settings,
             ledger: Ledger::default(),
             books: Books::default(),
-            stable,
+            frequencies: Frequencies { stable, contact_square: 0.0 },
             removals: Removals::default(),
-            contact_frequency_square: 0.0,
         };
         scene.update_contact_frequency();
         scene.clock = Clock::new(scene.next_dt(0.0));
@@ -191,6 +200,7 @@ impl Scene {
     /// Goes on with the supports, loads and settings of another scene of the same solids.
     pub fn begin_stage(&mut self, next: Scene) {
         (self.supports, self.loads, self.settings) = (next.supports, next.loads, next.settings);
+        self.loads.open_cracks(&self.solid);
         self.surface_supports = next.surface_supports;
     }
 
@@ -227,24 +237,25 @@ impl Scene {
     pub fn governing_element(&self) -> Option<StableStep> {
         let bonds = self.bonded.frequency().max(self.ties.frequency());
         let others = bonds.max(self.contacts.frequency_square().sqrt());
-        (self.stable.frequency >= others && self.solid.body_count() > 0).then_some(self.stable)
+        (self.frequencies.stable.frequency >= others && self.solid.body_count() > 0).then_some(self.frequencies.stable)
     }
 
     /// Whether the contacts of particles ask for a smaller step than elements and bonds.
     pub fn contacts_govern(&self) -> bool {
-        let bodies = self.stable.frequency.max(self.bonded.frequency()).max(self.ties.frequency());
+        let bodies = self.frequencies.stable.frequency.max(self.bonded.frequency()).max(self.ties.frequency());
         self.contacts.frequency_square().sqrt() > bodies
     }
 
     /// Largest stable step with contacts and damping [s].
     pub fn stable_dt(&self) -> f64 {
         let divisor = self.bonded.step_divisor();
-        let frequency = self.stable.frequency.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
-        let contacts = self.contact_frequency_square + self.contacts.frequency_square() * divisor * divisor;
+        let frequency =
+            self.frequencies.stable.frequency.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
+        let contacts = self.frequencies.contact_square + self.contacts.frequency_square() * divisor * divisor;
         let contacts = contacts + self.surface_supports.frequency_square();
         // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
         let frequency = ((frequency * frequency + contacts) * (1.0 + self.settings.damping.local)).sqrt();
-        let contact = if self.contact_frequency_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
+        let contact = if self.frequencies.contact_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
         let contact = contact.max(self.bonded.damping_ratio());
         let damping = self.settings.damping;
         let xi = 0.5 * self.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
@@ -263,7 +274,7 @@ impl Scene {
     pub(crate) fn update_contact_frequency(&mut self) {
         let Scene { solid, debris, shape_contacts, .. } = self;
         let walls: f64 = shape_contacts.iter().map(|ground| ground.frequency_square(solid)).sum();
-        self.contact_frequency_square = RESOLUTION * RESOLUTION * walls + debris.frequency_square(solid);
+        self.frequencies.contact_square = RESOLUTION * RESOLUTION * walls + debris.frequency_square(solid);
     }
 
     /// Whether the end of the run has been reached.
@@ -357,10 +368,11 @@ impl Scene {
             shape_contacts: self.shape_contacts.iter().map(NodesOnShape::state).collect(),
             ledger: self.ledger,
             books: self.books,
-            frequency: self.stable.frequency,
-            governing: self.stable.governing,
+            frequency: self.frequencies.stable.frequency,
+            governing: self.frequencies.stable.governing,
             removed_since_check: self.removals.since_check,
-            contact_frequency_square: self.contact_frequency_square,
+            contact_frequency_square: self.frequencies.contact_square,
+            cracks: self.loads.crack_state(),
         }
     }
 
@@ -381,8 +393,11 @@ impl Scene {
         }
         self.ledger = state.ledger;
         self.books = state.books;
-        self.stable = StableStep { frequency: state.frequency, governing: state.governing };
+        self.frequencies.stable = StableStep { frequency: state.frequency, governing: state.governing };
         self.removals.since_check = state.removed_since_check;
-        self.contact_frequency_square = state.contact_frequency_square;
+        self.frequencies.contact_square = state.contact_frequency_square;
+        if let Some(cracks) = &state.cracks {
+            self.loads.restore_cracks(&self.solid, cracks);
+        }
     }
 }

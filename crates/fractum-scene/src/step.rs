@@ -207,6 +207,7 @@ impl Scene {
         let mut report = StepReport { removed: self.removals.last.len(), particles_born: 0 };
         if report.removed > 0 {
             self.books.removed += energy;
+            self.loads.extend_cracks(&self.solid, &self.removals.last);
             let before = self.debris.len();
             self.debris.release(&self.solid, &self.removals.last);
             report.particles_born = self.debris.len() - before;
@@ -224,8 +225,8 @@ impl Scene {
             self.removals.since_check = 0;
             if !self.settings.time_step.element_bound {
                 let present = self.solid.stable_step();
-                if present.frequency > self.stable.frequency {
-                    self.stable = present;
+                if present.frequency > self.frequencies.stable.frequency {
+                    self.frequencies.stable = present;
                 }
             }
         }

@@ -6,7 +6,7 @@ use std::fmt;
 
 use fractum_fem::{ElementKind, Formulation, Kinematics};
 use fractum_io::build::{BuiltScene, TieReport};
-use fractum_io::case::model::{Case, GroupUse, MeshSource, Selection};
+use fractum_io::case::model::{Case, GroupUse, LoadKind, MeshSource, Selection};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
@@ -152,7 +152,9 @@ impl Plan {
                 Some((on, _)) => on.label().to_owned(),
                 None => "everything".to_owned(),
             };
-            self.add("load", format!("{} on {on}", load.kind.name()));
+            let entered = matches!(load.kind, LoadKind::Pressure { in_cracks: Some(_), .. });
+            let cracks = if entered { " and in the cracks open to it" } else { "" };
+            self.add("load", format!("{} on {on}{cracks}", load.kind.name()));
         }
         if scene.supports().count() == 0 && scene.bonded.held_count() == 0 && case.loads.is_empty() {
             self.add("load", "none: only initial velocities move this scene");

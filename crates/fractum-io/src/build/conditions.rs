@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 use fractum_fem::ElementKind;
 use fractum_math::Vec3;
-use fractum_scene::{Bonded, Gravity, Load, Motion, NodalForce, Pressure, Support};
+use fractum_scene::{Bonded, CrackPressure, Gravity, Load, Motion, NodalForce, Pressure, Support};
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function, use_in_words};
 use crate::case::Spanned;
-use crate::case::model::{self, Components, GroupUse, LoadKind, Selection};
+use crate::case::model::{self, Components, GroupUse, InCracks, LoadKind, Selection};
 
 impl Context<'_> {
     pub(super) fn supports(&mut self, numbering: &Numbering) -> Vec<Support> {
@@ -51,15 +51,35 @@ impl Context<'_> {
                     let facets = self.selected_facets(on, numbering, surface);
                     push_nodal(&mut loads, &surface.areas(&facets), traction);
                 }
-                (LoadKind::Pressure { on, pressure }, LoadedPoints::Nodes(numbering, surface)) => {
+                (LoadKind::Pressure { on, pressure, in_cracks }, LoadedPoints::Nodes(numbering, surface)) => {
                     let (facets, thickness) = (self.selected_facets(on, numbering, surface), surface.thickness);
-                    loads.push(Load::Pressure(Pressure { facets, thickness, value: function(&pressure.value) }));
+                    let value = function(&pressure.value);
+                    loads.push(match in_cracks {
+                        None => Load::Pressure(Pressure { facets, thickness, value }),
+                        Some(InCracks { front_speed }) => {
+                            self.refuse_partial_mouth(on, &facets, &loads);
+                            Load::CrackPressure(CrackPressure::new(facets, thickness, value, *front_speed))
+                        }
+                    });
                 }
                 // Particles have no facets: refused before.
                 (LoadKind::Traction { .. } | LoadKind::Pressure { .. }, LoadedPoints::Particles(_)) => {}
             }
         }
         loads
+    }
+
+    /// Cracks are entered from groups of facets that are the same or have no facet in common.
+    fn refuse_partial_mouth(&mut self, on: &Selection, facets: &[[u32; 3]], loads: &[Load]) {
+        let others = loads.iter().filter_map(|load| match load {
+            Load::CrackPressure(load) if load.facets != facets => Some(&load.facets),
+            _ => None,
+        });
+        let shared = others.flatten().find(|facet| facets.contains(facet));
+        if let (Some(_), Some(place)) = (shared, on.place()) {
+            let found = format!("= \"{}\": shares facets with another load that enters cracks", on.label());
+            self.error(&place.clone(), found, "the same facets, or none in common");
+        }
     }
 
     /// Shares of a total force: by area where facets or particles are meant, else equal.

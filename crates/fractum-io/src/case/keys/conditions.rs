@@ -35,6 +35,8 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("loads[].traction.y", K::TimeFunction(D::PRESSURE), "0", "Component along y"),
     key("loads[].traction.z", K::TimeFunction(D::PRESSURE), "0", "Component along z"),
     key("loads[].pressure", K::TimeFunction(D::PRESSURE), "", "Pressure that follows the group's facets; positive pushes into the solid"),
+    key("loads[].in_cracks", K::Flag, "false", "Pressure only: whether it acts in the cracks that are open to these facets too: removed elements that share facets with them or with one another"),
+    key("loads[].front_speed", K::Quantity(D::VELOCITY), "", "With in_cracks: speed at which the pressure advances into the cracks, > 0; a crack carries the pressure of the facets once the front has come; absent means at once"),
     key("loads[].gravity", K::Table, "", "Acceleration of the whole scene, by components"),
     key("loads[].gravity.x", K::TimeFunction(D::ACCELERATION), "0", "Component along x"),
     key("loads[].gravity.y", K::TimeFunction(D::ACCELERATION), "0", "Component along y"),

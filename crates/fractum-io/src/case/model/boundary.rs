@@ -71,6 +71,13 @@ pub struct Load {
     pub kind: LoadKind,
 }
 
+/// How pressure enters cracks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InCracks {
+    /// Speed of its front [m/s], > 0; everywhere at once if absent.
+    pub front_speed: Option<f64>,
+}
+
 /// Components along x, y, z; `None` = zero.
 pub type Components = [Option<Spanned<TimeFunction>>; 3];
 
@@ -97,6 +104,8 @@ pub enum LoadKind {
         on: Selection,
         /// Pressure [Pa].
         pressure: Spanned<TimeFunction>,
+        /// How it enters the cracks that are open to the facets; not at all if absent.
+        in_cracks: Option<InCracks>,
     },
     /// Acceleration of the whole scene [m/s²].
     Gravity {

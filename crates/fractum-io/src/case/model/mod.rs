@@ -19,7 +19,7 @@ use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
 pub use body::{Body, BodyKind, SolidBody};
 pub use bonded::{BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource, ParticleSize};
-pub use boundary::{Components, Load, LoadKind, Motion, Selection, Support};
+pub use boundary::{Components, InCracks, Load, LoadKind, Motion, Selection, Support};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Distribution, Material, Scatter};
 pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::bodies::optional;
 use super::time_functions::time_function;
 use super::vectors::{AXES, components, condition};
-use crate::case::model::{Load, LoadKind, Motion, Selection, Support};
+use crate::case::model::{InCracks, Load, LoadKind, Motion, Selection, Support};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned, TimeFunction};
 use fractum_math::Vec3;
@@ -166,11 +166,23 @@ fn load(table: Table<'_>) -> Option<Load> {
         "gravity" => by_components().map(|acceleration| LoadKind::Gravity { acceleration }),
         _ => {
             let pressure = time_function(&table, "pressure").spanned().required();
-            pressure.and_then(|pressure| Some(LoadKind::Pressure { on: on?, pressure }))
+            let in_cracks = in_cracks(&table);
+            pressure.and_then(|pressure| Some(LoadKind::Pressure { on: on?, pressure, in_cracks: in_cracks? }))
         }
     };
     table.finish("here");
     Some(Load { name, kind: kind? })
+}
+
+/// The keys `in_cracks` and `front_speed` of a pressure; nothing where one of them is wrong.
+fn in_cracks(table: &Table<'_>) -> Option<Option<InCracks>> {
+    let enters = table.flag("in_cracks").or_if_absent(false)?;
+    if !enters {
+        table.refuse("front_speed", "where pressure does not enter cracks");
+        return Some(None);
+    }
+    let speed = table.quantity("front_speed").check(|speed| *speed > 0.0, "a speed above 0");
+    optional(table, "front_speed", |_| speed.given()).map(|front_speed| Some(InCracks { front_speed }))
 }
 
 /// The one of these keys that a table has; notes where there is none, or several.

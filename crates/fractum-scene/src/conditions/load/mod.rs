@@ -1,12 +1,15 @@
 //! Forces from outside, a file per kind. A new kind is its file, a variant of [`Load`] and an arm in each of its methods.
 
 mod body_force;
+mod crack_pressure;
 mod nodal;
 mod pressure;
 
+use fractum_fem::{CrackNetwork, CrackNetworkState, Solid};
 use fractum_math::{CHUNK, Vec3};
 
 pub use body_force::Gravity;
+pub use crack_pressure::CrackPressure;
 pub use nodal::NodalForce;
 pub use pressure::Pressure;
 
@@ -19,6 +22,8 @@ pub enum Load {
     Nodal(NodalForce),
     /// Pressure on facets.
     Pressure(Pressure),
+    /// Pressure on facets and in the cracks that are open to them.
+    CrackPressure(CrackPressure),
     /// An acceleration of every point.
     Gravity(Gravity),
 }
@@ -38,15 +43,21 @@ impl Load {
         match self {
             Load::Nodal(load) => load.points.len(),
             Load::Pressure(load) => 3 * load.facets.len(),
+            Load::CrackPressure(load) => 3 * load.facets.len(),
             Load::Gravity(_) => 0,
         }
     }
 
     /// Adds the forces of `time`.
-    fn apply(&self, points: &impl Points, time: f64, applied: &mut Applied) {
+    ///
+    /// - `cracks`: those that pressure enters; none before [`Loads::open_cracks`]
+    fn apply(&self, points: &impl Points, cracks: Option<&CrackNetwork>, time: f64, applied: &mut Applied) {
         match self {
             Load::Nodal(load) => load.apply(points, time, &mut applied.forces),
             Load::Pressure(load) => load.apply(points, time, &mut applied.forces),
+            Load::CrackPressure(load) => {
+                cracks.into_iter().for_each(|cracks| load.apply(points, cracks, time, &mut applied.forces));
+            }
             Load::Gravity(load) => load.apply(time, &mut applied.gravity),
         }
     }
@@ -59,6 +70,8 @@ pub struct Loads {
     /// Forces of the last step.
     applied: Applied,
     partial: Vec<Vec3>,
+    /// Cracks that pressure enters.
+    cracks: Option<CrackNetwork>,
 }
 
 impl Loads {
@@ -70,6 +83,40 @@ impl Loads {
             applied: Applied { forces, gravity: Vec3::zeros() },
             partial: vec![Vec3::zeros(); if weighs { count.div_ceil(CHUNK) } else { 0 }],
             loads,
+            cracks: None,
+        }
+    }
+
+    /// Finds the cracks of a solid that are open to pressure, if any load enters them.
+    pub(crate) fn open_cracks(&mut self, solid: &Solid) {
+        let mouths = CrackPressure::mouths(self.loads.iter_mut().filter_map(|load| match load {
+            Load::CrackPressure(load) => Some(load),
+            _ => None,
+        }));
+        if mouths.is_empty() {
+            return;
+        }
+        let mut cracks = CrackNetwork::new(solid, mouths);
+        cracks.extend_by_all(solid);
+        self.cracks = Some(cracks);
+    }
+
+    /// Lets pressure enter what the removal of elements has opened.
+    pub(crate) fn extend_cracks(&mut self, solid: &Solid, removed: &[(usize, u32)]) {
+        if let Some(cracks) = &mut self.cracks {
+            cracks.extend(solid, removed.iter().copied());
+        }
+    }
+
+    /// The cracks that pressure has entered, for a checkpoint.
+    pub(crate) fn crack_state(&self) -> Option<CrackNetworkState> {
+        self.cracks.as_ref().map(CrackNetwork::state)
+    }
+
+    /// Puts saved cracks back, once the solid has lost its elements again.
+    pub(crate) fn restore_cracks(&mut self, solid: &Solid, state: &CrackNetworkState) {
+        if let Some(cracks) = &mut self.cracks {
+            cracks.restore(solid, state);
         }
     }
 
@@ -85,7 +132,7 @@ impl Loads {
         }
         self.applied.forces.clear();
         self.applied.gravity = Vec3::zeros();
-        self.loads.iter().for_each(|load| load.apply(points, time, &mut self.applied));
+        self.loads.iter().for_each(|load| load.apply(points, self.cracks.as_ref(), time, &mut self.applied));
         let forces = points.forces();
         self.applied.forces.iter().for_each(|&(point, force)| forces[point as usize] += force);
         if self.applied.gravity != Vec3::zeros() {

@@ -16,24 +16,36 @@ pub struct Pressure {
 }
 
 impl Pressure {
-    /// A third of p times its area vector on each corner of a facet, half on each end of a plane edge.
     pub(super) fn apply(&self, points: &impl Points, time: f64, forces: &mut Vec<(u32, Vec3)>) {
         for facet in &self.facets {
-            let [a, b, c] = facet.map(|n| n as usize);
-            let p = [a, b, c].map(|n| points.position(n));
-            if self.thickness > 0.0 {
-                let centre = (points.reference(a) + points.reference(b)) * 0.5;
-                let along = p[1] - p[0];
-                let area = Vec3::new(along.y, -along.x, 0.0) * self.thickness;
-                let force = area * (-0.5 * (self.value)(time, &centre));
-                forces.extend([(facet[0], force), (facet[1], force)]);
-            } else {
-                let centre = (points.reference(a) + points.reference(b) + points.reference(c)) / 3.0;
-                let area = (p[1] - p[0]).cross(&(p[2] - p[0])) * 0.5;
-                let force = area * (-(self.value)(time, &centre) / 3.0);
-                forces.extend(facet.map(|n| (n, force)));
-            }
+            push_facet(points, facet, self.thickness, |centre| (self.value)(time, centre), forces);
         }
+    }
+}
+
+/// A third of p times the area vector of a facet on each of its corners, half on each end of a plane edge.
+///
+/// - `pressure`: at the reference centre of the facet [Pa]
+pub(super) fn push_facet(
+    points: &impl Points,
+    facet: &[u32; 3],
+    thickness: f64,
+    pressure: impl Fn(&Vec3) -> f64,
+    forces: &mut Vec<(u32, Vec3)>,
+) {
+    let [a, b, c] = facet.map(|n| n as usize);
+    let p = [a, b, c].map(|n| points.position(n));
+    if thickness > 0.0 {
+        let centre = (points.reference(a) + points.reference(b)) * 0.5;
+        let along = p[1] - p[0];
+        let area = Vec3::new(along.y, -along.x, 0.0) * thickness;
+        let force = area * (-0.5 * pressure(&centre));
+        forces.extend([(facet[0], force), (facet[1], force)]);
+    } else {
+        let centre = (points.reference(a) + points.reference(b) + points.reference(c)) / 3.0;
+        let area = (p[1] - p[0]).cross(&(p[2] - p[0])) * 0.5;
+        let force = area * (-pressure(&centre) / 3.0);
+        forces.extend(facet.map(|n| (n, force)));
     }
 }
 
