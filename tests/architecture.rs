@@ -201,6 +201,19 @@ fn transcendental_functions_come_from_one_place() {
 }
 
 #[test]
+fn fused_products_stay_in_the_kernels_that_are_compiled_for_them() {
+    // Elsewhere each is a call of the C library.
+    let kernels = ["fractum-fem/src/lane.rs", "fractum-sparse/src/dense.rs"];
+    for (name, _) in ARROWS {
+        for (path, code) in sources(name) {
+            let code = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+            let fused = code.filter(|line| line.contains("mul_add(")).count();
+            assert!(fused == 0 || kernels.iter().any(|kernel| path.ends_with(kernel)), "{}", path.display());
+        }
+    }
+}
+
+#[test]
 fn every_crate_has_a_front_page_and_the_rules_of_the_workspace() {
     for (name, _) in ARROWS {
         let root = fs::read_to_string(crates().join(name).join("src/lib.rs")).unwrap();

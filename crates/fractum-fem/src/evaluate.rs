@@ -5,7 +5,7 @@ use fractum_math::{Sym3, Vec3};
 use crate::block::{Cells, Scratch};
 use crate::body::Kinematics;
 use crate::damage::{Advance, EdgeCells, EdgeField, EdgesInStep};
-use crate::kernel::{self, ElasticCells};
+use crate::kernel::{self, ElasticCells, General};
 use crate::lane::Lane;
 use crate::solid::BodyModel;
 use crate::standard::StandardCells;
@@ -137,15 +137,9 @@ fn run<L: kernel::CellLaw>(
 ) -> (f64, Option<usize>) {
     let corotational = model.body.kinematics == Kinematics::Corotational;
     if corotational || model.viscosity.is_some() {
-        return kernel::general_forces(
-            cells,
-            scratch,
-            law,
-            corotational,
-            model.viscosity.as_ref(),
-            &model.hooke,
-            viscous,
-        );
+        let (viscosity, hooke) = (model.viscosity.as_ref(), model.hooke);
+        let general = General { corotational, viscosity, hooke, viscous_before: viscous };
+        return kernel::general_forces(cells, scratch, law, general);
     }
     kernel::forces(cells, scratch, law);
     (0.0, None)

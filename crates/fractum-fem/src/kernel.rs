@@ -1,6 +1,6 @@
 //! The force kernel: strain of each cell, stress by its law, forces on its nodes.
 
-use fractum_math::{Mat3, Sym3};
+use fractum_math::{Mat3, Sym3, widest};
 
 use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
 use crate::body::{Body, ElementKind, Kinematics, Plane};
@@ -215,44 +215,39 @@ fn one_cell<L: CellLaw>(
     add_cell_forces(&mut scratch.force, local, gradients, symmetric_columns(stress));
 }
 
-/// The small-strain kernel in the widest instruction set of the machine.
-pub(crate) fn forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
-    #[cfg(target_arch = "x86_64")]
-    if has_avx2() {
-        // SAFETY: the instruction sets were found on this machine.
-        #[allow(unsafe_code)]
-        unsafe {
-            return forces_avx2(cells, scratch, law);
-        }
-    }
-    small_strain_forces(cells, scratch, law);
+widest! {
+    /// The small-strain kernel in the widest instruction set of the machine.
+    pub(crate) fn forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) = small_strain_forces;
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn forces_avx2<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
-    small_strain_forces(cells, scratch, law);
+/// What cells do beside small elastic strains.
+pub(crate) struct General<'a> {
+    pub(crate) corotational: bool,
+    pub(crate) viscosity: Option<&'a BodyViscosity>,
+    pub(crate) hooke: Hooke,
+    /// Viscous stress times volume of the last step; replaced by that of this one.
+    pub(crate) viscous_before: &'a mut [Sym3],
 }
 
-/// Whether kernels run in their AVX2 version on this machine (the same operations, hence the same bits).
-#[cfg(target_arch = "x86_64")]
-pub(crate) fn has_avx2() -> bool {
-    std::arch::is_x86_feature_detected!("avx2")
+widest! {
+    /// Forces with corotational strains and, if asked for, viscous stress; small strains with viscosity come here as well.
+    ///
+    /// Returns the mean power of the viscous stress over the step [W], and the first corotational cell that is turned inside
+    /// out while it still carries.
+    pub(crate) fn general_forces<L: CellLaw>(
+        cells: &Cells,
+        scratch: &mut Scratch,
+        law: &mut L,
+        general: General<'_>,
+    ) -> (f64, Option<usize>) = forces_cell_by_cell;
 }
 
-/// Forces with corotational strains and, if asked for, viscous stress; small strains with viscosity come here as well.
-///
-/// - `viscous_before`: viscous stress times volume of the last step; replaced by that of this one
-/// - returns the mean power of the viscous stress over the step [W], and the first corotational cell that is turned inside
-///   out while it still carries
-pub(crate) fn general_forces<L: CellLaw>(
+#[inline(always)]
+fn forces_cell_by_cell<L: CellLaw>(
     cells: &Cells,
     scratch: &mut Scratch,
     law: &mut L,
-    corotational: bool,
-    viscosity: Option<&BodyViscosity>,
-    hooke: &Hooke,
-    viscous_before: &mut [Sym3],
+    General { corotational, viscosity, hooke, viscous_before }: General<'_>,
 ) -> (f64, Option<usize>) {
     let Scratch { displacement, velocity, force } = scratch;
     let (mut dissipated_power, mut inverted) = (0.0, None);
@@ -273,7 +268,7 @@ pub(crate) fn general_forces<L: CellLaw>(
         if let (Some(viscosity), Some(velocity)) = (viscosity, velocity.as_deref()) {
             let [x, y, z] = gradient_columns(velocity, local, gradients);
             let rate = Sym3::symmetric_part(&(rotation.transpose() * columns_to_matrix(x, y, z)));
-            let viscous = viscosity.stress(hooke, rate, law.integrity(cell), volume) * volume;
+            let viscous = viscosity.stress(&hooke, rate, law.integrity(cell), volume) * volume;
             // The mean of the stress at both ends of the step, at the rate between them.
             dissipated_power += 0.5 * (viscous + std::mem::replace(&mut viscous_before[cell], viscous)).dot(rate);
             stress += viscous;
@@ -287,4 +282,66 @@ pub(crate) fn general_forces<L: CellLaw>(
         add_cell_forces(force, local, gradients, columns);
     }
     (dissipated_power, inverted)
+}
+
+#[cfg(test)]
+mod tests {
+    use fractum_math::Vec3;
+    use fractum_mesh::generate::{Jitter, structured_box};
+
+    use super::*;
+    use crate::body::ElementKind;
+    use crate::material::Elastic;
+    use crate::solid::Solid;
+    use crate::viscosity::Viscosity;
+
+    /// A strained and moving box with cells of many sizes.
+    fn moving_box() -> Solid {
+        let mesh = structured_box([4; 3], Vec3::repeat(0.3), Some(Jitter { fraction: 0.15, seed: 3 }));
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let body = Body::new("box", ElementKind::T4, mesh.tetrahedra, elastic).smoothed();
+        let mut solid = Solid::new(mesh.nodes, vec![body]).unwrap();
+        solid.set_viscosity(Viscosity { stiffness_time: 1e-6, bulk_linear: 0.06, bulk_quadratic: 1.2 });
+        for (i, (u, v)) in solid.displacement.iter_mut().zip(&mut solid.velocity).enumerate() {
+            *u = Vec3::new(0.7 * i as f64, 1.1 * i as f64, 1.7 * i as f64).map(|x| 0.01 * x.sin());
+            *v = Vec3::new(1.3 * i as f64, 0.3 * i as f64, 0.9 * i as f64).map(|x| 2.0 * x.cos());
+        }
+        solid
+    }
+
+    /// The kernels compiled for any processor, where a fused product is a call of the C library, beside the fastest ones.
+    #[test]
+    fn the_kernels_of_any_processor_give_the_same_bits() {
+        let mut solid = moving_box();
+        let Solid { blocks, bodies, displacement, velocity, .. } = &mut solid;
+        for block in blocks {
+            let (cells, model) = (&block.cells, &bodies[block.body]);
+            let mut forces_of = |fastest: bool, corotational: Option<bool>| {
+                block.scratch.load(&cells.nodes, displacement);
+                block.scratch.load_velocity(&cells.nodes, velocity);
+                let mut law = ElasticCells { hooke: model.hooke, energy: Some(0.0) };
+                let scratch = &mut block.scratch;
+                let mut viscous_before = vec![Sym3::ZERO; cells.len()];
+                let mut power = 0.0;
+                if let Some(corotational) = corotational {
+                    let viscosity = model.viscosity.as_ref();
+                    assert!(viscosity.is_some());
+                    let (hooke, viscous_before) = (model.hooke, viscous_before.as_mut_slice());
+                    let general = General { corotational, viscosity, hooke, viscous_before };
+                    let run = if fastest { general_forces } else { forces_cell_by_cell };
+                    power = run(cells, scratch, &mut law, general).0;
+                } else {
+                    let run = if fastest { forces } else { small_strain_forces };
+                    run(cells, scratch, &mut law);
+                }
+                let sums = [law.energy.unwrap(), power];
+                let forces = scratch.force.iter().flat_map(|lane| lane.0);
+                forces.chain(sums).chain(viscous_before.into_iter().flat_map(|s| s.0)).map(f64::to_bits).collect()
+            };
+            for corotational in [None, Some(false), Some(true)] {
+                let fastest: Vec<u64> = forces_of(true, corotational);
+                assert!(fastest == forces_of(false, corotational), "{corotational:?}");
+            }
+        }
+    }
 }

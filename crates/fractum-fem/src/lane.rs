@@ -29,9 +29,9 @@ impl Lane {
         Lane(std::array::from_fn(|i| self.0[i] - b.0[i]))
     }
 
-    /// `self + a · factor`, not fused: processors without fused products must get the same bits.
+    /// `self + a · factor`, rounded once: the same bits whether the processor or the C library does it.
     #[inline(always)]
     pub(crate) fn plus(self, a: Lane, factor: f64) -> Lane {
-        Lane(std::array::from_fn(|i| a.0[i] * factor + self.0[i]))
+        Lane(std::array::from_fn(|i| a.0[i].mul_add(factor, self.0[i])))
     }
 }

@@ -18,6 +18,7 @@ mod ragged;
 mod reduce;
 mod rotation;
 mod sym3;
+mod widest;
 mod work;
 
 pub use connected::{connected, numbered_parts};

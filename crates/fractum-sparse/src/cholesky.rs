@@ -3,7 +3,7 @@ use std::mem;
 use thiserror::Error;
 
 use crate::block::{BlockMatrix, Pattern};
-use crate::dense::{Buffers, Columns, dot, factor_panel, lower_product};
+use crate::dense::{Buffers, Columns, factor_panel, lower_product, solve_backward, solve_forward};
 use crate::ordering::nested_dissection;
 use crate::supernodes::Supernodes;
 
@@ -36,7 +36,7 @@ pub enum SparseError {
 
 /// Cholesky factor of a block matrix; keeps its ordering and its memory from one matrix to the next.
 ///
-/// Left-looking by panels of at most 64 columns: a panel gathers what the panels before it subtract, then is factored. The
+/// Left-looking by panels of at most 128 columns: a panel gathers what the panels before it subtract, then is factored. The
 /// operations and their order are the same on every processor.
 pub struct Factor {
     structure: Supernodes,
@@ -139,13 +139,8 @@ impl Factor {
             let (own, width, height) = extent::<B>(structure, panel);
             below.clear();
             below.resize(height - width, 0.0);
-            let own = &mut unknowns[own..own + width];
-            for (c, column) in values[starts[panel]..starts[panel + 1]].chunks_exact(height).enumerate() {
-                let value = own[c] / column[c];
-                own[c] = value;
-                own[c + 1..].iter_mut().zip(&column[c + 1..width]).for_each(|(own, l)| *own -= l * value);
-                below.iter_mut().zip(&column[width..]).for_each(|(below, l)| *below += l * value);
-            }
+            let columns = Columns { values: &values[starts[panel]..starts[panel + 1]], height, count: width };
+            solve_forward(columns, &mut unknowns[own..own + width], below);
             for (&node, sums) in structure.rows(panel)[width / B..].iter().zip(below.as_chunks::<B>().0) {
                 (0..B).for_each(|b| unknowns[node as usize * B + b] -= sums[b]);
             }
@@ -155,12 +150,8 @@ impl Factor {
             below.clear();
             let rows = &structure.rows(panel)[width / B..];
             below.extend(rows.iter().flat_map(|&node| &unknowns[node as usize * B..][..B]));
-            let own = &mut unknowns[own..own + width];
-            let columns = values[starts[panel]..starts[panel + 1]].chunks_exact(height);
-            for (c, column) in columns.enumerate().rev() {
-                let sum = dot(&column[width..], below) + dot(&column[c + 1..width], &own[c + 1..]);
-                own[c] = (own[c] - sum) / column[c];
-            }
+            let columns = Columns { values: &values[starts[panel]..starts[panel + 1]], height, count: width };
+            solve_backward(columns, &mut unknowns[own..own + width], below);
         }
         for (&old, value) in structure.order.iter().zip(unknowns.as_chunks::<B>().0) {
             x[old as usize] = *value;

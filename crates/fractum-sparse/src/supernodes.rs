@@ -7,7 +7,7 @@ use fractum_math::Ragged;
 use crate::block::Pattern;
 
 /// Unknowns of a panel at most; wider supernodes are cut.
-const PANEL: usize = 64;
+const PANEL: usize = 128;
 const NONE: u32 = u32::MAX;
 
 /// Nodes in the order of elimination, in panels of columns with the same rows below.
