@@ -29,7 +29,7 @@ impl Solid {
     /// - `measure`: whether to sum the kinetic energy
     /// - returns what damping takes, and the kinetic energy at tⁿ as ½ Σ m vⁿ⁻½ · (vⁿ⁻½ + Δt aⁿ), which is
     ///   ½ Σ m vⁿ⁻½ · vⁿ⁺½ for equal steps: with this product central differences conserve the energy of a linear body
-    ///   exactly
+    ///   exactly; as the step after sees it, it is ½ Σ m vⁿ⁺½ · (vⁿ⁺½ - Δt aⁿ), another one where the step changes
     pub fn kick_and_drift(
         &mut self,
         dt_before: f64,
@@ -76,6 +76,8 @@ impl Solid {
                     displacement[i] += after * dt_after;
                     let mirrored = before + total * (inverse_mass[i] * dt_before);
                     work.before.kinetic += 0.5 / inverse_mass[i] * before.dot(&mirrored);
+                    let mirrored = after - total * (inverse_mass[i] * dt_after);
+                    work.after.kinetic += 0.5 / inverse_mass[i] * after.dot(&mirrored);
                     work.before.damping -= 0.5 * dt_before * resist.dot(&before);
                     work.after.damping -= 0.5 * dt_after * resist.dot(&after);
                 }

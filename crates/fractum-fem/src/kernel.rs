@@ -4,6 +4,7 @@ use fractum_math::{Mat3, Sym3, widest};
 
 use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
 use crate::body::{Body, ElementKind, Kinematics, Plane};
+use crate::inverted::without_reflection;
 use crate::lane::Lane;
 use crate::viscosity::BodyViscosity;
 
@@ -67,7 +68,8 @@ impl CellLaw for ElasticCells {
 
 /// Rotation R of the polar decomposition F = R U, by Higham's iteration R ← ½ (R + R⁻ᵀ).
 ///
-/// A cell that is inverted or flat has no rotation; the identity then keeps the linear strain.
+/// Where F turns a cell inside out, Q of F = Q H is a reflection, and R comes from [`without_reflection`]. A cell that is exactly
+/// flat has no rotation; the identity then keeps the linear strain.
 pub(crate) fn polar_rotation(f: &Mat3) -> Mat3 {
     let mut r = *f;
     for _ in 0..40 {
@@ -79,7 +81,10 @@ pub(crate) fn polar_rotation(f: &Mat3) -> Mat3 {
             break;
         }
     }
-    if r.determinant() > 0.0 && r.iter().all(|c| c.is_finite()) { r } else { Mat3::identity() }
+    if !r.iter().all(|c| c.is_finite()) {
+        return Mat3::identity();
+    }
+    if r.determinant() > 0.0 { r } else { without_reflection(&r, f) }
 }
 
 /// Stiffness over the undamaged one above which a cell carries: what is turned inside out below it changes no energy to

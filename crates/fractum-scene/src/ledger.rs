@@ -37,6 +37,9 @@ pub enum EnergyKind {
     Absorbed,
     /// Energy stored in the springs of elastic supports.
     Foundation,
+    /// What central differences keep less of the energy at a start out of balance and at changes of the time step,
+    /// ⅛ (Δt₊² - Δt₋²) Σ F²/m: either sign.
+    TimeStep,
 }
 
 /// What an entry is to the energy balance.
@@ -96,6 +99,7 @@ impl EnergyKind {
         entry(EnergyKind::Friction, "friction", "Friction", EnergyRole::Spent),
         entry(EnergyKind::Absorbed, "absorbed", "Absorbed by boundaries", EnergyRole::Spent),
         entry(EnergyKind::Foundation, "foundation", "Elastic supports", EnergyRole::Stored),
+        entry(EnergyKind::TimeStep, "time_step", "Changes of the time step", EnergyRole::Spent),
     ];
 
     const fn entry(self) -> &'static Entry {
@@ -172,6 +176,7 @@ pub(crate) struct Books {
     pub(crate) damping: f64,
     pub(crate) friction: f64,
     pub(crate) absorbed: f64,
+    pub(crate) time_step: f64,
 }
 
 impl AddAssign<Work> for Books {

@@ -13,6 +13,8 @@ const UNSTABLE_RATIO: f64 = 20.0;
 /// Part of the energy of in-situ stress below which an energy is what rounding leaves.
 const IN_SITU_ROUND_OFF: f64 = 1e-9;
 
+/// Relative difference of two steps that is rounding.
+const SAME_STEP: f64 = 1e-9;
 /// Steps between two looks at where cracks may go on.
 const STEPS_BETWEEN_GATES: u64 = 25;
 /// Removals after which the stable step is looked at again, and the steps that must lie between two looks.
@@ -77,7 +79,8 @@ impl Scene {
         let load = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
         let absorbed = self.add_surface_support_forces(first);
         let given = if first { self.start_half_a_step_early(dt_before) } else { 0.0 };
-        let mut work = self.advance(measure); // vⁿ⁺½, uⁿ⁺¹
+        let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
+        let mut work = self.advance(measure || step_changes); // vⁿ⁺½, uⁿ⁺¹
         work.before.external += load;
         work.before += absorbed;
 
@@ -91,7 +94,10 @@ impl Scene {
             self.ledger[EnergyKind::Kinetic] = work.before.kinetic + missing;
             self.ledger[EnergyKind::Contact] = contact.stored;
             self.close_balance()?;
-            self.books.damping += missing;
+            self.books.time_step += missing;
+        }
+        if step_changes {
+            self.books.time_step += work.before.kinetic - work.after.kinetic;
         }
         self.books += work.after;
         passed(Phase::Motion);
@@ -117,7 +123,7 @@ impl Scene {
         let held = self.supports.held();
         let mut work = self.solid.kick_and_drift(dt_before, dt_after, self.settings.damping, held, measure);
         work += self.supports.impose(&mut self.solid, time, dt_before, dt_after);
-        work.before.kinetic += self.debris.turn(&self.solid, dt_before, 0.5 * (dt_before + dt_after));
+        work += self.debris.turn(&self.solid, dt_before, dt_after);
         work += self.move_bonded(time, dt_before, dt_after, measure);
         work += self.contacts.move_bodies(time, dt_before, dt_after);
         work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
@@ -247,6 +253,7 @@ impl Scene {
         ledger[EnergyKind::Removed] = books.removed + bonded.released_energy();
         ledger[EnergyKind::Friction] = books.friction;
         ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
+        ledger[EnergyKind::TimeStep] = books.time_step;
         ledger[EnergyKind::Absorbed] = books.absorbed;
         ledger[EnergyKind::Foundation] = surface_supports.stored(&*solid);
         if self.clock.step == 0 {
@@ -288,6 +295,7 @@ impl Scene {
         ledger[EnergyKind::Removed] = books.removed;
         ledger[EnergyKind::Friction] = books.friction;
         ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
+        ledger[EnergyKind::TimeStep] = books.time_step;
         ledger.update_maxima();
         if ledger.residual().is_finite() {
             return Ok(());

@@ -63,8 +63,10 @@ pub struct ContactMemory {
     /// Stretch of the tangential spring [m].
     pub slip: Vec3,
     rolling: RollingMemory,
-    /// Force of the normal damper at the last step [N].
-    damper: f64,
+    /// Normal at the last step; zero out of contact.
+    normal: Vec3,
+    /// Force of the normal damper on j at the last step [N].
+    damper: Vec3,
     /// Part of the overlap that gives no force [m], see [`ContactLaw::add_overlap_offset`](super::ContactLaw::add_overlap_offset).
     pub(super) overlap_offset: f64,
 }
@@ -134,7 +136,8 @@ impl Linear {
 
     /// Force of a pair; its memory advances with the call.
     ///
-    /// Out of contact the slip is forgotten. The damper never pulls: the normal force stays ≥ 0. Energies are those of
+    /// A contact that begins or ends in a step beside the moment acts for a part of that step only, see
+    /// [`Linear::elastic`]. Out of contact the slip is forgotten. The damper never pulls: the normal force stays ≥ 0. Energies are those of
     /// the step that led here, with the mean of the forces at its ends, as central differences book them.
     pub fn force(&self, motion: &PairMotion, memory: &mut ContactMemory) -> ContactForce {
         let n = motion.normal;
@@ -147,34 +150,34 @@ impl Linear {
             let across = motion.velocity + n * approach;
             let (_, slid) = self.slide(memory.slip, memory.slip + across * motion.dt, 0.0);
             let rolled = memory.rolling.stored();
-            (memory.slip, memory.rolling) = (Vec3::zeros(), RollingMemory::default());
+            (memory.slip, memory.normal, memory.rolling) = (Vec3::zeros(), Vec3::zeros(), RollingMemory::default());
             return ContactForce {
                 friction: slid + rolled,
-                damping: 0.5 * last * approach * motion.dt,
+                damping: -0.5 * last.dot(&motion.velocity) * motion.dt,
                 ..ContactForce::default()
             };
         }
-        let elastic = self.normal_stiffness * overlap;
+        let (elastic, compressed) = self.elastic(overlap, approach * motion.dt);
         let damper = (self.normal_damping * approach).max(-elastic);
         let normal_force = elastic + damper;
-        memory.damper = damper;
+        memory.damper = n * damper;
 
-        // The spring lives in the tangent plane of the moment; turned there it keeps its length.
-        let length = memory.slip.norm();
-        let flat = memory.slip - n * memory.slip.dot(&n);
-        let flat_length = flat.norm();
-        let before = if flat_length > 0.0 { flat * (length / flat_length) } else { Vec3::zeros() };
-        let trial = before + (motion.velocity + n * approach) * motion.dt;
+        // The spring is stretched in the tangent plane of the middle of the step: seen from there the forces at both ends
+        // of the step do the work that the stretch takes.
+        let before = turned_to(memory.slip, &n);
+        let last_normal = std::mem::replace(&mut memory.normal, n);
+        let middle = if last_normal.dot(&n) > 0.0 { (n + last_normal).normalize() } else { n };
+        let way = motion.velocity * motion.dt;
+        let trial = turned_to(turned_to(memory.slip, &middle) + way - middle * way.dot(&middle), &n);
         let (slip, slid) = self.slide(before, trial, self.friction * normal_force);
         memory.slip = slip;
 
         let mut force = ContactForce {
             on_second: n * normal_force - slip * self.tangential_stiffness,
             couple_on_second: Vec3::zeros(),
-            stored: 0.5 * self.normal_stiffness * overlap * overlap
-                + 0.5 * self.tangential_stiffness * slip.norm_squared(),
+            stored: compressed + 0.5 * self.tangential_stiffness * slip.norm_squared(),
             friction: slid,
-            damping: 0.5 * (last + damper) * approach * motion.dt,
+            damping: -0.5 * (last + memory.damper).dot(&motion.velocity) * motion.dt,
         };
         if self.rolling.arm > 0.0 {
             let rolled = self.rolling.couple(motion, normal_force, self.normal_stiffness, &mut memory.rolling);
@@ -185,6 +188,22 @@ impl Linear {
         force
     }
 
+    /// Force [N] and energy [J] of the normal spring at an overlap δ > 0 that changes by `way` w in a step [m].
+    ///
+    /// Central differences let the force of a moment act over the halves of the steps beside it. Where the pair was δ - |w| < 0 a step
+    /// ago, or will be after the next, it is in contact for the share δ/|w| of that step, and so is the force:
+    /// k δ (1 + δ/|w|)/2. The energy is what it has done in the step to here, or will do in the next one: F |w|/2. At a constant
+    /// rate the spring then closes and opens without gain or loss; with the full force each time costs or brings
+    /// k δ (|w| - δ)/2, which does not vanish in the sum where contacts last for few steps.
+    fn elastic(&self, overlap: f64, way: f64) -> (f64, f64) {
+        let (full, way) = (self.normal_stiffness * overlap, way.abs());
+        if way <= overlap {
+            return (full, 0.5 * full * overlap);
+        }
+        let force = 0.5 * full * (1.0 + overlap / way);
+        (force, 0.5 * force * way)
+    }
+
     /// Stretch of the tangential spring that a largest force [N] leaves of `trial`, and the energy that slipping took since the
     /// stretch was `before` [J].
     fn slide(&self, before: Vec3, trial: Vec3, limit: f64) -> (Vec3, f64) {
@@ -192,6 +211,13 @@ impl Linear {
         let mean_force = (before + after) * (0.5 * self.tangential_stiffness);
         (after, mean_force.dot(&(trial - after)).max(0.0))
     }
+}
+
+/// A stretch turned into the plane across a normal, where it keeps its length.
+fn turned_to(stretch: Vec3, normal: &Vec3) -> Vec3 {
+    let flat = stretch - normal * stretch.dot(normal);
+    let length = flat.norm();
+    if length > 0.0 { flat * (stretch.norm() / length) } else { Vec3::zeros() }
 }
 
 #[cfg(test)]

@@ -78,7 +78,8 @@ impl Particles {
     ///   looked at); those of this step afterwards
     /// - `partial`: scratch, [`Particles::block_count`] entries
     /// - returns what damping takes, and the kinetic energy at tⁿ as ½ Σ m vⁿ⁻½ · (vⁿ⁻½ + Δt aⁿ) and the same for the
-    ///   rotation: the product that the scheme conserves exactly in a linear body
+    ///   rotation: the product that the scheme conserves exactly in a linear body; as the step after sees it, it is
+    ///   ½ Σ m vⁿ⁺½ · (vⁿ⁺½ - Δt aⁿ), another one where the step changes
     pub fn kick_and_drift(&mut self, step: &TimeStep, before: &mut PastForces, partial: &mut [HalfSteps]) -> HalfSteps {
         let TimeStep { dt_before, dt_after, damping, measure } = *step;
         let dt_kick = 0.5 * (dt_before + dt_after);
@@ -118,6 +119,10 @@ impl Particles {
                     }
                     velocity[k] += force * (dt_kick / mass);
                     spin[k] += moment * (dt_kick / inertia);
+                    if !plain {
+                        work.after.kinetic += 0.5 * velocity[k].dot(&(velocity[k] * mass - force * dt_after));
+                        work.after.kinetic += 0.5 * spin[k].dot(&(spin[k] * inertia - moment * dt_after));
+                    }
                     position[k] += velocity[k] * dt_after;
                     orientation[k] = turned(&orientation[k], spin[k] * dt_after);
                 }

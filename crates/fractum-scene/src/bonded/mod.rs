@@ -396,6 +396,7 @@ impl Bonded {
             points.particles.kick_and_drift(&TimeStep { dt_before, dt_after, damping, measure }, past, partial);
         work += supports.impose(&mut points, time, dt_before, dt_after);
         work.before.kinetic -= counted_twice;
+        work.after.kinetic -= counted_twice;
         follow(points.particles);
         for fracture in bodies.iter_mut().filter_map(|body| body.fracture.as_mut()) {
             fracture.book_last_work(points.particles, dt_after);

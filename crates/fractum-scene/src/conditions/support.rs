@@ -231,6 +231,9 @@ impl Supports {
                 work.before.external += 0.5 * *reaction * before * dt_before;
                 work.after.external += 0.5 * *reaction * velocity * dt_after;
                 work.before.kinetic += 0.5 * total * before * dt_before;
+                // Of m v⁺ (v⁺ - Δt a), with the velocity and the acceleration that the kick gave, and as they are.
+                let kinetic = |v: f64| v * (v - dt_after * (v - before) / dt_kick);
+                work.after.kinetic += 0.5 * points.mass(i) * (kinetic(velocity) - kinetic(free));
             }
         }
         work

@@ -215,7 +215,9 @@ impl RigidBody {
                     let outside = self.applied(axis, time, gravity);
                     let change = (self.force[axis] + outside) / inertia.mass;
                     work.before.kinetic += 0.5 * inertia.mass * before * (before + dt_before * change);
-                    (before + dt_kick * change, outside)
+                    let after = before + dt_kick * change;
+                    work.after.kinetic += 0.5 * inertia.mass * after * (after - dt_after * change);
+                    (after, outside)
                 }
                 (Drive::Velocity(velocity), _) => (velocity(time + 0.5 * dt_after, &self.start), -self.force[axis]),
                 _ => (0.0, 0.0),
@@ -239,6 +241,8 @@ impl RigidBody {
             self.angular_momentum += self.moment * (0.5 * (dt_before + dt_after));
             let in_space = inertia_in_space(&inertia, &self.frame.rotation);
             self.frame.spin = in_space.try_inverse().map_or(before, |inverse| inverse * self.angular_momentum);
+            let after = self.frame.spin;
+            work.after.kinetic += 0.5 * after.dot(&(self.angular_momentum - self.moment * dt_after));
             return;
         }
         for axis in 0..3 {

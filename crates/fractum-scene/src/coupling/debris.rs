@@ -6,10 +6,10 @@ pub use pairs::Pair;
 
 use fractum_contact::law::{ContactParameters, ElasticMaterial, Linear};
 use fractum_fem::Solid;
-use fractum_math::Vec3;
+use fractum_math::{HalfSteps, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::holder::Holders;
+use super::holder::{Holder, Holders};
 use super::radius::largest_radii;
 
 /// No particle at this node.
@@ -58,6 +58,18 @@ pub struct DebrisState {
     searched_at: Vec<Vec3>,
     skin: f64,
     stale: bool,
+    /// Torques that elements got at the last step.
+    handed: Vec<Handed>,
+}
+
+/// A torque that an element got from a particle that it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Handed {
+    particle: u32,
+    /// As [`Holders`] numbers it.
+    element: u32,
+    /// [N m].
+    torque: Vec3,
 }
 
 impl Debris {
@@ -182,7 +194,7 @@ impl Debris {
     /// Angular velocity at a node: of its particle, or of an element that holds it [rad/s].
     pub(crate) fn turning_at(&self, solid: &Solid, node: u32) -> Vec3 {
         match self.particle_of[node as usize] {
-            NONE => self.holders.of(solid, node).map_or_else(Vec3::zeros, |holder| holder.spin(solid)),
+            NONE => self.holder_of(solid, node).map_or_else(Vec3::zeros, |holder| holder.spin(solid)),
             particle => self.turning[particle as usize],
         }
     }
@@ -191,7 +203,7 @@ impl Debris {
     pub(crate) fn add_torque_at(&mut self, solid: &mut Solid, node: u32, torque: Vec3) {
         if self.particle_of[node as usize] != NONE {
             self.add_torque(node, torque);
-        } else if let Some(holder) = self.holders.of(solid, node) {
+        } else if let Some(holder) = self.holder_of(solid, node) {
             holder.add_torque(solid, torque);
         }
     }
@@ -248,32 +260,50 @@ impl Debris {
         self.state.stale = true;
     }
 
-    fn update_turning(&mut self, solid: &Solid) {
-        for (particle, turning) in self.turning.iter_mut().enumerate() {
-            *turning = if self.state.attached[particle] {
-                let holder = self.holders.of(solid, self.state.nodes[particle]);
+    fn holder_of(&self, solid: &Solid, node: u32) -> Option<Holder> {
+        self.holders.of(solid, node, self.radius[node as usize])
+    }
+
+    /// Finds how the particles turn now. Contacts are about to book the torques of the step before with that; returns what those
+    /// torques did on the elements that got them beyond it, over `dt` [J].
+    ///
+    /// Both differ where a particle has come free or its element has gone: it keeps no spin of the element.
+    fn update_turning(&mut self, solid: &Solid, dt: f64) -> f64 {
+        for particle in 0..self.len() {
+            self.turning[particle] = if self.state.attached[particle] {
+                let holder = self.holder_of(solid, self.state.nodes[particle]);
                 holder.map_or_else(Vec3::zeros, |holder| holder.spin(solid))
             } else {
                 self.state.spin[particle]
             };
         }
+        let beyond = |handed: &Handed| {
+            let node = self.state.nodes[handed.particle as usize];
+            let holder = self.holders.element(solid, handed.element, self.radius[node as usize]);
+            let spin = holder.map_or_else(Vec3::zeros, |holder| holder.spin(solid));
+            0.5 * dt * handed.torque.dot(&(spin - self.turning[handed.particle as usize]))
+        };
+        self.state.handed.iter().map(beyond).sum()
     }
 
     /// Hands the torques of all contacts on attached particles to the elements that hold them.
-    pub(crate) fn pass_on_torques(&self, solid: &mut Solid) {
-        for (particle, &torque) in self.torque.iter().enumerate() {
+    pub(crate) fn pass_on_torques(&mut self, solid: &mut Solid) {
+        self.state.handed.clear();
+        for particle in 0..self.len() {
+            let torque = self.torque[particle];
             if self.state.attached[particle]
                 && torque != Vec3::zeros()
-                && let Some(holder) = self.holders.of(solid, self.state.nodes[particle])
+                && let Some(holder) = self.holder_of(solid, self.state.nodes[particle])
             {
                 holder.add_torque(solid, torque);
+                self.state.handed.push(Handed { particle: particle as u32, element: holder.number, torque });
             }
         }
     }
 
     /// Turns the free particles; returns their rotational energy at tⁿ, measured as that of the nodes [J].
-    pub(crate) fn turn(&mut self, solid: &Solid, dt_before: f64, dt_kick: f64) -> f64 {
-        let mut energy = 0.0;
+    pub(crate) fn turn(&mut self, solid: &Solid, dt_before: f64, dt_after: f64) -> HalfSteps {
+        let mut work = HalfSteps::default();
         for particle in 0..self.len() {
             if self.state.attached[particle] {
                 continue;
@@ -285,11 +315,12 @@ impl Debris {
                 (torque.x, torque.y) = (0.0, 0.0);
             }
             let before = self.state.spin[particle];
-            let after = before + torque * (dt_kick / inertia);
+            let after = before + torque * (0.5 * (dt_before + dt_after) / inertia);
             self.state.spin[particle] = after;
-            energy += 0.5 * before.dot(&(before * inertia + torque * dt_before));
+            work.before.kinetic += 0.5 * before.dot(&(before * inertia + torque * dt_before));
+            work.after.kinetic += 0.5 * after.dot(&(after * inertia - torque * dt_after));
         }
-        energy
+        work
     }
 
     /// Ends all turning.

@@ -19,6 +19,8 @@ pub(crate) struct Holders {
 
 /// Nodes of an element and the geometry of its rotation.
 pub(crate) struct Holder {
+    /// As [`Holders`] numbers it.
+    pub(crate) number: u32,
     nodes: [u32; 4],
     corners: usize,
     middle: Vec3,
@@ -49,21 +51,36 @@ impl Holders {
         self.elements_of_node.row(node as usize).iter().any(|&e| self.is_alive(solid, e))
     }
 
-    /// The first live element of a node; none where it has no volume left to turn with.
-    pub(crate) fn of(&self, solid: &Solid, node: u32) -> Option<Holder> {
-        let row = self.elements_of_node.row(node as usize);
-        let element = row.iter().copied().find(|&e| self.is_alive(solid, e))?;
-        let (body, element) = self.place(element);
+    /// The first live element of a node that has not collapsed, see [`Holders::element`].
+    ///
+    /// - `radius`: of the particle [m]
+    pub(crate) fn of(&self, solid: &Solid, node: u32, radius: f64) -> Option<Holder> {
+        let elements = self.elements_of_node.row(node as usize).iter();
+        elements.filter(|&&e| self.is_alive(solid, e)).find_map(|&e| self.element(solid, e, radius))
+    }
+
+    /// An element by its number, alive or not; none if its J is below the square of the radius about some axis: a
+    /// tangential force at the surface of the particle would then turn it faster than the stable step takes into account.
+    pub(crate) fn element(&self, solid: &Solid, number: u32, radius: f64) -> Option<Holder> {
+        let (body, element) = self.place(number);
         let corners = solid.body(body).shape.node_count();
         let nodes = solid.body(body).elements[element];
         let live = &nodes[..corners];
         let middle = live.iter().map(|&n| solid.position(n as usize)).sum::<Vec3>() / corners as f64;
+        let plane = corners == 3;
         let mut inertia = Mat3::zeros();
         for &n in live {
             let r = solid.position(n as usize) - middle;
             inertia += Mat3::identity() * r.norm_squared() - r * r.transpose();
         }
-        Some(Holder { nodes, corners, middle, inverse_inertia: inertia.try_inverse()? })
+        let inverse_inertia = if plane {
+            // Nothing turns but about z.
+            Mat3::from_diagonal(&Vec3::new(0.0, 0.0, 1.0 / inertia[(2, 2)]))
+        } else {
+            inertia.try_inverse()?
+        };
+        let turns = radius * radius * inverse_inertia.norm() <= if plane { 1.0 } else { 3f64.sqrt() };
+        turns.then_some(Holder { number, nodes, corners, middle, inverse_inertia })
     }
 
     fn place(&self, element: u32) -> (usize, usize) {

@@ -141,6 +141,7 @@ impl Scene {
         }
         self.books.external = self.ledger[EnergyKind::External];
         self.books.damping = self.ledger[EnergyKind::Damping] - self.solid.viscous_dissipation() + kinetic;
+        self.books.time_step = self.ledger[EnergyKind::TimeStep];
         self.ledger[EnergyKind::Damping] += kinetic;
         self.ledger[EnergyKind::Kinetic] = 0.0;
         Ok(true)

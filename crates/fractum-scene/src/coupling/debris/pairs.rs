@@ -122,7 +122,7 @@ impl Debris {
 
     /// Adds the contact forces of all pairs to the nodes.
     pub(crate) fn add_forces(&mut self, solid: &mut Solid, dt: f64) -> Work {
-        self.update_turning(solid);
+        let beyond = self.update_turning(solid, dt);
         let Debris { state, particle_of, radius, torque, turning, .. } = self;
         let DebrisState { pairs, .. } = state;
         torque.fill(Vec3::zeros());
@@ -146,7 +146,8 @@ impl Debris {
             });
         }
         // In the order of the pairs: contacts are few beside elements, and the sum has one order.
-        let mut work = Work::default();
+        // What torques do more than their contacts know is not left to friction.
+        let mut work = Work::contact(0.0, -beyond, 0.0);
         for pair in pairs.iter().filter(|p| p.stored > 0.0 || p.damping != 0.0 || p.friction != 0.0) {
             let [i, j] = pair.nodes.map(|n| n as usize);
             solid.force[i] -= pair.force;
