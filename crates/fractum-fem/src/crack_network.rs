@@ -10,6 +10,7 @@ use fractum_mesh::topology::{TETRAHEDRON_FACETS, TRIANGLE_SIDES};
 use serde::{Deserialize, Serialize};
 
 use crate::body::ElementKind;
+use crate::element::{measure_and_gradients, regular_edge};
 use crate::solid::Solid;
 
 const NONE: u32 = u32::MAX;
@@ -289,6 +290,29 @@ impl Solid {
         } else {
             (b - a).cross(&(c - a)) * 0.5
         }
+    }
+
+    /// Volume of an element at tⁿ [m³]; negative where it is turned inside out.
+    pub fn present_volume(&self, body: usize, element: u32) -> f64 {
+        let body = &self.bodies[body].body;
+        let places = body.elements[element as usize].map(|node| self.position(node as usize));
+        let thickness = if body.shape == ElementKind::T3 { body.thickness } else { 1.0 };
+        measure_and_gradients(body.shape, &places).0 * thickness
+    }
+
+    /// Characteristic length of an element: the mean over its edges that may be damaged, else the edge of the regular
+    /// element of its size [m].
+    pub fn characteristic_length(&self, body: usize, element: u32) -> f64 {
+        let model = &self.bodies[body];
+        let count = model.body.shape.edge_count();
+        let edges = model.edges.iter().flat_map(|edges| &edges.of_element[element as usize][..count]);
+        let lengths = edges.filter_map(|&edge| self.edge(body, edge)).map(|(field, index)| field.length[index]);
+        let (sum, number) = lengths.fold((0.0, 0.0), |(sum, number), length| (sum + length, number + 1.0));
+        if number > 0.0 {
+            return sum / number;
+        }
+        let nodes = model.body.elements[element as usize].map(|node| self.reference[node as usize]);
+        regular_edge(model.body.shape, measure_and_gradients(model.body.shape, &nodes).0)
     }
 }
 

@@ -158,7 +158,9 @@ impl Network {
     pub fn push_walls(&mut self, cell: usize, volume: f64, swept: f64) -> f64 {
         let Amount { mass, energy } = self.contents.cells[cell];
         let line = self.law().pressure_line(mass, volume);
-        let after = (energy - line.at_zero * swept) / (1.0 + line.slope * swept);
+        let divisor = 1.0 + line.slope * swept;
+        // Walls that come in by more than half of what is there are pushed by the pressure before.
+        let after = if divisor > 0.5 { (energy - line.at_zero * swept) / divisor } else { energy };
         let pressure = line.at(after);
         // Where the law would give a negative pressure there is none, and no work.
         self.do_work(cell, pressure * swept);

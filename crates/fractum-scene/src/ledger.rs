@@ -40,6 +40,12 @@ pub enum EnergyKind {
     /// What central differences keep less of the energy at a start out of balance and at changes of the time step,
     /// ⅛ (Δt₊² - Δt₋²) Σ F²/m: either sign.
     TimeStep,
+    /// Energy of the gas that was put in holes.
+    GasSupplied,
+    /// Internal energy of the gas in holes and cracks.
+    Gas,
+    /// Enthalpy of the gas that has leaked to the outside.
+    GasLeaked,
 }
 
 /// What an entry is to the energy balance.
@@ -100,6 +106,9 @@ impl EnergyKind {
         entry(EnergyKind::Absorbed, "absorbed", "Absorbed by boundaries", EnergyRole::Spent),
         entry(EnergyKind::Foundation, "foundation", "Elastic supports", EnergyRole::Stored),
         entry(EnergyKind::TimeStep, "time_step", "Changes of the time step", EnergyRole::Spent),
+        entry(EnergyKind::GasSupplied, "gas_supplied", "Gas put in", EnergyRole::Supplied),
+        entry(EnergyKind::Gas, "gas", "Gas", EnergyRole::Stored),
+        entry(EnergyKind::GasLeaked, "gas_leaked", "Gas leaked", EnergyRole::Spent),
     ];
 
     const fn entry(self) -> &'static Entry {

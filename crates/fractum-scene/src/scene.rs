@@ -1,13 +1,14 @@
-use fractum_fem::{CrackNetworkState, LocalDamping, Solid, SolidState, StableStep};
+use fractum_fem::{LocalDamping, Solid, SolidState, StableStep};
 use serde::{Deserialize, Serialize};
 
 use crate::bonded::{Bonded, BondedState};
 use crate::clock::{Clock, TimeStepSettings};
-use crate::conditions::{Loads, Supports, SurfaceSupports};
+use crate::conditions::{Loads, LoadsState, Supports, SurfaceSupports};
 use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
 use crate::fragment::{Fragment, joined, single_share, solid_pieces};
+use crate::gas::Gas;
 use crate::ledger::{Books, Ledger};
 
 /// How much faster than it is a wall contact counts in the stable step: the whole weight of a body may come on few of
@@ -89,7 +90,7 @@ pub struct SceneState {
     governing: (usize, u32),
     removed_since_check: usize,
     contact_frequency_square: f64,
-    cracks: Option<CrackNetworkState>,
+    loads: LoadsState,
 }
 
 /// What a probe counts.
@@ -251,7 +252,8 @@ impl Scene {
         let divisor = self.bonded.step_divisor();
         let frequency =
             self.frequencies.stable.frequency.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
-        let contacts = self.frequencies.contact_square + self.contacts.frequency_square() * divisor * divisor;
+        let gas = self.loads.gas().map_or(0.0, Gas::frequency_square);
+        let contacts = self.frequencies.contact_square + self.contacts.frequency_square() * divisor * divisor + gas;
         let contacts = contacts + self.surface_supports.frequency_square();
         // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
         let frequency = ((frequency * frequency + contacts) * (1.0 + self.settings.damping.local)).sqrt();
@@ -285,6 +287,11 @@ impl Scene {
     /// Supports, with the reactions of the last step.
     pub fn supports(&self) -> &Supports {
         &self.supports
+    }
+
+    /// Gas in holes and cracks.
+    pub fn gas(&self) -> Option<&Gas> {
+        self.loads.gas()
     }
 
     /// Energies at the last step that was measured.
@@ -372,7 +379,7 @@ impl Scene {
             governing: self.frequencies.stable.governing,
             removed_since_check: self.removals.since_check,
             contact_frequency_square: self.frequencies.contact_square,
-            cracks: self.loads.crack_state(),
+            loads: self.loads.state(),
         }
     }
 
@@ -396,8 +403,6 @@ impl Scene {
         self.frequencies.stable = StableStep { frequency: state.frequency, governing: state.governing };
         self.removals.since_check = state.removed_since_check;
         self.frequencies.contact_square = state.contact_frequency_square;
-        if let Some(cracks) = &state.cracks {
-            self.loads.restore_cracks(&self.solid, cracks);
-        }
+        self.loads.restore(&self.solid, state.loads);
     }
 }

@@ -77,6 +77,7 @@ impl Scene {
         self.ties.pass_on(&mut self.solid, &mut self.bonded.particles);
         passed(Phase::Contact);
         let load = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
+        self.loads.add_gas_forces(&mut self.solid, time, elapsed);
         let absorbed = self.add_surface_support_forces(first);
         let given = if first { self.start_half_a_step_early(dt_before) } else { 0.0 };
         let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
@@ -127,6 +128,7 @@ impl Scene {
         work += self.move_bonded(time, dt_before, dt_after, measure);
         work += self.contacts.move_bodies(time, dt_before, dt_after);
         work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
+        self.loads.spend_gas_work(&self.solid, dt_after);
         work.after += self.surface_supports.absorbed_after(&self.solid, dt_after);
         work
     }
@@ -264,6 +266,14 @@ impl Scene {
             // Less than this is no energy: bodies that wait for a rigid body move by what rounding leaves, and so does rock
             // under stress.
             ledger.scale = bonded.round_off_energy(self.clock.dt_after) + IN_SITU_ROUND_OFF * ledger.in_situ;
+        }
+        if let Some(gas) = self.loads.gas() {
+            let [held, supplied, leaked] = gas.energies();
+            ledger[EnergyKind::Gas] = held;
+            ledger[EnergyKind::GasSupplied] = supplied;
+            ledger[EnergyKind::GasLeaked] = leaked;
+            // What the gas has done is in play; what it holds may be much more.
+            ledger.scale = ledger.scale.max((supplied - held - leaked).abs());
         }
         // The first touch of a rigid body is found to a step only; it is measured by what a particle takes from it, not by the little
         // work done so far.

@@ -7,6 +7,7 @@ mod pressure;
 
 use fractum_fem::{CrackNetwork, CrackNetworkState, Solid};
 use fractum_math::{CHUNK, Vec3};
+use serde::{Deserialize, Serialize};
 
 pub use body_force::Gravity;
 pub use crack_pressure::CrackPressure;
@@ -14,6 +15,7 @@ pub use nodal::NodalForce;
 pub use pressure::Pressure;
 
 use super::{DrivenPoints, Points};
+use crate::gas::{Gas, GasState};
 
 /// A force from outside.
 #[derive(Clone, Debug)]
@@ -72,6 +74,15 @@ pub struct Loads {
     partial: Vec<Vec3>,
     /// Cracks that pressure enters.
     cracks: Option<CrackNetwork>,
+    /// Gas in holes of the solids and in their cracks.
+    gas: Option<Box<Gas>>,
+}
+
+/// What the loads have come to, for a checkpoint.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LoadsState {
+    cracks: Option<CrackNetworkState>,
+    gas: Option<GasState>,
 }
 
 impl Loads {
@@ -84,11 +95,25 @@ impl Loads {
             partial: vec![Vec3::zeros(); if weighs { count.div_ceil(CHUNK) } else { 0 }],
             loads,
             cracks: None,
+            gas: None,
         }
     }
 
-    /// Finds the cracks of a solid that are open to pressure, if any load enters them.
+    /// The same loads with gas in holes of the solids.
+    pub fn with_gas(self, gas: Option<Gas>) -> Self {
+        Loads { gas: gas.map(Box::new), ..self }
+    }
+
+    /// Gas in holes and cracks.
+    pub fn gas(&self) -> Option<&Gas> {
+        self.gas.as_deref()
+    }
+
+    /// Finds the cracks of a solid that are open to pressure and gas, if any load enters them.
     pub(crate) fn open_cracks(&mut self, solid: &Solid) {
+        if let Some(gas) = &mut self.gas {
+            gas.open(solid);
+        }
         let mouths = CrackPressure::mouths(self.loads.iter_mut().filter_map(|load| match load {
             Load::CrackPressure(load) => Some(load),
             _ => None,
@@ -101,22 +126,45 @@ impl Loads {
         self.cracks = Some(cracks);
     }
 
-    /// Lets pressure enter what the removal of elements has opened.
+    /// Lets pressure and gas enter what the removal of elements has opened.
     pub(crate) fn extend_cracks(&mut self, solid: &Solid, removed: &[(usize, u32)]) {
         if let Some(cracks) = &mut self.cracks {
             cracks.extend(solid, removed.iter().copied());
         }
+        if let Some(gas) = &mut self.gas {
+            gas.extend(solid, removed);
+        }
     }
 
-    /// The cracks that pressure has entered, for a checkpoint.
-    pub(crate) fn crack_state(&self) -> Option<CrackNetworkState> {
-        self.cracks.as_ref().map(CrackNetwork::state)
+    /// Brings the gas to tⁿ and adds its forces, see [`Gas::add_forces`].
+    pub(crate) fn add_gas_forces(&mut self, solid: &mut Solid, time: f64, elapsed: f64) {
+        if let Some(gas) = &mut self.gas {
+            gas.add_forces(solid, time, elapsed);
+        }
     }
 
-    /// Puts saved cracks back, once the solid has lost its elements again.
-    pub(crate) fn restore_cracks(&mut self, solid: &Solid, state: &CrackNetworkState) {
-        if let Some(cracks) = &mut self.cracks {
+    /// Takes the work of the gas in the half step after tⁿ out of it.
+    pub(crate) fn spend_gas_work(&mut self, solid: &Solid, dt_after: f64) {
+        if let Some(gas) = &mut self.gas {
+            gas.spend_work(solid, dt_after);
+        }
+    }
+
+    /// Everything that changes.
+    pub(crate) fn state(&self) -> LoadsState {
+        LoadsState {
+            cracks: self.cracks.as_ref().map(CrackNetwork::state),
+            gas: self.gas.as_ref().map(|gas| gas.state()),
+        }
+    }
+
+    /// Puts a saved state back, once the solid has lost its elements again.
+    pub(crate) fn restore(&mut self, solid: &Solid, state: LoadsState) {
+        if let (Some(cracks), Some(state)) = (&mut self.cracks, &state.cracks) {
             cracks.restore(solid, state);
+        }
+        if let (Some(gas), Some(state)) = (&mut self.gas, state.gas) {
+            gas.restore(solid, state);
         }
     }
 

@@ -1,0 +1,430 @@
+//! Gas in holes and in the cracks that open to them: one network of cells, coupled with the solids at every step.
+//!
+//! A cell is a hole or a removed element of the [`CrackNetwork`]. The pressure of tⁿ acts on the walls; the work of these
+//! forces, in the two half steps beside tⁿ as that of all forces, is what the cells lose, so that the balance of solids
+//! and gas closes as that of the solids does. Between two such half works the gas flows for the time of the step.
+
+mod cavity;
+
+use fractum_fem::{CrackCell, CrackNetwork, CrackNetworkState, CrackSide, Solid};
+use fractum_gas::{Amount, Contents, EquationOfState, Network, Passage, SlitFlow};
+use fractum_math::Vec3;
+use serde::{Deserialize, Serialize};
+
+use crate::conditions::TimeFunction;
+use cavity::{Cavity, enclosed_volume};
+
+/// Part of its energy that a cell passes on as a facet between it and another removed element moves, at most.
+const LARGEST_EXCHANGE: f64 = 0.2;
+/// Factor by which the frequency of the gas is raised when it has become too low, so that the step seldom changes.
+const RESERVE: f64 = 1.5;
+/// Walls of one cell and its neighbours that share a node, in the plane and in space.
+const WALLS_OF_NODE: [f64; 2] = [2.0, 6.0];
+
+/// What stays the same about the gas of a scene.
+#[derive(Clone)]
+pub struct GasSettings {
+    /// Law of the gas.
+    pub law: EquationOfState,
+    /// Viscosity, and roughness of the walls of cracks.
+    pub slits: SlitFlow,
+    /// Opening of a crack whose walls are where they were without load [m], > 0.
+    pub least_opening: f64,
+    /// Pressure where cracks reach the surface of the solids [Pa]; nothing flows in from there.
+    pub outside_pressure: f64,
+    /// Holes that gas is put in; no facet is in two of them.
+    pub holes: Vec<GasHole>,
+}
+
+/// A hole that gas is put in.
+#[derive(Clone)]
+pub struct GasHole {
+    /// Outward facets of the solids around it: a closed surface, in the plane a closed line.
+    pub facets: Vec<[u32; 3]>,
+    /// What it holds at the start.
+    pub charge: Charge,
+    /// What comes in over time.
+    pub source: Option<GasSource>,
+}
+
+/// What a hole holds at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Charge {
+    /// Mass and internal energy.
+    Amount(Amount),
+    /// Pressure [Pa] and temperature [K] in the hole without load.
+    State {
+        /// Pressure [Pa].
+        pressure: f64,
+        /// Temperature [K].
+        temperature: f64,
+    },
+}
+
+/// Gas that comes in over time.
+#[derive(Clone)]
+pub struct GasSource {
+    /// Mass [kg/s].
+    pub mass: TimeFunction,
+    /// Energy, that of the pressure included [W].
+    pub energy: TimeFunction,
+}
+
+/// A wall under pressure.
+#[derive(Clone, Copy, Debug)]
+struct Wall {
+    cell: u32,
+    nodes: [u32; 3],
+    /// Outward area vector of the element behind it at tⁿ [m²].
+    area: Vec3,
+}
+
+/// Gas in holes and cracks.
+#[derive(Clone)]
+pub struct Gas {
+    cracks: CrackNetwork,
+    network: Network,
+    holes: Vec<GasHole>,
+    least_opening: f64,
+    /// Room of each cell: holes first, then those of the cracks in their order.
+    cavities: Vec<Cavity>,
+    volumes: Vec<f64>,
+    passages: Vec<Passage>,
+    /// Facet of each passage, its normal pointing into the first cell.
+    facets: Vec<[u32; 3]>,
+    walls: Vec<Wall>,
+    /// Volume that the walls of each cell sweep per time, outwards [m³/s].
+    swept: Vec<f64>,
+    /// Area of the walls of each cell [m²].
+    wall_area: Vec<f64>,
+    /// Energy in all cells at tⁿ [J].
+    energy: f64,
+    frequency_square: f64,
+}
+
+/// What changes during a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct GasState {
+    cracks: CrackNetworkState,
+    contents: Contents,
+    push: Vec<f64>,
+    energy: f64,
+    frequency_square: f64,
+}
+
+/// A cell of gas as results show it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GasCell {
+    /// Body and element of a crack; none for a hole.
+    pub element: Option<(usize, u32)>,
+    /// Pressure [Pa].
+    pub pressure: f64,
+    /// Temperature [K].
+    pub temperature: f64,
+    /// Mean distance of the walls [m]; unlimited in a hole.
+    pub opening: f64,
+    /// Room for gas [m³].
+    pub volume: f64,
+    /// Mass and internal energy.
+    pub amount: Amount,
+}
+
+impl Gas {
+    /// Gas in the holes of a solid without displacement, before its cracks are found.
+    pub fn new(solid: &Solid, settings: GasSettings) -> Self {
+        let GasSettings { law, slits, least_opening, outside_pressure, holes } = settings;
+        let mut network = Network::new(law, slits, outside_pressure);
+        let mut cavities = Vec::new();
+        for hole in &holes {
+            let volume = enclosed_volume(solid, &hole.facets, |node| solid.reference[node as usize]);
+            let amount = match hole.charge {
+                Charge::Amount(amount) => amount,
+                Charge::State { pressure, temperature } => {
+                    let (mass, energy) = law.law().contents(volume, pressure, temperature).unwrap_or_default();
+                    Amount { mass, energy }
+                }
+            };
+            network.push_cell(amount);
+            cavities.push(Cavity::hole(volume));
+        }
+        Gas {
+            cracks: CrackNetwork::new(solid, holes.iter().map(|hole| hole.facets.clone()).collect()),
+            network,
+            holes,
+            least_opening,
+            volumes: Vec::new(),
+            passages: Vec::new(),
+            facets: Vec::new(),
+            walls: Vec::new(),
+            swept: Vec::new(),
+            wall_area: Vec::new(),
+            energy: 0.0,
+            frequency_square: 0.0,
+            cavities,
+        }
+    }
+
+    /// Volume of a hole without load [m³]; not positive where its facets are turned inside out or flat.
+    pub fn hole_volume(solid: &Solid, facets: &[[u32; 3]]) -> f64 {
+        enclosed_volume(solid, facets, |node| solid.reference[node as usize])
+    }
+
+    /// Lets the gas find what is open already, before its first step.
+    pub(crate) fn open(&mut self, solid: &Solid) {
+        self.cracks.extend_by_all(solid);
+        self.add_cells(solid);
+        self.update_rooms(solid);
+        self.find_walls(solid);
+        for cell in 0..self.cavities.len() {
+            self.cavities[cell].push = self.network.pressure(cell, self.volumes[cell]) * self.cavities[cell].share;
+        }
+        self.update_frequency(solid);
+    }
+
+    /// Lets gas enter what the removal of elements has opened.
+    pub(crate) fn extend(&mut self, solid: &Solid, removed: &[(usize, u32)]) {
+        self.cracks.extend(solid, removed.iter().copied());
+        self.add_cells(solid);
+    }
+
+    /// Cells and passages of the cracks that the network has reached since.
+    fn add_cells(&mut self, solid: &Solid) {
+        let holes = self.holes.len();
+        for number in self.cavities.len() - holes..self.cracks.cells().len() {
+            let cell = self.cracks.cells()[number].clone();
+            let (body, element) = (cell.body as usize, cell.element);
+            let volume = solid.element_volume(body, element);
+            let length = solid.characteristic_length(body, element);
+            self.cavities.push(Cavity::crack(volume, length, self.least_opening));
+            self.network.push_cell(Amount::default());
+            for (side, nodes) in cell.sides.iter().zip(&cell.nodes) {
+                let beyond = match side {
+                    CrackSide::Mouth(mouth) => *mouth,
+                    // The later one of two cells makes their passage.
+                    CrackSide::Cell(other) if (*other as usize) < number => holes as u32 + other,
+                    CrackSide::Outside => Passage::OUTSIDE,
+                    _ => continue,
+                };
+                let passage = self.passage(solid, number, *side, nodes);
+                self.passages.push(Passage { cells: [(holes + number) as u32, beyond], ..passage });
+                self.facets.push(*nodes);
+            }
+        }
+    }
+
+    /// Length and width of the passage through a side of a crack cell.
+    fn passage(&self, solid: &Solid, number: usize, side: CrackSide, nodes: &[u32; 3]) -> Passage {
+        let middle = |cell: &CrackCell| solid.element_middle(cell.body as usize, cell.element);
+        let cells = self.cracks.cells();
+        let own = middle(&cells[number]);
+        let [a, b, c] = nodes.map(|node| solid.reference[node as usize]);
+        let plane = nodes[1] == nodes[2];
+        let centre = if plane { (a + b) * 0.5 } else { (a + b + c) / 3.0 };
+        let other = if let CrackSide::Cell(other) = side { middle(&cells[other as usize]) } else { centre };
+        let area = solid.facet_area(nodes, |node| solid.reference[node as usize]).norm();
+        // The crack cuts an edge of the plane in a point, a triangle in a line of about the root of its area.
+        let width = if plane { area / (b - a).norm() } else { area.sqrt() };
+        Passage { cells: [0; 2], length: (other - own).norm(), width, opening: 0.0 }
+    }
+
+    /// Room of every cell and opening of every passage, as the nodes lie.
+    fn update_rooms(&mut self, solid: &Solid) {
+        let Gas { cracks, holes, cavities, volumes, passages, .. } = self;
+        let (of_holes, of_cracks) = cavities.split_at_mut(holes.len());
+        for (cavity, hole) in of_holes.iter_mut().zip(&*holes) {
+            cavity.enclose(enclosed_volume(solid, &hole.facets, |node| solid.position(node as usize)));
+        }
+        for (cavity, cell) in of_cracks.iter_mut().zip(cracks.cells()) {
+            cavity.enclose(solid.present_volume(cell.body as usize, cell.element));
+        }
+        volumes.clear();
+        volumes.extend(cavities.iter().map(|cavity| cavity.volume));
+        for passage in passages {
+            let [one, other] = passage.cells.map(|cell| cavities.get(cell as usize).map(Cavity::opening));
+            let (one, other) = (one.unwrap_or(f64::INFINITY), other.unwrap_or(f64::INFINITY));
+            // Two halves one behind the other: as tight as the tighter one makes them.
+            passage.opening = if other.is_finite() { 2.0 * one * other / (one + other) } else { one };
+        }
+    }
+
+    /// Walls with their present areas: of the holes, then of the cracks.
+    fn find_walls(&mut self, solid: &Solid) {
+        let Gas { cracks, holes, walls, wall_area, cavities, .. } = self;
+        walls.clear();
+        wall_area.clear();
+        wall_area.resize(cavities.len(), 0.0);
+        let mut add = |cell: usize, nodes: &[u32; 3]| {
+            let area = solid.facet_area(nodes, |node| solid.position(node as usize));
+            wall_area[cell] += area.norm();
+            walls.push(Wall { cell: cell as u32, nodes: *nodes, area });
+        };
+        for (hole, mouth) in cracks.mouths().iter().enumerate() {
+            let live = mouth.facets.iter().zip(&mouth.live).filter(|(_, live)| **live);
+            live.for_each(|(nodes, _)| add(hole, nodes));
+        }
+        for (number, cell) in cracks.cells().iter().enumerate() {
+            cell.walls().for_each(|nodes| add(holes.len() + number, nodes));
+        }
+    }
+
+    /// Volume that the walls of each cell sweep per time at the present velocities.
+    fn find_swept(&mut self, solid: &Solid) {
+        let Gas { walls, swept, cavities, .. } = self;
+        swept.clear();
+        swept.resize(cavities.len(), 0.0);
+        for wall in walls {
+            swept[wall.cell as usize] -= wall.area.dot(&mean_velocity(solid, &wall.nodes));
+        }
+    }
+
+    /// Brings the gas to tⁿ and adds its forces to the nodes.
+    ///
+    /// - `elapsed`: time since the forces were last computed [s]
+    pub(crate) fn add_forces(&mut self, solid: &mut Solid, time: f64, elapsed: f64) {
+        for (cell, hole) in self.holes.iter().enumerate() {
+            if let Some(source) = &hole.source {
+                let rate = |of: &TimeFunction| of(time - 0.5 * elapsed, &Vec3::zeros()) * elapsed;
+                self.network.supply(cell, Amount { mass: rate(&source.mass), energy: rate(&source.energy) });
+            }
+        }
+        self.exchange_across_facets(solid, elapsed);
+        self.update_rooms(solid);
+        self.network.flow(elapsed, &self.volumes, &self.passages);
+        self.find_walls(solid);
+        self.find_swept(solid);
+        for (cell, cavity) in self.cavities.iter_mut().enumerate() {
+            let swept = 0.5 * elapsed * cavity.share * self.swept[cell];
+            cavity.push = cavity.share * self.network.push_walls(cell, cavity.volume, swept);
+        }
+        self.energy = self.network.total().energy;
+        self.update_frequency(solid);
+        for wall in &self.walls {
+            let force = wall.area * -self.cavities[wall.cell as usize].push;
+            let corners = if wall.nodes[1] == wall.nodes[2] { 2 } else { 3 };
+            for &node in &wall.nodes[..corners] {
+                solid.force[node as usize] += force / corners as f64;
+            }
+        }
+    }
+
+    /// Takes the work of the forces of tⁿ in the half step after it out of the gas.
+    pub(crate) fn spend_work(&mut self, solid: &Solid, dt_after: f64) {
+        self.find_swept(solid);
+        for (cell, cavity) in self.cavities.iter().enumerate() {
+            self.network.do_work(cell, 0.5 * dt_after * cavity.push * self.swept[cell]);
+        }
+    }
+
+    /// A facet between two removed elements moves with its nodes: what one of them loses in volume the other one gains, and
+    /// the gas on one side does work on that on the other.
+    fn exchange_across_facets(&mut self, solid: &Solid, elapsed: f64) {
+        for (passage, nodes) in self.passages.iter().zip(&self.facets) {
+            let [own, other] = passage.cells.map(|cell| cell as usize);
+            let Some(beyond) = self.cavities.get(other) else { continue };
+            let push = self.cavities[own].push.min(beyond.push);
+            if push <= 0.0 {
+                continue;
+            }
+            let middle = |node: u32| solid.position(node as usize) - solid.velocity[node as usize] * (0.5 * elapsed);
+            let area = solid.facet_area(nodes, middle);
+            let work = push * area.dot(&mean_velocity(solid, nodes)) * elapsed;
+            let energy = |cell: usize| LARGEST_EXCHANGE * self.network.contents().cells[cell].energy.max(0.0);
+            let work = work.clamp(-energy(own), energy(other));
+            self.network.do_work(own, -work);
+            self.network.do_work(other, work);
+        }
+    }
+
+    /// Bound of the frequency that the gas as a spring gives the nodes of its walls: the sums over rows of M⁻¹K.
+    fn update_frequency(&mut self, solid: &Solid) {
+        let mut largest: f64 = 0.0;
+        for wall in &self.walls {
+            let cell = wall.cell as usize;
+            let cavity = &self.cavities[cell];
+            let stiffness = self.network.modulus(cell, cavity.volume) * cavity.share * cavity.share / cavity.volume
+                * self.wall_area[cell];
+            let plane = wall.nodes[1] == wall.nodes[2];
+            let (corners, walls) = if plane { (2.0, WALLS_OF_NODE[0]) } else { (3.0, WALLS_OF_NODE[1]) };
+            let mass = wall.nodes.iter().map(|&node| solid.mass[node as usize]).fold(f64::INFINITY, f64::min);
+            largest = largest.max(walls * stiffness * wall.area.norm() / (corners * mass));
+        }
+        if largest > self.frequency_square {
+            self.frequency_square = RESERVE * largest;
+        }
+    }
+
+    /// Square of the frequency that the gas adds to that of the solids [1/s²].
+    pub(crate) fn frequency_square(&self) -> f64 {
+        self.frequency_square
+    }
+
+    /// Internal energy at tⁿ, what was supplied and what has leaked so far [J].
+    pub(crate) fn energies(&self) -> [f64; 3] {
+        let contents = self.network.contents();
+        [self.energy, contents.supplied.energy, contents.leaked.energy]
+    }
+
+    /// The cells: holes first, then those of the cracks in the order in which they were reached.
+    pub fn cells(&self) -> impl Iterator<Item = GasCell> {
+        let holes = self.holes.len();
+        self.cavities.iter().enumerate().map(move |(index, cavity)| {
+            let of = index.checked_sub(holes).map(|number| &self.cracks.cells()[number]);
+            GasCell {
+                element: of.map(|cell| (cell.body as usize, cell.element)),
+                // After a step half of its work is already out of the gas: the pressure of tⁿ is that on the walls.
+                pressure: cavity.push / cavity.share,
+                temperature: self.network.temperature(index, cavity.volume),
+                opening: cavity.opening(),
+                volume: cavity.volume,
+                amount: self.network.contents().cells[index],
+            }
+        })
+    }
+
+    /// Number of holes.
+    pub fn hole_count(&self) -> usize {
+        self.holes.len()
+    }
+
+    /// What has leaked to the outside so far, with its enthalpy.
+    pub fn leaked(&self) -> Amount {
+        self.network.contents().leaked
+    }
+
+    /// Area of the walls of a hole and of the cracks that were reached from it, without load [m²].
+    pub fn wetted_area(&self, solid: &Solid, hole: usize) -> f64 {
+        self.cracks.wetted_area(solid, hole)
+    }
+
+    pub(crate) fn state(&self) -> GasState {
+        GasState {
+            cracks: self.cracks.state(),
+            contents: self.network.contents().clone(),
+            push: self.cavities.iter().map(|cavity| cavity.push).collect(),
+            energy: self.energy,
+            frequency_square: self.frequency_square,
+        }
+    }
+
+    /// Puts a saved state back, once the solid has lost its elements again.
+    pub(crate) fn restore(&mut self, solid: &Solid, state: GasState) {
+        self.cracks.restore(solid, &state.cracks);
+        self.add_cells(solid);
+        self.update_rooms(solid);
+        self.network.restore(state.contents);
+        self.cavities.iter_mut().zip(state.push).for_each(|(cavity, push)| cavity.push = push);
+        self.energy = state.energy;
+        self.frequency_square = state.frequency_square;
+    }
+}
+
+impl std::fmt::Debug for Gas {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Gas({} holes, {} cells in cracks)", self.holes.len(), self.cracks.cells().len())
+    }
+}
+
+fn mean_velocity(solid: &Solid, nodes: &[u32; 3]) -> Vec3 {
+    let [a, b, c] = nodes.map(|node| solid.velocity[node as usize]);
+    if nodes[1] == nodes[2] { (a + b) * 0.5 } else { (a + b + c) / 3.0 }
+}

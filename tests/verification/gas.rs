@@ -1,0 +1,177 @@
+//! Gas in a hole that breaks the solid around it and follows its cracks: balance of solid and gas, adiabatic expansion,
+//! what is saved, threads.
+
+use fractum_fem::{Body, Criterion, DamageLaw, ElementKind, LocalDamping, Plane, Softening, Solid};
+use fractum_gas::{EquationOfState, PerfectGas, SlitFlow};
+use fractum_math::Vec3;
+use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
+use fractum_mesh::topology::{boundary_of_tetrahedra, boundary_of_triangles};
+use fractum_scene::coupling::Debris;
+use fractum_scene::{
+    Charge, ContactParameters, EnergyKind, Gas, GasHole, GasSettings, Loads, Scene, SceneSettings, Supports,
+    TimeStepSettings,
+};
+use fractum_tests::CONCRETE;
+
+const SIZE: f64 = 0.3;
+const HEAT_RATIO: f64 = 1.3;
+
+/// A plate, or a cube, with a hole of a tenth of its size in the middle.
+fn holed(cells: u32, plane: bool, damage: bool) -> Solid {
+    let jitter = Some(Jitter { fraction: 0.1, seed: 3 });
+    let (nodes, elements, kind) = if plane {
+        let mesh = structured_rectangle([cells, cells], [SIZE, SIZE], jitter);
+        (mesh.nodes, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect(), ElementKind::T3)
+    } else {
+        let mesh = structured_box([cells; 3], Vec3::repeat(SIZE), jitter);
+        (mesh.nodes, mesh.tetrahedra, ElementKind::T4)
+    };
+    let centre = |e: &[u32; 4]| {
+        e[..kind.node_count()].iter().map(|&n| nodes[n as usize]).sum::<Vec3>() / kind.node_count() as f64
+    };
+    let far = |e: &[u32; 4]| {
+        let away = (centre(e) - Vec3::repeat(0.5 * SIZE)).abs();
+        away.x.max(away.y).max(if plane { 0.0 } else { away.z }) > 0.05 * SIZE
+    };
+    let elements: Vec<[u32; 4]> = elements.into_iter().filter(|e: &[u32; 4]| far(e)).collect();
+    let mut new = vec![u32::MAX; nodes.len()];
+    elements.iter().flatten().for_each(|&n| new[n as usize] = 0);
+    let kept: Vec<usize> = (0..nodes.len()).filter(|&n| new[n] == 0).collect();
+    (0..).zip(&kept).for_each(|(number, &n)| new[n] = number);
+    let elements = elements.into_iter().map(|e| e.map(|n| new[n as usize])).collect();
+    let law = DamageLaw {
+        criterion: Criterion::rankine(),
+        tensile_strength: 3e6,
+        fracture_energy: 10.0,
+        softening: Softening::Exponential,
+        residual: 0.02,
+        unilateral: false,
+        rate_time: 0.0,
+    };
+    let body =
+        Body { plane: Plane::Strain, thickness: 0.02, ..Body::new("block", kind, elements, CONCRETE).smoothed() };
+    let body = if damage { body.with_damage(law) } else { body };
+    Solid::new(kept.into_iter().map(|n| nodes[n]).collect(), vec![body]).unwrap()
+}
+
+/// Facets of the hole.
+fn hole(solid: &Solid) -> Vec<[u32; 3]> {
+    let elements = &solid.body(0).elements;
+    let facets: Vec<[u32; 3]> = if solid.is_plane() {
+        let triangles: Vec<[u32; 3]> = elements.iter().map(|e| [e[0], e[1], e[2]]).collect();
+        boundary_of_triangles(&triangles).iter().map(|e| [e.nodes[0], e.nodes[1], e.nodes[1]]).collect()
+    } else {
+        boundary_of_tetrahedra(elements).iter().map(|facet| facet.nodes).collect()
+    };
+    let inside = |&n: &u32| {
+        let p = &solid.reference[n as usize];
+        p.iter().take(if solid.is_plane() { 2 } else { 3 }).all(|c| *c > 0.01 * SIZE && *c < 0.99 * SIZE)
+    };
+    facets.into_iter().filter(|facet| facet.iter().all(inside)).collect()
+}
+
+fn blast(solid: Solid, pressure: f64, end: f64) -> Scene {
+    let gas = GasSettings {
+        law: EquationOfState::PerfectGas(PerfectGas { heat_ratio: HEAT_RATIO, gas_constant: 300.0 }),
+        slits: SlitFlow { viscosity: 5e-5, roughness: 1e-5 },
+        least_opening: 1e-5,
+        outside_pressure: 1e5,
+        holes: vec![GasHole {
+            facets: hole(&solid),
+            charge: Charge::State { pressure, temperature: 2500.0 },
+            source: None,
+        }],
+    };
+    let loads = Loads::new(Vec::new(), solid.reference.len()).with_gas(Some(Gas::new(&solid, gas)));
+    let debris = Debris::new(&solid, vec![ContactParameters { friction: 0.5, ..ContactParameters::default() }]);
+    let supports = Supports::new(Vec::new(), &solid.reference).unwrap();
+    let settings = SceneSettings {
+        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end },
+        damping: LocalDamping::default(),
+        stiffness_time: 0.0,
+        balance_stop: f64::INFINITY,
+        joined_below: 0.95,
+    };
+    Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
+}
+
+#[test]
+fn gas_breaks_the_solid_follows_its_cracks_and_the_balance_closes() {
+    for (cells, plane) in [(40, true), (10, false)] {
+        let mut scene = blast(holed(cells, plane, true), 12e6, 150e-6);
+        while !scene.is_finished() {
+            scene.step(true).unwrap();
+        }
+        let ledger = *scene.ledger();
+        let gas = scene.gas().unwrap();
+        let work = ledger[EnergyKind::GasSupplied] - ledger[EnergyKind::Gas] - ledger[EnergyKind::GasLeaked];
+        let filled = gas.cells().filter(|cell| cell.element.is_some() && cell.pressure > 1e5).count();
+        println!(
+            "{cells}: removed {}, cells {filled}, work {work:.3} J of {:.3} J, leaked {:.3} J, residual {:.2e}",
+            scene.counts().removed_elements,
+            ledger[EnergyKind::GasSupplied],
+            ledger[EnergyKind::GasLeaked],
+            ledger.residual_max_relative
+        );
+        assert!(filled > 10 && work > 0.0);
+        assert!(ledger.residual_max_relative < 5e-3);
+        assert_eq!(ledger[EnergyKind::External], 0.0);
+        assert!(gas.cells().all(|cell| cell.amount.mass >= 0.0 && cell.amount.energy >= 0.0));
+    }
+}
+
+#[test]
+fn gas_in_a_hole_that_does_not_break_keeps_its_adiabatic_invariant() {
+    for (cells, plane) in [(20, true), (10, false)] {
+        let mut scene = blast(holed(cells, plane, false), 200e6, 200e-6);
+        let invariant = |scene: &Scene| {
+            let hole = scene.gas().unwrap().cells().next().unwrap();
+            hole.pressure * hole.volume.powf(HEAT_RATIO)
+        };
+        scene.step(true).unwrap();
+        let volume = |scene: &Scene| scene.gas().unwrap().cells().next().unwrap().volume;
+        let (start, rest) = (invariant(&scene), volume(&scene));
+        let mut largest: f64 = 0.0;
+        while !scene.is_finished() {
+            scene.step(true).unwrap();
+            largest = largest.max(volume(&scene) / rest - 1.0);
+        }
+        let error = invariant(&scene) / start - 1.0;
+        println!(
+            "{cells}: volume up to {largest:.2e} more, invariant {error:.2e}, residual {:.2e}",
+            scene.ledger().residual_max_relative
+        );
+
+        assert!(largest > 5e-3 && error.abs() < 1e-4);
+        assert!(scene.ledger().residual_max_relative < 1e-6);
+    }
+}
+
+#[test]
+fn a_run_with_gas_goes_on_from_a_saved_state_with_the_same_bits_on_any_number_of_threads() {
+    let end = 80e-6;
+    let build = || blast(holed(30, true, true), 12e6, end);
+    let run = |mut scene: Scene| {
+        let mut saved = None;
+        while !scene.is_finished() {
+            scene.step(false).unwrap();
+            if scene.clock.time > 0.5 * end && saved.is_none() {
+                assert!(scene.gas().unwrap().cells().count() > 1);
+                saved = Some(scene.state());
+            }
+        }
+        (scene.state(), saved.unwrap())
+    };
+    let states = [1, 2, 7].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| run(build()))
+    });
+    assert!(states.iter().all(|state| *state == states[0]));
+    let mut resumed = build();
+    resumed.restore(states[0].1.clone());
+    assert!(resumed.state() == states[0].1);
+    while !resumed.is_finished() {
+        resumed.step(false).unwrap();
+    }
+    assert!(resumed.state() == states[0].0);
+}
