@@ -285,7 +285,7 @@ impl Scene {
             return Err(StepError::NotFinite { step, time, dt, limit, culprit: self.culprit() });
         }
         // An unstable run keeps the discrete balance while it blows up: its energies grow with opposite signs.
-        let ratio = self.ledger[EnergyKind::Elastic] / self.ledger.scale;
+        let ratio = (self.ledger[EnergyKind::Elastic] - self.ledger.in_situ) / self.ledger.scale;
         if ratio > UNSTABLE_RATIO {
             return Err(StepError::Unstable { step, time, ratio, dt, limit, culprit: self.culprit() });
         }

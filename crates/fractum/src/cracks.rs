@@ -107,7 +107,7 @@ pub fn write_facets(path: &Path, solid: &Solid, crack: &CrackSurface) -> Result<
     nodes.sort_unstable();
     nodes.dedup();
     let points: Vec<[f64; 3]> = nodes.iter().map(|&n| solid.reference[n as usize].into()).collect();
-    let displacement: Vec<[f64; 3]> = nodes.iter().map(|&n| solid.displacement[n as usize].into()).collect();
+    let displacement: Vec<[f64; 3]> = nodes.iter().map(|&n| solid.displacement_from_start(n as usize).into()).collect();
     let place = |node: u32| nodes.binary_search(&node).map_or(0, |place| place as u32);
     let triangles: Vec<[u32; 3]> = crack.facets.iter().map(|facet| facet.nodes.map(place)).collect();
     let lines: Vec<[u32; 2]> = triangles.iter().map(|&[a, b, _]| [a, b]).collect();

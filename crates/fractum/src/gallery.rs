@@ -36,14 +36,16 @@ pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
     let all: Vec<Vec3> = solid.reference.iter().chain(bonded.reference()).copied().collect();
     let size = extent(&all).norm();
     let attached = scene.attached_nodes();
-    let largest =
-        (0..attached.len()).filter(|&n| attached[n]).map(|n| solid.displacement[n].norm()).fold(0.0, f64::max);
+    let largest = (0..attached.len())
+        .filter(|&n| attached[n])
+        .map(|n| solid.displacement_from_start(n).norm())
+        .fold(0.0, f64::max);
     let moved: Vec<Vec3> =
         bonded.particles.position.iter().zip(bonded.reference()).map(|(x, start)| x - start).collect();
     let largest = moved.iter().map(|u| u.norm()).fold(largest, f64::max);
     // Small displacements are magnified, large ones shown as they are.
     let scale = if largest > 0.0 { (SHOWN_DISPLACEMENT * size / largest).max(1.0) } else { 1.0 };
-    let shown = |n: usize| -> [f64; 3] { (solid.reference[n] + solid.displacement[n] * scale).into() };
+    let shown = |n: usize| -> [f64; 3] { (solid.reference[n] + solid.displacement_from_start(n) * scale).into() };
     let skin = skin(scene, &shown);
     let debris = scene.debris.state();
     let centres: Vec<[f64; 3]> = debris.nodes.iter().map(|&n| shown(n as usize)).collect();

@@ -294,7 +294,7 @@ impl Recorder {
         let nodal =
             |of: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { order.iter().map(|&n| of(n as usize)).collect() };
         let points = nodal(&|n| solid.reference[n].into());
-        let displacement = nodal(&|n| solid.displacement[n].into());
+        let displacement = nodal(&|n| solid.displacement_from_start(n).into());
         let velocity: Vec<[f32; 3]> =
             order.iter().map(|&n| solid.velocity[n as usize].map(|v| v as f32).into()).collect();
         let held: Vec<u8> = order.iter().map(|&n| u8::from(attached[n as usize])).collect();

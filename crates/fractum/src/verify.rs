@@ -65,7 +65,7 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
     for path in cases {
         let name = name_of(&path);
         let case = read_case(&path, &[])?;
-        if case.expect.is_empty() || selection.quick && !case.verify_quick {
+        if case.expect.is_empty() || selection.quick && !case.source.verify_quick {
             continue;
         }
         let options = Options {

@@ -104,7 +104,12 @@ impl Context<'_> {
     }
 
     /// Outward facets that are meant; an error if there are none on the surface.
-    fn selected_facets(&mut self, on: &Selection, numbering: &Numbering, surface: &Surface) -> Vec<[u32; 3]> {
+    pub(super) fn selected_facets(
+        &mut self,
+        on: &Selection,
+        numbering: &Numbering,
+        surface: &Surface,
+    ) -> Vec<[u32; 3]> {
         let facets = self.facets(on, numbering, surface);
         if let (true, Some(place)) = (facets.is_empty(), on.place()) {
             let found = on.group.as_ref().map_or_else(|| "holds for no facet".into(), |g| format!("= \"{}\"", g.value));
@@ -169,7 +174,7 @@ pub(super) enum LoadedPoints<'a> {
 
 /// The surface of the solids, searchable by the nodes of a facet.
 pub(super) struct Surface<'a> {
-    facets: &'a [[u32; 3]],
+    pub(super) facets: &'a [[u32; 3]],
     by_nodes: HashMap<[u32; 3], [u32; 3]>,
     /// Thickness of plane bodies [m], 0 in space.
     thickness: f64,
@@ -184,8 +189,29 @@ impl<'a> Surface<'a> {
         Surface { facets: boundary, by_nodes, thickness, positions }
     }
 
+    /// Outward normal of a facet without load, as long as its area [m²].
+    pub(super) fn area_vector(&self, facet: &[u32; 3]) -> Vec3 {
+        let [a, b, c] = facet.map(|n| self.positions[n as usize]);
+        if self.thickness > 0.0 {
+            Vec3::new(b.y - a.y, a.x - b.x, 0.0) * self.thickness
+        } else {
+            (b - a).cross(&(c - a)) * 0.5
+        }
+    }
+
+    /// Middle of a facet without load [m].
+    pub(super) fn middle(&self, facet: &[u32; 3]) -> Vec3 {
+        let corners = self.corners(facet);
+        corners.iter().map(|&n| self.positions[n as usize]).sum::<Vec3>() / corners.len() as f64
+    }
+
+    /// Nodes of a facet, each once.
+    pub(super) fn corners<'f>(&self, facet: &'f [u32; 3]) -> &'f [u32] {
+        &facet[..if self.thickness > 0.0 { 2 } else { 3 }]
+    }
+
     /// The facet with these nodes, oriented outwards.
-    fn outward(&self, nodes: [u32; 3]) -> Option<[u32; 3]> {
+    pub(super) fn outward(&self, nodes: [u32; 3]) -> Option<[u32; 3]> {
         self.by_nodes.get(&sorted(nodes)).copied()
     }
 
@@ -193,14 +219,9 @@ impl<'a> Surface<'a> {
     fn areas(&self, facets: &[[u32; 3]]) -> Vec<(u32, f64)> {
         let mut shares: Vec<(u32, f64)> = Vec::new();
         for facet in facets {
-            let [a, b, c] = facet.map(|n| self.positions[n as usize]);
-            if self.thickness > 0.0 {
-                let half = 0.5 * (b - a).norm() * self.thickness;
-                shares.extend([(facet[0], half), (facet[1], half)]);
-            } else {
-                let third = (b - a).cross(&(c - a)).norm() / 6.0;
-                shares.extend(facet.map(|n| (n, third)));
-            }
+            let corners = self.corners(facet);
+            let share = self.area_vector(facet).norm() / corners.len() as f64;
+            shares.extend(corners.iter().map(|&node| (node, share)));
         }
         shares.sort_by_key(|s| s.0);
         let mut merged: Vec<(u32, f64)> = Vec::new();
@@ -215,7 +236,7 @@ impl<'a> Surface<'a> {
 }
 
 /// The nodes of a facet whatever its direction; an edge, in whatever order, repeats its higher node.
-fn sorted(mut nodes: [u32; 3]) -> [u32; 3] {
+pub(super) fn sorted(mut nodes: [u32; 3]) -> [u32; 3] {
     let edge = nodes[1] == nodes[2];
     nodes.sort_unstable();
     if edge { [nodes[0], nodes[2], nodes[2]] } else { nodes }

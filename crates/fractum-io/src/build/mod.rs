@@ -5,9 +5,11 @@ mod bodies;
 mod bonded;
 mod conditions;
 mod contacts;
+mod in_situ;
 mod precheck;
 mod probes;
 mod statics;
+mod surface_supports;
 mod ties;
 
 pub use bonded::PreparedBody;
@@ -144,7 +146,11 @@ impl Context<'_> {
         let mut boundary_of_parts = self.facets_of_parts(&parts, &numbering);
         let supports = self.supports(&numbering);
         let surface = Surface::new(&boundary, &parts, &numbering.positions);
-        let loads = self.loads(&LoadedPoints::Nodes(&numbering, surface));
+        let (surface_supports, supported) = self.surface_supports(&parts, &numbering, &surface, &solid);
+        let in_situ = self.in_situ_loads(&numbering, &surface, &solid, supported);
+        self.check_in_situ_supports(&solid, &numbering);
+        let mut loads = self.loads(&LoadedPoints::Nodes(&numbering, surface));
+        loads.extend(in_situ);
         let supports = match Supports::new(supports, &solid.reference) {
             Ok(supports) => supports,
             Err(error) => {
@@ -181,10 +187,17 @@ impl Context<'_> {
             self.settings(),
         )
         .with_bonded(bonded)
-        .with_ties(&ties.attachments);
+        .with_ties(&ties.attachments)
+        .with_surface_supports(surface_supports);
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
-        let scene =
+        let mut scene =
             self.with_contacts(scene, &parts, &boundary_of_parts, &surface, rigid_bodies, &tied, &mut warnings)?;
+        if let Some(stress) = &self.case.in_situ
+            && let Err(error) = scene.start_at_rest()
+        {
+            self.error(&stress.place.clone(), format!(": {error}"), "");
+            return None;
+        }
         let statics = statics.filter(|_| self.is_held(&scene));
         if self.case.solver.kind != SolverKind::Static {
             self.check_time_step(&scene, &mut warnings);

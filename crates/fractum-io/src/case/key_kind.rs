@@ -59,6 +59,8 @@ pub enum KeyKind {
     Points,
     /// Several names.
     Names,
+    /// Rows of group, delay and pulse, or a file of them.
+    Firing,
 }
 
 impl KeyKind {
@@ -88,6 +90,9 @@ impl KeyKind {
             Self::Condition => "a condition such as \"abs(y) < 8 cm\"".to_string(),
             Self::ProbeExpression => "an expression of probes such as \"2*max(load)\"".to_string(),
             Self::Names => "a list of names such as [\"rest\", \"release\"]".to_string(),
+            Self::Firing => {
+                "rows such as [[\"hole-1\", \"25 ms\", \"contour\"]], or a CSV file of such rows".to_string()
+            }
             Self::Points => "pairs such as [[\"0 s\", \"0 m/s\"], [\"1 ms\", \"2 m/s\"]]".to_string(),
         }
     }
@@ -115,6 +120,7 @@ impl KeyKind {
             Self::ProbeExpression => "probe expression".to_string(),
             Self::Points => "list of pairs".to_string(),
             Self::Names => "list of names".to_string(),
+            Self::Firing => "list of rows, text".to_string(),
         }
     }
 }

@@ -72,6 +72,12 @@ fn value(path: &str, kind: KeyKind, doc: &str, default: &str) -> Value {
         KeyKind::TimeFunction(_) => {
             json!({ "anyOf": [{ "type": ["number", "string"] }, { "$ref": "#/$defs/time_function" }] })
         }
+        KeyKind::Firing => {
+            let row = json!({
+                "type": "array", "items": { "type": ["number", "string"] }, "minItems": 3, "maxItems": 3
+            });
+            json!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": row, "minItems": 1 }] })
+        }
         KeyKind::Points => {
             let pair = json!({
                 "type": "array", "items": { "type": ["number", "string"] }, "minItems": 2, "maxItems": 2

@@ -45,6 +45,19 @@ pub enum TimeFunction {
         /// Begin [s].
         start: f64,
     },
+    /// `peak` τ/rise until τ = `rise`, then `peak` exp(−(τ − rise)/decay), with τ = t − start ≥ 0; zero before.
+    LinearExponential {
+        /// Largest value.
+        peak: f64,
+        /// Begin [s].
+        start: f64,
+        /// Time from begin to peak [s], ≥ 0.
+        rise: f64,
+        /// Time from the peak to 1/e of it [s], > 0.
+        decay: f64,
+    },
+    /// Another function, later by a time [s].
+    Delayed(f64, Box<TimeFunction>),
     /// Expression of t, x, y, z.
     Expression(Field),
 }
@@ -78,6 +91,17 @@ impl TimeFunction {
                 // as a product, since the two exponentials nearly cancel where the rates are close
                 if tau < 0.0 { 0.0 } else { scale * exp(-decay * tau) * -exp_m1(-(rise - decay) * tau) }
             }
+            Self::LinearExponential { peak, start, rise, decay } => {
+                let tau = t - start;
+                if tau < 0.0 {
+                    0.0
+                } else if tau < rise {
+                    peak * tau / rise
+                } else {
+                    peak * exp(-(tau - rise) / decay)
+                }
+            }
+            Self::Delayed(delay, ref function) => function.value(t - delay, position),
             Self::Expression(ref field) => field.value(t, position),
         }
     }
@@ -129,7 +153,11 @@ impl TimeFunction {
 
     /// Whether the value differs from point to point.
     pub fn depends_on_position(&self) -> bool {
-        matches!(self, Self::Expression(field) if field.depends_on_position())
+        match self {
+            Self::Expression(field) => field.depends_on_position(),
+            Self::Delayed(_, function) => function.depends_on_position(),
+            _ => false,
+        }
     }
 
     /// Whether the value changes with time.
@@ -138,6 +166,7 @@ impl TimeFunction {
             Self::Constant(_) => false,
             Self::Ramp(points) | Self::SmoothRamp(points) => points.windows(2).any(|pair| pair[0].1 != pair[1].1),
             Self::Expression(field) => field.depends_on_time(),
+            Self::Delayed(_, function) => function.depends_on_time(),
             _ => true,
         }
     }
@@ -257,6 +286,19 @@ mod tests {
         for (t, value) in [(0.5, 0.0), (1.0, 0.0), (2.0, 2.0), (1.0 + 1.0 / 3.0, 1.0), (3.0, 0.0), (4.0, 0.0)] {
             assert!((at(&half_sine, t) - value).abs() < 1e-15, "half-sine at {t}");
         }
+    }
+
+    #[test]
+    fn a_linear_rise_is_followed_by_an_exponential_decay() {
+        let pulse = TimeFunction::LinearExponential { peak: 6.0, start: 1.0, rise: 2.0, decay: 4.0 };
+        for (t, value) in [(0.9, 0.0), (1.0, 0.0), (2.0, 3.0), (3.0, 6.0), (7.0, 6.0 * (-1f64).exp())] {
+            assert!((at(&pulse, t) - value).abs() < 1e-15, "at {t}");
+        }
+        let shock = TimeFunction::LinearExponential { peak: 6.0, start: 0.0, rise: 0.0, decay: 4.0 };
+        assert_eq!((at(&shock, -1e-9), at(&shock, 0.0)), (0.0, 6.0));
+        let later = TimeFunction::Delayed(10.0, Box::new(pulse.clone()));
+        assert_eq!((at(&later, 10.9), at(&later, 12.0)), (0.0, at(&pulse, 2.0)));
+        assert!(later.depends_on_time() && !later.depends_on_position());
     }
 
     #[test]

@@ -41,6 +41,8 @@ impl Dimension {
     pub const FORCE: Self = dimension(1, 1, -2);
     /// Pressure, stress, modulus [Pa].
     pub const PRESSURE: Self = dimension(1, -1, -2);
+    /// Stiffness per area [Pa/m].
+    pub const STIFFNESS_PER_AREA: Self = dimension(1, -2, -2);
     /// Energy [J].
     pub const ENERGY: Self = dimension(1, 2, -2);
     /// Power [W].
@@ -140,6 +142,7 @@ static KNOWN: &[Known] = &[
     known(Dimension::LENGTH, "m", "a length", "12 mm"),
     known(Dimension::AREA, "m^2", "an area", "4 cm^2"),
     known(dimension(0, 3, 0), "m^3", "a volume", "1 L"),
+    known(Dimension::STIFFNESS_PER_AREA, "Pa/m", "a stiffness per area", "1 GPa/m"),
     known(Dimension::MASS, "kg", "a mass", "2 kg"),
     known(Dimension::TIME, "s", "a time", "0.2 ms"),
     known(Dimension::TEMPERATURE, "K", "a temperature", "293 K"),

@@ -132,13 +132,25 @@ impl Supports {
 
     /// Writes the displacements prescribed at `time` into `displacement`; those of supports with a velocity go on from
     /// the present values at `present`.
-    pub(crate) fn prescribe(&self, displacement: &mut [Vec3], reference: &[Vec3], present: f64, time: f64) {
+    ///
+    /// - `from`: displacements from which those of supports count, see [`Solid::initial_displacement`]
+    ///
+    /// [`Solid::initial_displacement`]: fractum_fem::Solid::initial_displacement
+    pub(crate) fn prescribe(
+        &self,
+        displacement: &mut [Vec3],
+        reference: &[Vec3],
+        from: &[Vec3],
+        [present, time]: [f64; 2],
+    ) {
         for set in &self.sets {
             for &point in &set.points {
                 let (value, place) = (&mut displacement[point as usize][set.axis], &reference[point as usize]);
                 match &set.motion {
                     Motion::Fixed => {}
-                    Motion::Displacement(u) => *value = u(time, place),
+                    Motion::Displacement(u) => {
+                        *value = u(time, place) + from.get(point as usize).map_or(0.0, |from| from[set.axis]);
+                    }
                     Motion::Velocity(v) => *value += integral(|t| v(t, place), present, time),
                 }
             }

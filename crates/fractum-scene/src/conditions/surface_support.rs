@@ -91,7 +91,7 @@ impl SurfaceSupports {
             let u = points.displacement(node as usize);
             0.5 * u.dot(&(k * u))
         };
-        self.springs.nodes.iter().zip(&self.springs.matrix).map(energy).sum()
+        self.springs.nodes.iter().zip(&self.springs.matrix).map(energy).fold(0.0, |sum, energy| sum + energy)
     }
 
     /// Adds the forces of the springs.

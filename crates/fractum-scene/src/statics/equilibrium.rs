@@ -34,7 +34,7 @@ impl Scene {
     pub(super) fn boundary_at(&mut self, present: f64, time: f64) -> Boundary {
         let Scene { solid, supports, loads, .. } = self;
         let mut displacement = solid.displacement.clone();
-        supports.prescribe(&mut displacement, &solid.reference, present, time);
+        supports.prescribe(&mut displacement, &solid.reference, &solid.initial_displacement, [present, time]);
         solid.force.fill(Vec3::zeros());
         loads.add_forces(solid, time, 0.0);
         Boundary { displacement, force: solid.force.clone() }

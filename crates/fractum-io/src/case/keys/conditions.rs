@@ -6,7 +6,7 @@ use crate::case::unit::Dimension as D;
 
 #[rustfmt::skip] // a table reads best with one row per line
 pub(super) static KEYS: &[KeyDoc] = &[
-    key("supports[]", K::Tables, "", "Prescribed motion of groups; one of fix, velocity, displacement per axis"),
+    key("supports[]", K::Tables, "", "Prescribed motion of groups, by one of fix, velocity, displacement per axis; or what answers to the motion of facets, absorbing or elastic"),
     key("supports[].name", K::Text, "", "Name, unique among supports"),
     key("supports[].group", K::Text, "", "Mesh group of the nodes, or set of particles; required without `where`"),
     key("supports[].stages", K::Names, "all", "Stages in which it acts"),
@@ -21,7 +21,11 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("supports[].displacement.x", K::TimeFunction(D::LENGTH), "", "Along x; absent leaves it free"),
     key("supports[].displacement.y", K::TimeFunction(D::LENGTH), "", "Along y; absent leaves it free"),
     key("supports[].displacement.z", K::TimeFunction(D::LENGTH), "", "Along z; absent leaves it free"),
-    key("loads[]", K::Tables, "", "Loads; one of force, traction, pressure, gravity each"),
+    key("supports[].absorbing", K::Flag, "false", "true: waves leave through the group's facets (dashpots of the material behind them)"),
+    key("supports[].elastic", K::Table, "", "Springs on the group's facets"),
+    key("supports[].elastic.normal", K::Quantity(D::STIFFNESS_PER_AREA), "0", "Stiffness along the normal, ≥ 0"),
+    key("supports[].elastic.tangential", K::Quantity(D::STIFFNESS_PER_AREA), "0", "Stiffness across it, ≥ 0"),
+    key("loads[]", K::Tables, "", "Loads; one of force, traction, pressure, gravity, firing each"),
     key("loads[].name", K::Text, "", "Name, unique among loads"),
     key("loads[].stages", K::Names, "all", "Stages in which it acts"),
     key("loads[].group", K::Text, "", "Mesh group or set of particles; required without `where`, but for gravity, which acts on the whole scene"),
@@ -41,6 +45,18 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("loads[].gravity.x", K::TimeFunction(D::ACCELERATION), "0", "Component along x"),
     key("loads[].gravity.y", K::TimeFunction(D::ACCELERATION), "0", "Component along y"),
     key("loads[].gravity.z", K::TimeFunction(D::ACCELERATION), "0", "Component along z"),
+    key("loads[].firing", K::Firing, "", "Firing sequence: rows of a mesh group of facets, a delay and a pulse of [pulses], as a list or as a CSV file; each pulse pushes on its group as a pressure"),
+    key("pulses", K::NamedTables, "", "Pressures over time by name, for firing sequences"),
+    key("pulses.NAME", K::TimeFunction(D::PRESSURE), "", "A pressure over time, counted from the delay"),
+    key("in_situ", K::Table, "", "Stress of the solids before the run: they are at rest under it at t = 0, and displacements count from there"),
+    key("in_situ.stress", K::Table, "required", "Its components, tension positive; linear in x, y, z"),
+    key("in_situ.stress.xx", K::Field(D::PRESSURE), "0", "Component xx"),
+    key("in_situ.stress.yy", K::Field(D::PRESSURE), "0", "Component yy"),
+    key("in_situ.stress.zz", K::Field(D::PRESSURE), "0", "Component zz; in the plane it follows from the others"),
+    key("in_situ.stress.xy", K::Field(D::PRESSURE), "0", "Component xy"),
+    key("in_situ.stress.yz", K::Field(D::PRESSURE), "0", "Component yz"),
+    key("in_situ.stress.zx", K::Field(D::PRESSURE), "0", "Component zx"),
+    key("in_situ.groups", K::Names, "none", "Mesh groups of facets on which it acts, besides those of absorbing and elastic supports"),
     key("TIME_FUNCTION", K::Table, "", "Table form of any time function: one of ramp, smooth_ramp, table, pulse"),
     key("TIME_FUNCTION.ramp", K::Points, "", "Pairs of time and value joined by straight lines, constant outside"),
     key("TIME_FUNCTION.smooth_ramp", K::Points, "", "Pairs of time and value joined by quintic steps, smooth to the second derivative"),
@@ -52,10 +68,10 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("TIME_FUNCTION.start", K::Quantity(D::TIME), "\"0 s\"", "Pulse: its begin; zero before"),
     key("TIME_FUNCTION.duration", K::Quantity(D::TIME), "", "Triangle and half-sine, required there: time from begin to end, > 0"),
     key("TIME_FUNCTION.rise", K::Quantity(D::TIME), "half the duration", "Triangle only: time from begin to peak, 0 to duration"),
-    key("TIME_FUNCTION.rise_time", K::Quantity(D::TIME), "", "Double-exponential, required there: time from begin to peak, > 0"),
-    key("TIME_FUNCTION.decay_time", K::Quantity(D::TIME), "", "Double-exponential, required there: time from the peak to 1/e of it, above 2.1462 rise_time"),
+    key("TIME_FUNCTION.rise_time", K::Quantity(D::TIME), "", "Double- and linear-exponential, required there: time from begin to peak, > 0 (linear-exponential: ≥ 0)"),
+    key("TIME_FUNCTION.decay_time", K::Quantity(D::TIME), "", "Double- and linear-exponential, required there: time from the peak to 1/e of it, > 0 (double-exponential: above 2.1462 rise_time)"),
 ];
 
 fn pulses() -> Vec<&'static str> {
-    vec!["triangle", "half-sine", "double-exponential"]
+    vec!["triangle", "half-sine", "double-exponential", "linear-exponential"]
 }

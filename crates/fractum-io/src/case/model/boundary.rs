@@ -1,5 +1,7 @@
 //! Supports and loads.
 
+use fractum_math::{Sym3, Vec3};
+
 use super::GroupUse;
 use crate::case::{Field, Place, Spanned, TimeFunction};
 
@@ -40,8 +42,44 @@ pub struct Support {
     pub on: Selection,
     /// Bit a is set where the particles of a bonded body do not turn about axis a.
     pub fix_rotation: Option<Spanned<u8>>,
-    /// Motion along x, y, z; `None` leaves the axis free. At least one is prescribed, or a rotation.
+    /// Motion along x, y, z; `None` leaves the axis free. At least one is prescribed, or a rotation, or there is `surface`.
     pub motion: [Option<Spanned<Motion>>; 3],
+    /// What answers to the motion of its facets.
+    pub surface: Option<Spanned<SurfaceSupport>>,
+}
+
+/// What answers to the motion of facets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SurfaceSupport {
+    /// Dashpots that let waves leave.
+    Absorbing,
+    /// Springs.
+    Elastic {
+        /// Stiffness along the normal [Pa/m], ≥ 0.
+        normal: f64,
+        /// Stiffness across it [Pa/m], ≥ 0.
+        tangential: f64,
+    },
+}
+
+/// Stress of the rock before the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InSitu {
+    /// Where it stands in the case.
+    pub place: Place,
+    /// Components xx, yy, zz, xy, yz, zx [Pa], tension positive; absent ones are zero.
+    pub stress: [Option<Spanned<Field>>; 6],
+    /// Groups of facets on which it acts, besides those of absorbing and elastic supports.
+    pub groups: Vec<Spanned<String>>,
+}
+
+impl InSitu {
+    /// The stress at a place [Pa].
+    pub fn at(&self, place: Vec3) -> Sym3 {
+        let [xx, yy, zz, xy, yz, zx] =
+            [0, 1, 2, 3, 4, 5].map(|i: usize| self.stress[i].as_ref().map_or(0.0, |field| field.value.at(place)));
+        Sym3::new(xx, yy, zz, xy, yz, zx)
+    }
 }
 
 impl Support {

@@ -19,7 +19,7 @@ use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
 pub use body::{Body, BodyKind, SolidBody};
 pub use bonded::{BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource, ParticleSize};
-pub use boundary::{Components, InCracks, Load, LoadKind, Motion, Selection, Support};
+pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Distribution, Material, Scatter};
 pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
@@ -49,6 +49,8 @@ pub struct Case {
     pub supports: Vec<Support>,
     /// Loads, in the order of the file.
     pub loads: Vec<Load>,
+    /// Stress of the solids before the run.
+    pub in_situ: Option<InSitu>,
     /// Damping of the solids.
     pub damping: Damping,
     /// Time and its steps.
@@ -59,8 +61,6 @@ pub struct Case {
     pub output: Output,
     /// Reference values.
     pub expect: Vec<Expect>,
-    /// Whether `fractum verify --quick` runs this case.
-    pub verify_quick: bool,
     /// The same case with the solver, supports and loads of each later stage.
     pub later: Vec<Case>,
 }
@@ -80,6 +80,8 @@ pub struct CaseSource {
     pub parameters: BTreeMap<String, f64>,
     /// Name of the stage that the case is; empty where there is one only.
     pub stage: String,
+    /// Whether `fractum verify --quick` runs this case.
+    pub verify_quick: bool,
     pub(super) warnings: Vec<Diagnostic>,
 }
 
@@ -381,6 +383,7 @@ impl Case {
         let supports = supports.map(|group| (group, GroupUse::Support));
         let loads = self.loads.iter().filter_map(|load| load.kind.on());
         let loads = loads.filter_map(|(on, group_use)| on.group.as_ref().map(|group| (group, group_use)));
+        let in_situ = self.in_situ.iter().flat_map(|own| &own.groups).map(|group| (group, GroupUse::Facets));
         let probes = self.probes.iter().filter_map(|probe| match &probe.kind {
             ProbeKind::Reaction { on, .. }
             | ProbeKind::Displacement { on, .. }
@@ -394,6 +397,6 @@ impl Case {
         let of_mesh =
             |group: &&Spanned<String>| self.particle_group(&group.value).is_none() && self.tool(&group.value).is_none();
         let named = supports.chain(loads).chain(probes).filter(|(group, _)| of_mesh(group));
-        bodies.chain(ties).chain(named).chain(openings).collect()
+        bodies.chain(ties).chain(named).chain(in_situ).chain(openings).collect()
     }
 }

@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 
 use super::bodies::optional;
+use super::firing::{self, Pulses};
 use super::time_functions::time_function;
 use super::vectors::{AXES, components, condition};
-use crate::case::model::{InCracks, Load, LoadKind, Motion, Selection, Support};
+use crate::case::model::{InCracks, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned, TimeFunction};
 use fractum_math::Vec3;
@@ -111,13 +112,46 @@ fn support(table: Table<'_>) -> Option<Support> {
             }
         }
     }
-    if complete && motion.iter().all(Option::is_none) && fix_rotation.is_none() {
+    let surface = surface_support(&table);
+    complete &= surface.is_some();
+    if complete && motion.iter().all(Option::is_none) && fix_rotation.is_none() && surface == Some(None) {
         let note = Diagnostic::error(&table.place, "prescribes no motion");
-        table.reader.note(note.expected("one of fix, velocity, displacement"));
+        table.reader.note(note.expected("one of fix, velocity, displacement, absorbing, elastic"));
         complete = false;
     }
     table.finish("here");
-    Some(Support { name, on: on?, fix_rotation, motion: complete.then_some(motion)? })
+    Some(Support { name, on: on?, fix_rotation, motion: complete.then_some(motion)?, surface: surface? })
+}
+
+/// The keys `absorbing` and `elastic`, which stand alone; none of them gives none, a wrong one nothing.
+fn surface_support(table: &Table<'_>) -> Option<Option<Spanned<SurfaceSupport>>> {
+    let key = match (table.has("absorbing"), table.has("elastic")) {
+        (false, false) => return Some(None),
+        (true, false) => "absorbing",
+        _ => "elastic",
+    };
+    let place = table.place_of(key);
+    let others = ["fix", "velocity", "displacement", "absorbing", "fix_rotation"];
+    if let Some(other) = others.iter().find(|other| **other != key && table.has(other)) {
+        table.pass_over(&["absorbing", "elastic"]);
+        let note = Diagnostic::error(&place, format!("stands beside {other}"));
+        table.reader.note(note.remedy("give each its own [[supports]]"));
+        return None;
+    }
+    if key == "absorbing" {
+        let absorbs = table.flag("absorbing").given()?;
+        return Some(absorbs.then(|| Spanned::new(SurfaceSupport::Absorbing, place)));
+    }
+    let springs = table.table("elastic")?;
+    let [normal, tangential] =
+        ["normal", "tangential"].map(|name| springs.quantity(name).not_negative().or_if_absent(0.0));
+    if normal == Some(0.0) && tangential == Some(0.0) {
+        let note = Diagnostic::error(&springs.place, "has no stiffness");
+        springs.reader.note(note.expected("normal or tangential above 0"));
+        return None;
+    }
+    springs.finish("here");
+    Some(Some(Spanned::new(SurfaceSupport::Elastic { normal: normal?, tangential: tangential? }, place)))
 }
 
 pub(super) fn fixed_axes(table: &Table<'_>, key: &'static str) -> Option<[Option<Spanned<Motion>>; 3]> {
@@ -141,16 +175,27 @@ fn warn_of_jump(table: &Table<'_>, function: &Spanned<TimeFunction>) {
 
 /// Reads all loads; nothing where one of them is wrong.
 pub(super) fn loads(root: &Table<'_>) -> Option<Vec<Load>> {
-    let loads: Vec<Option<Load>> = root.tables("loads").into_iter().map(load).collect();
-    let names = loads.iter().flatten().filter_map(|load| load.name.as_ref());
+    let pulses = firing::pulses(root);
+    let loads: Vec<Option<Vec<Load>>> = root.tables("loads").into_iter().map(|table| load(table, &pulses)).collect();
+    // A firing sequence gives its name to the pressures of all its holes.
+    let names = loads.iter().flatten().filter_map(|loads| loads.first()?.name.as_ref());
     let unique = unique(root, names);
-    loads.into_iter().collect::<Option<_>>().filter(|_| unique)
+    Some(loads.into_iter().collect::<Option<Vec<_>>>().filter(|_| unique)?.into_iter().flatten().collect())
 }
 
-fn load(table: Table<'_>) -> Option<Load> {
-    const KINDS: &[&str] = &["force", "traction", "pressure", "gravity"];
+fn load(table: Table<'_>, pulses: &Pulses) -> Option<Vec<Load>> {
+    const KINDS: &[&str] = &["force", "traction", "pressure", "gravity", "firing"];
     let name = table.text("name").spanned().given();
     let kind = exactly_one(&table, KINDS)?;
+    if kind == "firing" {
+        for key in ["group", "where"] {
+            table.refuse(key, "with firing, whose rows name the groups");
+        }
+        let in_cracks = in_cracks(&table);
+        let loads = firing::sequence(&table, pulses, name, in_cracks);
+        table.finish("here");
+        return loads;
+    }
     let on = if kind == "gravity" {
         for key in ["group", "where"] {
             table.refuse(key, "with gravity, which acts on the whole scene");
@@ -171,7 +216,7 @@ fn load(table: Table<'_>) -> Option<Load> {
         }
     };
     table.finish("here");
-    Some(Load { name, kind: kind? })
+    Some(vec![Load { name, kind: kind? }])
 }
 
 /// The keys `in_cracks` and `front_speed` of a pressure; nothing where one of them is wrong.

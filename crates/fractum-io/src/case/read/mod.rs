@@ -4,7 +4,9 @@ mod bodies;
 mod bonded;
 mod boundary;
 mod expect;
+mod firing;
 mod fracture;
+mod in_situ;
 mod loose;
 mod materials;
 mod parameters;
@@ -77,6 +79,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
         tables: Vec::new(),
         parameters: BTreeMap::new(),
         stage: String::new(),
+        verify_quick: false,
         warnings: Vec::new(),
     };
     let mut cases = Vec::new();
@@ -149,6 +152,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let mesh = mesh(&table, bodies.as_deref());
     let supports = boundary::supports(&table);
     let loads = boundary::loads(&table);
+    let in_situ = in_situ::read(&table);
     let damping = solver::damping(&table, bodies.as_deref(), !stage.is_empty());
     let probes = probes::read(&table);
     let solver = solver::read(&table, &probes.list, bodies.as_deref());
@@ -159,7 +163,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     verify.finish("here");
     table.finish("here");
     version?;
-    let source = CaseSource { parameters, stage, ..source };
+    let source = CaseSource { parameters, stage, verify_quick, ..source };
     Some(Case {
         source,
         title,
@@ -169,12 +173,12 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
         ties: ties?,
         supports: supports?,
         loads: loads?,
+        in_situ: in_situ?,
         damping,
         solver: solver?,
         probes: probes.list.into_iter().map(|probe| probe.probe).collect::<Option<_>>()?,
         output: output?,
         expect: expect?,
-        verify_quick,
         later: Vec::new(),
     })
 }

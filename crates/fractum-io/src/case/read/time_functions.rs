@@ -4,7 +4,7 @@ use super::boundary::exactly_one;
 use super::vectors::expression;
 use super::{table_file, unit};
 use crate::case::keys::TIME_FUNCTION;
-use crate::case::reader::Table;
+use crate::case::reader::{Reader, Table};
 use crate::case::reading::Reading;
 use crate::case::tree::{Node, Value};
 use crate::case::unit::Dimension;
@@ -13,17 +13,22 @@ use crate::case::{Diagnostic, TimeFunction};
 /// Takes a time function of the key's dimension.
 pub(super) fn time_function<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, TimeFunction> {
     let dimension = table.dimension(name);
-    table.read(name, |node| match &node.value {
-        Value::Table(_) => from_table(Table::new(table.reader, node, TIME_FUNCTION), dimension),
-        _ => from_expression(table, node, dimension),
-    })
+    table.read(name, |node| time_function_of(table.reader, node, dimension))
 }
 
-fn from_expression(table: &Table<'_>, node: &Node, dimension: Dimension) -> Option<TimeFunction> {
+/// A time function of this dimension.
+pub(super) fn time_function_of(reader: &Reader, node: &Node, dimension: Dimension) -> Option<TimeFunction> {
+    match &node.value {
+        Value::Table(_) => from_table(Table::new(reader, node, TIME_FUNCTION), dimension),
+        _ => from_expression(reader, node, dimension),
+    }
+}
+
+fn from_expression(reader: &Reader, node: &Node, dimension: Dimension) -> Option<TimeFunction> {
     let length = Dimension::LENGTH;
     let variables = [("t", Dimension::TIME), ("x", length), ("y", length), ("z", length)];
-    let (field, kind) = expression(table.reader, node, dimension, &variables)?;
-    table.reader.check_dimension(node, kind, dimension).then(|| match field.constant_value() {
+    let (field, kind) = expression(reader, node, dimension, &variables)?;
+    reader.check_dimension(node, kind, dimension).then(|| match field.constant_value() {
         Some(value) => TimeFunction::Constant(value),
         None => TimeFunction::Expression(field),
     })
@@ -100,11 +105,13 @@ fn pulse(table: &Table<'_>, dimension: Dimension) -> Option<TimeFunction> {
         Triangle,
         HalfSine,
         DoubleExponential,
+        LinearExponential,
     }
     let known = [
         ("triangle", Pulse::Triangle),
         ("half-sine", Pulse::HalfSine),
         ("double-exponential", Pulse::DoubleExponential),
+        ("linear-exponential", Pulse::LinearExponential),
     ];
     let pulse = table.one_of("pulse", &known).given();
     let peak = table.read("peak", |node| table.reader.quantity(node, dimension)).required();
@@ -134,6 +141,11 @@ fn pulse(table: &Table<'_>, dimension: Dimension) -> Option<TimeFunction> {
                 table.reader.note(note.expected("between 2.1462 and 1e6 times the rise time"));
             }
             function
+        }
+        Some(Pulse::LinearExponential) => {
+            let rise = table.quantity("rise_time").not_negative().required();
+            let decay = table.quantity("decay_time").positive().required();
+            Some(TimeFunction::LinearExponential { peak: peak?, start, rise: rise?, decay: decay? })
         }
         None => {
             table.pass_over(&["duration", "rise", "rise_time", "decay_time"]);
