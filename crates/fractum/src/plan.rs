@@ -6,7 +6,7 @@ use std::fmt;
 
 use fractum_fem::{ElementKind, Formulation, Kinematics};
 use fractum_io::build::{BuiltScene, TieReport};
-use fractum_io::case::model::{Case, GroupUse, LoadKind, MeshSource, Selection};
+use fractum_io::case::model::{Case, GroupUse, Load, LoadKind, MeshSource, Selection, SurfaceSupport};
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
@@ -136,6 +136,14 @@ impl Plan {
                 let held = letters(&|a| turning >> a & 1 == 1);
                 let held = if turning > 0 { format!(", no turning about {held}") } else { String::new() };
                 format!("{axes} of its particles{held}")
+            } else if let Some(surface) = &support.surface {
+                match surface.value {
+                    SurfaceSupport::Absorbing => "waves leave through its facets".to_owned(),
+                    SurfaceSupport::Elastic { normal, tangential } => {
+                        let [along, across] = [normal, tangential].map(|k| quantity(k, "Pa/m"));
+                        format!("springs on its facets, {along} along the normal, {across} across it")
+                    }
+                }
             } else {
                 match (&support.on.group, &support.on.within) {
                     (Some(_), None) => format!("{axes} of {} nodes", mesh.group_nodes(group).len()),
@@ -146,7 +154,20 @@ impl Plan {
             self.add("support", format!("{}: {what}", support.on.label()));
         }
         let thickness = plane_thickness(scene);
-        for load in &case.loads {
+        let delay = |load: &Load| match &load.kind {
+            LoadKind::Pressure { pressure, .. } => pressure.value.delay(),
+            _ => None,
+        };
+        let delays = case.loads.iter().filter_map(delay);
+        let holes = delays.clone().count();
+        if holes > 0 {
+            let (first, last) = delays.fold((f64::INFINITY, 0.0), |(a, b), t| (t.min(a), t.max(b)));
+            self.add(
+                "load",
+                format!("firing sequence of {holes} holes from {} to {}", quantity(first, "s"), quantity(last, "s")),
+            );
+        }
+        for load in case.loads.iter().filter(|load| delay(load).is_none()) {
             let on = match load.kind.on() {
                 Some((on, GroupUse::Facets)) => facets_of(mesh, on, thickness),
                 Some((on, _)) => on.label().to_owned(),
@@ -155,6 +176,9 @@ impl Plan {
             let entered = matches!(load.kind, LoadKind::Pressure { in_cracks: Some(_), .. });
             let cracks = if entered { " and in the cracks open to it" } else { "" };
             self.add("load", format!("{} on {on}{cracks}", load.kind.name()));
+        }
+        if case.in_situ.is_some() {
+            self.add("in situ", "at rest under the stress of the far field at t = 0; displacements count from there");
         }
         if scene.supports().count() == 0 && scene.bonded.held_count() == 0 && case.loads.is_empty() {
             self.add("load", "none: only initial velocities move this scene");

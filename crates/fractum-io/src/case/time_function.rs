@@ -151,6 +151,14 @@ impl TimeFunction {
         None
     }
 
+    /// How much later than another function it is [s]; none if it is a function of its own.
+    pub fn delay(&self) -> Option<f64> {
+        match self {
+            Self::Delayed(delay, _) => Some(*delay),
+            _ => None,
+        }
+    }
+
     /// Whether the value differs from point to point.
     pub fn depends_on_position(&self) -> bool {
         match self {

@@ -118,6 +118,53 @@ fn each_mistake_about_a_bonded_body_has_one_clear_message() {
 }
 
 #[test]
+fn mistakes_in_blasts_are_told_where_they_stand() {
+    let pulses = "end = 1e-3\n[pulses]\ncut = 1e6\n[[loads]]\n";
+    let cases: &[(&str, &str)] = &[
+        (
+            "firing = [[\"a\", 0, \"cot\"]]",
+            "18:20: loads[0].firing[0][2] = \"cot\"; expected the name of a pulse of [pulses]; did you mean \"cut\"?",
+        ),
+        ("firing = [[\"a\", -1, \"cut\"]]", "18:17: loads[0].firing[0][1] = -1; expected a delay of at least 0"),
+        (
+            "firing = [[\"a\", 0]]",
+            "18:11: loads[0].firing[0] = [\"a\", 0]; expected a row such as [\"hole-1\", \"25 ms\", \"contour\"]: group, delay, pulse",
+        ),
+        (
+            "firing = []",
+            "18:10: loads[0].firing = []; expected rows of group, delay and pulse, or the name of a CSV file of them",
+        ),
+        (
+            "firing = [[\"a\", 0, \"cut\"]]\ngroup = \"a\"",
+            "19:1: loads[0].group has no effect with firing, whose rows name the groups; remove it",
+        ),
+        (
+            "gravity = { x = 1 }\n[in_situ]\nstress = {}",
+            "20:10: in_situ.stress has no component; expected at least one of xx, yy, zz, xy, yz, zx",
+        ),
+        (
+            "gravity = { x = 1 }\n[in_situ]\ngroups = [\"a\"]",
+            "19:1: in_situ.stress is missing; expected a table such as { xx = \"-5 MPa\", yy = \"-8 MPa\" }",
+        ),
+        (
+            "gravity = { x = 1 }\n[in_situ]\nstress = { xx = 1 }\ngroups = \"a\"",
+            "21:10: in_situ.groups = \"a\"; expected a list of names of mesh groups",
+        ),
+        (
+            "gravity = { x = 1 }\n[[supports]]\ngroup = \"a\"\nabsorbing = true\nfix = \"x\"",
+            "21:13: supports[0].absorbing stands beside fix; give each its own [[supports]]",
+        ),
+        (
+            "gravity = { x = 1 }\n[[supports]]\ngroup = \"a\"\nelastic = { normal = 0 }",
+            "21:11: supports[0].elastic has no stiffness; expected normal or tangential above 0",
+        ),
+    ];
+    for (to, message) in cases {
+        assert_eq!(mistakes(&SMALL.replacen("end = 1e-3", &format!("{pulses}{to}"), 1)), [*message], "{to}");
+    }
+}
+
+#[test]
 fn each_mistake_has_one_clear_message() {
     let cases: &[(&str, &str, &str)] = &[
         // what is replaced, by what, message
@@ -208,7 +255,7 @@ fn each_mistake_has_one_clear_message() {
         (
             "end = 1e-3",
             "end = 1e-3\n[[supports]]\ngroup = \"a\"",
-            "15:1: supports[0] prescribes no motion; expected one of fix, velocity, displacement",
+            "15:1: supports[0] prescribes no motion; expected one of fix, velocity, displacement, absorbing, elastic",
         ),
         (
             "end = 1e-3",
@@ -228,7 +275,7 @@ fn each_mistake_has_one_clear_message() {
         (
             "end = 1e-3",
             "end = 1e-3\n[[loads]]\ngroup = \"a\"\npressure = 1\nforce.x = 1",
-            "17:12: loads[0].pressure stands beside force; expected exactly one of force, traction, pressure, gravity",
+            "17:12: loads[0].pressure stands beside force; expected exactly one of force, traction, pressure, gravity, firing",
         ),
         (
             "end = 1e-3",

@@ -1,9 +1,11 @@
 //! A case with every key, read into SI.
 
 use fractum_fem::{Criterion, CriterionKind, Formulation, Softening};
-use fractum_io::case::model::{BodyKind, BondedShape, Bound, LoadKind, Motion, PackingSource, ParticleSize, ProbeKind};
+use fractum_io::case::model::{
+    BodyKind, BondedShape, Bound, LoadKind, Motion, PackingSource, ParticleSize, ProbeKind, SurfaceSupport,
+};
 use fractum_io::case::{Severity, Spanned, TimeFunction, read_case};
-use fractum_math::Vec3;
+use fractum_math::{Sym3, Vec3};
 use fractum_pack::Convention;
 use fractum_scene::CrackMeasure;
 
@@ -47,7 +49,7 @@ fn a_case_with_every_key_is_read_into_si() {
         Some(Motion::Velocity(f) | Motion::Displacement(f)) => f.value(t, Vec3::zeros()),
         other => panic!("{other:?}"),
     };
-    let [bottom, top, side, brick] = &case.supports[..] else { panic!() };
+    let [bottom, top, side, brick, outer, base] = &case.supports[..] else { panic!() };
     assert_eq!(bottom.motion[0].as_ref().unwrap().value, Motion::Fixed);
     assert_eq!((value(&bottom.motion[1], 0.1e-3), value(&bottom.motion[1], 1.0)), (-0.5e-3, -1e-3));
     assert!((value(&top.motion[0], 1e-3) - 1e-3 / std::f64::consts::E).abs() < 1e-18);
@@ -55,6 +57,10 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!((value(&side.motion[0], 2e-3), value(&side.motion[2], 1.0)), (2e-3, 0.0));
 
     assert_eq!(brick.fix_rotation.as_ref().unwrap().value, 0b111);
+    assert_eq!(outer.surface.as_ref().unwrap().value, SurfaceSupport::Absorbing);
+    assert_eq!(base.surface.as_ref().unwrap().value, SurfaceSupport::Elastic { normal: 1e9, tangential: 0.4e9 });
+    let stress = case.in_situ.as_ref().unwrap().at(Vec3::new(0.0, 16.0, 0.0));
+    assert_eq!(stress, Sym3::new(-2e6, -0.1e6, -3e6, 0.0, 0.0, 1e3));
 
     let BodyKind::Bonded(brick) = &case.bodies[3].kind else { panic!() };
     let PackingSource::Shape { shape, size, dispersion, seed } = &brick.packing else { panic!() };
@@ -73,6 +79,13 @@ fn a_case_with_every_key_is_read_into_si() {
 
     let LoadKind::Pressure { pressure, .. } = &case.loads[2].kind else { panic!() };
     assert!((pressure.value.value(3e-6, Vec3::zeros()) / 100e6 - 1.0).abs() < 1e-12);
+    let fired = |load: usize, t: f64| match &case.loads[load].kind {
+        LoadKind::Pressure { on, pressure } => (on.group_name(), pressure.value.value(t, Vec3::zeros())),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(fired(5, 0.0), ("hole_1", 300e6));
+    assert!((fired(6, 25.25e-3).1 / 50e6 - 1.0).abs() < 1e-12);
+    assert_eq!(fired(6, 24.9e-3), ("hole_2", 0.0));
     let LoadKind::Gravity { acceleration } = &case.loads[4].kind else { panic!() };
     assert_eq!(acceleration[1].as_ref().unwrap().value, TimeFunction::Constant(-9.81));
 
@@ -95,7 +108,7 @@ fn a_case_with_every_key_is_read_into_si() {
 
     assert_eq!(case.expect[0].bound, Bound::Near { value: 1e4, tolerance: 500.0, relative: Some(0.05) });
     assert_eq!(case.expect[2].bound, Bound::Between { above: Some(1e-4), below: Some(2e-3) });
-    assert_eq!(case.groups_used().len(), 2 + 3 + 4 + 8);
+    assert_eq!(case.groups_used().len(), 2 + 5 + 6 + 1 + 8);
 }
 
 #[test]

@@ -21,7 +21,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("supports[].displacement.x", K::TimeFunction(D::LENGTH), "", "Along x; absent leaves it free"),
     key("supports[].displacement.y", K::TimeFunction(D::LENGTH), "", "Along y; absent leaves it free"),
     key("supports[].displacement.z", K::TimeFunction(D::LENGTH), "", "Along z; absent leaves it free"),
-    key("supports[].absorbing", K::Flag, "false", "true: waves leave through the group's facets (dashpots of the material behind them)"),
+    key("supports[].absorbing", K::Flag, "", "true: waves leave through the group's facets (dashpots of the material behind them)"),
     key("supports[].elastic", K::Table, "", "Springs on the group's facets"),
     key("supports[].elastic.normal", K::Quantity(D::STIFFNESS_PER_AREA), "0", "Stiffness along the normal, ≥ 0"),
     key("supports[].elastic.tangential", K::Quantity(D::STIFFNESS_PER_AREA), "0", "Stiffness across it, ≥ 0"),
