@@ -1,6 +1,6 @@
 //! Blocks of cells with the law they follow.
 
-use fractum_math::{Sym3, Vec3};
+use fractum_math::Vec3;
 
 use crate::block::{Cells, Scratch};
 use crate::body::Kinematics;
@@ -9,6 +9,7 @@ use crate::kernel::{self, ElasticCells, General};
 use crate::lane::Lane;
 use crate::solid::BodyModel;
 use crate::standard::StandardCells;
+use crate::viscosity::ViscousCells;
 
 /// How the cells of a block answer to strain.
 #[derive(Clone, Debug)]
@@ -29,8 +30,8 @@ pub(crate) struct Block {
     pub(crate) scratch: Scratch,
     /// Power of the viscous stress in the last step [W].
     pub(crate) viscous_power: f64,
-    /// Viscous stress times volume of each cell at the last step; empty without viscosity.
-    pub(crate) viscous: Vec<Sym3>,
+    /// Viscous stress of the cells; empty without viscosity.
+    pub(crate) viscous: ViscousCells,
     /// A corotational cell that is turned inside out and still carries.
     pub(crate) inverted: Option<usize>,
 }
@@ -49,6 +50,7 @@ impl Block {
         scratch.load(&cells.nodes, displacement);
         if model.viscosity.is_some() {
             scratch.load_velocity(&cells.nodes, velocity);
+            viscous.begin_step();
         }
         let start = measure.then_some(0.0);
         (*viscous_power, *inverted) = match law {
@@ -133,12 +135,12 @@ fn run<L: kernel::CellLaw>(
     cells: &Cells,
     scratch: &mut Scratch,
     law: &mut L,
-    viscous: &mut [Sym3],
+    viscous: &mut ViscousCells,
 ) -> (f64, Option<usize>) {
     let corotational = model.body.kinematics == Kinematics::Corotational;
     if corotational || model.viscosity.is_some() {
         let (viscosity, hooke) = (model.viscosity.as_ref(), model.hooke);
-        let general = General { corotational, viscosity, hooke, viscous_before: viscous };
+        let general = General { corotational, viscosity, hooke, viscous };
         return kernel::general_forces(cells, scratch, law, general);
     }
     kernel::forces(cells, scratch, law);

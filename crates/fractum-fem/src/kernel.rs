@@ -6,7 +6,7 @@ use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
 use crate::body::{Body, ElementKind, Kinematics, Plane};
 use crate::inverted::without_reflection;
 use crate::lane::Lane;
-use crate::viscosity::BodyViscosity;
+use crate::viscosity::{BodyViscosity, ViscousCells};
 
 /// Stress of a cell for its strain; owns the history of the cells of a block.
 pub(crate) trait CellLaw {
@@ -230,8 +230,8 @@ pub(crate) struct General<'a> {
     pub(crate) corotational: bool,
     pub(crate) viscosity: Option<&'a BodyViscosity>,
     pub(crate) hooke: Hooke,
-    /// Viscous stress times volume of the last step; replaced by that of this one.
-    pub(crate) viscous_before: &'a mut [Sym3],
+    /// Viscous stress of the last step; replaced by that of this one.
+    pub(crate) viscous: &'a mut ViscousCells,
 }
 
 widest! {
@@ -252,7 +252,7 @@ fn forces_cell_by_cell<L: CellLaw>(
     cells: &Cells,
     scratch: &mut Scratch,
     law: &mut L,
-    General { corotational, viscosity, hooke, viscous_before }: General<'_>,
+    General { corotational, viscosity, hooke, viscous }: General<'_>,
 ) -> (f64, Option<usize>) {
     let Scratch { displacement, velocity, force } = scratch;
     let (mut dissipated_power, mut inverted) = (0.0, None);
@@ -273,10 +273,10 @@ fn forces_cell_by_cell<L: CellLaw>(
         if let (Some(viscosity), Some(velocity)) = (viscosity, velocity.as_deref()) {
             let [x, y, z] = gradient_columns(velocity, local, gradients);
             let rate = Sym3::symmetric_part(&(rotation.transpose() * columns_to_matrix(x, y, z)));
-            let viscous = viscosity.stress(&hooke, rate, law.integrity(cell), volume) * volume;
             // The mean of the stress at both ends of the step, at the rate between them.
-            dissipated_power += 0.5 * (viscous + std::mem::replace(&mut viscous_before[cell], viscous)).dot(rate);
-            stress += viscous;
+            let [now, mean] = viscous.update(viscosity, &hooke, cell, rate, [law.integrity(cell), volume]);
+            dissipated_power += mean.dot(rate);
+            stress += now;
         }
         let columns = if corotational {
             let p = rotation * stress.to_matrix();

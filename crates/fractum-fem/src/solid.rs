@@ -13,7 +13,7 @@ use crate::gate::Gate;
 use crate::kernel::Hooke;
 use crate::standard::{StandardCells, StandardDamage};
 use crate::threshold::Threshold;
-use crate::viscosity::{BodyViscosity, Viscosity};
+use crate::viscosity::{BodyViscosity, ViscousCells};
 
 /// A body as it runs.
 #[derive(Clone, Debug)]
@@ -120,21 +120,6 @@ impl Solid {
     pub fn add_mass(&mut self, node: usize, mass: f64) {
         self.mass[node] += mass;
         self.inverse_mass[node] = 1.0 / self.mass[node];
-    }
-
-    /// Adds viscous stress to every body.
-    pub fn set_viscosity(&mut self, viscosity: Viscosity) {
-        for model in &mut self.bodies {
-            let elastic = &model.body.elastic;
-            model.viscosity = (!viscosity.is_off()).then(|| BodyViscosity {
-                constants: viscosity,
-                density: elastic.density,
-                wave_speed: elastic.p_wave_speed(),
-            });
-        }
-        for block in self.blocks.iter_mut().filter(|_| !viscosity.is_off()) {
-            block.viscous = vec![Sym3::ZERO; block.cells.len()];
-        }
     }
 
     /// Position of a node at tⁿ [m].
@@ -377,7 +362,7 @@ impl BodyModel {
                 _ => BlockLaw::Elastic { energy: None },
             };
             let scratch = Scratch::new();
-            let (viscous, inverted) = (Vec::new(), None);
+            let (viscous, inverted) = (ViscousCells::default(), None);
             blocks.push(Block { body: index, cells, items, law, scratch, viscous_power: 0.0, viscous, inverted });
         }
         let (reduced_edges, largest_length_ratio) =

@@ -47,7 +47,7 @@ impl Solid {
             bodies: (0..self.bodies.len()).map(|b| self.body_state(b)).collect(),
             dissipated: self.blocks.iter().map(Block::dissipated).collect(),
             viscous_dissipation: self.viscous_dissipation,
-            viscous: self.blocks.iter().map(|b| b.viscous.clone()).collect(),
+            viscous: self.blocks.iter().map(|b| b.viscous.stress.clone()).collect(),
         }
     }
 
@@ -114,7 +114,7 @@ impl Solid {
             self.close_edges(index);
         }
         for (block, viscous) in self.blocks.iter_mut().zip(state.viscous) {
-            block.viscous = viscous;
+            block.viscous.stress = viscous;
         }
         for (block, dissipated) in self.blocks.iter_mut().zip(state.dissipated) {
             match &mut block.law {

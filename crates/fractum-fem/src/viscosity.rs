@@ -1,9 +1,19 @@
+//! Viscous stress: proportional to stiffness, and the bulk viscosity of von Neumann and Richtmyer, *J. Appl. Phys.* 21
+//! (1950) 232-237, with the linear term of Landshoff (1955): a pressure ρ l (b₁ c + b₂² l |ε̇_v|) |ε̇_v| in compression, which
+//! spreads a shock over a few elements.
+
 use fractum_math::Sym3;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::body::ElementKind;
+use crate::body::{ElementKind, Formulation};
+use crate::cell::Geometry;
 use crate::element::regular_edge;
 use crate::kernel::Hooke;
+use crate::solid::{BodyModel, Solid};
+
+/// Least b₂² l |ε̇_v|/c that the time step counts with.
+const SMALLEST_SHOCK: f64 = 0.01;
 
 /// Viscous stress: β D ε̇, and a bulk viscosity for shocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -19,30 +29,124 @@ pub struct Viscosity {
 impl Viscosity {
     /// Whether there is nothing to do.
     pub fn is_off(&self) -> bool {
-        self.stiffness_time == 0.0 && self.bulk_linear == 0.0 && self.bulk_quadratic == 0.0
+        self.stiffness_time == 0.0 && !self.has_bulk()
+    }
+
+    fn has_bulk(&self) -> bool {
+        self.bulk_linear > 0.0 || self.bulk_quadratic > 0.0
     }
 }
 
-/// [`Viscosity`] with the density and wave speed of a body.
+/// [`Viscosity`] with the density, wave speed and mesh of a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BodyViscosity {
     pub(crate) constants: Viscosity,
     pub(crate) density: f64,
     pub(crate) wave_speed: f64,
+    /// Largest ω l/c of the elements: highest frequency by length over wave speed.
+    pub(crate) shape_factor: f64,
 }
 
-impl BodyViscosity {
-    /// Viscous stress of a cell for its strain rate [Pa].
-    pub(crate) fn stress(&self, hooke: &Hooke, rate: Sym3, integrity: f64, volume: f64) -> Sym3 {
-        let Viscosity { stiffness_time, bulk_linear, bulk_quadratic } = self.constants;
-        let mut stress = hooke.stress(rate) * (stiffness_time * integrity);
+/// Viscous stress of the cells of a block.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ViscousCells {
+    /// Stress times volume at the last step [J].
+    pub(crate) stress: Vec<Sym3>,
+    /// Size of the elements of each cell [m].
+    length: Vec<f64>,
+    /// Largest b₂² l |ε̇_v|/c of the last step, what the quadratic viscosity adds to the linear coefficient.
+    shock: f64,
+}
+
+impl ViscousCells {
+    /// Cells of the given volumes [m³].
+    pub(crate) fn new(model: &BodyModel, volumes: &[f64]) -> Self {
+        let body = &model.body;
+        // An edge has a share of every element around it: two triangles give a third each, some five tetrahedra a sixth.
+        let share = match (body.formulation, body.shape) {
+            (Formulation::Standard, _) => 1.0,
+            (Formulation::Smoothed, ElementKind::T3) => 2.0 / 3.0,
+            (Formulation::Smoothed, ElementKind::T4) => 5.0 / 6.0,
+        };
+        let thickness = if body.shape == ElementKind::T3 { body.thickness } else { 1.0 };
+        let length = volumes.iter().map(|v| regular_edge(body.shape, v / (share * thickness))).collect();
+        ViscousCells { stress: vec![Sym3::ZERO; volumes.len()], length, shock: 0.0 }
+    }
+
+    pub(crate) fn begin_step(&mut self) {
+        self.shock = 0.0;
+    }
+
+    /// Viscous stress times volume of a cell, and the mean of those at both ends of the step [J].
+    pub(crate) fn update(
+        &mut self,
+        viscosity: &BodyViscosity,
+        hooke: &Hooke,
+        cell: usize,
+        rate: Sym3,
+        [integrity, volume]: [f64; 2],
+    ) -> [Sym3; 2] {
+        let BodyViscosity { constants, density, wave_speed, .. } = *viscosity;
+        let mut stress = hooke.stress(rate) * (constants.stiffness_time * integrity);
         let volumetric = rate.trace();
         if volumetric < 0.0 {
-            let length = regular_edge(ElementKind::T4, volume);
-            let quadratic = bulk_quadratic * bulk_quadratic * length * volumetric * volumetric;
-            let pressure = self.density * length * (bulk_linear * self.wave_speed * -volumetric + quadratic);
+            let length = self.length[cell];
+            let shock = constants.bulk_quadratic * constants.bulk_quadratic * length * -volumetric / wave_speed;
+            self.shock = self.shock.max(shock);
+            let pressure = density * length * wave_speed * (constants.bulk_linear + shock) * -volumetric;
             stress += Sym3::isotropic(-pressure);
         }
-        stress
+        let now = stress * volume;
+        [now, (now + std::mem::replace(&mut self.stress[cell], now)) * 0.5]
+    }
+}
+
+impl Solid {
+    /// Adds viscous stress to every body.
+    pub fn set_viscosity(&mut self, viscosity: Viscosity) {
+        if viscosity.is_off() {
+            return;
+        }
+        for index in 0..self.bodies.len() {
+            let shape_factor = self.shape_factor(index);
+            let model = &mut self.bodies[index];
+            let (density, wave_speed) = (model.body.elastic.density, model.body.elastic.p_wave_speed());
+            model.viscosity = Some(BodyViscosity { constants: viscosity, density, wave_speed, shape_factor });
+        }
+        for block in &mut self.blocks {
+            block.viscous = ViscousCells::new(&self.bodies[block.body], &block.cells.volume);
+        }
+    }
+
+    /// Share of critical damping that bulk viscosity has at most in the highest mode of an element, by the rates of the last
+    /// forces; rises in steps of √2, since a change of the time step costs a little of the energy balance.
+    pub fn bulk_damping_ratio(&self) -> f64 {
+        let of = |(index, model): (usize, &BodyModel)| {
+            let viscosity = model.viscosity.as_ref().filter(|own| own.constants.has_bulk())?;
+            let own = self.blocks.iter().filter(|block| block.body == index);
+            let shock = own.map(|block| block.viscous.shock).fold(0.0, f64::max);
+            let mut coefficient = SMALLEST_SHOCK;
+            while coefficient < shock {
+                coefficient *= std::f64::consts::SQRT_2;
+            }
+            let coefficient = if viscosity.constants.bulk_quadratic > 0.0 { coefficient } else { 0.0 };
+            Some(0.5 * viscosity.shape_factor * (viscosity.constants.bulk_linear + coefficient))
+        };
+        self.bodies.iter().enumerate().filter_map(of).fold(0.0, f64::max)
+    }
+
+    /// Largest ω l/c of the elements of a body, by the trace of each stiffness.
+    fn shape_factor(&self, index: usize) -> f64 {
+        let body = &self.bodies[index].body;
+        let geometry = Geometry { body, nodes: &self.reference };
+        let corners = body.shape.node_count();
+        let stiffness = self.bodies[index].hooke.lambda + 4.0 * self.bodies[index].hooke.mu;
+        let of = |element: usize| {
+            let (measure, gradients) = geometry.element(element);
+            let square: f64 = gradients[..corners].iter().map(|g| g.norm_squared()).sum();
+            let frequency = (square * stiffness * corners as f64 / body.elastic.density).sqrt();
+            frequency * regular_edge(body.shape, measure) / body.elastic.p_wave_speed()
+        };
+        (0..body.elements.len()).into_par_iter().map(of).reduce(|| 0.0, f64::max)
     }
 }

@@ -261,6 +261,7 @@ impl Scene {
         let contact = contact.max(self.bonded.damping_ratio());
         let damping = self.settings.damping;
         let xi = 0.5 * self.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
+        let xi = xi + self.solid.bulk_damping_ratio();
         2.0 / frequency * ((1.0 + xi * xi).sqrt() - xi)
     }
 

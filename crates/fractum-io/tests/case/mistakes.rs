@@ -152,7 +152,7 @@ fn mistakes_in_blasts_are_told_where_they_stand() {
         ),
         (
             "gravity = { x = 1 }\n[[supports]]\ngroup = \"a\"\nabsorbing = true\nfix = \"x\"",
-            "21:13: supports[0].absorbing stands beside fix; give each its own [[supports]]",
+            "19:1: supports[0].absorbing stands beside fix; give each its own [[supports]]",
         ),
         (
             "gravity = { x = 1 }\n[[supports]]\ngroup = \"a\"\nelastic = { normal = 0 }",
