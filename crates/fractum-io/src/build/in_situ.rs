@@ -68,8 +68,8 @@ impl Context<'_> {
         let largest = positions.iter().map(|&p| largest_of(stress.at(p))).fold(0.0, f64::max);
         let field = FarField { centre, size, stress: stress.at(centre), slope, largest };
         let bent = |p: &&Vec3| {
-            let off = largest_of(stress.at(**p) - field.at(**p));
-            !(off <= LINEAR * field.largest)
+            let off = stress.at(**p) - field.at(**p);
+            off.0.iter().any(|c| c.is_nan()) || largest_of(off) > LINEAR * field.largest
         };
         if let Some(p) = positions.iter().find(bent) {
             let found = format!(".stress is not linear in x, y, z near ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
@@ -178,8 +178,7 @@ fn rigid(place: Vec3, field: &FarField, axis: usize) -> Vector6<f64> {
 }
 
 fn largest_of(stress: Sym3) -> f64 {
-    // Written so that NaN counts as large.
-    stress.0.iter().map(|c| c.abs()).fold(0.0, |a, c| if c <= a { a } else { c })
+    stress.0.iter().map(|c| c.abs()).fold(0.0, f64::max)
 }
 
 impl FarField {
