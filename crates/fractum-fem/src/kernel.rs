@@ -326,13 +326,12 @@ mod tests {
                 block.scratch.load_velocity(&cells.nodes, velocity);
                 let mut law = ElasticCells { hooke: model.hooke, energy: Some(0.0) };
                 let scratch = &mut block.scratch;
-                let mut viscous_before = vec![Sym3::ZERO; cells.len()];
+                let mut viscous = ViscousCells::new(model, &cells.volume);
                 let mut power = 0.0;
                 if let Some(corotational) = corotational {
                     let viscosity = model.viscosity.as_ref();
                     assert!(viscosity.is_some());
-                    let (hooke, viscous_before) = (model.hooke, viscous_before.as_mut_slice());
-                    let general = General { corotational, viscosity, hooke, viscous_before };
+                    let general = General { corotational, viscosity, hooke: model.hooke, viscous: &mut viscous };
                     let run = if fastest { general_forces } else { forces_cell_by_cell };
                     power = run(cells, scratch, &mut law, general).0;
                 } else {
@@ -341,7 +340,7 @@ mod tests {
                 }
                 let sums = [law.energy.unwrap(), power];
                 let forces = scratch.force.iter().flat_map(|lane| lane.0);
-                forces.chain(sums).chain(viscous_before.into_iter().flat_map(|s| s.0)).map(f64::to_bits).collect()
+                forces.chain(sums).chain(viscous.stress.into_iter().flat_map(|s| s.0)).map(f64::to_bits).collect()
             };
             for corotational in [None, Some(false), Some(true)] {
                 let fastest: Vec<u64> = forces_of(true, corotational);

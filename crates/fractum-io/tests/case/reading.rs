@@ -80,7 +80,7 @@ fn a_case_with_every_key_is_read_into_si() {
     let LoadKind::Pressure { pressure, .. } = &case.loads[2].kind else { panic!() };
     assert!((pressure.value.value(3e-6, Vec3::zeros()) / 100e6 - 1.0).abs() < 1e-12);
     let fired = |load: usize, t: f64| match &case.loads[load].kind {
-        LoadKind::Pressure { on, pressure } => (on.group_name(), pressure.value.value(t, Vec3::zeros())),
+        LoadKind::Pressure { on, pressure, .. } => (on.group_name(), pressure.value.value(t, Vec3::zeros())),
         other => panic!("{other:?}"),
     };
     assert_eq!(fired(5, 0.0), ("hole_1", 300e6));
