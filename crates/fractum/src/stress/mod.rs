@@ -74,12 +74,14 @@ pub struct Line {
     pub seconds: f64,
 }
 
-/// Runs the scenes, prints the table by kind and writes `stress.json`; cases that did not end well are kept beside it.
+/// Runs the scenes and prints the table by kind; `stress.json` is written anew after each scene, so that a run that is ended
+/// early leaves what it has. Cases that did not end well are kept beside it.
 ///
 /// # Errors
 /// [`Failure::Write`] if a file cannot be written.
 pub fn stress(settings: &Settings) -> Result<Vec<Line>, Failure> {
     atomic::create_folder(&settings.output)?;
+    let file = settings.output.join("stress.json");
     let mut lines = Vec::new();
     for number in 0..settings.scenes {
         let folder = settings.output.join(format!("scene-{}-{number}", settings.seed));
@@ -96,10 +98,9 @@ pub fn stress(settings: &Settings) -> Result<Vec<Line>, Failure> {
             say!("{} ({}): {:?}: {}", folder.join("case.toml").display(), line.kind, line.end, line.words);
         }
         lines.push(line);
+        atomic::write(&file, &serde_json::to_vec_pretty(&lines).unwrap_or_default())?;
     }
     print_table(&lines);
-    let file = settings.output.join("stress.json");
-    atomic::write(&file, &serde_json::to_vec_pretty(&lines).unwrap_or_default())?;
     say!("{}", file.display());
     Ok(lines)
 }
@@ -163,8 +164,9 @@ fn completed(outcome: &Outcome, warning: Option<String>) -> (End, Option<f64>, S
 }
 
 fn print_table(lines: &[Line]) {
-    let header = ["kind", "scenes", "residual < 1e-3", "warned", "stopped", "refused", "silent failures", "seconds"];
-    let print = |cells: [String; 8]| {
+    let header =
+        ["kind", "scenes", "residual < 1e-3", "warned", "stopped", "refused", "silent failures", "largest", "seconds"];
+    let print = |cells: [String; 9]| {
         let [kind, rest @ ..] = cells;
         say!("{kind:<16}{}", rest.map(|cell| format!("{cell:>17}")).concat());
     };
@@ -173,8 +175,10 @@ fn print_table(lines: &[Line]) {
         let of: Vec<&Line> = lines.iter().filter(|line| line.kind == kind || kind == "all").collect();
         let count = |end: End| of.iter().filter(|line| line.end == end).count().to_string();
         let seconds: f64 = of.iter().map(|line| line.seconds).sum();
+        let largest = of.iter().filter_map(|line| line.residual).fold(0.0, f64::max);
         let [good, warned, stopped, refused, silent] =
             [End::Good, End::Warned, End::Stopped, End::Refused, End::Silent].map(count);
-        print([kind.into(), of.len().to_string(), good, warned, stopped, refused, silent, format!("{seconds:.1}")]);
+        let [largest, seconds] = [format!("{largest:.1e}"), format!("{seconds:.1}")];
+        print([kind.into(), of.len().to_string(), good, warned, stopped, refused, silent, largest, seconds]);
     }
 }

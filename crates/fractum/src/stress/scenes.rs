@@ -7,18 +7,25 @@ use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use super::draw::Draw;
 
 /// What the table of results has a line for.
-pub const KINDS: [&str; 10] = [
+pub const KINDS: [&str; 14] = [
     "elastic solid",
     "damaged solid",
     "gate",
     "unilateral",
     "solid at rest",
     "impact",
+    "plane impact",
     "rigid body",
     "particles",
+    "beads on solid",
     "bonded",
     "breaking bonded",
+    "bonded at rest",
+    "tied",
 ];
+
+/// Kinds in the order in which they come: solids outnumber bodies that must be packed, which come last.
+const CYCLE: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 1, 5, 10, 11, 12, 13];
 
 /// A case file and its mesh.
 pub struct RandomScene {
@@ -33,11 +40,12 @@ pub struct RandomScene {
 /// The scene of a seed and a number.
 pub fn scene(seed: u64, number: usize) -> RandomScene {
     let mut draw = Draw::new(seed, number as u64);
-    // Solids outnumber bodies that must be packed.
-    let kind = KINDS[[0, 1, 2, 3, 4, 5, 6, 7, 1, 5, 8, 9][number % 12]];
+    let kind = KINDS[CYCLE[number % CYCLE.len()]];
     match kind {
         "particles" => loose(&mut draw),
-        "bonded" | "breaking bonded" => bonded(&mut draw, kind),
+        "beads on solid" => beads_on_solid(&mut draw),
+        "bonded" | "breaking bonded" | "bonded at rest" => bonded(&mut draw, kind),
+        "tied" => tied(&mut draw),
         _ => solid(&mut draw, kind),
     }
 }
@@ -95,9 +103,10 @@ fn footer(kind: &str, end: f64, safety: f64) -> String {
 fn solid(draw: &mut Draw, kind: &'static str) -> RandomScene {
     let material = Elastic::draw(draw);
     let size = draw.decades(1e-3, 10.0);
-    let plane = kind != "impact" && kind != "rigid body" && draw.chance(0.4);
+    let impact = kind == "impact" || kind == "plane impact";
+    let plane = kind == "plane impact" || !impact && kind != "rigid body" && draw.chance(0.4);
     let jitter = draw.chance(0.6).then(|| Jitter { fraction: draw.between(0.02, 0.15), seed: draw.whole(1000) });
-    let cells = 3 + draw.whole(4) as u32;
+    let cells = 3 + draw.whole(if kind == "solid at rest" { 2 } else { 4 }) as u32;
     let mesh = if plane {
         structured_rectangle([2 * cells, cells], [2.0 * size, size], jitter)
     } else {
@@ -106,7 +115,7 @@ fn solid(draw: &mut Draw, kind: &'static str) -> RandomScene {
     let damaged = kind != "elastic solid" && (kind != "rigid body" || draw.chance(0.5));
     let strain = draw.decades(1e-6, 1e-3);
     let mut case = header(kind, true) + &material.text();
-    if kind == "impact" || kind == "rigid body" {
+    if impact || kind == "rigid body" {
         let contact = [("friction", 0.0, 0.8), ("damping_ratio", 0.0, 0.5)]
             .map(|(key, low, high)| format!("{key} = {}", number(draw.between(low, high))));
         case += &format!("contact = {{ {} }}\n", contact.join(", "));
@@ -116,7 +125,7 @@ fn solid(draw: &mut Draw, kind: &'static str) -> RandomScene {
     }
     let gated = kind == "gate";
     let formulation = if gated || damaged || draw.chance(0.5) { "smoothed" } else { "standard" };
-    let formulation = if damaged && !gated && draw.chance(0.3) { "standard" } else { formulation };
+    let formulation = if damaged && !gated && kind != "unilateral" && draw.chance(0.3) { "standard" } else { formulation };
     let kinematics = if kind != "solid at rest" && draw.chance(0.4) { "corotational" } else { "small" };
     case += &format!(
         "\n[[bodies]]\nname = \"block\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stuff\"\n\
@@ -126,7 +135,7 @@ fn solid(draw: &mut Draw, kind: &'static str) -> RandomScene {
     let amplitude = strain * draw.decades(0.1, 10.0);
     let speed = amplitude * material.wave_speed();
     let transit = 2.0 * size / material.wave_speed();
-    if kind == "impact" {
+    if impact {
         case += &format!("initial_velocity = {{ x = \"{} m/s\" }}\n", number(-speed));
         case += "\n[[bodies]]\nname = \"wall\"\nkind = \"rigid\"\nshape = \"plane\"\npoint = [\"0 m\", \"0 m\", \"0 m\"]\n\
                  normal = \"x\"\ncontact = { friction = 0.3, damping_ratio = 0.1 }\n";
@@ -217,26 +226,90 @@ fn loose(draw: &mut Draw) -> RandomScene {
     RandomScene { kind: "particles", case: case + &footer("explicit", end, 0.3), mesh: None }
 }
 
-/// A packed box, pulled or thrown; few different packings, so that they are made once.
+/// A cloud that falls onto an elastic block in a container.
+fn beads_on_solid(draw: &mut Draw) -> RandomScene {
+    let material = Elastic { young_modulus: draw.decades(1e6, 1e9), ..Elastic::draw(draw) };
+    let radius = draw.decades(1e-4, 1e-2);
+    let [side, friction, restitution] = [draw.between(6.0, 9.0), draw.between(0.0, 0.8), draw.between(0.3, 1.0)];
+    let mesh = structured_box([4, 4, 3], Vec3::new(side, side, 0.5 * side) * radius, None);
+    let contact = format!("contact = {{ friction = {}, restitution = {} }}\n", number(friction), number(restitution));
+    let length = |factor: f64| format!("\"{} m\"", number(factor * radius));
+    let case = header("beads on solid", true)
+        + &material.text()
+        + &contact
+        + &format!(
+            "\n[[bodies]]\nname = \"block\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stuff\"\n\
+             formulation = \"{formulation}\"\n\n[[supports]]\ngroup = \"z-\"\nfix = \"xyz\"\n\
+             \n[[bodies]]\nname = \"beads\"\nkind = \"particles\"\nmaterial = \"stuff\"\nshape = \"box\"\n\
+             point = [{edge}, {edge}, {up}]\nsize = [{inner}, {inner}, {inner}]\nparticle_radius = {r}\n\
+             initial_velocity = {{ z = \"{speed} m/s\" }}\n\n[[loads]]\ngravity = {{ z = \"-9.81 m/s^2\" }}\n",
+            formulation = draw.one_of(&["smoothed", "standard"]),
+            edge = length(0.1 * side),
+            up = length(0.55 * side),
+            inner = length(0.8 * side),
+            r = length(1.0),
+            speed = number(-draw.decades(0.01, 1.0) * (9.81 * radius * side).sqrt()),
+        );
+    let end = (side * radius / 9.81).sqrt();
+    RandomScene { kind: "beads on solid", case: case + &footer("explicit", end, 0.3), mesh: Some(mesh) }
+}
+
+/// A packed box that is tied to the end of a block, and pulled away from it or pushed onto it.
+fn tied(draw: &mut Draw) -> RandomScene {
+    let material = Elastic { poisson_ratio: 0.2, ..Elastic::draw(draw) };
+    let side = 1e-3;
+    let mesh = structured_box([6, 3, 3], Vec3::new(2.0, 1.0, 1.0) * side, None);
+    let speed = draw.decades(1e-6, 1e-3) * draw.between(-1.0, 1.0) * material.wave_speed();
+    let kinematics = draw.one_of(&["small", "corotational"]);
+    let length = |factor: f64| format!("\"{} m\"", number(factor * side));
+    let case = header("tied", true)
+        + &material.text()
+        + &format!(
+            "\n[[bodies]]\nname = \"block\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stuff\"\n\
+             kinematics = \"{kinematics}\"\n\n[[bodies]]\nname = \"core\"\nkind = \"bonded\"\nmaterial = \"stuff\"\n\
+             shape = \"box\"\npoint = [{end}, {zero}, {zero}]\nsize = [{s}, {s}, {s}]\nparticles = {PARTICLES}\n\
+             coordination = 8\nseed = 1\n\n[[ties]]\nsolid = \"block\"\nbonded = \"core\"\nwithin = {within}\n\
+             \n[[supports]]\ngroup = \"x-\"\nfix = \"xyz\"\n\
+             \n[[supports]]\ngroup = \"core.x+\"\nvelocity = {{ x = \"{speed} m/s\" }}\n",
+            end = length(2.0),
+            zero = length(0.0),
+            s = length(1.0),
+            within = length(0.02),
+            speed = number(speed),
+        );
+    let end = 4.0 * side / material.wave_speed();
+    RandomScene { kind: "tied", case: case + &footer("explicit", end, 0.5), mesh: Some(mesh) }
+}
+
+/// Particles of a packed box.
+const PARTICLES: usize = 200;
+
+/// A packed box, pulled in motion or at rest; few different packings, so that they are made once.
 fn bonded(draw: &mut Draw, kind: &'static str) -> RandomScene {
     let material = Elastic { poisson_ratio: 0.2, ..Elastic::draw(draw) };
     let side = 1e-3;
-    let breaking = kind == "breaking bonded";
+    let at_rest = kind == "bonded at rest";
+    let breaking = kind == "breaking bonded" || at_rest && draw.chance(0.5);
     let strain = draw.decades(1e-5, 1e-3);
     let mut case = header(kind, false) + &material.text();
     if breaking {
         let strength = number(material.young_modulus * strain);
         case += &format!("[materials.stuff.fracture]\ntensile_strength = \"{strength} Pa\"\n");
     }
-    let speed = strain * draw.decades(0.1, 5.0) * material.wave_speed();
+    let speed = strain * draw.decades(0.1, 2.0) * material.wave_speed();
     let size = format!("\"{} m\"", number(side));
     case += &format!(
         "\n[[bodies]]\nname = \"block\"\nkind = \"bonded\"\nmaterial = \"stuff\"\nshape = \"box\"\nsize = [{size}, {size}, {size}]\n\
-         particles = 800\ncoordination = 8\nseed = {}\n\n[[supports]]\ngroup = \"block.x-\"\nfix = \"xyz\"\n\
-         \n[[supports]]\ngroup = \"block.x+\"\nvelocity = {{ x = \"{} m/s\" }}\n",
+         particles = {PARTICLES}\ncoordination = 8\nseed = {}\n\n[[supports]]\ngroup = \"block.x-\"\nfix = \"xyz\"\n\
+         \n[[supports]]\ngroup = \"block.x+\"\n",
         1 + draw.whole(2),
-        number(speed)
     );
-    let end = 6.0 * side / material.wave_speed();
+    if at_rest {
+        let pull = number(side * strain * draw.between(0.2, 3.0));
+        case += &format!("displacement = {{ x = \"{pull} m*t/1 s\" }}\n");
+        return RandomScene { kind, case: case + &footer("static", 1.0, 0.5), mesh: None };
+    }
+    case += &format!("velocity = {{ x = \"{} m/s\" }}\n", number(speed));
+    let end = if breaking { 2.0 } else { 4.0 } * side / material.wave_speed();
     RandomScene { kind, case: case + &footer("explicit", end, 0.5), mesh: None }
 }
