@@ -125,7 +125,8 @@ fn solid(draw: &mut Draw, kind: &'static str) -> RandomScene {
     }
     let gated = kind == "gate";
     let formulation = if gated || damaged || draw.chance(0.5) { "smoothed" } else { "standard" };
-    let formulation = if damaged && !gated && kind != "unilateral" && draw.chance(0.3) { "standard" } else { formulation };
+    let formulation =
+        if damaged && !gated && kind != "unilateral" && draw.chance(0.3) { "standard" } else { formulation };
     let kinematics = if kind != "solid at rest" && draw.chance(0.4) { "corotational" } else { "small" };
     case += &format!(
         "\n[[bodies]]\nname = \"block\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stuff\"\n\
