@@ -9,8 +9,9 @@ use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Bonded, BondedPart, ContactMaterial, ContactParameters, Contacts, Drive, ElasticMaterial, EnergyKind, FacetMesh,
-    Form, Frame, Inertia, Loads, Probe, RigidBody, Scene, SceneSettings, SolidSurface, Supports, TimeStepSettings,
+    Along, Bonded, BondedPart, ContactBody, ContactMaterial, ContactParameters, ContactProbe, Contacts, Drive,
+    ElasticMaterial, EnergyKind, FacetMesh, Form, Frame, Inertia, Loads, Probe, RigidBody, Scene, SceneSettings,
+    SolidSurface, Supports, TimeStepSettings,
 };
 
 const SURFACE: ContactParameters = ContactParameters { friction: 0.4, damping_ratio: 0.05, rolling_friction: 0.0 };
@@ -25,6 +26,11 @@ fn block(cells: [u32; 3], size: Vec3, first: u32) -> (Vec<Vec3>, Vec<[u32; 4]>, 
     let elements: Vec<[u32; 4]> = mesh.tetrahedra.iter().map(|e| e.map(|n| n + first)).collect();
     let facets = boundary_of_tetrahedra(&elements).iter().map(|f| f.nodes).collect();
     (mesh.nodes, elements, facets)
+}
+
+/// Nodes of the block that flies.
+fn block_nodes() -> usize {
+    block([4, 4, 4], Vec3::repeat(0.1), 0).0.len()
 }
 
 /// What stands in the way of the block.
@@ -208,4 +214,69 @@ fn meetings_are_the_same_bits_for_any_number_of_threads_and_after_a_saved_state(
     };
     let first = state(1, false);
     assert!(first == state(3, true) && first == state(1, true));
+}
+
+/// Force of contact on a body from another [N].
+fn between(scene: &Scene, on: ContactBody, from: ContactBody) -> Vec3 {
+    let force = |axis| {
+        let along = Along::Direction(Vec3::ith(axis, 1.0));
+        scene.contacts.force_between(&ContactProbe { on, from, along }).unwrap()
+    };
+    Vec3::from_fn(|axis, _| force(axis))
+}
+
+#[test]
+fn forces_between_bodies_are_what_changes_their_momentum() {
+    for (target, anvil) in [(Target::Solid, ContactBody::Solid(1)), (Target::Facets, ContactBody::Rigid(0))] {
+        let mut scene = crash(target, true);
+        let (block, beads) = (ContactBody::Solid(0), ContactBody::Particles(0));
+        for (on, from) in [(block, anvil), (anvil, block), (block, beads), (beads, anvil)] {
+            for axis in 0..3 {
+                scene.contacts.watch(ContactProbe { on, from, along: Along::Direction(Vec3::ith(axis, 1.0)) });
+            }
+        }
+        let nodes = 0..block_nodes();
+        let of_block =
+            |scene: &Scene| nodes.clone().map(|i| scene.solid.velocity[i] * scene.solid.mass[i]).sum::<Vec3>();
+        let of_beads = |scene: &Scene| {
+            let Particles { velocity, mass, .. } = &scene.bonded.particles;
+            velocity.iter().zip(mass).map(|(v, m)| v * *m).sum::<Vec3>()
+        };
+        let (mut before, scale) = ([of_block(&scene), of_beads(&scene)], of_block(&scene).norm());
+        let mut largest = [0.0f64; 3];
+        while !scene.is_finished() {
+            let (first, dt) = (scene.clock.step == 0, 0.5 * (scene.clock.dt_before + scene.clock.dt_after));
+            scene.step(true).unwrap();
+            let forces = [between(&scene, block, anvil), between(&scene, block, beads), between(&scene, beads, anvil)];
+            largest.iter_mut().zip(&forces).for_each(|(most, force)| *most = most.max(force.norm()));
+            assert_eq!(between(&scene, anvil, block), -forces[0]);
+            let now = [of_block(&scene), of_beads(&scene)];
+            let expected = [forces[0] + forces[1], forces[2] - forces[1]].map(|force| force * dt);
+            // The first kick begins half a step early.
+            for k in (0..2).filter(|_| !first) {
+                let missing = (now[k] - before[k] - expected[k]).norm();
+                assert!(missing < 1e-11 * scale, "{anvil:?} step {}: {missing} of {scale}", scene.clock.step);
+            }
+            before = now;
+        }
+        assert!(!scene.debris.is_empty() && largest.iter().all(|force| *force > 0.0), "{largest:?}");
+    }
+}
+
+#[test]
+fn the_force_from_a_rigid_body_that_meets_one_body_is_its_reaction() {
+    let mut scene = crash(Target::Facets, false);
+    let along = Vec3::new(0.6, 0.0, 0.8);
+    let (on, from) = (ContactBody::Solid(0), ContactBody::Rigid(0));
+    let probe = ContactProbe { on, from, along: Along::Direction(along) };
+    scene.contacts.watch(probe);
+    let mut largest: f64 = 0.0;
+    for _ in 0..400 {
+        scene.step(true).unwrap();
+        let reaction = Probe::RigidBodyForce { rigid_body: 0, direction: along }.value(&scene);
+        let force = Probe::ContactForce(probe).value(&scene);
+        largest = largest.max(force.abs());
+        assert!((force - reaction).abs() <= 1e-13 * largest, "{force} {reaction}");
+    }
+    assert!(largest > 0.0);
 }

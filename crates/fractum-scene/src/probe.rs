@@ -2,6 +2,7 @@ use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 
 use crate::conditions::{Along, PointProbe};
+use crate::contacts::ContactProbe;
 use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
 use crate::ledger::EnergyProbe;
 use crate::scene::{CountKind, Scene};
@@ -47,6 +48,8 @@ pub enum Probe {
         /// Unit direction.
         direction: Vec3,
     },
+    /// Force of contact of one body on another [N]; the scene must [watch](crate::Contacts::watch) it.
+    ContactForce(ContactProbe),
     /// Way of the reference point of a rigid body along a direction, at the instant of the last step [m].
     RigidBodyDisplacement {
         /// Rigid body.
@@ -119,6 +122,7 @@ impl Probe {
             Probe::RigidBodyForce { rigid_body, direction } => {
                 -scene.contacts.rigid_bodies()[*rigid_body].contact_force().dot(direction)
             }
+            Probe::ContactForce(probe) => scene.contacts.force_between(probe).unwrap_or(f64::NAN),
             Probe::RigidBodyDisplacement { rigid_body, direction } => {
                 let rigid_body = &scene.contacts.rigid_bodies()[*rigid_body];
                 (rigid_body.displacement() - rigid_body.frame.velocity * scene.clock.dt_before).dot(direction)

@@ -2,6 +2,7 @@ use fractum_dem::Particles;
 use fractum_fem::InvertedElement;
 use fractum_math::{HalfSteps, Vec3, Work, sum_chunks};
 
+use crate::contacts::Touching;
 use crate::error::StepError;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
@@ -74,6 +75,9 @@ impl Scene {
             passed(Phase::Bonds);
         }
         let contact = self.add_contact_forces(elapsed, faces);
+        if measure {
+            self.sum_watched_contacts();
+        }
         self.ties.pass_on(&mut self.solid, &mut self.bonded.particles);
         passed(Phase::Contact);
         let load = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
@@ -186,6 +190,12 @@ impl Scene {
         bonded.break_overloaded(clock.step, time, measure);
         let follow = |particles: &mut Particles| ties.follow(solid, particles);
         bonded.advance(time, dt_before, dt_after, settings.damping, measure, follow)
+    }
+
+    /// The forces between bodies that probes ask for.
+    pub(crate) fn sum_watched_contacts(&mut self) {
+        let Scene { contacts, solid, debris, bonded, shape_contacts, .. } = self;
+        contacts.sum_watched(&Touching { solid, debris, particles: &bonded.particles, shapes: shape_contacts });
     }
 
     /// - `work`: that of the contacts counted so far

@@ -192,6 +192,11 @@ impl Context<'_> {
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
         let mut scene =
             self.with_contacts(scene, &parts, &boundary_of_parts, &surface, rigid_bodies, &tied, &mut warnings)?;
+        for probe in probes.iter().flatten() {
+            if let Probe::ContactForce(probe) = probe {
+                scene.contacts.watch(*probe);
+            }
+        }
         if let Some(stress) = &self.case.in_situ
             && let Err(error) = scene.start_at_rest()
         {

@@ -20,6 +20,31 @@ impl Context<'_> {
         self.check_particle_sets();
         self.check_time_functions();
         self.check_bonded_statics();
+        self.check_contact_probes();
+    }
+
+    /// Probes of contact name two bodies of which one at least is not rigid.
+    fn check_contact_probes(&mut self) {
+        let case = self.case;
+        let names: Vec<&str> = case.bodies.iter().map(|body| body.name.value.as_str()).collect();
+        for probe in &case.probes {
+            let ProbeKind::ContactForce { on, from, .. } = &probe.kind else { continue };
+            let unknown = [on, from].map(|name| !names.contains(&name.value.as_str()));
+            for (name, _) in [on, from].into_iter().zip(unknown).filter(|(_, unknown)| *unknown) {
+                let mut diagnostic = Diagnostic::error(&name.place, format!("= \"{}\"", name.value));
+                diagnostic = diagnostic.expected(format!("the name of a body: {}", names.join(", ")));
+                if let Some(near) = nearest(&name.value, names.iter().copied()) {
+                    diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
+                }
+                self.diagnostics.push(diagnostic);
+            }
+            if unknown == [false; 2] && on.value == from.value {
+                self.error(&from.place, format!("= \"{}\", as `on`", from.value), "another body");
+            } else if case.tool(&on.value).is_some() && case.tool(&from.value).is_some() {
+                let found = format!("= \"{}\": rigid bodies do not touch each other", from.value);
+                self.error(&from.place, found, "a solid or a body of particles as one of both");
+            }
+        }
     }
 
     /// Every group that the case names must be in the mesh, with elements.

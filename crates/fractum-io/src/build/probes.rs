@@ -2,7 +2,9 @@
 
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
-use fractum_scene::{Along, Bonded, BondedBody, InsideCracks, PointProbe, Population, Probe, Supports};
+use fractum_scene::{
+    Along, Bonded, BondedBody, ContactBody, ContactProbe, InsideCracks, PointProbe, Population, Probe, Supports,
+};
 
 use super::Context;
 use super::bodies::{Numbering, Part};
@@ -80,6 +82,10 @@ impl Context<'_> {
                 }
                 Probe::Stress { elements, between: *between }
             }
+            ProbeKind::ContactForce { on, from, along } => {
+                let body = |name: &str| self.contact_body(name, solid, bonded);
+                Probe::ContactForce(ContactProbe { on: body(&on.value)?, from: body(&from.value)?, along: *along })
+            }
             ProbeKind::Energy(kind) => Probe::Energy(*kind),
             ProbeKind::Count(kind) => Probe::Count(*kind),
             ProbeKind::Momentum { along } => Probe::Momentum(*along),
@@ -101,6 +107,14 @@ impl Context<'_> {
             }
             ProbeKind::Expression(_) => return None,
         })
+    }
+
+    /// The body of this name as contact knows it.
+    fn contact_body(&self, name: &str, solid: &Solid, bonded: &Bonded) -> Option<ContactBody> {
+        let rigid = self.case.tool(name).map(ContactBody::Rigid);
+        let particles = || bonded.bodies().iter().position(|body| body.name == name).map(ContactBody::Particles);
+        let solids = || (0..solid.body_count()).find(|&body| solid.body(body).name == name).map(ContactBody::Solid);
+        rigid.or_else(particles).or_else(solids)
     }
 }
 

@@ -99,7 +99,7 @@ fn facets_count_where_all_of_their_nodes_fulfil_the_condition() {
 }
 
 /// What is said of a case that is wrong on its mesh.
-fn refused(conditions: &str) -> String {
+pub(crate) fn refused(conditions: &str) -> String {
     let mesh = structured_box([2, 2, 2], Vec3::repeat(0.1), None);
     let case = parse_case(&format!("{SOLID}{conditions}"), Path::new("case.toml"), &[]).unwrap();
     match build_scene(&case, &mesh, Vec::new(), Vec::new()) {

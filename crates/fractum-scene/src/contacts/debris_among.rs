@@ -145,6 +145,16 @@ impl DebrisAmong {
         rows.iter().copied().fold(0.0, f64::max)
     }
 
+    /// Has the forces of the pairs kept from step to step.
+    pub(super) fn keep_loads(&mut self) {
+        self.contacts.keep_loads();
+    }
+
+    /// Pairs of a particle and a discrete element, with the force on the second [N].
+    pub(super) fn loads(&self) -> impl Iterator<Item = ([u32; 2], Vec3)> {
+        self.contacts.loads()
+    }
+
     /// Number of contacts at the last step.
     pub(super) fn touching(&self) -> usize {
         self.contacts.touching().count()

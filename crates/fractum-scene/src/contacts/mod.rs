@@ -1,6 +1,7 @@
 //! Contacts of particles that have nodes of their own - loose and bonded ones - with each other, with rigid bodies and
 //! with the facets of solids; and of the nodes of solids with all of these.
 
+mod between;
 mod debris_among;
 mod node_contacts;
 mod nodes_on_shape;
@@ -15,6 +16,8 @@ use fractum_fem::Solid;
 use fractum_math::{HalfSteps, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
+pub(crate) use between::Touching;
+pub use between::{ContactBody, ContactProbe};
 pub use node_contacts::pieces;
 pub(crate) use nodes_on_shape::Candidate;
 pub use nodes_on_shape::NodesOnShape;
@@ -69,6 +72,8 @@ pub struct Contacts {
     rayleigh_frequency: f64,
     /// Largest squared frequency that contacts have given to nodes of solids so far [1/s²].
     node_frequency_square: f64,
+    /// Forces between bodies that probes ask for [N].
+    watched: Vec<(ContactProbe, f64)>,
 }
 
 /// A function of time that can be shown.
@@ -167,6 +172,7 @@ impl Contacts {
             rigid_bodies,
             rayleigh_frequency,
             node_frequency_square: 0.0,
+            watched: Vec::new(),
         }
     }
 

@@ -57,6 +57,15 @@ pub enum ProbeKind {
         /// Unit vector.
         along: Vec3,
     },
+    /// Force of contact of one body on another [N].
+    ContactForce {
+        /// Name of the body that feels it.
+        on: Spanned<String>,
+        /// Name of the body that it comes from.
+        from: Spanned<String>,
+        /// Which component, at each place of contact.
+        along: Along,
+    },
     /// Volume mean of a stress component over the elements of a group [Pa].
     Stress {
         /// Mesh group of elements.

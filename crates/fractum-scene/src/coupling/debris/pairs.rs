@@ -162,6 +162,11 @@ impl Debris {
         work
     }
 
+    /// Pairs of nodes with the force on the second [N].
+    pub(crate) fn loads(&self) -> impl Iterator<Item = ([u32; 2], Vec3)> {
+        self.state.pairs.iter().map(|pair| (pair.nodes, pair.force))
+    }
+
     /// Largest squared frequency that the contacts near closing can add to a node, by Gershgorin's rows [1/s²].
     pub(crate) fn frequency_square(&self, solid: &Solid) -> f64 {
         let mut rows = vec![0.0; self.len()];

@@ -1,0 +1,122 @@
+//! Force of contact between two named bodies, summed up for the probes that ask for it.
+
+use fractum_dem::Particles;
+use fractum_fem::Solid;
+use fractum_math::Vec3;
+
+use super::nodes_on_shape::NodesOnShape;
+use super::{Contacts, DebrisAmong};
+use crate::conditions::Along;
+use crate::coupling::Debris;
+
+/// A body as contact knows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactBody {
+    /// A solid body, with its nodes, facets and discrete elements.
+    Solid(usize),
+    /// A rigid body.
+    Rigid(usize),
+    /// A bonded or loose body.
+    Particles(usize),
+}
+
+/// Which force of contact is wanted: on one body, from another, along a direction at each place of contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactProbe {
+    /// The body that feels the force.
+    pub on: ContactBody,
+    /// The body that it comes from.
+    pub from: ContactBody,
+    /// Which component.
+    pub along: Along,
+}
+
+/// Everything that touches.
+pub(crate) struct Touching<'a> {
+    pub(crate) solid: &'a Solid,
+    pub(crate) debris: &'a Debris,
+    pub(crate) particles: &'a Particles,
+    pub(crate) shapes: &'a [NodesOnShape],
+}
+
+impl Contacts {
+    /// Has the force between two bodies summed up at every instant that is measured.
+    pub fn watch(&mut self, probe: ContactProbe) {
+        if self.watched.iter().all(|(known, _)| *known != probe) {
+            self.watched.push((probe, 0.0));
+        }
+        self.among.iter_mut().for_each(|among| among.keep_loads());
+        self.debris.iter_mut().for_each(DebrisAmong::keep_loads);
+    }
+
+    /// The force at the last instant that was measured [N]; none of bodies that are not watched.
+    pub fn force_between(&self, probe: &ContactProbe) -> Option<f64> {
+        self.watched.iter().find(|(known, _)| known == probe).map(|(_, force)| *force)
+    }
+
+    /// Sums up the forces of the contacts as they were just found; costs nothing without probes.
+    pub(crate) fn sum_watched(&mut self, touching: &Touching) {
+        if self.watched.is_empty() {
+            return;
+        }
+        let mut watched = std::mem::take(&mut self.watched);
+        watched.iter_mut().for_each(|(_, force)| *force = 0.0);
+        self.each_contact(touching, |place, [first, second], on_first| {
+            for (ContactProbe { on, from, along }, sum) in &mut watched {
+                if (*on, *from) == (first, second) {
+                    *sum += along.at(&place).dot(&on_first);
+                } else if (*on, *from) == (second, first) {
+                    *sum -= along.at(&place).dot(&on_first);
+                }
+            }
+        });
+        self.watched = watched;
+    }
+
+    /// Visits every contact between two bodies: its place, the bodies, and the force on the first [N].
+    fn each_contact(&self, touching: &Touching, mut visit: impl FnMut(Vec3, [ContactBody; 2], Vec3)) {
+        let Touching { solid, debris, particles, shapes } = touching;
+        let place = |i: u32| particles.position[i as usize];
+        let particle = |i: u32| ContactBody::Particles(self.body[i as usize] as usize);
+        let node = |n: u32| ContactBody::Solid(debris.body(n));
+        for ([i, j], force) in self.among.iter().flat_map(|among| among.loads()) {
+            visit((place(i) + place(j)) * 0.5, [particle(i), particle(j)], -force);
+        }
+        for (index, (contacts, _)) in self.on_tools.iter().enumerate() {
+            for touch in contacts.touches() {
+                let at = place(touch.sphere) + touch.offset;
+                visit(at, [particle(touch.sphere), ContactBody::Rigid(index)], touch.force);
+            }
+        }
+        for (index, nodes) in self.nodes_on_tools.iter().enumerate() {
+            for (touch, at, own) in nodes.iter().flat_map(|nodes| nodes.touches()) {
+                visit(at, [node(own), ContactBody::Rigid(index)], touch.force);
+            }
+        }
+        for ground in &self.solids {
+            let own = ContactBody::Solid(ground.body());
+            for touch in ground.contacts().touches() {
+                visit(place(touch.sphere) + touch.offset, [particle(touch.sphere), own], touch.force);
+            }
+            for (touch, at, other) in ground.visitors().into_iter().flat_map(|nodes| nodes.touches()) {
+                visit(at, [node(other), own], touch.force);
+            }
+        }
+        let count = particles.len();
+        for ([i, j], force) in self.debris.iter().flat_map(DebrisAmong::loads) {
+            // Only pairs of a particle and a discrete element touch here.
+            let own = debris.state().nodes[j as usize - count];
+            visit((place(i) + solid.position(own as usize)) * 0.5, [particle(i), node(own)], -force);
+        }
+        for shape in *shapes {
+            let Some(index) = shape.rigid_body() else { continue };
+            for c in &shape.candidates {
+                visit(solid.position(c.node as usize) + c.arm, [node(c.node), ContactBody::Rigid(index)], c.force);
+            }
+        }
+        for (nodes, force) in debris.loads() {
+            let at = nodes.map(|n| solid.position(n as usize));
+            visit((at[0] + at[1]) * 0.5, nodes.map(node), -force);
+        }
+    }
+}
