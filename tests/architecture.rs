@@ -1,8 +1,12 @@
 //! Who may name whom, and what may happen where: the rules of `docs/architecture.md`, held by a test.
 
+mod modules;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use modules::Modules;
 
 /// What each crate may name of the others. A new crate or arrow is entered here on purpose, or not at all.
 const ARROWS: [(&str, &[&str]); 13] = [
@@ -315,6 +319,18 @@ fn functions_types_and_files_stay_small() {
 fn sizes_are_measured_as_they_are_written() {
     let code = "pub(crate) struct A {\n    /// x\n    pub a: f64,\n    b: u8,\n}\n\nimpl A {\n    fn f(\n        &self,\n    ) -> f64 {\n        1.0\n    }\n    fn g(&self);\n}\n";
     assert_eq!(extents(code), [("A".to_owned(), "type", 2), ("f".to_owned(), "function", 5)]);
+}
+
+#[test]
+fn modules_name_each_other_in_no_circle() {
+    let mut found = Vec::new();
+    for (name, _) in ARROWS {
+        let src = crates().join(name).join("src");
+        let sources = sources(name);
+        let files = sources.iter().map(|(path, code)| (path.strip_prefix(&src).unwrap(), code.as_str()));
+        found.extend(Modules::new(files).circles().into_iter().map(|circle| format!("{name}: {circle}")));
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
 /// The crates from the top down, each with those it names that no other one of its names leads to.

@@ -5,7 +5,8 @@ use fractum_pack::{Convention, Domain, PackSpec, pack};
 use serde::Serialize;
 
 use crate::inversion::check_material;
-use crate::strength::{self, Strength, StrengthCriterion};
+use crate::pull::StrengthCriterion;
+use crate::strength::{self, Strength};
 use crate::{CalibrateError, Inverted, Micro, Sample, invert, lab, laws};
 
 /// What to calibrate.

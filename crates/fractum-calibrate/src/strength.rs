@@ -1,41 +1,12 @@
 //! The strength of a criterion that gives a body its tensile strength.
 
 use fractum_dem::FractureCriterion;
-use fractum_dem::criterion::{BeamRankine, EndMoments, Hydrostatic, Level, Principal};
 use fractum_pack::{Convention, Domain, PackSpec, pack};
 use serde::Serialize;
 
+use crate::pull::{StrengthCriterion, pull};
 use crate::strength_law::{self, READINGS};
-use crate::{CalibrateError, Micro, Sample, lab, published};
-
-/// Criteria whose one strength can be calibrated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum StrengthCriterion {
-    /// Largest principal virial stress of a particle and its neighbours.
-    Principal,
-    /// Largest principal stress in the beams.
-    Beam,
-    /// Mean virial stress of a particle.
-    Hydrostatic,
-}
-
-impl StrengthCriterion {
-    /// The criterion with a strength [Pa].
-    pub fn with(self, strength: f64) -> FractureCriterion {
-        match self {
-            StrengthCriterion::Principal => FractureCriterion::Principal(Principal {
-                tensile_strength: strength,
-                compressive_strength: None,
-                level: Level::Neighbours,
-            }),
-            StrengthCriterion::Beam => {
-                FractureCriterion::BeamRankine(BeamRankine { strength, moments: EndMoments::default() })
-            }
-            StrengthCriterion::Hydrostatic => FractureCriterion::Hydrostatic(Hydrostatic { strength }),
-        }
-    }
-}
+use crate::{CalibrateError, Micro, Sample, published};
 
 /// Strengths of a criterion [Pa], by what shall happen at the asked tensile strength.
 #[derive(Clone, Debug, Serialize)]
@@ -87,18 +58,6 @@ pub fn calibrate(samples: &[&Sample], asked: f64, criterion: StrengthCriterion) 
     Ok(Strength { criterion, peak: mean(&peak), first_break: mean(&first), range, law, own_law })
 }
 
-/// A tension test to the load peak.
-pub(crate) fn pull(sample: &Sample, asked: f64, criterion: FractureCriterion) -> Result<lab::Broken, CalibrateError> {
-    if !(asked.is_finite() && asked > 0.0) {
-        let expected = "a positive number of pascals";
-        return Err(CalibrateError::Material { what: "tensile strength", value: asked, expected });
-    }
-    let test = lab::Failure::Tension;
-    // Strength is asked, not the whole fall of the load.
-    let options = lab::FailureOptions { stop: 0.9, ..lab::FailureOptions::new(test, criterion) };
-    lab::break_sample(sample, test, &options)
-}
-
 /// Bonds of which a criterion's strengths are asked.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BondKind {
@@ -136,7 +95,7 @@ pub fn strength_factor(bonds: &BondKind, asked: f64, criterion: FractureCriterio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Micro;
+    use crate::{Micro, lab};
     use fractum_pack::{Convention, Domain, PackSpec, pack};
 
     #[test]

@@ -7,7 +7,7 @@ use fractum_pack::{Convention, Domain, PackSpec, pack};
 use rayon::prelude::*;
 
 use crate::laws::{least_squares, products};
-use crate::strength::{StrengthCriterion, pull};
+use crate::pull::{StrengthCriterion, pull};
 use crate::{CalibrateError, Micro, Sample};
 
 /// What a strength is read off from.

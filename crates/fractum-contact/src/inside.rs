@@ -2,7 +2,7 @@
 
 use fractum_math::{Vec3, angle_between};
 
-use crate::hierarchy::Foot;
+use crate::foot::Foot;
 use crate::surface::{FacetMesh, Feature, area_vector};
 
 /// Distance over the longest edge below which the direction to the closest place is lost in rounding.

@@ -16,6 +16,7 @@
 
 mod broad_phase;
 mod error;
+mod foot;
 mod frame;
 mod hierarchy;
 mod inside;
@@ -27,13 +28,16 @@ mod sphere_facet;
 mod sphere_sphere;
 pub mod surface;
 mod surface_block;
+mod touch;
 
 pub use broad_phase::close_pairs;
 pub use error::SurfaceError;
+pub use foot::Foot;
 pub use frame::Frame;
-pub use hierarchy::{DoubleHierarchy, Foot};
+pub use hierarchy::DoubleHierarchy;
 pub use nearest::{Nearest, nearest_facets};
 pub use shape::{Outside, Shape};
-pub use sphere_facet::{Spheres, Surface, SurfaceContacts, Touch};
+pub use sphere_facet::SurfaceContacts;
 pub use sphere_sphere::SphereContacts;
 pub use surface::FacetMesh;
+pub use touch::{Spheres, Surface, Touch};

@@ -1,6 +1,6 @@
 use fractum_math::Vec3;
 
-use crate::hierarchy::Foot;
+use crate::foot::Foot;
 use crate::surface::{FacetMesh, closest_on_segment};
 
 /// Passes between the contacts of a sphere with one surface, and the weights that follow from them; keeps its working

@@ -2,7 +2,7 @@ use fractum_math::Vec3;
 use fractum_math::elementary::hypot;
 use serde::{Deserialize, Serialize};
 
-use crate::hierarchy::Foot;
+use crate::foot::Foot;
 
 /// A rigid shape in its own axes, with its centre at the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

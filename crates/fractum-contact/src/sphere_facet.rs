@@ -5,88 +5,14 @@ use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use crate::frame::Frame;
 use crate::law::ContactLaw;
-use crate::shape::Shape;
 use crate::surface::FacetMesh;
 use crate::surface_block::Block;
+use crate::touch::{Spheres, Surface, Touch};
 
 /// Spheres handled as one piece of parallel work.
 const BLOCK: usize = 256;
-
-/// A population of spheres; one entry per sphere in every array.
-#[derive(Clone, Copy, Debug)]
-pub struct Spheres<'a> {
-    /// Centres [m].
-    pub position: &'a [Vec3],
-    /// Velocities [m/s].
-    pub velocity: &'a [Vec3],
-    /// Angular velocities [rad/s].
-    pub spin: &'a [Vec3],
-    /// Radii [m].
-    pub radius: &'a [f64],
-}
-
-/// What spheres touch.
-#[derive(Clone, Copy, Debug)]
-pub enum Surface<'a> {
-    /// Facets of a rigid body; points in the axes of the body [m].
-    Rigid {
-        /// Facets.
-        surface: &'a FacetMesh,
-        /// Points in the axes of the body [m].
-        points: &'a [Vec3],
-        /// Where the body is.
-        frame: &'a Frame,
-    },
-    /// Facets of a body that deforms.
-    Deformable {
-        /// Facets.
-        surface: &'a FacetMesh,
-        /// Points [m].
-        points: &'a [Vec3],
-        /// Velocities of the points [m/s].
-        velocity: &'a [Vec3],
-    },
-    /// A rigid shape, or the container of that shape.
-    Shape {
-        /// Its shape.
-        shape: Shape,
-        /// Whether spheres are inside.
-        hollow: bool,
-        /// Where it is.
-        frame: &'a Frame,
-    },
-}
-
-/// A contact of a sphere with the ground.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Touch<M> {
-    /// Sphere.
-    pub sphere: u32,
-    /// Feature of the surface.
-    pub feature: u32,
-    /// Connected part of the surface; the history of a contact belongs to the sphere and this part.
-    pub(crate) part: u32,
-    /// From the centre of the sphere to the contact [m].
-    pub offset: Vec3,
-    /// Overlap [m].
-    pub overlap: f64,
-    pub(crate) normal: Vec3,
-    pub(crate) weight: f64,
-    pub(crate) memory: M,
-    /// Force on the sphere [N]; the ground feels the opposite at the contact.
-    pub force: Vec3,
-    /// Moment on the sphere about its centre [N m].
-    pub moment: Vec3,
-    /// Couple on the sphere, part of `moment`; a rigid ground feels the opposite [N m].
-    pub couple: Vec3,
-    pub(crate) stored: f64,
-    pub(crate) friction: f64,
-    pub(crate) damping: f64,
-}
 
 /// Contacts of a population of spheres with one ground, with their memories.
 ///

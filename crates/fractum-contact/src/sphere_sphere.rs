@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::broad_phase::close_pairs;
 use crate::law::{ContactLaw, PairMotion};
-use crate::sphere_facet::Spheres;
+use crate::touch::Spheres;
 
 /// Pairs handled as one piece of parallel work.
 const BLOCK: usize = 1024;
@@ -24,8 +24,9 @@ pub struct SphereContacts<L: ContactLaw> {
     memories: Vec<L::Memory>,
     /// Whether each pair touched at the last step.
     touching: Vec<bool>,
-    /// Forces of the pairs, where more than one thread finds them.
+    /// Forces of the pairs, where more than one thread finds them or someone asks for them.
     loads: Vec<PairLoad>,
+    keeps_loads: bool,
     /// Pairs of each sphere, ascending: offsets and values.
     starts: Vec<u32>,
     pairs_of: Vec<u32>,
@@ -54,6 +55,7 @@ impl<L: ContactLaw> SphereContacts<L> {
             memories: Vec::new(),
             touching: Vec::new(),
             loads: Vec::new(),
+            keeps_loads: false,
             starts: Vec::new(),
             pairs_of: Vec::new(),
         }
@@ -115,7 +117,8 @@ impl<L: ContactLaw> SphereContacts<L> {
     ///
     /// - `dt` [s]: the step that led here
     pub fn add_forces(&mut self, spheres: &Spheres, force: &mut [Vec3], moment: &mut [Vec3], dt: f64) -> Work {
-        if rayon::current_num_threads() == 1 || self.pairs.len() < 2 * BLOCK {
+        let alone = rayon::current_num_threads() == 1 || self.pairs.len() < 2 * BLOCK;
+        if alone && !self.keeps_loads {
             return self.add_one_by_one(spheres, force, moment, dt);
         }
         let SphereContacts { pairs, laws, memories, touching, loads, starts, pairs_of, .. } = self;
@@ -142,6 +145,17 @@ impl<L: ContactLaw> SphereContacts<L> {
         let mut work = Work::default();
         loads.iter().for_each(|load| work += load.work);
         work
+    }
+
+    /// Has the forces of the pairs kept from step to step; of the same bits, and a little slower on one thread.
+    pub fn keep_loads(&mut self) {
+        self.keeps_loads = true;
+    }
+
+    /// Pairs with the force on the second sphere at the last step [N], zero where they do not touch; none unless they
+    /// [are kept](SphereContacts::keep_loads).
+    pub fn loads(&self) -> impl Iterator<Item = ([u32; 2], Vec3)> {
+        self.pairs.iter().zip(&self.loads).map(|(pair, load)| (*pair, load.force))
     }
 
     fn add_one_by_one(&mut self, spheres: &Spheres, force: &mut [Vec3], moment: &mut [Vec3], dt: f64) -> Work {

@@ -4,11 +4,12 @@ use std::ops::Range;
 
 use fractum_math::{Vec3, Work};
 
-use crate::hierarchy::{DoubleHierarchy, Foot};
+use crate::foot::Foot;
+use crate::hierarchy::DoubleHierarchy;
 use crate::inside::foot_from_inside;
 use crate::law::{ContactLaw, PairMotion};
-use crate::sphere_facet::{Spheres, Surface, Touch};
 use crate::surface::FacetMesh;
+use crate::touch::{Spheres, Surface, Touch};
 
 /// Cosine of the angle between the normals of two steps beyond which a contact is a new one.
 const SAME_CONTACT: f64 = 0.5;
@@ -229,26 +230,6 @@ fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L) -> Work {
     let motion = PairMotion { normal: touch.normal, overlap: 0.0, velocity: still, spin: still, dt: 0.0 };
     let force = law.force(&motion, &mut memory);
     Work::contact(0.0, force.friction * touch.weight, force.damping * touch.weight)
-}
-
-impl Surface<'_> {
-    fn part(&self, facet: u32) -> u32 {
-        match self {
-            Surface::Rigid { surface, .. } | Surface::Deformable { surface, .. } => surface.part(facet),
-            Surface::Shape { .. } => 0,
-        }
-    }
-
-    /// Velocity of the ground at a place on a feature [m/s] and its angular velocity [rad/s]; that of a facet that
-    /// deforms counts as zero.
-    fn motion_at(&self, feature: u32, place: &Vec3) -> (Vec3, Vec3) {
-        match self {
-            Surface::Rigid { frame, .. } | Surface::Shape { frame, .. } => (frame.velocity_at(place), frame.spin),
-            Surface::Deformable { surface, points, velocity } => {
-                (surface.interpolate(feature, place, points, velocity), Vec3::zeros())
-            }
-        }
-    }
 }
 
 /// Feet of a sphere, in space.

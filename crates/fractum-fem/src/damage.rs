@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::block::Cells;
 use crate::body::Kinematics;
-use crate::kernel::{self, CellLaw, Hooke};
+use crate::hooke::Hooke;
+use crate::kernel::{self, CellLaw};
 use crate::material::{Criterion, DamageLaw, Softening};
 use crate::threshold::Threshold;
 

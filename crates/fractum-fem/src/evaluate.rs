@@ -4,10 +4,10 @@ use fractum_math::Vec3;
 
 use crate::block::{Cells, Scratch};
 use crate::body::Kinematics;
+use crate::body_model::BodyModel;
 use crate::damage::{Advance, EdgeCells, EdgeField, EdgesInStep};
 use crate::kernel::{self, ElasticCells, General};
 use crate::lane::Lane;
-use crate::solid::BodyModel;
 use crate::standard::StandardCells;
 use crate::viscosity::ViscousCells;
 

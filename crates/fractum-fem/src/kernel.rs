@@ -3,9 +3,10 @@
 use fractum_math::{Mat3, Sym3, widest};
 
 use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
-use crate::body::{Body, ElementKind, Kinematics, Plane};
-use crate::inverted::without_reflection;
+use crate::body::Kinematics;
+use crate::hooke::Hooke;
 use crate::lane::Lane;
+use crate::reflection::without_reflection;
 use crate::viscosity::{BodyViscosity, ViscousCells};
 
 /// Stress of a cell for its strain; owns the history of the cells of a block.
@@ -14,34 +15,6 @@ pub(crate) trait CellLaw {
     fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3;
     /// Part of the stiffness that is left, 1 - d.
     fn integrity(&self, cell: usize) -> f64;
-}
-
-/// Isotropic Hooke's law with the plane-stress variant.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Hooke {
-    pub(crate) lambda: f64,
-    pub(crate) mu: f64,
-    /// 1, or 0 where the stress across the thickness vanishes.
-    pub(crate) zz: f64,
-}
-
-impl Hooke {
-    /// The law of a body, with the Lamé parameter of plane stress where it is one.
-    pub(crate) fn of(body: &Body) -> Self {
-        let (lambda, mu) = (body.elastic.lame_lambda(), body.elastic.shear_modulus());
-        if body.shape == ElementKind::T3 && body.plane == Plane::Stress {
-            return Hooke { lambda: 2.0 * lambda * mu / (lambda + 2.0 * mu), mu, zz: 0.0 };
-        }
-        Hooke { lambda, mu, zz: 1.0 }
-    }
-
-    #[inline(always)]
-    pub(crate) fn stress(&self, strain: Sym3) -> Sym3 {
-        let [xx, yy, zz, xy, yz, zx] = strain.0;
-        let pressure = self.lambda * (xx + yy + zz);
-        let g = 2.0 * self.mu;
-        Sym3([pressure + g * xx, pressure + g * yy, self.zz * (pressure + g * zz), g * xy, g * yz, g * zx])
-    }
 }
 
 /// An elastic block: sums its energy when asked to.
@@ -295,7 +268,7 @@ mod tests {
     use fractum_mesh::generate::{Jitter, structured_box};
 
     use super::*;
-    use crate::body::ElementKind;
+    use crate::body::{Body, ElementKind};
     use crate::material::Elastic;
     use crate::solid::Solid;
     use crate::viscosity::Viscosity;

@@ -26,6 +26,7 @@
 
 mod block;
 mod body;
+mod body_model;
 mod cell;
 mod central_difference;
 mod crack;
@@ -36,10 +37,13 @@ mod element;
 mod error;
 mod evaluate;
 mod gate;
+mod gated_damage;
+mod hooke;
 mod inverted;
 mod kernel;
 mod lane;
 pub mod material;
+mod reflection;
 mod removal;
 mod secant;
 mod solid;

@@ -177,7 +177,7 @@ impl Block {
     }
 
     /// Stress of one cell with its damage [Pa].
-    fn nominal_stress(&self, cell: usize, hooke: &kernel::Hooke, strain: Sym3) -> Sym3 {
+    fn nominal_stress(&self, cell: usize, hooke: &crate::hooke::Hooke, strain: Sym3) -> Sym3 {
         let full = hooke.stress(strain);
         match &self.law {
             // With unilateral damage the closed part keeps its stress.

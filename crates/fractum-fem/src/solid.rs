@@ -5,35 +5,16 @@ use rayon::prelude::*;
 
 use crate::block::{NodeSlots, Scratch};
 use crate::body::{Body, BodyEdges, Formulation};
+pub(crate) use crate::body_model::BodyModel;
 use crate::cell::Geometry;
 use crate::damage::{EdgeCells, EdgeField, Softens};
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::gate::Gate;
-use crate::kernel::Hooke;
+use crate::hooke::Hooke;
 use crate::standard::{StandardCells, StandardDamage};
 use crate::threshold::Threshold;
 use crate::viscosity::{BodyViscosity, ViscousCells};
-
-/// A body as it runs.
-#[derive(Clone, Debug)]
-pub(crate) struct BodyModel {
-    pub(crate) body: Body,
-    pub(crate) hooke: Hooke,
-    pub(crate) viscosity: Option<BodyViscosity>,
-    pub(crate) alive: Vec<bool>,
-    /// Edges, with damage or in the smoothed formulation.
-    pub(crate) edges: Option<BodyEdges>,
-    pub(crate) elements_of_edge: Ragged,
-    /// Block and cell of each cell of the body (element, or edge if smoothed).
-    pub(crate) location: Vec<(u32, u32)>,
-    pub(crate) standard: Option<StandardDamage>,
-    pub(crate) gate: Option<Gate>,
-    /// Edges whose strength was lowered to fit their length.
-    pub(crate) reduced_edges: usize,
-    /// Largest ratio of a characteristic length to the largest one that softening allows.
-    pub(crate) largest_length_ratio: f64,
-}
 
 /// Finite elements of all solid bodies, with their nodes.
 ///
@@ -394,7 +375,9 @@ impl BodyModel {
                 let (block, _) = model.location[edge];
                 matches!(blocks[block as usize - first_block].law, BlockLaw::Edges(_))
             };
-            model.gate = Some(Gate::new(&model, nodes, |element| volumes[element as usize], armed));
+            let edges = model.edges.as_ref().map_or(&[][..], |edges| edges.nodes.as_slice());
+            let edges = (edges, &model.elements_of_edge);
+            model.gate = Some(Gate::new(&model.body, edges, nodes, |element| volumes[element as usize], armed));
         }
         Ok((model, blocks))
     }

@@ -5,7 +5,7 @@ use nalgebra::{Matrix6, SMatrix};
 use rayon::prelude::*;
 
 use crate::cell::Geometry;
-use crate::kernel::Hooke;
+use crate::hooke::Hooke;
 use crate::solid::Solid;
 
 /// Lanczos steps of the estimate.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::{ElementKind, Formulation};
 use crate::cell::Geometry;
 use crate::element::regular_edge;
-use crate::kernel::Hooke;
+use crate::hooke::Hooke;
 use crate::solid::{BodyModel, Solid};
 
 /// Least b₂² l |ε̇_v|/c that the time step counts with.

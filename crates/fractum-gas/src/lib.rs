@@ -23,7 +23,6 @@
 //! assert!((network.total().mass / mass - 1.0).abs() < 1e-12);
 //! ```
 
-mod implicit;
 mod law;
 mod network;
 mod slit;

@@ -2,6 +2,8 @@ use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
+mod implicit;
+
 use crate::law::{EquationOfState, Law};
 use crate::slit::{Passage, SlitFlow, Upstream};
 
@@ -72,7 +74,7 @@ pub(crate) struct Scratch {
     pub(crate) outflow: Vec<f64>,
     /// How fast the pressure of each cell follows its neighbours [1/s].
     pub(crate) rate: Vec<f64>,
-    pub(crate) implicit: crate::implicit::Scratch,
+    pub(crate) implicit: implicit::Scratch,
 }
 
 /// Cells of gas.

@@ -2,13 +2,15 @@
 
 mod hertz;
 mod linear;
+mod motion;
 mod parameters;
 mod restitution;
 mod rolling;
 mod slip;
 
 pub use hertz::{ElasticMaterial, Hertz, HertzMemory, MaterialPair};
-pub use linear::{ContactForce, ContactMemory, Linear, PairMotion};
+pub use linear::{ContactMemory, Linear};
+pub use motion::{ContactForce, PairMotion};
 pub use parameters::ContactParameters;
 pub use restitution::{damping_of_restitution, restitution_of_damping};
 pub use rolling::{Rolling, RollingMemory};

@@ -1,7 +1,7 @@
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::PairMotion;
+use super::motion::PairMotion;
 use super::slip::slip_to_cone;
 
 /// Friction against rolling: an elastic-plastic spring between the rotations of both bodies.

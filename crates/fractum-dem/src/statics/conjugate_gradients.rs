@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::Tolerance;
-use super::lattice::{BLOCK, Dof6, Lattice, dot};
+use super::lattice::{BLOCK, Dof6, Equilibrium, Lattice, LatticeSupports, dot};
 use crate::DemError;
 
 /// Unknowns and working arrays of a solve, in scaled variables (rotations times a length of the lattice).
@@ -100,4 +100,60 @@ impl Iterate {
 #[inline]
 fn weighted(a: &Dof6, m: &Dof6) -> f64 {
     (0..6).map(|d| a[d] * a[d] * m[d]).sum()
+}
+
+impl Lattice {
+    /// Solves K u = loads under supports by preconditioned conjugate gradients, from a first guess.
+    ///
+    /// Rigid motions that nothing prevents are left as in the guess (the loads must not drive them).
+    ///
+    /// - `loads`: forces [N] and moments [N m] per particle, or none
+    /// - `guess`: displacements and rotations to start from; prescribed values replace theirs
+    ///
+    /// # Errors
+    /// Array lengths; [`DemError::NotConverged`].
+    pub fn solve(
+        &self,
+        supports: &LatticeSupports,
+        loads: Option<&[Dof6]>,
+        guess: &[Dof6],
+        tolerance: Tolerance,
+    ) -> Result<Equilibrium, DemError> {
+        let n = self.len();
+        for (what, found) in
+            [("supports", supports.fixed.len()), ("guess", guess.len()), ("loads", loads.map_or(n, <[_]>::len))]
+        {
+            if found != n {
+                return Err(DemError::Length { what, found, expected: n });
+            }
+        }
+        let back = 1.0 / self.scale();
+        let mut x: Vec<Dof6> = guess.iter().map(|g| self.rescale(g, self.scale())).collect();
+        for i in 0..n {
+            let value = self.rescale(&supports.value[i], self.scale());
+            (0..6).filter(|d| supports.fixed[i] >> d & 1 == 1).for_each(|d| x[i][d] = value[d]);
+        }
+        let load = |i: usize| loads.map_or([0.0; 6], |l| self.rescale(&l[i], back));
+        // The reference force counts the reactions of the first guess, so that it does not vanish for pure supports.
+        let mut r = vec![[0.0; 6]; n];
+        self.apply(&x, &vec![0; n], &mut r);
+        let mut reference = 0.0;
+        for i in 0..n {
+            let applied = load(i);
+            for d in 0..6 {
+                let fixed = supports.fixed[i] >> d & 1 == 1;
+                reference += if fixed { r[i][d] * r[i][d] } else { applied[d] * applied[d] };
+                r[i][d] = if fixed { 0.0 } else { applied[d] - r[i][d] };
+            }
+        }
+        let target = tolerance.residual * tolerance.residual * reference;
+        let mut iterate = Iterate::new(self, x, r);
+        let iterations = iterate.solve(self, &supports.fixed, target, reference, tolerance)?;
+        let mut x = iterate.x;
+        let mut force = iterate.r;
+        let work = self.apply(&x, &vec![0; n], &mut force);
+        x.iter_mut().for_each(|v| *v = self.rescale(v, back));
+        force.iter_mut().for_each(|v| *v = self.rescale(v, self.scale()));
+        Ok(Equilibrium { state: x, force, energy: 0.5 * work, iterations })
+    }
 }

@@ -45,7 +45,6 @@ mod place;
 mod quantity;
 mod read;
 mod reader;
-mod reading;
 mod schema;
 mod time_function;
 mod tree;

@@ -1,5 +1,7 @@
 //! Typed access to the tables of a case: every mistake is noted, none ends the reading.
 
+mod reading;
+
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -7,10 +9,11 @@ use std::path::PathBuf;
 use super::expression::{Compiled, ExpressionError, Named, Names, Op, Type, compile};
 use super::key_kind::KeyKind;
 use super::keys::{Unknown, describe};
-use super::reading::{Reading, State};
 use super::tree::{Entry, Node, Value, join};
 use super::unit::Dimension;
 use super::{Choice, Diagnostic, Place, nearest};
+pub(super) use reading::Reading;
+use reading::State;
 
 /// Mistakes that are listed, and to which suggestions are looked for; beyond them a file is probably of another kind.
 pub(super) const MOST_MISTAKES: usize = 100;

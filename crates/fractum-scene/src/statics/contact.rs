@@ -171,6 +171,7 @@ impl Scene {
         }
         let on_grounds: f64 = self.shape_contacts.iter().flat_map(|ground| &ground.candidates).map(|c| c.stored).sum();
         self.ledger[EnergyKind::Contact] = on_grounds + self.debris.stored();
+        self.sum_watched_contacts();
     }
 
     /// Whether anything can touch at equilibrium.

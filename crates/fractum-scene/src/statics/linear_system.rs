@@ -3,7 +3,7 @@ use fractum_math::Vec3;
 use fractum_sparse::SparseError;
 
 use super::contact::Spring;
-use super::settings::LinearSolver;
+use super::settings::{LinearSolver, StaticSettings};
 use super::system::{LinearWork, System};
 use crate::scene::Scene;
 
@@ -82,5 +82,17 @@ impl LinearSystem {
             LinearSystem::Plane(system) => system.work,
             LinearSystem::Space(system) => system.work,
         }
+    }
+}
+
+impl StaticSettings {
+    /// The linear system of a scene.
+    ///
+    /// - `touching`: nodes coupled beside those of cells
+    pub(super) fn lay_out(&self, scene: &Scene, touching: &[[u32; 2]]) -> Result<LinearSystem, SparseError> {
+        let elastic = !scene.solid.has_damage();
+        let reuse = if elastic { (self.end / self.step).ceil() as usize } else { 2 };
+        let held = scene.supports().held();
+        LinearSystem::new(&scene.solid, held, self.linear, reuse, self.linear_tolerance, touching)
     }
 }

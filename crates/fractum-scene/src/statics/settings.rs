@@ -1,9 +1,6 @@
 use fractum_fem::LocalDamping;
-use fractum_sparse::SparseError;
 
-use super::linear_system::LinearSystem;
 use super::opening::Opening;
-use crate::scene::Scene;
 
 /// How the load parameter proceeds.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,16 +55,4 @@ pub struct StaticSettings {
     /// Damping of the motion between two states of equilibrium; without it, twice the critical damping of the first period, so
     /// that it creeps to the next one instead of shooting past it.
     pub damping: Option<LocalDamping>,
-}
-
-impl StaticSettings {
-    /// The linear system of a scene.
-    ///
-    /// - `touching`: nodes coupled beside those of cells
-    pub(super) fn lay_out(&self, scene: &Scene, touching: &[[u32; 2]]) -> Result<LinearSystem, SparseError> {
-        let elastic = !scene.solid.has_damage();
-        let reuse = if elastic { (self.end / self.step).ceil() as usize } else { 2 };
-        let held = scene.supports().held();
-        LinearSystem::new(&scene.solid, held, self.linear, reuse, self.linear_tolerance, touching)
-    }
 }

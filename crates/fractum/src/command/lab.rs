@@ -12,7 +12,7 @@ use fractum_pack::{Convention, Domain, PackSpec, Packing, pack};
 
 use super::convergence::{Diagram, Series, svg};
 use super::lab_break::{self, BreakArguments};
-use super::lab_strength::{self, StrengthArguments};
+use super::lab_strength::{self, StrengthArguments, spread};
 use super::shape::{ShapeArguments, choice, pressure};
 
 /// Arguments of `fractum lab`.
@@ -212,14 +212,6 @@ fn tables(seeds: u64) -> Result<(), CalibrateError> {
         );
     }
     Ok(())
-}
-
-/// Mean, and standard deviation over the mean.
-pub(super) fn spread(values: &[f64]) -> (f64, f64) {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let square: f64 = values.iter().map(|v| (v / mean - 1.0).powi(2)).sum();
-    (mean, (square / (count - 1.0).max(1.0)).sqrt())
 }
 
 /// Sizes of the convergence study.

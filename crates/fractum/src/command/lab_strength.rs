@@ -7,8 +7,6 @@ use fractum_dem::FractureCriterion;
 use fractum_dem::criterion::{BeamRankine, EndMoments, Hydrostatic, Level, Principal};
 use fractum_pack::{Convention, Domain, PackSpec, Packing, pack};
 
-use super::lab::spread;
-
 /// Arguments of `fractum lab strength`.
 #[derive(Args)]
 pub(crate) struct StrengthArguments {
@@ -180,4 +178,12 @@ fn silica(count: usize, seeds: u64, criterion: FractureCriterion) -> Result<(), 
         );
     }
     Ok(())
+}
+
+/// Mean, and standard deviation over the mean.
+pub(super) fn spread(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let square: f64 = values.iter().map(|v| (v / mean - 1.0).powi(2)).sum();
+    (mean, (square / (count - 1.0).max(1.0)).sqrt())
 }

@@ -1,7 +1,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    BondLoad, BreakMode, CriterionNumbers, CriterionParameter, LoadCriterion, NamedCriterion, Strengths, positive,
+    BondLoad, BreakMode, CriterionNumbers, CriterionParameter, EndMoments, LoadCriterion, NamedCriterion, Strengths,
+    positive,
 };
 use crate::DemError;
 
@@ -14,17 +15,6 @@ pub struct BeamRankine {
     /// Which bending moment counts.
     #[serde(default)]
     pub moments: EndMoments,
-}
-
-/// Which bending moment of a beam the criterion takes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum EndMoments {
-    /// M = ½ |M₁ + M₂|, as printed: it is blind to uniform bending, in which the moments on the two ends are opposite.
-    #[default]
-    Mean,
-    /// M = max(|M₁|, |M₂|): the largest in the beam.
-    Largest,
 }
 
 impl NamedCriterion for BeamRankine {

@@ -14,7 +14,7 @@ mod principal;
 
 pub use batch::FailureSite;
 pub(super) use batch::{LoadBatch, Neighbourhoods, StressBatch};
-pub use beam_rankine::{BeamRankine, EndMoments};
+pub use beam_rankine::BeamRankine;
 pub use drucker_prager::DruckerPrager;
 pub use hydrostatic::Hydrostatic;
 pub use kind::{BondCriterionKind, CriterionNumbers, CriterionParameter, NamedCriterion};
@@ -89,6 +89,17 @@ impl Level {
     pub fn from_number(level: u8) -> Option<Self> {
         [Level::Own, Level::Neighbours, Level::Second].get(level as usize).copied()
     }
+}
+
+/// Which bending moment of a beam the criterion takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EndMoments {
+    /// M = ½ |M₁ + M₂|, as printed: it is blind to uniform bending, in which the moments on the two ends are opposite.
+    #[default]
+    Mean,
+    /// M = max(|M₁|, |M₂|): the largest in the beam.
+    Largest,
 }
 
 /// Which bonds of an overloaded particle go.

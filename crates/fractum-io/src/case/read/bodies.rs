@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::bonded::bonded;
 use super::loose::loose;
+use super::presence::optional;
 use super::rigid::rigid;
 use super::vectors::{condition, field, initial_velocity};
 use crate::case::Diagnostic;
@@ -164,13 +165,4 @@ fn material_of(table: &Table<'_>, materials: &[(String, Option<Material>)], used
         *used = true;
     }
     material
-}
-
-/// `Some(None)` where the key is absent, nothing where its value is wrong.
-pub(super) fn optional<T>(
-    table: &Table<'_>,
-    name: &'static str,
-    read: impl FnOnce(&'static str) -> Option<T>,
-) -> Option<Option<T>> {
-    if table.has(name) { read(name).map(Some) } else { Some(None) }
 }

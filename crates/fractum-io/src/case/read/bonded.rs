@@ -1,6 +1,6 @@
 //! `[[bodies]]` of the kind `bonded`, and the beams of a material.
 
-use super::bodies::optional;
+use super::presence::optional;
 use super::vectors::{condition_of, initial_velocity, point};
 use super::{read_file, table_path, unit};
 use crate::case::model::{BondedBody, BondedShape, Bonds, FileContent, Material, PackingSource, ParticleSize};

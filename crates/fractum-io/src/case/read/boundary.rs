@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::bodies::optional;
 use super::firing::{self, Pulses};
+use super::presence::{exactly_one, optional};
 use super::time_functions::time_function;
 use super::vectors::{AXES, components, condition};
 use crate::case::model::{InCracks, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
@@ -228,24 +228,4 @@ fn in_cracks(table: &Table<'_>) -> Option<Option<InCracks>> {
     }
     let speed = table.quantity("front_speed").check(|speed| *speed > 0.0, "a speed above 0");
     optional(table, "front_speed", |_| speed.given()).map(|front_speed| Some(InCracks { front_speed }))
-}
-
-/// The one of these keys that a table has; notes where there is none, or several.
-pub(super) fn exactly_one(table: &Table<'_>, keys: &[&'static str]) -> Option<&'static str> {
-    let here: Vec<_> = keys.iter().filter(|key| table.has(key)).copied().collect();
-    match here[..] {
-        [one] => return Some(one),
-        [] => {
-            let note = Diagnostic::error(&table.place, format!("has none of {}", keys.join(", ")));
-            table.reader.note(note.expected("exactly one"));
-        }
-        [_, ref others @ ..] => {
-            for other in others {
-                let place = table.peek(other).map_or_else(|| table.place.clone(), |node| node.place.clone());
-                let note = Diagnostic::error(&place, format!("stands beside {}", here[0]));
-                table.reader.note(note.expected(format!("exactly one of {}", keys.join(", "))));
-            }
-        }
-    }
-    None
 }

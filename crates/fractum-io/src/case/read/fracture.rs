@@ -5,7 +5,6 @@ use fractum_dem::criterion::{
     BondCriterionKind, CriterionNumbers, CriterionParameter, EndMoments, Level, NamedCriterion, Principal,
 };
 
-use super::materials::read_friction_angle;
 use crate::case::model::BondFailure;
 use crate::case::reader::Table;
 
@@ -53,3 +52,14 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
     let tensile_strength = strength?;
     Some(BondFailure { criterion: (kind.make)(&numbers), tensile_strength: (!own).then_some(tensile_strength) })
 }
+
+/// The angle of internal friction [rad].
+pub(super) fn read_friction_angle(table: &Table<'_>) -> f64 {
+    let expected = "from 0 to below 90 deg (a number without a unit is in radians)";
+    let right = std::f64::consts::FRAC_PI_2;
+    let angle = table.quantity("friction_angle").check(|angle| (0.0..right).contains(angle), expected);
+    angle.or(FRICTION_ANGLE.to_radians())
+}
+
+/// Friction angle where none is given [deg].
+pub(super) const FRICTION_ANGLE: f64 = 35.0;

@@ -1,7 +1,7 @@
 //! `[[bodies]]` of the kind `particles`.
 
-use super::bodies::optional;
 use super::bonded::{DISPERSION_RANGE, file, groups};
+use super::presence::optional;
 use super::unit;
 use super::vectors::{direction, initial_velocity, point};
 use crate::case::model::{LooseBody, LooseSource, Region};

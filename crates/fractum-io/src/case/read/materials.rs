@@ -1,5 +1,6 @@
 //! `[materials.NAME]`.
 
+use super::fracture::{FRICTION_ANGLE, read_friction_angle};
 use crate::case::model::{Damage, Distribution, Material, Scatter};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned};
@@ -100,17 +101,6 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
         crack_plane_gate,
     })
 }
-
-/// The angle of internal friction [rad].
-pub(super) fn read_friction_angle(table: &Table<'_>) -> f64 {
-    let expected = "from 0 to below 90 deg (a number without a unit is in radians)";
-    let right = std::f64::consts::FRAC_PI_2;
-    let angle = table.quantity("friction_angle").check(|angle| (0.0..right).contains(angle), expected);
-    angle.or(FRICTION_ANGLE.to_radians())
-}
-
-/// Friction angle where none is given [deg].
-const FRICTION_ANGLE: f64 = 35.0;
 
 /// Compressive over tensile strength where it is not given.
 pub(super) const STRENGTH_RATIO: f64 = 10.0;

@@ -10,6 +10,7 @@ mod in_situ;
 mod loose;
 mod materials;
 mod parameters;
+mod presence;
 mod probes;
 mod rigid;
 mod solver;

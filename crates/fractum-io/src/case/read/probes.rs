@@ -6,9 +6,10 @@ use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 use fractum_scene::{Along, CrackMeasure};
 
-use super::bodies::optional;
-use super::boundary::{exactly_one, selection};
+use super::boundary::selection;
 use super::parameters::check_name;
+use super::presence::exactly_one;
+use super::presence::optional;
 use super::vectors::{condition, direction, point};
 use crate::case::expression::{Named, Names, Op, Type, parse_unit};
 use crate::case::model::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
@@ -76,11 +77,12 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
     let is_first = by_name.get(&own_name).is_none_or(|first| *first == earlier.len());
     let name = table.text("name").spanned().required().filter(|name| good_name(&table, name, is_first));
     let mut read = ReadProbe { name: own_name, dimension: None, scalar: false, probe: None };
-    const KINDS: [&str; 12] = [
+    const KINDS: &[&str] = &[
         "reaction",
         "displacement",
         "velocity",
         "rotation",
+        "contact_force",
         "stress",
         "energy",
         "count",
@@ -90,7 +92,7 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
         "crack",
         "expression",
     ];
-    let Some(key) = exactly_one(&table, &KINDS) else { return read };
+    let Some(key) = exactly_one(&table, KINDS) else { return read };
     let mut unit = None;
     let measured = match key {
         "expression" => expression(&table, earlier, by_name).map(|expression| {
@@ -151,6 +153,13 @@ fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimensio
             let along = direction(&inner, "along").required();
             inner.finish("here");
             (ProbeKind::Rotation { on: on?, along: along? }, Dimension::NONE)
+        }
+        "contact_force" => {
+            let inner = table.table(key)?;
+            let [on, from] = ["on", "from"].map(|name| inner.text(name).spanned().required());
+            let along = along_or_about(&inner);
+            inner.finish("here");
+            (ProbeKind::ContactForce { on: on?, from: from?, along: along? }, Dimension::FORCE)
         }
         "stress" => {
             let inner = table.table(key)?;

@@ -1,8 +1,8 @@
 //! `[[bodies]]` of the kind `rigid`.
 
-use super::bodies::optional;
 use super::bonded::file;
 use super::boundary::fixed_axes;
+use super::presence::optional;
 use super::time_functions::time_function;
 use super::vectors::{AXES, components, direction, initial_velocity, point};
 use super::{materials, unit};

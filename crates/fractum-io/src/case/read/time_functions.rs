@@ -1,11 +1,10 @@
 //! Time functions: constants, expressions, ramps, tables, pulses.
 
-use super::boundary::exactly_one;
+use super::presence::exactly_one;
 use super::vectors::expression;
 use super::{table_file, unit};
 use crate::case::keys::TIME_FUNCTION;
-use crate::case::reader::{Reader, Table};
-use crate::case::reading::Reading;
+use crate::case::reader::{Reader, Reading, Table};
 use crate::case::tree::{Node, Value};
 use crate::case::unit::Dimension;
 use crate::case::{Diagnostic, TimeFunction};

@@ -3,8 +3,7 @@
 use fractum_math::Vec3;
 
 use crate::case::expression::Type;
-use crate::case::reader::{Reader, Table};
-use crate::case::reading::Reading;
+use crate::case::reader::{Reader, Reading, Table};
 use crate::case::tree::{Node, Value};
 use crate::case::unit::Dimension;
 use crate::case::{Diagnostic, Field};

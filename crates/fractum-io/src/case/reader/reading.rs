@@ -1,20 +1,20 @@
 //! A value on its way from a table into the model, with its checks.
 
-use super::key_kind::KeyKind;
-use super::reader::Table;
-use super::tree::Node;
-use super::{Diagnostic, Spanned};
+use super::Table;
+use crate::case::key_kind::KeyKind;
+use crate::case::tree::Node;
+use crate::case::{Diagnostic, Spanned};
 
 /// A value on its way out of a table: absent, wrong (and noted), or given.
-pub(super) struct Reading<'t, 'a, T> {
-    pub(super) table: &'t Table<'a>,
-    pub(super) name: &'static str,
-    pub(super) node: Option<&'a Node>,
-    pub(super) state: State<T>,
+pub(in crate::case) struct Reading<'t, 'a, T> {
+    pub(in crate::case) table: &'t Table<'a>,
+    pub(in crate::case) name: &'static str,
+    pub(in crate::case) node: Option<&'a Node>,
+    pub(in crate::case) state: State<T>,
 }
 
 /// What was found of a value.
-pub(super) enum State<T> {
+pub(in crate::case) enum State<T> {
     Absent,
     Wrong,
     Given(T),
@@ -22,7 +22,7 @@ pub(super) enum State<T> {
 
 impl<'t, 'a, T> Reading<'t, 'a, T> {
     /// Holds a given value against a condition.
-    pub(super) fn check(mut self, holds: impl FnOnce(&T) -> bool, expected: &str) -> Self {
+    pub(in crate::case) fn check(mut self, holds: impl FnOnce(&T) -> bool, expected: &str) -> Self {
         if let (State::Given(value), Some(node)) = (&self.state, self.node)
             && !holds(value)
         {
@@ -33,7 +33,7 @@ impl<'t, 'a, T> Reading<'t, 'a, T> {
     }
 
     /// Another value from a given one.
-    pub(super) fn map<U>(self, f: impl FnOnce(T) -> U) -> Reading<'t, 'a, U> {
+    pub(in crate::case) fn map<U>(self, f: impl FnOnce(T) -> U) -> Reading<'t, 'a, U> {
         let state = match self.state {
             State::Absent => State::Absent,
             State::Wrong => State::Wrong,
@@ -43,13 +43,13 @@ impl<'t, 'a, T> Reading<'t, 'a, T> {
     }
 
     /// Keeps the place of a given value.
-    pub(super) fn spanned(self) -> Reading<'t, 'a, Spanned<T>> {
+    pub(in crate::case) fn spanned(self) -> Reading<'t, 'a, Spanned<T>> {
         let place = self.node.map_or_else(|| self.table.place_of(self.name), |node| node.place.clone());
         self.map(|value| Spanned::new(value, place))
     }
 
     /// The value, which must be there.
-    pub(super) fn required(self) -> Option<T> {
+    pub(in crate::case) fn required(self) -> Option<T> {
         if matches!(self.state, State::Absent) {
             let expected = self.table.kind(self.name).map_or(String::new(), KeyKind::expected);
             self.table.reader.note_missing(&self.table.place_of(self.name), expected);
@@ -58,7 +58,7 @@ impl<'t, 'a, T> Reading<'t, 'a, T> {
     }
 
     /// The value where it is there and right.
-    pub(super) fn given(self) -> Option<T> {
+    pub(in crate::case) fn given(self) -> Option<T> {
         match self.state {
             State::Given(value) => Some(value),
             _ => None,
@@ -66,7 +66,7 @@ impl<'t, 'a, T> Reading<'t, 'a, T> {
     }
 
     /// The value where it is right, this where it is absent, nothing where it is wrong.
-    pub(super) fn or_if_absent(self, default: T) -> Option<T> {
+    pub(in crate::case) fn or_if_absent(self, default: T) -> Option<T> {
         match self.state {
             State::Given(value) => Some(value),
             State::Absent => Some(default),
@@ -75,29 +75,29 @@ impl<'t, 'a, T> Reading<'t, 'a, T> {
     }
 
     /// The value where it is there and right, else this.
-    pub(super) fn or(self, default: T) -> T {
+    pub(in crate::case) fn or(self, default: T) -> T {
         self.given().unwrap_or(default)
     }
 }
 
 impl Reading<'_, '_, f64> {
     /// Above zero.
-    pub(super) fn positive(self) -> Self {
+    pub(in crate::case) fn positive(self) -> Self {
         self.check(|value| *value > 0.0, "more than 0")
     }
 
     /// Above zero, and within the range in which squares and quotients of such numbers stay numbers.
-    pub(super) fn physical(self) -> Self {
+    pub(in crate::case) fn physical(self) -> Self {
         self.positive().check(|value| (1e-30..=1e30).contains(value), "from 1e-30 to 1e30 in SI units")
     }
 
     /// At least zero.
-    pub(super) fn not_negative(self) -> Self {
+    pub(in crate::case) fn not_negative(self) -> Self {
         self.check(|value| *value >= 0.0, "at least 0")
     }
 
     /// Between limits, both excluded.
-    pub(super) fn between(self, low: f64, high: f64) -> Self {
+    pub(in crate::case) fn between(self, low: f64, high: f64) -> Self {
         self.check(|value| *value > low && *value < high, &format!("between {low} and {high}"))
     }
 }
