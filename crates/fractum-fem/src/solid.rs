@@ -14,7 +14,7 @@ use crate::gate::Gate;
 use crate::hooke::Hooke;
 use crate::standard::{StandardCells, StandardDamage};
 use crate::threshold::Threshold;
-use crate::viscosity::{BodyViscosity, ViscousCells};
+use crate::viscosity::ViscousCells;
 
 /// Finite elements of all solid bodies, with their nodes.
 ///
