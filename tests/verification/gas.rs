@@ -75,6 +75,7 @@ fn blast(solid: Solid, pressure: f64, end: f64) -> Scene {
         law: EquationOfState::PerfectGas(PerfectGas { heat_ratio: HEAT_RATIO, gas_constant: 300.0 }),
         slits: SlitFlow { viscosity: 5e-5, roughness: 1e-5 },
         least_opening: 1e-5,
+        in_cracks: true,
         outside_pressure: 1e5,
         holes: vec![GasHole {
             facets: hole(&solid),

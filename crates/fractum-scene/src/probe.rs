@@ -4,6 +4,7 @@ use fractum_math::Vec3;
 use crate::conditions::{Along, PointProbe};
 use crate::contacts::ContactProbe;
 use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
+use crate::gas::GasMeasure;
 use crate::ledger::EnergyProbe;
 use crate::scene::{CountKind, Scene};
 
@@ -63,6 +64,13 @@ pub enum Probe {
         rigid_body: usize,
         /// Unit direction.
         direction: Vec3,
+    },
+    /// Something about the gas; not a number where there is none.
+    Gas {
+        /// What about it.
+        measure: GasMeasure,
+        /// Of this hole; of everything if absent.
+        hole: Option<usize>,
     },
     /// Area of crack, Σ V d/l over the damaged edges [m²].
     CrackArea,
@@ -130,6 +138,7 @@ impl Probe {
             Probe::RigidBodyVelocity { rigid_body, direction } => {
                 scene.contacts.rigid_bodies()[*rigid_body].frame.velocity.dot(direction)
             }
+            Probe::Gas { measure, hole } => scene.gas().map_or(f64::NAN, |gas| gas.measure(solid, *measure, *hole)),
             Probe::CrackArea => solid.crack_area(),
             Probe::Crack { measure, axis, inside } => measure_crack(scene, *measure, axis, inside.as_ref()),
         }

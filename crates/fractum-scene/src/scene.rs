@@ -200,8 +200,9 @@ impl Scene {
 
     /// Goes on with the supports, loads and settings of another scene of the same solids.
     pub fn begin_stage(&mut self, next: Scene) {
-        (self.supports, self.loads, self.settings) = (next.supports, next.loads, next.settings);
-        self.loads.open_cracks(&self.solid);
+        (self.supports, self.settings) = (next.supports, next.settings);
+        let before = std::mem::replace(&mut self.loads, next.loads);
+        self.loads.follow(before, &self.solid);
         self.surface_supports = next.surface_supports;
     }
 

@@ -46,6 +46,7 @@
 pub mod cracks;
 mod error;
 mod gallery;
+mod gas_cells;
 mod input;
 mod interrupt;
 mod phases;

@@ -10,7 +10,7 @@ use fractum_io::case::model::{Case, GroupUse, Load, LoadKind, MeshSource, Select
 use fractum_io::number::quantity;
 use fractum_mesh::Mesh;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
-use fractum_scene::{BondedBody, Scene};
+use fractum_scene::{BondedBody, GasMeasure, Scene};
 
 use crate::input::Input;
 
@@ -180,7 +180,13 @@ impl Plan {
         if case.in_situ.is_some() {
             self.add("in situ", "at rest under the stress of the far field at t = 0; displacements count from there");
         }
-        if scene.supports().count() == 0 && scene.bonded.held_count() == 0 && case.loads.is_empty() {
+        if let Some(gas) = scene.gas() {
+            let of = |measure| gas.measure(&scene.solid, measure, None);
+            let amount = quantity(of(GasMeasure::Mass), "kg") + ", " + &quantity(of(GasMeasure::Energy), "J");
+            self.add("gas", format!("in {} holes: {amount} at the start", gas.hole_count()));
+        }
+        let pushed = !case.loads.is_empty() || scene.gas().is_some();
+        if scene.supports().count() == 0 && scene.bonded.held_count() == 0 && !pushed {
             self.add("load", "none: only initial velocities move this scene");
         }
     }

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::cracks;
 use crate::error::Failure;
+use crate::gas_cells;
 use crate::record_bonded as bonds;
 
 /// Columns of the history before the probes: name and unit.
@@ -270,6 +271,12 @@ impl Recorder {
             let name = format!("bonds/bonds-{:05}.vtp", self.state.frames);
             bonds::write_bonds(scene, &self.folder.join(&name))?;
             self.add_to_collection(time, 3, "bonds", name);
+        }
+        if let Some(gas) = scene.gas().filter(|gas| gas.cells().nth(gas.hole_count()).is_some()) {
+            fractum_io::atomic::create_folder(&self.folder.join("gas"))?;
+            let name = format!("gas/gas-{:05}.vtu", self.state.frames);
+            gas_cells::write(&self.folder.join(&name), scene, gas)?;
+            self.add_to_collection(time, 5, "gas", name);
         }
         let crack = scene.solid.crack_surface();
         if !crack.facets.is_empty() {

@@ -5,6 +5,7 @@ mod bodies;
 mod bonded;
 mod conditions;
 mod contacts;
+mod gas;
 mod in_situ;
 mod precheck;
 mod probes;
@@ -149,8 +150,10 @@ impl Context<'_> {
         let (surface_supports, supported) = self.surface_supports(&parts, &numbering, &surface, &solid);
         let in_situ = self.in_situ_loads(&numbering, &surface, &solid, supported);
         self.check_in_situ_supports(&solid, &numbering);
-        let mut loads = self.loads(&LoadedPoints::Nodes(&numbering, surface));
+        let points = LoadedPoints::Nodes(&numbering, surface);
+        let mut loads = self.loads(&points);
         loads.extend(in_situ);
+        let gas = self.gas(&solid, &points, &loads);
         let supports = match Supports::new(supports, &solid.reference) {
             Ok(supports) => supports,
             Err(error) => {
@@ -180,7 +183,7 @@ impl Context<'_> {
         let scene = Scene::new(
             solid,
             supports,
-            Loads::new(loads, numbering.positions.len()),
+            Loads::new(loads, numbering.positions.len()).with_gas(gas),
             debris,
             self.shape_contacts(&rigid_bodies),
             &surface,

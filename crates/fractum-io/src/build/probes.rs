@@ -90,6 +90,14 @@ impl Context<'_> {
             ProbeKind::Count(kind) => Probe::Count(*kind),
             ProbeKind::Momentum { along } => Probe::Momentum(*along),
             ProbeKind::AngularMomentum { along } => Probe::AngularMomentum(*along),
+            ProbeKind::Gas { measure, group } => {
+                let holes = self.case.gas.as_ref().map_or(&[][..], |gas| &gas.holes);
+                let hole = group.as_ref().and_then(|group| holes.iter().position(|h| h.on.group_name() == group.value));
+                if let (Some(group), None) = (group, hole) {
+                    self.error(&group.place, format!(" = \"{}\"", group.value), "the group of one of gas.holes");
+                }
+                Probe::Gas { measure: *measure, hole }
+            }
             ProbeKind::CrackArea => Probe::CrackArea,
             ProbeKind::Crack { measure, along, point, within } => {
                 let inside = within.as_ref().map(|within| InsideCracks {

@@ -51,6 +51,14 @@ impl Dimension {
     pub const DENSITY: Self = dimension(1, -3, 0);
     /// Energy per area [J/m²].
     pub const FRACTURE_ENERGY: Self = dimension(1, 0, -2);
+    /// Heat capacity per mass [J/(kg K)].
+    pub const HEAT_CAPACITY: Self = Dimension { halves: [0, 4, -4, -2] };
+    /// Volume per mass [m³/kg].
+    pub const SPECIFIC_VOLUME: Self = dimension(-1, 3, 0);
+    /// Dynamic viscosity [Pa s].
+    pub const VISCOSITY: Self = dimension(1, -1, -1);
+    /// Mass flow [kg/s].
+    pub const MASS_RATE: Self = dimension(1, 0, -1);
     /// Linear momentum [kg m/s].
     pub const MOMENTUM: Self = dimension(1, 1, -1);
     /// Angular momentum [kg m²/s].
@@ -154,6 +162,10 @@ static KNOWN: &[Known] = &[
     known(Dimension::ENERGY, "J", "an energy", "3 J"),
     known(Dimension::POWER, "W", "a power", "100 W"),
     known(Dimension::DENSITY, "kg/m^3", "a density", "2400 kg/m^3"),
+    known(Dimension::HEAT_CAPACITY, "J/(kg K)", "a heat capacity per mass", "300 J/(kg K)"),
+    known(Dimension::SPECIFIC_VOLUME, "m^3/kg", "a volume per mass", "1 L/kg"),
+    known(Dimension::VISCOSITY, "Pa s", "a viscosity", "5e-5 Pa s"),
+    known(Dimension::MASS_RATE, "kg/s", "a mass flow", "0.1 kg/s"),
     known(Dimension::FRACTURE_ENERGY, "J/m^2", "an energy per area", "100 J/m^2"),
     known(Dimension::MOMENTUM, "kg m/s", "a momentum", "1 kg m/s"),
     known(Dimension::ANGULAR_MOMENTUM, "kg m^2/s", "an angular momentum", "1 kg m^2/s"),

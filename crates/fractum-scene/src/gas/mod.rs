@@ -5,6 +5,7 @@
 //! and gas closes as that of the solids does. Between two such half works the gas flows for the time of the step.
 
 mod cavity;
+mod measure;
 
 use fractum_fem::{CrackCell, CrackNetwork, CrackNetworkState, CrackSide, Solid};
 use fractum_gas::{Amount, Contents, EquationOfState, Network, Passage, SlitFlow};
@@ -13,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::conditions::TimeFunction;
 use cavity::{Cavity, enclosed_volume};
+pub use measure::GasMeasure;
 
 /// Part of its energy that a cell passes on as a facet between it and another removed element moves, at most.
 const LARGEST_EXCHANGE: f64 = 0.2;
@@ -30,6 +32,8 @@ pub struct GasSettings {
     pub slits: SlitFlow,
     /// Opening of a crack whose walls are where they were without load [m], > 0.
     pub least_opening: f64,
+    /// Whether gas enters cracks, rather than push on the walls of the holes alone.
+    pub in_cracks: bool,
     /// Pressure where cracks reach the surface of the solids [Pa]; nothing flows in from there.
     pub outside_pressure: f64,
     /// Holes that gas is put in; no facet is in two of them.
@@ -86,6 +90,7 @@ pub struct Gas {
     network: Network,
     holes: Vec<GasHole>,
     least_opening: f64,
+    in_cracks: bool,
     /// Room of each cell: holes first, then those of the cracks in their order.
     cavities: Vec<Cavity>,
     volumes: Vec<f64>,
@@ -132,7 +137,7 @@ pub struct GasCell {
 impl Gas {
     /// Gas in the holes of a solid without displacement, before its cracks are found.
     pub fn new(solid: &Solid, settings: GasSettings) -> Self {
-        let GasSettings { law, slits, least_opening, outside_pressure, holes } = settings;
+        let GasSettings { law, slits, least_opening, in_cracks, outside_pressure, holes } = settings;
         let mut network = Network::new(law, slits, outside_pressure);
         let mut cavities = Vec::new();
         for hole in &holes {
@@ -152,6 +157,7 @@ impl Gas {
             network,
             holes,
             least_opening,
+            in_cracks,
             volumes: Vec::new(),
             passages: Vec::new(),
             facets: Vec::new(),
@@ -171,8 +177,10 @@ impl Gas {
 
     /// Lets the gas find what is open already, before its first step.
     pub(crate) fn open(&mut self, solid: &Solid) {
-        self.cracks.extend_by_all(solid);
-        self.add_cells(solid);
+        if self.in_cracks {
+            self.cracks.extend_by_all(solid);
+            self.add_cells(solid);
+        }
         self.update_rooms(solid);
         self.find_walls(solid);
         for cell in 0..self.cavities.len() {
@@ -183,8 +191,10 @@ impl Gas {
 
     /// Lets gas enter what the removal of elements has opened.
     pub(crate) fn extend(&mut self, solid: &Solid, removed: &[(usize, u32)]) {
-        self.cracks.extend(solid, removed.iter().copied());
-        self.add_cells(solid);
+        if self.in_cracks {
+            self.cracks.extend(solid, removed.iter().copied());
+            self.add_cells(solid);
+        }
     }
 
     /// Cells and passages of the cracks that the network has reached since.

@@ -4,6 +4,7 @@
 
 mod bodies;
 mod conditions;
+mod gas;
 mod output;
 mod probes;
 mod solver;
@@ -28,8 +29,9 @@ const fn key(path: &'static str, kind: KeyKind, default: &'static str, doc: &'st
 
 /// Every key of the case file, parents before children.
 pub fn keys() -> &'static [KeyDoc] {
-    static KEYS: LazyLock<Vec<KeyDoc>> =
-        LazyLock::new(|| [bodies::KEYS, conditions::KEYS, solver::KEYS, probes::KEYS, output::KEYS].concat());
+    static KEYS: LazyLock<Vec<KeyDoc>> = LazyLock::new(|| {
+        [bodies::KEYS, conditions::KEYS, gas::KEYS, solver::KEYS, probes::KEYS, output::KEYS].concat()
+    });
     &KEYS
 }
 

@@ -1,6 +1,6 @@
 //! Probes.
 
-use fractum_scene::{CountKind, CrackMeasure, EnergyProbe};
+use fractum_scene::{CountKind, CrackMeasure, EnergyProbe, GasMeasure};
 
 use super::{key, names};
 use crate::case::key_kind::{KeyDoc, KeyKind as K};
@@ -55,6 +55,9 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("probes[].momentum.along", K::Direction, "required", "Direction"),
     key("probes[].angular_momentum", K::Table, "", "Angular momentum of the scene about the origin, in kg m^2/s"),
     key("probes[].angular_momentum.along", K::Direction, "required", "Direction"),
+    key("probes[].gas", K::Table, "", "A number about the gas; not a number in stages at rest"),
+    key("probes[].gas.measure", K::Choice(names::<GasMeasure>), "required", "Pressure, in Pa (of everything: mean over the volume); temperature, in K (mean over the mass); mass, in kg; internal energy, in J; room for gas, in m^3; area of the walls under pressure without load, in m^2; or mass that has leaked, in kg"),
+    key("probes[].gas.group", K::Text, "", "Group of a hole: its gas, or the area that gas from it wets; absent means all gas, in cracks too; not with leaked_mass"),
     key("probes[].crack_area", K::Flag, "", "true records the area of the cracks, in m^2"),
     key("probes[].crack", K::Table, "", "How a crack lies: its edges that have lost half of their strength, and its broken bonds; not a number before there are any"),
     key("probes[].crack.measure", K::Choice(names::<CrackMeasure>), "required", "Angle between the direction and the plane of the crack (its line in 2D), in rad; or position of its centre or its foremost edge or bond along the direction, in m; or the angle of the helix to its axis, or of the cone's flank to the plane across its axis, in rad; or the part of the crack that lies on that cone"),

@@ -3,6 +3,7 @@
 mod body;
 mod bonded;
 mod boundary;
+mod gas;
 mod loose;
 mod material;
 mod probe;
@@ -20,6 +21,7 @@ use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 pub use body::{Body, BodyKind, SolidBody};
 pub use bonded::{BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource, ParticleSize};
 pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
+pub use gas::{Gas, GasHole, GasLaw};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Distribution, Material, Scatter};
 pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
@@ -51,6 +53,8 @@ pub struct Case {
     pub loads: Vec<Load>,
     /// Stress of the solids before the run.
     pub in_situ: Option<InSitu>,
+    /// Gas in holes and in the cracks that open to them.
+    pub gas: Option<Gas>,
     /// Damping of the solids.
     pub damping: Damping,
     /// Time and its steps.
@@ -384,6 +388,8 @@ impl Case {
         let loads = self.loads.iter().filter_map(|load| load.kind.on());
         let loads = loads.filter_map(|(on, group_use)| on.group.as_ref().map(|group| (group, group_use)));
         let in_situ = self.in_situ.iter().flat_map(|own| &own.groups).map(|group| (group, GroupUse::Facets));
+        let holes = self.gas.iter().flat_map(|gas| &gas.holes).filter_map(|hole| hole.on.group.as_ref());
+        let holes = holes.map(|group| (group, GroupUse::Facets));
         let probes = self.probes.iter().filter_map(|probe| match &probe.kind {
             ProbeKind::Reaction { on, .. }
             | ProbeKind::Displacement { on, .. }
@@ -396,7 +402,7 @@ impl Case {
         let openings = opening.into_iter().flat_map(|o| [&o.group, &o.against]).map(|g| (g, GroupUse::ProbeNodes));
         let of_mesh =
             |group: &&Spanned<String>| self.particle_group(&group.value).is_none() && self.tool(&group.value).is_none();
-        let named = supports.chain(loads).chain(probes).filter(|(group, _)| of_mesh(group));
+        let named = supports.chain(loads).chain(holes).chain(probes).filter(|(group, _)| of_mesh(group));
         bodies.chain(ties).chain(named).chain(in_situ).chain(openings).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! Probes: the numbers a run records.
 
 use fractum_math::Vec3;
-use fractum_scene::{Along, CountKind, CrackMeasure, EnergyProbe};
+use fractum_scene::{Along, CountKind, CrackMeasure, EnergyProbe, GasMeasure};
 
 use super::Selection;
 use crate::case::choice::choice;
@@ -86,6 +86,13 @@ pub enum ProbeKind {
     AngularMomentum {
         /// Unit vector.
         along: Vec3,
+    },
+    /// Something about the gas.
+    Gas {
+        /// What about it.
+        measure: GasMeasure,
+        /// Group of the hole; everything if absent.
+        group: Option<Spanned<String>>,
     },
     /// Area of the cracks [m²].
     CrackArea,

@@ -6,6 +6,7 @@ mod boundary;
 mod expect;
 mod firing;
 mod fracture;
+mod gas;
 mod in_situ;
 mod loose;
 mod materials;
@@ -157,6 +158,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let damping = solver::damping(&table, bodies.as_deref(), !stage.is_empty());
     let probes = probes::read(&table);
     let solver = solver::read(&table, &probes.list, bodies.as_deref());
+    let gas = gas::read(&table, solver.as_ref(), !stage.is_empty());
     let output = solver::output(&table, solver.as_ref().map(|solver| solver.end));
     let expect = expect::read(&table, &probes);
     let verify = table.table_or_empty("verify");
@@ -175,6 +177,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
         supports: supports?,
         loads: loads?,
         in_situ: in_situ?,
+        gas: gas?,
         damping,
         solver: solver?,
         probes: probes.list.into_iter().map(|probe| probe.probe).collect::<Option<_>>()?,

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
-use fractum_scene::{Along, CrackMeasure};
+use fractum_scene::{Along, CrackMeasure, GasMeasure};
 
 use super::boundary::selection;
 use super::parameters::check_name;
@@ -88,6 +88,7 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
         "count",
         "momentum",
         "angular_momentum",
+        "gas",
         "crack_area",
         "crack",
         "expression",
@@ -173,6 +174,7 @@ fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimensio
         "count" => (ProbeKind::Count(table.choice("count").required()?), Dimension::NONE),
         "momentum" => (ProbeKind::Momentum { along: along()? }, Dimension::MOMENTUM),
         "angular_momentum" => (ProbeKind::AngularMomentum { along: along()? }, Dimension::ANGULAR_MOMENTUM),
+        "gas" => gas(table)?,
         "crack" => crack(table)?,
         _ => {
             table.flag("crack_area").check(|on| *on, "true; leave the probe out where it is not wanted").required()?;
@@ -227,6 +229,25 @@ fn stress_between(table: &Table<'_>, component: StressComponent) -> Option<[Alon
     };
     table.refuse("about", "with this component");
     Some(fixed)
+}
+
+fn gas(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("gas")?;
+    let measure = inner.choice("measure").required();
+    if measure == Some(GasMeasure::LeakedMass) {
+        inner.refuse("group", "with leaked_mass, which is that of everything");
+    }
+    let group = optional(&inner, "group", |name| inner.text(name).spanned().given());
+    inner.finish("here");
+    let dimension = match measure? {
+        GasMeasure::Pressure => Dimension::PRESSURE,
+        GasMeasure::Temperature => Dimension::TEMPERATURE,
+        GasMeasure::Mass | GasMeasure::LeakedMass => Dimension::MASS,
+        GasMeasure::Energy => Dimension::ENERGY,
+        GasMeasure::Volume => Dimension::LENGTH.power(3.0)?,
+        GasMeasure::WettedArea => Dimension::AREA,
+    };
+    Some((ProbeKind::Gas { measure: measure?, group: group? }, dimension))
 }
 
 fn crack(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {

@@ -126,6 +126,12 @@ impl Loads {
         self.cracks = Some(cracks);
     }
 
+    /// Goes on after the loads of the stage before: its gas is that of this stage too.
+    pub(crate) fn follow(&mut self, before: Loads, solid: &Solid) {
+        self.open_cracks(solid);
+        self.gas = before.gas.or(self.gas.take());
+    }
+
     /// Lets pressure and gas enter what the removal of elements has opened.
     pub(crate) fn extend_cracks(&mut self, solid: &Solid, removed: &[(usize, u32)]) {
         if let Some(cracks) = &mut self.cracks {
