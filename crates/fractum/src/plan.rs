@@ -48,8 +48,8 @@ impl Plan {
         let Input { case, mesh, built, later, bonded, choice, .. } = input;
         let mut plan = Plan { lines: Vec::new() };
         let scene = &built.scene;
-        if !case.title.is_empty() {
-            plan.add("case", &case.title);
+        if !case.source.title.is_empty() {
+            plan.add("case", &case.source.title);
         }
         if let Some(source) = &case.mesh {
             plan.describe_mesh(source, mesh);

@@ -25,7 +25,7 @@ impl Context<'_> {
             self.check_hole(&hole.on, solid, &facets);
             let known = holes.iter().flat_map(|other| &other.facets).any(|facet| facets.contains(facet));
             if let (true, Some(place)) = (known, hole.on.place()) {
-                let found = format!(" = \"{}\": shares facets with the hole before it", hole.on.label());
+                let found = format!("= \"{}\": shares facets with the hole before it", hole.on.label());
                 self.error(&place.clone(), found, "holes without common facets");
             }
             let source = hole.source.as_ref();
@@ -53,10 +53,10 @@ impl Context<'_> {
         let name = on.label();
         if let Some(open) = open_end(facets) {
             let p: Vec3 = solid.reference[open as usize];
-            let found = format!(" = \"{name}\": is not closed, it ends at ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
+            let found = format!("= \"{name}\": is not closed, it ends at ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
             self.error(&place, found, "all facets around the hole: a closed surface, in the plane a closed line");
         } else if Gas::hole_volume(solid, facets) <= 0.0 {
-            let found = format!(" = \"{name}\": encloses the solid, and no hole in it");
+            let found = format!("= \"{name}\": encloses the solid, and no hole in it");
             self.error(&place, found, "facets around a hole");
         }
     }

@@ -9,8 +9,8 @@ use fractum_scene::{
 use super::Context;
 use super::bodies::{Numbering, Part};
 use super::use_in_words;
-use crate::case::Field;
 use crate::case::model::{GroupUse, ProbeKind};
+use crate::case::{Field, Spanned};
 
 impl Context<'_> {
     /// The measured probes of the case; none for expressions.
@@ -90,14 +90,7 @@ impl Context<'_> {
             ProbeKind::Count(kind) => Probe::Count(*kind),
             ProbeKind::Momentum { along } => Probe::Momentum(*along),
             ProbeKind::AngularMomentum { along } => Probe::AngularMomentum(*along),
-            ProbeKind::Gas { measure, group } => {
-                let holes = self.case.gas.as_ref().map_or(&[][..], |gas| &gas.holes);
-                let hole = group.as_ref().and_then(|group| holes.iter().position(|h| h.on.group_name() == group.value));
-                if let (Some(group), None) = (group, hole) {
-                    self.error(&group.place, format!(" = \"{}\"", group.value), "the group of one of gas.holes");
-                }
-                Probe::Gas { measure: *measure, hole }
-            }
+            ProbeKind::Gas { measure, group } => Probe::Gas { measure: *measure, hole: self.hole(group.as_ref()) },
             ProbeKind::CrackArea => Probe::CrackArea,
             ProbeKind::Crack { measure, along, point, within } => {
                 let inside = within.as_ref().map(|within| InsideCracks {
@@ -123,6 +116,19 @@ impl Context<'_> {
         let particles = || bonded.bodies().iter().position(|body| body.name == name).map(ContactBody::Particles);
         let solids = || (0..solid.body_count()).find(|&body| solid.body(body).name == name).map(ContactBody::Solid);
         rigid.or_else(particles).or_else(solids)
+    }
+}
+
+impl Context<'_> {
+    /// The hole of this group; an error if it is none.
+    fn hole(&mut self, group: Option<&Spanned<String>>) -> Option<usize> {
+        let (group, case) = (group?, self.case);
+        let holes = case.gas.as_ref().map_or(&[][..], |gas| &gas.holes);
+        let hole = holes.iter().position(|hole| hole.on.group_name() == group.value);
+        if hole.is_none() {
+            self.error(&group.place, format!("= \"{}\"", group.value), "the group of one of gas.holes");
+        }
+        hole
     }
 }
 

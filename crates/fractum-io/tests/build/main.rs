@@ -2,6 +2,7 @@
 
 mod about_axis;
 mod contact_force;
+mod gas;
 mod selection;
 mod sides;
 

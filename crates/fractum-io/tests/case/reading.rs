@@ -15,7 +15,7 @@ use crate::{SMALL, folder, good};
 fn a_case_with_every_key_is_read_into_si() {
     let case = read_case(&folder().join("every_key.toml"), &[]).unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!(case.warnings(), []);
-    assert_eq!(case.title, "Every key");
+    assert_eq!(case.source.title, "Every key");
     let mesh = case.mesh.as_ref().unwrap();
     assert_eq!(mesh.file.value, folder().join("meshes/block.msh"));
     assert_eq!(mesh.unit, 1e-3);
@@ -97,7 +97,8 @@ fn a_case_with_every_key_is_read_into_si() {
     let expected = ["N", "m", "m/s", "1", "Pa", "J", "1", "kg m/s", "kg m^2/s", "m^2", "1", "Pa", "J/m^2", "N", "1"];
     let about_an_axis = ["N", "m", "m/s", "Pa"];
     let front_speed = ["m/s"];
-    assert_eq!(units, [&expected[..], &about_an_axis, &front_speed].concat(), "N/m is J/m^2");
+    let push_and_gas = ["N", "Pa"];
+    assert_eq!(units, [&expected[..], &about_an_axis, &front_speed, &push_and_gas].concat(), "N/m is J/m^2");
     let ProbeKind::Crack { measure, along, within, .. } = &case.probes[10].kind else { panic!() };
     assert_eq!((*measure, *along), (CrackMeasure::Angle, Vec3::y()));
     let within = &within.as_ref().unwrap().value;
@@ -108,7 +109,7 @@ fn a_case_with_every_key_is_read_into_si() {
 
     assert_eq!(case.expect[0].bound, Bound::Near { value: 1e4, tolerance: 500.0, relative: Some(0.05) });
     assert_eq!(case.expect[2].bound, Bound::Between { above: Some(1e-4), below: Some(2e-3) });
-    assert_eq!(case.groups_used().len(), 2 + 5 + 6 + 1 + 8);
+    assert_eq!(case.groups_used().len(), 2 + 5 + 6 + 1 + 8 + 2);
 }
 
 #[test]

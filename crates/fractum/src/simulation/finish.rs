@@ -42,7 +42,7 @@ impl Simulation {
         self.warn_of_single_nodes()?;
         write_cracks(&self.scene, &self.folder)?;
         let mut summary = Summary {
-            title: self.case.title.clone(),
+            title: self.case.source.title.clone(),
             status,
             case_hash: fractum_io::summary::hash_text(self.identity.case_hash),
             state_hash: fractum_io::summary::hash_text(state_hash),

@@ -37,8 +37,6 @@ use super::{Diagnostic, Dimension, Place, Spanned};
 pub struct Case {
     /// The input as it was read.
     pub source: CaseSource,
-    /// Title; empty where none was given.
-    pub title: String,
     /// The mesh, where a body needs one.
     pub mesh: Option<MeshSource>,
     /// Materials, in the order of the file.
@@ -76,6 +74,8 @@ pub struct CaseSource {
     pub path: PathBuf,
     /// Its text.
     pub text: String,
+    /// Title; empty where none was given.
+    pub title: String,
     /// `--set` pairs, in order.
     pub overrides: Vec<(String, String)>,
     /// Files that it reads besides the mesh, as written there, with their contents.

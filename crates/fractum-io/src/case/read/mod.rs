@@ -77,6 +77,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
     let source = CaseSource {
         path: path.to_path_buf(),
         text: text.to_string(),
+        title: String::new(),
         overrides: overrides.to_vec(),
         tables: Vec::new(),
         parameters: BTreeMap::new(),
@@ -166,10 +167,9 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     verify.finish("here");
     table.finish("here");
     version?;
-    let source = CaseSource { parameters, stage, verify_quick, ..source };
+    let source = CaseSource { parameters, stage, verify_quick, title, ..source };
     Some(Case {
         source,
-        title,
         mesh: mesh?,
         materials: materials.into_iter().map(|(_, material)| material).collect::<Option<_>>()?,
         bodies: bodies?,
