@@ -8,7 +8,7 @@ use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_mesh::topology::{boundary_of_tetrahedra, boundary_of_triangles};
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Charge, ContactParameters, EnergyKind, Gas, GasHole, GasSettings, Loads, Scene, SceneSettings, Supports,
+    Charge, ContactParameters, EnergyKind, Gas, GasHole, GasSettings, Loads, Scene, SceneSettings, Stemming, Supports,
     TimeStepSettings,
 };
 use fractum_tests::CONCRETE;
@@ -18,6 +18,11 @@ const HEAT_RATIO: f64 = 1.3;
 
 /// A plate, or a cube, with a hole of a tenth of its size in the middle.
 fn holed(cells: u32, plane: bool, damage: bool) -> Solid {
+    cut(cells, plane, if plane { 2 } else { 3 }, damage)
+}
+
+/// - `axes`: number of axes along which the hole ends; 2 in space for a hole along z through the cube
+fn cut(cells: u32, plane: bool, axes: usize, damage: bool) -> Solid {
     let jitter = Some(Jitter { fraction: 0.1, seed: 3 });
     let (nodes, elements, kind) = if plane {
         let mesh = structured_rectangle([cells, cells], [SIZE, SIZE], jitter);
@@ -31,7 +36,7 @@ fn holed(cells: u32, plane: bool, damage: bool) -> Solid {
     };
     let far = |e: &[u32; 4]| {
         let away = (centre(e) - Vec3::repeat(0.5 * SIZE)).abs();
-        away.x.max(away.y).max(if plane { 0.0 } else { away.z }) > 0.05 * SIZE
+        away.iter().take(axes).any(|away| *away > 0.05 * SIZE)
     };
     let elements: Vec<[u32; 4]> = elements.into_iter().filter(|e: &[u32; 4]| far(e)).collect();
     let mut new = vec![u32::MAX; nodes.len()];
@@ -79,6 +84,7 @@ fn blast(solid: Solid, pressure: f64, end: f64) -> Scene {
         outside_pressure: 1e5,
         holes: vec![GasHole {
             facets: hole(&solid),
+            stemming: Stemming::default(),
             charge: Charge::State { pressure, temperature: 2500.0 },
             source: None,
         }],
@@ -119,6 +125,24 @@ fn gas_breaks_the_solid_follows_its_cracks_and_the_balance_closes() {
         assert_eq!(ledger[EnergyKind::External], 0.0);
         assert!(gas.cells().all(|cell| cell.amount.mass >= 0.0 && cell.amount.energy >= 0.0));
     }
+}
+
+#[test]
+fn a_hole_through_a_cube_is_closed_by_stemming() {
+    let solid = cut(10, false, 2, false);
+    let z = |n: u32| solid.reference[n as usize].z;
+    let inner = |n: &u32| (solid.reference[*n as usize] - Vec3::repeat(0.5 * SIZE)).xy().amax() < 0.3 * SIZE;
+    let on_end = |f: &[u32; 3]| f.iter().all(|&n| z(n) == 0.0) || f.iter().all(|&n| z(n) == SIZE);
+    let facets = boundary_of_tetrahedra(&solid.body(0).elements).into_iter().map(|facet| facet.nodes);
+    let facets: Vec<[u32; 3]> = facets.filter(|f| f.iter().all(inner) && !on_end(f)).collect();
+    let stemming = Stemming::find(&solid, &facets).unwrap();
+    let rest: f64 = (0..solid.body(0).elements.len() as u32).map(|e| solid.element_volume(0, e)).sum();
+    let volume = Gas::hole_volume(&solid, &facets, &stemming);
+    assert!((volume / (SIZE.powi(3) - rest) - 1.0).abs() < 1e-9, "{volume}");
+    // Half of the wall of the hole has one rim, which is not flat.
+    let half = |f: &&[u32; 3]| f.iter().all(|&n| solid.reference[n as usize].x <= 0.5 * SIZE);
+    let half: Vec<[u32; 3]> = facets.iter().filter(half).copied().collect();
+    assert!(Stemming::find(&solid, &half).is_err());
 }
 
 #[test]

@@ -305,3 +305,38 @@ impl CellNow {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::PerfectGas;
+
+    /// Room of every array of a step.
+    fn capacities(scratch: &Scratch) -> [usize; 6] {
+        let Scratch { cells, conductance, flow, outflow, rate, implicit } = scratch;
+        let own = [cells.capacity(), conductance.capacity(), flow.capacity(), outflow.capacity(), rate.capacity()];
+        [own[0], own[1], own[2], own[3], own[4], implicit.capacity()]
+    }
+
+    #[test]
+    fn a_warm_step_asks_for_no_memory_explicit_or_implicit() {
+        let air = EquationOfState::PerfectGas(PerfectGas { heat_ratio: 1.4, gas_constant: 287.0 });
+        let mut network = Network::new(air, SlitFlow { viscosity: 2e-5, roughness: 1e-5 }, 1e5);
+        network.push_cell(Amount { mass: 1e-3, energy: 1e3 });
+        let mut passages = Vec::new();
+        for cell in 0..30 {
+            network.push_cell(Amount::default());
+            passages.push(Passage { cells: [cell, cell + 1], length: 1e-3, width: 0.01, opening: 1e-4 });
+        }
+        let volumes = vec![1e-8; 31];
+        let substeps = [1e-8, 1e-3].map(|dt| network.flow(dt, &volumes, &passages));
+        assert!(substeps[0] <= 200 && substeps[1] > 0);
+        let warm = capacities(&network.scratch);
+        assert!(warm.iter().all(|capacity| *capacity > 0), "both ways were gone: {warm:?}");
+        for _ in 0..50 {
+            network.flow(1e-8, &volumes, &passages);
+            network.flow(1e-3, &volumes, &passages);
+        }
+        assert_eq!(capacities(&network.scratch), warm);
+    }
+}

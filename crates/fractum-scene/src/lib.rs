@@ -32,7 +32,7 @@ pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_re
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fractum_gas::{Amount, EquationOfState, Jwl, NobleAbel, PerfectGas, SlitFlow};
 pub use fragment::{Fragment, solid_pieces};
-pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource};
+pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, Stemming};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use probe::{Population, Probe};
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};

@@ -161,3 +161,13 @@ impl Network {
         }
     }
 }
+
+#[cfg(test)]
+impl Scratch {
+    /// Room of all arrays together.
+    pub(crate) fn capacity(&self) -> usize {
+        let Scratch { storage, diagonal, pressure, residual, direction, product, order, rank, ways } = self;
+        let of_cells = [storage, diagonal, pressure, residual, direction, product].map(Vec::capacity);
+        of_cells.iter().sum::<usize>() + order.capacity() + rank.capacity() + ways.capacity()
+    }
+}

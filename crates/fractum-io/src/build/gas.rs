@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use fractum_fem::Solid;
 use fractum_math::Vec3;
-use fractum_scene::{Gas, GasHole, GasSettings, GasSource, Load};
+use fractum_scene::{Gas, GasHole, GasSettings, GasSource, Load, Stemming};
 
 use super::conditions::LoadedPoints;
 use super::{Context, function};
-use crate::case::model::{Selection, SolverKind};
+use crate::case::model::{self, Selection, SolverKind};
 
 impl Context<'_> {
     /// The gas of the case on the groups of the mesh; none in a stage at rest.
@@ -22,7 +22,8 @@ impl Context<'_> {
         let mut holes: Vec<GasHole> = Vec::new();
         for hole in &gas.holes {
             let facets = self.selected_facets(&hole.on, numbering, surface);
-            self.check_hole(&hole.on, solid, &facets);
+            let stemming = self.stemming(hole, solid, &facets);
+            self.check_hole(&hole.on, solid, &facets, stemming.as_ref());
             let known = holes.iter().flat_map(|other| &other.facets).any(|facet| facets.contains(facet));
             if let (true, Some(place)) = (known, hole.on.place()) {
                 let found = format!("= \"{}\": shares facets with the hole before it", hole.on.label());
@@ -31,7 +32,7 @@ impl Context<'_> {
             let source = hole.source.as_ref();
             let source =
                 source.map(|[mass, energy]| GasSource { mass: function(&mass.value), energy: function(&energy.value) });
-            holes.push(GasHole { facets, charge: hole.charge, source });
+            holes.push(GasHole { facets, stemming: stemming.unwrap_or_default(), charge: hole.charge, source });
         }
         if !self.diagnostics.is_empty() {
             return None;
@@ -47,15 +48,37 @@ impl Context<'_> {
         Some(Gas::new(solid, settings))
     }
 
+    /// The stemmed ends of a hole that has any.
+    fn stemming(&mut self, hole: &model::GasHole, solid: &Solid, facets: &[[u32; 3]]) -> Option<Stemming> {
+        if !hole.stemmed {
+            return None;
+        }
+        let place = hole.on.place().cloned().unwrap_or_else(|| self.whole_case());
+        if solid.is_plane() {
+            self.error(&place, ": stemmed in the plane, where a hole is a closed line", "stemmed = false");
+            return None;
+        }
+        match Stemming::find(solid, facets) {
+            Ok(stemming) => Some(stemming),
+            Err(node) => {
+                let p: Vec3 = solid.reference[node as usize];
+                let found = format!(": its end at ({:.4e}, {:.4e}, {:.4e}) m is not flat", p.x, p.y, p.z);
+                self.error(&place, found, "a hole whose ends are flat rings of edges");
+                None
+            }
+        }
+    }
+
     /// The facets of a hole close around a volume.
-    fn check_hole(&mut self, on: &Selection, solid: &Solid, facets: &[[u32; 3]]) {
+    fn check_hole(&mut self, on: &Selection, solid: &Solid, facets: &[[u32; 3]], stemming: Option<&Stemming>) {
         let Some(place) = on.place().cloned().filter(|_| !facets.is_empty()) else { return };
         let name = on.label();
-        if let Some(open) = open_end(facets) {
+        let open = if stemming.is_none() { open_end(facets) } else { None };
+        if let Some(open) = open {
             let p: Vec3 = solid.reference[open as usize];
             let found = format!("= \"{name}\": is not closed, it ends at ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
             self.error(&place, found, "all facets around the hole: a closed surface, in the plane a closed line");
-        } else if Gas::hole_volume(solid, facets) <= 0.0 {
+        } else if Gas::hole_volume(solid, facets, stemming.unwrap_or(&Stemming::default())) <= 0.0 {
             let found = format!("= \"{name}\": encloses the solid, and no hole in it");
             self.error(&place, found, "facets around a hole");
         }

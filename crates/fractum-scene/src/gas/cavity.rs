@@ -1,6 +1,8 @@
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 
+use super::stemming::Stemming;
+
 /// Volume of a hole that gas keeps at least, over its volume without load: walls that fly into it leave some room.
 const LEAST_HOLE: f64 = 1e-3;
 
@@ -56,19 +58,25 @@ impl Cavity {
     }
 }
 
-/// Volume that closed facets enclose, whose normals point into it, with their nodes at these places [m³].
-pub(super) fn enclosed_volume(solid: &Solid, facets: &[[u32; 3]], at: impl Fn(u32) -> Vec3) -> f64 {
+/// Volume that facets enclose with their stemmed ends, all normals pointing into it, with the nodes at these places [m³].
+pub(super) fn enclosed_volume(
+    solid: &Solid,
+    facets: &[[u32; 3]],
+    stemming: &Stemming,
+    at: impl Fn(u32) -> Vec3 + Copy,
+) -> f64 {
     let Some(base) = facets.first().map(|facet| at(facet[0])) else { return 0.0 };
     let moment = |facet: &[u32; 3]| {
-        let area = solid.facet_area(facet, &at);
-        let [a, b, c] = facet.map(&at);
+        let area = solid.facet_area(facet, at);
+        let [a, b, c] = facet.map(at);
         if facet[1] == facet[2] {
             area.dot(&((a + b) * 0.5 - base)) / 2.0
         } else {
             area.dot(&((a + b + c) / 3.0 - base)) / 3.0
         }
     };
-    -facets.iter().map(moment).sum::<f64>()
+    let ends = stemming.triangles(at).map(|(area, centre)| area.dot(&(centre - base)) / 3.0);
+    -(facets.iter().map(moment).sum::<f64>() + ends.sum::<f64>())
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 mod cavity;
 mod measure;
+mod stemming;
 
 use fractum_fem::{CrackCell, CrackNetwork, CrackNetworkState, CrackSide, Solid};
 use fractum_gas::{Amount, Contents, EquationOfState, Network, Passage, SlitFlow};
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::conditions::TimeFunction;
 use cavity::{Cavity, enclosed_volume};
 pub use measure::GasMeasure;
+pub use stemming::Stemming;
 
 /// Part of its energy that a cell passes on as a facet between it and another removed element moves, at most.
 const LARGEST_EXCHANGE: f64 = 0.2;
@@ -43,8 +45,10 @@ pub struct GasSettings {
 /// A hole that gas is put in.
 #[derive(Clone)]
 pub struct GasHole {
-    /// Outward facets of the solids around it: a closed surface, in the plane a closed line.
+    /// Outward facets of the solids around it: a closed surface with its stemmed ends, in the plane a closed line.
     pub facets: Vec<[u32; 3]>,
+    /// Its stemmed ends; they do not move along the hole, and nothing leaks through them.
+    pub stemming: Stemming,
     /// What it holds at the start.
     pub charge: Charge,
     /// What comes in over time.
@@ -141,7 +145,7 @@ impl Gas {
         let mut network = Network::new(law, slits, outside_pressure);
         let mut cavities = Vec::new();
         for hole in &holes {
-            let volume = enclosed_volume(solid, &hole.facets, |node| solid.reference[node as usize]);
+            let volume = enclosed_volume(solid, &hole.facets, &hole.stemming, |node| solid.reference[node as usize]);
             let amount = match hole.charge {
                 Charge::Amount(amount) => amount,
                 Charge::State { pressure, temperature } => {
@@ -171,8 +175,8 @@ impl Gas {
     }
 
     /// Volume of a hole without load [m³]; not positive where its facets are turned inside out or flat.
-    pub fn hole_volume(solid: &Solid, facets: &[[u32; 3]]) -> f64 {
-        enclosed_volume(solid, facets, |node| solid.reference[node as usize])
+    pub fn hole_volume(solid: &Solid, facets: &[[u32; 3]], stemming: &Stemming) -> f64 {
+        enclosed_volume(solid, facets, stemming, |node| solid.reference[node as usize])
     }
 
     /// Lets the gas find what is open already, before its first step.
@@ -242,7 +246,8 @@ impl Gas {
         let Gas { cracks, holes, cavities, volumes, passages, .. } = self;
         let (of_holes, of_cracks) = cavities.split_at_mut(holes.len());
         for (cavity, hole) in of_holes.iter_mut().zip(&*holes) {
-            cavity.enclose(enclosed_volume(solid, &hole.facets, |node| solid.position(node as usize)));
+            let at = |node: u32| solid.position(node as usize);
+            cavity.enclose(enclosed_volume(solid, &hole.facets, &hole.stemming, at));
         }
         for (cavity, cell) in of_cracks.iter_mut().zip(cracks.cells()) {
             cavity.enclose(solid.present_volume(cell.body as usize, cell.element));

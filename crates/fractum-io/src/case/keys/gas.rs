@@ -28,6 +28,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("gas.holes[]", K::Tables, "", "Holes that gas is put in; at least one"),
     key("gas.holes[].group", K::Text, "", "Mesh group of the facets around the hole: a closed surface, in the plane a closed line; required without `where`"),
     key("gas.holes[].where", K::Condition, "", "Which facets, by all of their nodes at the start"),
+    key("gas.holes[].stemmed", K::Flag, "false", "Whether flat open ends of the hole, of a borehole through a specimen for instance, are closed by stemming that does not move; in space only"),
     key("gas.holes[].pressure", K::Quantity(D::PRESSURE), "", "Pressure at the start, ≥ 0, with temperature; not with jwl"),
     key("gas.holes[].temperature", K::Quantity(D::TEMPERATURE), "", "Temperature at the start, > 0; required with pressure"),
     key("gas.holes[].mass", K::Quantity(D::MASS), "", "Mass at the start, ≥ 0, instead of pressure; in the plane that of the whole thickness"),

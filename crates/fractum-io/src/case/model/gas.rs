@@ -30,6 +30,8 @@ pub struct Gas {
 pub struct GasHole {
     /// Facets of its wall.
     pub on: Selection,
+    /// Whether flat open ends are closed by stemming.
+    pub stemmed: bool,
     /// What it holds at the start.
     pub charge: Charge,
     /// Mass [kg/s] and energy [W] that come in over time.

@@ -81,6 +81,7 @@ fn jwl(table: &Table<'_>) -> Option<Jwl> {
 /// - `with_state`: whether the law has a temperature for a pressure
 fn hole(table: Table<'_>, with_state: bool) -> Option<GasHole> {
     let on = selection(&table);
+    let stemmed = table.flag("stemmed").or_if_absent(false);
     let charge = charge(&table, with_state);
     let source = if table.has("mass_rate") || table.has("energy_rate") {
         let rates = ["mass_rate", "energy_rate"].map(|key| time_function(&table, key).spanned().required());
@@ -90,7 +91,7 @@ fn hole(table: Table<'_>, with_state: bool) -> Option<GasHole> {
         Some(None)
     };
     table.finish("here");
-    Some(GasHole { on: on?, charge: charge?, source: source? })
+    Some(GasHole { on: on?, stemmed: stemmed?, charge: charge?, source: source? })
 }
 
 fn charge(table: &Table<'_>, with_state: bool) -> Option<Charge> {
