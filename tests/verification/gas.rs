@@ -129,7 +129,7 @@ fn gas_breaks_the_solid_follows_its_cracks_and_the_balance_closes() {
 
 #[test]
 fn a_hole_through_a_cube_is_closed_by_stemming() {
-    let solid = cut(10, false, 2, false);
+    let solid = cut(11, false, 2, false);
     let z = |n: u32| solid.reference[n as usize].z;
     let inner = |n: &u32| (solid.reference[*n as usize] - Vec3::repeat(0.5 * SIZE)).xy().amax() < 0.3 * SIZE;
     let on_end = |f: &[u32; 3]| f.iter().all(|&n| z(n) == 0.0) || f.iter().all(|&n| z(n) == SIZE);

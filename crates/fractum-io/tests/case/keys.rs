@@ -156,6 +156,7 @@ fn documented_defaults_are_the_defaults() {
                 .replace("NAME", material)
                 .replace("bodies[]", body)
                 .replace("loads[].in_cracks", "loads[2].in_cracks")
+                .replace("gas.holes[]", "gas.holes[0]")
                 .replace("probes[].reaction.about", "probes[15].reaction.about")
                 .replace("probes[].displacement.about", "probes[16].displacement.about")
                 .replace("probes[].velocity.about", "probes[17].velocity.about")
