@@ -5,7 +5,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as run_benches};
-use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, LocalDamping, Softening, Solid};
+use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, Kinematics, LocalDamping, Softening, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::renumber::renumber_along_hilbert_curve;
@@ -71,6 +71,44 @@ fn smoothed_armed(bencher: Bencher, cells: u32) {
 #[divan::bench(args = [21])]
 fn smoothed_damaged(bencher: Bencher, cells: u32) {
     bench_step(bencher, cells, |body| body.smoothed().with_damage(law(1e3)));
+}
+
+/// Forces of cells that are armed (strength 3 MPa) or damaged (1 kPa), by kinematics and rotation about the z axis [rad].
+///
+/// All nodes swing slowly, so that damage grows in some cells and not in others, as in a run.
+#[divan::bench(args = [
+    ("armed", false, 0.0), ("armed", true, 0.0), ("armed", true, 0.7),
+    ("damaged", false, 0.0), ("damaged", true, 0.0), ("damaged", true, 0.7),
+])]
+fn cells_in_motion(bencher: Bencher, (state, corotational, angle): (&str, bool, f64)) {
+    let kinematics = if corotational { Kinematics::Corotational } else { Kinematics::Small };
+    let strength = if state == "armed" { 3e6 } else { 1e3 };
+    let (mut solid, count, dt) = solid(21, |body| Body { kinematics, ..body.smoothed().with_damage(law(strength)) });
+    let (sin, cos) = f64::sin_cos(angle);
+    let turned = |x: Vec3| Vec3::new(cos * x.x - sin * x.y, sin * x.x + cos * x.y, x.z);
+    let mut step = 0;
+    bencher.counter(ItemsCount::new(count)).bench_local(|| {
+        step += 1;
+        let swing = 1e-6 * (1.0 + 0.1 * (0.3 * f64::from(step)).sin());
+        for (i, (u, x)) in solid.displacement.iter_mut().zip(&solid.reference).enumerate() {
+            *u = turned(x + Vec3::new(swing * (0.1 * i as f64).sin(), 0.0, 0.0)) - x;
+        }
+        solid.update_internal_forces(dt, false);
+    });
+}
+
+/// The work of [`cells_in_motion`] beside the forces.
+#[divan::bench]
+fn cells_moved_alone(bencher: Bencher) {
+    let (mut solid, count, _) = solid(21, |body| body);
+    let mut step = 0;
+    bencher.counter(ItemsCount::new(count)).bench_local(|| {
+        step += 1;
+        let swing = 1e-6 * (1.0 + 0.1 * (0.3 * f64::from(step)).sin());
+        for (i, (u, x)) in solid.displacement.iter_mut().zip(&solid.reference).enumerate() {
+            *u = x + Vec3::new(swing * (0.1 * i as f64).sin(), 0.0, 0.0) - x;
+        }
+    });
 }
 
 /// Building the cells, and the Lanczos process for the stable step.

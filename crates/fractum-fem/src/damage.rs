@@ -62,6 +62,7 @@ impl Softens {
     }
 
     /// Part of the effective stress that damage leaves alone.
+    #[inline]
     fn closed_stress(&self, strain: Sym3) -> Sym3 {
         if self.unilateral { compressive_stress(&self.hooke, strain) } else { Sym3::ZERO }
     }

@@ -6,7 +6,7 @@ use crate::block::{Cells, Scratch};
 use crate::body::Kinematics;
 use crate::body_model::BodyModel;
 use crate::damage::{Advance, EdgeCells, EdgeField, EdgesInStep};
-use crate::kernel::{self, ElasticCells, General};
+use crate::kernel::{self, ElasticCells, Viscous};
 use crate::lane::Lane;
 use crate::standard::StandardCells;
 use crate::viscosity::ViscousCells;
@@ -138,11 +138,12 @@ fn run<L: kernel::CellLaw>(
     viscous: &mut ViscousCells,
 ) -> (f64, Option<usize>) {
     let corotational = model.body.kinematics == Kinematics::Corotational;
-    if corotational || model.viscosity.is_some() {
-        let (viscosity, hooke) = (model.viscosity.as_ref(), model.hooke);
-        let general = General { corotational, viscosity, hooke, viscous };
-        return kernel::general_forces(cells, scratch, law, general);
+    match &model.viscosity {
+        Some(viscosity) => {
+            let viscous = Viscous { corotational, viscosity, hooke: model.hooke, of_cells: viscous };
+            kernel::viscous_forces(cells, scratch, law, viscous)
+        }
+        None if corotational => (0.0, kernel::corotational_forces(cells, scratch, law)),
+        None => (0.0, kernel::forces(cells, scratch, law)),
     }
-    kernel::forces(cells, scratch, law);
-    (0.0, None)
 }

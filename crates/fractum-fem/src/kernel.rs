@@ -6,7 +6,7 @@ use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
 use crate::body::Kinematics;
 use crate::hooke::Hooke;
 use crate::lane::Lane;
-use crate::reflection::without_reflection;
+use crate::polar::{corotational_strain, product, strain_and_turn};
 use crate::viscosity::{BodyViscosity, ViscousCells};
 
 /// Stress of a cell for its strain; owns the history of the cells of a block.
@@ -39,41 +39,14 @@ impl CellLaw for ElasticCells {
     }
 }
 
-/// Rotation R of the polar decomposition F = R U, by Higham's iteration R ← ½ (R + R⁻ᵀ).
-///
-/// Where F turns a cell inside out, Q of F = Q H is a reflection, and R comes from [`without_reflection`]. A cell that is exactly
-/// flat has no rotation; the identity then keeps the linear strain.
-pub(crate) fn polar_rotation(f: &Mat3) -> Mat3 {
-    let mut r = *f;
-    for _ in 0..40 {
-        let Some(inverse) = r.try_inverse() else { return Mat3::identity() };
-        let next = (r + inverse.transpose()) * 0.5;
-        let change = (next - r).norm_squared();
-        r = next;
-        if change < 1e-30 {
-            break;
-        }
-    }
-    if !r.iter().all(|c| c.is_finite()) {
-        return Mat3::identity();
-    }
-    if r.determinant() > 0.0 { r } else { without_reflection(&r, f) }
-}
-
 /// Stiffness over the undamaged one above which a cell carries: what is turned inside out below it changes no energy to
 /// speak of.
 const CARRIES: f64 = 0.02;
 
 /// Whether a cell with this displacement gradient is turned inside out or flat.
-pub(crate) fn is_inverted(h: &Mat3) -> bool {
+#[inline(always)]
+fn is_inverted(h: &Mat3) -> bool {
     (Mat3::identity() + h).determinant() <= 0.0
-}
-
-/// Strain of a displacement gradient, and the rotation of the cell.
-pub(crate) fn corotational_strain(h: &Mat3) -> (Sym3, Mat3) {
-    let f = Mat3::identity() + h;
-    let r = polar_rotation(&f);
-    (Sym3::symmetric_part(&(r.transpose() * f - Mat3::identity())), r)
 }
 
 /// Strain of a displacement gradient.
@@ -134,98 +107,128 @@ fn symmetric_columns(s: Sym3) -> [Lane; 3] {
     [Lane([xx, xy, zx, 0.0]), Lane([xy, yy, yz, 0.0]), Lane([zx, yz, zz, 0.0])]
 }
 
-/// Forces of the cells of a block, small strains: -∫ Bᵀσ dV added to `scratch.force`.
-///
-/// Cells of a block lie sorted by their number of nodes (`cell.rs`), so that nearly all of them pass through loops of a
-/// length that the compiler knows.
+/// M s by columns.
 #[inline(always)]
-fn small_strain_forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) {
-    for &run in &cells.runs {
-        match run.gradients {
-            2 => run_forces::<2, L>(cells, scratch, law, run),
-            3 => run_forces::<3, L>(cells, scratch, law, run),
-            4 => run_forces::<4, L>(cells, scratch, law, run),
-            5 => run_forces::<5, L>(cells, scratch, law, run),
-            6 => run_forces::<6, L>(cells, scratch, law, run),
-            7 => run_forces::<7, L>(cells, scratch, law, run),
-            8 => run_forces::<8, L>(cells, scratch, law, run),
-            _ => long_forces(cells, scratch, law, run),
-        }
-    }
+fn turned_columns(m: &Mat3, s: Sym3) -> [Lane; 3] {
+    let [x, y, z] = [0, 1, 2].map(|c| Lane([m[(0, c)], m[(1, c)], m[(2, c)], 0.0]));
+    let [xx, yy, zz, xy, yz, zx] = s.0;
+    let column = |a: f64, b: f64, c: f64| Lane::ZERO.plus(x, a).plus(y, b).plus(z, c);
+    [column(xx, xy, zx), column(xy, yy, yz), column(zx, yz, zz)]
 }
 
-/// A run of cells of `N` gradients each.
+/// Forces of the cells of a block without viscosity: -∫ Bᵀσ dV added to `scratch.force`.
+///
+/// Cells of a block lie sorted by their number of nodes (`cell.rs`), so that nearly all of them pass through loops of a
+/// length that the compiler knows. Returns the first corotational cell that is turned inside out while it still carries.
 #[inline(always)]
-fn run_forces<const N: usize, L: CellLaw>(
+fn forces_by_runs<const COROTATIONAL: bool, L: CellLaw>(
     cells: &Cells,
     scratch: &mut Scratch,
     law: &mut L,
-    Run { begin, end, .. }: Run,
-) {
-    let start = cells.starts[begin] as usize;
-    let gradients = cells.gradients[start..].chunks_exact(N);
-    let local = cells.local[start + begin..].chunks_exact(N + 1);
-    for (((cell, gradients), local), &volume) in (begin..end).zip(gradients).zip(local).zip(&cells.volume[begin..end]) {
-        one_cell(scratch, law, cell, local, gradients, volume);
+) -> Option<usize> {
+    let mut sweep = Sweep::<COROTATIONAL, L> { scratch, law, inverted: None };
+    for &run in &cells.runs {
+        match run.gradients {
+            2 => sweep.run::<2>(cells, run),
+            3 => sweep.run::<3>(cells, run),
+            4 => sweep.run::<4>(cells, run),
+            5 => sweep.run::<5>(cells, run),
+            6 => sweep.run::<6>(cells, run),
+            7 => sweep.run::<7>(cells, run),
+            8 => sweep.run::<8>(cells, run),
+            _ => sweep.long_run(cells, run),
+        }
     }
+    sweep.inverted
 }
 
-/// A run of cells with many nodes: at the axes of structured meshes, and around the long edges of others.
-#[inline(always)]
-fn long_forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L, run: Run) {
-    for cell in run.begin..run.end {
-        let (local, gradients) = (cells.local_nodes(cell), &cells.gradients[cells.range(cell)]);
-        one_cell(scratch, law, cell, local, gradients, cells.volume[cell]);
-    }
+struct Sweep<'a, const COROTATIONAL: bool, L> {
+    scratch: &'a mut Scratch,
+    law: &'a mut L,
+    inverted: Option<usize>,
 }
 
-#[inline(always)]
-fn one_cell<L: CellLaw>(
-    scratch: &mut Scratch,
-    law: &mut L,
-    cell: usize,
-    local: &[u16],
-    gradients: &[[f64; 3]],
-    volume: f64,
-) {
-    let [x, y, z] = gradient_columns(&scratch.displacement, local, gradients);
-    let stress = law.scaled_stress(cell, small_strain(x, y, z), volume);
-    add_cell_forces(&mut scratch.force, local, gradients, symmetric_columns(stress));
+impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
+    /// A run of cells of `N` gradients each.
+    #[inline(always)]
+    fn run<const N: usize>(&mut self, cells: &Cells, Run { begin, end, .. }: Run) {
+        let start = cells.starts[begin] as usize;
+        let gradients = cells.gradients[start..].chunks_exact(N);
+        let local = cells.local[start + begin..].chunks_exact(N + 1);
+        let volume = &cells.volume[begin..end];
+        for (((cell, gradients), local), &volume) in (begin..end).zip(gradients).zip(local).zip(volume) {
+            self.cell(cell, local, gradients, volume);
+        }
+    }
+
+    /// A run of cells with many nodes: at the axes of structured meshes, and around the long edges of others.
+    #[inline(always)]
+    fn long_run(&mut self, cells: &Cells, run: Run) {
+        for cell in run.begin..run.end {
+            let (local, gradients) = (cells.local_nodes(cell), &cells.gradients[cells.range(cell)]);
+            self.cell(cell, local, gradients, cells.volume[cell]);
+        }
+    }
+
+    #[inline(always)]
+    fn cell(&mut self, cell: usize, local: &[u16], gradients: &[[f64; 3]], volume: f64) {
+        let [x, y, z] = gradient_columns(&self.scratch.displacement, local, gradients);
+        let columns = if COROTATIONAL {
+            let h = columns_to_matrix(x, y, z);
+            if is_inverted(&h) && self.inverted.is_none() && volume > 0.0 && self.law.integrity(cell) > CARRIES {
+                self.inverted = Some(cell);
+            }
+            let (strain, m, n) = strain_and_turn(&h);
+            // R σ = M (1 + n) σ: laws are isotropic, so that stress is coaxial with strain.
+            let stress = self.law.scaled_stress(cell, strain, volume);
+            turned_columns(&m, stress + product(n, stress))
+        } else {
+            symmetric_columns(self.law.scaled_stress(cell, small_strain(x, y, z), volume))
+        };
+        add_cell_forces(&mut self.scratch.force, local, gradients, columns);
+    }
 }
 
 widest! {
     /// The small-strain kernel in the widest instruction set of the machine.
-    pub(crate) fn forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) = small_strain_forces;
-}
-
-/// What cells do beside small elastic strains.
-pub(crate) struct General<'a> {
-    pub(crate) corotational: bool,
-    pub(crate) viscosity: Option<&'a BodyViscosity>,
-    pub(crate) hooke: Hooke,
-    /// Viscous stress of the last step; replaced by that of this one.
-    pub(crate) viscous: &'a mut ViscousCells,
+    pub(crate) fn forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) -> Option<usize>
+        = forces_by_runs::<false, L>;
 }
 
 widest! {
-    /// Forces with corotational strains and, if asked for, viscous stress; small strains with viscosity come here as well.
+    /// The kernel of cells that turn; returns the first that is turned inside out while it still carries.
+    pub(crate) fn corotational_forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) -> Option<usize>
+        = forces_by_runs::<true, L>;
+}
+
+/// What viscous cells do beside elastic ones.
+pub(crate) struct Viscous<'a> {
+    pub(crate) corotational: bool,
+    pub(crate) viscosity: &'a BodyViscosity,
+    pub(crate) hooke: Hooke,
+    /// Viscous stress of the last step; replaced by that of this one.
+    pub(crate) of_cells: &'a mut ViscousCells,
+}
+
+widest! {
+    /// Forces with viscous stress.
     ///
     /// Returns the mean power of the viscous stress over the step [W], and the first corotational cell that is turned inside
     /// out while it still carries.
-    pub(crate) fn general_forces<L: CellLaw>(
+    pub(crate) fn viscous_forces<L: CellLaw>(
         cells: &Cells,
         scratch: &mut Scratch,
         law: &mut L,
-        general: General<'_>,
-    ) -> (f64, Option<usize>) = forces_cell_by_cell;
+        viscous: Viscous<'_>,
+    ) -> (f64, Option<usize>) = viscous_forces_by_cell;
 }
 
 #[inline(always)]
-fn forces_cell_by_cell<L: CellLaw>(
+fn viscous_forces_by_cell<L: CellLaw>(
     cells: &Cells,
     scratch: &mut Scratch,
     law: &mut L,
-    General { corotational, viscosity, hooke, viscous }: General<'_>,
+    Viscous { corotational, viscosity, hooke, of_cells }: Viscous<'_>,
 ) -> (f64, Option<usize>) {
     let Scratch { displacement, velocity, force } = scratch;
     let (mut dissipated_power, mut inverted) = (0.0, None);
@@ -243,20 +246,15 @@ fn forces_cell_by_cell<L: CellLaw>(
             (small_strain(x, y, z), Mat3::identity())
         };
         let mut stress = law.scaled_stress(cell, strain, volume);
-        if let (Some(viscosity), Some(velocity)) = (viscosity, velocity.as_deref()) {
+        if let Some(velocity) = velocity.as_deref() {
             let [x, y, z] = gradient_columns(velocity, local, gradients);
             let rate = Sym3::symmetric_part(&(rotation.transpose() * columns_to_matrix(x, y, z)));
             // The mean of the stress at both ends of the step, at the rate between them.
-            let [now, mean] = viscous.update(viscosity, &hooke, cell, rate, [law.integrity(cell), volume]);
+            let [now, mean] = of_cells.update(viscosity, &hooke, cell, rate, [law.integrity(cell), volume]);
             dissipated_power += mean.dot(rate);
             stress += now;
         }
-        let columns = if corotational {
-            let p = rotation * stress.to_matrix();
-            [0, 1, 2].map(|c| Lane([p[(0, c)], p[(1, c)], p[(2, c)], 0.0]))
-        } else {
-            symmetric_columns(stress)
-        };
+        let columns = if corotational { turned_columns(&rotation, stress) } else { symmetric_columns(stress) };
         add_cell_forces(force, local, gradients, columns);
     }
     (dissipated_power, inverted)
@@ -294,30 +292,37 @@ mod tests {
         let Solid { blocks, bodies, displacement, velocity, .. } = &mut solid;
         for block in blocks {
             let (cells, model) = (&block.cells, &bodies[block.body]);
-            let mut forces_of = |fastest: bool, corotational: Option<bool>| {
+            let mut forces_of = |fastest: bool, corotational: bool, viscous: bool| {
                 block.scratch.load(&cells.nodes, displacement);
                 block.scratch.load_velocity(&cells.nodes, velocity);
                 let mut law = ElasticCells { hooke: model.hooke, energy: Some(0.0) };
                 let scratch = &mut block.scratch;
-                let mut viscous = ViscousCells::new(model, &cells.volume);
+                let mut of_cells = ViscousCells::new(model, &cells.volume);
                 let mut power = 0.0;
-                if let Some(corotational) = corotational {
-                    let viscosity = model.viscosity.as_ref();
-                    assert!(viscosity.is_some());
-                    let general = General { corotational, viscosity, hooke: model.hooke, viscous: &mut viscous };
-                    let run = if fastest { general_forces } else { forces_cell_by_cell };
-                    power = run(cells, scratch, &mut law, general).0;
-                } else {
-                    let run = if fastest { forces } else { small_strain_forces };
-                    run(cells, scratch, &mut law);
+                match viscous {
+                    false => {
+                        let run = match (fastest, corotational) {
+                            (true, false) => forces,
+                            (true, true) => corotational_forces,
+                            (false, false) => forces_by_runs::<false, _>,
+                            (false, true) => forces_by_runs::<true, _>,
+                        };
+                        run(cells, scratch, &mut law);
+                    }
+                    true => {
+                        let (viscosity, hooke) = (model.viscosity.as_ref().unwrap(), model.hooke);
+                        let viscous = Viscous { corotational, viscosity, hooke, of_cells: &mut of_cells };
+                        let run = if fastest { viscous_forces } else { viscous_forces_by_cell };
+                        power = run(cells, scratch, &mut law, viscous).0;
+                    }
                 }
                 let sums = [law.energy.unwrap(), power];
                 let forces = scratch.force.iter().flat_map(|lane| lane.0);
-                forces.chain(sums).chain(viscous.stress.into_iter().flat_map(|s| s.0)).map(f64::to_bits).collect()
+                forces.chain(sums).chain(of_cells.stress.into_iter().flat_map(|s| s.0)).map(f64::to_bits).collect()
             };
-            for corotational in [None, Some(false), Some(true)] {
-                let fastest: Vec<u64> = forces_of(true, corotational);
-                assert!(fastest == forces_of(false, corotational), "{corotational:?}");
+            for [corotational, viscous] in [[false; 2], [true, false], [false, true], [true; 2]] {
+                let fastest: Vec<u64> = forces_of(true, corotational, viscous);
+                assert!(fastest == forces_of(false, corotational, viscous), "{corotational} {viscous}");
             }
         }
     }

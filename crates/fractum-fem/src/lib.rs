@@ -43,6 +43,7 @@ mod inverted;
 mod kernel;
 mod lane;
 pub mod material;
+mod polar;
 mod reflection;
 mod removal;
 mod secant;

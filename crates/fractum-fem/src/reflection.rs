@@ -18,7 +18,7 @@ pub(crate) fn without_reflection(q: &Mat3, f: &Mat3) -> Mat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::corotational_strain;
+    use crate::polar::corotational_strain;
 
     /// Strain energy of a cell whose λ and μ are 1, and its derivative by F, R σ.
     fn energy(f: &Mat3) -> (f64, Mat3) {

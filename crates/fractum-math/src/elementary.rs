@@ -35,6 +35,27 @@ pub fn cos(x: f64) -> f64 {
     libm::cos(x)
 }
 
+/// cos(⅓ arccos x) for −1 ≤ x ≤ 1: the largest root c of 4 c³ − 3 c = x, of which principal values are made.
+///
+/// It is analytic in √(1 + x) up to √(1 + x) = −√2: the Chebyshev series in t = √(2 + 2x) − 1, summed as a polynomial to t¹⁷,
+/// is exact to 5e-16, at a third of the cost of arc cosine and cosine.
+pub fn cos_of_third(x: f64) -> f64 {
+    /// Coefficients of t⁴ᵏ to t⁴ᵏ⁺³ in row k.
+    const SERIES: [[f64; 4]; 5] = [
+        [0.7660444431189779, 0.24740906632285342, -0.015509188436466538, 0.0024663528150652356],
+        [-0.0005041246916553286, 0.00011642545332376988, -2.8919930996008654e-05, 7.541075528639302e-06],
+        [-2.035896969136149e-06, 5.641644492145283e-07, -1.5946448920768576e-07, 4.5826101529351644e-08],
+        [-1.3482454942697049e-08, 3.982274037822892e-09, -1.0522633347918922e-09, 3.092253983971399e-10],
+        [-1.6368329253261365e-10, 5.1178745156550326e-11, 0.0, 0.0],
+    ];
+    let t = (2.0 + 2.0 * x).sqrt() - 1.0;
+    let square = t * t;
+    let fourth = square * square;
+    let rows = SERIES.into_iter().rev();
+    let [a, b, c, d] = rows.fold([0.0; 4], |sum, row| std::array::from_fn(|i| sum[i] * fourth + row[i]));
+    (a + b * t) + (c + d * t) * square
+}
+
 /// Hyperbolic cosine.
 pub fn cosh(x: f64) -> f64 {
     libm::cosh(x)
@@ -134,5 +155,18 @@ mod tests {
             assert!(close(f(x, y), exact), "row {k}: {} {exact}", f(x, y));
         }
         assert_eq!(sin_cos(1.1), (sin(1.1), cos(1.1)));
+        let of_third = [
+            (-1.0, 0.5),
+            (-0.9375, 0.5988565086814718),
+            (-4095.0 / 4096.0, 0.5063653877828457),
+            (-0.5, 0.766044443118978),
+            (0.0, 0.8660254037844386),
+            (0.3, 0.9122574389279367),
+            (0.9, 0.9887198717411111),
+            (1.0, 1.0),
+        ];
+        for (x, exact) in of_third {
+            assert!((cos_of_third(x) - exact).abs() < 5e-16, "{x}: {} {exact}", cos_of_third(x));
+        }
     }
 }

@@ -1,4 +1,4 @@
-use crate::elementary::{acos, cos};
+use crate::elementary::cos_of_third;
 use std::ops::{Add, AddAssign, Mul, Sub};
 
 use serde::{Deserialize, Serialize};
@@ -68,17 +68,27 @@ impl Sym3 {
     /// Near a double value the error grows to about 1e-8 of the norm; [`Sym3::eigen`] is exact to round-off.
     #[inline]
     pub fn principal_values(self) -> [f64; 3] {
-        let mean = self.trace() / 3.0;
-        let j2 = self.j2();
+        let [mean, radius, cos3] = self.lode();
+        let (first, last) = (mean + radius * cos_of_third(cos3), mean - radius * cos_of_third(-cos3));
+        [first, 3.0 * mean - first - last, last]
+    }
+
+    /// The first of [`Sym3::principal_values`].
+    #[inline]
+    pub fn first_principal_value(self) -> f64 {
+        let [mean, radius, cos3] = self.lode();
+        mean + radius * cos_of_third(cos3)
+    }
+
+    /// Mean m, r = 2 √(J₂/3) and cos 3θ: the first principal value is m + r cos θ, the last m - r cos(π/3 - θ).
+    #[inline]
+    fn lode(self) -> [f64; 3] {
+        let (mean, j2) = (self.trace() / 3.0, self.j2());
         if j2 <= 1e-300 {
-            return [mean; 3];
+            return [mean, 0.0, 0.0];
         }
         let radius = 2.0 * (j2 / 3.0).sqrt();
-        let cos3 = (4.0 * self.j3() / (radius * radius * radius)).clamp(-1.0, 1.0);
-        let angle = acos(cos3) / 3.0;
-        let third = 2.0 * std::f64::consts::FRAC_PI_3;
-        let (first, last) = (mean + radius * cos(angle), mean + radius * cos(angle + third));
-        [first, 3.0 * mean - first - last, last]
+        [mean, radius, (4.0 * self.j3() / (radius * radius * radius)).clamp(-1.0, 1.0)]
     }
 
     /// Principal values in descending order with their directions (columns), by cyclic Jacobi rotations.

@@ -147,7 +147,7 @@ impl Criterion {
     pub fn equivalent_stress(&self, stress: Sym3) -> f64 {
         let c = self.constants;
         let q = match self.kind {
-            CriterionKind::Rankine => stress.principal_values()[0],
+            CriterionKind::Rankine => stress.first_principal_value(),
             CriterionKind::MohrCoulomb => {
                 let s = stress.principal_values();
                 s[0].max((c[0] * s[0] - s[2]) * c[1])
