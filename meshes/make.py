@@ -18,6 +18,7 @@ import gmsh
 import beams
 import boxes
 import quality
+import tunnel
 
 HERE = Path(__file__).resolve().parent
 GMSH = "4.15.2"
@@ -56,6 +57,12 @@ UNSTRUCTURED = {
     "pressurised-crack-plane/elements-10": ("pressurised-crack-plane/plate.geo", {"elements": 10}, False),
     "pressurised-crack-plane/elements-20": ("pressurised-crack-plane/plate.geo", {"elements": 20}, False),
     "gas-blast-plane/coarse": ("gas-blast-plane/plate.geo", {"h": 0.0012, "far": 0.0022}, False),
+    "spall-plane/coarse": ("spall-plane/bar.geo", {"h": 0.0005}, False),
+    "spall-plane/fine": ("spall-plane/bar.geo", {"h": 0.00035}, True),
+    "blast-plane/kirsch": ("blast-plane/hole.geo", {"h": 0.004, "band": 2, "L": 10}, False),
+    "blast-plane/shale": ("blast-plane/hole.geo", {"h": 0.02, "band": 0.06, "L": 30}, False),
+    "blast-plane/granite": ("blast-plane/disc.geo", {"h": 0.0006, "far": 0.0011, "length": 0}, False),
+    "blast-plane/bench": ("blast-plane/bench.geo", {"h": 0.06}, False),
     "bending-plane/plain": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0, "layers": 0}, False),
     "bending-plane/notched": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0.03, "layers": 0}, False),
     "bending-plane/notched-10": ("bending/beam.geo", {"h": 0.01, "far": 0.02, "notch": 0.03, "layers": 0}, False),
@@ -116,6 +123,10 @@ NOTCHED = {
 }
 
 
+# name: firing sequence that belongs to the mesh
+TUNNEL = {"blast-plane/tunnel": "../cases/tunnel-front/sequence.csv"}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("name", nargs="*")
@@ -123,7 +134,7 @@ def main():
     parser.add_argument("--table", action="store_true")
     arguments = parser.parse_args()
 
-    known = [*LARGE] if arguments.large else [*UNSTRUCTURED, *STRUCTURED, *NOTCHED]
+    known = [*LARGE] if arguments.large else [*UNSTRUCTURED, *STRUCTURED, *NOTCHED, *TUNNEL]
     chosen = [name for name in known if not arguments.name or name.startswith(tuple(arguments.name))]
     if not chosen:
         sys.exit(f"no mesh begins with {' or '.join(arguments.name)}; there are {', '.join(known)}")
@@ -149,6 +160,8 @@ def make(name, path):
         with_gmsh({}, lambda: boxes.box(path, **STRUCTURED[name]))
     elif name in NOTCHED:
         with_gmsh({}, lambda: beams.notched_beam(path, **NOTCHED[name]))
+    elif name in TUNNEL:
+        with_gmsh({}, lambda: tunnel.tunnel(path, HERE / TUNNEL[name]))
     else:
         geometry, parameters, binary = (UNSTRUCTURED | LARGE)[name]
         with_gmsh(parameters, lambda: unstructured(path, geometry, binary))
@@ -171,6 +184,7 @@ def with_gmsh(parameters, work):
     try:
         work()
     finally:
+        gmsh.onelab.clear()  # else its parameters become those of the next geometry
         gmsh.finalize()
 
 

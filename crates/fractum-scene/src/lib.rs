@@ -14,6 +14,7 @@ mod error;
 mod fragment;
 mod gas;
 mod ledger;
+mod piece_probe;
 mod probe;
 mod scene;
 pub mod statics;
@@ -34,6 +35,7 @@ pub use fractum_gas::{Amount, EquationOfState, Jwl, NobleAbel, PerfectGas, SlitF
 pub use fragment::{Fragment, solid_pieces};
 pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, Stemming};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
+pub use piece_probe::{FragmentMeasure, SurfaceMeasure};
 pub use probe::{Population, Probe};
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};

@@ -6,6 +6,7 @@ use crate::contacts::ContactProbe;
 use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
 use crate::gas::GasMeasure;
 use crate::ledger::EnergyProbe;
+use crate::piece_probe::{FragmentMeasure, SurfaceMeasure, measure_fragment, measure_surface, passing_size};
 use crate::scene::{CountKind, Scene};
 
 /// The points that a set is of.
@@ -72,6 +73,31 @@ pub enum Probe {
         /// Of this hole; of everything if absent.
         hole: Option<usize>,
     },
+    /// Sum of the loads on nodes of solids along a component [N].
+    Load {
+        /// The nodes, ascending.
+        points: Vec<u32>,
+        /// Which component; directions about an axis are those of the places without load.
+        along: Along,
+    },
+    /// Something about facets as they are at present.
+    Surface {
+        /// Outward facets; an edge in the plane repeats its second node.
+        facets: Vec<[u32; 3]>,
+        /// What about them.
+        measure: SurfaceMeasure,
+    },
+    /// Something about the fragment that holds a node.
+    Fragment {
+        /// The nodes, of which the first counts.
+        points: Vec<u32>,
+        /// What about it.
+        measure: FragmentMeasure,
+        /// Direction of a velocity.
+        along: Vec3,
+    },
+    /// Size below which a share of the mass of all fragments lies [m].
+    FragmentSize(f64),
     /// Area of crack, Σ V d/l over the damaged edges [m²].
     CrackArea,
     /// How the crack lies: the edges that have lost at least half of their strength, and the broken bonds. Not a number
@@ -139,6 +165,10 @@ impl Probe {
                 scene.contacts.rigid_bodies()[*rigid_body].frame.velocity.dot(direction)
             }
             Probe::Gas { measure, hole } => scene.gas().map_or(f64::NAN, |gas| gas.measure(solid, *measure, *hole)),
+            Probe::Load { points, along } => scene.loads.resultant(points, |point| along.at(&solid.reference[point])),
+            Probe::Surface { facets, measure } => measure_surface(solid, facets, *measure),
+            Probe::Fragment { points, measure, along } => measure_fragment(scene, points, *measure, along),
+            Probe::FragmentSize(share) => passing_size(scene, *share),
             Probe::CrackArea => solid.crack_area(),
             Probe::Crack { measure, axis, inside } => measure_crack(scene, *measure, axis, inside.as_ref()),
         }

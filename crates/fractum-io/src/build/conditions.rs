@@ -167,7 +167,7 @@ fn push_nodal(loads: &mut Vec<Load>, points: &[(u32, f64)], components: &Compone
 /// The points that loads act on.
 pub(super) enum LoadedPoints<'a> {
     /// Nodes of solids, with their surface.
-    Nodes(&'a Numbering, Surface<'a>),
+    Nodes(&'a Numbering, &'a Surface<'a>),
     /// Particles.
     Particles(&'a Bonded),
 }
@@ -187,6 +187,22 @@ impl<'a> Surface<'a> {
         let thickness = plane.map_or(0.0, |part| part.body.thickness.as_ref().map_or(1.0, |t| t.value));
         let by_nodes = boundary.iter().map(|&facet| (sorted(facet), facet)).collect();
         Surface { facets: boundary, by_nodes, thickness, positions }
+    }
+
+    /// Whether facets close around a volume: every side of one belongs to another, in the other direction.
+    pub(super) fn is_closed(&self, facets: &[[u32; 3]]) -> bool {
+        let mut open: HashMap<[u32; 2], i32> = HashMap::new();
+        for &[a, b, c] in facets {
+            if self.thickness > 0.0 {
+                *open.entry([a, a]).or_default() += 1;
+                *open.entry([b, b]).or_default() -= 1;
+                continue;
+            }
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                *open.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+            }
+        }
+        !facets.is_empty() && open.values().all(|&count| count == 0)
     }
 
     /// Outward normal of a facet without load, as long as its area [m²].

@@ -150,7 +150,7 @@ impl Context<'_> {
         let (surface_supports, supported) = self.surface_supports(&parts, &numbering, &surface, &solid);
         let in_situ = self.in_situ_loads(&numbering, &surface, &solid, supported);
         self.check_in_situ_supports(&solid, &numbering);
-        let points = LoadedPoints::Nodes(&numbering, surface);
+        let points = LoadedPoints::Nodes(&numbering, &surface);
         let mut loads = self.loads(&points);
         loads.extend(in_situ);
         let gas = self.gas(&solid, &points, &loads);
@@ -170,7 +170,7 @@ impl Context<'_> {
         boundary_of_parts.iter_mut().for_each(|facets| facets.retain(touched));
         self.condition_particles(&mut bonded, &ties.attachments, &mut warnings);
         let bonded_statics = self.bonded_statics(&bonded);
-        let probes = self.probes(&parts, &numbering, &solid, &supports, &bonded);
+        let probes = self.probes(&parts, &numbering, &surface, &solid, &supports, &bonded);
         if !self.diagnostics.is_empty() {
             return None;
         }

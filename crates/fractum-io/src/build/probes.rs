@@ -4,10 +4,12 @@ use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
 use fractum_scene::{
     Along, Bonded, BondedBody, ContactBody, ContactProbe, InsideCracks, PointProbe, Population, Probe, Supports,
+    SurfaceMeasure,
 };
 
 use super::Context;
 use super::bodies::{Numbering, Part};
+use super::conditions::Surface;
 use super::use_in_words;
 use crate::case::model::{GroupUse, ProbeKind};
 use crate::case::{Field, Spanned};
@@ -18,6 +20,7 @@ impl Context<'_> {
         &mut self,
         parts: &[Part],
         numbering: &Numbering,
+        surface: &Surface,
         solid: &Solid,
         supports: &Supports,
         bonded: &Bonded,
@@ -25,7 +28,7 @@ impl Context<'_> {
         let case = self.case;
         let mut measured = |kind| match self.particle_probe(kind, bonded).or_else(|| self.rigid_body_probe(kind)) {
             Some(probe) => Some(probe),
-            None => self.probe(kind, parts, numbering, solid, supports, bonded),
+            None => self.probe(kind, parts, numbering, surface, solid, supports, bonded),
         };
         case.probes.iter().map(|probe| measured(&probe.kind)).collect()
     }
@@ -35,6 +38,7 @@ impl Context<'_> {
         kind: &ProbeKind,
         parts: &[Part],
         numbering: &Numbering,
+        surface: &Surface,
         solid: &Solid,
         supports: &Supports,
         bonded: &Bonded,
@@ -86,6 +90,23 @@ impl Context<'_> {
                 let body = |name: &str| self.contact_body(name, solid, bonded);
                 Probe::ContactForce(ContactProbe { on: body(&on.value)?, from: body(&from.value)?, along: *along })
             }
+            ProbeKind::Load { on, along } => Probe::Load { points: self.selected_nodes(on, numbering), along: *along },
+            ProbeKind::Surface { on, measure } => {
+                let facets = self.selected_facets(on, numbering, surface);
+                if *measure == SurfaceMeasure::Volume && !surface.is_closed(&facets) {
+                    let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
+                    self.error(
+                        &place,
+                        format!("= \"{}\" encloses no volume", on.label()),
+                        "facets that close around a cavity",
+                    );
+                }
+                Probe::Surface { facets, measure: *measure }
+            }
+            ProbeKind::Fragment { on, measure, along } => {
+                Probe::Fragment { points: self.selected_nodes(on, numbering), measure: *measure, along: *along }
+            }
+            ProbeKind::FragmentSize(share) => Probe::FragmentSize(*share),
             ProbeKind::Energy(kind) => Probe::Energy(*kind),
             ProbeKind::Count(kind) => Probe::Count(*kind),
             ProbeKind::Momentum { along } => Probe::Momentum(*along),

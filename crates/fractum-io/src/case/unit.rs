@@ -47,6 +47,8 @@ impl Dimension {
     pub const ENERGY: Self = dimension(1, 2, -2);
     /// Power [W].
     pub const POWER: Self = dimension(1, 2, -3);
+    /// Volume [m³].
+    pub const VOLUME: Self = dimension(0, 3, 0);
     /// Mass density [kg/m³].
     pub const DENSITY: Self = dimension(1, -3, 0);
     /// Energy per area [J/m²].
@@ -149,7 +151,7 @@ static KNOWN: &[Known] = &[
     known(Dimension::NONE, "1", "a number", "0.5"),
     known(Dimension::LENGTH, "m", "a length", "12 mm"),
     known(Dimension::AREA, "m^2", "an area", "4 cm^2"),
-    known(dimension(0, 3, 0), "m^3", "a volume", "1 L"),
+    known(Dimension::VOLUME, "m^3", "a volume", "1 L"),
     known(Dimension::STIFFNESS_PER_AREA, "Pa/m", "a stiffness per area", "1 GPa/m"),
     known(Dimension::MASS, "kg", "a mass", "2 kg"),
     known(Dimension::TIME, "s", "a time", "0.2 ms"),

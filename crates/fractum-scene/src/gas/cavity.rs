@@ -59,7 +59,7 @@ impl Cavity {
 }
 
 /// Volume that facets enclose with their stemmed ends, all normals pointing into it, with the nodes at these places [m³].
-pub(super) fn enclosed_volume(
+pub(crate) fn enclosed_volume(
     solid: &Solid,
     facets: &[[u32; 3]],
     stemming: &Stemming,

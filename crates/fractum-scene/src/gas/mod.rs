@@ -14,7 +14,8 @@ use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::conditions::TimeFunction;
-use cavity::{Cavity, enclosed_volume};
+use cavity::Cavity;
+pub(crate) use cavity::enclosed_volume;
 pub use measure::GasMeasure;
 pub use stemming::Stemming;
 

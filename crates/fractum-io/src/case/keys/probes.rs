@@ -1,6 +1,6 @@
 //! Probes.
 
-use fractum_scene::{CountKind, CrackMeasure, EnergyProbe, GasMeasure};
+use fractum_scene::{CountKind, CrackMeasure, EnergyProbe, FragmentMeasure, GasMeasure, SurfaceMeasure};
 
 use super::{key, names};
 use crate::case::key_kind::{KeyDoc, KeyKind as K};
@@ -49,6 +49,23 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("probes[].stress.about", K::Table, "", "radial, tangential and radial_tangential only: the axis"),
     key("probes[].stress.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
     key("probes[].stress.about.axis", K::Direction, "\"z\"", "Its direction"),
+    key("probes[].load", K::Table, "", "Sum of the loads on the nodes of a group, weight aside, in N"),
+    key("probes[].load.group", K::Text, "", "Mesh group; required without `where`"),
+    key("probes[].load.where", K::Condition, "", "Which nodes, by their positions at the start"),
+    key("probes[].load.along", K::DirectionOrAbout, "required", "Direction; or \"radial\" or \"tangential\": away from the axis, or around it by the right hand"),
+    key("probes[].load.about", K::Table, "", "radial and tangential only: the axis"),
+    key("probes[].load.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
+    key("probes[].load.about.axis", K::Direction, "\"z\"", "Its direction"),
+    key("probes[].surface", K::Table, "", "Facets of a group as they are at present"),
+    key("probes[].surface.group", K::Text, "", "Mesh group of facets; required without `where`"),
+    key("probes[].surface.where", K::Condition, "", "Which facets, by the positions of all their nodes at the start"),
+    key("probes[].surface.measure", K::Choice(names::<SurfaceMeasure>), "required", "Their area, in m^2, or the volume of the cavity that they enclose, in m^3"),
+    key("probes[].fragment", K::Table, "", "The fragment that holds the first node of a group"),
+    key("probes[].fragment.group", K::Text, "", "Mesh group; required without `where`"),
+    key("probes[].fragment.where", K::Condition, "", "Which nodes, by their positions at the start"),
+    key("probes[].fragment.measure", K::Choice(names::<FragmentMeasure>), "required", "Its mass, volume, size (diameter of the sphere of that volume, in the plane of the circle of that area), or the velocity of its centre of mass"),
+    key("probes[].fragment.along", K::Direction, "", "Velocity only, required there: direction"),
+    key("probes[].fragment_size", K::Quantity(D::NONE), "", "Size below which this share of the mass of all fragments lies, in m: P50 for 0.5; within 0 and 1"),
     key("probes[].energy", K::Choice(names::<EnergyProbe>), "", "An entry of the energy ledger, in J"),
     key("probes[].count", K::Choice(names::<CountKind>), "", "A count"),
     key("probes[].momentum", K::Table, "", "Linear momentum of the scene, in kg m/s"),

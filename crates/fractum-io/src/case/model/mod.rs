@@ -394,7 +394,10 @@ impl Case {
             ProbeKind::Reaction { on, .. }
             | ProbeKind::Displacement { on, .. }
             | ProbeKind::Velocity { on, .. }
+            | ProbeKind::Load { on, .. }
+            | ProbeKind::Fragment { on, .. }
             | ProbeKind::Rotation { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::ProbeNodes)),
+            ProbeKind::Surface { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::Facets)),
             ProbeKind::Stress { group, .. } => Some((group, GroupUse::ProbeElements)),
             _ => None,
         });

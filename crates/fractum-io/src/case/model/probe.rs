@@ -1,7 +1,7 @@
 //! Probes: the numbers a run records.
 
 use fractum_math::Vec3;
-use fractum_scene::{Along, CountKind, CrackMeasure, EnergyProbe, GasMeasure};
+use fractum_scene::{Along, CountKind, CrackMeasure, EnergyProbe, FragmentMeasure, GasMeasure, SurfaceMeasure};
 
 use super::Selection;
 use crate::case::choice::choice;
@@ -73,6 +73,31 @@ pub enum ProbeKind {
         /// Normal of the plane, and direction of the stress on it.
         between: [Along; 2],
     },
+    /// Sum of the loads on nodes [N].
+    Load {
+        /// On these nodes.
+        on: Selection,
+        /// Which component.
+        along: Along,
+    },
+    /// Something about facets as they are at present.
+    Surface {
+        /// Facets by their group, by their nodes, or both.
+        on: Selection,
+        /// What about them.
+        measure: SurfaceMeasure,
+    },
+    /// Something about the fragment that holds the first of some nodes.
+    Fragment {
+        /// The nodes.
+        on: Selection,
+        /// What about it.
+        measure: FragmentMeasure,
+        /// Unit vector of a velocity.
+        along: Vec3,
+    },
+    /// Size below which this share of the mass of all fragments lies [m].
+    FragmentSize(f64),
     /// An entry of the energy ledger, or its residual [J].
     Energy(EnergyProbe),
     /// A count [-].
@@ -207,3 +232,7 @@ choice!(CountKind {
     "particles" => Particles, "fragments" => Fragments, "contacts" => Contacts,
     "bonds" => Bonds, "broken_bonds" => BrokenBonds,
 });
+
+choice!(SurfaceMeasure { "area" => Area, "volume" => Volume });
+
+choice!(FragmentMeasure { "mass" => Mass, "volume" => Volume, "size" => Size, "velocity" => Velocity });

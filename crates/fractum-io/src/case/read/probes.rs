@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
-use fractum_scene::{Along, CrackMeasure, GasMeasure};
+use fractum_scene::{Along, CrackMeasure, FragmentMeasure, GasMeasure, SurfaceMeasure};
 
 use super::boundary::selection;
 use super::parameters::check_name;
@@ -84,6 +84,10 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
         "rotation",
         "contact_force",
         "stress",
+        "load",
+        "surface",
+        "fragment",
+        "fragment_size",
         "energy",
         "count",
         "momentum",
@@ -170,6 +174,21 @@ fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimensio
             inner.finish("here");
             (ProbeKind::Stress { group: group?, between: between? }, Dimension::PRESSURE)
         }
+        "load" => on_along().map(|(on, along)| (ProbeKind::Load { on, along }, Dimension::FORCE))?,
+        "surface" => {
+            let inner = table.table(key)?;
+            let on = selection(&inner);
+            let measure = inner.choice("measure").required();
+            inner.finish("here");
+            let measure = measure?;
+            let dimension = if measure == SurfaceMeasure::Area { Dimension::AREA } else { Dimension::VOLUME };
+            (ProbeKind::Surface { on: on?, measure }, dimension)
+        }
+        "fragment" => fragment(table)?,
+        "fragment_size" => {
+            let share = table.quantity("fragment_size").between(0.0, 1.0).required()?;
+            (ProbeKind::FragmentSize(share), Dimension::LENGTH)
+        }
         "energy" => (ProbeKind::Energy(table.choice("energy").required()?), Dimension::ENERGY),
         "count" => (ProbeKind::Count(table.choice("count").required()?), Dimension::NONE),
         "momentum" => (ProbeKind::Momentum { along: along()? }, Dimension::MOMENTUM),
@@ -248,6 +267,27 @@ fn gas(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
         GasMeasure::WettedArea => Dimension::AREA,
     };
     Some((ProbeKind::Gas { measure: measure?, group: group? }, dimension))
+}
+
+fn fragment(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("fragment")?;
+    let on = selection(&inner);
+    let measure = inner.choice("measure").required();
+    let along = if measure == Some(FragmentMeasure::Velocity) {
+        direction(&inner, "along").required()
+    } else {
+        inner.refuse("along", "with this measure");
+        Some(Vec3::zeros())
+    };
+    inner.finish("here");
+    let measure = measure?;
+    let dimension = match measure {
+        FragmentMeasure::Mass => Dimension::MASS,
+        FragmentMeasure::Volume => Dimension::VOLUME,
+        FragmentMeasure::Size => Dimension::LENGTH,
+        FragmentMeasure::Velocity => Dimension::VELOCITY,
+    };
+    Some((ProbeKind::Fragment { on: on?, measure, along: along? }, dimension))
 }
 
 fn crack(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {

@@ -195,6 +195,12 @@ impl Loads {
         0.5 * dt_before * self.power(points)
     }
 
+    /// Sum of the last forces on these points, which are ascending, each along its direction [N]; weight is none of them.
+    pub(crate) fn resultant(&self, points: &[u32], direction: impl Fn(usize) -> Vec3) -> f64 {
+        let own = self.applied.forces.iter().filter(|(point, _)| points.binary_search(point).is_ok());
+        own.map(|(point, force)| force.dot(&direction(*point as usize))).sum()
+    }
+
     /// Power of the last forces at the present velocities [W].
     pub(crate) fn power(&mut self, points: &impl DrivenPoints) -> f64 {
         let Applied { forces, gravity } = &self.applied;

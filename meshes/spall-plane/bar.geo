@@ -5,7 +5,7 @@ DefineConstant[
   h = 0.001          // element size
 ];
 
-L = 0.4; b = 0.008;
+L = 0.4; b = 0.004;
 Point(1) = {0, 0, 0, h};
 Point(2) = {L, 0, 0, h};
 Point(3) = {L, b, 0, h};

@@ -1,0 +1,89 @@
+//! Facets of a group as they are at present, and fragments: area, enclosed volume, the piece that holds some nodes, sizes.
+
+use fractum_fem::Solid;
+use fractum_math::Vec3;
+use fractum_math::elementary::cbrt;
+
+use crate::fragment::Fragment;
+use crate::gas::{Stemming, enclosed_volume};
+use crate::scene::Scene;
+
+/// What a probe measures of facets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SurfaceMeasure {
+    /// Their area [m²].
+    Area,
+    /// Volume of the cavity that they enclose [m³]; they have to be closed.
+    Volume,
+}
+
+/// What a probe measures of a fragment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FragmentMeasure {
+    /// Mass [kg].
+    Mass,
+    /// Volume [m³].
+    Volume,
+    /// Diameter of the sphere of the same volume; in the plane, of the circle of the same area [m].
+    Size,
+    /// Velocity of its centre of mass along a direction [m/s].
+    Velocity,
+}
+
+/// Present area, or enclosed volume, of outward facets; an edge in the plane repeats its second node.
+pub(crate) fn measure_surface(solid: &Solid, facets: &[[u32; 3]], measure: SurfaceMeasure) -> f64 {
+    let at = |node: u32| solid.position(node as usize);
+    match measure {
+        SurfaceMeasure::Area => facets.iter().map(|facet| solid.facet_area(facet, at).norm()).sum(),
+        SurfaceMeasure::Volume => enclosed_volume(solid, facets, &Stemming::default(), at),
+    }
+}
+
+/// Something about the fragment that holds the first of these nodes; the single node counts as one where nothing joins it.
+pub(crate) fn measure_fragment(scene: &Scene, nodes: &[u32], measure: FragmentMeasure, along: &Vec3) -> f64 {
+    let fragments = scene.fragments();
+    let Some(&node) = nodes.first() else { return f64::NAN };
+    let Some(own) = fragments.iter().find(|fragment| fragment.nodes.contains(&node)) else {
+        let mass = scene.solid.mass[node as usize];
+        return match measure {
+            FragmentMeasure::Mass => mass,
+            FragmentMeasure::Volume | FragmentMeasure::Size => 0.0,
+            FragmentMeasure::Velocity => scene.solid.velocity[node as usize].dot(along),
+        };
+    };
+    match measure {
+        FragmentMeasure::Mass => own.mass,
+        FragmentMeasure::Volume => own.volume,
+        FragmentMeasure::Size => size(own, plane_thickness(&scene.solid)),
+        FragmentMeasure::Velocity => own.velocity.dot(along),
+    }
+}
+
+/// Size below which a share of the mass of all fragments lies: P20, P50, P80 for 0.2, 0.5, 0.8 [m].
+pub(crate) fn passing_size(scene: &Scene, share: f64) -> f64 {
+    let thickness = plane_thickness(&scene.solid);
+    let mut pieces: Vec<(f64, f64)> = scene.fragments().iter().map(|f| (size(f, thickness), f.mass)).collect();
+    pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f64 = pieces.iter().map(|piece| piece.1).sum();
+    let mut passed = 0.0;
+    for (size, mass) in pieces {
+        passed += mass;
+        if passed >= share * total {
+            return size;
+        }
+    }
+    f64::NAN
+}
+
+/// Diameter of the sphere of a fragment's volume, of the circle of its area where there is a thickness [m].
+fn size(fragment: &Fragment, thickness: Option<f64>) -> f64 {
+    match thickness {
+        Some(thickness) => (4.0 * fragment.volume / (std::f64::consts::PI * thickness)).sqrt(),
+        None => cbrt(6.0 * fragment.volume / std::f64::consts::PI),
+    }
+}
+
+/// Thickness of plane solids [m].
+fn plane_thickness(solid: &Solid) -> Option<f64> {
+    solid.is_plane().then(|| solid.body(0).thickness)
+}
