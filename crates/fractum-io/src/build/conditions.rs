@@ -189,22 +189,6 @@ impl<'a> Surface<'a> {
         Surface { facets: boundary, by_nodes, thickness, positions }
     }
 
-    /// Whether facets close around a volume: every side of one belongs to another, in the other direction.
-    pub(super) fn is_closed(&self, facets: &[[u32; 3]]) -> bool {
-        let mut open: HashMap<[u32; 2], i32> = HashMap::new();
-        for &[a, b, c] in facets {
-            if self.thickness > 0.0 {
-                *open.entry([a, a]).or_default() += 1;
-                *open.entry([b, b]).or_default() -= 1;
-                continue;
-            }
-            for [from, to] in [[a, b], [b, c], [c, a]] {
-                *open.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
-            }
-        }
-        !facets.is_empty() && open.values().all(|&count| count == 0)
-    }
-
     /// Outward normal of a facet without load, as long as its area [m²].
     pub(super) fn area_vector(&self, facet: &[u32; 3]) -> Vec3 {
         let [a, b, c] = facet.map(|n| self.positions[n as usize]);

@@ -86,7 +86,7 @@ impl Context<'_> {
 }
 
 /// A node at which facets with outward normals end: of an edge that no other facet runs back along, in the plane of a line.
-fn open_end(facets: &[[u32; 3]]) -> Option<u32> {
+pub(super) fn open_end(facets: &[[u32; 3]]) -> Option<u32> {
     let mut balance: BTreeMap<(u32, u32), i32> = BTreeMap::new();
     for &[a, b, c] in facets {
         if b == c {

@@ -10,6 +10,7 @@ use fractum_scene::{
 use super::Context;
 use super::bodies::{Numbering, Part};
 use super::conditions::Surface;
+use super::gas::open_end;
 use super::use_in_words;
 use crate::case::model::{GroupUse, ProbeKind};
 use crate::case::{Field, Spanned};
@@ -93,7 +94,7 @@ impl Context<'_> {
             ProbeKind::Load { on, along } => Probe::Load { points: self.selected_nodes(on, numbering), along: *along },
             ProbeKind::Surface { on, measure } => {
                 let facets = self.selected_facets(on, numbering, surface);
-                if *measure == SurfaceMeasure::Volume && !surface.is_closed(&facets) {
+                if *measure == SurfaceMeasure::Volume && (facets.is_empty() || open_end(&facets).is_some()) {
                     let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
                     self.error(
                         &place,
