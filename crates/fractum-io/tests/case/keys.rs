@@ -162,7 +162,7 @@ fn documented_defaults_are_the_defaults() {
                 .replace("probes[].velocity.about", "probes[17].velocity.about")
                 .replace("probes[].contact_force.about", "probes[20].contact_force.about")
                 .replace("probes[].stress.about", "probes[18].stress.about")
-                .replace("probes[].load.about", "probes[20].load.about")
+                .replace("probes[].load.about", "probes[22].load.about")
                 .replace("probes[]", "probes[14]")
                 .replace("supports[].elastic", "supports[5].elastic")
                 .replace("TIME_FUNCTION", function);
