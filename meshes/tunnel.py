@@ -7,7 +7,7 @@ import gmsh
 
 HALF_WIDTH, WALL, RISE = 5.0, 6.0, 4.0  # of the horseshoe [m]
 LOADED, EMPTY = 0.048, 0.102  # diameters of holes [m]
-RING_DELAY = 0.025  # between rings [s]
+RING_DELAY = 0.005  # between rings [s]
 
 
 def holes():

@@ -4,6 +4,7 @@
 //! a reason. Everything else is a silent failure: a balance that is off without a warning, a number that is none, energy that
 //! dissipation gave back.
 
+pub mod blast;
 pub mod draw;
 pub mod scenes;
 
@@ -21,6 +22,8 @@ use serde_json::Value;
 use crate::error::Failure;
 use crate::say;
 use crate::{Options, Outcome, run};
+use blast::{BLAST, blast};
+use draw::Draw;
 use scenes::{KINDS, RandomScene, scene};
 
 /// Relative residual of the energy balance below which a run is good.
@@ -31,6 +34,8 @@ const GOOD_RESIDUAL: f64 = 1e-3;
 pub struct Settings {
     /// Number of scenes.
     pub scenes: usize,
+    /// Blasts only, instead of scenes of every kind.
+    pub blasts: bool,
     /// Seed of all of them.
     pub seed: u64,
     /// Folder for `stress.json` and the cases that did not end well.
@@ -85,7 +90,11 @@ pub fn stress(settings: &Settings) -> Result<Vec<Line>, Failure> {
     let mut lines = Vec::new();
     for number in 0..settings.scenes {
         let folder = settings.output.join(format!("scene-{}-{number}", settings.seed));
-        let scene = scene(settings.seed, number);
+        let scene = if settings.blasts {
+            blast(&mut Draw::new(settings.seed, number as u64))
+        } else {
+            scene(settings.seed, number)
+        };
         write_case(&scene, &folder)?;
         let started = Instant::now();
         let (end, residual, words) = judge(&folder, settings);
@@ -171,7 +180,8 @@ fn print_table(lines: &[Line]) {
         say!("{kind:<16}{}", rest.map(|cell| format!("{cell:>17}")).concat());
     };
     print(header.map(str::to_owned));
-    for kind in KINDS.into_iter().chain(["all"]) {
+    let drawn = |kind: &&str| *kind == "all" || lines.iter().any(|line| line.kind == *kind);
+    for kind in KINDS.into_iter().chain([BLAST, "all"]).filter(drawn) {
         let of: Vec<&Line> = lines.iter().filter(|line| line.kind == kind || kind == "all").collect();
         let count = |end: End| of.iter().filter(|line| line.end == end).count().to_string();
         let seconds: f64 = of.iter().map(|line| line.seconds).sum();

@@ -51,14 +51,14 @@ pub fn scene(seed: u64, number: usize) -> RandomScene {
 }
 
 /// A number as a case file reads it back.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     format!("{value:e}")
 }
 
-struct Elastic {
-    density: f64,
-    young_modulus: f64,
-    poisson_ratio: f64,
+pub(super) struct Elastic {
+    pub(super) density: f64,
+    pub(super) young_modulus: f64,
+    pub(super) poisson_ratio: f64,
 }
 
 impl Elastic {
@@ -75,7 +75,7 @@ impl Elastic {
         (self.young_modulus / self.density).sqrt()
     }
 
-    fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         format!(
             "[materials.stuff]\ndensity = \"{} kg/m^3\"\nyoung_modulus = \"{} Pa\"\npoisson_ratio = {}\n",
             number(self.density),
@@ -85,12 +85,12 @@ impl Elastic {
     }
 }
 
-fn header(kind: &str, mesh: bool) -> String {
+pub(super) fn header(kind: &str, mesh: bool) -> String {
     let mesh = if mesh { "[mesh]\nfile = \"mesh.msh\"\n\n" } else { "" };
     format!("fractum = 1\ntitle = \"Random scene: {kind}\"\n\n{mesh}")
 }
 
-fn footer(kind: &str, end: f64, safety: f64) -> String {
+pub(super) fn footer(kind: &str, end: f64, safety: f64) -> String {
     let end = number(end);
     format!(
         "\n[solver]\nkind = \"{kind}\"\nend = \"{end} s\"\n{}\n[output]\nfields = {{ every = \"{end} s\" }}\n\
