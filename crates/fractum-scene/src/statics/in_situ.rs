@@ -14,6 +14,8 @@ const TOLERANCES: [f64; 2] = [1e-12, 1e-10];
 const MOST_SOLUTIONS: usize = 30;
 /// Force on what only keeps the solids from moving as rigid bodies, over all forces, above which loads do not balance.
 const UNBALANCED: f64 = 1e-6;
+/// The same over the displacement across the solids.
+const MOVED: f64 = 4.0;
 
 impl Scene {
     /// Brings the solids to rest under the loads of t = 0, before the first step, and counts displacements from there.
@@ -56,12 +58,16 @@ impl Scene {
         (f64::sqrt(missing), f64::sqrt(scale))
     }
 
-    /// What only keeps the solids in place must carry nothing.
+    /// What only keeps the solids in place must carry nothing, but for the moment that forces on elements that turn get as
+    /// their places move.
     fn check_pins(&self, held: &[u8], scale: f64) -> Result<(), SceneError> {
+        let largest = |vectors: &[Vec3]| vectors.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let moved = largest(&self.solid.displacement) / largest(&self.solid.reference).max(f64::MIN_POSITIVE);
+        let allowed = UNBALANCED.max(MOVED * moved);
         for (node, (&all, force)) in held.iter().zip(&self.solid.force).enumerate() {
             let own = all & !self.supports.held().get(node).copied().unwrap_or(0);
             let carried = Vec3::from_fn(|axis, _| if own & (1 << axis) == 0 { 0.0 } else { force[axis] });
-            if carried.norm() > UNBALANCED * scale {
+            if carried.norm() > allowed * scale {
                 let [x, y, z] = carried.into();
                 return Err(SceneError::InSituUnbalanced { x, y, z });
             }

@@ -74,6 +74,9 @@ enum Command {
         /// Random scenes of every kind of body instead of the gallery.
         #[arg(long, conflicts_with_all = ["names", "quick"])]
         stress: bool,
+        /// Random blasts only.
+        #[arg(long, requires = "stress")]
+        blasts: bool,
         /// Number of random scenes.
         #[arg(long, default_value_t = 300, requires = "stress")]
         scenes: usize,
@@ -152,8 +155,8 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Run(run) => run_case(run),
         Command::Check { case, set } => check(&case, &set),
         Command::New { template, output } => new::new(template.as_deref(), output),
-        Command::Verify { stress: true, scenes, seed, output, threads, .. } => {
-            let settings = fractum::stress::Settings { scenes, seed, output, threads, cache: cache() };
+        Command::Verify { stress: true, blasts, scenes, seed, output, threads, .. } => {
+            let settings = fractum::stress::Settings { scenes, blasts, seed, output, threads, cache: cache() };
             fractum::stress::stress(&settings).and_then(|lines| {
                 match lines.iter().filter(|line| line.end == fractum::stress::End::Silent).count() {
                     0 => Ok(ExitCode::Done),

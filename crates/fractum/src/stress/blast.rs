@@ -58,7 +58,8 @@ pub(super) fn blast(draw: &mut Draw) -> RandomScene {
         case += &format!("\n[in_situ]\nstress = {{ xx = \"{xx} Pa\", yy = \"{yy} Pa\" }}\n");
     }
     let speed = (material.young_modulus / material.density).sqrt();
-    let [rise, decay] = [draw.decades(0.05, 1.0) * radius / speed, draw.decades(3.0, 30.0) * radius / speed].map(number);
+    let [rise, decay] =
+        [draw.decades(0.05, 1.0) * radius / speed, draw.decades(3.0, 30.0) * radius / speed].map(number);
     let peak = number(draw.decades(PULSES[0], PULSES[1]));
     let pulse = match draw.whole(3) {
         0 => format!("{{ pulse = \"triangle\", peak = \"{peak} Pa\", rise = \"{rise} s\", duration = \"{decay} s\" }}"),
