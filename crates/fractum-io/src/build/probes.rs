@@ -12,7 +12,7 @@ use super::bodies::{Numbering, Part};
 use super::conditions::Surface;
 use super::gas::open_end;
 use super::use_in_words;
-use crate::case::model::{GroupUse, ProbeKind};
+use crate::case::model::{GroupUse, ProbeKind, Selection};
 use crate::case::{Field, Spanned};
 
 impl Context<'_> {
@@ -67,24 +67,7 @@ impl Context<'_> {
                 return None;
             }
             ProbeKind::Stress { group, between } => {
-                let wanted: Vec<&fractum_mesh::Group> = self.mesh.group(&group.value);
-                let mut elements = Vec::new();
-                for (body, part) in parts.iter().enumerate() {
-                    for (index, &element) in (0..).zip(&part.elements) {
-                        let inside = wanted.iter().any(|g| {
-                            let list =
-                                if part.shape == fractum_fem::ElementKind::T4 { &g.tetrahedra } else { &g.triangles };
-                            list.binary_search(&element).is_ok()
-                        });
-                        if inside {
-                            elements.push((body, index));
-                        }
-                    }
-                }
-                if elements.is_empty() {
-                    let expected = use_in_words(GroupUse::ProbeElements);
-                    self.error(&group.place, format!("= \"{}\"", group.value), expected);
-                }
+                let elements = self.elements_of(group, parts);
                 Probe::Stress { elements, between: *between }
             }
             ProbeKind::ContactForce { on, from, along } => {
@@ -93,16 +76,7 @@ impl Context<'_> {
             }
             ProbeKind::Load { on, along } => Probe::Load { points: self.selected_nodes(on, numbering), along: *along },
             ProbeKind::Surface { on, measure } => {
-                let facets = self.selected_facets(on, numbering, surface);
-                if *measure == SurfaceMeasure::Volume && (facets.is_empty() || open_end(&facets).is_some()) {
-                    let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
-                    self.error(
-                        &place,
-                        format!("= \"{}\" encloses no volume", on.label()),
-                        "facets that close around a cavity",
-                    );
-                }
-                Probe::Surface { facets, measure: *measure }
+                Probe::Surface { facets: self.measured_facets(on, *measure, numbering, surface), measure: *measure }
             }
             ProbeKind::Fragment { on, measure, along } => {
                 Probe::Fragment { points: self.selected_nodes(on, numbering), measure: *measure, along: *along }
@@ -130,6 +104,44 @@ impl Context<'_> {
             }
             ProbeKind::Expression(_) => return None,
         })
+    }
+
+    /// Bodies and elements of a group; an error if it has none.
+    fn elements_of(&mut self, group: &Spanned<String>, parts: &[Part]) -> Vec<(usize, u32)> {
+        let wanted: Vec<&fractum_mesh::Group> = self.mesh.group(&group.value);
+        let mut elements = Vec::new();
+        for (body, part) in parts.iter().enumerate() {
+            for (index, &element) in (0..).zip(&part.elements) {
+                let inside = wanted.iter().any(|g| {
+                    let list = if part.shape == fractum_fem::ElementKind::T4 { &g.tetrahedra } else { &g.triangles };
+                    list.binary_search(&element).is_ok()
+                });
+                if inside {
+                    elements.push((body, index));
+                }
+            }
+        }
+        if elements.is_empty() {
+            let expected = use_in_words(GroupUse::ProbeElements);
+            self.error(&group.place, format!("= \"{}\"", group.value), expected);
+        }
+        elements
+    }
+
+    /// Facets of which something is measured; an error if a volume is asked for and they do not close around one.
+    fn measured_facets(
+        &mut self,
+        on: &Selection,
+        measure: SurfaceMeasure,
+        numbering: &Numbering,
+        surface: &Surface,
+    ) -> Vec<[u32; 3]> {
+        let facets = self.selected_facets(on, numbering, surface);
+        if measure == SurfaceMeasure::Volume && (facets.is_empty() || open_end(&facets).is_some()) {
+            let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
+            self.error(&place, format!("= \"{}\" encloses no volume", on.label()), "facets that close around a cavity");
+        }
+        facets
     }
 
     /// The body of this name as contact knows it.

@@ -12,6 +12,7 @@ mod loose;
 mod materials;
 mod parameters;
 mod presence;
+mod probe_kinds;
 mod probes;
 mod rigid;
 mod solver;

@@ -1,0 +1,189 @@
+//! What probes measure, key by key.
+
+use fractum_dem::crack_shape::Axis;
+use fractum_math::Vec3;
+use fractum_scene::{Along, CrackMeasure, FragmentMeasure, GasMeasure, SurfaceMeasure};
+
+use super::boundary::selection;
+use super::presence::optional;
+use super::vectors::{condition, direction, point};
+use crate::case::model::{ProbeKind, StressComponent};
+use crate::case::reader::Table;
+use crate::case::tree::Value;
+use crate::case::unit::Dimension;
+
+/// Everything but expressions, with its dimension.
+pub(super) fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKind, Dimension)> {
+    let on_along = || {
+        let inner = table.table(key)?;
+        let on = selection(&inner);
+        let along = along_or_about(&inner);
+        inner.finish("here");
+        Some((on?, along?))
+    };
+    let along = || {
+        let inner = table.table(key)?;
+        let along = direction(&inner, "along").required();
+        inner.finish("here");
+        along
+    };
+    Some(match key {
+        "reaction" => on_along().map(|(on, along)| (ProbeKind::Reaction { on, along }, Dimension::FORCE))?,
+        "displacement" => on_along().map(|(on, along)| (ProbeKind::Displacement { on, along }, Dimension::LENGTH))?,
+        "velocity" => on_along().map(|(on, along)| (ProbeKind::Velocity { on, along }, Dimension::VELOCITY))?,
+        "rotation" => {
+            let inner = table.table(key)?;
+            let on = selection(&inner);
+            let along = direction(&inner, "along").required();
+            inner.finish("here");
+            (ProbeKind::Rotation { on: on?, along: along? }, Dimension::NONE)
+        }
+        "contact_force" => {
+            let inner = table.table(key)?;
+            let [on, from] = ["on", "from"].map(|name| inner.text(name).spanned().required());
+            let along = along_or_about(&inner);
+            inner.finish("here");
+            (ProbeKind::ContactForce { on: on?, from: from?, along: along? }, Dimension::FORCE)
+        }
+        "stress" => {
+            let inner = table.table(key)?;
+            let group = inner.text("group").spanned().required();
+            let component = inner.choice("component").required();
+            let between = component.and_then(|component| stress_between(&inner, component));
+            inner.finish("here");
+            (ProbeKind::Stress { group: group?, between: between? }, Dimension::PRESSURE)
+        }
+        "load" => on_along().map(|(on, along)| (ProbeKind::Load { on, along }, Dimension::FORCE))?,
+        "surface" => {
+            let inner = table.table(key)?;
+            let on = selection(&inner);
+            let measure = inner.choice("measure").required();
+            inner.finish("here");
+            let measure = measure?;
+            let dimension = if measure == SurfaceMeasure::Area { Dimension::AREA } else { Dimension::VOLUME };
+            (ProbeKind::Surface { on: on?, measure }, dimension)
+        }
+        "fragment" => fragment(table)?,
+        "fragment_size" => {
+            let share = table.quantity("fragment_size").between(0.0, 1.0).required()?;
+            (ProbeKind::FragmentSize(share), Dimension::LENGTH)
+        }
+        "energy" => (ProbeKind::Energy(table.choice("energy").required()?), Dimension::ENERGY),
+        "count" => (ProbeKind::Count(table.choice("count").required()?), Dimension::NONE),
+        "momentum" => (ProbeKind::Momentum { along: along()? }, Dimension::MOMENTUM),
+        "angular_momentum" => (ProbeKind::AngularMomentum { along: along()? }, Dimension::ANGULAR_MOMENTUM),
+        "gas" => gas(table)?,
+        "crack" => crack(table)?,
+        _ => {
+            table.flag("crack_area").check(|on| *on, "true; leave the probe out where it is not wanted").required()?;
+            (ProbeKind::CrackArea, Dimension::AREA)
+        }
+    })
+}
+
+/// The key `along`: a direction, or "radial" or "tangential" with the axis `about`.
+fn along_or_about(table: &Table<'_>) -> Option<Along> {
+    let about: fn(Axis) -> Along = match table.peek("along").map(|node| &node.value) {
+        Some(Value::Text(text)) if text == "radial" => Along::Radial,
+        Some(Value::Text(text)) if text == "tangential" => Along::Tangential,
+        _ => {
+            table.refuse("about", "with a direction");
+            return direction(table, "along").required().map(Along::Direction);
+        }
+    };
+    table.node("along");
+    axis(table).map(about)
+}
+
+/// The table `about`: an axis through a point, by default that of z.
+fn axis(table: &Table<'_>) -> Option<Axis> {
+    let inner = table.table_or_empty("about");
+    let point = point(&inner, "point").or_if_absent(Vec3::zeros());
+    let direction = direction(&inner, "axis").or_if_absent(Vec3::z());
+    inner.finish("here");
+    Some(Axis { point: point?, direction: direction? })
+}
+
+/// Normal of the plane and direction of a stress component.
+fn stress_between(table: &Table<'_>, component: StressComponent) -> Option<[Along; 2]> {
+    use StressComponent::{Radial, RadialTangential, Tangential, Xx, Xy, Yy, Yz, Zx, Zz};
+    let [x, y, z] = [Vec3::x(), Vec3::y(), Vec3::z()].map(Along::Direction);
+    let fixed = match component {
+        Xx => [x, x],
+        Yy => [y, y],
+        Zz => [z, z],
+        Xy => [x, y],
+        Yz => [y, z],
+        Zx => [z, x],
+        Radial | Tangential | RadialTangential => {
+            let axis = axis(table)?;
+            let (radial, tangential) = (Along::Radial(axis), Along::Tangential(axis));
+            return Some(match component {
+                Radial => [radial, radial],
+                Tangential => [tangential, tangential],
+                _ => [radial, tangential],
+            });
+        }
+    };
+    table.refuse("about", "with this component");
+    Some(fixed)
+}
+
+fn gas(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("gas")?;
+    let measure = inner.choice("measure").required();
+    if measure == Some(GasMeasure::LeakedMass) {
+        inner.refuse("group", "with leaked_mass, which is that of everything");
+    }
+    let group = optional(&inner, "group", |name| inner.text(name).spanned().given());
+    inner.finish("here");
+    let dimension = match measure? {
+        GasMeasure::Pressure => Dimension::PRESSURE,
+        GasMeasure::Temperature => Dimension::TEMPERATURE,
+        GasMeasure::Mass | GasMeasure::LeakedMass => Dimension::MASS,
+        GasMeasure::Energy => Dimension::ENERGY,
+        GasMeasure::Volume => Dimension::LENGTH.power(3.0)?,
+        GasMeasure::WettedArea => Dimension::AREA,
+    };
+    Some((ProbeKind::Gas { measure: measure?, group: group? }, dimension))
+}
+
+fn fragment(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("fragment")?;
+    let on = selection(&inner);
+    let measure = inner.choice("measure").required();
+    let along = if measure == Some(FragmentMeasure::Velocity) {
+        direction(&inner, "along").required()
+    } else {
+        inner.refuse("along", "with this measure");
+        Some(Vec3::zeros())
+    };
+    inner.finish("here");
+    let measure = measure?;
+    let dimension = match measure {
+        FragmentMeasure::Mass => Dimension::MASS,
+        FragmentMeasure::Volume => Dimension::VOLUME,
+        FragmentMeasure::Size => Dimension::LENGTH,
+        FragmentMeasure::Velocity => Dimension::VELOCITY,
+    };
+    Some((ProbeKind::Fragment { on: on?, measure, along: along? }, dimension))
+}
+
+fn crack(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("crack")?;
+    let measure = inner.choice("measure").required();
+    let along = direction(&inner, "along").required();
+    let within = optional(&inner, "where", |name| condition(&inner, name).spanned().given());
+    let about_axis = matches!(measure, Some(CrackMeasure::Helix | CrackMeasure::Cone | CrackMeasure::ConeShare));
+    let origin = if about_axis {
+        point(&inner, "point").or_if_absent(Vec3::zeros())
+    } else {
+        inner.refuse("point", "with this measure");
+        Some(Vec3::zeros())
+    };
+    inner.finish("here");
+    let measure = measure?;
+    let dimension =
+        if matches!(measure, CrackMeasure::Centre | CrackMeasure::Front) { Dimension::LENGTH } else { Dimension::NONE };
+    Some((ProbeKind::Crack { measure, along: along?, point: origin?, within: within? }, dimension))
+}
