@@ -297,7 +297,7 @@ mod tests {
                 block.scratch.load_velocity(&cells.nodes, velocity);
                 let mut law = ElasticCells { hooke: model.hooke, energy: Some(0.0) };
                 let scratch = &mut block.scratch;
-                let mut of_cells = ViscousCells::new(model, &cells.volume);
+                let mut of_cells = ViscousCells::new(&model.body, &cells.volume);
                 let mut power = 0.0;
                 match viscous {
                     false => {

@@ -53,6 +53,7 @@ mod state;
 mod threshold;
 mod time_step;
 mod viscosity;
+mod viscous_solid;
 
 pub use body::{Body, DamageZone, ElementKind, Formulation, Kinematics, Plane, Region};
 pub use central_difference::LocalDamping;

@@ -3,17 +3,11 @@
 //! spreads a shock over a few elements.
 
 use fractum_math::Sym3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::body::{ElementKind, Formulation};
-use crate::cell::Geometry;
+use crate::body::{Body, ElementKind, Formulation};
 use crate::element::regular_edge;
 use crate::hooke::Hooke;
-use crate::solid::{BodyModel, Solid};
-
-/// Least b₂² l |ε̇_v|/c that the time step counts with.
-const SMALLEST_SHOCK: f64 = 0.01;
 
 /// Viscous stress: β D ε̇, and a bulk viscosity for shocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -32,7 +26,7 @@ impl Viscosity {
         self.stiffness_time == 0.0 && !self.has_bulk()
     }
 
-    fn has_bulk(&self) -> bool {
+    pub(crate) fn has_bulk(&self) -> bool {
         self.bulk_linear > 0.0 || self.bulk_quadratic > 0.0
     }
 }
@@ -55,13 +49,12 @@ pub(crate) struct ViscousCells {
     /// Size of the elements of each cell [m].
     length: Vec<f64>,
     /// Largest b₂² l |ε̇_v|/c of the last step, what the quadratic viscosity adds to the linear coefficient.
-    shock: f64,
+    pub(crate) shock: f64,
 }
 
 impl ViscousCells {
     /// Cells of the given volumes [m³].
-    pub(crate) fn new(model: &BodyModel, volumes: &[f64]) -> Self {
-        let body = &model.body;
+    pub(crate) fn new(body: &Body, volumes: &[f64]) -> Self {
         // An edge has a share of every element around it: two triangles give a third each, some five tetrahedra a sixth.
         let share = match (body.formulation, body.shape) {
             (Formulation::Standard, _) => 1.0,
@@ -98,55 +91,5 @@ impl ViscousCells {
         }
         let now = stress * volume;
         [now, (now + std::mem::replace(&mut self.stress[cell], now)) * 0.5]
-    }
-}
-
-impl Solid {
-    /// Adds viscous stress to every body.
-    pub fn set_viscosity(&mut self, viscosity: Viscosity) {
-        if viscosity.is_off() {
-            return;
-        }
-        for index in 0..self.bodies.len() {
-            let shape_factor = self.shape_factor(index);
-            let model = &mut self.bodies[index];
-            let (density, wave_speed) = (model.body.elastic.density, model.body.elastic.p_wave_speed());
-            model.viscosity = Some(BodyViscosity { constants: viscosity, density, wave_speed, shape_factor });
-        }
-        for block in &mut self.blocks {
-            block.viscous = ViscousCells::new(&self.bodies[block.body], &block.cells.volume);
-        }
-    }
-
-    /// Share of critical damping that bulk viscosity has at most in the highest mode of an element, by the rates of the last
-    /// forces; rises in steps of √2, since a change of the time step costs a little of the energy balance.
-    pub fn bulk_damping_ratio(&self) -> f64 {
-        let of = |(index, model): (usize, &BodyModel)| {
-            let viscosity = model.viscosity.as_ref().filter(|own| own.constants.has_bulk())?;
-            let own = self.blocks.iter().filter(|block| block.body == index);
-            let shock = own.map(|block| block.viscous.shock).fold(0.0, f64::max);
-            let mut coefficient = SMALLEST_SHOCK;
-            while coefficient < shock {
-                coefficient *= std::f64::consts::SQRT_2;
-            }
-            let coefficient = if viscosity.constants.bulk_quadratic > 0.0 { coefficient } else { 0.0 };
-            Some(0.5 * viscosity.shape_factor * (viscosity.constants.bulk_linear + coefficient))
-        };
-        self.bodies.iter().enumerate().filter_map(of).fold(0.0, f64::max)
-    }
-
-    /// Largest ω l/c of the elements of a body, by the trace of each stiffness.
-    fn shape_factor(&self, index: usize) -> f64 {
-        let body = &self.bodies[index].body;
-        let geometry = Geometry { body, nodes: &self.reference };
-        let corners = body.shape.node_count();
-        let stiffness = self.bodies[index].hooke.lambda + 4.0 * self.bodies[index].hooke.mu;
-        let of = |element: usize| {
-            let (measure, gradients) = geometry.element(element);
-            let square: f64 = gradients[..corners].iter().map(|g| g.norm_squared()).sum();
-            let frequency = (square * stiffness * corners as f64 / body.elastic.density).sqrt();
-            frequency * regular_edge(body.shape, measure) / body.elastic.p_wave_speed()
-        };
-        (0..body.elements.len()).into_par_iter().map(of).reduce(|| 0.0, f64::max)
     }
 }

@@ -19,6 +19,7 @@ mod probe;
 mod scene;
 pub mod statics;
 mod step;
+mod time_function;
 
 pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest};
 pub use clock::{Clock, TimeStepSettings};
@@ -40,3 +41,4 @@ pub use probe::{Population, Probe};
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::{Phase, StepReport};
+pub use time_function::TimeFunction;

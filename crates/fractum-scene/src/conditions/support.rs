@@ -2,8 +2,9 @@ use std::fmt;
 
 use fractum_math::{HalfSteps, Vec3};
 
-use super::{DrivenPoints, Points, TimeFunction};
+use super::{DrivenPoints, Points};
 use crate::error::SceneError;
+use crate::time_function::TimeFunction;
 
 /// How a support moves.
 #[derive(Clone)]

@@ -25,8 +25,8 @@ pub use rigid_body::{Drive, Form, Inertia, RigidBody};
 pub use solid_surface::SolidSurface;
 
 use crate::bonded::Bonded;
-use crate::conditions::TimeFunction;
 use crate::coupling::Debris;
+use crate::time_function::TimeFunction;
 use debris_among::DebrisAmong;
 use nodes_on_surface::NodesOnSurface;
 use rigid_body::RigidBodyState;

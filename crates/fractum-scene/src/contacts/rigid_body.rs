@@ -5,7 +5,7 @@ use fractum_contact::{FacetMesh, Frame, Shape, Surface};
 use fractum_math::{HalfSteps, Mat3, Rotation, Vec3, rotation_by};
 use serde::{Deserialize, Serialize};
 
-use crate::conditions::TimeFunction;
+use crate::time_function::TimeFunction;
 
 /// What a rigid body looks like, in its own axes.
 #[derive(Clone, Debug)]

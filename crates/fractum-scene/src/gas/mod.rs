@@ -13,7 +13,7 @@ use fractum_gas::{Amount, Contents, EquationOfState, Network, Passage, SlitFlow}
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::conditions::TimeFunction;
+use crate::time_function::TimeFunction;
 use cavity::Cavity;
 pub(crate) use cavity::enclosed_volume;
 pub use measure::GasMeasure;

@@ -2,7 +2,7 @@ use std::fmt;
 
 use fractum_math::Vec3;
 
-use crate::conditions::TimeFunction;
+use crate::time_function::TimeFunction;
 
 /// Acceleration of every point along an axis [m/s²].
 #[derive(Clone)]

@@ -4,7 +4,8 @@ use fractum_fem::CrackNetwork;
 use fractum_math::Vec3;
 
 use super::pressure::push_facet;
-use crate::conditions::{Points, TimeFunction};
+use crate::conditions::Points;
+use crate::time_function::TimeFunction;
 
 /// Pressure on facets and in the cracks that are open to them, along present normals [Pa]; positive pushes into the body.
 ///

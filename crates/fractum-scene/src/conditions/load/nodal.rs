@@ -2,7 +2,8 @@ use std::fmt;
 
 use fractum_math::Vec3;
 
-use crate::conditions::{Points, TimeFunction};
+use crate::conditions::Points;
+use crate::time_function::TimeFunction;
 
 /// Force along an axis on points with weights: value times weight [N].
 #[derive(Clone)]

@@ -2,7 +2,8 @@ use std::fmt;
 
 use fractum_math::Vec3;
 
-use crate::conditions::{Points, TimeFunction};
+use crate::conditions::Points;
+use crate::time_function::TimeFunction;
 
 /// Pressure on facets, along their present normals [Pa]; positive pushes into the body.
 #[derive(Clone)]
