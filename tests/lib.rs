@@ -1,11 +1,52 @@
 //! Helpers shared by the verification and validation tests.
 
-use fractum_fem::{Body, Elastic, ElementKind};
+use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, LocalDamping, Softening, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
+use fractum_mesh::topology::{boundary_of_tetrahedra, boundary_of_triangles};
+use fractum_scene::{SceneSettings, TimeStepSettings};
 
 /// Concrete of the tests: E = 30 GPa, ν = 0.2, ρ = 2400 kg/m³.
 pub const CONCRETE: Elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+
+/// Softening of concrete: Rankine, f_t = 3 MPa, exponential.
+///
+/// - `fracture_energy` [J/m²]
+pub fn softening(fracture_energy: f64) -> DamageLaw {
+    DamageLaw {
+        criterion: Criterion::rankine(),
+        tensile_strength: 3e6,
+        fracture_energy,
+        softening: Softening::Exponential,
+        residual: 0.02,
+        unilateral: false,
+        rate_time: 0.0,
+    }
+}
+
+/// Undamped motion at 0.8 of the stable step to `end` [s].
+///
+/// - `balance_stop`: relative residual of the energy balance that stops it
+pub fn settings(end: f64, balance_stop: f64) -> SceneSettings {
+    SceneSettings {
+        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end },
+        damping: LocalDamping::default(),
+        stiffness_time: 0.0,
+        balance_stop,
+        joined_below: 0.95,
+    }
+}
+
+/// Outward facets of the first body of a solid, on holes too; edges in the plane repeat their second node.
+pub fn surface(solid: &Solid) -> Vec<[u32; 3]> {
+    let elements = &solid.body(0).elements;
+    if solid.is_plane() {
+        let triangles: Vec<[u32; 3]> = elements.iter().map(|e| [e[0], e[1], e[2]]).collect();
+        boundary_of_triangles(&triangles).iter().map(|e| [e.nodes[0], e.nodes[1], e.nodes[1]]).collect()
+    } else {
+        boundary_of_tetrahedra(elements).iter().map(|facet| facet.nodes).collect()
+    }
+}
 
 /// Nodes and elastic body of a box of tetrahedra with jittered inner nodes.
 pub fn jittered_box(cells: [u32; 3], size: Vec3) -> (Vec<Vec3>, Body) {

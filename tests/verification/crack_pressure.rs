@@ -2,42 +2,20 @@
 
 use std::sync::Arc;
 
-use fractum_fem::{Body, Criterion, DamageLaw, ElementKind, LocalDamping, Plane, Softening, Solid};
+use fractum_fem::{Body, ElementKind, Plane, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
-use fractum_mesh::topology::{boundary_of_tetrahedra, boundary_of_triangles};
 use fractum_scene::coupling::Debris;
-use fractum_scene::{
-    ContactParameters, CrackPressure, Load, Loads, Motion, Pressure, Scene, SceneSettings, Support, Supports,
-    TimeStepSettings,
-};
-use fractum_tests::CONCRETE;
+use fractum_scene::{ContactParameters, CrackPressure, Load, Loads, Motion, Pressure, Scene, Support, Supports};
+use fractum_tests::{CONCRETE, settings, softening, surface};
 
 const THICKNESS: f64 = 0.02;
 const INNER: f64 = 0.02;
 
-fn settings(end: f64) -> SceneSettings {
-    SceneSettings {
-        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end },
-        damping: LocalDamping::default(),
-        stiffness_time: 0.0,
-        balance_stop: f64::INFINITY,
-        joined_below: 0.95,
-    }
-}
-
 /// A quarter of a ring of radii 20 and 120 mm, of triangles where it has no cells in z.
 fn ring(cells: [u32; 3]) -> Solid {
     let jitter = Some(Jitter { fraction: 0.15, seed: 7 });
-    let law = DamageLaw {
-        criterion: Criterion::rankine(),
-        tensile_strength: 3e6,
-        fracture_energy: 10.0,
-        softening: Softening::Exponential,
-        residual: 0.02,
-        unilateral: false,
-        rate_time: 0.0,
-    };
+    let law = softening(10.0);
     let body = |kind, elements| Body::new("ring", kind, elements, CONCRETE).smoothed().with_damage(law);
     let (nodes, body) = if cells[2] == 0 {
         let mesh = structured_rectangle([cells[0], cells[1]], [1.0, 1.0], jitter);
@@ -57,15 +35,8 @@ fn ring(cells: [u32; 3]) -> Solid {
 
 /// Facets of the hole.
 fn hole(solid: &Solid) -> Vec<[u32; 3]> {
-    let elements = &solid.body(0).elements;
-    let facets: Vec<[u32; 3]> = if solid.is_plane() {
-        let triangles: Vec<[u32; 3]> = elements.iter().map(|e| [e[0], e[1], e[2]]).collect();
-        boundary_of_triangles(&triangles).iter().map(|e| [e.nodes[0], e.nodes[1], e.nodes[1]]).collect()
-    } else {
-        boundary_of_tetrahedra(elements).iter().map(|facet| facet.nodes).collect()
-    };
     let inside = |n: &u32| solid.reference[*n as usize].xy().norm() < 1.001 * INNER;
-    facets.into_iter().filter(|facet| facet.iter().all(inside)).collect()
+    surface(solid).into_iter().filter(|facet| facet.iter().all(inside)).collect()
 }
 
 /// 10 MPa within 4 µs that decay slowly.
@@ -90,7 +61,7 @@ fn blast(cells: [u32; 3], in_cracks: Option<Option<f64>>, end: f64) -> Scene {
     let supports = Supports::new(vec![on_axis(0), on_axis(1)], &solid.reference).unwrap();
     let loads = Loads::new(vec![load], solid.reference.len());
     let debris = Debris::new(&solid, vec![ContactParameters { friction: 0.5, ..ContactParameters::default() }]);
-    Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(end))
+    Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(end, f64::INFINITY))
 }
 
 /// Removed elements, work of the pressure and largest relative residual at the end.

@@ -6,17 +6,15 @@
 
 use std::sync::Arc;
 
-use fractum_fem::{
-    Body, Criterion, DamageLaw, ElementKind, Formulation, Kinematics, LocalDamping, Plane, Softening, Solid,
-};
+use fractum_fem::{Body, DamageLaw, ElementKind, Formulation, Kinematics, Plane, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    ContactParameters, EnergyKind, Ledger, Load, Loads, Motion, NodalForce, NodesOnShape, Pressure, Scene,
-    SceneSettings, StepError, Support, Supports, TimeStepSettings,
+    ContactParameters, EnergyKind, Ledger, Load, Loads, Motion, NodalForce, NodesOnShape, Pressure, Scene, StepError,
+    Support, Supports,
 };
-use fractum_tests::CONCRETE;
+use fractum_tests::{CONCRETE, settings, softening};
 
 /// Part of the energy in play that may be missing from the balance.
 const ALLOWED: f64 = 1e-3;
@@ -28,26 +26,8 @@ const KINDS: [(Formulation, Kinematics); 4] = [
     (Formulation::Standard, Kinematics::Corotational),
 ];
 
-fn settings(end: f64) -> SceneSettings {
-    SceneSettings {
-        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end },
-        damping: LocalDamping::default(),
-        stiffness_time: 0.0,
-        balance_stop: f64::INFINITY,
-        joined_below: 0.95,
-    }
-}
-
 fn concrete() -> DamageLaw {
-    DamageLaw {
-        criterion: Criterion::rankine(),
-        tensile_strength: 3e6,
-        fracture_energy: 100.0,
-        softening: Softening::Exponential,
-        residual: 0.02,
-        unilateral: false,
-        rate_time: 0.0,
-    }
+    softening(100.0)
 }
 
 /// A jittered box of tetrahedra, or a rectangle of triangles where it has no cells in z.
@@ -72,7 +52,7 @@ fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, grounds: Vec<No
     let supports = Supports::new(supports, &solid.reference).unwrap();
     let loads = Loads::new(loads, solid.reference.len());
     let debris = Debris::new(&solid, vec![ContactParameters { friction: 0.5, ..ContactParameters::default() }]);
-    Scene::new(solid, supports, loads, debris, grounds, &surface, settings(end))
+    Scene::new(solid, supports, loads, debris, grounds, &surface, settings(end, f64::INFINITY))
 }
 
 /// Fails with all balances that do not close.
@@ -270,7 +250,7 @@ fn local_damping_stays_stable_at_the_default_step() {
     for local in [0.2, 0.9] {
         let solid = elastic_block(Kinematics::Small, |p| Vec3::x() * (10.0 * (p.x - 0.06)) + Vec3::y() * (p.z * 5.0));
         let mut scene = scene(solid, Vec::new(), Vec::new(), Vec::new(), 2e-3);
-        let mut settings = settings(2e-3);
+        let mut settings = settings(2e-3, f64::INFINITY);
         settings.damping.local = local;
         let loads = Loads::new(Vec::new(), scene.solid.reference.len());
         let debris = Debris::new(&scene.solid, vec![ContactParameters::default()]);

@@ -1,17 +1,16 @@
 //! Gas in a hole that breaks the solid around it and follows its cracks: balance of solid and gas, adiabatic expansion,
 //! what is saved, threads.
 
-use fractum_fem::{Body, Criterion, DamageLaw, ElementKind, LocalDamping, Plane, Softening, Solid};
+use fractum_fem::{Body, ElementKind, Plane, Solid};
 use fractum_gas::{EquationOfState, PerfectGas, SlitFlow};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
-use fractum_mesh::topology::{boundary_of_tetrahedra, boundary_of_triangles};
+use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Charge, ContactParameters, EnergyKind, Gas, GasHole, GasSettings, Loads, Scene, SceneSettings, Stemming, Supports,
-    TimeStepSettings,
+    Charge, ContactParameters, EnergyKind, Gas, GasHole, GasSettings, Loads, Scene, Stemming, Supports,
 };
-use fractum_tests::CONCRETE;
+use fractum_tests::{CONCRETE, softening, surface};
 
 const SIZE: f64 = 0.3;
 const HEAT_RATIO: f64 = 1.3;
@@ -44,15 +43,7 @@ fn cut(cells: u32, plane: bool, axes: usize, damage: bool) -> Solid {
     let kept: Vec<usize> = (0..nodes.len()).filter(|&n| new[n] == 0).collect();
     (0..).zip(&kept).for_each(|(number, &n)| new[n] = number);
     let elements = elements.into_iter().map(|e| e.map(|n| new[n as usize])).collect();
-    let law = DamageLaw {
-        criterion: Criterion::rankine(),
-        tensile_strength: 3e6,
-        fracture_energy: 10.0,
-        softening: Softening::Exponential,
-        residual: 0.02,
-        unilateral: false,
-        rate_time: 0.0,
-    };
+    let law = softening(10.0);
     let body =
         Body { plane: Plane::Strain, thickness: 0.02, ..Body::new("block", kind, elements, CONCRETE).smoothed() };
     let body = if damage { body.with_damage(law) } else { body };
@@ -61,18 +52,11 @@ fn cut(cells: u32, plane: bool, axes: usize, damage: bool) -> Solid {
 
 /// Facets of the hole.
 fn hole(solid: &Solid) -> Vec<[u32; 3]> {
-    let elements = &solid.body(0).elements;
-    let facets: Vec<[u32; 3]> = if solid.is_plane() {
-        let triangles: Vec<[u32; 3]> = elements.iter().map(|e| [e[0], e[1], e[2]]).collect();
-        boundary_of_triangles(&triangles).iter().map(|e| [e.nodes[0], e.nodes[1], e.nodes[1]]).collect()
-    } else {
-        boundary_of_tetrahedra(elements).iter().map(|facet| facet.nodes).collect()
-    };
     let inside = |&n: &u32| {
         let p = &solid.reference[n as usize];
         p.iter().take(if solid.is_plane() { 2 } else { 3 }).all(|c| *c > 0.01 * SIZE && *c < 0.99 * SIZE)
     };
-    facets.into_iter().filter(|facet| facet.iter().all(inside)).collect()
+    surface(solid).into_iter().filter(|facet| facet.iter().all(inside)).collect()
 }
 
 fn blast(solid: Solid, pressure: f64, end: f64) -> Scene {
@@ -92,13 +76,7 @@ fn blast(solid: Solid, pressure: f64, end: f64) -> Scene {
     let loads = Loads::new(Vec::new(), solid.reference.len()).with_gas(Some(Gas::new(&solid, gas)));
     let debris = Debris::new(&solid, vec![ContactParameters { friction: 0.5, ..ContactParameters::default() }]);
     let supports = Supports::new(Vec::new(), &solid.reference).unwrap();
-    let settings = SceneSettings {
-        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end },
-        damping: LocalDamping::default(),
-        stiffness_time: 0.0,
-        balance_stop: f64::INFINITY,
-        joined_below: 0.95,
-    };
+    let settings = fractum_tests::settings(end, f64::INFINITY);
     Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
 }
 

@@ -3,16 +3,17 @@
 use std::collections::HashMap;
 
 use fractum_dem::Particles;
-use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, Kinematics, LocalDamping, Softening, Solid};
+use fractum_fem::{Body, Elastic, ElementKind, Kinematics, LocalDamping, Solid};
 use fractum_math::{Rotation, Vec3};
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
     Along, Bonded, BondedPart, ContactBody, ContactMaterial, ContactParameters, ContactProbe, Contacts, Drive,
-    ElasticMaterial, EnergyKind, FacetMesh, Form, Frame, Inertia, Loads, Probe, RigidBody, Scene, SceneSettings,
-    SolidSurface, Supports, TimeStepSettings,
+    ElasticMaterial, EnergyKind, FacetMesh, Form, Frame, Inertia, Loads, Probe, ProbedScene, RigidBody, Scene,
+    SceneSettings, SolidSurface, Supports, TimeStepSettings,
 };
+use fractum_tests::softening;
 
 const SURFACE: ContactParameters = ContactParameters { friction: 0.4, damping_ratio: 0.05, rolling_friction: 0.0 };
 
@@ -48,15 +49,7 @@ fn crash(target: Target, particles: bool) -> Scene {
     let mut nodes: Vec<Vec3> = points.iter().map(|x| turn * (x - Vec3::repeat(0.05))).collect();
     let lowest = nodes.iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
     nodes.iter_mut().for_each(|x| x.z -= lowest - 1e-4);
-    let law = DamageLaw {
-        criterion: Criterion::rankine(),
-        tensile_strength: 3e6,
-        fracture_energy: 60.0,
-        softening: Softening::Exponential,
-        residual: 0.02,
-        unilateral: false,
-        rate_time: 0.0,
-    };
+    let law = softening(60.0);
     let mut brittle = Body::new("block", ElementKind::T4, elements, elastic()).smoothed().with_damage(law);
     brittle.kinematics = Kinematics::Corotational;
     brittle.damage.as_mut().unwrap().reduce_strength_to_fit = true;
@@ -132,7 +125,7 @@ fn crash(target: Target, particles: bool) -> Scene {
 
 /// Linear and angular momentum.
 fn momenta(scene: &Scene) -> (Vec3, Vec3) {
-    let of = |probe: fn(Vec3) -> Probe| Vec3::from_fn(|k, _| probe(Vec3::ith(k, 1.0)).value(scene));
+    let of = |probe: fn(Vec3) -> Probe| Vec3::from_fn(|k, _| probe(Vec3::ith(k, 1.0)).value(&ProbedScene::new(scene)));
     (of(Probe::Momentum), of(Probe::AngularMomentum))
 }
 
@@ -273,8 +266,8 @@ fn the_force_from_a_rigid_body_that_meets_one_body_is_its_reaction() {
     let mut largest: f64 = 0.0;
     for _ in 0..400 {
         scene.step(true).unwrap();
-        let reaction = Probe::RigidBodyForce { rigid_body: 0, direction: along }.value(&scene);
-        let force = Probe::ContactForce(probe).value(&scene);
+        let reaction = Probe::RigidBodyForce { rigid_body: 0, direction: along }.value(&ProbedScene::new(&scene));
+        let force = Probe::ContactForce(probe).value(&ProbedScene::new(&scene));
         largest = largest.max(force.abs());
         assert!((force - reaction).abs() <= 1e-13 * largest, "{force} {reaction}");
     }

@@ -2,23 +2,17 @@
 
 use std::sync::Arc;
 
-use fractum_fem::{Body, Criterion, DamageLaw, Formulation, Kinematics, LocalDamping, Softening, Solid, Viscosity};
+use fractum_fem::{Body, DamageLaw, Formulation, Kinematics, LocalDamping, Solid, Viscosity};
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
     ContactParameters, EnergyKind, Gravity, Load, Loads, Motion, NodalForce, NodesOnShape, Pressure, Scene,
-    SceneSettings, StepError, Support, Supports, TimeStepSettings,
+    SceneSettings, StepError, Support, Supports,
 };
-use fractum_tests::{jittered_box, noise};
+use fractum_tests::{jittered_box, noise, softening};
 
 fn settings(end: f64) -> SceneSettings {
-    SceneSettings {
-        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end },
-        damping: LocalDamping::default(),
-        stiffness_time: 0.0,
-        balance_stop: 1e-2,
-        joined_below: 0.95,
-    }
+    fractum_tests::settings(end, 1e-2)
 }
 
 /// Steps that resolve damage which starts and ends within some tens of them on these coarse boxes.
@@ -52,15 +46,7 @@ const SIZE: Vec3 = Vec3::new(0.4, 0.12, 0.12);
 
 /// A law under which the box breaks within tens of microseconds.
 fn brittle() -> DamageLaw {
-    DamageLaw {
-        criterion: Criterion::rankine(),
-        tensile_strength: 3e6,
-        fracture_energy: 100.0,
-        softening: Softening::Exponential,
-        residual: 0.02,
-        unilateral: false,
-        rate_time: 0.0,
-    }
+    softening(100.0)
 }
 
 /// The box with damage and a weak slab across its middle.

@@ -2,10 +2,7 @@
 
 use std::sync::Arc;
 
-use fractum_fem::{
-    Body, Criterion, DamageLaw, DamageZone, Elastic, ElementKind, Formulation, LocalDamping, Plane, Region, Softening,
-    Solid,
-};
+use fractum_fem::{Body, DamageLaw, DamageZone, Elastic, ElementKind, Formulation, LocalDamping, Plane, Region, Solid};
 use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_scene::coupling::Debris;
@@ -16,7 +13,7 @@ use fractum_scene::{
     ContactParameters, Load, Loads, Motion, NodalForce, Scene, SceneError, SceneSettings, Support, Supports,
     TimeFunction, TimeStepSettings,
 };
-use fractum_tests::{CONCRETE, jittered_box};
+use fractum_tests::{CONCRETE, jittered_box, softening};
 
 const FORMULATIONS: [Formulation; 2] = [Formulation::Standard, Formulation::Smoothed];
 
@@ -80,15 +77,7 @@ fn affine_motion_of_the_surface_moves_the_inside_affinely() {
 }
 
 fn soft() -> DamageLaw {
-    DamageLaw {
-        criterion: Criterion::rankine(),
-        tensile_strength: 3e6,
-        fracture_energy: 60.0,
-        softening: Softening::Exponential,
-        residual: 0.02,
-        unilateral: false,
-        rate_time: 0.0,
-    }
+    softening(60.0)
 }
 
 /// A plane bar that can be damaged in its middle only, long enough to snap back.

@@ -137,6 +137,11 @@ impl Body {
         Body { damage: Some(zone), ..self }
     }
 
+    /// What makes a volume of the measure of an element: the thickness of triangles [m], 1 for tetrahedra.
+    pub(crate) fn depth(&self) -> f64 {
+        if self.shape == ElementKind::T3 { self.thickness } else { 1.0 }
+    }
+
     /// The edges of the body, as pairs of node indices, and the edges of each element.
     pub fn edges(&self) -> BodyEdges {
         match self.shape {

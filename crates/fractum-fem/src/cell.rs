@@ -4,7 +4,7 @@ use fractum_math::{Ragged, Vec3};
 use rayon::prelude::*;
 
 use crate::block::{BLOCK_NODES, Cells, Run};
-use crate::body::{Body, BodyEdges, ElementKind};
+use crate::body::{Body, BodyEdges};
 use crate::element::measure_and_gradients;
 use crate::error::SolidError;
 
@@ -26,8 +26,7 @@ impl Geometry<'_> {
     /// Volume [m³] and gradients of an element.
     pub(crate) fn element(&self, element: usize) -> (f64, [Vec3; 4]) {
         let (measure, gradients) = measure_and_gradients(self.body.shape, &self.corners(element));
-        let thickness = if self.body.shape == ElementKind::T3 { self.body.thickness } else { 1.0 };
-        (measure * thickness, gradients)
+        (measure * self.body.depth(), gradients)
     }
 
     /// Volumes of all elements [m³].

@@ -61,6 +61,8 @@ pub struct CrackCell {
 pub struct CrackNetwork {
     mouths: Vec<CrackMouth>,
     cells: Vec<CrackCell>,
+    /// Cells that were reached from each mouth first, ascending.
+    cells_of: Vec<Vec<u32>>,
     /// Index of the first element of each body among all.
     first: Vec<u32>,
     /// Elements beyond the sides of every element.
@@ -95,6 +97,7 @@ impl CrackNetwork {
         mouth_of.sort_unstable();
         let beyond = neighbours(solid);
         CrackNetwork {
+            cells_of: vec![Vec::new(); mouths.len()],
             mouths: mouths.into_iter().map(|facets| CrackMouth { live: vec![true; facets.len()], facets }).collect(),
             cells: Vec::new(),
             cell_of: vec![NONE; beyond.len()],
@@ -114,12 +117,16 @@ impl CrackNetwork {
         &self.cells
     }
 
+    /// The cells that were reached from a mouth first, in their order.
+    pub fn cells_of(&self, mouth: usize) -> impl Iterator<Item = &CrackCell> {
+        self.cells_of[mouth].iter().map(|&cell| &self.cells[cell as usize])
+    }
+
     /// Area of the mouths and of the walls of the cells that were reached from a mouth, without load [m²].
     pub fn wetted_area(&self, solid: &Solid, mouth: usize) -> f64 {
         let of_mouth = &self.mouths[mouth];
         let live = of_mouth.facets.iter().zip(&of_mouth.live).filter(|(_, live)| **live).map(|(facet, _)| facet);
-        let cells = self.cells.iter().filter(|cell| cell.mouth as usize == mouth);
-        let walls = cells.flat_map(|cell| cell.walls());
+        let walls = self.cells_of(mouth).flat_map(CrackCell::walls);
         live.chain(walls).map(|facet| solid.facet_area(facet, |node| solid.reference[node as usize]).norm()).sum()
     }
 
@@ -194,6 +201,9 @@ impl CrackNetwork {
                 },
                 other => self.beyond_side(solid, other, number, index as u32, &mut cell, queue),
             };
+        }
+        if let Some(cells) = self.cells_of.get_mut(cell.mouth as usize) {
+            cells.push(number);
         }
         self.cells.push(cell);
         self.shorten_paths(solid, number);
@@ -299,8 +309,7 @@ impl Solid {
     pub fn present_volume(&self, body: usize, element: u32) -> f64 {
         let body = &self.bodies[body].body;
         let places = body.elements[element as usize].map(|node| self.position(node as usize));
-        let thickness = if body.shape == ElementKind::T3 { body.thickness } else { 1.0 };
-        measure_and_gradients(body.shape, &places).0 * thickness
+        measure_and_gradients(body.shape, &places).0 * body.depth()
     }
 
     /// Characteristic length of an element: the mean over its edges that may be damaged, else the edge of the regular

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use fractum_math::{Ragged, Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::body::{Body, ElementKind};
+use crate::body::Body;
 use crate::element::regular_edge;
 
 /// How far an edge sees, over the size of its elements.
@@ -62,11 +62,10 @@ impl Gate {
         volumes: impl Fn(u32) -> f64,
         armed: impl Fn(usize) -> bool,
     ) -> Gate {
-        let thickness = if body.shape == ElementKind::T3 { body.thickness } else { 1.0 };
         let middle: Vec<Vec3> = edges.iter().map(|&[i, j]| (nodes[i as usize] + nodes[j as usize]) * 0.5).collect();
         let size = |edge: usize| {
             let elements = elements_of_edge.row(edge);
-            let sum: f64 = elements.iter().map(|&e| regular_edge(body.shape, volumes(e) / thickness)).sum();
+            let sum: f64 = elements.iter().map(|&e| regular_edge(body.shape, volumes(e) / body.depth())).sum();
             REACH * sum / elements.len() as f64
         };
         let reach: Vec<f64> = (0..edges.len()).map(size).collect();

@@ -226,6 +226,12 @@ impl Solid {
         &self.bodies[index].body
     }
 
+    /// Speed of a compression wave in a body, √((λ + 2μ)/ρ): in plane stress that of a plate [m/s].
+    pub fn p_wave_speed(&self, index: usize) -> f64 {
+        let BodyModel { hooke, body, .. } = &self.bodies[index];
+        ((hooke.lambda + 2.0 * hooke.mu) / body.elastic.density).sqrt()
+    }
+
     /// Edges of a body, if its formulation or its damage uses them.
     pub fn body_edges(&self, index: usize) -> Option<&BodyEdges> {
         self.bodies[index].edges.as_ref()

@@ -35,10 +35,9 @@ impl Threshold {
             (Formulation::Standard, ElementKind::T4) => 1.11,
             (Formulation::Standard, ElementKind::T3) => 1.28,
         };
-        let thickness = if body.shape == ElementKind::T3 { body.thickness } else { 1.0 };
         let length = |edge: usize| {
             let elements = elements_of_edge.row(edge);
-            let sum: f64 = elements.iter().map(|&e| regular_edge(body.shape, volumes[e as usize] / thickness)).sum();
+            let sum: f64 = elements.iter().map(|&e| regular_edge(body.shape, volumes[e as usize] / body.depth())).sum();
             factor * sum / elements.len() as f64
         };
         let count = edges.nodes.len();

@@ -61,8 +61,7 @@ impl ViscousCells {
             (Formulation::Smoothed, ElementKind::T3) => 2.0 / 3.0,
             (Formulation::Smoothed, ElementKind::T4) => 5.0 / 6.0,
         };
-        let thickness = if body.shape == ElementKind::T3 { body.thickness } else { 1.0 };
-        let length = volumes.iter().map(|v| regular_edge(body.shape, v / (share * thickness))).collect();
+        let length = volumes.iter().map(|v| regular_edge(body.shape, v / (share * body.depth()))).collect();
         ViscousCells { stress: vec![Sym3::ZERO; volumes.len()], length, shock: 0.0 }
     }
 

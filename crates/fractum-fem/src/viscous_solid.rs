@@ -18,9 +18,9 @@ impl Solid {
             return;
         }
         for index in 0..self.bodies.len() {
-            let shape_factor = self.shape_factor(index);
+            let (shape_factor, wave_speed) = (self.shape_factor(index), self.p_wave_speed(index));
             let model = &mut self.bodies[index];
-            let (density, wave_speed) = (model.body.elastic.density, model.body.elastic.p_wave_speed());
+            let density = model.body.elastic.density;
             model.viscosity = Some(BodyViscosity { constants: viscosity, density, wave_speed, shape_factor });
         }
         for block in &mut self.blocks {
@@ -49,14 +49,64 @@ impl Solid {
     fn shape_factor(&self, index: usize) -> f64 {
         let body = &self.bodies[index].body;
         let geometry = Geometry { body, nodes: &self.reference };
-        let corners = body.shape.node_count();
+        let (corners, wave_speed) = (body.shape.node_count(), self.p_wave_speed(index));
         let stiffness = self.bodies[index].hooke.lambda + 4.0 * self.bodies[index].hooke.mu;
         let of = |element: usize| {
-            let (measure, gradients) = geometry.element(element);
+            let (volume, gradients) = geometry.element(element);
             let square: f64 = gradients[..corners].iter().map(|g| g.norm_squared()).sum();
             let frequency = (square * stiffness * corners as f64 / body.elastic.density).sqrt();
-            frequency * regular_edge(body.shape, measure) / body.elastic.p_wave_speed()
+            frequency * regular_edge(body.shape, volume / body.depth()) / wave_speed
         };
         (0..body.elements.len()).into_par_iter().map(of).reduce(|| 0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fractum_mesh::generate::{structured_box, structured_rectangle};
+
+    use super::*;
+    use crate::body::{Body, ElementKind, Plane};
+    use crate::material::Elastic;
+    use fractum_math::Vec3;
+
+    fn solid(kind: ElementKind, plane: Plane, thickness: f64, scale: f64) -> Solid {
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let (nodes, elements) = match kind {
+            ElementKind::T3 => {
+                let mesh = structured_rectangle([4, 4], [scale; 2], None);
+                (mesh.nodes, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect())
+            }
+            ElementKind::T4 => {
+                let mesh = structured_box([3; 3], Vec3::repeat(scale), None);
+                (mesh.nodes, mesh.tetrahedra)
+            }
+        };
+        let body = Body { plane, thickness, ..Body::new("block", kind, elements, elastic) };
+        let mut solid = Solid::new(nodes, vec![body]).unwrap();
+        solid.set_viscosity(Viscosity { stiffness_time: 0.0, bulk_linear: 0.06, bulk_quadratic: 1.2 });
+        solid
+    }
+
+    /// A share of critical damping has no dimension: neither size nor thickness changes it, and rates only raise it.
+    #[test]
+    fn bulk_damping_depends_on_shapes_and_rates_alone() {
+        for (kind, plane) in
+            [(ElementKind::T3, Plane::Strain), (ElementKind::T3, Plane::Stress), (ElementKind::T4, Plane::Strain)]
+        {
+            let at = |thickness, scale| solid(kind, plane, thickness, scale).bulk_damping_ratio();
+            let one = at(1.0, 1.0);
+            assert!(one > 0.06 && one < 0.3, "{one}");
+            for (thickness, scale) in [(0.01, 1.0), (30.0, 1.0), (1.0, 1e-3)] {
+                assert!((at(thickness, scale) / one - 1.0).abs() < 1e-12, "{kind:?}");
+            }
+            let mut shocked = solid(kind, plane, 1.0, 1.0);
+            let speed = shocked.p_wave_speed(0);
+            for (v, p) in shocked.velocity.iter_mut().zip(&shocked.reference) {
+                v.x = -0.5 * speed * p.x;
+            }
+            shocked.update_internal_forces(0.0, false);
+            assert!(shocked.bulk_damping_ratio() > 2.0 * one, "{kind:?}");
+        }
     }
 }

@@ -76,8 +76,14 @@ pub fn structured_rectangle(cells: [u32; 2], size: [f64; 2], jitter: Option<Jitt
         triangles.push([a, c, d]);
     }
     let lines: Vec<[u32; 2]> = boundary_of_triangles(&triangles).into_iter().map(|edge| edge.nodes).collect();
-    let mut groups = grid.side_groups(1, 2, &lines, |group| &mut group.lines);
+    let sides = grid.side_groups(1, 2, &lines, |group| &mut group.lines);
+    plane_mesh(nodes, lines, triangles, sides)
+}
+
+/// A mesh of triangles with the group `body` of them all after those of lines.
+pub fn plane_mesh(nodes: Vec<Vec3>, lines: Vec<[u32; 2]>, triangles: Vec<[u32; 3]>, sides: Vec<Group>) -> Mesh {
     let all = (0..triangles.len() as u32).collect();
+    let mut groups = sides;
     groups.push(Group { name: "body".to_owned(), dimension: 2, tag: 1, triangles: all, ..Group::default() });
     let first_tag = lines.len() as u64 + 1;
     Mesh {

@@ -37,7 +37,7 @@ pub use fragment::{Fragment, solid_pieces};
 pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, Stemming};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use piece_probe::{FragmentMeasure, SurfaceMeasure};
-pub use probe::{Population, Probe};
+pub use probe::{Population, Probe, ProbedScene};
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::{Phase, StepReport};

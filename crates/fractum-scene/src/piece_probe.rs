@@ -6,7 +6,6 @@ use fractum_math::elementary::cbrt;
 
 use crate::fragment::Fragment;
 use crate::gas::{Stemming, enclosed_volume};
-use crate::scene::Scene;
 
 /// What a probe measures of facets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,29 +39,34 @@ pub(crate) fn measure_surface(solid: &Solid, facets: &[[u32; 3]], measure: Surfa
 }
 
 /// Something about the fragment that holds the first of these nodes; the single node counts as one where nothing joins it.
-pub(crate) fn measure_fragment(scene: &Scene, nodes: &[u32], measure: FragmentMeasure, along: &Vec3) -> f64 {
-    let fragments = scene.fragments();
+pub(crate) fn measure_fragment(
+    solid: &Solid,
+    fragments: &[Fragment],
+    nodes: &[u32],
+    measure: FragmentMeasure,
+    along: &Vec3,
+) -> f64 {
     let Some(&node) = nodes.first() else { return f64::NAN };
     let Some(own) = fragments.iter().find(|fragment| fragment.nodes.contains(&node)) else {
-        let mass = scene.solid.mass[node as usize];
+        let mass = solid.mass[node as usize];
         return match measure {
             FragmentMeasure::Mass => mass,
             FragmentMeasure::Volume | FragmentMeasure::Size => 0.0,
-            FragmentMeasure::Velocity => scene.solid.velocity[node as usize].dot(along),
+            FragmentMeasure::Velocity => solid.velocity[node as usize].dot(along),
         };
     };
     match measure {
         FragmentMeasure::Mass => own.mass,
         FragmentMeasure::Volume => own.volume,
-        FragmentMeasure::Size => size(own, plane_thickness(&scene.solid)),
+        FragmentMeasure::Size => size(own, plane_thickness(solid)),
         FragmentMeasure::Velocity => own.velocity.dot(along),
     }
 }
 
 /// Size below which a share of the mass of all fragments lies: P20, P50, P80 for 0.2, 0.5, 0.8 [m].
-pub(crate) fn passing_size(scene: &Scene, share: f64) -> f64 {
-    let thickness = plane_thickness(&scene.solid);
-    let mut pieces: Vec<(f64, f64)> = scene.fragments().iter().map(|f| (size(f, thickness), f.mass)).collect();
+pub(crate) fn passing_size(solid: &Solid, fragments: &[Fragment], share: f64) -> f64 {
+    let thickness = plane_thickness(solid);
+    let mut pieces: Vec<(f64, f64)> = fragments.iter().map(|f| (size(f, thickness), f.mass)).collect();
     pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = pieces.iter().map(|piece| piece.1).sum();
     let mut passed = 0.0;

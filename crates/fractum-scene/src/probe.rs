@@ -1,9 +1,12 @@
+use std::cell::OnceCell;
+
 use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 
 use crate::conditions::{Along, PointProbe};
 use crate::contacts::ContactProbe;
 use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
+use crate::fragment::Fragment;
 use crate::gas::GasMeasure;
 use crate::ledger::EnergyProbe;
 use crate::piece_probe::{FragmentMeasure, SurfaceMeasure, measure_fragment, measure_surface, passing_size};
@@ -112,6 +115,24 @@ pub enum Probe {
     },
 }
 
+/// A scene at one instant, with what several probes need of it.
+pub struct ProbedScene<'a> {
+    scene: &'a Scene,
+    fragments: OnceCell<Vec<Fragment>>,
+}
+
+impl<'a> ProbedScene<'a> {
+    /// Before the first probe.
+    pub fn new(scene: &'a Scene) -> Self {
+        ProbedScene { scene, fragments: OnceCell::new() }
+    }
+
+    /// [`Scene::fragments`], found once.
+    pub(crate) fn fragments(&self) -> &[Fragment] {
+        self.fragments.get_or_init(|| self.scene.fragments())
+    }
+}
+
 impl Probe {
     /// Whether the value needs the energies of the instant.
     pub fn needs_energy(&self) -> bool {
@@ -119,7 +140,8 @@ impl Probe {
     }
 
     /// Value at the last step that was measured.
-    pub fn value(&self, scene: &Scene) -> f64 {
+    pub fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        let scene = probed.scene;
         let solid = &scene.solid;
         match self {
             Probe::Points { population, probe } => {
@@ -130,6 +152,7 @@ impl Probe {
                 }
             }
             Probe::Energy(kind) => scene.ledger().probe(*kind),
+            Probe::Count(CountKind::Fragments) => probed.fragments().len() as f64,
             Probe::Count(kind) => scene.count(*kind) as f64,
             Probe::Stress { elements, between: [normal, along] } => {
                 let (mut sum, mut volume) = (0.0, 0.0);
@@ -167,8 +190,10 @@ impl Probe {
             Probe::Gas { measure, hole } => scene.gas().map_or(f64::NAN, |gas| gas.measure(solid, *measure, *hole)),
             Probe::Load { points, along } => scene.loads.resultant(points, |point| along.at(&solid.reference[point])),
             Probe::Surface { facets, measure } => measure_surface(solid, facets, *measure),
-            Probe::Fragment { points, measure, along } => measure_fragment(scene, points, *measure, along),
-            Probe::FragmentSize(share) => passing_size(scene, *share),
+            Probe::Fragment { points, measure, along } => {
+                measure_fragment(solid, probed.fragments(), points, *measure, along)
+            }
+            Probe::FragmentSize(share) => passing_size(solid, probed.fragments(), *share),
             Probe::CrackArea => solid.crack_area(),
             Probe::Crack { measure, axis, inside } => measure_crack(scene, *measure, axis, inside.as_ref()),
         }

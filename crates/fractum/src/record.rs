@@ -9,7 +9,7 @@ use fractum_io::case::model::{Case, ProbeExpression, ProbeInput, ProbeKind, Take
 use fractum_io::history::{Column, History};
 use fractum_io::vtk::{CellBlock, CellKind, Collection, Field, PolyCells, PolyData, UnstructuredGrid, Values};
 use fractum_scene::statics::NoEquilibrium;
-use fractum_scene::{EnergyKind, EnergyRole, Scene};
+use fractum_scene::{EnergyKind, EnergyRole, ProbedScene, Scene};
 use serde::{Deserialize, Serialize};
 
 use crate::cracks;
@@ -187,10 +187,10 @@ impl Recorder {
         }
         row.extend(self.tells_motion.then_some(f64::from(u8::from(in_motion))));
         self.state.times.push(time);
-        let case = Arc::clone(&self.case);
+        let (case, probed) = (Arc::clone(&self.case), ProbedScene::new(scene));
         for index in 0..case.probes.len() {
             let value = match (&case.probes[index].kind, &self.probes[index]) {
-                (_, Some(probe)) => probe.value(scene),
+                (_, Some(probe)) => probe.value(&probed),
                 (ProbeKind::Expression(expression), None) if !expression.scalar => self.expression(expression),
                 _ => continue,
             };

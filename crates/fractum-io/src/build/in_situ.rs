@@ -11,7 +11,7 @@ use super::Context;
 use super::bodies::Numbering;
 use super::conditions::Surface;
 use crate::case::Place;
-use crate::case::model::{InSitu, LoadKind};
+use crate::case::model::{InSitu, LoadKind, Selection};
 use crate::number::quantity;
 
 /// How far a stress may be from linear, over its largest component; and forces from balance, over the largest.
@@ -42,8 +42,7 @@ impl Context<'_> {
     ) -> Vec<Load> {
         let Some(stress) = &self.case.in_situ else { return Vec::new() };
         for group in &stress.groups {
-            let selection = crate::case::model::Selection { group: Some(group.clone()), within: None };
-            on.extend(self.selected_facets(&selection, numbering, surface));
+            on.extend(self.selected_facets(&Selection::of_group(group.clone()), numbering, surface));
         }
         on.sort_unstable();
         on.dedup();
@@ -52,6 +51,9 @@ impl Context<'_> {
             self.error(&stress.place, " acts on no facet", "absorbing or elastic supports, or groups of facets");
         }
         self.check_weight(&stress.place, &field, solid);
+        if self.diagnostics.is_empty() {
+            self.check_in_situ_supports(&field, solid, numbering);
+        }
         if self.diagnostics.is_empty() { tractions(&field, &on, surface, &numbering.positions) } else { Vec::new() }
     }
 
@@ -114,9 +116,7 @@ impl Context<'_> {
     }
 
     /// Supports must be able to follow the displacements of the far field: what they hold cannot be strained.
-    pub(super) fn check_in_situ_supports(&mut self, solid: &Solid, numbering: &Numbering) {
-        let Some(stress) = &self.case.in_situ else { return };
-        let Some(field) = self.far_field(stress, &numbering.positions) else { return };
+    fn check_in_situ_supports(&mut self, field: &FarField, solid: &Solid, numbering: &Numbering) {
         let elastic = |body: usize| solid.body(body).elastic;
         let same = |a: Elastic, b: Elastic| a.young_modulus == b.young_modulus && a.poisson_ratio == b.poisson_ratio;
         if (1..solid.body_count()).any(|body| !same(elastic(0), elastic(body))) {
@@ -134,7 +134,7 @@ impl Context<'_> {
             }
         }
         let displacement = field.displacements(elastic(0), plane);
-        let rows = held.iter().map(|&(_, place, axis)| (rigid(place, &field, axis), displacement(place)[axis]));
+        let rows = held.iter().map(|&(_, place, axis)| (rigid(place, field, axis), displacement(place)[axis]));
         let (mut gram, mut right) = (Matrix6::<f64>::zeros(), Vector6::<f64>::zeros());
         for (row, u) in rows.clone() {
             gram += row * row.transpose();

@@ -149,9 +149,6 @@ impl Context<'_> {
         let surface = Surface::new(&boundary, &parts, &numbering.positions);
         let (surface_supports, supported) = self.surface_supports(&parts, &numbering, &surface, &solid);
         let in_situ = self.in_situ_loads(&numbering, &surface, &solid, supported);
-        if self.diagnostics.is_empty() {
-            self.check_in_situ_supports(&solid, &numbering);
-        }
         let points = LoadedPoints::Nodes(&numbering, &surface);
         let mut loads = self.loads(&points);
         loads.extend(in_situ);

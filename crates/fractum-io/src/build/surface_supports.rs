@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use fractum_fem::{Elastic, ElementKind, Plane, Solid};
+use fractum_fem::{ElementKind, Solid};
+use fractum_math::connected;
 use fractum_scene::{SupportedFacet, SurfaceSupports};
 
 use super::Context;
@@ -24,8 +25,8 @@ impl Context<'_> {
         if case.supports.iter().all(|support| support.surface.is_none()) {
             return (SurfaceSupports::default(), all);
         }
-        let materials = materials_behind(parts, solid, surface);
-        let outer = outer_facets(surface);
+        let impedances = impedances(parts, solid, surface);
+        let outer = is_outer(surface, numbering.positions.len());
         for support in &case.supports {
             let Some(kind) = &support.surface else { continue };
             if self.names_particles(&support.on) {
@@ -40,16 +41,11 @@ impl Context<'_> {
             for facet in &facets {
                 let vector = surface.area_vector(facet);
                 let (normal, area) = (vector.normalize(), vector.norm());
-                match kind.value {
-                    SurfaceSupport::Absorbing => {
-                        let along_and_across = impedance(materials[&sorted(*facet)]);
-                        absorbing.push(SupportedFacet { nodes: *facet, normal, area, along_and_across });
-                    }
-                    SurfaceSupport::Elastic { normal: along, tangential: across } => {
-                        let along_and_across = [along, across];
-                        elastic.push(SupportedFacet { nodes: *facet, normal, area, along_and_across });
-                    }
-                }
+                let (supports, along_and_across) = match kind.value {
+                    SurfaceSupport::Absorbing => (&mut absorbing, impedances[&sorted(*facet)]),
+                    SurfaceSupport::Elastic { normal, tangential } => (&mut elastic, [normal, tangential]),
+                };
+                supports.push(SupportedFacet { nodes: *facet, normal, area, along_and_across });
             }
             all.extend(facets);
         }
@@ -72,8 +68,8 @@ impl Context<'_> {
     }
 
     /// Waves leave through the outer boundary: a cavity is where they come from.
-    fn check_outer(&mut self, support: &model::Support, facets: &[[u32; 3]], outer: &HashMap<u32, bool>) {
-        if facets.iter().any(|facet| !outer[&facet[0]]) {
+    fn check_outer(&mut self, support: &model::Support, facets: &[[u32; 3]], outer: &[bool]) {
+        if facets.iter().any(|facet| !outer[facet[0] as usize]) {
             let place = support.on.place().cloned().unwrap_or_else(|| self.whole_case());
             let found = format!("= \"{}\" has facets of a cavity, an inner boundary", support.on.label());
             self.error(&place, found, "facets on the outer boundary, through which waves leave");
@@ -81,60 +77,32 @@ impl Context<'_> {
     }
 }
 
-/// ρ c_P and ρ c_S [Pa s/m].
-fn impedance((elastic, plane): (Elastic, Plane)) -> [f64; 2] {
-    let Elastic { density, young_modulus, poisson_ratio } = elastic;
-    let along = match plane {
-        Plane::Strain => elastic.p_wave_speed(),
-        // The plate wave.
-        Plane::Stress => (young_modulus / (density * (1.0 - poisson_ratio * poisson_ratio))).sqrt(),
-    };
-    [density * along, density * elastic.s_wave_speed()]
-}
-
-/// The material behind every facet of the surface.
-fn materials_behind(parts: &[Part], solid: &Solid, surface: &Surface) -> HashMap<[u32; 3], (Elastic, Plane)> {
+/// ρ c_P and ρ c_S of the material behind every facet of the surface [Pa s/m].
+fn impedances(parts: &[Part], solid: &Solid, surface: &Surface) -> HashMap<[u32; 3], [f64; 2]> {
     let mut found = HashMap::new();
     for (index, part) in parts.iter().enumerate() {
         let body = solid.body(index);
-        let plane = if part.shape == ElementKind::T3 { body.plane } else { Plane::Strain };
+        let own = [solid.p_wave_speed(index), body.elastic.s_wave_speed()].map(|speed| body.elastic.density * speed);
         for &[a, b, c, d] in &body.elements {
             let sides = match part.shape {
                 ElementKind::T3 => [[a, b, b], [b, c, c], [c, a, a], [a, b, b]],
                 ElementKind::T4 => [[a, b, c], [a, b, d], [a, c, d], [b, c, d]],
             };
-            for side in sides.map(sorted) {
-                if surface.outward(side).is_some() {
-                    found.insert(side, (body.elastic, plane));
-                }
-            }
+            found.extend(
+                sides.map(sorted).into_iter().filter(|side| surface.outward(*side).is_some()).map(|s| (s, own)),
+            );
         }
     }
     found
 }
 
-/// For every node of the surface, whether the closed part of it that the node is on encloses material, not a cavity.
-fn outer_facets(surface: &Surface) -> HashMap<u32, bool> {
-    let mut parent: HashMap<u32, u32> = surface.facets.iter().flatten().map(|&node| (node, node)).collect();
-    fn root(parent: &mut HashMap<u32, u32>, mut node: u32) -> u32 {
-        while parent[&node] != node {
-            let above = parent[&parent[&node]];
-            parent.insert(node, above);
-            node = above;
-        }
-        node
-    }
+/// For every node, whether the closed part of the surface that it is on encloses material; false on cavities.
+fn is_outer(surface: &Surface, nodes: usize) -> Vec<bool> {
+    let links = surface.facets.iter().flat_map(|&[a, b, c]| [[a, b], [b, c]]);
+    let part = connected(nodes, links);
+    let mut volume = vec![0.0; nodes];
     for facet in surface.facets {
-        for &other in &facet[1..] {
-            let (a, b) = (root(&mut parent, facet[0]), root(&mut parent, other));
-            parent.insert(a.max(b), a.min(b));
-        }
+        volume[part[facet[0] as usize] as usize] += surface.area_vector(facet).dot(&surface.middle(facet));
     }
-    let mut volume: HashMap<u32, f64> = HashMap::new();
-    for facet in surface.facets {
-        let own = root(&mut parent, facet[0]);
-        *volume.entry(own).or_default() += surface.area_vector(facet).dot(&surface.middle(facet));
-    }
-    let nodes: Vec<u32> = parent.keys().copied().collect();
-    nodes.into_iter().map(|node| (node, volume[&root(&mut parent, node)] > 0.0)).collect()
+    part.into_iter().map(|part| volume[part as usize] > 0.0).collect()
 }

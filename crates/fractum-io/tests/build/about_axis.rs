@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use fractum_math::Vec3;
+use fractum_scene::ProbedScene;
 
 use crate::build;
 use crate::sides::{AROUND, Listed, RADIUS, THICKNESS, ring};
@@ -70,7 +71,7 @@ fn a_ring_that_turns_and_widens_has_its_components_about_the_axis() {
         let built = build(&CASE.replace("FORMULATION", formulation), &mesh);
         let mut scene = built.scene;
         let values = |scene: &fractum_scene::Scene| -> Vec<f64> {
-            built.probes.iter().flatten().map(|probe| probe.value(scene)).collect()
+            built.probes.iter().flatten().map(|probe| probe.value(&ProbedScene::new(scene))).collect()
         };
         scene.step(true).unwrap();
         let now = values(&scene);

@@ -8,6 +8,7 @@ use fractum_io::case::parse_case;
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_mesh::generate::structured_box;
+use fractum_scene::ProbedScene;
 
 use crate::build;
 
@@ -35,7 +36,7 @@ fn histories(conditions: &str) -> Vec<f64> {
     let mut values = Vec::new();
     for _ in 0..20 {
         scene.step(true).unwrap();
-        values.extend(built.probes.iter().flatten().map(|probe| probe.value(&scene)));
+        values.extend(built.probes.iter().flatten().map(|probe| probe.value(&ProbedScene::new(&scene))));
     }
     values
 }
@@ -177,7 +178,7 @@ step = "0.1 us"
         scene.step(true).unwrap();
     }
     let time = scene.clock.time;
-    let values: Vec<f64> = built.probes.iter().flatten().map(|probe| probe.value(&scene)).collect();
+    let values: Vec<f64> = built.probes.iter().flatten().map(|probe| probe.value(&ProbedScene::new(&scene))).collect();
     // 1 N over two particles of 1 g, half a step ago.
     assert!((values[0] / (500.0 * (time - 0.05e-6)) - 1.0).abs() < 1e-9, "{values:?} at {time}");
     assert_eq!(values[1], 0.0);

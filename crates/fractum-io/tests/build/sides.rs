@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use fractum_math::Vec3;
-use fractum_mesh::generate::structured_box;
+use fractum_mesh::generate::{plane_mesh, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_mesh::{Group, Mesh};
 
@@ -64,21 +64,8 @@ pub(crate) fn ring(lines_listed: Listed, triangles_listed: Listed) -> Mesh {
         }
     }
     let side = |name: &str, tag, lines| Group { name: name.into(), dimension: 1, tag, lines, ..Group::default() };
-    let body = (0..triangles.len() as u32).collect();
-    Mesh {
-        node_tags: (1..=nodes.len() as u64).collect(),
-        line_tags: (1..=lines.len() as u64).collect(),
-        triangle_tags: (1001..=1000 + triangles.len() as u64).collect(),
-        groups: vec![
-            side("inner", 1, (0..half).collect()),
-            side("outer", 2, (half..2 * half).collect()),
-            Group { name: "body".into(), dimension: 2, tag: 1, triangles: body, ..Group::default() },
-        ],
-        nodes,
-        lines,
-        triangles,
-        ..Mesh::default()
-    }
+    let sides = vec![side("inner", 1, (0..half).collect()), side("outer", 2, (half..2 * half).collect())];
+    plane_mesh(nodes, lines, triangles, sides)
 }
 
 /// A cube of side 3 with a cubic hole of side 1 in its middle; groups `body`, `inner` and `outer`, the sides at the

@@ -75,11 +75,6 @@ impl SurfaceSupports {
         SurfaceSupports { absorbing: vec![Vec3::zeros(); dashpots.nodes.len()], dashpots, springs, frequency_square }
     }
 
-    /// Number of nodes with dashpots, and with springs.
-    pub fn counts(&self) -> [usize; 2] {
-        [self.dashpots.nodes.len(), self.springs.nodes.len()]
-    }
-
     /// What springs add to the square of the highest frequency at most, by Weyl's inequality [1/s²].
     pub(crate) fn frequency_square(&self) -> f64 {
         self.frequency_square

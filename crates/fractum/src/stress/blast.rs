@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use fractum_math::Vec3;
 use fractum_math::elementary::{cos, exp, ln, sin};
-use fractum_mesh::generate::{Jitter, structured_box};
+use fractum_mesh::generate::{Jitter, plane_mesh, structured_box};
 use fractum_mesh::{Group, Mesh};
 
 use super::draw::Draw;
@@ -102,19 +102,6 @@ fn ring(around: u32, [inner, outer]: [f64; 2], draw: &mut Draw) -> Mesh {
     let lines: Vec<[u32; 2]> =
         [0, rings].into_iter().flat_map(|ring| (0..around).map(move |k| [node(ring, k), node(ring, k + 1)])).collect();
     let side = |name: &str, tag, lines| Group { name: name.into(), dimension: 1, tag, lines, ..Group::default() };
-    let body = (0..triangles.len() as u32).collect();
-    Mesh {
-        node_tags: (1..=nodes.len() as u64).collect(),
-        line_tags: (1..=lines.len() as u64).collect(),
-        triangle_tags: (1001..=1000 + triangles.len() as u64).collect(),
-        groups: vec![
-            side("hole", 1, (0..around).collect()),
-            side("rim", 2, (around..2 * around).collect()),
-            Group { name: "body".into(), dimension: 2, tag: 1, triangles: body, ..Group::default() },
-        ],
-        nodes,
-        lines,
-        triangles,
-        ..Mesh::default()
-    }
+    let sides = vec![side("hole", 1, (0..around).collect()), side("rim", 2, (around..2 * around).collect())];
+    plane_mesh(nodes, lines, triangles, sides)
 }

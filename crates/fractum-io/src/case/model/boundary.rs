@@ -16,6 +16,11 @@ pub struct Selection {
 }
 
 impl Selection {
+    /// All of a group.
+    pub fn of_group(group: Spanned<String>) -> Self {
+        Selection { group: Some(group), within: None }
+    }
+
     /// Name of the group; empty without one.
     pub fn group_name(&self) -> &str {
         self.group.as_ref().map_or("", |group| &group.value)

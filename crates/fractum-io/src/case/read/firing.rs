@@ -1,7 +1,7 @@
 //! `[pulses]` and firing sequences: which hole fires when, with which pressure.
 
+use super::table_file;
 use super::time_functions::time_function_of;
-use super::{read_file, table_path};
 use crate::case::model::{InCracks, Load, LoadKind, Selection};
 use crate::case::reader::{Reader, Table};
 use crate::case::tree::{Node, Value};
@@ -54,7 +54,7 @@ pub(super) fn sequence(
             let delay = delay_of(reader, delay);
             let pulse = pulses.find(reader, pulse);
             let Value::Text(hole) = &group.value else { return None };
-            let on = Selection { group: Some(Spanned::new(hole.clone(), group.place.clone())), within: None };
+            let on = Selection::of_group(Spanned::new(hole.clone(), group.place.clone()));
             let pressure = TimeFunction::Delayed(delay?, Box::new(pulse?));
             let pressure = Spanned::new(pressure, group.place.clone());
             Some(Load { name: name.clone(), kind: LoadKind::Pressure { on, pressure, in_cracks: in_cracks? } })
@@ -100,17 +100,7 @@ fn row_of_list(reader: &Reader, row: &Node) -> Option<Row> {
 /// Rows of three columns, separated by comma or semicolon. Blank lines and comments (`#`) are skipped, and so is a first
 /// row whose second column is no quantity.
 fn rows_of_file(reader: &Reader, name: &Spanned<String>) -> Option<Vec<Row>> {
-    let path = table_path(reader, &name.value);
-    let bytes = match read_file(&path) {
-        Ok(bytes) => bytes,
-        Err(error) => {
-            reader.note(Diagnostic::error(&name.place, format!("= \"{}\" {error}", name.value)));
-            return None;
-        }
-    };
-    let text = String::from_utf8_lossy(&bytes).into_owned();
-    reader.tables.borrow_mut().push((name.value.clone(), bytes));
-    let file = path.display().to_string();
+    let (file, text) = table_file::text(reader, name)?;
     let place = |line: u32, key: &str| Place { file: file.clone(), line, column: 1, key: key.to_owned() };
     let (mut rows, mut wrong, mut first): (Vec<Row>, usize, bool) = (Vec::new(), 0, true);
     for (line, row) in (1u32..).zip(text.lines()) {

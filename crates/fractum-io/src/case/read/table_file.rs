@@ -6,23 +6,28 @@ use crate::case::{Diagnostic, Place, Spanned};
 
 /// Reads the file a case names; notes everything wrong, each with its line in that file.
 pub(super) fn read(reader: &Reader, name: &Spanned<String>) -> Option<Vec<(f64, f64)>> {
-    let path = table_path(reader, &name.value);
-    let file = path.display().to_string();
-    let bytes = match read_file(&path) {
-        Ok(bytes) => bytes,
-        Err(error) => {
-            reader.note(Diagnostic::error(&name.place, format!("= \"{}\" {error}", name.value)));
-            return None;
-        }
-    };
-    let text = String::from_utf8_lossy(&bytes);
-    let points = parse(&text, |line, message| {
+    let (file, text) = text(reader, name)?;
+    parse(&text, |line, message| {
         let place = Place { file: file.clone(), line, column: 1, key: String::new() };
         let by = format!("read for {} at {}", name.place.key, name.place);
         reader.note(Diagnostic::error(&place, message).remedy(by));
-    });
-    reader.tables.borrow_mut().push((name.value.clone(), bytes));
-    points
+    })
+}
+
+/// Path and text of a file that a case names, which then belongs to the case; notes why it cannot be read.
+pub(super) fn text(reader: &Reader, name: &Spanned<String>) -> Option<(String, String)> {
+    let path = table_path(reader, &name.value);
+    match read_file(&path) {
+        Ok(bytes) => {
+            let text = String::from_utf8_lossy(&bytes).into_owned();
+            reader.tables.borrow_mut().push((name.value.clone(), bytes));
+            Some((path.display().to_string(), text))
+        }
+        Err(error) => {
+            reader.note(Diagnostic::error(&name.place, format!("= \"{}\" {error}", name.value)));
+            None
+        }
+    }
 }
 
 /// Parses rows of two numbers separated by comma, semicolon or blanks. Blank lines and comments (`#`) are skipped, and

@@ -48,12 +48,13 @@ impl CrackPressure {
         for (facet, _) in mouth.facets.iter().zip(&mouth.live).filter(|(_, live)| **live) {
             push_facet(points, facet, self.thickness, |centre| (self.value)(time, centre), forces);
         }
-        for cell in cracks.cells().iter().filter(|cell| cell.mouth as usize == self.mouth) {
-            // The front has come once the pressure at the mouth had begun when it left there.
-            let left = self.front_speed.map_or(time, |speed| time - cell.path / speed);
+        for cell in cracks.cells_of(self.mouth) {
             for facet in cell.walls() {
                 let value = |centre: &Vec3| {
-                    if (self.value)(left, centre) == 0.0 { 0.0 } else { (self.value)(time, centre) }
+                    // The front has come once the pressure at the mouth had begun when it left there.
+                    let left = self.front_speed.map(|speed| time - cell.path / speed);
+                    let is_ahead = left.is_some_and(|left| (self.value)(left, centre) == 0.0);
+                    if is_ahead { 0.0 } else { (self.value)(time, centre) }
                 };
                 push_facet(points, facet, self.thickness, value, forces);
             }
