@@ -1,6 +1,6 @@
 //! Contact search and contact laws.
 //!
-//! [`close_pairs`] finds the spheres that may touch; [`SphereContacts`] carries their contacts through time, and
+//! [`close_pairs`] finds the spheres that may touch, [`SphereGrid`] those around a few that come or move; [`SphereContacts`] carries their contacts through time, and
 //! [`SurfaceContacts`] those of spheres with facets and rigid shapes, found by the [`DoubleHierarchy`]. [`law`] says what
 //! a touching pair feels. None of them knows particles or nodes as populations: they see positions, radii and velocities.
 //!
@@ -25,6 +25,7 @@ mod nearest;
 mod passes;
 mod shape;
 mod sphere_facet;
+mod sphere_grid;
 mod sphere_sphere;
 pub mod surface;
 mod surface_block;
@@ -38,6 +39,7 @@ pub use hierarchy::DoubleHierarchy;
 pub use nearest::{Nearest, nearest_facets};
 pub use shape::{Outside, Shape};
 pub use sphere_facet::SurfaceContacts;
+pub use sphere_grid::SphereGrid;
 pub use sphere_sphere::SphereContacts;
 pub use surface::FacetMesh;
 pub use touch::{Spheres, Surface, Touch};

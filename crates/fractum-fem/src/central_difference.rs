@@ -74,10 +74,12 @@ impl Solid {
                     let after = before + total * (inverse_mass[i] * dt_kick);
                     velocity[i] = after;
                     displacement[i] += after * dt_after;
-                    let mirrored = before + total * (inverse_mass[i] * dt_before);
-                    work.before.kinetic += 0.5 / inverse_mass[i] * before.dot(&mirrored);
-                    let mirrored = after - total * (inverse_mass[i] * dt_after);
-                    work.after.kinetic += 0.5 / inverse_mass[i] * after.dot(&mirrored);
+                    if measure {
+                        let mirrored = before + total * (inverse_mass[i] * dt_before);
+                        work.before.kinetic += 0.5 / inverse_mass[i] * before.dot(&mirrored);
+                        let mirrored = after - total * (inverse_mass[i] * dt_after);
+                        work.after.kinetic += 0.5 / inverse_mass[i] * after.dot(&mirrored);
+                    }
                     work.before.damping -= 0.5 * dt_before * resist.dot(&before);
                     work.after.damping -= 0.5 * dt_after * resist.dot(&after);
                 }

@@ -47,8 +47,19 @@ pub struct Scene {
 pub(crate) struct Frequencies {
     /// Of the solids by themselves.
     pub(crate) stable: StableStep,
-    /// Square of that of nodes in contact [1/s²].
+    /// Square of that of nodes on rigid shapes [1/s²].
+    walls_square: f64,
+    /// Square of that of discrete elements in contact, rounded up; the step is for it [1/s²].
     contact_square: f64,
+    /// Largest one since it was rounded up anew [1/s²].
+    contact_peak: f64,
+}
+
+impl Frequencies {
+    /// Has the next look at contacts begin anew.
+    pub(crate) fn forget_contacts(&mut self) {
+        (self.contact_square, self.contact_peak) = (0.0, 0.0);
+    }
 }
 
 /// Elements that have left the solids.
@@ -90,6 +101,7 @@ pub struct SceneState {
     governing: (usize, u32),
     removed_since_check: usize,
     contact_frequency_square: f64,
+    contact_frequency_peak: f64,
     loads: LoadsState,
 }
 
@@ -159,10 +171,10 @@ impl Scene {
             settings,
             ledger: Ledger::default(),
             books: Books::default(),
-            frequencies: Frequencies { stable, contact_square: 0.0 },
+            frequencies: Frequencies { stable, walls_square: 0.0, contact_square: 0.0, contact_peak: 0.0 },
             removals: Removals::default(),
         };
-        scene.update_contact_frequency();
+        scene.update_wall_frequency();
         scene.clock = Clock::new(scene.next_dt(0.0));
         scene
     }
@@ -254,11 +266,12 @@ impl Scene {
         let frequency =
             self.frequencies.stable.frequency.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
         let gas = self.loads.gas().map_or(0.0, Gas::frequency_square);
-        let contacts = self.frequencies.contact_square + self.contacts.frequency_square() * divisor * divisor + gas;
+        let Frequencies { walls_square, contact_square, .. } = self.frequencies;
+        let contacts = walls_square + contact_square + self.contacts.frequency_square() * divisor * divisor + gas;
         let contacts = contacts + self.surface_supports.frequency_square();
         // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
         let frequency = ((frequency * frequency + contacts) * (1.0 + self.settings.damping.local)).sqrt();
-        let contact = if self.frequencies.contact_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
+        let contact = if walls_square + contact_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
         let contact = contact.max(self.bonded.damping_ratio());
         let damping = self.settings.damping;
         let xi = 0.5 * self.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
@@ -275,10 +288,24 @@ impl Scene {
         if left > 1e-9 * dt { left / (left / dt * (1.0 - 1e-9)).ceil() } else { dt }
     }
 
-    pub(crate) fn update_contact_frequency(&mut self) {
-        let Scene { solid, debris, shape_contacts, .. } = self;
+    pub(crate) fn update_wall_frequency(&mut self) {
+        let Scene { solid, shape_contacts, .. } = self;
         let walls: f64 = shape_contacts.iter().map(|ground| ground.frequency_square(solid)).sum();
-        self.frequencies.contact_square = RESOLUTION * RESOLUTION * walls + debris.frequency_square(solid);
+        self.frequencies.walls_square = RESOLUTION * RESOLUTION * walls;
+    }
+
+    /// Takes the discrete elements that touch now into account: the step gets shorter at once, and longer when `renew` holds and
+    /// all contacts since then allow it. It changes by whole factors, since each change costs a little of the energy balance.
+    pub(crate) fn update_contact_frequency(&mut self, renew: bool) {
+        let now = self.debris.frequency_square(&self.solid);
+        let Frequencies { stable, contact_square, contact_peak, .. } = &mut self.frequencies;
+        *contact_peak = contact_peak.max(now);
+        if now > *contact_square || renew {
+            *contact_square = rounded_up(*contact_peak, stable.frequency * stable.frequency);
+        }
+        if renew {
+            *contact_peak = now;
+        }
     }
 
     /// Whether the end of the run has been reached.
@@ -371,7 +398,7 @@ impl Scene {
         SceneState {
             clock: self.clock,
             solid: self.solid.state(),
-            debris: self.debris.state().clone(),
+            debris: self.debris.saved(),
             bonded: (!self.bonded.is_empty()).then(|| self.bonded.state()),
             contacts: (!self.contacts.is_empty()).then(|| self.contacts.state()),
             shape_contacts: self.shape_contacts.iter().map(NodesOnShape::state).collect(),
@@ -381,6 +408,7 @@ impl Scene {
             governing: self.frequencies.stable.governing,
             removed_since_check: self.removals.since_check,
             contact_frequency_square: self.frequencies.contact_square,
+            contact_frequency_peak: self.frequencies.contact_peak,
             loads: self.loads.state(),
         }
     }
@@ -405,6 +433,20 @@ impl Scene {
         self.frequencies.stable = StableStep { frequency: state.frequency, governing: state.governing };
         self.removals.since_check = state.removed_since_check;
         self.frequencies.contact_square = state.contact_frequency_square;
+        self.frequencies.contact_peak = state.contact_frequency_peak;
+        self.update_wall_frequency();
         self.loads.restore(&self.solid, state.loads);
     }
+}
+
+/// The smallest of the values unit · 2^(k/2), from a quarter of the unit on, that is no smaller; 0 for 0.
+fn rounded_up(square: f64, unit: f64) -> f64 {
+    if square <= 0.0 || !square.is_finite() || unit <= 0.0 {
+        return square;
+    }
+    let mut level = 0.25 * unit;
+    while level < square {
+        level *= std::f64::consts::SQRT_2;
+    }
+    level
 }

@@ -112,8 +112,9 @@ impl Scene {
         }
         let report = self.release_cut_elements(dt_after);
         passed(Phase::Transition);
-        if self.debris.search(&self.solid) {
-            self.update_contact_frequency();
+        self.debris.search(&self.solid);
+        if !self.debris.is_empty() {
+            self.update_contact_frequency(self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS));
         }
         passed(Phase::Contact);
         let dt = self.next_dt(time + dt_after);
@@ -128,7 +129,7 @@ impl Scene {
         let held = self.supports.held();
         let mut work = self.solid.kick_and_drift(dt_before, dt_after, self.settings.damping, held, measure);
         work += self.supports.impose(&mut self.solid, time, dt_before, dt_after);
-        work += self.debris.turn(&self.solid, dt_before, dt_after);
+        work += self.debris.turn(&self.solid, dt_before, dt_after, measure);
         work += self.move_bonded(time, dt_before, dt_after, measure);
         work += self.contacts.move_bodies(time, dt_before, dt_after);
         work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
@@ -234,6 +235,7 @@ impl Scene {
                     ground.watch_node(node, &self.solid, &self.debris);
                 }
             }
+            self.update_wall_frequency();
             let Scene { contacts, solid, debris, bonded, removals, .. } = self;
             contacts.release(solid, debris, &bonded.particles, &removals.last, before);
             self.removals.since_check += report.removed;

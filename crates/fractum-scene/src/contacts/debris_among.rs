@@ -58,7 +58,7 @@ impl DebrisAmong {
         };
         fill(&mut self.position, &particles.position, &|n| solid.position(n as usize));
         fill(&mut self.velocity, &particles.velocity, &|n| solid.velocity[n as usize]);
-        fill(&mut self.spin, &particles.spin, &|n| debris.spin(n));
+        fill(&mut self.spin, &particles.spin, &|n| debris.spin(solid, n));
         self.radius.clear();
         self.radius.extend_from_slice(&particles.radius);
         self.radius.extend(born.iter().map(|&n| debris.radius(n)));

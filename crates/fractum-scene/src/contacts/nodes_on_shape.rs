@@ -148,7 +148,7 @@ impl NodesOnShape {
                     c.radius = full;
                 }
                 c.arm = -normal * distance;
-                let spin = debris.spin(c.node);
+                let spin = debris.spin(solid, c.node);
                 let velocity = solid.velocity[i] + spin.cross(&c.arm) - frame.velocity_at(&(place + c.arm));
                 // A node without a particle is a point: it neither rolls nor feels a couple.
                 let spin = if full > 0.0 { spin - frame.spin } else { Vec3::zeros() };

@@ -1,5 +1,7 @@
 mod at_rest;
+mod near;
 mod pairs;
+mod rows;
 
 pub(crate) use at_rest::Push;
 pub use pairs::Pair;
@@ -11,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::holder::{Holder, Holders};
 use super::radius::largest_radii;
+use near::Near;
 
 /// No particle at this node.
 const NONE: u32 = u32::MAX;
@@ -39,8 +42,13 @@ pub struct Debris {
     particle_of: Vec<u32>,
     torque: Vec<Vec3>,
     holders: Holders,
-    /// Angular velocity of each particle as contact sees it: its own, or that of its holder [rad/s].
+    /// Angular velocity of each particle that touched, as contact sees it: its own, or that of its holder [rad/s].
     turning: Vec<Vec3>,
+    /// Particles whose `turning` is that of the moment.
+    turned: Vec<u32>,
+    near: Near,
+    /// Stiffness over mass of the contacts of each particle [1/s²]; zero but while it is summed.
+    rates: Vec<f64>,
 }
 
 /// What changes in the debris during a run.
@@ -52,14 +60,20 @@ pub struct DebrisState {
     pub attached: Vec<bool>,
     /// Angular velocity of free particles at the half step, zero of attached ones [rad/s].
     pub spin: Vec<Vec3>,
-    /// Pairs that may touch, ascending.
-    pairs: Vec<Pair>,
-    /// Positions at the last search [m].
-    searched_at: Vec<Vec3>,
-    skin: f64,
-    stale: bool,
+    /// Pairs that touch, ascending, and those that have just parted.
+    contacts: Vec<Pair>,
+    /// Pairs that touch at another distance than free spheres, ascending; only in a checkpoint.
+    special: Vec<SpecialPair>,
     /// Torques that elements got at the last step.
     handed: Vec<Handed>,
+}
+
+/// Two particles that touch at another distance than free spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct SpecialPair {
+    nodes: [u32; 2],
+    closing: f64,
+    neighbours: bool,
 }
 
 /// A torque that an element got from a particle that it holds.
@@ -103,6 +117,9 @@ impl Debris {
             torque: Vec::new(),
             holders: Holders::default(),
             turning: Vec::new(),
+            turned: Vec::new(),
+            near: Near::default(),
+            rates: Vec::new(),
         }
     }
 
@@ -140,7 +157,7 @@ impl Debris {
 
     /// Pairs that touch at the last step.
     pub fn touching(&self) -> impl Iterator<Item = &Pair> {
-        self.state.pairs.iter().filter(|p| p.stored > 0.0)
+        self.state.contacts.iter().filter(|p| p.stored > 0.0)
     }
 
     /// Contact parameters of the body of a node.
@@ -195,7 +212,7 @@ impl Debris {
     pub(crate) fn turning_at(&self, solid: &Solid, node: u32) -> Vec3 {
         match self.particle_of[node as usize] {
             NONE => self.holder_of(solid, node).map_or_else(Vec3::zeros, |holder| holder.spin(solid)),
-            particle => self.turning[particle as usize],
+            particle => self.spin_of(solid, particle),
         }
     }
 
@@ -214,11 +231,20 @@ impl Debris {
     }
 
     /// Angular velocity of the particle at a node, zero without one.
-    pub(crate) fn spin(&self, node: u32) -> Vec3 {
+    pub(crate) fn spin(&self, solid: &Solid, node: u32) -> Vec3 {
         match self.particle_of[node as usize] {
             NONE => Vec3::zeros(),
-            particle => self.turning[particle as usize],
+            particle => self.spin_of(solid, particle),
         }
+    }
+
+    /// Angular velocity of a particle as contact sees it.
+    fn spin_of(&self, solid: &Solid, particle: u32) -> Vec3 {
+        if !self.state.attached[particle as usize] {
+            return self.state.spin[particle as usize];
+        }
+        let holder = self.holder_of(solid, self.state.nodes[particle as usize]);
+        holder.map_or_else(Vec3::zeros, |holder| holder.spin(solid))
     }
 
     /// Adds a torque on the particle at a node [N m].
@@ -240,6 +266,9 @@ impl Debris {
     /// element to contact.
     pub(crate) fn release(&mut self, solid: &Solid, removed: &[(usize, u32)]) {
         self.prepare_holders(solid);
+        if self.near.is_empty() {
+            self.near = Near::new(&self.radius, self.planar);
+        }
         for &(body, element) in removed {
             let corners = solid.body(body).shape.node_count();
             for &node in &solid.body(body).elements[element as usize][..corners] {
@@ -255,28 +284,29 @@ impl Debris {
                 self.state.attached[particle] = self.holders.is_held(solid, node);
             }
         }
-        let opened = solid.edges_without_elements(removed);
-        self.add_pairs(solid, opened, true);
-        self.state.stale = true;
+        self.open_edges(solid, solid.edges_without_elements(removed));
     }
 
     fn holder_of(&self, solid: &Solid, node: u32) -> Option<Holder> {
         self.holders.of(solid, node, self.radius[node as usize])
     }
 
-    /// Finds how the particles turn now. Contacts are about to book the torques of the step before with that; returns what those
-    /// torques did on the elements that got them beyond it, over `dt` [J].
+    /// Finds how the particles of contacts turn now, and those whose torques elements got. Contacts are about to book the torques of
+    /// the step before with that; returns what those torques did on the elements that got them beyond it, over `dt` [J].
     ///
     /// Both differ where a particle has come free or its element has gone: it keeps no spin of the element.
     fn update_turning(&mut self, solid: &Solid, dt: f64) -> f64 {
-        for particle in 0..self.len() {
-            self.turning[particle] = if self.state.attached[particle] {
-                let holder = self.holder_of(solid, self.state.nodes[particle]);
-                holder.map_or_else(Vec3::zeros, |holder| holder.spin(solid))
-            } else {
-                self.state.spin[particle]
-            };
+        let mut turned = std::mem::take(&mut self.turned);
+        let of_contacts = self.state.contacts.iter().flat_map(|pair| pair.nodes);
+        let handed = self.state.handed.iter().map(|handed| handed.particle);
+        turned.clear();
+        turned.extend(of_contacts.map(|node| self.particle_of[node as usize]).chain(handed));
+        turned.sort_unstable();
+        turned.dedup();
+        for &particle in &turned {
+            self.turning[particle as usize] = self.spin_of(solid, particle);
         }
+        self.turned = turned;
         let beyond = |handed: &Handed| {
             let node = self.state.nodes[handed.particle as usize];
             let holder = self.holders.element(solid, handed.element, self.radius[node as usize]);
@@ -302,10 +332,12 @@ impl Debris {
     }
 
     /// Turns the free particles; returns their rotational energy at tⁿ, measured as that of the nodes [J].
-    pub(crate) fn turn(&mut self, solid: &Solid, dt_before: f64, dt_after: f64) -> HalfSteps {
+    ///
+    /// - `measure`: whether the energy is wanted
+    pub(crate) fn turn(&mut self, solid: &Solid, dt_before: f64, dt_after: f64, measure: bool) -> HalfSteps {
         let mut work = HalfSteps::default();
         for particle in 0..self.len() {
-            if self.state.attached[particle] {
+            if self.state.attached[particle] || (!measure && self.torque[particle] == Vec3::zeros()) {
                 continue;
             }
             let node = self.state.nodes[particle] as usize;
@@ -344,6 +376,20 @@ impl Debris {
         self.torque = vec![Vec3::zeros(); state.nodes.len()];
         self.turning = self.torque.clone();
         self.state = state;
+        if !self.is_empty() {
+            self.list_anew(solid);
+        }
+    }
+
+    /// What changes, for a checkpoint.
+    pub(crate) fn saved(&self) -> DebrisState {
+        let special = self.near_pairs().filter_map(|(node, entry)| {
+            let nodes = [node, entry.partner];
+            let sum = self.radius(nodes[0]) + self.radius(nodes[1]);
+            let special = SpecialPair { nodes, closing: entry.closing, neighbours: entry.neighbours };
+            (special.neighbours || special.closing != sum).then_some(special)
+        });
+        DebrisState { special: special.collect(), ..self.state.clone() }
     }
 
     /// Largest damping ratio of the contacts.

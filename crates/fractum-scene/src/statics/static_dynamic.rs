@@ -88,7 +88,8 @@ impl Scene {
     fn find_step(&mut self, element_bound: bool) {
         self.frequencies.stable = if element_bound { self.solid.stable_step_bound() } else { self.solid.stable_step() };
         self.debris.search(&self.solid);
-        self.update_contact_frequency();
+        self.frequencies.forget_contacts();
+        self.update_contact_frequency(true);
         self.clock.dt_after = self.next_dt(self.clock.time);
     }
 

@@ -3,7 +3,6 @@
 //! A tangential spring would need the torques on the elements that hold the particles to leave the moment of the pair in balance.
 //! Particles that no element holds have no equilibrium of their own, and touch nothing here.
 
-use fractum_contact::law::ContactMemory;
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 
@@ -26,41 +25,28 @@ pub(crate) struct Push {
 }
 
 /// Unit normal from the first to the second node of a pair, and their overlap [m].
-fn sense(pair: &Pair, solid: &Solid, field: &[Vec3]) -> (Vec3, f64) {
-    let [i, j] = pair.nodes.map(|n| n as usize);
+fn sense(nodes: [u32; 2], closing: f64, solid: &Solid, field: &[Vec3]) -> (Vec3, f64) {
+    let [i, j] = nodes.map(|n| n as usize);
     let apart = solid.reference[j] + field[j] - solid.reference[i] - field[i];
     let distance = apart.norm();
-    (if distance > 0.0 { apart / distance } else { Vec3::x() }, pair.closing * (1.0 - ROUNDING) - distance)
+    (if distance > 0.0 { apart / distance } else { Vec3::x() }, closing * (1.0 - ROUNDING) - distance)
 }
 
 impl Debris {
-    /// Adds the pairs that may touch under a displacement field to those near the last equilibrium. Where they overlapped there
-    /// they touch no nearer than that.
+    /// Adds the pairs that may touch under a displacement field to those near the last equilibrium.
     pub(crate) fn meet(&mut self, solid: &Solid, field: &[Vec3]) {
-        let place = |node: u32| solid.reference[node as usize] + field[node as usize];
-        let state = &self.state;
-        let moved = |(&node, at): (&u32, &Vec3)| (place(node) - at).norm_squared();
-        let limit = 0.25 * state.skin * state.skin;
-        if state.nodes.iter().zip(&state.searched_at).all(|pair| moved(pair) <= limit) {
-            return;
+        if !self.is_empty() {
+            self.list_pairs(solid, |node| solid.reference[node] + field[node]);
         }
-        let centres: Vec<Vec3> = state.nodes.iter().map(|&n| place(n)).collect();
-        let mut near = self.near(&centres, state.skin);
-        near.retain(|&nodes| !solid.is_live_edge(nodes));
-        self.add_pairs(solid, near, false);
     }
 
-    /// Whether an element holds both particles of a pair.
-    fn rests(&self, pair: &Pair) -> bool {
-        pair.nodes.iter().all(|&node| self.state.attached[self.particle_of[node as usize] as usize])
-    }
-
-    /// Pairs that touch under a displacement field.
+    /// Pairs that touch under a displacement field, both of whose particles an element holds.
     pub(crate) fn pushes(&self, solid: &Solid, field: &[Vec3]) -> impl Iterator<Item = Push> {
-        self.state.pairs.iter().filter(|pair| self.rests(pair)).filter_map(|pair| {
-            let (normal, overlap) = sense(pair, solid, field);
-            let push = Push { nodes: pair.nodes, normal, overlap, stiffness: pair.law.normal_stiffness };
-            (overlap > 0.0).then_some(push)
+        self.near_pairs().filter_map(|(node, entry)| {
+            let nodes = [node, entry.partner];
+            let (normal, overlap) = sense(nodes, entry.closing, solid, field);
+            let push = || Push { nodes, normal, overlap, stiffness: self.pair_law(solid, nodes).normal_stiffness };
+            (overlap > 0.0 && self.both_held(nodes)).then(push)
         })
     }
 
@@ -69,31 +55,37 @@ impl Debris {
     ///
     /// - `before`: displacements at the last equilibrium; those of the solid are the new ones
     pub(crate) fn accept_at_rest(&mut self, solid: &Solid, before: &[Vec3]) -> f64 {
-        let mut pairs = std::mem::take(&mut self.state.pairs);
+        let mut contacts = std::mem::take(&mut self.state.contacts);
+        contacts.clear();
         let mut idle = 0.0;
-        for pair in &mut pairs {
-            let rests = self.rests(pair);
-            let (_, was) = sense(pair, solid, before);
-            let (normal, overlap) = sense(pair, solid, &solid.displacement);
-            let pressed = if rests { overlap.max(0.0) } else { 0.0 };
-            let half = 0.5 * pair.law.normal_stiffness;
-            if rests {
-                let (now, then) = (pressed, was.max(0.0));
-                idle += half * ((now + then) * (overlap - was) - (now * now - then * then));
+        let mut rows = std::mem::take(&mut self.near.rows);
+        for node in 0..rows.len() as u32 {
+            for entry in rows.row_mut(node) {
+                let nodes = [node, entry.partner];
+                let (_, was) = sense(nodes, entry.closing, solid, before);
+                let (normal, overlap) = sense(nodes, entry.closing, solid, &solid.displacement);
+                entry.touches = overlap > 0.0 && self.both_held(nodes);
+                if (entry.touches || was > 0.0) && self.both_held(nodes) {
+                    let mut pair = Pair { closing: entry.closing, ..self.new_pair(solid, nodes) };
+                    let half = 0.5 * pair.law.normal_stiffness;
+                    let (now, then) = (overlap.max(0.0), was.max(0.0));
+                    idle += half * ((now + then) * (overlap - was) - (now * now - then * then));
+                    pair.force = normal * (2.0 * half * now);
+                    pair.stored = half * now * now;
+                    contacts.extend(entry.touches.then_some(pair));
+                }
+                let distance = entry.closing * (1.0 - ROUNDING) - overlap;
+                self.part(solid, node, entry, distance);
             }
-            pair.memory = ContactMemory::default();
-            (pair.force, pair.couple) = (normal * (2.0 * half * pressed), Vec3::zeros());
-            (pair.stored, pair.friction, pair.damping) = (half * pressed * pressed, 0.0, 0.0);
-            let [i, j] = pair.nodes.map(|n| n as usize);
-            pair.update_closing(pair.closing * (1.0 - ROUNDING) - overlap, self.radius[i] + self.radius[j], solid);
         }
-        self.state.pairs = pairs;
+        self.near.rows = rows;
+        self.state.contacts = contacts;
         idle
     }
 
     /// Energy in the springs of all pairs [J].
     pub(crate) fn stored(&self) -> f64 {
-        self.state.pairs.iter().map(|pair| pair.stored).sum::<f64>() + 0.0
+        self.state.contacts.iter().map(|pair| pair.stored).sum::<f64>() + 0.0
     }
 
     /// Adds the forces of the last equilibrium to the nodes.
