@@ -1,3 +1,4 @@
+use fractum_fem::StableStep;
 use serde::{Deserialize, Serialize};
 
 /// How the time step is chosen.
@@ -48,5 +49,25 @@ impl Clock {
         self.dt_before = self.dt_after;
         self.dt_after = dt;
         self.dt_min = self.dt_min.min(dt);
+    }
+}
+
+/// What limits the step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frequencies {
+    /// Of the solids by themselves.
+    pub(crate) stable: StableStep,
+    /// Square of that of nodes on rigid shapes [1/s²].
+    pub(crate) walls_square: f64,
+    /// Square of that of discrete elements in contact, rounded up; the step is for it [1/s²].
+    pub(crate) contact_square: f64,
+    /// Largest one since it was rounded up anew [1/s²].
+    pub(crate) contact_peak: f64,
+}
+
+impl Frequencies {
+    /// Those of solids without contact.
+    pub(crate) fn of(stable: StableStep) -> Self {
+        Frequencies { stable, walls_square: 0.0, contact_square: 0.0, contact_peak: 0.0 }
     }
 }

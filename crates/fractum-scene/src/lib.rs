@@ -17,6 +17,7 @@ mod ledger;
 mod piece_probe;
 mod probe;
 mod scene;
+mod stable_step;
 pub mod statics;
 mod step;
 mod time_function;

@@ -114,7 +114,8 @@ impl Scene {
         passed(Phase::Transition);
         self.debris.search(&self.solid);
         if !self.debris.is_empty() {
-            self.update_contact_frequency(self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS));
+            let renew = self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS);
+            self.update_contact_frequency(report.removed > 0, renew);
         }
         passed(Phase::Contact);
         let dt = self.next_dt(time + dt_after);

@@ -6,6 +6,7 @@ use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::Stiffness;
+use crate::clock::Frequencies;
 use crate::error::StepError;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
@@ -86,10 +87,11 @@ impl Scene {
     }
 
     fn find_step(&mut self, element_bound: bool) {
-        self.frequencies.stable = if element_bound { self.solid.stable_step_bound() } else { self.solid.stable_step() };
+        let stable = if element_bound { self.solid.stable_step_bound() } else { self.solid.stable_step() };
+        self.frequencies = Frequencies::of(stable);
         self.debris.search(&self.solid);
-        self.frequencies.forget_contacts();
-        self.update_contact_frequency(true);
+        self.update_wall_frequency();
+        self.update_contact_frequency(true, true);
         self.clock.dt_after = self.next_dt(self.clock.time);
     }
 

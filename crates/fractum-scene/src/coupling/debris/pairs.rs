@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{Debris, DebrisState};
 
+/// Gap over the distance of the centres below which a pair is about to touch.
+const NEAR: f64 = 0.05;
+
 /// Two particles that touch.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
@@ -103,37 +106,47 @@ impl Debris {
         self.state.contacts.iter().map(|pair| (pair.nodes, pair.force))
     }
 
-    /// Largest squared frequency that the pairs that touch can add to a node, by Gershgorin's rows [1/s²].
-    pub(crate) fn frequency_square(&mut self, solid: &Solid) -> f64 {
+    /// Largest squared frequency that contacts can add to a node, by Gershgorin's rows [1/s²].
+    ///
+    /// - `near`: also by pairs that are about to touch, whose gap is a small part of their distance
+    pub(crate) fn frequency_square(&mut self, solid: &Solid, near: bool) -> f64 {
         let mut rates = std::mem::take(&mut self.rates);
         rates.resize(self.len(), 0.0);
-        let mut largest: f64 = 0.0;
-        for pair in &self.state.contacts {
-            let [i, j] = pair.nodes.map(|n| n as usize);
-            let [p, q] = [i, j].map(|n| self.particle_of[n] as usize);
-            // A turning sphere answers 1 + m r²/I = 3.5 times as fast to the tangential spring, a disc 3 times; a particle on an
-            // element 1.25 times if all nodes of the element weigh the same.
-            let free = !self.state.attached[p] || !self.state.attached[q];
-            let turning = if !free {
-                2.0
-            } else if self.planar {
-                3.0
-            } else {
-                3.5
-            };
-            let rolling = pair.law.rolling.frequency_factor(self.radius[i].min(self.radius[j]));
-            let (k_n, k_t) = (pair.law.normal_stiffness, pair.law.tangential_stiffness);
-            let stiffness = k_n.max(turning * k_t + rolling * k_n);
-            let coupling = stiffness / (solid.mass[i] * solid.mass[j]).sqrt();
-            rates[p] += stiffness / solid.mass[i] + coupling;
-            rates[q] += stiffness / solid.mass[j] + coupling;
-            largest = largest.max(rates[p]).max(rates[q]);
+        if near {
+            for (node, entry) in self.near_pairs() {
+                let nodes = [node, entry.partner];
+                let apart = (solid.position(nodes[1] as usize) - solid.position(nodes[0] as usize)).norm();
+                if apart <= entry.closing * (1.0 + NEAR) {
+                    self.add_rates(solid, nodes, &self.pair_law(solid, nodes), &mut rates);
+                }
+            }
+        } else {
+            self.state.contacts.iter().for_each(|pair| self.add_rates(solid, pair.nodes, &pair.law, &mut rates));
         }
-        for node in self.state.contacts.iter().flat_map(|pair| pair.nodes) {
-            rates[self.particle_of[node as usize] as usize] = 0.0;
-        }
+        let largest = rates.iter().copied().fold(0.0, f64::max);
+        rates.fill(0.0);
         self.rates = rates;
         largest
+    }
+
+    /// Adds the rows of a contact: stiffness over mass.
+    fn add_rates(&self, solid: &Solid, nodes: [u32; 2], law: &Linear, rates: &mut [f64]) {
+        let [i, j] = nodes.map(|n| n as usize);
+        let [p, q] = [i, j].map(|n| self.particle_of[n] as usize);
+        // A turning sphere answers 1 + m r²/I = 3.5 times as fast to the tangential spring, a disc 3 times; a particle on an
+        // element 1.25 times if all nodes of the element weigh the same.
+        let free = !self.state.attached[p] || !self.state.attached[q];
+        let turning = match (free, self.planar) {
+            (false, _) => 2.0,
+            (true, true) => 3.0,
+            (true, false) => 3.5,
+        };
+        let rolling = law.rolling.frequency_factor(self.radius[i].min(self.radius[j]));
+        let (k_n, k_t) = (law.normal_stiffness, law.tangential_stiffness);
+        let stiffness = k_n.max(turning * k_t + rolling * k_n);
+        let coupling = stiffness / (solid.mass[i] * solid.mass[j]).sqrt();
+        rates[p] += stiffness / solid.mass[i] + coupling;
+        rates[q] += stiffness / solid.mass[j] + coupling;
     }
 }
 

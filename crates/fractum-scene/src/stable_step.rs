@@ -1,0 +1,89 @@
+//! The largest stable step of a scene.
+
+use fractum_fem::StableStep;
+
+use crate::clock::{Frequencies, TimeStepSettings};
+use crate::gas::Gas;
+use crate::scene::Scene;
+
+/// How much faster than it is a wall contact counts in the stable step: the whole weight of a body may come on few of
+/// them, and half a period of contact wants some twenty steps for the energy balance.
+const RESOLUTION: f64 = 4.0;
+
+impl Scene {
+    /// Largest stable step of the solid by itself, and what governs it; none where bonds or contacts ask for a
+    /// smaller one.
+    pub fn governing_element(&self) -> Option<StableStep> {
+        let bonds = self.bonded.frequency().max(self.ties.frequency());
+        let others = bonds.max(self.contacts.frequency_square().sqrt());
+        (self.frequencies.stable.frequency >= others && self.solid.body_count() > 0).then_some(self.frequencies.stable)
+    }
+
+    /// Whether the contacts of particles ask for a smaller step than elements and bonds.
+    pub fn contacts_govern(&self) -> bool {
+        let bodies = self.frequencies.stable.frequency.max(self.bonded.frequency()).max(self.ties.frequency());
+        self.contacts.frequency_square().sqrt() > bodies
+    }
+
+    /// Largest stable step with contacts and damping [s].
+    pub fn stable_dt(&self) -> f64 {
+        let divisor = self.bonded.step_divisor();
+        let frequency =
+            self.frequencies.stable.frequency.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
+        let gas = self.loads.gas().map_or(0.0, Gas::frequency_square);
+        let Frequencies { walls_square, contact_square, .. } = self.frequencies;
+        let contacts = walls_square + contact_square + self.contacts.frequency_square() * divisor * divisor + gas;
+        let contacts = contacts + self.surface_supports.frequency_square();
+        // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
+        let frequency = ((frequency * frequency + contacts) * (1.0 + self.settings.damping.local)).sqrt();
+        let contact = if walls_square + contact_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
+        let contact = contact.max(self.bonded.damping_ratio());
+        let damping = self.settings.damping;
+        let xi = 0.5 * self.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
+        let xi = xi + self.solid.bulk_damping_ratio();
+        2.0 / frequency * ((1.0 + xi * xi).sqrt() - xi)
+    }
+
+    /// The step that follows `time`: the largest that is allowed and divides what is left into equal steps, since a
+    /// change of the step costs a little of the energy balance.
+    pub(crate) fn next_dt(&self, time: f64) -> f64 {
+        let TimeStepSettings { safety, fixed, end, .. } = self.settings.time_step;
+        let dt = fixed.unwrap_or_else(|| safety * self.stable_dt());
+        let left = end - time;
+        if left > 1e-9 * dt { left / (left / dt * (1.0 - 1e-9)).ceil() } else { dt }
+    }
+
+    pub(crate) fn update_wall_frequency(&mut self) {
+        let Scene { solid, shape_contacts, .. } = self;
+        let walls: f64 = shape_contacts.iter().map(|ground| ground.frequency_square(solid)).sum();
+        self.frequencies.walls_square = RESOLUTION * RESOLUTION * walls;
+    }
+
+    /// Takes the discrete elements that touch into account: the step gets shorter at once, and longer where `renew` holds and all
+    /// contacts since then allow it. It changes by whole factors, since each change costs a little of the energy balance.
+    ///
+    /// - `near`: whether to look for those that are about to touch
+    pub(crate) fn update_contact_frequency(&mut self, near: bool, renew: bool) {
+        let now = self.debris.frequency_square(&self.solid, near || renew);
+        let Frequencies { stable, contact_square, contact_peak, .. } = &mut self.frequencies;
+        *contact_peak = contact_peak.max(now);
+        if now > *contact_square || renew {
+            *contact_square = rounded_up(*contact_peak, stable.frequency * stable.frequency);
+        }
+        if renew {
+            *contact_peak = now;
+        }
+    }
+}
+
+/// The smallest of the values unit · 2^(k/2), from a quarter of the unit on, that is no smaller; 0 for 0.
+fn rounded_up(square: f64, unit: f64) -> f64 {
+    if square <= 0.0 || !square.is_finite() || unit <= 0.0 {
+        return square;
+    }
+    let mut level = 0.25 * unit;
+    while level < square {
+        level *= std::f64::consts::SQRT_2;
+    }
+    level
+}
