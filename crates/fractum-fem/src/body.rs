@@ -66,6 +66,13 @@ pub enum Region {
     Edges(Vec<bool>),
 }
 
+/// Damage regularised by a cohesive phase field (smoothed formulation only).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Regularisation {
+    /// Length b [m]: a crack is a band of width π b; none is twice the mean size of the elements where damage may occur.
+    pub length: Option<f64>,
+}
+
 /// Damage of a body: the law, and what varies over the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DamageZone {
@@ -79,6 +86,8 @@ pub struct DamageZone {
     pub reduce_strength_to_fit: bool,
     /// Near a crack, damage begins only where the plane of the crack goes on (smoothed formulation only).
     pub crack_plane_gate: bool,
+    /// Damage as a phase field instead of edge by edge.
+    pub regularisation: Option<Regularisation>,
 }
 
 /// A group of elements with one material and one formulation; the input of [`crate::Solid::new`].
@@ -133,6 +142,7 @@ impl Body {
             strength_factor: Vec::new(),
             reduce_strength_to_fit: false,
             crack_plane_gate: false,
+            regularisation: None,
         };
         Body { damage: Some(zone), ..self }
     }

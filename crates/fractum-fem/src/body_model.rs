@@ -3,6 +3,7 @@ use fractum_math::Ragged;
 use crate::body::{Body, BodyEdges};
 use crate::gate::Gate;
 use crate::hooke::Hooke;
+use crate::phase::PhaseField;
 use crate::standard::StandardDamage;
 use crate::viscosity::BodyViscosity;
 
@@ -20,6 +21,7 @@ pub(crate) struct BodyModel {
     pub(crate) location: Vec<(u32, u32)>,
     pub(crate) standard: Option<StandardDamage>,
     pub(crate) gate: Option<Gate>,
+    pub(crate) phase: Option<Box<PhaseField>>,
     /// Edges whose strength was lowered to fit their length.
     pub(crate) reduced_edges: usize,
     /// Largest ratio of a characteristic length to the largest one that softening allows.

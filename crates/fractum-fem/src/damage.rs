@@ -6,7 +6,7 @@ use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::block::Cells;
-use crate::body::Kinematics;
+use crate::body::{DamageZone, Kinematics};
 use crate::hooke::Hooke;
 use crate::kernel::{self, CellLaw};
 use crate::material::{Criterion, DamageLaw, Softening};
@@ -48,12 +48,25 @@ pub(crate) struct Softens {
     residual: f64,
     unilateral: bool,
     rate_time: f64,
+    /// Damage comes from a phase field; histories only keep what it is driven by.
+    regularised: bool,
 }
 
 impl Softens {
-    pub(crate) fn new(law: &DamageLaw, hooke: Hooke, young_modulus: f64) -> Self {
-        let &DamageLaw { criterion, softening, fracture_energy, residual, unilateral, rate_time, .. } = law;
-        Softens { criterion, hooke, young_modulus, softening, fracture_energy, residual, unilateral, rate_time }
+    pub(crate) fn new(zone: &DamageZone, hooke: Hooke, young_modulus: f64) -> Self {
+        let &DamageLaw { criterion, softening, fracture_energy, residual, unilateral, rate_time, .. } = &zone.law;
+        let regularised = zone.regularisation.is_some();
+        Softens {
+            criterion,
+            hooke,
+            young_modulus,
+            softening,
+            fracture_energy,
+            residual,
+            unilateral,
+            rate_time,
+            regularised,
+        }
     }
 
     /// Effective stress that damage acts on [Pa].
@@ -67,13 +80,22 @@ impl Softens {
         if self.unilateral { compressive_stress(&self.hooke, strain) } else { Sym3::ZERO }
     }
 
+    /// Part of the strength that is left by the softening curve.
+    pub(crate) fn residual_ratio(&self, kappa: f64, strength: f64, length: f64) -> f64 {
+        self.softening.residual_ratio(kappa, strength, length, self.young_modulus, self.fracture_energy)
+    }
+
     /// Advances the history of an edge to the equivalent stress `q`; returns the growth of damage.
     pub(crate) fn load(&self, edge: &mut EdgeDamage, q: f64, strength: f64, length: f64, dt: f64) -> f64 {
         if q <= edge.kappa {
             return 0.0;
         }
+        if self.regularised {
+            edge.kappa = q;
+            return 0.0;
+        }
         edge.kappa += (q - edge.kappa) * if self.rate_time > 0.0 { (dt / self.rate_time).min(1.0) } else { 1.0 };
-        let chi = self.softening.residual_ratio(edge.kappa, strength, length, self.young_modulus, self.fracture_energy);
+        let chi = self.residual_ratio(edge.kappa, strength, length);
         let before = edge.damage;
         edge.damage = before.max(1.0 - strength / edge.kappa * chi);
         edge.broken = edge.broken || chi <= self.residual;
@@ -97,6 +119,8 @@ pub(crate) struct EdgeField {
     pub(crate) length: Vec<f64>,
     /// An edge broke since removal last looked.
     pub(crate) fresh: bool,
+    /// An edge has passed its strength and has no damage yet, which the phase field must give it.
+    pub(crate) woken: bool,
 }
 
 impl EdgeField {
@@ -111,6 +135,7 @@ impl EdgeField {
             strength,
             edges,
             fresh: false,
+            woken: false,
         }
     }
 
@@ -121,6 +146,20 @@ impl EdgeField {
         let growth = self.softens.load(edge, q, self.strength[index], self.length[index], dt);
         self.threshold[index] = edge.threshold();
         self.fresh |= edge.broken && !was_broken;
+        self.woken |= edge.damage == 0.0;
+        growth
+    }
+
+    /// Raises the damage of an edge to that of the phase field; returns the growth.
+    pub(crate) fn soften(&mut self, index: usize, damage: f64) -> f64 {
+        let edge = &mut self.state[index];
+        let growth = (damage - edge.damage).max(0.0);
+        edge.damage += growth;
+        self.threshold[index] = edge.threshold();
+        // The stress never exceeds (1 - d) κ.
+        let parted = (1.0 - edge.damage) * edge.kappa <= self.softens.residual * self.strength[index];
+        self.fresh |= parted && !edge.broken;
+        edge.broken = edge.broken || parted;
         growth
     }
 
@@ -145,7 +184,7 @@ impl EdgeField {
             *state = saved[*edge as usize];
             *threshold = state.threshold();
         }
-        self.fresh = true;
+        (self.fresh, self.woken) = (true, true);
     }
 }
 

@@ -35,6 +35,36 @@ pub enum SolidError {
         /// How many edges are too long.
         count: usize,
     },
+    /// A phase field whose length is too long for the fracture energy.
+    #[error(
+        "body {body}: the regularisation length is {length:.4e} m; at ({x:.4e}, {y:.4e}, {z:.4e}) m it must stay below 8/(3π) E Gf/ft² = {limit:.4e} m: \
+         refine the mesh where damage may occur or set a smaller length (twice the element size), raise fracture_energy or lower tensile_strength, or set \
+         reduce_strength_to_fit = true"
+    )]
+    LengthTooLong {
+        /// Name of the body.
+        body: String,
+        /// Position of the worst edge [m].
+        x: f64,
+        /// Position of the worst edge [m].
+        y: f64,
+        /// Position of the worst edge [m].
+        z: f64,
+        /// Length b of the body [m].
+        length: f64,
+        /// The largest length possible [m].
+        limit: f64,
+    },
+    /// A phase field in a body that cannot have one.
+    #[error("body {body}: no phase field with {reason}; expected {expected}, or no regularisation")]
+    NotRegularised {
+        /// Name of the body.
+        body: String,
+        /// What stands against it.
+        reason: &'static str,
+        /// What would do.
+        expected: &'static str,
+    },
     /// A node that belongs to no element and so has no mass.
     #[error("node {node} belongs to no element of any solid body: it has no mass")]
     MasslessNode {

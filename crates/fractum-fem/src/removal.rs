@@ -120,7 +120,8 @@ impl Solid {
         }
         let geometry = Geometry { body: &model.body, nodes: reference };
         let mut nodes = Vec::new();
-        for edge in touched_edges(model, elements) {
+        let touched = touched_edges(model, elements);
+        for &edge in &touched {
             let (block, cell) = model.location[edge as usize];
             let cells = &mut blocks[block as usize].cells;
             nodes.clear();
@@ -130,6 +131,7 @@ impl Solid {
             let around = model.elements_of_edge.row(edge as usize);
             cells.volume[cell as usize] = geometry.edge_domain(&nodes, around, alive, &mut cells.gradients[range]);
         }
+        self.refresh_phase(body, &touched);
     }
 
     /// Edges of removed elements that no element of any body joins any more, ascending.

@@ -12,7 +12,11 @@ use crate::solid::{BodyModel, Solid};
 
 /// Damage of every cell, block by block; empty rows for blocks without damage.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct CellDamage(Vec<Vec<f64>>);
+pub struct CellDamage {
+    cells: Vec<Vec<f64>>,
+    /// Values of the phase fields that it comes from, body by body.
+    phases: Vec<Vec<f64>>,
+}
 
 /// One cell: nodes, and a stiffness that is isotropic with the constants λ V (1 - d) and μ V (1 - d).
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +91,7 @@ impl Solid {
                 let count = cells.local_nodes(cell).len();
                 let first_pair = next_pair;
                 next_pair += count * count;
-                let left = damage.0[index].get(cell).map_or(1.0, |d| 1.0 - d) * cells.volume[cell];
+                let left = damage.cells[index].get(cell).map_or(1.0, |d| 1.0 - d) * cells.volume[cell];
                 if left <= 0.0 {
                     continue;
                 }
@@ -133,7 +137,7 @@ impl Solid {
             BlockLaw::Elastic { .. } => Vec::new(),
             _ => (0..block.cells.len()).map(|cell| block.damage_of(cell)).collect(),
         };
-        CellDamage(self.blocks.iter().map(of).collect())
+        CellDamage { cells: self.blocks.iter().map(of).collect(), phases: self.phase_values() }
     }
 
     /// The edges that may be damaged, in the order of [`Solid::effective_stresses`].
@@ -216,14 +220,14 @@ impl Solid {
 
     /// Damage of the cells once every edge has seen its equivalent stress `q`.
     pub fn trial_damage(&self, q: &[f64], trial: &mut CellDamage) {
-        trial.0.resize(self.blocks.len(), Vec::new());
+        trial.cells.resize(self.blocks.len(), Vec::new());
         let mut of_edges =
             self.edge_fields().flat_map(|(_, field)| (0..field.state.len()).map(move |i| (field, i))).zip(q);
         let mut next = |count: usize, damage: &mut Vec<f64>| {
             damage.clear();
             damage.extend(of_edges.by_ref().take(count).map(|((field, index), &q)| field.trial(index, q)));
         };
-        for (block, trial) in self.blocks.iter().zip(&mut trial.0) {
+        for (block, trial) in self.blocks.iter().zip(&mut trial.cells) {
             if let Some(field) = block.edge_field() {
                 next(field.state.len(), trial);
             }
@@ -232,7 +236,7 @@ impl Solid {
         for (body, model) in self.bodies.iter().enumerate() {
             let (Some(standard), Some(edges)) = (&model.standard, &model.edges) else { continue };
             next(standard.field.state.len(), &mut damage);
-            for (block, trial) in self.blocks.iter().zip(&mut trial.0).filter(|(b, _)| b.body == body) {
+            for (block, trial) in self.blocks.iter().zip(&mut trial.cells).filter(|(b, _)| b.body == body) {
                 let of = |(cell, &e): (usize, &u32)| {
                     let of_element = &edges.of_element[e as usize];
                     standard.element_damage(of_element, |edge| damage[edge as usize]).max(block.damage_of(cell))
@@ -240,13 +244,16 @@ impl Solid {
                 *trial = block.items.iter().enumerate().map(of).collect();
             }
         }
+        self.trial_phases(q, &mut trial.cells, &mut trial.phases);
     }
 
     /// Lets every edge see the equivalent stress `q`, as the solid goes straight from the displacements `before` to
     /// `after`.
     ///
     /// What damage takes on the way is booked; [`Solid::update_internal_forces`] at `after` then finds nothing new.
-    pub fn raise_history(&mut self, q: &[f64], before: &[Vec3], after: &[Vec3]) {
+    ///
+    /// - `trial`: the damage of these equivalent stresses
+    pub fn raise_history(&mut self, q: &[f64], trial: &CellDamage, before: &[Vec3], after: &[Vec3]) {
         let Solid { blocks, bodies, .. } = self;
         let mut next = 0;
         for block in blocks {
@@ -270,6 +277,7 @@ impl Solid {
                 next += 1;
             }
         }
+        self.raise_phases(&trial.phases, before, after);
     }
 
     /// Whether some body may be damaged.

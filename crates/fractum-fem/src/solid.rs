@@ -12,6 +12,7 @@ use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::gate::Gate;
 use crate::hooke::Hooke;
+use crate::phase::PhaseField;
 use crate::standard::{StandardCells, StandardDamage};
 use crate::threshold::Threshold;
 use crate::viscosity::ViscousCells;
@@ -121,6 +122,7 @@ impl Solid {
     /// - `measure`: whether to sum the elastic energy, see [`Solid::elastic_energy`]
     pub fn update_internal_forces(&mut self, dt: f64, measure: bool) {
         self.update_standard_damage(dt);
+        self.update_phase_fields(dt);
         let Solid { displacement, velocity, blocks, bodies, .. } = self;
         blocks
             .par_iter_mut()
@@ -324,8 +326,7 @@ impl BodyModel {
             (Some(zone), Some(edges)) => Some(Threshold::new(&body, zone, edges, &elements_of_edge, nodes, volumes)?),
             _ => None,
         };
-        let softens =
-            body.damage.as_ref().map(|zone| Arc::new(Softens::new(&zone.law, hooke, body.elastic.young_modulus)));
+        let softens = body.damage.as_ref().map(|zone| Arc::new(Softens::new(zone, hooke, body.elastic.young_modulus)));
         let cells = match &edges {
             Some(edges) if smoothed => geometry.edge_blocks(edges, &elements_of_edge, |edge| {
                 threshold.as_ref().is_some_and(|t| t.strength[edge as usize].is_finite())
@@ -354,6 +355,10 @@ impl BodyModel {
         }
         let (reduced_edges, largest_length_ratio) =
             threshold.as_ref().map_or((0, 0.0), |t| (t.reduced_edges, t.largest_length_ratio));
+        let phase = match (&body.damage, threshold.as_ref().and_then(|t| t.phase_sizes)) {
+            (Some(zone), Some(sizes)) => Some(Box::new(PhaseField::of(&body, zone, sizes, edge_count)?)),
+            _ => None,
+        };
         let standard = match (softens, threshold) {
             (Some(softens), Some(t)) if !smoothed => Some(StandardDamage {
                 field: EdgeField::new(softens, (0..edge_count as u32).collect(), &t),
@@ -373,6 +378,7 @@ impl BodyModel {
             location,
             standard,
             gate: None,
+            phase,
             reduced_edges,
             largest_length_ratio,
         };

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::damage::EdgeDamage;
 use crate::evaluate::{Block, BlockLaw};
-use crate::gate::{Gate, GateState};
+use crate::gate::GateState;
+use crate::phase_damage::state_of;
 use crate::solid::Solid;
 
 /// What changes in a body during a run.
@@ -17,7 +18,7 @@ pub struct BodyState {
     pub edges: Vec<EdgeDamage>,
     /// Damage and last effective stress of elements (standard formulation with damage).
     pub elements: Vec<(f64, Sym3)>,
-    /// Crack-plane gate; empty without one.
+    /// Crack-plane gate, or in its place the active edges of a phase field as points (d, d of the step before, 0); empty without either.
     pub gate: GateState,
 }
 
@@ -81,7 +82,11 @@ impl Solid {
             _ => (0.0, Sym3::ZERO),
         };
         let elements = if model.standard.is_some() { model.location.iter().map(of).collect() } else { Vec::new() };
-        let gate = model.gate.as_ref().map_or_else(GateState::default, Gate::state);
+        let gate = match (&model.gate, &model.phase) {
+            (Some(gate), _) => gate.state(),
+            (None, Some(field)) => state_of(field),
+            (None, None) => GateState::default(),
+        };
         BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements, gate }
     }
 
@@ -111,6 +116,7 @@ impl Solid {
             model.alive = body.alive;
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
             self.rebuild_cells_around(index, &removed);
+            self.restore_phase(index, &body.gate);
             self.close_edges(index);
         }
         for (block, viscous) in self.blocks.iter_mut().zip(state.viscous) {

@@ -4,6 +4,10 @@ use rayon::prelude::*;
 use crate::body::{Body, BodyEdges, DamageZone, ElementKind, Formulation, Region};
 use crate::element::regular_edge;
 use crate::error::SolidError;
+use crate::phase::PhaseLaw;
+
+/// Element sizes in the length of a phase field by default: of one size motion leaves the family of solutions, more costs accuracy.
+const SIZES_OF_LENGTH: f64 = 2.0;
 
 /// Strength and characteristic length of the edges of a body.
 pub(crate) struct Threshold {
@@ -15,6 +19,8 @@ pub(crate) struct Threshold {
     pub(crate) reduced_edges: usize,
     /// Largest ratio of a characteristic length to the largest one that softening allows.
     pub(crate) largest_length_ratio: f64,
+    /// Length of the phase field, where there is one, and mean size of the elements in which it may occur [m].
+    pub(crate) phase_sizes: Option<[f64; 2]>,
 }
 
 impl Threshold {
@@ -42,18 +48,30 @@ impl Threshold {
         };
         let count = edges.nodes.len();
         let length: Vec<f64> = (0..count).into_par_iter().map(length).collect();
-        let mut threshold =
-            Threshold { strength: vec![f64::INFINITY; count], length, reduced_edges: 0, largest_length_ratio: 0.0 };
+        let phase_sizes = zone.regularisation.map(|regularisation| {
+            let size = mean_size(body, zone, edges, volumes);
+            [regularisation.length.unwrap_or(SIZES_OF_LENGTH * size), size]
+        });
+        let phase_length = phase_sizes.map(|[length, _]| length);
+        let mut threshold = Threshold {
+            strength: vec![f64::INFINITY; count],
+            length,
+            reduced_edges: 0,
+            largest_length_ratio: 0.0,
+            phase_sizes,
+        };
         let mut worst: Option<(usize, f64, f64)> = None;
         for edge in 0..count {
             if matches!(&zone.region, Region::Edges(marked) if !marked[edge]) {
                 continue;
             }
             let mut strength = zone.law.tensile_strength * zone.strength_factor.get(edge).copied().unwrap_or(1.0);
-            let limit_at = |strength| {
-                zone.law.softening.largest_length(body.elastic.young_modulus, strength, zone.law.fracture_energy)
+            let (modulus, energy) = (body.elastic.young_modulus, zone.law.fracture_energy);
+            let limit_at = |strength| match phase_length {
+                Some(_) => PhaseLaw::largest_length(modulus, energy, strength),
+                None => zone.law.softening.largest_length(modulus, strength, energy),
             };
-            let ratio = threshold.length[edge] / limit_at(strength);
+            let ratio = phase_length.unwrap_or(threshold.length[edge]) / limit_at(strength);
             if ratio >= 1.0 {
                 threshold.reduced_edges += 1;
                 if worst.is_none_or(|(_, r, _)| ratio > r) {
@@ -68,11 +86,15 @@ impl Threshold {
         if let (Some((edge, _, limit)), false) = (worst, zone.reduce_strength_to_fit) {
             let [i, j] = edges.nodes[edge];
             let middle = (nodes[i as usize] + nodes[j as usize]) * 0.5;
+            let [x, y, z] = middle.into();
+            if let Some(length) = phase_length {
+                return Err(SolidError::LengthTooLong { body: body.name.clone(), x, y, z, length, limit });
+            }
             return Err(SolidError::ElementTooLarge {
                 body: body.name.clone(),
-                x: middle.x,
-                y: middle.y,
-                z: middle.z,
+                x,
+                y,
+                z,
                 length: threshold.length[edge],
                 limit,
                 count: threshold.reduced_edges,
@@ -80,4 +102,17 @@ impl Threshold {
         }
         Ok(threshold)
     }
+}
+
+/// Mean size of the elements in which damage may occur [m].
+fn mean_size(body: &Body, zone: &DamageZone, edges: &BodyEdges, volumes: &[f64]) -> f64 {
+    let count = body.shape.edge_count();
+    let armed = |edge: u32| !matches!(&zone.region, Region::Edges(marked) if !marked[edge as usize]);
+    let sizes = edges.of_element.iter().zip(volumes).filter(|(of, _)| of[..count].iter().any(|&edge| armed(edge)));
+    let (mut sum, mut elements) = (0.0, 0);
+    for (_, volume) in sizes {
+        sum += regular_edge(body.shape, volume / body.depth());
+        elements += 1;
+    }
+    sum / f64::from(elements.max(1))
 }

@@ -307,22 +307,33 @@ impl Recorder {
         let held: Vec<u8> = order.iter().map(|&n| u8::from(attached[n as usize])).collect();
         // Seven digits are plenty for looking at stress, and halve what is compressed and written.
         let (mut stress, mut first, mut damage): (Vec<[f32; 6]>, Vec<f32>, Vec<f32>) = Default::default();
-        let (mut cells, mut bodies) = (Vec::new(), Vec::new());
+        let (mut cells, mut bodies, mut phase) = (Vec::new(), Vec::new(), Vec::<f32>::new());
         for (body, (kind, nodes)) in self.grid.bodies.iter().enumerate() {
             let corners = kind.nodes();
             let mut kept = Vec::with_capacity(nodes.len());
+            let phases = solid.element_phase(body);
             for (element, (s, d)) in solid.element_fields(body).into_iter().enumerate() {
                 if solid.alive(body)[element] {
                     kept.extend_from_slice(&nodes[corners * element..corners * (element + 1)]);
                     first.push(s.principal_values()[0] as f32);
                     stress.push(s.0.map(|s| s as f32));
                     damage.push(d as f32);
+                    phase.push(phases.as_ref().map_or(0.0, |phases| phases[element] as f32));
                     bodies.push(body as i32);
                 }
             }
             cells.push((*kind, kept));
         }
         let cells: Vec<CellBlock> = cells.iter().map(|(kind, nodes)| CellBlock { kind: *kind, nodes }).collect();
+        let mut cell_data = vec![
+            Field { name: "stress", components: 6, values: Values::F32(stress.as_flattened()) },
+            Field { name: "first_principal_stress", components: 1, values: Values::F32(&first) },
+            Field { name: "damage", components: 1, values: Values::F32(&damage) },
+            Field::integer("body", &bodies),
+        ];
+        if solid.has_phase_fields() {
+            cell_data.push(Field { name: "d", components: 1, values: Values::F32(&phase) });
+        }
         let grid = UnstructuredGrid {
             points: &points,
             cells: &cells,
@@ -331,12 +342,7 @@ impl Recorder {
                 Field { name: "velocity", components: 3, values: Values::F32(velocity.as_flattened()) },
                 Field::flag("attached", &held),
             ],
-            cell_data: &[
-                Field { name: "stress", components: 6, values: Values::F32(stress.as_flattened()) },
-                Field { name: "first_principal_stress", components: 1, values: Values::F32(&first) },
-                Field { name: "damage", components: 1, values: Values::F32(&damage) },
-                Field::integer("body", &bodies),
-            ],
+            cell_data: &cell_data,
             time: Some(scene.clock.time),
         };
         grid.write(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))

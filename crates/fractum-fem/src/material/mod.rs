@@ -1,9 +1,11 @@
 //! Elasticity, the equivalent stress that drives damage, and softening.
 
 mod criterion;
+mod degradation;
 mod softening;
 
 pub use criterion::{Criterion, CriterionKind};
+pub use degradation::Degradation;
 pub use softening::Softening;
 
 use serde::{Deserialize, Serialize};

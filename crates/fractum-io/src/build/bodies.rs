@@ -194,6 +194,13 @@ impl<'a> Context<'a> {
                         "the smoothed formulation, on whose edges the gate acts; remove one of the two",
                     );
                 }
+                if damage.value.regularisation.is_some() && body.formulation == Formulation::Standard {
+                    self.error(
+                        &damage.place,
+                        ".regularisation with the standard formulation",
+                        "the smoothed formulation, on whose edges the phase field lives; remove one of the two",
+                    );
+                }
                 body.damage = Some(self.damage_zone(part, &body, &damage.value, numbering));
             }
             bodies.push(body);
@@ -242,6 +249,7 @@ impl<'a> Context<'a> {
             strength_factor,
             reduce_strength_to_fit: damage.reduce_strength_to_fit,
             crack_plane_gate: damage.crack_plane_gate,
+            regularisation: damage.regularisation,
         }
     }
 
@@ -250,19 +258,34 @@ impl<'a> Context<'a> {
         let mut warnings = Vec::new();
         for (index, part) in parts.iter().enumerate() {
             let (reduced, ratio) = solid.length_report(index);
+            if let Some([length, size]) = solid.phase_sizes(index).filter(|[length, size]| *length < 1.5 * size) {
+                let found = format!(": phase field of length {length:.3e} m on elements of {size:.3e} m");
+                warnings.push(
+                    Diagnostic::warning(&part.place, found)
+                        .remedy("at least one and a half elements; two are the default"),
+                );
+            }
             if reduced > 0 {
                 warnings.push(Diagnostic::warning(
                     &part.place,
                     format!(": strength lowered on {reduced} edges that are too long for the fracture energy"),
                 ));
             } else if ratio > 0.25 {
-                let advice =
-                    "elements below a quarter of that length resolve the softening; refine where cracks are expected";
+                let (what, advice) = match solid.phase_sizes(index) {
+                    None => (
+                        "longest element",
+                        "elements below a quarter of that length resolve the softening; refine where cracks are expected",
+                    ),
+                    Some(_) => (
+                        "length of the phase field",
+                        "below a quarter of it the band is narrow beside the softening zone; refine where cracks are expected",
+                    ),
+                };
                 warnings.push(
                     Diagnostic::warning(
                         &part.place,
                         format!(
-                            ": the longest element reaches {:.0} % of the length at which softening snaps back",
+                            ": the {what} reaches {:.0} % of the length at which softening snaps back",
                             100.0 * ratio
                         ),
                     )

@@ -235,6 +235,7 @@ impl StaticSolver {
     /// [`StepError`] if there is none, or none that the iteration finds.
     pub fn step(&mut self, scene: &mut Scene) -> Result<StepReport, StepError> {
         scene.solid.update_gates();
+        scene.solid.wake_phase_fields();
         let points = scene.solid.damage_points();
         self.damage = scene.solid.cell_damage();
         let intact = points.iter().all(|point| point.damage == 0.0);
@@ -255,7 +256,8 @@ impl StaticSolver {
                     self.pace.growth = (1.4 * self.pace.growth).min(GROWTH[2]);
                     self.pace.part = (2.0 * self.pace.part).min(1.0);
                 }
-                scene.solid.raise_history(&self.edges.q, &scene.solid.displacement.clone(), &self.response.start);
+                let before = scene.solid.displacement.clone();
+                scene.solid.raise_history(&self.edges.q, &self.trial, &before, &self.response.start);
                 return scene.accept_equilibrium(&self.response.start, time, &mut self.applied);
             }
             let smallest = match self.settings.control {

@@ -170,11 +170,16 @@ impl Plan {
             self.add(
                 "",
                 format!(
-                    "process zone E Gf/ft\u{b2} = {}; longest element at {:.1} % of the snap-back length",
+                    "process zone E Gf/ft\u{b2} = {}; {} at {:.1} % of the snap-back length",
                     quantity(zone, "m"),
+                    if d.regularisation.is_some() { "length of the phase field" } else { "longest element" },
                     100.0 * ratio
                 ),
             );
+            if let Some([length, size]) = scene.solid.phase_sizes(index) {
+                let sizes = length / size;
+                self.add("", format!("phase field of length {}, {sizes:.1} elements", quantity(length, "m")));
+            }
             if d.crack_plane_gate {
                 let tried = if body.shape == ElementKind::T3 { "" } else { "; in space tried on a tension bar only" };
                 self.add("", format!("crack-plane gate: for few, separate, straight cracks{tried}"));

@@ -42,6 +42,8 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("materials.NAME.damage.scatter.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
     key("materials.NAME.damage.reduce_strength_to_fit", K::Flag, "false", "Lower ft where an element is too large for Gf, instead of refusing it"),
     key("materials.NAME.damage.crack_plane_gate", K::Flag, "false", "Smoothed formulation only: near a crack, damage begins only where the plane of the crack goes on; for few, separate cracks"),
+    key("materials.NAME.damage.regularisation", K::Choice(regularisations), "\"none\"", "Smoothed formulation only: damage as a cohesive phase field, whose cracks do not feel the mesh"),
+    key("materials.NAME.damage.length", K::Quantity(D::LENGTH), "twice the mean size of the elements where damage may occur", "With regularisation: length b of the phase field, > 0, below 8/(3π) E Gf/ft²; a crack is a band about 3 b wide"),
     key("materials.NAME.damage.unilateral", K::Flag, "false", "Stiffness recovers where cracks close"),
     key("materials.NAME.damage.rate_time", K::Quantity(D::TIME), "\"0 s\"", "Time constant of the damage-rate limiter, ≥ 0; 0 is off"),
     key("materials.NAME.bonds", K::Table, "", "Beams of bonded bodies, as `fractum calibrate` writes them; without this table they are calibrated"),
@@ -131,6 +133,10 @@ fn bond_criteria() -> Vec<&'static str> {
 
 fn softenings() -> Vec<&'static str> {
     vec!["exponential", "linear", "bilinear"]
+}
+
+fn regularisations() -> Vec<&'static str> {
+    vec!["none", "phase-field"]
 }
 
 fn distributions() -> Vec<&'static str> {

@@ -1,6 +1,6 @@
 //! Materials: elasticity, damage, contact.
 
-use fractum_fem::{CriterionKind, DamageLaw};
+use fractum_fem::{CriterionKind, DamageLaw, Regularisation};
 use fractum_scene::ContactParameters;
 
 use super::{BondFailure, Bonds};
@@ -41,6 +41,8 @@ pub struct Damage {
     pub reduce_strength_to_fit: bool,
     /// Near a crack, damage begins only where the plane of the crack goes on.
     pub crack_plane_gate: bool,
+    /// Damage as a phase field.
+    pub regularisation: Option<Regularisation>,
 }
 
 choice!(CriterionKind {

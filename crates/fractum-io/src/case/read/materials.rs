@@ -4,7 +4,7 @@ use super::fracture::{FRICTION_ANGLE, read_friction_angle};
 use crate::case::model::{Damage, Distribution, Material, Scatter};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned};
-use fractum_fem::{Criterion, CriterionKind, DamageLaw, Softening};
+use fractum_fem::{Criterion, CriterionKind, DamageLaw, Regularisation, Softening};
 use fractum_scene::{ContactParameters, damping_of_restitution};
 
 /// Reads all materials: each with its name, and itself where nothing is wrong with it.
@@ -80,7 +80,11 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
     let residual = table.quantity("residual").between(0.0, 1.0).or(0.02);
     let scatter = table.table("scatter").map(scatter);
     let reduce_strength_to_fit = table.flag("reduce_strength_to_fit").or(false);
+    let regularisation = regularisation(&table);
     let crack_plane_gate = table.flag("crack_plane_gate").or(false);
+    if crack_plane_gate && matches!(regularisation, Some(Some(_))) {
+        table.refuse("crack_plane_gate", "beside a phase field, which needs no gate");
+    }
     let unilateral = table.flag("unilateral").or(false);
     let rate_time = table.quantity("rate_time").not_negative().or(0.0);
     table.finish("here");
@@ -99,6 +103,7 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
         scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,
         reduce_strength_to_fit,
         crack_plane_gate,
+        regularisation: regularisation?,
     })
 }
 
@@ -141,6 +146,18 @@ static SOFTENINGS: &[(&str, Softening)] = &[
 /// The bilinear curve from the opening at the kink as a fraction of the last one, 2 Gf/(ft (stress + fraction)).
 const fn bilinear(stress: f64, fraction: f64) -> Softening {
     Softening::Bilinear { stress, opening: 2.0 * fraction / (stress + fraction) }
+}
+
+/// The phase field with its length; `Some(None)` where there is none.
+fn regularisation(damage: &Table<'_>) -> Option<Option<Regularisation>> {
+    let on = damage.one_of("regularisation", &[("none", false), ("phase-field", true)]).or_if_absent(false)?;
+    if !on {
+        damage.refuse("length", "without regularisation");
+        return Some(None);
+    }
+    damage.refuse("rate_time", "with a phase field, whose energy it would raise");
+    let length = damage.quantity("length").positive().map(Some).or_if_absent(None)?;
+    Some(Some(Regularisation { length }))
 }
 
 /// By name, or as a table with parameters.
