@@ -6,7 +6,7 @@ use fractum_fem::{Body, DamageLaw, Formulation, Kinematics, LocalDamping, Solid,
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    ContactParameters, EnergyKind, Gravity, Load, Loads, Motion, NodalForce, NodesOnShape, Pressure, Scene,
+    ContactParameters, Domain, EnergyKind, Gravity, Load, Loads, Motion, NodalForce, NodesOnShape, Pressure, Scene,
     SceneSettings, StepError, Support, Supports,
 };
 use fractum_tests::{jittered_box, noise, softening};
@@ -338,4 +338,94 @@ fn a_block_dropped_on_a_plane_bounces_and_closes_its_balance() {
     assert!(stored > 0.0 && mean.z > 0.0, "it came back up: {mean:?}");
     assert!(ledger[EnergyKind::Friction] > 0.0 && mean.x < 0.3, "friction slowed it");
     assert!(ledger.residual_max_relative < 2e-3, "{ledger:?}");
+}
+
+/// A held box, and beside it one that flies off and vibrates.
+fn flyer(end: f64) -> Scene {
+    let (nodes, held) = jittered_box(CELLS, SIZE);
+    let count = nodes.len() as u32;
+    let fine = Vec3::new(SIZE.x, SIZE.y, 0.5 * SIZE.z);
+    let (others, mut free) = jittered_box(CELLS, fine);
+    free.name = "flyer".to_owned();
+    free.elements.iter_mut().flatten().for_each(|node| *node += count);
+    let all = nodes.iter().copied().chain(others.iter().map(|p| p + Vec3::z() * 0.2)).collect();
+    let mut solid = Solid::new(all, vec![held.smoothed(), free.smoothed()]).unwrap();
+    for i in count as usize..solid.velocity.len() {
+        solid.velocity[i] = Vec3::new(60.0, 0.0, 200.0) + Vec3::from_fn(|a, _| 2.0 * noise(3 * i + a));
+    }
+    let base = nodes_where(&solid, |p| p.x < 1e-9 && p.z < 0.15);
+    let supports = (0..3).map(|axis| Support::new("base", base.clone(), axis, Motion::Fixed)).collect();
+    let supports = Supports::new(supports, &solid.reference).unwrap();
+    let gravity = Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -9.81) });
+    let loads = Loads::new(vec![gravity], solid.reference.len());
+    let debris = Debris::new(&solid, vec![ContactParameters::default(); 2]);
+    Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(end))
+        .with_domain(Domain { min: Vec3::repeat(-0.1), max: Vec3::new(0.5, 0.3, 0.4) })
+}
+
+#[test]
+fn a_flyer_leaves_the_domain_with_its_mass_momentum_and_energy() {
+    let mut scene = flyer(4e-3);
+    let dt = scene.clock.dt_after;
+    let whole: f64 =
+        (0..scene.solid.mass.len()).map(|i| 0.5 * scene.solid.mass[i] * scene.solid.velocity[i].norm_squared()).sum();
+    let mass: f64 = scene
+        .solid
+        .body(1)
+        .elements
+        .iter()
+        .enumerate()
+        .map(|(e, _)| scene.solid.element_volume(1, e as u32))
+        .sum::<f64>()
+        * scene.solid.body(1).elastic.density;
+    run(&mut scene).unwrap();
+    let (left, ledger) = (scene.left(), scene.ledger());
+    assert_eq!((left.pieces, left.elements), (1, scene.solid.body(1).elements.len()));
+    assert!((left.mass / mass - 1.0).abs() < 1e-12, "{} of {mass} kg", left.mass);
+    assert!((left.momentum / mass - Vec3::new(60.0, 0.0, 200.0)).norm() < 0.3, "{left:?}");
+    assert!(ledger.residual_max_relative < 1e-10, "{ledger:?}");
+    assert!((ledger[EnergyKind::Left] / whole - 1.0).abs() < 1e-2, "{ledger:?}");
+    assert!(ledger[EnergyKind::Kinetic] < 1e-3 * whole && scene.clock.dt_after > 1.1 * dt, "{ledger:?}");
+    assert_eq!(scene.counts().removed_elements, 0);
+}
+
+#[test]
+fn a_bar_that_flies_apart_leaves_the_domain_with_the_same_bits_on_any_threads_and_after_resume() {
+    let whole_space = || {
+        let (nodes, body) = jittered_box(CELLS, SIZE);
+        let mut solid = Solid::new(nodes.clone(), vec![weak(&nodes, body.smoothed())]).unwrap();
+        for i in 0..solid.velocity.len() {
+            solid.velocity[i] = Vec3::x() * (300.0 * (solid.reference[i].x - 0.5 * SIZE.x));
+        }
+        scene(solid, Vec::new(), Vec::new(), fine_settings(8e-3))
+    };
+    let domain = Domain { min: Vec3::repeat(-0.01), max: SIZE + Vec3::repeat(0.01) };
+    let build = || whole_space().with_domain(domain);
+    let state = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut scene = build();
+            run(&mut scene).unwrap();
+            scene
+        })
+    };
+    let whole = state(1);
+    let (left, solid) = (whole.left(), &whole.solid);
+    let mut other = whole_space();
+    let momentum = |s: &Scene| -> Vec3 { (0..s.solid.mass.len()).map(|i| s.solid.velocity[i] * s.solid.mass[i]).sum() };
+    let at_start = momentum(&other);
+    run(&mut other).unwrap();
+    assert!(left.pieces > 2 && other.debris.len() > whole.debris.len(), "{left:?}");
+    let scale = 60.0 * solid.mass.iter().sum::<f64>();
+    assert!((momentum(&whole) + left.momentum - at_start).norm() < 1e-10 * scale, "{left:?}");
+    let [with, without] = [&whole, &other].map(|scene| scene.ledger().residual_max_relative);
+    assert!(with <= 1.01 * without + 1e-10, "{with:e} instead of {without:e}");
+    let mut first = build();
+    while first.left().pieces == 0 {
+        first.step(first.clock.step.is_multiple_of(20)).unwrap();
+    }
+    let mut second = build();
+    second.restore(first.state());
+    run(&mut second).unwrap();
+    assert!(whole.state() == second.state() && whole.state() == state(2).state() && whole.state() == state(7).state());
 }

@@ -25,12 +25,16 @@ impl Solid {
         for body in 0..self.bodies.len() {
             self.find_cut_elements(body, removed);
         }
-        if removed.len() == first {
-            return 0.0;
-        }
+        self.take_out(dt, &removed[first..])
+    }
+
+    /// Takes elements out and returns the energy that goes with them [J], as [`Solid::remove_cut_elements`] measures it.
+    ///
+    /// - `removed`: body and element; `dt`: as there
+    pub fn take_out(&mut self, dt: f64, removed: &[(usize, u32)]) -> f64 {
         let mut energy = 0.0;
         for body in 0..self.bodies.len() {
-            let elements: Vec<u32> = removed[first..].iter().filter(|r| r.0 == body).map(|r| r.1).collect();
+            let elements: Vec<u32> = removed.iter().filter(|r| r.0 == body).map(|r| r.1).collect();
             if elements.is_empty() {
                 continue;
             }

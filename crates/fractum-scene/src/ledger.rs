@@ -46,6 +46,8 @@ pub enum EnergyKind {
     Gas,
     /// Enthalpy of the gas that has leaked to the outside.
     GasLeaked,
+    /// Energy of pieces that have left the domain of the run.
+    Left,
 }
 
 /// What an entry is to the energy balance.
@@ -109,6 +111,7 @@ impl EnergyKind {
         entry(EnergyKind::GasSupplied, "gas_supplied", "Gas put in", EnergyRole::Supplied),
         entry(EnergyKind::Gas, "gas", "Gas", EnergyRole::Stored),
         entry(EnergyKind::GasLeaked, "gas_leaked", "Gas leaked", EnergyRole::Spent),
+        entry(EnergyKind::Left, "left", "Left the domain", EnergyRole::Spent),
     ];
 
     const fn entry(self) -> &'static Entry {
@@ -186,6 +189,7 @@ pub(crate) struct Books {
     pub(crate) friction: f64,
     pub(crate) absorbed: f64,
     pub(crate) time_step: f64,
+    pub(crate) left: f64,
 }
 
 impl AddAssign<Work> for Books {

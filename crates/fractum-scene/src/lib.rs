@@ -10,9 +10,11 @@ mod conditions;
 mod contacts;
 pub mod coupling;
 mod crack_measure;
+mod domain;
 mod error;
 mod fragment;
 mod gas;
+mod leave;
 mod ledger;
 mod piece_probe;
 mod probe;
@@ -30,6 +32,7 @@ pub use contacts::{
     RigidBody, SolidSurface, pieces,
 };
 pub use crack_measure::{CrackMeasure, InsideCracks};
+pub use domain::{Domain, Left};
 pub use error::{SceneError, StepError};
 pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution};
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};

@@ -7,6 +7,7 @@ use crate::conditions::{Loads, LoadsState, Supports, SurfaceSupports};
 use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
+use crate::domain::{Domain, Left};
 use crate::fragment::{Fragment, joined, single_share, solid_pieces};
 use crate::gas::Gas;
 use crate::ledger::{Books, Ledger};
@@ -45,6 +46,9 @@ pub(crate) struct Removals {
     pub(crate) last: Vec<(usize, u32)>,
     /// How many since the stable step was looked at.
     pub(crate) since_check: usize,
+    /// Free pieces outside it leave the run.
+    pub(crate) domain: Option<Domain>,
+    pub(crate) left: Left,
 }
 
 /// What stays the same through a run, beside bodies and boundary conditions.
@@ -78,6 +82,7 @@ pub struct SceneState {
     removed_since_check: usize,
     contact_frequency_square: f64,
     contact_frequency_peak: f64,
+    left: Left,
     loads: LoadsState,
 }
 
@@ -192,6 +197,7 @@ impl Scene {
         let before = std::mem::replace(&mut self.loads, next.loads);
         self.loads.follow(before, &self.solid);
         self.surface_supports = next.surface_supports;
+        self.removals.domain = next.removals.domain;
     }
 
     /// Takes everything that overlaps as it stands, before the first step: it gives no force, and touches no nearer than now until
@@ -263,7 +269,7 @@ impl Scene {
         Counts {
             nodes: self.solid.reference.len(),
             elements: (0..self.solid.body_count()).map(|b| self.solid.body(b).elements.len()).sum(),
-            removed_elements: fracture.removed_elements,
+            removed_elements: fracture.removed_elements - self.removals.left.elements,
             damaged_edges: fracture.damaged_edges,
             broken_edges: fracture.broken_edges,
             particles: self.debris.len() + self.bonded.particles.len(),
@@ -323,6 +329,7 @@ impl Scene {
             removed_since_check: self.removals.since_check,
             contact_frequency_square: self.frequencies.contact_square,
             contact_frequency_peak: self.frequencies.contact_peak,
+            left: self.removals.left.clone(),
             loads: self.loads.state(),
         }
     }
@@ -346,6 +353,7 @@ impl Scene {
         self.books = state.books;
         self.frequencies.stable = StableStep { frequency: state.frequency, governing: state.governing };
         self.removals.since_check = state.removed_since_check;
+        self.removals.left = state.left;
         self.frequencies.contact_square = state.contact_frequency_square;
         self.frequencies.contact_peak = state.contact_frequency_peak;
         self.update_wall_frequency();

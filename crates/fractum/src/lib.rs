@@ -49,6 +49,7 @@ mod gallery;
 mod gas_cells;
 mod input;
 mod interrupt;
+mod left;
 mod phases;
 pub mod plan;
 mod record;

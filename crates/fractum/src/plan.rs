@@ -8,9 +8,10 @@ use fractum_fem::{ElementKind, Formulation, Kinematics};
 use fractum_io::build::{BuiltScene, TieReport};
 use fractum_io::case::model::{Case, GroupUse, Load, LoadKind, MeshSource, Selection, SurfaceSupport};
 use fractum_io::number::quantity;
+use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
-use fractum_scene::{BondedBody, GasMeasure, Scene};
+use fractum_scene::{BondedBody, Domain, GasMeasure, Scene};
 
 use crate::input::Input;
 
@@ -176,6 +177,10 @@ impl Plan {
             let entered = matches!(load.kind, LoadKind::Pressure { in_cracks: Some(_), .. });
             let cracks = if entered { " and in the cracks open to it" } else { "" };
             self.add("load", format!("{} on {on}{cracks}", load.kind.name()));
+        }
+        if let Some(Domain { min, max }) = scene.domain() {
+            let corner = |p: Vec3| format!("({}, {}, {})", quantity(p.x, "m"), quantity(p.y, "m"), quantity(p.z, "m"));
+            self.add("domain", format!("free pieces outside {} to {} leave the run", corner(min), corner(max)));
         }
         if case.in_situ.is_some() {
             self.add("in situ", "at rest under the stress of the far field at t = 0; displacements count from there");

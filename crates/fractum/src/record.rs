@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::cracks;
 use crate::error::Failure;
 use crate::gas_cells;
+use crate::left;
 use crate::record_bonded as bonds;
 
 /// Columns of the history before the probes: name and unit.
@@ -45,6 +46,7 @@ const IN_MOTION: (&str, &str) = ("in_motion", "1");
 pub(crate) fn count_ledger_columns(names: &[&str]) -> usize {
     let known = ledger_columns(true);
     let count = names.iter().zip(known).take_while(|(name, (column, _))| *name == column).count();
+    let count = if names.get(count) == Some(&left::COLUMNS[0].0) { count + left::COLUMNS.len() } else { count };
     count + usize::from(names.get(count) == Some(&IN_MOTION.0))
 }
 
@@ -116,6 +118,7 @@ impl Recorder {
         let tells_motion = hands_over || !case.later.is_empty();
         let columns: Vec<Column> = ledger_columns(!scene.bonded.is_empty())
             .into_iter()
+            .chain(scene.domain().into_iter().flat_map(|_| left::COLUMNS))
             .chain(tells_motion.then_some(IN_MOTION))
             .map(|(name, unit)| Column::new(name, unit))
             .collect();
@@ -185,6 +188,7 @@ impl Recorder {
             row.extend(parts_of_bonds().map(|kind| ledger[kind]));
             row.push(counts.broken_bonds as f64);
         }
+        row.extend(scene.domain().into_iter().flat_map(|_| left::values(scene.left())));
         row.extend(self.tells_motion.then_some(f64::from(u8::from(in_motion))));
         self.state.times.push(time);
         let (case, probed) = (Arc::clone(&self.case), ProbedScene::new(scene));
@@ -453,6 +457,9 @@ mod tests {
         let unbonded = ledger_columns(false);
         let names: Vec<&str> = unbonded.iter().map(|(name, _)| *name).chain([IN_MOTION.0, "load"]).collect();
         assert_eq!(count_ledger_columns(&names), unbonded.len() + 1);
+        let left = left::COLUMNS.iter().map(|(name, _)| *name);
+        let names: Vec<&str> = unbonded.iter().map(|(name, _)| *name).chain(left).chain(["load"]).collect();
+        assert_eq!(count_ledger_columns(&names), unbonded.len() + left::COLUMNS.len());
     }
 
     #[test]

@@ -194,6 +194,9 @@ impl Context<'_> {
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
         let mut scene =
             self.with_contacts(scene, &parts, &boundary_of_parts, &surface, rigid_bodies, &tied, &mut warnings)?;
+        if let Some(domain) = self.case.solver.domain.clone() {
+            scene = self.with_domain(scene, &domain)?;
+        }
         for probe in probes.iter().flatten() {
             if let Probe::ContactForce(probe) = probe {
                 scene.contacts.watch(*probe);

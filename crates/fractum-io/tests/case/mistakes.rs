@@ -216,8 +216,13 @@ fn each_mistake_has_one_clear_message() {
         ("end = 1e-3", "end = 1e-3\nsafty = 0.5", "15:1: solver.safty is not a key; did you mean safety?"),
         (
             "end = 1e-3",
+            "end = 1e-3\ndomain = { min = [0, 0, 0], max = [1, 0, 1] }",
+            "15:10: solver.domain has a min that is not below its max; expected min < max on every axis",
+        ),
+        (
+            "end = 1e-3",
             "end = 1e-3\nqqqqqq = 0.5",
-            "15:1: solver.qqqqqq is not a key; keys here: kind, end, safety, time_step, step, initial_overlap, control, \
+            "15:1: solver.qqqqqq is not a key; keys here: kind, end, safety, time_step, step, initial_overlap, domain, control, \
              opening, linear_solver, tolerance, batch, no_equilibrium, max_steps, stop_when, \
              balance_warning, balance_stop",
         ),

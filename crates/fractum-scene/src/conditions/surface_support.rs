@@ -66,6 +66,11 @@ pub struct SurfaceSupports {
 }
 
 impl SurfaceSupports {
+    /// Nodes that they act on.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = u32> {
+        self.dashpots.nodes.iter().chain(&self.springs.nodes).copied()
+    }
+
     /// - `absorbing`, `elastic`: facets with dashpots and with springs
     /// - `mass`: of all nodes [kg]
     pub fn new(absorbing: &[SupportedFacet], elastic: &[SupportedFacet], mass: &[f64]) -> Self {

@@ -42,6 +42,13 @@ pub(crate) struct Candidate {
     pub(crate) damping: f64,
 }
 
+impl Candidate {
+    /// Whether it touched at the last step.
+    pub(crate) fn is_loaded(&self) -> bool {
+        self.memory != ContactMemory::default()
+    }
+}
+
 impl NodesOnShape {
     /// A fixed half space behind the plane through `point` with unit `normal`.
     pub fn plane(point: Vec3, normal: Vec3, surface: ContactParameters) -> Self {

@@ -1,4 +1,5 @@
 mod at_rest;
+mod leave;
 mod near;
 mod pairs;
 mod rows;
@@ -376,7 +377,7 @@ impl Debris {
         self.torque = vec![Vec3::zeros(); state.nodes.len()];
         self.turning = self.torque.clone();
         self.state = state;
-        if !self.is_empty() {
+        if !self.radius.is_empty() {
             self.list_anew(solid);
         }
     }

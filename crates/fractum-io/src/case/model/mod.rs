@@ -136,6 +136,8 @@ pub struct Solver {
     pub statics: Option<StaticOptions>,
     /// What overlaps at the start does.
     pub initial_overlap: InitialOverlap,
+    /// Free pieces outside it leave the run.
+    pub domain: Option<Spanned<fractum_scene::Domain>>,
     /// Early end.
     pub stop_when: Option<StopWhen>,
     /// Energy imbalance over external work at which to warn [-].

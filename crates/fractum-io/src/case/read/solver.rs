@@ -1,15 +1,16 @@
 //! `[damping]`, `[solver]` and `[output]`.
 
 use super::probes::ReadProbe;
-use super::vectors::direction;
-use crate::case::Diagnostic;
+use super::vectors::{direction, point};
 use crate::case::model::{
     Body, BodyKind, Control, Damping, InitialOverlap, Opening, Output, Solver, SolverKind, StaticOptions, StopWhen,
     TimeStep,
 };
 use crate::case::reader::Table;
 use crate::case::tree::Value;
+use crate::case::{Diagnostic, Spanned};
 use fractum_dem::Batch;
+use fractum_scene::Domain;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
 /// Reads the damping, which may belong to another stage; which keys have an effect depends on the solver, and on the bodies where they are known.
@@ -81,6 +82,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         .is_some_and(|statics| statics.as_ref().is_none_or(|statics| statics.no_equilibrium == NoEquilibrium::Motion));
     if is_static {
         table.refuse("initial_overlap", "with kind = \"static\"");
+        table.refuse("domain", "with kind = \"static\"");
         for key in ["safety", "time_step", "balance_stop"].into_iter().filter(|_| !moves) {
             table.refuse(key, "with kind = \"static\"");
         }
@@ -98,6 +100,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     }
     let time_step = table.choice("time_step").or(TimeStep::PowerIteration);
     let initial_overlap = table.choice("initial_overlap").or(InitialOverlap::Push);
+    let domain = if table.has("domain") { domain(&table).map(Some) } else { Some(None) };
     let stop_when = if table.has("stop_when") { stop_when(&table, probes).map(Some) } else { Some(None) };
     let balance_warning = table.quantity("balance_warning").positive().or(1e-3);
     let expected = format!("at least balance_warning, which is {balance_warning}");
@@ -113,11 +116,27 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         time_step,
         step,
         initial_overlap,
+        domain: domain?,
         statics: statics?,
         stop_when: stop_when?,
         balance_warning,
         balance_stop,
     })
+}
+
+fn domain(solver: &Table<'_>) -> Option<Spanned<Domain>> {
+    let table = solver.table("domain")?;
+    let min = point(&table, "min").required();
+    let max = point(&table, "max").required();
+    let place = table.place.clone();
+    table.finish("here");
+    let (min, max) = (min?, max?);
+    if (0..2).any(|axis| min[axis] >= max[axis]) || min.z > max.z {
+        let note = Diagnostic::error(&place, "has a min that is not below its max");
+        solver.reader.note(note.expected("min < max on every axis"));
+        return None;
+    }
+    Some(Spanned { value: Domain { min, max }, place })
 }
 
 fn statics(table: &Table<'_>, bodies: Option<&[Body]>) -> Option<StaticOptions> {
