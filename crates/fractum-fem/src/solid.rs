@@ -12,6 +12,7 @@ use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::gate::Gate;
 use crate::hooke::Hooke;
+use crate::material::{Wave, rayleigh_wave_speed};
 use crate::phase::PhaseField;
 use crate::standard::{StandardCells, StandardDamage};
 use crate::threshold::Threshold;
@@ -234,6 +235,16 @@ impl Solid {
         ((hooke.lambda + 2.0 * hooke.mu) / body.elastic.density).sqrt()
     }
 
+    /// Speed of a wave in a body; in plane stress that in a plate [m/s].
+    pub fn wave_speed(&self, index: usize, wave: Wave) -> f64 {
+        let (p, s) = (self.p_wave_speed(index), self.bodies[index].body.elastic.s_wave_speed());
+        match wave {
+            Wave::Compression => p,
+            Wave::Shear => s,
+            Wave::Rayleigh => rayleigh_wave_speed(p, s),
+        }
+    }
+
     /// Edges of a body, if its formulation or its damage uses them.
     pub fn body_edges(&self, index: usize) -> Option<&BodyEdges> {
         self.bodies[index].edges.as_ref()
@@ -270,6 +281,20 @@ impl Solid {
         match model.smoothed_edges() {
             None => cell(element),
             Some(edges) => model.mean_of_edges(&edges.of_element[element as usize], cell),
+        }
+    }
+
+    /// Damage of one element: the mean over its edges where it is smoothed, 1 where it has been removed.
+    pub fn element_damage(&self, index: usize, element: u32) -> f64 {
+        let model = &self.bodies[index];
+        let damage = |cell: u32| {
+            let (block, cell) = model.location[cell as usize];
+            (Sym3::ZERO, self.blocks[block as usize].damage_of(cell as usize))
+        };
+        match model.smoothed_edges() {
+            _ if !model.alive[element as usize] => 1.0,
+            None => damage(element).1,
+            Some(edges) => model.mean_of_edges(&edges.of_element[element as usize], damage).1,
         }
     }
 

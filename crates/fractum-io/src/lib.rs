@@ -35,4 +35,4 @@ mod output;
 
 pub use compress::Compression;
 pub use error::{ReadError, WriteError};
-pub use output::{OutputError, expectation, fragments, history, log, picture, plot, report, summary, vtk};
+pub use output::{OutputError, attenuation, expectation, fragments, history, log, picture, plot, report, summary, vtk};

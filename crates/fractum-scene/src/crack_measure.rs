@@ -21,6 +21,26 @@ pub enum CrackMeasure {
     Cone,
     /// Part of the crack's area that lies on that cone [-].
     ConeShare,
+    /// Area of what has separated [m²].
+    Area,
+    /// Its length in the plane [m].
+    Length,
+    /// Number of separate cracks.
+    Count,
+    /// Position of the foremost place that has separated along the direction [m].
+    Tip,
+}
+
+impl CrackMeasure {
+    /// Whether it is about what has separated, rather than about what has lost half of its strength.
+    pub fn is_of_separation(self) -> bool {
+        matches!(self, Self::Area | Self::Length | Self::Count | Self::Tip)
+    }
+
+    /// Whether it is measured along a direction.
+    pub fn has_direction(self) -> bool {
+        !matches!(self, Self::Area | Self::Length | Self::Count)
+    }
 }
 
 /// Which places of a crack count, body by body.
@@ -30,6 +50,8 @@ pub struct InsideCracks {
     pub edges: Vec<Vec<bool>>,
     /// Bonds of bonded bodies.
     pub bonds: Vec<Vec<bool>>,
+    /// Elements of solids.
+    pub elements: Vec<Vec<bool>>,
 }
 
 /// Part of the strength that an edge of a crack has lost at least.
@@ -68,5 +90,7 @@ pub(crate) fn measure_crack(scene: &Scene, measure: CrackMeasure, axis: &Axis, i
         }
         CrackMeasure::Cone => cone(&points, axis).map_or(f64::NAN, |cone| cone.angle),
         CrackMeasure::ConeShare => cone(&points, axis).map_or(f64::NAN, |cone| cone.share),
+        // Of what has separated: no points.
+        CrackMeasure::Area | CrackMeasure::Length | CrackMeasure::Count | CrackMeasure::Tip => f64::NAN,
     }
 }

@@ -9,7 +9,9 @@ mod clock;
 mod conditions;
 mod contacts;
 pub mod coupling;
+mod crack_extent;
 mod crack_measure;
+mod damaged;
 mod domain;
 mod error;
 mod fragment;
@@ -18,11 +20,13 @@ mod leave;
 mod ledger;
 mod piece_probe;
 mod probe;
+mod radial_cracks;
 mod scene;
 mod stable_step;
 pub mod statics;
 mod step;
 mod time_function;
+mod velocity_station;
 
 pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest};
 pub use clock::{Clock, TimeStepSettings};
@@ -32,6 +36,7 @@ pub use contacts::{
     RigidBody, SolidSurface, pieces,
 };
 pub use crack_measure::{CrackMeasure, InsideCracks};
+pub use damaged::{DamagedMeasure, DamagedPart};
 pub use domain::{Domain, Left};
 pub use error::{SceneError, StepError};
 pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution};
@@ -40,9 +45,11 @@ pub use fractum_gas::{Amount, EquationOfState, Jwl, NobleAbel, PerfectGas, SlitF
 pub use fragment::{Fragment, solid_pieces};
 pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, Stemming};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
-pub use piece_probe::{FragmentMeasure, SurfaceMeasure};
+pub use piece_probe::{FragmentMeasure, SurfaceMeasure, equivalent_diameter, fragment_size, passing_size};
 pub use probe::{Population, Probe, ProbedScene};
+pub use radial_cracks::{RadialCracks, RadialMeasure};
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::{Phase, StepReport};
 pub use time_function::TimeFunction;
+pub use velocity_station::{PeakVelocity, VelocityStation};

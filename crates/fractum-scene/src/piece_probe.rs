@@ -58,15 +58,14 @@ pub(crate) fn measure_fragment(
     match measure {
         FragmentMeasure::Mass => own.mass,
         FragmentMeasure::Volume => own.volume,
-        FragmentMeasure::Size => size(own, plane_thickness(solid)),
+        FragmentMeasure::Size => fragment_size(solid, own),
         FragmentMeasure::Velocity => own.velocity.dot(along),
     }
 }
 
 /// Size below which a share of the mass of all fragments lies: P20, P50, P80 for 0.2, 0.5, 0.8 [m].
-pub(crate) fn passing_size(solid: &Solid, fragments: &[Fragment], share: f64) -> f64 {
-    let thickness = plane_thickness(solid);
-    let mut pieces: Vec<(f64, f64)> = fragments.iter().map(|f| (size(f, thickness), f.mass)).collect();
+pub fn passing_size(solid: &Solid, fragments: &[Fragment], share: f64) -> f64 {
+    let mut pieces: Vec<(f64, f64)> = fragments.iter().map(|f| (fragment_size(solid, f), f.mass)).collect();
     pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = pieces.iter().map(|piece| piece.1).sum();
     let mut passed = 0.0;
@@ -79,15 +78,15 @@ pub(crate) fn passing_size(solid: &Solid, fragments: &[Fragment], share: f64) ->
     f64::NAN
 }
 
-/// Diameter of the sphere of a fragment's volume, of the circle of its area where there is a thickness [m].
-fn size(fragment: &Fragment, thickness: Option<f64>) -> f64 {
-    match thickness {
-        Some(thickness) => (4.0 * fragment.volume / (std::f64::consts::PI * thickness)).sqrt(),
-        None => cbrt(6.0 * fragment.volume / std::f64::consts::PI),
-    }
+/// Diameter of the sphere of a fragment's volume; where solids are plane, of the circle of its area [m].
+pub fn fragment_size(solid: &Solid, fragment: &Fragment) -> f64 {
+    equivalent_diameter(fragment.volume, solid.is_plane().then(|| solid.body(0).thickness))
 }
 
-/// Thickness of plane solids [m].
-fn plane_thickness(solid: &Solid) -> Option<f64> {
-    solid.is_plane().then(|| solid.body(0).thickness)
+/// Diameter of the sphere of a volume; of the circle of its area where there is a thickness [m].
+pub fn equivalent_diameter(volume: f64, thickness: Option<f64>) -> f64 {
+    match thickness {
+        Some(thickness) => (4.0 * volume / (std::f64::consts::PI * thickness)).sqrt(),
+        None => cbrt(6.0 * volume / std::f64::consts::PI),
+    }
 }

@@ -1,15 +1,19 @@
 use std::cell::OnceCell;
 
 use fractum_dem::crack_shape::Axis;
+use fractum_fem::{Separation, Wave};
 use fractum_math::Vec3;
 
 use crate::conditions::{Along, PointProbe};
 use crate::contacts::ContactProbe;
+use crate::crack_extent::measure_extent;
 use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
+use crate::damaged::DamagedPart;
 use crate::fragment::Fragment;
 use crate::gas::GasMeasure;
 use crate::ledger::EnergyProbe;
 use crate::piece_probe::{FragmentMeasure, SurfaceMeasure, measure_fragment, measure_surface, passing_size};
+use crate::radial_cracks::RadialCracks;
 use crate::scene::{CountKind, Scene};
 
 /// The points that a set is of.
@@ -103,15 +107,26 @@ pub enum Probe {
     FragmentSize(f64),
     /// Area of crack, Σ V d/l over the damaged edges [m²].
     CrackArea,
-    /// How the crack lies: the edges that have lost at least half of their strength, and the broken bonds. Not a number
-    /// where there are none.
+    /// How the crack lies: the edges that have lost at least half of their strength, and the broken bonds; not a number
+    /// where there are none. Or how much has separated: removed elements, and broken bonds.
     Crack {
         /// What about it.
         measure: CrackMeasure,
         /// Direction, and the point of it that a helix or cone needs.
         axis: Axis,
-        /// Which edges and bonds count; all if absent.
+        /// Which edges, elements and bonds count; all if absent.
         inside: Option<InsideCracks>,
+    },
+    /// Cracks that run away from a hole.
+    RadialCracks(RadialCracks),
+    /// What is damaged.
+    Damaged(DamagedPart),
+    /// Speed of a wave in a solid body, which does not change [m/s].
+    WaveSpeed {
+        /// Body.
+        body: usize,
+        /// Which wave.
+        wave: Wave,
     },
 }
 
@@ -119,17 +134,23 @@ pub enum Probe {
 pub struct ProbedScene<'a> {
     scene: &'a Scene,
     fragments: OnceCell<Vec<Fragment>>,
+    separation: OnceCell<Separation>,
 }
 
 impl<'a> ProbedScene<'a> {
     /// Before the first probe.
     pub fn new(scene: &'a Scene) -> Self {
-        ProbedScene { scene, fragments: OnceCell::new() }
+        ProbedScene { scene, fragments: OnceCell::new(), separation: OnceCell::new() }
     }
 
     /// [`Scene::fragments`], found once.
     pub(crate) fn fragments(&self) -> &[Fragment] {
         self.fragments.get_or_init(|| self.scene.fragments())
+    }
+
+    /// What has separated, found once.
+    fn separation(&self) -> &Separation {
+        self.separation.get_or_init(|| self.scene.solid.separation())
     }
 }
 
@@ -195,7 +216,13 @@ impl Probe {
             }
             Probe::FragmentSize(share) => passing_size(solid, probed.fragments(), *share),
             Probe::CrackArea => solid.crack_area(),
+            Probe::Crack { measure, axis, inside } if measure.is_of_separation() => {
+                measure_extent(scene, probed.separation(), *measure, &axis.direction, inside.as_ref())
+            }
             Probe::Crack { measure, axis, inside } => measure_crack(scene, *measure, axis, inside.as_ref()),
+            Probe::RadialCracks(probe) => probe.value(solid, probed.separation()),
+            Probe::Damaged(probe) => probe.value(solid),
+            Probe::WaveSpeed { body, wave } => solid.wave_speed(*body, *wave),
         }
     }
 }

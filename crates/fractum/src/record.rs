@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use fractum_io::Compression;
 use fractum_io::atomic::Written;
+use fractum_io::attenuation::{Attenuation, Station};
+use fractum_io::build::PpvStations;
 use fractum_io::case::model::{Case, ProbeExpression, ProbeInput, ProbeKind, Take};
 use fractum_io::history::{Column, History};
 use fractum_io::vtk::{CellBlock, CellKind, Collection, Field, PolyCells, PolyData, UnstructuredGrid, Values};
 use fractum_scene::statics::NoEquilibrium;
-use fractum_scene::{EnergyKind, EnergyRole, ProbedScene, Scene};
+use fractum_scene::{EnergyKind, EnergyRole, PeakVelocity, ProbedScene, Scene, VelocityStation};
 use serde::{Deserialize, Serialize};
 
 use crate::cracks;
@@ -62,12 +64,15 @@ pub(crate) struct RecordState {
     pub(crate) times: Vec<f64>,
     /// Values of each probe that is a column, row by row.
     pub(crate) series: Vec<Vec<f64>>,
+    /// Largest velocities so far, table by table and station by station.
+    peaks: Vec<Vec<PeakVelocity>>,
 }
 
 /// Writes the results of a run while it goes.
 pub(crate) struct Recorder {
     case: Arc<Case>,
     probes: Vec<Option<fractum_scene::Probe>>,
+    ppv: Vec<PpvStations>,
     folder: PathBuf,
     history: History,
     collection: Collection,
@@ -110,6 +115,7 @@ impl Recorder {
         case: Arc<Case>,
         scene: &Scene,
         probes: Vec<Option<fractum_scene::Probe>>,
+        ppv: Vec<PpvStations>,
         file_order: &[u32],
         folder: &Path,
         resumed: Option<RecordState>,
@@ -134,7 +140,8 @@ impl Recorder {
             Some(state) => (History::resume(&path, &columns, state.history)?, state),
             None => {
                 let series = vec![Vec::new(); case.probes.len()];
-                (History::create(&path, &columns)?, RecordState { series, ..RecordState::default() })
+                let peaks = ppv.iter().map(|of| vec![PeakVelocity::default(); of.stations.len()]).collect();
+                (History::create(&path, &columns)?, RecordState { series, peaks, ..RecordState::default() })
             }
         };
         let mut collection = Collection::default();
@@ -145,6 +152,7 @@ impl Recorder {
         Ok(Recorder {
             case,
             probes,
+            ppv,
             folder: folder.to_owned(),
             history,
             collection,
@@ -158,6 +166,31 @@ impl Recorder {
     /// The probes of a further stage, whose supports are others.
     pub(crate) fn set_probes(&mut self, probes: Vec<Option<fractum_scene::Probe>>) {
         self.probes = probes;
+    }
+
+    /// Takes over the velocities of the last step where they are the largest so far.
+    pub(crate) fn watch(&mut self, scene: &Scene) {
+        for (of, peaks) in self.ppv.iter().zip(&mut self.state.peaks) {
+            for (station, peak) in of.stations.iter().zip(peaks) {
+                station.watch(&scene.solid, &scene.clock, peak);
+            }
+        }
+    }
+
+    /// Largest velocities against distance, with their laws.
+    pub(crate) fn attenuations(&self) -> Vec<Attenuation> {
+        let station = |of: &VelocityStation, peak: &PeakVelocity, scale: f64| Station {
+            place: of.place.into(),
+            distance: of.distance,
+            scaled_distance: of.distance / scale,
+            velocity: peak.velocity,
+            time: peak.time,
+        };
+        let table = |(of, peaks): (&PpvStations, &Vec<PeakVelocity>)| {
+            let stations = of.stations.iter().zip(peaks).map(|(own, peak)| station(own, peak, of.scale));
+            Attenuation::new(&of.name, of.unit, stations.collect())
+        };
+        self.ppv.iter().zip(&self.state.peaks).map(table).collect()
     }
 
     /// Whether a row of the history is due at `time`.
@@ -236,6 +269,7 @@ impl Recorder {
             Take::Mean => time_mean(times, values),
             Take::Speed => speed(times, values),
             Take::At(time) => interpolate(times, values, time),
+            Take::Slope(window) => slope_of_window(times, values, window),
         }
     }
 
@@ -425,10 +459,25 @@ fn time_mean(times: &[f64], values: &[f64]) -> f64 {
 fn speed(times: &[f64], values: &[f64]) -> f64 {
     let changed = |&i: &usize| values[i].is_finite() && (i == 0 || values[i] != values[i - 1]);
     let rows: Vec<usize> = (0..values.len()).filter(changed).collect();
+    slope(times, values, &rows)
+}
+
+/// Least squares slope over the rows that are at most `window` older than the last one; not a number before the values
+/// have been finite for so long.
+fn slope_of_window(times: &[f64], values: &[f64], window: f64) -> f64 {
+    let Some(last) = times.last() else { return f64::NAN };
+    let first = times.partition_point(|&time| time < last - window * (1.0 + 1e-12));
+    let full = first > 0 || times.first().is_some_and(|start| last - start >= window * (1.0 - 1e-12));
+    let rows: Vec<usize> = (first..values.len()).collect();
+    if full && rows.iter().all(|&row| values[row].is_finite()) { slope(times, values, &rows) } else { f64::NAN }
+}
+
+/// Least squares slope over some rows; not a number where there are fewer than two.
+fn slope(times: &[f64], values: &[f64], rows: &[usize]) -> f64 {
     let mean = |of: &[f64]| rows.iter().map(|&i| of[i]).sum::<f64>() / rows.len() as f64;
     let (t, x) = (mean(times), mean(values));
     let (mut slope, mut weight) = (0.0, 0.0);
-    for &i in &rows {
+    for &i in rows {
         slope += (times[i] - t) * (values[i] - x);
         weight += (times[i] - t).powi(2);
     }
@@ -460,6 +509,20 @@ mod tests {
         let left = left::COLUMNS.iter().map(|(name, _)| *name);
         let names: Vec<&str> = unbonded.iter().map(|(name, _)| *name).chain(left).chain(["load"]).collect();
         assert_eq!(count_ledger_columns(&names), unbonded.len() + left::COLUMNS.len());
+    }
+
+    #[test]
+    fn the_slope_of_a_window_smooths_the_leaps_of_a_tip() {
+        let times: Vec<f64> = (0..40).map(|row| 1e-6 * f64::from(row)).collect();
+        // 1,000 m/s in leaps of 4 mm every fourth row.
+        let tip: Vec<f64> = (0..40).map(|row| if row < 8 { f64::NAN } else { 4e-3 * f64::from(row / 4) }).collect();
+        for end in 30..40 {
+            let speed = slope_of_window(&times[..end], &tip[..end], 16e-6);
+            assert!((speed / 1000.0 - 1.0).abs() < 0.07, "{speed}");
+        }
+        assert!(slope_of_window(&times[..20], &tip[..20], 16e-6).is_nan(), "no tip for so long");
+        assert!(slope_of_window(&times[..3], &times[..3], 16e-6).is_nan(), "no run for so long");
+        assert_eq!(slope_of_window(&times[..3], &[0.0, 1.0, 2.0], 2e-6), 1e6);
     }
 
     #[test]

@@ -147,6 +147,7 @@ fn fragments_of(table: &Table) -> Vec<Fragment> {
             centroid: vector("", row),
             velocity: vector("velocity_", row),
             largest_extent: value("largest_extent", row),
+            size: value("size", row),
         })
         .collect()
 }

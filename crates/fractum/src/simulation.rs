@@ -150,6 +150,7 @@ impl Simulation {
         let before = (!self.solver.moves()).then(|| (self.scene.state(), self.solver.state()));
         match (self.solver.step(&mut self.scene, measure, &mut self.phases), before) {
             (Ok(advance), _) => {
+                self.recorder.watch(&self.scene);
                 self.measured = advance.measured;
                 self.messages.event = advance.event;
             }

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+use fractum_fem::Solid;
 use fractum_io::case::model::{Case, Expect, ProbeKind};
 use fractum_io::expectation::Expectation;
 use fractum_io::summary::{self, Status, Summary};
-use fractum_scene::{BondedBody, Clock, CountKind, Scene, SceneState};
+use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, SceneState, passing_size};
 
 use crate::phases::Phases;
 use crate::record::{Recorder, index_of_max};
@@ -62,6 +63,12 @@ pub(crate) fn probes(case: &Case, recorder: &Recorder) -> BTreeMap<String, summa
 /// Steps and times.
 pub(crate) fn time(clock: &Clock) -> summary::Time {
     summary::Time { steps: clock.step, dt: clock.dt_before, dt_min: clock.dt_min, end: clock.time }
+}
+
+/// Sizes of the fragments; none where there are none.
+pub(crate) fn fragment_sizes(solid: &Solid, pieces: &[Fragment]) -> Option<summary::FragmentSizes> {
+    let [p20, p50, p80] = [0.2, 0.5, 0.8].map(|share| passing_size(solid, pieces, share));
+    (!pieces.is_empty()).then_some(summary::FragmentSizes { p20, p50, p80 })
 }
 
 /// How long it took.

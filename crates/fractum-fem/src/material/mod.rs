@@ -3,10 +3,12 @@
 mod criterion;
 mod degradation;
 mod softening;
+mod wave;
 
 pub use criterion::{Criterion, CriterionKind};
 pub use degradation::Degradation;
 pub use softening::Softening;
+pub use wave::{Wave, rayleigh_wave_speed};
 
 use serde::{Deserialize, Serialize};
 

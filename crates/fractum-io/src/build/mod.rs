@@ -7,6 +7,7 @@ mod conditions;
 mod contacts;
 mod gas;
 mod in_situ;
+mod ppv;
 mod precheck;
 mod probes;
 mod statics;
@@ -15,6 +16,7 @@ mod ties;
 
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
+pub use ppv::PpvStations;
 pub use statics::may_rest;
 pub use ties::TieReport;
 
@@ -45,6 +47,8 @@ pub struct BuiltScene {
     pub bonded_statics: Option<BondedStaticSettings>,
     /// The probes of the case that are measured, in the order of `Case::probes`; none for expressions.
     pub probes: Vec<Option<Probe>>,
+    /// Stations at which the largest velocity is kept.
+    pub ppv: Vec<PpvStations>,
     /// Nodes of the mesh in the scene's numbering, or `u32::MAX` for nodes of no solid body.
     pub scene_node: Vec<u32>,
     /// Nodes of the scene in the order of the mesh file: outputs follow it.
@@ -170,6 +174,7 @@ impl Context<'_> {
         self.condition_particles(&mut bonded, &ties.attachments, &mut warnings);
         let bonded_statics = self.bonded_statics(&bonded);
         let probes = self.probes(&parts, &numbering, &surface, &solid, &supports, &bonded);
+        let ppv = self.ppv_stations(&numbering, &solid);
         if !self.diagnostics.is_empty() {
             return None;
         }
@@ -220,6 +225,7 @@ impl Context<'_> {
             statics,
             bonded_statics,
             probes,
+            ppv,
             file_order: numbering.file_order(),
             scene_node: numbering.scene_node,
             elements: parts.into_iter().map(|part| part.elements).collect(),

@@ -3,8 +3,8 @@
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
 use fractum_scene::{
-    Along, Bonded, BondedBody, ContactBody, ContactProbe, InsideCracks, PointProbe, Population, Probe, Supports,
-    SurfaceMeasure,
+    Along, Bonded, BondedBody, ContactBody, ContactProbe, CrackMeasure, DamagedMeasure, DamagedPart, InsideCracks,
+    PointProbe, Population, Probe, RadialCracks, Supports, SurfaceMeasure,
 };
 
 use super::Context;
@@ -12,7 +12,7 @@ use super::bodies::{Numbering, Part};
 use super::conditions::Surface;
 use super::gas::open_end;
 use super::use_in_words;
-use crate::case::model::{GroupUse, ProbeKind, Selection};
+use crate::case::model::{self, GroupUse, ProbeKind, Selection};
 use crate::case::{Field, Spanned};
 
 impl Context<'_> {
@@ -27,6 +27,7 @@ impl Context<'_> {
         bonded: &Bonded,
     ) -> Vec<Option<Probe>> {
         let case = self.case;
+        case.probes.iter().filter(|_| !solid.is_plane()).for_each(|probe| self.refuse_in_space(probe));
         let mut measured = |kind| match self.particle_probe(kind, bonded).or_else(|| self.rigid_body_probe(kind)) {
             Some(probe) => Some(probe),
             None => self.probe(kind, parts, numbering, surface, solid, supports, bonded),
@@ -89,21 +90,86 @@ impl Context<'_> {
             ProbeKind::Gas { measure, group } => Probe::Gas { measure: *measure, hole: self.hole(group.as_ref()) },
             ProbeKind::CrackArea => Probe::CrackArea,
             ProbeKind::Crack { measure, along, point, within } => {
-                let inside = within.as_ref().map(|within| InsideCracks {
-                    edges: edges_within(solid, &within.value),
-                    bonds: bonds_within(bonded, &within.value),
-                });
-                if let (Some(within), Some(InsideCracks { edges, bonds })) = (within, &inside)
-                    && edges.iter().chain(bonds).flatten().all(|inside| !inside)
-                {
-                    let found =
-                        ": no edge of a body that may be damaged and no bond that may break fulfils the condition";
-                    self.error(&within.place, found, "a condition that holds where a crack is expected");
-                }
+                let inside = self.inside_cracks(within.as_ref(), solid, bonded);
                 Probe::Crack { measure: *measure, axis: Axis { point: *point, direction: *along }, inside }
+            }
+            ProbeKind::RadialCracks { measure, about, radius, within } => {
+                let inside = self.inside_cracks(within.as_ref(), solid, bonded);
+                Probe::RadialCracks(RadialCracks::new(solid, *measure, *about, *radius, inside))
+            }
+            ProbeKind::Damaged { measure, threshold, group, within } => {
+                let elements = self.elements_that_may_be_damaged(group.as_ref(), within.as_ref(), parts, solid);
+                Probe::Damaged(DamagedPart { measure: *measure, threshold: *threshold, elements })
+            }
+            ProbeKind::WaveSpeed { body, wave } => {
+                let index = (0..solid.body_count()).find(|&index| solid.body(index).name == body.value);
+                if index.is_none() {
+                    self.error(&body.place, format!("= \"{}\"", body.value), "the name of a solid body");
+                }
+                Probe::WaveSpeed { body: index?, wave: *wave }
             }
             ProbeKind::Expression(_) => return None,
         })
+    }
+
+    /// An error for what only plane solids have.
+    fn refuse_in_space(&mut self, probe: &model::Probe) {
+        let remedy = match probe.kind {
+            ProbeKind::Crack { measure: CrackMeasure::Length, .. } => {
+                "measure = \"area\": cracks in space have no length"
+            }
+            ProbeKind::Damaged { measure: DamagedMeasure::Area, .. } => {
+                "measure = \"volume\": bodies in space have no area"
+            }
+            _ => return,
+        };
+        self.error(&probe.name.place, format!("= \"{}\"", probe.name.value), remedy);
+    }
+
+    /// What counts of cracks where a condition holds; an error if nothing does.
+    fn inside_cracks(
+        &mut self,
+        within: Option<&Spanned<Field>>,
+        solid: &Solid,
+        bonded: &Bonded,
+    ) -> Option<InsideCracks> {
+        let within = within?;
+        let inside = InsideCracks {
+            edges: edges_within(solid, &within.value),
+            bonds: bonds_within(bonded, &within.value),
+            elements: elements_within(solid, &within.value),
+        };
+        if inside.edges.iter().chain(&inside.bonds).flatten().all(|inside| !inside) {
+            let found = ": no edge of a body that may be damaged and no bond that may break fulfils the condition";
+            self.error(&within.place, found, "a condition that holds where a crack is expected");
+        }
+        Some(inside)
+    }
+
+    /// Bodies and elements of a group, or all, that may be damaged and fulfil a condition; an error if there are none.
+    fn elements_that_may_be_damaged(
+        &mut self,
+        group: Option<&Spanned<String>>,
+        within: Option<&Spanned<Field>>,
+        parts: &[Part],
+        solid: &Solid,
+    ) -> Vec<(usize, u32)> {
+        let all = || {
+            let of = |body: usize| (0..solid.body(body).elements.len() as u32).map(move |element| (body, element));
+            (0..solid.body_count()).flat_map(of).collect()
+        };
+        let mut elements: Vec<(usize, u32)> = group.map_or_else(all, |group| self.elements_of(group, parts));
+        let named = elements.len();
+        elements.retain(|&(body, element)| {
+            let inside = within.is_none_or(|within| within.value.holds_at(solid.element_middle(body, element)));
+            inside && solid.body(body).damage.is_some()
+        });
+        if elements.is_empty() && (named > 0 || group.is_none()) {
+            let place = within.map(|within| &within.place).or(group.map(|group| &group.place));
+            let place = place.cloned().unwrap_or_else(|| self.whole_case());
+            self.error(&place, ": nothing there may be damaged", "elements of a body whose material has damage");
+        }
+        elements
     }
 
     /// Bodies and elements of a group; an error if it has none.
@@ -184,6 +250,15 @@ fn edges_within(solid: &Solid, condition: &Field) -> Vec<Vec<bool>> {
         let body = solid.body(index);
         let middles = if body.damage.is_some() { body.edge_midpoints(&solid.reference) } else { Vec::new() };
         middles.into_iter().map(|p| condition.holds_at(p)).collect()
+    };
+    (0..solid.body_count()).map(body).collect()
+}
+
+/// Which elements of bodies that may be damaged fulfil a condition at their middles, body by body.
+fn elements_within(solid: &Solid, condition: &Field) -> Vec<Vec<bool>> {
+    let body = |index: usize| {
+        let elements = 0..if solid.body(index).damage.is_some() { solid.body(index).elements.len() as u32 } else { 0 };
+        elements.map(|element| condition.holds_at(solid.element_middle(index, element))).collect()
     };
     (0..solid.body_count()).map(body).collect()
 }

@@ -27,6 +27,8 @@ pub struct Fragment {
     pub velocity: [f64; 3],
     /// Largest distance across the piece [m].
     pub largest_extent: f64,
+    /// Diameter of the sphere of its volume, in the plane of the circle of its area [m].
+    pub size: f64,
 }
 
 /// Writes `fragments` to `path` (usually `fragments.csv`), in the order given.
@@ -40,17 +42,17 @@ pub fn write(path: &Path, fragments: &[Fragment]) -> Result<(), WriteError> {
 fn table(fragments: &[Fragment]) -> String {
     let mut text = String::from(
         "id,mass [kg],volume [m^3],nodes,elements,x [m],y [m],z [m],\
-         velocity_x [m/s],velocity_y [m/s],velocity_z [m/s],largest_extent [m]\n",
+         velocity_x [m/s],velocity_y [m/s],velocity_z [m/s],largest_extent [m],size [m]\n",
     );
     for fragment in fragments {
-        let Fragment { id, mass, volume, nodes, elements, centroid, velocity, largest_extent } = fragment;
+        let Fragment { id, mass, volume, nodes, elements, centroid, velocity, largest_extent, size } = fragment;
         text.push_str(&id.to_string());
         for value in [*mass, *volume] {
             text.push(',');
             push_shortest(&mut text, value);
         }
         text.push_str(&format!(",{nodes},{elements}"));
-        for value in centroid.iter().chain(velocity).chain([largest_extent]) {
+        for value in centroid.iter().chain(velocity).chain([largest_extent, size]) {
             text.push(',');
             push_shortest(&mut text, *value);
         }
@@ -74,12 +76,13 @@ mod tests {
             centroid: [0.0, 0.1, -0.2],
             velocity: [1.0, 2.0, 3.0],
             largest_extent: 0.25,
+            size: 0.125,
         };
         let text = table(&[fragment]);
         let mut lines = text.lines();
         let columns = lines.next().unwrap().split(',').count();
         let line = lines.next().unwrap();
-        assert_eq!(line, "1,2.5,0.001,40,120,0,0.1,-0.2,1,2,3,0.25");
+        assert_eq!(line, "1,2.5,0.001,40,120,0,0.1,-0.2,1,2,3,0.25,0.125");
         assert_eq!(line.split(',').count(), columns);
         assert_eq!(lines.next(), None);
     }

@@ -4,6 +4,7 @@
 //! program, can write results. What to write and when is the run's business. Equal numbers make equal files, for any
 //! number of threads; only what tells of the clock differs.
 
+pub mod attenuation;
 pub mod expectation;
 pub mod fragments;
 pub mod history;

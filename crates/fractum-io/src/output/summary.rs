@@ -13,6 +13,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::atomic;
 use crate::error::{ReadError, WriteError};
 use crate::number::or_null;
+use crate::output::attenuation::Attenuation;
 use crate::output::expectation::{Expectation, Verified};
 
 /// How a run ended.
@@ -52,6 +53,12 @@ pub struct Summary {
     /// What became of the bonds of each body whose bonds can break.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fracture: Vec<Fracture>,
+    /// Sizes of the fragments; none where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fragment_sizes: Option<FragmentSizes>,
+    /// Largest velocities against scaled distance, and their power laws.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ppv: Vec<Attenuation>,
     /// Sizes at the end.
     pub counts: Counts,
     /// Simulated time.
@@ -77,6 +84,21 @@ pub struct Probe {
     /// When the largest value came first [s].
     #[serde(with = "or_null")]
     pub time_of_max: f64,
+}
+
+/// Sizes below which a fifth, half and four fifths of the mass of all fragments lie: diameters of the spheres of their
+/// volumes, in the plane of the circles of their areas [m].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FragmentSizes {
+    /// P20 [m].
+    #[serde(with = "or_null")]
+    pub p20: f64,
+    /// P50 [m].
+    #[serde(with = "or_null")]
+    pub p50: f64,
+    /// P80 [m].
+    #[serde(with = "or_null")]
+    pub p80: f64,
 }
 
 /// What became of the bonds of a body.

@@ -163,6 +163,9 @@ fn documented_defaults_are_the_defaults() {
                 .replace("probes[].contact_force.about", "probes[20].contact_force.about")
                 .replace("probes[].stress.about", "probes[18].stress.about")
                 .replace("probes[].load.about", "probes[22].load.about")
+                .replace("probes[].radial_cracks", "probes[29].radial_cracks")
+                .replace("probes[].damaged", "probes[30].damaged")
+                .replace("output.ppv[]", "output.ppv[0]")
                 .replace("probes[]", "probes[14]")
                 .replace("supports[].elastic", "supports[5].elastic")
                 .replace("TIME_FUNCTION", function);

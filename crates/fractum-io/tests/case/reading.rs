@@ -99,7 +99,10 @@ fn a_case_with_every_key_is_read_into_si() {
     let front_speed = ["m/s"];
     let push_and_gas = ["N", "Pa"];
     let pieces = ["N", "m^3", "m/s", "m"];
-    assert_eq!(units, [&expected[..], &about_an_axis, &front_speed, &push_and_gas, &pieces].concat(), "N/m is J/m^2");
+    let cracks = ["m^2", "m", "m/s", "1", "1", "m/s"];
+    let all = [&expected[..], &about_an_axis, &front_speed, &push_and_gas, &pieces, &cracks].concat();
+    assert_eq!(units, all, "N/m is J/m^2");
+    assert!(!case.probes[28].is_scalar(), "a slope is a history");
     let ProbeKind::Crack { measure, along, within, .. } = &case.probes[10].kind else { panic!() };
     assert_eq!((*measure, *along), (CrackMeasure::Angle, Vec3::y()));
     let within = &within.as_ref().unwrap().value;
@@ -110,7 +113,7 @@ fn a_case_with_every_key_is_read_into_si() {
 
     assert_eq!(case.expect[0].bound, Bound::Near { value: 1e4, tolerance: 500.0, relative: Some(0.05) });
     assert_eq!(case.expect[2].bound, Bound::Between { above: Some(1e-4), below: Some(2e-3) });
-    assert_eq!(case.groups_used().len(), 2 + 5 + 6 + 1 + 8 + 2 + 3);
+    assert_eq!(case.groups_used().len(), 2 + 5 + 6 + 1 + 8 + 2 + 3 + 1 + 3);
 }
 
 #[test]

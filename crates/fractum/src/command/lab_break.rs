@@ -19,6 +19,7 @@ use fractum_io::vtk::{Field, PolyCells, PolyData};
 use fractum_io::{Compression, atomic};
 use fractum_math::Vec3;
 use fractum_pack::Convention;
+use fractum_scene::equivalent_diameter;
 
 use super::shape::{ShapeArguments, choice, pressure};
 
@@ -347,6 +348,7 @@ fn write_fragments(path: &Path, mut pieces: Vec<Piece>, density: f64) -> Result<
         centroid: piece.centroid.into(),
         velocity: piece.velocity.into(),
         largest_extent: (piece.bounds[1] - piece.bounds[0]).max(),
+        size: equivalent_diameter(piece.content / density, None),
     };
     let table: Vec<Fragment> = (1..).zip(&pieces).map(fragment).collect();
     Ok(fragments::write(path, &table)?)

@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use fractum_fem::Solid;
+use fractum_io::attenuation;
 use fractum_io::fragments::{self, Fragment};
 use fractum_io::summary::{Status, Summary};
-use fractum_scene::{BondedBody, Scene};
+use fractum_scene::{BondedBody, Scene, fragment_size};
 
 use super::{End, Outcome, Simulation};
 use crate::cracks::{self, Columns};
@@ -38,7 +40,8 @@ impl Simulation {
         let clock = self.scene.clock;
         self.record_last(&end)?;
         self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
-        fragments::write(&self.folder.join("fragments.csv"), &fragments_of(&self.scene))?;
+        let pieces = self.scene.fragments();
+        fragments::write(&self.folder.join("fragments.csv"), &fragments_of(&self.scene.solid, &pieces))?;
         self.warn_of_single_nodes()?;
         write_cracks(&self.scene, &self.folder)?;
         let mut summary = Summary {
@@ -47,11 +50,16 @@ impl Simulation {
             case_hash: fractum_io::summary::hash_text(self.identity.case_hash),
             state_hash: fractum_io::summary::hash_text(state_hash),
             probes: summary::probes(&self.case, &self.recorder),
+            ppv: self.recorder.attenuations(),
+            fragment_sizes: summary::fragment_sizes(&self.scene.solid, &pieces),
             time: summary::time(&clock),
             wall: summary::wall(self.started.elapsed(), &self.phases),
             ..summary::of_scene(&self.scene)
         };
         summary.expect = self.case.expect.iter().map(|e| summary::expectation(e, &summary)).collect();
+        if !summary.ppv.is_empty() {
+            attenuation::write(&self.folder.join("ppv.csv"), &summary.ppv)?;
+        }
         summary.write(&self.folder.join("summary.json"))?;
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
@@ -120,10 +128,9 @@ impl Simulation {
 /// Share of a body's mass in single nodes above which its fragments tell little.
 const MOSTLY_SINGLE: f64 = 0.5;
 
-fn fragments_of(scene: &Scene) -> Vec<Fragment> {
-    scene
-        .fragments()
-        .into_iter()
+fn fragments_of(solid: &Solid, pieces: &[fractum_scene::Fragment]) -> Vec<Fragment> {
+    pieces
+        .iter()
         .zip(1..)
         .map(|(piece, id)| Fragment {
             id,
@@ -134,6 +141,7 @@ fn fragments_of(scene: &Scene) -> Vec<Fragment> {
             centroid: piece.centroid.into(),
             velocity: piece.velocity.into(),
             largest_extent: piece.extent(),
+            size: fragment_size(solid, piece),
         })
         .collect()
 }

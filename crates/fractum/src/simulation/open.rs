@@ -65,7 +65,7 @@ impl Simulation {
         messages.log.line(&plan)?;
         timings.iter().try_for_each(|timing| messages.log.line(timing))?;
         built.warnings.iter().try_for_each(|warning| messages.warn(warning.to_string()))?;
-        let recorder = Recorder::open(case, &scene, probes, &built.file_order, &folder, resumed)?;
+        let recorder = Recorder::open(case, &scene, probes, built.ppv, &built.file_order, &folder, resumed)?;
         let mut simulation = Simulation {
             case: stage,
             scene,

@@ -80,10 +80,32 @@ reaction = { group = "x+", along = "x" }
 name = "largest_load"
 expression = "max(load)"
 
+[[probes]]
+name = "cracked"
+crack = { measure = "area" }
+
+[[probes]]
+name = "tip"
+crack = { measure = "tip", along = "y" }
+
+[[probes]]
+name = "tip_speed"
+expression = "slope(tip, 50 us)"
+
+[[probes]]
+name = "harmed"
+damaged = { measure = "share", threshold = 0.9 }
+
 [output]
 fields = { every = "0.1 ms" }
 history = { every = "10 us" }
 checkpoint = { every = "5 ms" }
+
+[[output.ppv]]
+name = "from the end"
+hole = "x-"
+line = { from = ["5 cm", "1 cm", "1 cm"], to = ["40 cm", "1 cm", "1 cm"], stations = 5 }
+groups = ["x+"]
 "#;
 
 /// A folder of one test, gone at its end.

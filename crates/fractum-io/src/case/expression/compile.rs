@@ -223,13 +223,13 @@ impl<'t> Compiler<'t, '_> {
             && let Kind::Name(argument) = self.tokens.get(self.at + 1).map_or(Kind::End, |token| token.kind)
         {
             match self.tokens.get(self.at + 2).map(|token| token.kind) {
-                Some(Kind::Symbol(")")) if name != "at" => {
+                Some(Kind::Symbol(")")) if !self.names.needs_time(name) => {
                     self.at += 3;
                     return self.reduction(name, argument, None, offset);
                 }
-                Some(Kind::Symbol(",")) if name == "at" => {
+                Some(Kind::Symbol(",")) if self.names.needs_time(name) => {
                     self.at += 3;
-                    let time = self.constant(Dimension::TIME, "the time in at(probe, time)")?;
+                    let time = self.constant(Dimension::TIME, &format!("the time in {name}(probe, time)"))?;
                     self.expect(")")?;
                     return self.reduction(name, argument, Some(time), offset);
                 }
@@ -258,7 +258,8 @@ impl<'t> Compiler<'t, '_> {
         match arguments[..] {
             _ if self.names.reduces(name) => {
                 let error = ExpressionError::new(offset, format!("{name}() reduces the history of one probe"));
-                let usage = if name == "at" { "at(load, 1 ms)".to_string() } else { format!("{name}(load)") };
+                let time = if self.names.needs_time(name) { ", 1 ms" } else { "" };
+                let usage = format!("{name}(load{time})");
                 Err(error.remedy(format!("write it as {usage}; a probe of its own may hold an expression")))
             }
             [a] if let Some(function) = find::<Unary>(name) => {

@@ -97,6 +97,11 @@ pub(crate) trait Names {
         false
     }
 
+    /// Whether that function has a time as its second argument, as `at(load, 1 ms)` does.
+    fn needs_time(&self, _function: &str) -> bool {
+        false
+    }
+
     /// Meaning of such a reduction; `at` is the second argument, a time [s].
     fn reduce(&mut self, function: &str, _name: &str, _at: Option<f64>) -> Result<Named, String> {
         Err(format!("{function} has no meaning here"))

@@ -1,7 +1,8 @@
 //! Results and references.
 
-use super::key;
+use super::{key, names};
 use crate::case::key_kind::{KeyDoc, KeyKind as K};
+use crate::case::model::Scaling;
 use crate::case::unit::Dimension as D;
 
 #[rustfmt::skip] // a table reads best with one row per line
@@ -15,6 +16,17 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("output.checkpoint.every", K::Quantity(D::TIME), "\"10 min\"", "Wall time between checkpoints, > 0"),
     key("output.fragments", K::Table, "", "What counts as a fragment"),
     key("output.fragments.joined_below", K::Quantity(D::NONE), "0.95", "Edges join a fragment while the share of their strength that they have lost is below this, within 0 and 1"),
+    key("output.ppv[]", K::Tables, "", "Peak particle velocity of solids against scaled distance from a hole: ppv.csv, summary.json, a figure with its power law in the report"),
+    key("output.ppv[].name", K::Text, "required", "Name of the stations in tables and figures"),
+    key("output.ppv[].hole", K::Text, "required", "Mesh group of the wall of the hole"),
+    key("output.ppv[].axis", K::Direction, "", "Axis of the hole through the mean place of the group's nodes, from which distances count; absent means z in the plane, and in space distances from that place"),
+    key("output.ppv[].charge", K::Quantity(D::MASS), "", "Mass of the charge Q, > 0; absent means that distances are in radii of the hole"),
+    key("output.ppv[].scaling", K::Choice(names::<Scaling>), "\"square-root\"", "With charge: distance over the square root of Q, for long charges, or over the cube root"),
+    key("output.ppv[].line", K::Table, "", "Stations evenly apart on a straight line: the nodes of solids that are nearest to them"),
+    key("output.ppv[].line.from", K::Point(D::LENGTH), "required", "The first"),
+    key("output.ppv[].line.to", K::Point(D::LENGTH), "required", "The last"),
+    key("output.ppv[].line.stations", K::Integer, "required", "Their number, 1 to 10000"),
+    key("output.ppv[].groups", K::Names, "[]", "Mesh groups, each of which is a station: the mean over its nodes"),
     key("expect[]", K::Tables, "", "Reference values for `fractum verify`: value and tolerance, or above and below"),
     key("expect[].quantity", K::Text, "required", "A probe, or a path into summary.json such as energy.residual_max_relative"),
     key("expect[].value", K::AnyQuantity, "", "Reference value"),

@@ -1,6 +1,9 @@
 //! Probes.
 
-use fractum_scene::{CountKind, CrackMeasure, EnergyProbe, FragmentMeasure, GasMeasure, SurfaceMeasure};
+use fractum_fem::Wave;
+use fractum_scene::{
+    CountKind, CrackMeasure, DamagedMeasure, EnergyProbe, FragmentMeasure, GasMeasure, RadialMeasure, SurfaceMeasure,
+};
 
 use super::{key, names};
 use crate::case::key_kind::{KeyDoc, KeyKind as K};
@@ -76,11 +79,26 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("probes[].gas.measure", K::Choice(names::<GasMeasure>), "required", "Pressure, in Pa (of everything: mean over the volume); temperature, in K (mean over the mass); mass, in kg; internal energy, in J; room for gas, in m^3; area of the walls under pressure without load, in m^2; or mass that has leaked, in kg"),
     key("probes[].gas.group", K::Text, "", "Group of a hole: its gas, or the area that gas from it wets; absent means all gas, in cracks too; not with leaked_mass"),
     key("probes[].crack_area", K::Flag, "", "true records the area of the cracks, in m^2"),
-    key("probes[].crack", K::Table, "", "How a crack lies: its edges that have lost half of their strength, and its broken bonds; not a number before there are any"),
-    key("probes[].crack.measure", K::Choice(names::<CrackMeasure>), "required", "Angle between the direction and the plane of the crack (its line in 2D), in rad; or position of its centre or its foremost edge or bond along the direction, in m; or the angle of the helix to its axis, or of the cone's flank to the plane across its axis, in rad; or the part of the crack that lies on that cone"),
-    key("probes[].crack.along", K::Direction, "required", "Direction"),
+    key("probes[].crack", K::Table, "", "How a crack lies, by its edges that have lost half of their strength and its broken bonds (not a number before there are any); or how much has separated, by removed elements and broken bonds"),
+    key("probes[].crack.measure", K::Choice(names::<CrackMeasure>), "required", "Angle between the direction and the plane of the crack (its line in 2D), in rad; or position of its centre or its foremost edge or bond along the direction, in m; or the angle of the helix to its axis, or of the cone's flank to the plane across its axis, in rad; or the part of the crack that lies on that cone. Of what has separated: area, in m^2; length in the plane, in m; number of separate cracks; or position of the foremost place along the direction, the tip, in m"),
+    key("probes[].crack.along", K::Direction, "", "Direction; required but for area, length and count"),
     key("probes[].crack.point", K::Point(D::LENGTH), "[0, 0, 0]", "helix, cone and cone_share only: a point of the axis; for a cone the one in the surface, with the direction out of it"),
-    key("probes[].crack.where", K::Condition, "", "Which edges and bonds count, by their middles; absent means all"),
-    key("probes[].expression", K::ProbeExpression, "", "Expression of t and probes above it; max, min, absmax, mean, final, time_of_max, front_speed (of a probe) and at(probe, time) make it one number at the end of the run"),
+    key("probes[].crack.where", K::Condition, "", "Which edges, elements and bonds count, by their middles; absent means all"),
+    key("probes[].radial_cracks", K::Table, "", "Cracks that run away from a hole, by removed elements"),
+    key("probes[].radial_cracks.measure", K::Choice(names::<RadialMeasure>), "required", "Number of cracks that cross a circle about the axis; largest extent of one connected crack away from the axis, in m; or radius about the axis up to which all is crushed, in m, zero if nothing is"),
+    key("probes[].radial_cracks.about", K::Table, "", "Axis of the hole"),
+    key("probes[].radial_cracks.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
+    key("probes[].radial_cracks.about.axis", K::Direction, "\"z\"", "Its direction"),
+    key("probes[].radial_cracks.radius", K::Quantity(D::LENGTH), "", "count only, required there: radius of the circle, > 0"),
+    key("probes[].radial_cracks.where", K::Condition, "", "Which elements count, by their middles, such as those of a slice across the hole; absent means all"),
+    key("probes[].damaged", K::Table, "", "Elements that are damaged; removed ones are"),
+    key("probes[].damaged.measure", K::Choice(names::<DamagedMeasure>), "required", "Their volume, in m^3; their area in the plane, in m^2; or their share of the volume of all that is looked at"),
+    key("probes[].damaged.threshold", K::Quantity(D::NONE), "0.5", "Mean damage over its edges from which on an element is damaged, within 0 and 1"),
+    key("probes[].damaged.group", K::Text, "", "Mesh group of elements; absent means all that may be damaged"),
+    key("probes[].damaged.where", K::Condition, "", "Which elements are looked at, by their middles; absent means all"),
+    key("probes[].wave_speed", K::Table, "", "Speed of a wave, to compare with; in plane stress that in a plate, in m/s"),
+    key("probes[].wave_speed.body", K::Text, "required", "Name of a solid body"),
+    key("probes[].wave_speed.wave", K::Choice(names::<Wave>), "required", "Compression wave, shear wave, or Rayleigh's surface wave, which a crack in tension cannot outrun"),
+    key("probes[].expression", K::ProbeExpression, "", "Expression of t and probes above it; max, min, absmax, mean, final, time_of_max, front_speed (of a probe) and at(probe, time) make it one number at the end of the run; slope(probe, time) is its slope over the rows of that last time"),
     key("probes[].unit", K::Unit(None), "from the expression", "Expression only: its SI unit; required where a factor without unit leaves it open"),
 ];

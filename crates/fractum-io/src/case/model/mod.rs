@@ -6,6 +6,7 @@ mod boundary;
 mod gas;
 mod loose;
 mod material;
+mod ppv;
 mod probe;
 mod rigid;
 mod tie;
@@ -24,6 +25,7 @@ pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Selecti
 pub use gas::{Gas, GasHole, GasLaw};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Distribution, Material, Scatter};
+pub use ppv::{Ppv, Scaling, StationLine};
 pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
 pub use rigid::{RigidBody, RigidShape};
 pub use tie::Tie;
@@ -246,7 +248,7 @@ pub struct StopWhen {
 }
 
 /// What is written, and how often.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Output {
     /// Time between fields [s].
     pub fields_every: f64,
@@ -256,6 +258,8 @@ pub struct Output {
     pub checkpoint_every: f64,
     /// Share of its strength that an edge may have lost and still join a fragment, above 0 up to 1.
     pub joined_below: f64,
+    /// Peak particle velocity against distance.
+    pub ppv: Vec<Ppv>,
 }
 
 /// A reference value of the case.
@@ -312,6 +316,9 @@ const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
     ("counts.bonds", Dimension::NONE),
     ("counts.broken_bonds", Dimension::NONE),
     ("counts.fragments", Dimension::NONE),
+    ("fragment_sizes.p20", Dimension::LENGTH),
+    ("fragment_sizes.p50", Dimension::LENGTH),
+    ("fragment_sizes.p80", Dimension::LENGTH),
     ("time.steps", Dimension::NONE),
     ("time.dt", Dimension::TIME),
     ("time.dt_min", Dimension::TIME),
@@ -400,14 +407,18 @@ impl Case {
             | ProbeKind::Fragment { on, .. }
             | ProbeKind::Rotation { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::ProbeNodes)),
             ProbeKind::Surface { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::Facets)),
-            ProbeKind::Stress { group, .. } => Some((group, GroupUse::ProbeElements)),
+            ProbeKind::Stress { group, .. } | ProbeKind::Damaged { group: Some(group), .. } => {
+                Some((group, GroupUse::ProbeElements))
+            }
             _ => None,
         });
+        let stations = self.output.ppv.iter().flat_map(|ppv| ppv.groups.iter().chain([&ppv.hole]));
+        let stations = stations.map(|group| (group, GroupUse::ProbeNodes));
         let opening = self.solver.statics.as_ref().and_then(|statics| statics.opening.as_ref());
         let openings = opening.into_iter().flat_map(|o| [&o.group, &o.against]).map(|g| (g, GroupUse::ProbeNodes));
         let of_mesh =
             |group: &&Spanned<String>| self.particle_group(&group.value).is_none() && self.tool(&group.value).is_none();
         let named = supports.chain(loads).chain(holes).chain(probes).filter(|(group, _)| of_mesh(group));
-        bodies.chain(ties).chain(named).chain(in_situ).chain(openings).collect()
+        bodies.chain(ties).chain(named).chain(in_situ).chain(openings).chain(stations).collect()
     }
 }

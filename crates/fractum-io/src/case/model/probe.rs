@@ -1,7 +1,12 @@
 //! Probes: the numbers a run records.
 
+use fractum_dem::crack_shape::Axis;
+use fractum_fem::Wave;
 use fractum_math::Vec3;
-use fractum_scene::{Along, CountKind, CrackMeasure, EnergyProbe, FragmentMeasure, GasMeasure, SurfaceMeasure};
+use fractum_scene::{
+    Along, CountKind, CrackMeasure, DamagedMeasure, EnergyProbe, FragmentMeasure, GasMeasure, RadialMeasure,
+    SurfaceMeasure,
+};
 
 use super::Selection;
 use crate::case::choice::choice;
@@ -121,7 +126,7 @@ pub enum ProbeKind {
     },
     /// Area of the cracks [m²].
     CrackArea,
-    /// How a crack lies, by its edges that have lost half of their strength and its broken bonds.
+    /// How a crack lies, by its edges that have lost half of their strength and its broken bonds; or how much has separated.
     Crack {
         /// What about it.
         measure: CrackMeasure,
@@ -129,8 +134,37 @@ pub enum ProbeKind {
         along: Vec3,
         /// A point of the axis of a helix or cone [m].
         point: Vec3,
-        /// Where edges count, by the position of their middles; everywhere if absent.
+        /// Where edges and elements count, by the position of their middles; everywhere if absent.
         within: Option<Spanned<Field>>,
+    },
+    /// Cracks that run away from a hole.
+    RadialCracks {
+        /// What about them.
+        measure: RadialMeasure,
+        /// Axis of the hole.
+        about: Axis,
+        /// Radius of the circle on which they are counted [m].
+        radius: f64,
+        /// Where elements count, by the position of their middles; everywhere if absent.
+        within: Option<Spanned<Field>>,
+    },
+    /// What is damaged.
+    Damaged {
+        /// What about it.
+        measure: DamagedMeasure,
+        /// Damage from which on an element counts [-].
+        threshold: f64,
+        /// Mesh group of elements; all elements that may be damaged if absent.
+        group: Option<Spanned<String>>,
+        /// Where elements count, by the position of their middles; everywhere if absent.
+        within: Option<Spanned<Field>>,
+    },
+    /// Speed of a wave [m/s].
+    WaveSpeed {
+        /// Name of a solid body.
+        body: Spanned<String>,
+        /// Which wave.
+        wave: Wave,
     },
     /// Expression of other probes, all declared before this one.
     Expression(ProbeExpression),
@@ -188,12 +222,20 @@ pub enum Take {
     Speed,
     /// Value at this time [s], interpolated.
     At(f64),
+    /// Least squares slope over the rows of the last time of this length [s].
+    Slope(f64),
 }
 
 choice!(CrackMeasure {
     "angle" => Angle, "centre" => Centre, "front" => Front, "helix" => Helix, "cone" => Cone,
-    "cone_share" => ConeShare,
+    "cone_share" => ConeShare, "area" => Area, "length" => Length, "count" => Count, "tip" => Tip,
 });
+
+choice!(RadialMeasure { "count" => Count, "longest" => Longest, "crushed_radius" => CrushedRadius });
+
+choice!(DamagedMeasure { "volume" => Volume, "area" => Area, "share" => Share });
+
+choice!(Wave { "compression" => Compression, "shear" => Shear, "rayleigh" => Rayleigh });
 
 /// Components of the stress tensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,7 +11,7 @@ const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
 /// Reads the stress; none where the case has none, nothing where it is wrong.
 pub(super) fn read(root: &Table<'_>) -> Option<Option<InSitu>> {
     let Some(table) = root.table("in_situ") else { return Some(None) };
-    let groups = groups(&table);
+    let groups = groups(&table, "groups");
     let mut complete = true;
     let stress = table.table("stress").map(|stress| {
         let components = COMPONENTS.map(|name| {
@@ -35,8 +35,9 @@ pub(super) fn read(root: &Table<'_>) -> Option<Option<InSitu>> {
     Some(Some(InSitu { place, stress: stress.filter(|_| complete)?, groups: groups? }))
 }
 
-fn groups(table: &Table<'_>) -> Option<Vec<Spanned<String>>> {
-    let Some(node) = table.node("groups") else { return Some(Vec::new()) };
+/// A list of names of mesh groups; empty where the key is absent.
+pub(super) fn groups(table: &Table<'_>, key: &str) -> Option<Vec<Spanned<String>>> {
+    let Some(node) = table.node(key) else { return Some(Vec::new()) };
     let wrong = || {
         let note = Diagnostic::error(&node.place, node.found());
         table.reader.note(note.expected("a list of names of mesh groups"));

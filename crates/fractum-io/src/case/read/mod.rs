@@ -11,6 +11,7 @@ mod in_situ;
 mod loose;
 mod materials;
 mod parameters;
+mod ppv;
 mod presence;
 mod probe_kinds;
 mod probes;

@@ -2,7 +2,7 @@
 
 use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
-use fractum_scene::{Along, CrackMeasure, FragmentMeasure, GasMeasure, SurfaceMeasure};
+use fractum_scene::{Along, CrackMeasure, DamagedMeasure, FragmentMeasure, GasMeasure, RadialMeasure, SurfaceMeasure};
 
 use super::boundary::selection;
 use super::presence::optional;
@@ -74,6 +74,15 @@ pub(super) fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKin
         "angular_momentum" => (ProbeKind::AngularMomentum { along: along()? }, Dimension::ANGULAR_MOMENTUM),
         "gas" => gas(table)?,
         "crack" => crack(table)?,
+        "radial_cracks" => radial_cracks(table)?,
+        "damaged" => damaged(table)?,
+        "wave_speed" => {
+            let inner = table.table(key)?;
+            let body = inner.text("body").spanned().required();
+            let wave = inner.choice("wave").required();
+            inner.finish("here");
+            (ProbeKind::WaveSpeed { body: body?, wave: wave? }, Dimension::VELOCITY)
+        }
         _ => {
             table.flag("crack_area").check(|on| *on, "true; leave the probe out where it is not wanted").required()?;
             (ProbeKind::CrackArea, Dimension::AREA)
@@ -172,7 +181,12 @@ fn fragment(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
 fn crack(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
     let inner = table.table("crack")?;
     let measure = inner.choice("measure").required();
-    let along = direction(&inner, "along").required();
+    let along = if measure.is_none_or(CrackMeasure::has_direction) {
+        direction(&inner, "along").required()
+    } else {
+        inner.refuse("along", "with this measure");
+        Some(Vec3::zeros())
+    };
     let within = optional(&inner, "where", |name| condition(&inner, name).spanned().given());
     let about_axis = matches!(measure, Some(CrackMeasure::Helix | CrackMeasure::Cone | CrackMeasure::ConeShare));
     let origin = if about_axis {
@@ -183,7 +197,44 @@ fn crack(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
     };
     inner.finish("here");
     let measure = measure?;
-    let dimension =
-        if matches!(measure, CrackMeasure::Centre | CrackMeasure::Front) { Dimension::LENGTH } else { Dimension::NONE };
+    let dimension = match measure {
+        CrackMeasure::Area => Dimension::AREA,
+        CrackMeasure::Centre | CrackMeasure::Front | CrackMeasure::Length | CrackMeasure::Tip => Dimension::LENGTH,
+        _ => Dimension::NONE,
+    };
     Some((ProbeKind::Crack { measure, along: along?, point: origin?, within: within? }, dimension))
+}
+
+fn radial_cracks(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("radial_cracks")?;
+    let measure = inner.choice("measure").required();
+    let about = axis(&inner);
+    let radius = if measure == Some(RadialMeasure::Count) {
+        inner.quantity("radius").check(|radius| *radius > 0.0, "a radius above 0").required()
+    } else {
+        inner.refuse("radius", "with this measure");
+        Some(0.0)
+    };
+    let within = optional(&inner, "where", |name| condition(&inner, name).spanned().given());
+    inner.finish("here");
+    let measure = measure?;
+    let dimension = if measure == RadialMeasure::Count { Dimension::NONE } else { Dimension::LENGTH };
+    Some((ProbeKind::RadialCracks { measure, about: about?, radius: radius?, within: within? }, dimension))
+}
+
+fn damaged(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("damaged")?;
+    let measure = inner.choice("measure").required();
+    let threshold =
+        inner.quantity("threshold").check(|share| *share > 0.0 && *share <= 1.0, "above 0, up to 1").or(0.5);
+    let group = optional(&inner, "group", |name| inner.text(name).spanned().given());
+    let within = optional(&inner, "where", |name| condition(&inner, name).spanned().given());
+    inner.finish("here");
+    let measure = measure?;
+    let dimension = match measure {
+        DamagedMeasure::Volume => Dimension::VOLUME,
+        DamagedMeasure::Area => Dimension::AREA,
+        DamagedMeasure::Share => Dimension::NONE,
+    };
+    Some((ProbeKind::Damaged { measure, threshold, group: group?, within: within? }, dimension))
 }

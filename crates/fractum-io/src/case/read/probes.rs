@@ -47,6 +47,9 @@ const REDUCTIONS: [(&str, Take); 7] = [
     ("front_speed", Take::Speed),
 ];
 
+/// Functions of a probe and a time.
+const OF_A_TIME: [&str; 2] = ["at", "slope"];
+
 /// Reads all probes in order.
 pub(super) fn read(root: &Table<'_>) -> ReadProbes {
     let tables = root.tables("probes");
@@ -89,6 +92,9 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
         "gas",
         "crack_area",
         "crack",
+        "radial_cracks",
+        "damaged",
+        "wave_speed",
         "expression",
     ];
     let Some(key) = exactly_one(&table, KINDS) else { return read };
@@ -118,7 +124,7 @@ fn good_name(table: &Table<'_>, name: &Spanned<String>, is_first: bool) -> bool 
         "is the name of an earlier probe"
     } else if reader.parameters.borrow().contains_key(&name.value) {
         "is the name of a parameter"
-    } else if name.value == "at" || REDUCTIONS.iter().any(|(known, _)| *known == name.value) {
+    } else if OF_A_TIME.contains(&name.value.as_str()) || REDUCTIONS.iter().any(|(known, _)| *known == name.value) {
         "is the name of a function"
     } else {
         return true;
@@ -261,7 +267,11 @@ impl Names for ProbeNames<'_> {
     }
 
     fn reduces(&self, function: &str) -> bool {
-        function == "at" || REDUCTIONS.iter().any(|(name, _)| *name == function)
+        OF_A_TIME.contains(&function) || REDUCTIONS.iter().any(|(name, _)| *name == function)
+    }
+
+    fn needs_time(&self, function: &str) -> bool {
+        OF_A_TIME.contains(&function)
     }
 
     fn reduce(&mut self, function: &str, name: &str, at: Option<f64>) -> Result<Named, String> {
@@ -272,8 +282,10 @@ impl Names for ProbeNames<'_> {
         if self.earlier[probe].scalar {
             return Err(format!("\"{name}\" is one number already and has no history for {function}()"));
         }
-        self.scalar = true;
+        // A slope is one more history.
+        self.scalar |= function != "slope";
         let take = match at {
+            Some(time) if function == "slope" => Take::Slope(time),
             Some(time) => Take::At(time),
             None => {
                 let found = REDUCTIONS.iter().find(|(name, _)| *name == function);
@@ -282,8 +294,8 @@ impl Names for ProbeNames<'_> {
         };
         let kind = match (take, kind) {
             (Take::TimeOfMax, _) => Type::number(Dimension::TIME),
-            (Take::Speed, Type::Number { dimension, .. }) => {
-                let out_of_range = || format!("front_speed({name}) has a dimension out of range");
+            (Take::Speed | Take::Slope(_), Type::Number { dimension, .. }) => {
+                let out_of_range = || format!("{function}({name}) has a dimension out of range");
                 Type::number(dimension.over(Dimension::TIME).ok_or_else(out_of_range)?)
             }
             _ => kind,

@@ -228,6 +228,7 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>) -> Option<Output> {
     let fragments = table.table_or_empty("fragments");
     let joined_below = fragments.quantity("joined_below").between(0.0, 1.0).or(JOINED_BELOW);
     fragments.finish("here");
+    let ppv = super::ppv::read(&table);
     table.finish("here");
     let end = end?;
     Some(Output {
@@ -235,5 +236,6 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>) -> Option<Output> {
         history_every: history.unwrap_or(end / ROWS),
         checkpoint_every: checkpoint.unwrap_or(CHECKPOINT),
         joined_below,
+        ppv: ppv?,
     })
 }

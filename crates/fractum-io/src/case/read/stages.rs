@@ -126,8 +126,8 @@ pub(super) fn joined(reader: &Reader, cases: Vec<Option<Case>>) -> Option<Case> 
             reader.note(note.expected("\"static\" or \"explicit\""));
         }
     }
-    let output = cases.last()?.output;
-    cases.iter_mut().for_each(|case| case.output = output);
+    let output = cases.last()?.output.clone();
+    cases.iter_mut().for_each(|case| case.output = output.clone());
     let later = cases.split_off(1);
     Some(Case { later, ..cases.pop()? })
 }

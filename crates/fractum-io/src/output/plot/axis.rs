@@ -87,6 +87,9 @@ impl Scale {
     }
 
     fn logarithmic(axis: &Axis, low: f64, high: f64, ends: [f64; 2]) -> Self {
+        if high < 60.0 * low {
+            return Self::narrow_logarithmic(axis, low, high, ends);
+        }
         let decades = (log10(low).floor() as i32, (log10(high).ceil() as i32).max(log10(low).floor() as i32 + 1));
         let prefix = prefixed(high, &axis.unit);
         let step = ((decades.1 - decades.0) / 8 + 1) as usize;
@@ -97,6 +100,19 @@ impl Scale {
         let ticks = ticks.collect();
         let (low, high) = (10f64.powi(decades.0), 10f64.powi(decades.1));
         Self { low, high, logarithmic: true, prefix, ends, ticks }
+    }
+
+    /// Less than two decades: ticks at 1, 2 and 5 times powers of ten.
+    fn narrow_logarithmic(axis: &Axis, low: f64, high: f64, ends: [f64; 2]) -> Self {
+        let prefix = prefixed(high, &axis.unit);
+        let first = log10(low).floor() as i32;
+        let round = (first..first + 4).flat_map(|decade| [1.0, 2.0, 5.0].map(|factor| factor * 10f64.powi(decade)));
+        let round: Vec<f64> = round.collect();
+        let from = round.iter().rposition(|&tick| tick <= low * 1.000_001).unwrap_or(0);
+        let to = round.iter().position(|&tick| tick >= high * 0.999_999).unwrap_or(round.len() - 1).max(from + 1);
+        let label = |value: f64| crate::number::significant(value / prefix.factor, 3);
+        let ticks = round[from..=to].iter().map(|&value| Tick { value, label: label(value) }).collect();
+        Self { low: round[from], high: round[to], logarithmic: true, prefix, ends, ticks }
     }
 
     /// Where `value` is on paper [pixels].
@@ -168,6 +184,8 @@ mod tests {
     fn a_logarithmic_axis_has_its_decades() {
         let axis = Axis::new("size", "m").logarithmic();
         assert_eq!(labels(&axis, &[-1.0, 0.0, 0.0004, 0.05]), ["0.1", "1", "10", "100"]);
+        assert_eq!(labels(&axis, &[0.003, 0.04]), ["2", "5", "10", "20", "50"]);
+        assert_eq!(labels(&axis, &[0.01]), ["10", "20"]);
     }
 
     #[test]

@@ -44,6 +44,8 @@ pub enum Style {
     Area,
     /// A thick dark line, to stand before areas.
     Outline,
+    /// Points without a line.
+    Points,
 }
 
 /// Points of one quantity. Points that are not finite interrupt the line.
@@ -154,7 +156,7 @@ impl Chart {
         match self.series[index].style {
             Style::Outline => "#111",
             Style::Area => COLOURS[areas(&self.series[index + 1..]) % COLOURS.len()],
-            Style::Line | Style::Step => COLOURS[index % COLOURS.len()],
+            Style::Line | Style::Step | Style::Points => COLOURS[index % COLOURS.len()],
         }
     }
 
@@ -236,6 +238,9 @@ impl Chart {
 
     fn curve(&self, svg: &mut String, index: usize, points: &[[f64; 2]], x: &Scale, y: &Scale) {
         let style = self.series[index].style;
+        if style == Style::Points {
+            return self.dots(svg, index, points, x, y);
+        }
         let mut path = String::new();
         let mut run: Vec<[f64; 2]> = Vec::new();
         let mut finish = |run: &mut Vec<[f64; 2]>| {
@@ -273,7 +278,7 @@ impl Chart {
         let looks = match style {
             Style::Area => format!("fill=\"{colour}\" fill-opacity=\"0.75\" stroke=\"#fff\" stroke-width=\"0.5\""),
             Style::Outline => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" stroke-linejoin=\"round\""),
-            Style::Line | Style::Step => {
+            Style::Line | Style::Step | Style::Points => {
                 format!(
                     "fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" stroke-linejoin=\"round\" stroke-linecap=\"round\""
                 )
@@ -284,6 +289,14 @@ impl Chart {
             let _ = writeln!(svg, "<path d=\"{path}\" fill=\"#fff\"/>");
         }
         let _ = writeln!(svg, "<path d=\"{path}\" {looks}/>");
+    }
+
+    fn dots(&self, svg: &mut String, index: usize, points: &[[f64; 2]], x: &Scale, y: &Scale) {
+        let colour = self.colour(index);
+        for [px, py] in points.iter().filter(|[px, py]| self.x.shows(*px) && self.y.shows(*py)) {
+            let (px, py) = (x.place(*px), y.place(*py));
+            let _ = writeln!(svg, "<circle cx=\"{px:.1}\" cy=\"{py:.1}\" r=\"3.5\" fill=\"{colour}\"/>");
+        }
     }
 
     fn annotations(&self, svg: &mut String, x: &Scale, y: &Scale) {
@@ -373,6 +386,13 @@ mod tests {
         chart.marks.push(Mark { label: "elsewhere".into(), x: 5.0, y: 2.0 });
         let svg = chart.to_svg();
         assert!(svg.contains(">reference</text>") && svg.contains(">peak 2 N</text>") && !svg.contains("elsewhere"));
+    }
+
+    #[test]
+    fn points_are_dots_without_a_line() {
+        let svg = chart(vec![Series::new("a", vec![0.0, 1.0, 2.0], vec![1.0, f64::NAN, 2.0], Style::Points)]).to_svg();
+        assert_eq!(svg.matches("<circle").count(), 2);
+        assert!(!svg.contains("stroke-linejoin"));
     }
 
     #[test]

@@ -1,10 +1,12 @@
 //! The charts of the report, from the columns of the history.
 
 use super::{Curve, EnergyColumns};
-use crate::number::quantity;
+use crate::number::{quantity, significant};
+use crate::output::attenuation::Attenuation;
 use crate::output::fragments::Fragment;
 use crate::output::history::Table;
 use crate::output::plot::{Axis, Chart, Mark, Series, Style, stacked};
+use crate::output::summary::FragmentSizes;
 
 /// The column called `name`, as an axis with that name in words, and its values.
 fn axis(history: &Table, name: &str) -> Option<(Axis, Vec<f64>)> {
@@ -108,6 +110,78 @@ pub(super) fn fragment_sizes(fragments: &[Fragment]) -> Option<Chart> {
     Some(Chart { title: "Fragment sizes".into(), x, y, series, ..Chart::default() })
 }
 
+/// Share of the mass in pieces of at most a size, with the sizes of a fifth, half and four fifths; `None` for fewer than
+/// two pieces.
+pub(super) fn passing(fragments: &[Fragment], sizes: Option<&FragmentSizes>) -> Option<Chart> {
+    let mut pieces: Vec<(f64, f64)> = fragments.iter().map(|piece| (piece.size, piece.mass)).collect();
+    pieces.retain(|(size, mass)| size.is_finite() && *size > 0.0 && *mass > 0.0);
+    if pieces.len() < 2 {
+        return None;
+    }
+    pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let all: f64 = pieces.iter().map(|piece| piece.1).sum();
+    let (mut x, mut y, mut passed) = (vec![pieces[0].0], vec![0.0], 0.0);
+    for (size, mass) in pieces {
+        passed += mass;
+        x.push(size);
+        y.push(100.0 * passed / all);
+    }
+    let marks = sizes.map_or_else(Vec::new, |sizes| {
+        let mark = |(name, share, size): (&str, f64, f64)| Mark {
+            label: format!("{name} {}", quantity(size, "m")),
+            x: size,
+            y: share,
+        };
+        [("P20", 20.0, sizes.p20), ("P50", 50.0, sizes.p50), ("P80", 80.0, sizes.p80)].map(mark).into()
+    });
+    Some(Chart {
+        title: "Size distribution of the fragments".into(),
+        x: Axis::new("size: diameter of equal volume, in the plane of equal area", "m").logarithmic(),
+        y: Axis::new("mass passing [%]", "-").from_zero(),
+        series: vec![Series::new("passing", x, y, Style::Step)],
+        marks,
+        ..Chart::default()
+    })
+}
+
+/// Largest velocities against scaled distance with their power laws, one chart per unit of distance.
+pub(super) fn attenuations(lines: &[Attenuation]) -> Vec<Chart> {
+    let mut units: Vec<&str> = Vec::new();
+    for line in lines {
+        if !units.contains(&line.unit.as_str()) {
+            units.push(&line.unit);
+        }
+    }
+    let chart = |unit: &&str| {
+        let (label, unit) = match *unit {
+            "-" => ("distance over the radius of the hole", "-"),
+            "m/kg^(1/2)" => ("scaled distance R/√Q [m/kg^½]", "-"),
+            "m/kg^(1/3)" => ("scaled distance R/∛Q [m/kg^⅓]", "-"),
+            other => ("scaled distance", other),
+        };
+        Chart {
+            title: "Peak particle velocity".into(),
+            x: Axis::new(label, unit).logarithmic(),
+            y: Axis::new("peak particle velocity", "m/s").logarithmic(),
+            ..Chart::default()
+        }
+    };
+    let mut charts: Vec<Chart> = units.iter().map(chart).collect();
+    for line in lines {
+        let chart = &mut charts[units.iter().position(|unit| *unit == line.unit).unwrap_or(0)];
+        let distances: Vec<f64> = line.stations.iter().map(|station| station.scaled_distance).collect();
+        let velocities = line.stations.iter().map(|station| station.velocity).collect();
+        chart.series.push(Series::new(words(&line.name), distances.clone(), velocities, Style::Points));
+        if line.exponent.is_finite() {
+            let [factor, exponent] = [line.intercept, -line.exponent].map(|value| significant(value, 3));
+            let law = format!("{factor} m/s · s^{exponent} (r² = {})", significant(line.r_squared, 3));
+            let values = distances.iter().map(|distance| line.velocity(*distance)).collect();
+            chart.series.push(Series::new(law, distances, values, Style::Line));
+        }
+    }
+    charts
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -156,6 +230,36 @@ mod tests {
         assert_eq!(chart.series[0].y, [0.0, 2.0, 3.0]);
         let chart = energy(&history(), &columns(&["elastic", "load"])).unwrap();
         assert!(chart.series.iter().all(|series| series.style != Style::Area));
+    }
+
+    #[test]
+    fn the_share_that_passes_rises_to_all_of_the_mass() {
+        let piece = |size, mass| Fragment { size, mass, ..Fragment::default() };
+        assert_eq!(passing(&[piece(0.1, 1.0)], None), None);
+        let sizes = FragmentSizes { p20: 0.02, p50: 0.1, p80: 0.1 };
+        let chart = passing(&[piece(0.1, 3.0), piece(0.01, 0.5), piece(0.02, 0.5)], Some(&sizes)).unwrap();
+        assert_eq!(chart.series[0].x, [0.01, 0.01, 0.02, 0.1]);
+        assert_eq!(chart.series[0].y, [0.0, 12.5, 25.0, 100.0]);
+        let marks: Vec<&str> = chart.marks.iter().map(|mark| mark.label.as_str()).collect();
+        assert_eq!(marks, ["P20 20 mm", "P50 100 mm", "P80 100 mm"]);
+    }
+
+    #[test]
+    fn velocities_have_one_chart_per_unit_of_distance() {
+        use crate::output::attenuation::Station;
+        let line = |name: &str, unit: &str, moves: f64| {
+            let station = |i: u32| Station {
+                scaled_distance: f64::from(i),
+                velocity: moves / f64::from(i * i),
+                ..Station::default()
+            };
+            Attenuation::new(name, unit, (1..5).map(station).collect())
+        };
+        let lines = [line("east", "-", 2.0), line("north", "-", 0.0), line("far", "m/kg^(1/2)", 1.0)];
+        let charts = attenuations(&lines);
+        let names: Vec<&str> = charts[0].series.iter().map(|series| series.name.as_str()).collect();
+        assert_eq!(names, ["east", "2 m/s · s^-2 (r² = 1)", "north"]);
+        assert_eq!((charts.len(), charts[1].series.len()), (2, 2));
     }
 
     #[test]

@@ -99,6 +99,8 @@ pub fn to_html(data: &ReportData) -> String {
     let mut figures: Vec<Chart> = data.curves.iter().filter_map(|curve| charts::curve(history, curve)).collect();
     figures.extend(data.energy.as_ref().and_then(|columns| charts::energy(history, columns)));
     figures.extend(charts::cracks(history, &data.cracks));
+    figures.extend(charts::attenuations(&summary.ppv));
+    figures.extend(charts::passing(&data.fragments, summary.fragment_sizes.as_ref()));
     figures.extend(charts::fragment_sizes(&data.fragments));
     let page = html! {
         (DOCTYPE)
@@ -243,7 +245,7 @@ fn fragments(fragments: &[Fragment]) -> Markup {
                 }
                 div.scroll { table {
                     tr {
-                        th.number { "Piece" } th.number { "Mass" } th.number { "Volume" } th.number { "Extent" }
+                        th.number { "Piece" } th.number { "Mass" } th.number { "Volume" } th.number { "Size" } th.number { "Extent" }
                         th.number { "Elements" } th.number { "Nodes" } th.number { "Speed" }
                     }
                     @for piece in fragments.iter().take(FRAGMENTS_LISTED) {
@@ -252,6 +254,7 @@ fn fragments(fragments: &[Fragment]) -> Markup {
                             td.number { (piece.id) }
                             td.number { (quantity(piece.mass, "kg")) }
                             td.number { (quantity(piece.volume, "m^3")) }
+                            td.number { (quantity(piece.size, "m")) }
                             td.number { (quantity(piece.largest_extent, "m")) }
                             td.number { (grouped(&piece.elements.to_string())) }
                             td.number { (grouped(&piece.nodes.to_string())) }
