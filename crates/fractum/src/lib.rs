@@ -56,6 +56,7 @@ mod record;
 mod record_bonded;
 pub mod report;
 mod run;
+mod series;
 mod simulation;
 mod solver;
 pub mod stress;

@@ -19,6 +19,7 @@ use crate::error::Failure;
 use crate::gas_cells;
 use crate::left;
 use crate::record_bonded as bonds;
+use crate::series::{index_of_max, interpolate, slope_of_window, speed, time_mean};
 
 /// Columns of the history before the probes: name and unit.
 fn ledger_columns(bonded: bool) -> Vec<(&'static str, &'static str)> {
@@ -441,58 +442,6 @@ fn next_index(time: f64, interval: f64) -> u64 {
     (time / interval * (1.0 + 1e-12)).floor() as u64 + 1
 }
 
-pub(crate) fn index_of_max(values: &[f64]) -> Option<usize> {
-    (0..values.len()).reduce(|best, i| if values[i] > values[best] { i } else { best })
-}
-
-fn time_mean(times: &[f64], values: &[f64]) -> f64 {
-    let span = times.last().unwrap_or(&0.0) - times.first().unwrap_or(&0.0);
-    if span <= 0.0 {
-        return values.last().copied().unwrap_or(f64::NAN);
-    }
-    let trapezoid = |i: usize| 0.5 * (values[i] + values[i + 1]) * (times[i + 1] - times[i]);
-    (0..values.len().saturating_sub(1)).map(trapezoid).sum::<f64>() / span
-}
-
-/// Least squares slope through the rows in which the value is another than in the row before, so that waiting before the
-/// first change and after the last does not count; not a number where there are fewer than two such rows.
-fn speed(times: &[f64], values: &[f64]) -> f64 {
-    let changed = |&i: &usize| values[i].is_finite() && (i == 0 || values[i] != values[i - 1]);
-    let rows: Vec<usize> = (0..values.len()).filter(changed).collect();
-    slope(times, values, &rows)
-}
-
-/// Least squares slope over the rows that are at most `window` older than the last one; not a number before the values
-/// have been finite for so long.
-fn slope_of_window(times: &[f64], values: &[f64], window: f64) -> f64 {
-    let Some(last) = times.last() else { return f64::NAN };
-    let first = times.partition_point(|&time| time < last - window * (1.0 + 1e-12));
-    let full = first > 0 || times.first().is_some_and(|start| last - start >= window * (1.0 - 1e-12));
-    let rows: Vec<usize> = (first..values.len()).collect();
-    if full && rows.iter().all(|&row| values[row].is_finite()) { slope(times, values, &rows) } else { f64::NAN }
-}
-
-/// Least squares slope over some rows; not a number where there are fewer than two.
-fn slope(times: &[f64], values: &[f64], rows: &[usize]) -> f64 {
-    let mean = |of: &[f64]| rows.iter().map(|&i| of[i]).sum::<f64>() / rows.len() as f64;
-    let (t, x) = (mean(times), mean(values));
-    let (mut slope, mut weight) = (0.0, 0.0);
-    for &i in rows {
-        slope += (times[i] - t) * (values[i] - x);
-        weight += (times[i] - t).powi(2);
-    }
-    slope / weight
-}
-
-fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
-    let next = times.partition_point(|&t| t <= time);
-    match (next.checked_sub(1), values.get(next)) {
-        (Some(i), Some(after)) => values[i] + (after - values[i]) * (time - times[i]) / (times[next] - times[i]),
-        (Some(i), None) => values[i],
-        (None, _) => values.first().copied().unwrap_or(f64::NAN),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -509,31 +458,5 @@ mod tests {
         let left = left::COLUMNS.iter().map(|(name, _)| *name);
         let names: Vec<&str> = unbonded.iter().map(|(name, _)| *name).chain(left).chain(["load"]).collect();
         assert_eq!(count_ledger_columns(&names), unbonded.len() + left::COLUMNS.len());
-    }
-
-    #[test]
-    fn the_slope_of_a_window_smooths_the_leaps_of_a_tip() {
-        let times: Vec<f64> = (0..40).map(|row| 1e-6 * f64::from(row)).collect();
-        // 1,000 m/s in leaps of 4 mm every fourth row.
-        let tip: Vec<f64> = (0..40).map(|row| if row < 8 { f64::NAN } else { 4e-3 * f64::from(row / 4) }).collect();
-        for end in 30..40 {
-            let speed = slope_of_window(&times[..end], &tip[..end], 16e-6);
-            assert!((speed / 1000.0 - 1.0).abs() < 0.07, "{speed}");
-        }
-        assert!(slope_of_window(&times[..20], &tip[..20], 16e-6).is_nan(), "no tip for so long");
-        assert!(slope_of_window(&times[..3], &times[..3], 16e-6).is_nan(), "no run for so long");
-        assert_eq!(slope_of_window(&times[..3], &[0.0, 1.0, 2.0], 2e-6), 1e6);
-    }
-
-    #[test]
-    fn speed_is_the_slope_of_the_steps_of_a_front() {
-        let nan = f64::NAN;
-        let times: Vec<f64> = (0..12).map(f64::from).collect();
-        // Waits for three rows, goes on by 5 every second row, and has arrived in row 9.
-        let front = [nan, nan, nan, 10.0, 10.0, 15.0, 15.0, 20.0, 20.0, 25.0, 25.0, 25.0];
-        assert!((speed(&times, &front) - 2.5).abs() < 1e-12);
-        assert!(speed(&times, &[nan; 12]).is_nan());
-        let late = [nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, 3.0];
-        assert!(speed(&times, &late).is_nan(), "one place is no way");
     }
 }

@@ -10,7 +10,8 @@ use fractum_io::summary::{self, Status, Summary};
 use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, SceneState, passing_size};
 
 use crate::phases::Phases;
-use crate::record::{Recorder, index_of_max};
+use crate::record::Recorder;
+use crate::series::index_of_max;
 
 /// What the last state of the scene tells.
 pub(crate) fn of_scene(scene: &Scene) -> Summary {
