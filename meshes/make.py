@@ -62,6 +62,10 @@ UNSTRUCTURED = {
     "blast-plane/shale": ("blast-plane/hole.geo", {"h": 0.02, "band": 0.06, "L": 30}, False),
     "blast-plane/granite": ("blast-plane/disc.geo", {"h": 0.0006, "far": 0.0011, "length": 0}, False),
     "blast-plane/bench": ("blast-plane/bench.geo", {"h": 0.06}, False),
+    "blast/bench": ("blast/bench.geo", {}, True),
+    "blast/granite": ("blast-plane/disc.geo", {"h": 0.0025, "far": 0.009, "length": 0.15}, True),
+    "absorbing-plane/p-30": ("absorbing-plane/channel.geo", {"angle": 30, "W": 0.1, "L": 0.03}, False),
+    "absorbing-plane/p-60": ("absorbing-plane/channel.geo", {"angle": 60, "W": 0.1, "L": 0.03}, False),
     "bending-plane/plain": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0, "layers": 0}, False),
     "bending-plane/notched": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0.03, "layers": 0}, False),
     "bending-plane/notched-10": ("bending/beam.geo", {"h": 0.01, "far": 0.02, "notch": 0.03, "layers": 0}, False),
@@ -73,6 +77,7 @@ LARGE = {
     "large/56k": ("cube.geo", {"h": 0.0436}, True),
     "large/500k": ("cube.geo", {"h": 0.0211}, True),
     "large/2M": ("cube.geo", {"h": 0.0131}, True),
+    "large/granite": ("blast-plane/disc.geo", {"h": 0.0018, "far": 0.0040, "length": 0.15}, True),
 }
 
 ENDS = {"left": ["x_min"], "right": ["x_max"]}

@@ -6,8 +6,7 @@ DefineConstant[
   a = 0.003225,      // radius of the hole
   h = 0.0005,        // element size at the hole
   far = 0.0009,      // at the rim
-  length = 0,        // length of a cylinder; 0 for the plane disc
-  layers = 1         // of elements along it
+  length = 0         // of a cylinder; 0 for the plane disc
 ];
 
 Point(1) = {0, 0, 0};
@@ -41,6 +40,8 @@ Else
   Physical Surface("ends") = {1, out[0]};
   Physical Surface("rim") = {out[2], out[3], out[4], out[5]};
   Physical Surface("hole") = {out[6], out[7], out[8], out[9]};
+  Mesh.Optimize = 1;
+  Mesh.OptimizeNetgen = 1;
 EndIf
 
 Mesh.Algorithm = 6;

@@ -5,6 +5,10 @@ use fractum_math::Vec3;
 use crate::conditions::Points;
 use crate::time_function::TimeFunction;
 
+/// Area of a facet under pressure over that without load, at most. Facets of a crushed wall join particles that fly apart: they would grow, be
+/// pushed the more and grow the faster, without any limit. Sound rock breaks far below such strains.
+const LARGEST_STRETCH: f64 = 2.0;
+
 /// Pressure on facets, along their present normals [Pa]; positive pushes into the body.
 #[derive(Clone)]
 pub struct Pressure {
@@ -24,7 +28,8 @@ impl Pressure {
     }
 }
 
-/// A third of p times the area vector of a facet on each of its corners, half on each end of a plane edge.
+/// A third of p times the area vector of a facet on each of its corners, half on each end of a plane edge; the area is at most
+/// twice that without load.
 ///
 /// - `pressure`: at the reference centre of the facet [Pa]
 pub(super) fn push_facet(
@@ -34,24 +39,75 @@ pub(super) fn push_facet(
     pressure: impl Fn(&Vec3) -> f64,
     forces: &mut Vec<(u32, Vec3)>,
 ) {
-    let [a, b, c] = facet.map(|n| n as usize);
-    let p = [a, b, c].map(|n| points.position(n));
+    let place = facet.map(|n| points.position(n as usize));
+    let [a, b, c] = facet.map(|n| points.reference(n as usize));
+    let (centre, corners) = if thickness > 0.0 { ((a + b) * 0.5, 2) } else { ((a + b + c) / 3.0, 3) };
+    let area = area_vector(&place, thickness);
+    let largest = LARGEST_STRETCH * area_vector(&[*a, *b, *c], thickness).norm();
+    let share = (largest / area.norm()).min(1.0);
+    let force = area * (-pressure(&centre) / corners as f64 * share);
+    forces.extend(facet[..corners].iter().map(|&n| (n, force)));
+}
+
+/// Outward area vector of a triangle, or of an edge in the plane with this thickness [m²].
+fn area_vector(p: &[Vec3; 3], thickness: f64) -> Vec3 {
+    let along = p[1] - p[0];
     if thickness > 0.0 {
-        let centre = (points.reference(a) + points.reference(b)) * 0.5;
-        let along = p[1] - p[0];
-        let area = Vec3::new(along.y, -along.x, 0.0) * thickness;
-        let force = area * (-0.5 * pressure(&centre));
-        forces.extend([(facet[0], force), (facet[1], force)]);
+        Vec3::new(along.y, -along.x, 0.0) * thickness
     } else {
-        let centre = (points.reference(a) + points.reference(b) + points.reference(c)) / 3.0;
-        let area = (p[1] - p[0]).cross(&(p[2] - p[0])) * 0.5;
-        let force = area * (-pressure(&centre) / 3.0);
-        forces.extend(facet.map(|n| (n, force)));
+        along.cross(&(p[2] - p[0])) * 0.5
     }
 }
 
 impl fmt::Debug for Pressure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Pressure({} facets)", self.facets.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three nodes of a triangle in the xy-plane that has been stretched from the origin.
+    struct Stretched(f64, [Vec3; 3]);
+
+    impl Points for Stretched {
+        fn reference(&self, point: usize) -> &Vec3 {
+            &self.1[point]
+        }
+
+        fn position(&self, point: usize) -> Vec3 {
+            self.1[point] * self.0
+        }
+
+        fn displacement(&self, point: usize) -> Vec3 {
+            self.1[point] * (self.0 - 1.0)
+        }
+
+        fn displacement_before(&self, point: usize, _: f64) -> Vec3 {
+            self.displacement(point)
+        }
+
+        fn velocity(&self, _: usize) -> &Vec3 {
+            &self.1[0]
+        }
+    }
+
+    #[test]
+    fn the_force_grows_with_the_facet_until_it_is_torn_open() {
+        let push = |stretch: f64, facet, thickness| {
+            let nodes = [Vec3::zeros(), Vec3::x() * 2.0, Vec3::y()];
+            let mut forces = Vec::new();
+            push_facet(&Stretched(stretch, nodes), &facet, thickness, |_| 6.0, &mut forces);
+            forces.iter().map(|(_, force)| force).sum::<Vec3>()
+        };
+        let in_space = [1.0, 1.2, 10.0].map(|stretch| push(stretch, [0, 1, 2], 0.0));
+        assert!((in_space[0] - Vec3::z() * -6.0).norm() < 1e-12);
+        assert!((in_space[1] - Vec3::z() * -6.0 * 1.44).norm() < 1e-12);
+        assert!((in_space[2] - Vec3::z() * -12.0).norm() < 1e-12);
+        let in_plane = [1.5, 30.0].map(|stretch| push(stretch, [0, 1, 1], 0.1));
+        assert!((in_plane[0] - Vec3::y() * 1.2 * 1.5).norm() < 1e-12);
+        assert!((in_plane[1] - Vec3::y() * 2.4).norm() < 1e-12);
     }
 }
