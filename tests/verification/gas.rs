@@ -8,7 +8,8 @@ use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Charge, ContactParameters, EnergyKind, Gas, GasHole, GasSettings, Loads, Scene, Stemming, Supports,
+    Charge, ContactParameters, EnergyKind, Gas, GasHole, GasSettings, HoleEnds, Loads, Motion, Scene, Support,
+    Supports, SymmetryPlanes,
 };
 use fractum_tests::{CONCRETE, softening, surface};
 
@@ -60,22 +61,35 @@ fn hole(solid: &Solid) -> Vec<[u32; 3]> {
 }
 
 fn blast(solid: Solid, pressure: f64, end: f64) -> Scene {
+    let facets = hole(&solid);
+    blast_in(solid, facets, SymmetryPlanes::default(), pressure, end)
+}
+
+/// Gas in a hole of a solid that is held where it ends at planes of symmetry.
+fn blast_in(solid: Solid, facets: Vec<[u32; 3]>, symmetry: SymmetryPlanes, pressure: f64, end: f64) -> Scene {
     let gas = GasSettings {
         law: EquationOfState::PerfectGas(PerfectGas { heat_ratio: HEAT_RATIO, gas_constant: 300.0 }),
         slits: SlitFlow { viscosity: 5e-5, roughness: 1e-5 },
         least_opening: 1e-5,
         in_cracks: true,
         outside_pressure: 1e5,
+        symmetry,
         holes: vec![GasHole {
-            facets: hole(&solid),
-            stemming: Stemming::default(),
+            ends: HoleEnds::find(&solid, &facets, symmetry, false).unwrap(),
+            facets,
             charge: Charge::State { pressure, temperature: 2500.0 },
             source: None,
         }],
     };
     let loads = Loads::new(Vec::new(), solid.reference.len()).with_gas(Some(Gas::new(&solid, gas)));
     let debris = Debris::new(&solid, vec![ContactParameters { friction: 0.5, ..ContactParameters::default() }]);
-    let supports = Supports::new(Vec::new(), &solid.reference).unwrap();
+    let held = (0..3).filter_map(|axis| {
+        let on = |n: &u32| (solid.reference[*n as usize][axis] - symmetry.0[axis].unwrap()).abs() < 1e-9;
+        symmetry.0[axis]?;
+        let nodes = (0..solid.reference.len() as u32).filter(on).collect();
+        Some(Support::new("symmetry", nodes, axis, Motion::Fixed))
+    });
+    let supports = Supports::new(held.collect(), &solid.reference).unwrap();
     let settings = fractum_tests::settings(end, f64::INFINITY);
     Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
 }
@@ -113,14 +127,93 @@ fn a_hole_through_a_cube_is_closed_by_stemming() {
     let on_end = |f: &[u32; 3]| f.iter().all(|&n| z(n) == 0.0) || f.iter().all(|&n| z(n) == SIZE);
     let facets = boundary_of_tetrahedra(&solid.body(0).elements).into_iter().map(|facet| facet.nodes);
     let facets: Vec<[u32; 3]> = facets.filter(|f| f.iter().all(inner) && !on_end(f)).collect();
-    let stemming = Stemming::find(&solid, &facets).unwrap();
+    let ends = HoleEnds::find(&solid, &facets, SymmetryPlanes::default(), true).unwrap();
     let rest: f64 = (0..solid.body(0).elements.len() as u32).map(|e| solid.element_volume(0, e)).sum();
-    let volume = Gas::hole_volume(&solid, &facets, &stemming);
+    let volume = Gas::hole_volume(&solid, &facets, &ends);
     assert!((volume / (SIZE.powi(3) - rest) - 1.0).abs() < 1e-9, "{volume}");
     // Half of the wall of the hole has one rim, which is not flat.
     let half = |f: &&[u32; 3]| f.iter().all(|&n| solid.reference[n as usize].x <= 0.5 * SIZE);
     let half: Vec<[u32; 3]> = facets.iter().filter(half).copied().collect();
-    assert!(Stemming::find(&solid, &half).is_err());
+    assert!(HoleEnds::find(&solid, &half, SymmetryPlanes::default(), true).is_err());
+}
+
+/// The part of a plate or cube with a hole beyond the planes through its middle, with the facets of the hole.
+fn part(cells: u32, plane: bool, damage: bool) -> (Solid, Vec<[u32; 3]>, SymmetryPlanes) {
+    let (axes, half) = (if plane { 2 } else { 3 }, 0.5 * SIZE);
+    let whole = cut(cells, plane, axes, damage);
+    let body = whole.body(0);
+    let corners = body.shape.node_count();
+    let inside = |e: &&[u32; 4]| {
+        let centre = e[..corners].iter().map(|&n| whole.reference[n as usize]).sum::<Vec3>() / corners as f64;
+        centre.iter().take(axes).all(|c| *c > half)
+    };
+    let elements: Vec<[u32; 4]> = body.elements.iter().filter(inside).copied().collect();
+    let mut new = vec![u32::MAX; whole.reference.len()];
+    elements.iter().flatten().for_each(|&n| new[n as usize] = 0);
+    let kept: Vec<usize> = (0..new.len()).filter(|&n| new[n] == 0).collect();
+    (0..).zip(&kept).for_each(|(number, &n)| new[n] = number);
+    // Nodes that the jitter has moved off the planes go back to them.
+    let cell = SIZE / cells as f64;
+    let on_plane = |c: f64| if (c - half).abs() < 0.3 * cell { half } else { c };
+    let nodes = kept.into_iter().map(|n| {
+        let mut place = whole.reference[n];
+        place.iter_mut().take(axes).for_each(|c| *c = on_plane(*c));
+        place
+    });
+    let elements = elements.into_iter().map(|e| e.map(|n| new[n as usize])).collect();
+    let solid = Solid::new(nodes.collect(), vec![Body { elements, ..body.clone() }]).unwrap();
+    let planes = SymmetryPlanes([Some(half), Some(half), (!plane).then_some(half)]);
+    let near = |n: &u32| (solid.reference[*n as usize] - Vec3::repeat(half)).iter().take(axes).all(|c| *c < 0.3 * SIZE);
+    let wall = |f: &[u32; 3]| f.iter().all(near) && planes.across(&solid, f, cell).is_none();
+    let facets = surface(&solid).into_iter().filter(wall).collect();
+    (solid, facets, planes)
+}
+
+#[test]
+fn a_hole_may_end_at_planes_of_symmetry() {
+    for (cells, plane, share) in [(40, true, 0.25), (20, false, 0.125)] {
+        let (solid, facets, planes) = part(cells, plane, false);
+        assert!(HoleEnds::find(&solid, &facets, SymmetryPlanes::default(), false).is_err());
+        let ends = HoleEnds::find(&solid, &facets, planes, false).unwrap();
+        let block = share * if plane { 0.02 * SIZE.powi(2) } else { SIZE.powi(3) };
+        let rest: f64 = (0..solid.body(0).elements.len() as u32).map(|e| solid.element_volume(0, e)).sum();
+        let volume = Gas::hole_volume(&solid, &facets, &ends);
+        assert!((volume / (block - rest) - 1.0).abs() < 1e-9, "{volume}");
+        let mut scene = blast_in(solid, facets, planes, 200e6, 100e-6);
+        let hole = |scene: &Scene| scene.gas().unwrap().cells().next().unwrap();
+        let invariant = |scene: &Scene| hole(scene).pressure * hole(scene).volume.powf(HEAT_RATIO);
+        scene.step(true).unwrap();
+        let (start, rest) = (invariant(&scene), hole(&scene).volume);
+        let mut largest: f64 = 0.0;
+        while !scene.is_finished() {
+            scene.step(true).unwrap();
+            largest = largest.max(hole(&scene).volume / rest - 1.0);
+            assert!((invariant(&scene) / start - 1.0).abs() < 1e-6);
+        }
+        assert!(largest > 1e-2 && scene.ledger().residual_max_relative < 1e-9);
+    }
+}
+
+#[test]
+fn gas_does_not_leak_where_cracks_reach_a_plane_of_symmetry() {
+    let (solid, facets, planes) = part(40, true, true);
+    let mut scene = blast_in(solid, facets, planes, 40e6, 60e-6);
+    let is_far = |scene: &Scene, (body, element): (usize, u32)| {
+        scene.solid.element_middle(body, element).iter().take(2).any(|c| *c > 0.9 * SIZE)
+    };
+    let reached = |scene: &Scene| {
+        scene.gas().unwrap().cells().filter_map(|cell| cell.element).any(|element| is_far(scene, element))
+    };
+    while !scene.is_finished() && !reached(&scene) {
+        scene.step(true).unwrap();
+    }
+    let gas = scene.gas().unwrap();
+    let on_plane = gas.cells().filter_map(|cell| cell.element).filter(|&(body, element)| {
+        let nodes = scene.solid.body(body).elements[element as usize];
+        (0..3).any(|i| planes.across(&scene.solid, &[nodes[i], nodes[(i + 1) % 3]], 0.01).is_some())
+    });
+    let (on_plane, leaked) = (on_plane.count(), gas.leaked().mass);
+    assert!(on_plane > 0 && leaked == 0.0, "{on_plane} cells on planes, leaked {leaked:e} kg");
 }
 
 #[test]

@@ -43,7 +43,7 @@ pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_re
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fractum_gas::{Amount, EquationOfState, Jwl, NobleAbel, PerfectGas, SlitFlow};
 pub use fragment::{Fragment, solid_pieces};
-pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, Stemming};
+pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, HoleEnds, SymmetryPlanes};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use piece_probe::{FragmentMeasure, SurfaceMeasure, equivalent_diameter, fragment_size, passing_size};
 pub use probe::{Population, Probe, ProbedScene};

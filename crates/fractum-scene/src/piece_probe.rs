@@ -5,7 +5,7 @@ use fractum_math::Vec3;
 use fractum_math::elementary::cbrt;
 
 use crate::fragment::Fragment;
-use crate::gas::{Stemming, enclosed_volume};
+use crate::gas::{HoleEnds, enclosed_volume};
 
 /// What a probe measures of facets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub(crate) fn measure_surface(solid: &Solid, facets: &[[u32; 3]], measure: Surfa
     let at = |node: u32| solid.position(node as usize);
     match measure {
         SurfaceMeasure::Area => facets.iter().map(|facet| solid.facet_area(facet, at).norm()).sum(),
-        SurfaceMeasure::Volume => enclosed_volume(solid, facets, &Stemming::default(), at),
+        SurfaceMeasure::Volume => enclosed_volume(solid, facets, &HoleEnds::default(), at),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Solid bodies: elements, nodes, materials, strength.
 
 use fractum_fem as fem;
-use fractum_fem::{DamageZone, Elastic, Formulation, Plane, Region, Solid};
+use fractum_fem::{CriterionKind, DamageLaw, DamageZone, Elastic, Formulation, Plane, Region, Solid};
 use fractum_math::Vec3;
 use fractum_math::elementary::{ln, pow};
 use fractum_mesh::renumber::hilbert_order;
@@ -243,8 +243,11 @@ impl<'a> Context<'a> {
                 *value *= scatter_factor(scatter, edge as u64, p);
             }
         }
+        // Rock that has failed under pressure goes on bearing it.
+        let crushes = damage.law.criterion.kind() != CriterionKind::Rankine && self.case.is_blast();
+        let unilateral = damage.unilateral.unwrap_or(crushes && body.formulation == Formulation::Smoothed);
         DamageZone {
-            law: damage.law.clone(),
+            law: DamageLaw { unilateral, ..damage.law.clone() },
             region,
             strength_factor,
             reduce_strength_to_fit: damage.reduce_strength_to_fit,

@@ -156,7 +156,7 @@ impl Context<'_> {
         let points = LoadedPoints::Nodes(&numbering, &surface);
         let mut loads = self.loads(&points);
         loads.extend(in_situ);
-        let gas = self.gas(&solid, &points, &loads);
+        let gas = self.gas(&solid, &points, &supports, &loads);
         let supports = match Supports::new(supports, &solid.reference) {
             Ok(supports) => supports,
             Err(error) => {

@@ -3,14 +3,13 @@
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
 use fractum_scene::{
-    Along, Bonded, BondedBody, ContactBody, ContactProbe, CrackMeasure, DamagedMeasure, DamagedPart, InsideCracks,
-    PointProbe, Population, Probe, RadialCracks, Supports, SurfaceMeasure,
+    Along, Bonded, BondedBody, ContactBody, ContactProbe, CrackMeasure, DamagedMeasure, DamagedPart, HoleEnds,
+    InsideCracks, PointProbe, Population, Probe, RadialCracks, Supports, SurfaceMeasure, SymmetryPlanes,
 };
 
 use super::Context;
 use super::bodies::{Numbering, Part};
 use super::conditions::Surface;
-use super::gas::open_end;
 use super::use_in_words;
 use crate::case::model::{self, GroupUse, ProbeKind, Selection};
 use crate::case::{Field, Spanned};
@@ -76,9 +75,10 @@ impl Context<'_> {
                 Probe::ContactForce(ContactProbe { on: body(&on.value)?, from: body(&from.value)?, along: *along })
             }
             ProbeKind::Load { on, along } => Probe::Load { points: self.selected_nodes(on, numbering), along: *along },
-            ProbeKind::Surface { on, measure } => {
-                Probe::Surface { facets: self.measured_facets(on, *measure, numbering, surface), measure: *measure }
-            }
+            ProbeKind::Surface { on, measure } => Probe::Surface {
+                facets: self.measured_facets(on, *measure, numbering, surface, solid),
+                measure: *measure,
+            },
             ProbeKind::Fragment { on, measure, along } => {
                 Probe::Fragment { points: self.selected_nodes(on, numbering), measure: *measure, along: *along }
             }
@@ -201,9 +201,11 @@ impl Context<'_> {
         measure: SurfaceMeasure,
         numbering: &Numbering,
         surface: &Surface,
+        solid: &Solid,
     ) -> Vec<[u32; 3]> {
         let facets = self.selected_facets(on, numbering, surface);
-        if measure == SurfaceMeasure::Volume && (facets.is_empty() || open_end(&facets).is_some()) {
+        let closed = || HoleEnds::find(solid, &facets, SymmetryPlanes::default(), false).is_ok();
+        if measure == SurfaceMeasure::Volume && (facets.is_empty() || !closed()) {
             let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
             self.error(&place, format!("= \"{}\" encloses no volume", on.label()), "facets that close around a cavity");
         }

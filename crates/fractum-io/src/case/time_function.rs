@@ -106,6 +106,18 @@ impl TimeFunction {
         }
     }
 
+    /// Whether it is one of the pulses of a blast or a blow.
+    pub fn is_pulse(&self) -> bool {
+        match self {
+            Self::Constant(_) | Self::Ramp(_) | Self::SmoothRamp(_) | Self::Expression(_) => false,
+            Self::Delayed(_, function) => function.is_pulse(),
+            Self::Triangle { .. }
+            | Self::HalfSine { .. }
+            | Self::DoubleExponential { .. }
+            | Self::LinearExponential { .. } => true,
+        }
+    }
+
     /// A double-exponential pulse by its largest value `peak`, the time `rise` [s] from its begin at `start` [s] to
     /// that value, and the time `decay` [s] from there until 1/e of it is left.
     ///

@@ -1,7 +1,7 @@
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 
-use super::stemming::Stemming;
+use super::hole_ends::HoleEnds;
 
 /// Volume of a hole that gas keeps at least, over its volume without load: walls that fly into it leave some room.
 const LEAST_HOLE: f64 = 1e-3;
@@ -58,14 +58,14 @@ impl Cavity {
     }
 }
 
-/// Volume that facets enclose with their stemmed ends, all normals pointing into it, with the nodes at these places [m³].
+/// Volume that facets enclose with their ends, all normals pointing into it, with the nodes at these places [m³].
 pub(crate) fn enclosed_volume(
     solid: &Solid,
     facets: &[[u32; 3]],
-    stemming: &Stemming,
+    ends: &HoleEnds,
     at: impl Fn(u32) -> Vec3 + Copy,
 ) -> f64 {
-    let Some(base) = facets.first().map(|facet| at(facet[0])) else { return 0.0 };
+    let Some(base) = facets.first().map(|facet| ends.base(at(facet[0]))) else { return 0.0 };
     let moment = |facet: &[u32; 3]| {
         let area = solid.facet_area(facet, at);
         let [a, b, c] = facet.map(at);
@@ -75,8 +75,8 @@ pub(crate) fn enclosed_volume(
             area.dot(&((a + b + c) / 3.0 - base)) / 3.0
         }
     };
-    let ends = stemming.triangles(at).map(|(area, centre)| area.dot(&(centre - base)) / 3.0);
-    -(facets.iter().map(moment).sum::<f64>() + ends.sum::<f64>())
+    let covers = ends.triangles(at).map(|(area, centre)| area.dot(&(centre - base)) / 3.0);
+    -(facets.iter().map(moment).sum::<f64>() + covers.sum::<f64>())
 }
 
 #[cfg(test)]

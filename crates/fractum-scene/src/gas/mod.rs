@@ -5,19 +5,20 @@
 //! and gas closes as that of the solids does. Between two such half works the gas flows for the time of the step.
 
 mod cavity;
+mod hole_ends;
 mod measure;
-mod stemming;
 
 use fractum_fem::{CrackCell, CrackNetwork, CrackNetworkState, CrackSide, Solid};
 use fractum_gas::{Amount, Contents, EquationOfState, Network, Passage, SlitFlow};
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::conditions::share_of_torn;
 use crate::time_function::TimeFunction;
 use cavity::Cavity;
 pub(crate) use cavity::enclosed_volume;
+pub use hole_ends::{HoleEnds, SymmetryPlanes};
 pub use measure::GasMeasure;
-pub use stemming::Stemming;
 
 /// Part of its energy that a cell passes on as a facet between it and another removed element moves, at most.
 const LARGEST_EXCHANGE: f64 = 0.2;
@@ -39,6 +40,8 @@ pub struct GasSettings {
     pub in_cracks: bool,
     /// Pressure where cracks reach the surface of the solids [Pa]; nothing flows in from there.
     pub outside_pressure: f64,
+    /// Planes of symmetry that the model ends at: holes end there, and nothing leaks.
+    pub symmetry: SymmetryPlanes,
     /// Holes that gas is put in; no facet is in two of them.
     pub holes: Vec<GasHole>,
 }
@@ -46,10 +49,10 @@ pub struct GasSettings {
 /// A hole that gas is put in.
 #[derive(Clone)]
 pub struct GasHole {
-    /// Outward facets of the solids around it: a closed surface with its stemmed ends, in the plane a closed line.
+    /// Outward facets of the solids around it: a closed surface with its ends, in the plane a closed line.
     pub facets: Vec<[u32; 3]>,
-    /// Its stemmed ends; they do not move along the hole, and nothing leaks through them.
-    pub stemming: Stemming,
+    /// Its ends; they do not move along the hole, and nothing leaks through them.
+    pub ends: HoleEnds,
     /// What it holds at the start.
     pub charge: Charge,
     /// What comes in over time.
@@ -96,6 +99,7 @@ pub struct Gas {
     holes: Vec<GasHole>,
     least_opening: f64,
     in_cracks: bool,
+    symmetry: SymmetryPlanes,
     /// Room of each cell: holes first, then those of the cracks in their order.
     cavities: Vec<Cavity>,
     volumes: Vec<f64>,
@@ -142,11 +146,11 @@ pub struct GasCell {
 impl Gas {
     /// Gas in the holes of a solid without displacement, before its cracks are found.
     pub fn new(solid: &Solid, settings: GasSettings) -> Self {
-        let GasSettings { law, slits, least_opening, in_cracks, outside_pressure, holes } = settings;
+        let GasSettings { law, slits, least_opening, in_cracks, outside_pressure, symmetry, holes } = settings;
         let mut network = Network::new(law, slits, outside_pressure);
         let mut cavities = Vec::new();
         for hole in &holes {
-            let volume = enclosed_volume(solid, &hole.facets, &hole.stemming, |node| solid.reference[node as usize]);
+            let volume = enclosed_volume(solid, &hole.facets, &hole.ends, |node| solid.reference[node as usize]);
             let amount = match hole.charge {
                 Charge::Amount(amount) => amount,
                 Charge::State { pressure, temperature } => {
@@ -163,6 +167,7 @@ impl Gas {
             holes,
             least_opening,
             in_cracks,
+            symmetry,
             volumes: Vec::new(),
             passages: Vec::new(),
             facets: Vec::new(),
@@ -176,8 +181,8 @@ impl Gas {
     }
 
     /// Volume of a hole without load [m³]; not positive where its facets are turned inside out or flat.
-    pub fn hole_volume(solid: &Solid, facets: &[[u32; 3]], stemming: &Stemming) -> f64 {
-        enclosed_volume(solid, facets, stemming, |node| solid.reference[node as usize])
+    pub fn hole_volume(solid: &Solid, facets: &[[u32; 3]], ends: &HoleEnds) -> f64 {
+        enclosed_volume(solid, facets, ends, |node| solid.reference[node as usize])
     }
 
     /// Lets the gas find what is open already, before its first step.
@@ -217,7 +222,7 @@ impl Gas {
                     CrackSide::Mouth(mouth) => *mouth,
                     // The later one of two cells makes their passage.
                     CrackSide::Cell(other) if (*other as usize) < number => holes as u32 + other,
-                    CrackSide::Outside => Passage::OUTSIDE,
+                    CrackSide::Outside if self.symmetry.across(solid, nodes, length).is_none() => Passage::OUTSIDE,
                     _ => continue,
                 };
                 let passage = self.passage(solid, number, *side, nodes);
@@ -248,7 +253,7 @@ impl Gas {
         let (of_holes, of_cracks) = cavities.split_at_mut(holes.len());
         for (cavity, hole) in of_holes.iter_mut().zip(&*holes) {
             let at = |node: u32| solid.position(node as usize);
-            cavity.enclose(enclosed_volume(solid, &hole.facets, &hole.stemming, at));
+            cavity.enclose(enclosed_volume(solid, &hole.facets, &hole.ends, at));
         }
         for (cavity, cell) in of_cracks.iter_mut().zip(cracks.cells()) {
             cavity.enclose(solid.present_volume(cell.body as usize, cell.element));
@@ -271,6 +276,7 @@ impl Gas {
         wall_area.resize(cavities.len(), 0.0);
         let mut add = |cell: usize, nodes: &[u32; 3]| {
             let area = solid.facet_area(nodes, |node| solid.position(node as usize));
+            let area = area * share_of_torn(&area, &solid.facet_area(nodes, |node| solid.reference[node as usize]));
             wall_area[cell] += area.norm();
             walls.push(Wall { cell: cell as u32, nodes: *nodes, area });
         };

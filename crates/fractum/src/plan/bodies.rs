@@ -151,12 +151,14 @@ impl Plan {
             Kinematics::Small => "small strains",
             Kinematics::Corotational => "corotational",
         };
+        let closing = body.damage.as_ref().is_some_and(|zone| zone.law.unilateral);
+        let closing = if closing { ", cracks close under pressure" } else { "" };
         let count = body.elements.len();
         let volume: f64 = (0..count as u32).map(|e| scene.solid.element_volume(index, e)).sum();
         self.add(
             "body",
             format!(
-                "{name}: {count} {formulation} {shape}, {kinematics}, {}, mass {}, mean size {}",
+                "{name}: {count} {formulation} {shape}, {kinematics}{closing}, {}, mass {}, mean size {}",
                 material.name.value,
                 quantity(volume * material.density, "kg"),
                 quantity(mean_size(scene, index, volume), "m")

@@ -21,6 +21,8 @@ pub struct Gas {
     pub in_cracks: bool,
     /// Pressure where cracks reach the surface [Pa].
     pub outside_pressure: f64,
+    /// Planes of symmetry, each across its axis.
+    pub symmetry: [Option<Spanned<f64>>; 3],
     /// Holes, in the order of the file; at least one.
     pub holes: Vec<GasHole>,
 }

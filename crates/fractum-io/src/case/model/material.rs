@@ -33,8 +33,10 @@ pub struct Material {
 /// Softening damage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Damage {
-    /// When damage begins, and how stress falls with crack opening.
+    /// When damage begins, and how stress falls with crack opening; not unilateral but by the key.
     pub law: DamageLaw,
+    /// Whether stiffness recovers where cracks close; by the scene if absent.
+    pub unilateral: Option<bool>,
     /// Random scatter of the strength.
     pub scatter: Option<Scatter>,
     /// Lower the strength where an element is too large for its fracture energy, instead of refusing it.

@@ -347,6 +347,13 @@ pub enum GroupUse {
 }
 
 impl Case {
+    /// Whether rock may be crushed in it: a pressure pulse, or gas, on a solid in motion.
+    pub fn is_blast(&self) -> bool {
+        let pulse =
+            |load: &Load| matches!(&load.kind, LoadKind::Pressure { pressure, .. } if pressure.value.is_pulse());
+        self.solver.kind == SolverKind::Explicit && (self.gas.is_some() || self.loads.iter().any(pulse))
+    }
+
     /// Doubtful choices that do not keep the case from running.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.source.warnings

@@ -3,10 +3,11 @@
 use fractum_scene::{Amount, Charge, EquationOfState, Jwl, NobleAbel, PerfectGas, SlitFlow};
 
 use super::boundary::selection;
+use super::presence::optional;
 use super::time_functions::time_function;
-use crate::case::Diagnostic;
 use crate::case::model::{Gas, GasHole, GasLaw, Solver, SolverKind};
 use crate::case::reader::Table;
+use crate::case::{Diagnostic, Spanned};
 
 /// Reads the gas, if there is any; nothing where it is wrong. It acts in stages of motion.
 pub(super) fn read(root: &Table<'_>, solver: Option<&Solver>, staged: bool) -> Option<Option<Gas>> {
@@ -19,6 +20,7 @@ pub(super) fn read(root: &Table<'_>, solver: Option<&Solver>, staged: bool) -> O
     let least_opening = table.quantity("least_opening").positive().or_if_absent(1e-5);
     let in_cracks = table.flag("in_cracks").or_if_absent(true);
     let outside_pressure = table.quantity("outside_pressure").not_negative().or_if_absent(101_325.0);
+    let symmetry = symmetry(&table);
     let with_state = kind.is_some_and(|kind| kind != GasLaw::Jwl);
     let holes: Vec<Option<GasHole>> =
         table.tables("holes").into_iter().map(|hole_of| hole(hole_of, with_state)).collect();
@@ -40,8 +42,17 @@ pub(super) fn read(root: &Table<'_>, solver: Option<&Solver>, staged: bool) -> O
         least_opening: least_opening?,
         in_cracks: in_cracks?,
         outside_pressure: outside_pressure?,
+        symmetry: symmetry?,
         holes: holes.into_iter().collect::<Option<_>>()?,
     }))
+}
+
+fn symmetry(table: &Table<'_>) -> Option<[Option<Spanned<f64>>; 3]> {
+    let Some(planes) = table.table("symmetry") else { return Some([None, None, None]) };
+    let places = ["x", "y", "z"].map(|axis| optional(&planes, axis, |axis| planes.quantity(axis).spanned().required()));
+    planes.finish("here");
+    let [x, y, z] = places;
+    Some([x?, y?, z?])
 }
 
 fn law(table: &Table<'_>, kind: GasLaw) -> Option<EquationOfState> {

@@ -1,6 +1,7 @@
 //! `[materials.NAME]`.
 
 use super::fracture::{FRICTION_ANGLE, read_friction_angle};
+use super::presence::optional;
 use crate::case::model::{Damage, Distribution, Material, Scatter};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned};
@@ -85,7 +86,7 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
     if crack_plane_gate && matches!(regularisation, Some(Some(_))) {
         table.refuse("crack_plane_gate", "beside a phase field, which needs no gate");
     }
-    let unilateral = table.flag("unilateral").or(false);
+    let unilateral = optional(&table, "unilateral", |key| table.flag(key).given());
     let rate_time = table.quantity("rate_time").not_negative().or(0.0);
     table.finish("here");
     let tensile_strength = tensile_strength?;
@@ -97,9 +98,10 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
             fracture_energy: fracture_energy?,
             softening: softening?,
             residual,
-            unilateral,
+            unilateral: unilateral? == Some(true),
             rate_time,
         },
+        unilateral: unilateral?,
         scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,
         reduce_strength_to_fit,
         crack_plane_gate,

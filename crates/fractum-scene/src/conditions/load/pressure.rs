@@ -43,20 +43,22 @@ pub(super) fn push_facet(
     let [a, b, c] = facet.map(|n| points.reference(n as usize));
     let (centre, corners) = if thickness > 0.0 { ((a + b) * 0.5, 2) } else { ((a + b + c) / 3.0, 3) };
     let area = area_vector(&place, thickness);
-    let largest = LARGEST_STRETCH * area_vector(&[*a, *b, *c], thickness).norm();
-    let share = (largest / area.norm()).min(1.0);
+    let share = share_of_torn(&area, &area_vector(&[*a, *b, *c], thickness));
     let force = area * (-pressure(&centre) / corners as f64 * share);
     forces.extend(facet[..corners].iter().map(|&n| (n, force)));
+}
+
+/// The part of a facet's area that pressure acts on: all of it up to twice that without load, and no more than this beyond.
+///
+/// - `area`, `reference`: area vectors at present and without load [m²]
+pub(crate) fn share_of_torn(area: &Vec3, reference: &Vec3) -> f64 {
+    (LARGEST_STRETCH * reference.norm() / area.norm()).min(1.0)
 }
 
 /// Outward area vector of a triangle, or of an edge in the plane with this thickness [m²].
 fn area_vector(p: &[Vec3; 3], thickness: f64) -> Vec3 {
     let along = p[1] - p[0];
-    if thickness > 0.0 {
-        Vec3::new(along.y, -along.x, 0.0) * thickness
-    } else {
-        along.cross(&(p[2] - p[0])) * 0.5
-    }
+    if thickness > 0.0 { Vec3::new(along.y, -along.x, 0.0) * thickness } else { along.cross(&(p[2] - p[0])) * 0.5 }
 }
 
 impl fmt::Debug for Pressure {
