@@ -10,7 +10,7 @@ use crate::body::{DamageZone, Kinematics};
 use crate::hooke::Hooke;
 use crate::kernel::{self, CellLaw};
 use crate::material::{Criterion, DamageLaw, Softening};
-use crate::threshold::Threshold;
+use crate::threshold::{IN_RESERVE, Threshold};
 
 /// History of one edge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,7 +46,7 @@ pub(crate) struct Softens {
     softening: Softening,
     fracture_energy: f64,
     residual: f64,
-    unilateral: bool,
+    pub(crate) unilateral: bool,
     rate_time: f64,
     /// Damage comes from a phase field; histories only keep what it is driven by.
     regularised: bool,
@@ -69,9 +69,30 @@ impl Softens {
         }
     }
 
+    /// Largest strength that an edge of this characteristic length [m] may have, a tenth of the length in reserve [Pa].
+    pub(crate) fn largest_strength(&self, length: f64) -> f64 {
+        (IN_RESERVE * self.softening.largest_length(self.young_modulus, 1.0, self.fracture_energy) / length).sqrt()
+    }
+
     /// Effective stress that damage acts on [Pa].
     pub(crate) fn opening_stress(&self, strain: Sym3) -> Sym3 {
         self.hooke.stress(strain) - self.closed_stress(strain)
+    }
+
+    /// Energies of a step of a unilateral edge per volume [J/m³]: what damage takes, and what central differences take where
+    /// the edge opens or closes within the step, of either sign.
+    ///
+    /// The work of the mean stress between the strains ε⁰ and ε¹ minus the change of ½ σ : ε is ½ (σ⁰ : ε¹ - σ¹ : ε⁰), of which
+    /// damage takes its growth times the mean energy of the part that is open, never negative.
+    ///
+    /// - `steps`: strain and damage at the step before, and now
+    fn unilateral_step(&self, [(strain0, damage0), (strain1, damage1)]: [(Sym3, f64); 2]) -> (f64, f64) {
+        let open = [strain0, strain1].map(|strain| self.opening_stress(strain));
+        let nominal0 = self.hooke.stress(strain0) - open[0] * damage0;
+        let nominal1 = self.hooke.stress(strain1) - open[1] * damage1;
+        let energies = open[0].dot(strain0).max(0.0) * open[1].dot(strain1).max(0.0);
+        let taken = 0.5 * (damage1 - damage0) * energies.sqrt();
+        (taken, 0.5 * (nominal0.dot(strain1) - nominal1.dot(strain0)) - taken)
     }
 
     /// Part of the effective stress that damage leaves alone.
@@ -194,6 +215,8 @@ pub(crate) struct EdgeCells {
     pub(crate) field: EdgeField,
     /// Energy dissipated in this block so far [J].
     pub(crate) dissipated: f64,
+    /// What the last step of central differences took beside that where unilateral cells opened or closed within it [J].
+    pub(crate) switched: f64,
     /// Elastic energy of the last step, where it was asked for [J].
     pub(crate) energy: Option<f64>,
 }
@@ -241,30 +264,57 @@ impl EdgesInStep<'_> {
         if field.softens.criterion.surely_below(stress, field.threshold[cell]) {
             return;
         }
-        let booked = (self.edges.dissipated, self.edges.energy);
+        let booked = (self.edges.dissipated, self.edges.switched, self.edges.energy);
         self.loaded_stress(cell, strain, stress, self.cells.volume[cell]);
-        (self.edges.dissipated, self.edges.energy) = booked;
+        (self.edges.dissipated, self.edges.switched, self.edges.energy) = booked;
         // The next forces belong to the same step.
         self.edges.field.state[cell].strain = self.step.strain_before(self.cells, cell);
+    }
+
+    /// Takes from an edge the stiffness with which it would store more than `most` [J]; damage of a phase field has no value
+    /// of its own.
+    pub(crate) fn weaken(&mut self, cell: usize, most: f64) {
+        let strain = self.step.strain_now(self.cells, cell);
+        let field = &mut self.edges.field;
+        if field.softens.regularised {
+            return;
+        }
+        let (opening, full) = (field.softens.opening_stress(strain), field.softens.hooke.stress(strain));
+        let [open, closed] = [opening, full - opening].map(|s| 0.5 * s.dot(strain) * self.cells.volume[cell]);
+        let needed = 1.0 - ((most - closed) / open).max(0.0);
+        if open > 0.0 && needed > field.state[cell].damage {
+            let before = self.step.strain_before(self.cells, cell);
+            let edge = &mut field.state[cell];
+            (edge.damage, edge.strain) = (needed, before);
+            field.threshold[cell] = edge.threshold();
+        }
     }
 
     /// The path of an edge that is damaged or may become so.
     #[inline(never)]
     fn loaded_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3, volume: f64) -> Sym3 {
-        let EdgeCells { field, dissipated, energy } = &mut *self.edges;
+        let EdgeCells { field, dissipated, switched, energy } = &mut *self.edges;
         let closed = field.softens.closed_stress(strain);
         let opening = stress - closed;
-        let was_intact = field.state[cell].damage == 0.0;
+        let EdgeDamage { damage: damage_before, strain: kept, .. } = field.state[cell];
         // Below its history an edge only unloads: no eigenvalues.
         let below = field.softens.criterion.surely_below(stress, field.state[cell].kappa);
         let q = if below { 0.0 } else { field.softens.criterion.equivalent_stress(stress) };
         let growth = field.load(cell, q, self.step.dt);
         let edge = &mut field.state[cell];
-        if growth > 0.0 {
+        // An edge that was intact has kept no strain.
+        let before = || if damage_before == 0.0 { self.step.strain_before(self.cells, cell) } else { kept };
+        if field.softens.unilateral {
+            if edge.damage > 0.0 {
+                let steps = [(before(), damage_before), (strain, edge.damage)];
+                let (taken, left) = field.softens.unilateral_step(steps);
+                *dissipated += taken * volume;
+                *switched += left * volume;
+            }
+        } else if growth > 0.0 {
             // The work of the step between the strains ε⁰ and ε¹ minus the change of the stored energy is exactly
-            // ½ σ¹ : ε⁰ per damage. An edge that was intact has kept no strain.
-            let before = if was_intact { self.step.strain_before(self.cells, cell) } else { edge.strain };
-            *dissipated += 0.5 * opening.dot(before) * growth * volume;
+            // ½ σ¹ : ε⁰ per damage.
+            *dissipated += 0.5 * opening.dot(before()) * growth * volume;
         }
         edge.strain = strain;
         let nominal = opening * (1.0 - edge.damage) + closed;
@@ -306,4 +356,64 @@ fn compressive_stress(hooke: &Hooke, strain: Sym3) -> Sym3 {
     let stress =
         Sym3::symmetric_part(&part) * (2.0 * hooke.mu) + Sym3::isotropic(hooke.lambda * strain.trace().min(0.0));
     Sym3([stress.0[0], stress.0[1], hooke.zz * stress.0[2], stress.0[3], stress.0[4], stress.0[5]])
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::body::{Body, ElementKind};
+    use crate::material::Elastic;
+
+    fn unilateral() -> Softens {
+        let law = DamageLaw {
+            criterion: Criterion::rankine(),
+            tensile_strength: 3e6,
+            fracture_energy: 100.0,
+            softening: Softening::Exponential,
+            residual: 0.02,
+            unilateral: true,
+            rate_time: 0.0,
+        };
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let body = Body::new("edge", ElementKind::T4, vec![[0, 1, 2, 3]], elastic).with_damage(law);
+        Softens::new(body.damage.as_ref().unwrap(), Hooke::of(&body), elastic.young_modulus)
+    }
+
+    proptest! {
+        #[test]
+        fn a_unilateral_step_accounts_for_its_work(
+            from in prop::array::uniform6(-1e-3f64..1e-3),
+            to in prop::array::uniform6(-1e-3f64..1e-3),
+            damage in (0.0f64..1.0, 0.0f64..1.0),
+        ) {
+            let softens = unilateral();
+            let (d0, d1) = (damage.0.min(damage.1), damage.0.max(damage.1));
+            let (e0, e1) = (Sym3(from), Sym3(to));
+            let (taken, switched) = softens.unilateral_step([(e0, d0), (e1, d1)]);
+            let stress = |e, d| softens.hooke.stress(e) - softens.opening_stress(e) * d;
+            let work = 0.5 * (stress(e0, d0) + stress(e1, d1)).dot(e1 - e0);
+            let stored = 0.5 * (stress(e1, d1).dot(e1) - stress(e0, d0).dot(e0));
+            prop_assert!(taken >= 0.0);
+            let scale = 0.5 * (softens.hooke.stress(e0).dot(e0) + softens.hooke.stress(e1).dot(e1));
+            prop_assert!((taken + switched - (work - stored)).abs() <= 1e-9 * scale, "{taken} {switched} {work} {stored}");
+        }
+
+        #[test]
+        fn an_open_edge_that_goes_straight_on_takes_what_scalar_damage_takes(
+            strain in prop::array::uniform3(0.0f64..1e-3),
+            factor in 1.0f64..2.0,
+            growth in 0.0f64..0.5,
+        ) {
+            let softens = unilateral();
+            let [a, b, c] = strain;
+            let e0 = Sym3([a, b, c, 0.0, 0.0, 0.0]);
+            let e1 = e0 * factor;
+            let (taken, switched) = softens.unilateral_step([(e0, 0.3), (e1, 0.3 + growth)]);
+            let scalar = 0.5 * growth * softens.hooke.stress(e1).dot(e0);
+            prop_assert!((taken - scalar).abs() <= 1e-9 * scalar + 1e-12, "{taken} {scalar}");
+            prop_assert!(switched.abs() <= 1e-9 * softens.hooke.stress(e1).dot(e1) + 1e-12);
+        }
+    }
 }

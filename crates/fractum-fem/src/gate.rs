@@ -17,13 +17,14 @@ const REACH: f64 = 2.5;
 
 pub(crate) type Key = [i32; 3];
 
-/// Crack points and closed edges of a body.
+/// Crack points of a body, and the strengths that its gate has changed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GateState {
     /// Damaged edges and their crack points [m].
     pub points: Vec<(u32, Vec3)>,
-    /// Intact edges that may not be damaged at present.
-    pub closed: Vec<u32>,
+    /// Edges that soften from another stress than their own strength [Pa]: infinite for intact edges that may not be damaged
+    /// at present, the stress at which their gate opened for others.
+    pub strength: Vec<(u32, f64)>,
 }
 
 /// The gate of a body.
@@ -38,7 +39,10 @@ pub(crate) struct Gate {
     /// Edges that may be damaged, by cell.
     pub(crate) grid: BTreeMap<Key, Vec<u32>>,
     pub(crate) point: Vec<Option<Vec3>>,
-    pub(crate) closed: Vec<bool>,
+    /// Strength of each edge without the gate [Pa].
+    own: Vec<f64>,
+    /// Stress from which each edge softens [Pa]; infinite while the gate is closed.
+    pub(crate) strength: Vec<f64>,
 }
 
 /// A damaged edge as its neighbours see it.
@@ -53,14 +57,14 @@ pub(crate) struct Cracked {
 impl Gate {
     /// The gate of the edges of a body, with the elements around each.
     ///
-    /// - `armed`: whether an edge may be damaged
+    /// - `strength`: of an edge [Pa]; infinite where it may not be damaged
     /// - `volumes`: of the elements [m³]
     pub(crate) fn new(
         body: &Body,
         (edges, elements_of_edge): (&[[u32; 2]], &Ragged),
         nodes: &[Vec3],
         volumes: impl Fn(u32) -> f64,
-        armed: impl Fn(usize) -> bool,
+        strength: impl Fn(usize) -> f64,
     ) -> Gate {
         let middle: Vec<Vec3> = edges.iter().map(|&[i, j]| (nodes[i as usize] + nodes[j as usize]) * 0.5).collect();
         let size = |edge: usize| {
@@ -69,35 +73,55 @@ impl Gate {
             REACH * sum / elements.len() as f64
         };
         let reach: Vec<f64> = (0..edges.len()).map(size).collect();
-        let cell = (0..edges.len()).filter(|&e| armed(e)).map(|e| reach[e]).fold(f64::MIN_POSITIVE, f64::max);
+        let own: Vec<f64> = (0..edges.len()).map(strength).collect();
+        let armed = || (0..edges.len()).filter(|&e| own[e].is_finite());
+        let cell = armed().map(|e| reach[e]).fold(f64::MIN_POSITIVE, f64::max);
         let mut grid: BTreeMap<Key, Vec<u32>> = BTreeMap::new();
-        for edge in (0..edges.len()).filter(|&e| armed(e)) {
+        for edge in armed() {
             grid.entry(key(middle[edge], cell)).or_default().push(edge as u32);
         }
-        let (point, closed) = (vec![None; edges.len()], vec![false; edges.len()]);
-        Gate { middle, reach, cell, grid, point, closed }
+        Gate { middle, reach, cell, grid, point: vec![None; edges.len()], strength: own.clone(), own }
     }
 
     pub(crate) fn state(&self) -> GateState {
         GateState {
             points: (0..).zip(&self.point).filter_map(|(edge, point)| Some((edge, (*point)?))).collect(),
-            closed: (0..).zip(&self.closed).filter(|(_, closed)| **closed).map(|(edge, _)| edge).collect(),
+            strength: (0..)
+                .zip(self.strength.iter().zip(&self.own))
+                .filter(|(_, (strength, own))| strength != own)
+                .map(|(edge, (&strength, _))| (edge, strength))
+                .collect(),
         }
     }
 
     pub(crate) fn restore(&mut self, state: &GateState) {
         self.point.fill(None);
-        self.closed.fill(false);
+        self.strength.clone_from(&self.own);
         for &(edge, point) in &state.points {
             self.point[edge as usize] = Some(point);
         }
-        for &edge in &state.closed {
-            self.closed[edge as usize] = true;
+        for &(edge, strength) in &state.strength {
+            self.strength[edge as usize] = strength;
         }
     }
 
-    pub(crate) fn is_closed(&self, edge: u32) -> bool {
-        self.closed[edge as usize]
+    pub(crate) fn close(&mut self, edge: u32) {
+        self.strength[edge as usize] = f64::INFINITY;
+    }
+
+    /// Whether an edge would soften from more than its own strength.
+    pub(crate) fn is_raised(&self, edge: u32) -> bool {
+        self.strength[edge as usize] > self.own[edge as usize]
+    }
+
+    /// Opens the gate of an intact edge: it softens from its present stress, where that is above its own strength. One that
+    /// is open already comes back to its own strength as its stress falls.
+    ///
+    /// - `present`: equivalent stress [Pa]
+    /// - `most`: largest strength with which the edge does not snap back [Pa]
+    pub(crate) fn open(&mut self, edge: u32, present: f64, most: f64) {
+        let strength = &mut self.strength[edge as usize];
+        *strength = strength.min(present).min(most).max(self.own[edge as usize]);
     }
 
     /// Mean crack point and normal of the crack that comes towards an edge; none where no crack is near.

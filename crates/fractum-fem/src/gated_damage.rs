@@ -69,10 +69,25 @@ impl Solid {
             .par_iter()
             .map(|&edge| gate.plane(edge, &near).is_some_and(|(x, n)| !self.is_cut(model, edge, x, n)))
             .collect();
-        gate.closed.fill(false);
         for (&edge, closed) in intact.iter().zip(closed) {
-            gate.closed[edge as usize] = closed;
+            if closed {
+                gate.close(edge);
+            } else if gate.is_raised(edge) {
+                let (present, most) = self.equivalent_stress(model, edge);
+                gate.open(edge, present, most);
+            }
         }
+    }
+
+    /// Present equivalent stress of an edge that may be damaged, and the largest strength that its length allows [Pa].
+    fn equivalent_stress(&self, model: &BodyModel, edge: u32) -> (f64, f64) {
+        let (block, cell) = model.location[edge as usize];
+        let (block, cell) = (&self.blocks[block as usize], cell as usize);
+        let strain = block.strain_of(cell, model.body.kinematics, &self.displacement);
+        block.edge_field().map_or((0.0, 0.0), |field| {
+            let present = field.softens.criterion.equivalent_stress(field.softens.hooke.stress(strain));
+            (present, field.softens.largest_strength(field.length[cell]))
+        })
     }
 
     fn cracked(&self, model: &BodyModel, gate: &Gate, edge: u32) -> Option<Cracked> {
@@ -97,14 +112,24 @@ impl Solid {
         low < 0.0 && high > 0.0
     }
 
-    /// Lets the thresholds of intact edges follow the gate: no stress passes that of a closed one.
+    /// Lets the strengths of edges follow the gate: no stress passes that of a closed one.
     pub(crate) fn close_edges(&mut self, body: usize) {
         let Solid { bodies, blocks, .. } = self;
         let Some(gate) = &bodies[body].gate else { return };
         let blocks = blocks.iter_mut().filter(|block| block.body == body);
-        for EdgeField { edges, state, threshold, .. } in blocks.filter_map(Block::edge_field_mut) {
-            for ((&edge, state), threshold) in edges.iter().zip(state).zip(threshold) {
-                *threshold = if gate.is_closed(edge) { f64::INFINITY } else { state.threshold() };
+        for EdgeField { edges, state, threshold, strength, .. } in blocks.filter_map(Block::edge_field_mut) {
+            for (((&edge, state), threshold), strength) in edges.iter().zip(state).zip(threshold).zip(strength) {
+                let gated = gate.strength[edge as usize];
+                if gated.is_infinite() {
+                    // The removal of an element has damaged some.
+                    *threshold = if state.damage == 0.0 { gated } else { state.threshold() };
+                    continue;
+                }
+                *strength = gated;
+                if state.damage == 0.0 {
+                    state.kappa = gated;
+                }
+                *threshold = state.threshold();
             }
         }
     }
@@ -113,7 +138,7 @@ impl Solid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::{Body, ElementKind, Plane};
+    use crate::body::{Body, ElementKind, Kinematics, Plane};
     use crate::material::{Criterion, DamageLaw, Elastic, Softening};
     use fractum_mesh::generate::structured_rectangle;
 
@@ -177,6 +202,86 @@ mod tests {
         assert_eq!(damaged(&solid).len(), solid.body_edges(0).unwrap().nodes.len());
     }
 
+    /// Strains the upper half of a torn plate by `ahead` strengths.
+    fn strain_ahead(solid: &mut Solid, ahead: f64) {
+        for (u, p) in solid.displacement.iter_mut().zip(&solid.reference) {
+            u.x = ahead * 1e-4 * p.x;
+        }
+        solid.update_internal_forces(0.0, false);
+    }
+
+    #[test]
+    fn an_edge_whose_gate_opens_starts_from_its_stress() {
+        let mut solid = torn_plate(true, 0.0);
+        // A gate that is closed in the plane of the crack, where it is about to open.
+        let edges = solid.body_edges(0).unwrap().nodes.clone();
+        let middle = |[i, j]: [u32; 2]| (solid.reference[i as usize] + solid.reference[j as usize]) * 0.5;
+        let ahead = |edge: &[u32; 2]| (middle(*edge) - Vec3::new(0.0, 2.5 * H, 0.0)).norm();
+        let edge = (0..edges.len()).min_by(|&a, &b| ahead(&edges[a]).total_cmp(&ahead(&edges[b]))).unwrap() as u32;
+        let mut state = Solid::state(&solid);
+        state.bodies[0].gate.strength.push((edge, f64::INFINITY));
+        solid.restore(state);
+        let stress = |solid: &Solid| {
+            let (field, cell) = solid.edge(0, edge).unwrap();
+            let (block, _) = solid.bodies[0].location[edge as usize];
+            let strain = solid.blocks[block as usize].strain_of(cell, Kinematics::Small, &solid.displacement);
+            field.softens.opening_stress(strain).0[0] * (1.0 - field.state[cell].damage)
+        };
+        strain_ahead(&mut solid, 1.5);
+        assert!((stress(&solid) / 4.5e6 - 1.0).abs() < 1e-9, "closed: {:e}", stress(&solid));
+        solid.update_gates();
+        strain_ahead(&mut solid, 1.5001);
+        assert!((stress(&solid) / 4.5e6 - 1.0).abs() < 1e-4, "opened: {:e}", stress(&solid));
+        strain_ahead(&mut solid, 3.0);
+        let softer = stress(&solid);
+        assert!(0.5 * 4.5e6 < softer && softer < 0.99 * 4.5e6, "{softer:e}");
+        // Damage has made a state for good: nothing brings it back to its own strength.
+        solid.update_gates();
+        let mut restored = torn_plate(true, 0.0);
+        restored.restore(Solid::state(&solid));
+        for solid in [&mut solid, &mut restored] {
+            strain_ahead(solid, 3.5);
+        }
+        assert_eq!(Solid::state(&solid), Solid::state(&restored));
+    }
+
+    #[test]
+    fn an_open_edge_that_unloads_comes_back_to_its_own_strength() {
+        let mut solid = torn_plate(true, 1.5);
+        solid.update_internal_forces(0.0, false);
+        let closed: Vec<u32> = Solid::state(&solid).bodies[0].gate.strength.iter().map(|edge| edge.0).collect();
+        let mut gate = solid.bodies[0].gate.take().unwrap();
+        for (present, expected) in [(4.5e6, 4.5e6), (4.8e6, 4.5e6), (4.0e6, 4.0e6), (1.0e6, 3.0e6), (4.5e6, 3.0e6)] {
+            gate.open(closed[0], present, 1e9);
+            assert_eq!(gate.strength[closed[0] as usize], expected);
+        }
+        gate.open(closed[1], 4.5e6, 3.6e6);
+        assert_eq!(gate.strength[closed[1] as usize], 3.6e6, "no snap back");
+        gate.open(closed[2], 4.5e6, 2.0e6);
+        assert_eq!(gate.strength[closed[2] as usize], 3.0e6, "its own strength in any case");
+    }
+
+    #[test]
+    fn edges_of_raised_strength_dissipate_the_fracture_energy() {
+        let mut solid = torn_plate(true, 0.0);
+        let intact = solid.body_edges(0).unwrap().nodes.len() as u32;
+        let mut state = Solid::state(&solid);
+        for edge in &mut state.bodies[0].edges {
+            *edge = crate::damage::EdgeDamage::intact(4.5e6);
+        }
+        state.dissipated.fill(0.0);
+        state.bodies[0].gate.strength = (0..intact).map(|edge| (edge, 4.5e6)).collect();
+        solid.restore(state);
+        let mut ahead = 1.5;
+        while ahead < 600.0 {
+            strain_ahead(&mut solid, ahead);
+            ahead *= 1.001;
+        }
+        let surface: f64 = solid.crack_edges().iter().map(|edge| edge.area).sum();
+        let ratio = solid.dissipated_energy() / (100.0 * surface);
+        assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
+    }
+
     #[test]
     fn a_restored_solid_goes_on_alike() {
         let mut first = torn_plate(true, 1.5);
@@ -187,6 +292,6 @@ mod tests {
             solid.update_gates();
         }
         assert_eq!(first.state(), second.state());
-        assert!(!first.state().bodies[0].gate.closed.is_empty());
+        assert!(first.state().bodies[0].gate.strength.iter().any(|edge| edge.1.is_infinite()));
     }
 }

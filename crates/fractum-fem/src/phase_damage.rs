@@ -216,7 +216,7 @@ impl Solid {
 /// Active edges of a phase field for a checkpoint, each with d and d of the step before.
 pub(crate) fn state_of(field: &PhaseField) -> GateState {
     let points = field.state().map(|(edge, [old, before])| (edge, Vec3::new(old, before, 0.0))).collect();
-    GateState { points, closed: Vec::new() }
+    GateState { points, strength: Vec::new() }
 }
 
 #[cfg(test)]

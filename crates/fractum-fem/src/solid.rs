@@ -185,6 +185,13 @@ impl Solid {
         self.blocks.iter().map(Block::dissipated).sum()
     }
 
+    /// What central differences took in the last step where cells with unilateral damage opened or closed within it, of
+    /// either sign [J].
+    pub fn switched_energy(&self) -> f64 {
+        let of = |block: &Block| if let BlockLaw::Edges(law) = &block.law { law.switched } else { 0.0 };
+        self.blocks.iter().map(of).sum()
+    }
+
     /// Energy dissipated by viscosity so far [J].
     pub fn viscous_dissipation(&self) -> f64 {
         self.viscous_dissipation
@@ -367,7 +374,7 @@ impl BodyModel {
             let law = match (&softens, &threshold) {
                 (Some(softens), Some(t)) if smoothed && t.strength[items[0] as usize].is_finite() => {
                     let field = EdgeField::new(softens.clone(), items.clone(), t);
-                    BlockLaw::Edges(EdgeCells { field, dissipated: 0.0, energy: None })
+                    BlockLaw::Edges(EdgeCells { field, dissipated: 0.0, switched: 0.0, energy: None })
                 }
                 (Some(softens), Some(_)) if !smoothed => {
                     BlockLaw::Standard(StandardCells::new(softens.clone(), items.len()))
@@ -408,13 +415,13 @@ impl BodyModel {
             largest_length_ratio,
         };
         if smoothed && model.body.damage.as_ref().is_some_and(|zone| zone.crack_plane_gate) {
-            let armed = |edge: usize| {
-                let (block, _) = model.location[edge];
-                matches!(blocks[block as usize - first_block].law, BlockLaw::Edges(_))
+            let strength = |edge: usize| {
+                let (block, cell) = model.location[edge];
+                blocks[block as usize - first_block].edge_field().map_or(f64::INFINITY, |f| f.strength[cell as usize])
             };
             let edges = model.edges.as_ref().map_or(&[][..], |edges| edges.nodes.as_slice());
             let edges = (edges, &model.elements_of_edge);
-            model.gate = Some(Gate::new(&model.body, edges, nodes, |element| volumes[element as usize], armed));
+            model.gate = Some(Gate::new(&model.body, edges, nodes, |element| volumes[element as usize], strength));
         }
         Ok((model, blocks))
     }

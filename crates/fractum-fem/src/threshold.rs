@@ -9,6 +9,9 @@ use crate::phase::PhaseLaw;
 /// Element sizes in the length of a phase field by default: of one size motion leaves the family of solutions, more costs accuracy.
 const SIZES_OF_LENGTH: f64 = 2.0;
 
+/// Characteristic length that an edge of lowered or raised strength has at most, over the one at which softening snaps back.
+pub(crate) const IN_RESERVE: f64 = 0.9;
+
 /// Strength and characteristic length of the edges of a body.
 pub(crate) struct Threshold {
     /// Strength of each edge [Pa]; infinite where damage may not occur.
@@ -77,8 +80,8 @@ impl Threshold {
                 if worst.is_none_or(|(_, r, _)| ratio > r) {
                     worst = Some((edge, ratio, limit_at(strength)));
                 }
-                // The limit goes with 1/f_t²: this leaves a tenth of the length in reserve.
-                strength *= (0.9 / ratio).sqrt();
+                // The limit goes with 1/f_t².
+                strength *= (IN_RESERVE / ratio).sqrt();
             }
             threshold.largest_length_ratio = threshold.largest_length_ratio.max(ratio);
             threshold.strength[edge] = strength;
