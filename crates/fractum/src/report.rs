@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use fractum_io::fragments::Fragment;
+use fractum_io::fragments;
 use fractum_io::history::{self, Table};
 use fractum_io::picture::ColourMap;
 use fractum_io::report::{self, ColourBar, Curve, EnergyColumns, Figure, ReportData};
@@ -73,15 +73,19 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
         Ok(bytes) => serde_json::from_slice(&bytes).map_err(|e| missing(NOTES, &e))?,
         Err(_) => Notes::default(),
     };
-    let fragments = history::read(&folder.join("fragments.csv")).map(|table| fragments_of(&table)).unwrap_or_default();
+    let fragments = fragments::read(&folder.join("fragments.csv")).unwrap_or_default();
     let pictures = notes.pictures.iter().filter_map(|note| figure(folder, note)).collect();
+    // Bonds are columns where there are some; what never grew says nothing.
+    let grows = |name: &String| history.column(name).is_some_and(|(values, _)| values.iter().any(|&count| count > 0.0));
+    let cracks =
+        ["removed_elements", "particles", "broken_bonds"].map(String::from).into_iter().filter(grows).collect();
     let data = ReportData {
         curves: curves(&history),
         energy: Some(EnergyColumns {
             external: EnergyKind::External.name().into(),
             parts: EnergyKind::ALL.into_iter().filter(|kind| kind.sign() < 0).map(|kind| kind.name().into()).collect(),
         }),
-        cracks: ["removed_elements", "particles", "broken_bonds"].map(String::from).into(),
+        cracks,
         fragments,
         pictures,
         plan: notes.plan,
@@ -126,28 +130,59 @@ fn curves(history: &Table) -> Vec<Curve> {
         }
     }
     for unit in units {
-        let y: Vec<String> = probes.iter().filter(|c| c.unit == unit).map(|c| c.name.clone()).collect();
-        let title = if y.len() == 1 { y[0].clone() } else { format!("probes in {unit}") };
-        curves.push(Curve { title, x: "time".into(), y, mark_peak: false, levels: Vec::new() });
+        let names = probes.iter().filter(|c| c.unit == unit).map(|c| c.name.clone()).collect();
+        for y in of_like_size(names, |name| largest(history, name)) {
+            let title = match (&y[..], unit) {
+                ([only], _) => only.clone(),
+                (_, "1") => "probes without unit".to_owned(),
+                _ => format!("probes in {unit}"),
+            };
+            curves.push(Curve { title, x: "time".into(), y, mark_peak: false, levels: Vec::new() });
+        }
     }
     curves
 }
 
-fn fragments_of(table: &Table) -> Vec<Fragment> {
-    let rows = table.values.first().map_or(0, Vec::len);
-    let value = |name: &str, row: usize| table.column(name).map_or(0.0, |(values, _)| values[row]);
-    let vector = |prefix: &str, row: usize| ["x", "y", "z"].map(|axis| value(&format!("{prefix}{axis}"), row));
-    (0..rows)
-        .map(|row| Fragment {
-            id: value("id", row) as u64,
-            mass: value("mass", row),
-            volume: value("volume", row),
-            nodes: value("nodes", row) as u64,
-            elements: value("elements", row) as u64,
-            centroid: vector("", row),
-            velocity: vector("velocity_", row),
-            largest_extent: value("largest_extent", row),
-            size: value("size", row),
-        })
-        .collect()
+/// Largest absolute value of a column.
+fn largest(history: &Table, name: &str) -> f64 {
+    let values = history.column(name).map_or(&[][..], |(values, _)| values);
+    values.iter().map(|value| value.abs()).fold(0.0, f64::max)
+}
+
+/// Ratio of the largest values of two curves beyond which the smaller one lies flat on the axis.
+const FLAT: f64 = 20.0;
+
+/// Names in sets that one axis can show, in the order of their first members; what is zero goes with any.
+fn of_like_size(names: Vec<String>, largest: impl Fn(&str) -> f64) -> Vec<Vec<String>> {
+    let mut sets: Vec<(f64, f64, Vec<String>)> = Vec::new();
+    for name in names {
+        let size = largest(&name);
+        let fits = |(low, high, _): &&mut (f64, f64, Vec<String>)| {
+            size == 0.0 || *high == 0.0 || (size <= FLAT * *low && *high <= FLAT * size)
+        };
+        match sets.iter_mut().find(fits) {
+            Some((low, high, set)) => {
+                (*low, *high) = if size == 0.0 { (*low, *high) } else { (low.min(size), high.max(size)) };
+                set.push(name);
+            }
+            None => sets.push((if size == 0.0 { f64::INFINITY } else { size }, size, vec![name])),
+        }
+    }
+    sets.into_iter().map(|(_, _, set)| set).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_that_an_axis_would_hide_have_a_chart_of_their_own() {
+        let sizes =
+            [("length", 2.6), ("longest", 0.07), ("P50", 0.1), ("crushed", 0.003), ("none", 0.0), ("cracks", 1.0)];
+        let names = sizes.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let sets = of_like_size(names, |name| sizes.iter().find(|size| size.0 == name).unwrap().1);
+        assert_eq!(sets, [vec!["length", "none", "cracks"], vec!["longest", "P50"], vec!["crushed"]]);
+        let zeros = of_like_size(vec!["a".into(), "b".into(), "c".into()], |name| if name == "c" { 5.0 } else { 0.0 });
+        assert_eq!(zeros, [vec!["a", "b", "c"]]);
+    }
 }

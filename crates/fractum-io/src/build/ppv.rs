@@ -33,7 +33,7 @@ impl Context<'_> {
         let wall = self.group_nodes(&ppv.hole, numbering);
         let place =
             |nodes: &[u32]| nodes.iter().map(|&node| solid.reference[node as usize]).sum::<Vec3>() / nodes.len() as f64;
-        let centre = place(&wall);
+        let centre = ppv.centre.unwrap_or_else(|| place(&wall));
         let axis = ppv.axis.or(solid.is_plane().then(Vec3::z));
         let distance = |place: &Vec3| {
             let from = place - centre;

@@ -1,11 +1,12 @@
 //! `fragments.csv`: the pieces that a body broke into, one line each.
 
+use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use crate::atomic;
-use crate::error::WriteError;
+use crate::error::{ReadError, WriteError};
 use crate::number::push_shortest;
 
 /// One connected piece.
@@ -39,11 +40,42 @@ pub fn write(path: &Path, fragments: &[Fragment]) -> Result<(), WriteError> {
     atomic::write(path, table(fragments).as_bytes())
 }
 
+/// Reads the pieces back.
+///
+/// # Errors
+/// [`ReadError`] with the line that is not as [`write`] writes it.
+pub fn read(path: &Path) -> Result<Vec<Fragment>, ReadError> {
+    let text = fs::read_to_string(path).map_err(|source| ReadError::Refused { path: path.to_path_buf(), source })?;
+    parse(&text).map_err(|(line, expected)| {
+        let found = text.lines().nth(line - 1).unwrap_or("the end of the file").to_owned();
+        ReadError::Malformed { path: path.to_path_buf(), line, found, expected }
+    })
+}
+
+/// The pieces; or the line that is wrong, from 1, and what it should be.
+fn parse(text: &str) -> Result<Vec<Fragment>, (usize, String)> {
+    let mut lines = text.lines();
+    if lines.next() != Some(HEADER) {
+        return Err((1, HEADER.to_owned()));
+    }
+    let fragment = |(index, line): (usize, &str)| {
+        let wrong = |_| (index + 2, "13 numbers".to_owned());
+        let cells: Vec<f64> = line.split(',').map(str::parse).collect::<Result<_, _>>().map_err(wrong)?;
+        let [id, mass, volume, nodes, elements, x, y, z, vx, vy, vz, largest_extent, size] = cells[..] else {
+            return Err((index + 2, "13 numbers".to_owned()));
+        };
+        let [id, nodes, elements] = [id, nodes, elements].map(|count| count as u64);
+        let (centroid, velocity) = ([x, y, z], [vx, vy, vz]);
+        Ok(Fragment { id, mass, volume, nodes, elements, centroid, velocity, largest_extent, size })
+    };
+    lines.enumerate().map(fragment).collect()
+}
+
+const HEADER: &str = "id,mass [kg],volume [m^3],nodes,elements,x [m],y [m],z [m],\
+     velocity_x [m/s],velocity_y [m/s],velocity_z [m/s],largest_extent [m],size [m]";
+
 fn table(fragments: &[Fragment]) -> String {
-    let mut text = String::from(
-        "id,mass [kg],volume [m^3],nodes,elements,x [m],y [m],z [m],\
-         velocity_x [m/s],velocity_y [m/s],velocity_z [m/s],largest_extent [m],size [m]\n",
-    );
+    let mut text = format!("{HEADER}\n");
     for fragment in fragments {
         let Fragment { id, mass, volume, nodes, elements, centroid, velocity, largest_extent, size } = fragment;
         text.push_str(&id.to_string());
@@ -78,7 +110,11 @@ mod tests {
             largest_extent: 0.25,
             size: 0.125,
         };
-        let text = table(&[fragment]);
+        let text = table(std::slice::from_ref(&fragment));
+        assert_eq!(parse(&text).unwrap(), [fragment]);
+        assert_eq!(parse("id\n").unwrap_err().0, 1);
+        assert_eq!(parse(&text.replace("2.5", "two")).unwrap_err().0, 2);
+        assert_eq!(parse(&text.replace("0.25,", "")).unwrap_err().0, 2);
         let mut lines = text.lines();
         let columns = lines.next().unwrap().split(',').count();
         let line = lines.next().unwrap();

@@ -70,3 +70,40 @@ fn the_rock_is_at_rest_and_displacements_count_from_there() {
     let moved = (0..scene.solid.mass.len()).map(|n| scene.solid.displacement_from_start(n).norm()).fold(0.0, f64::max);
     assert!(moved < 1e-9 * stressed, "{moved}");
 }
+
+#[test]
+fn measures_that_do_not_fit_are_refused_with_their_place() {
+    let probe = |what: &str| format!("[[probes]]\nname = \"p\"\n{what}\n");
+    let ppv = |what: &str| format!("[[output.ppv]]\nname = \"s\"\nhole = \"inner\"\n{what}\n");
+    let cases = [
+        (probe("damaged = { measure = \"share\" }"), "nothing there may be damaged"),
+        (probe("damaged = { measure = \"share\", group = \"body\" }"), "nothing there may be damaged"),
+        (probe("wave_speed = { body = \"stone\", wave = \"shear\" }"), "the name of a solid body"),
+        (probe("wave_speed = { body = \"rock\", wave = \"shear\" }"), ""),
+        (ppv("groups = [\"outer\", \"rim\"]"), "rim"),
+        (ppv("groups = [\"inner\"]"), "a station lies on the axis or centre of the hole"),
+        (ppv("line = { from = [1.1, 0, 0], to = [2, 0, 0], stations = 3 }"), ""),
+    ];
+    for (text, said) in cases {
+        let found = mistakes(&format!("{OUTSIDE}{text}"));
+        assert!(found.contains(said) && found.is_empty() == said.is_empty(), "{text}\n{found}");
+    }
+}
+
+#[test]
+fn stations_have_their_distances_in_radii_of_the_hole_or_scaled_by_the_charge() {
+    let line = "line = { from = [1.1, 0, 0], to = [2, 0, 0], stations = 3 }";
+    for (charge, scale, unit) in [("", 1.0, "-"), ("charge = 16", 4.0, "m/kg^(1/2)")] {
+        let text = format!(
+            "{HEAD}{OUTSIDE}[[output.ppv]]\nname = \"s\"\nhole = \"inner\"\ncentre = [0, 0, 0]\n{line}\n{charge}\n"
+        );
+        let case = parse_case(&text, Path::new("case.toml"), &[]).unwrap_or_else(|e| panic!("{e}"));
+        let built = build_scene(&case, &ring(Listed::Along, Listed::Along), Vec::new(), Vec::new());
+        let built = built.unwrap_or_else(|e| panic!("{e}"));
+        let ppv = &built.ppv[0];
+        assert!((ppv.scale - scale).abs() < 1e-9 && ppv.unit == unit, "{} {}", ppv.scale, ppv.unit);
+        let (first, last) = (&ppv.stations[0], ppv.stations.last().unwrap());
+        assert!(first.distance < last.distance && (last.distance - 2.0).abs() < 1e-9, "{:?}", ppv.stations);
+        assert!(ppv.stations.iter().all(|of| (of.place.norm() - of.distance).abs() < 1e-9), "{:?}", ppv.stations);
+    }
+}

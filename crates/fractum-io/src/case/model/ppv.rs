@@ -12,6 +12,8 @@ pub struct Ppv {
     pub name: Spanned<String>,
     /// Mesh group of the wall of the hole.
     pub hole: Spanned<String>,
+    /// Centre of the hole, or a point of its axis [m]; the mean place of the group's nodes if absent.
+    pub centre: Option<Vec3>,
     /// Axis of the hole, a unit vector, from which distances count; from its centre if absent.
     pub axis: Option<Vec3>,
     /// Mass of the charge [kg], > 0.

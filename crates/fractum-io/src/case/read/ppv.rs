@@ -25,6 +25,7 @@ pub(super) fn read(output: &Table<'_>) -> Option<Vec<Ppv>> {
 fn ppv(table: Table<'_>) -> Option<Ppv> {
     let name = table.text("name").spanned().required();
     let hole = table.text("hole").spanned().required();
+    let centre = optional(&table, "centre", |key| point(&table, key).given());
     let axis = optional(&table, "axis", |key| direction(&table, key).given());
     let charge = optional(&table, "charge", |key| table.quantity(key).positive().given());
     if charge == Some(None) {
@@ -39,7 +40,8 @@ fn ppv(table: Table<'_>) -> Option<Ppv> {
         return None;
     }
     table.finish("here");
-    Some(Ppv { name: name?, hole: hole?, axis: axis?, charge: charge?, scaling, line: line?, groups: groups? })
+    let (name, hole, centre, axis) = (name?, hole?, centre?, axis?);
+    Some(Ppv { name, hole, centre, axis, charge: charge?, scaling, line: line?, groups: groups? })
 }
 
 fn line(table: &Table<'_>) -> Option<StationLine> {
