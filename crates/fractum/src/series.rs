@@ -1,8 +1,8 @@
 //! Numbers from the history of a probe: means, slopes, values in between.
 
-/// Where the largest value is, the first of equals; none where there is no value.
+/// Where the largest value is, the first of equals; none where no value is a number.
 pub(crate) fn index_of_max(values: &[f64]) -> Option<usize> {
-    (0..values.len()).reduce(|best, i| if values[i] > values[best] { i } else { best })
+    (0..values.len()).filter(|&i| !values[i].is_nan()).reduce(|best, i| if values[i] > values[best] { i } else { best })
 }
 
 /// Mean over time by trapezoids.
@@ -58,6 +58,12 @@ pub(crate) fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_largest_value_is_found_behind_rows_without_one() {
+        assert_eq!(index_of_max(&[f64::NAN, 1.0, 3.0, f64::NAN, 3.0]), Some(2));
+        assert_eq!(index_of_max(&[f64::NAN, f64::NAN]), None);
+    }
 
     #[test]
     fn the_slope_of_a_window_smooths_the_leaps_of_a_tip() {
