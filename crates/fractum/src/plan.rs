@@ -19,6 +19,8 @@ use crate::input::Input;
 const COST: [f64; 3] = [20.0, 45.0, 50.0];
 /// Bytes per element: standard, smoothed, smoothed with damage.
 const MEMORY: [f64; 3] = [250.0, 450.0, 550.0];
+/// Bytes per node of solids that may turn into discrete elements, if all of them do.
+const MEMORY_OF_DEBRIS: f64 = 400.0;
 
 /// Elements that a further thread needs to be of use.
 const ELEMENTS_PER_THREAD: usize = 5_000;
@@ -292,6 +294,9 @@ impl Plan {
         let bonds = scene.counts().bonds as f64;
         nanoseconds += COST_OF_BOND * bonds;
         bytes += MEMORY_OF_BOND * bonds;
+        if scene.solid.has_damage() {
+            bytes += MEMORY_OF_DEBRIS * scene.solid.reference.len() as f64;
+        }
         let output = 60.0 * elements as f64 + 60.0 * scene.bonded.particles.len() as f64 + 20.0 * bonds;
         let steps = case.solver.end / scene.clock.dt_after;
         let frames = (case.solver.end / case.output.fields_every).ceil() + 1.0;

@@ -10,6 +10,7 @@ pub use pairs::Pair;
 use fractum_contact::law::{ContactParameters, ElasticMaterial, Linear};
 use fractum_fem::Solid;
 use fractum_math::{HalfSteps, Vec3};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::holder::{Holder, Holders};
@@ -43,13 +44,23 @@ pub struct Debris {
     particle_of: Vec<u32>,
     torque: Vec<Vec3>,
     holders: Holders,
-    /// Angular velocity of each particle that touched, as contact sees it: its own, or that of its holder [rad/s].
-    turning: Vec<Vec3>,
-    /// Particles whose `turning` is that of the moment.
-    turned: Vec<u32>,
+    /// How the particles turn that touch.
+    turned: Vec<Turned>,
+    /// Where each particle is in that list, or [`NONE`].
+    place_in_turned: Vec<u32>,
     near: Near,
     /// Stiffness over mass of the contacts of each particle [1/s²]; zero but while it is summed.
     rates: Vec<f64>,
+}
+
+/// How a particle turns at the moment, as contact sees it.
+#[derive(Clone, Debug)]
+struct Turned {
+    particle: u32,
+    /// Its own angular velocity, or that of its holder [rad/s].
+    spin: Vec3,
+    /// The element that holds it.
+    holder: Option<Holder>,
 }
 
 /// What changes in the debris during a run.
@@ -117,8 +128,8 @@ impl Debris {
             particle_of: vec![NONE; solid.reference.len()],
             torque: Vec::new(),
             holders: Holders::default(),
-            turning: Vec::new(),
             turned: Vec::new(),
+            place_in_turned: Vec::new(),
             near: Near::default(),
             rates: Vec::new(),
         }
@@ -279,7 +290,7 @@ impl Debris {
                     self.state.attached.push(true);
                     self.state.spin.push(Vec3::zeros());
                     self.torque.push(Vec3::zeros());
-                    self.turning.push(Vec3::zeros());
+                    self.place_in_turned.push(NONE);
                 }
                 let particle = self.particle_of[node as usize] as usize;
                 self.state.attached[particle] = self.holders.is_held(solid, node);
@@ -298,21 +309,30 @@ impl Debris {
     /// Both differ where a particle has come free or its element has gone: it keeps no spin of the element.
     fn update_turning(&mut self, solid: &Solid, dt: f64) -> f64 {
         let mut turned = std::mem::take(&mut self.turned);
+        turned.iter().for_each(|known| self.place_in_turned[known.particle as usize] = NONE);
+        turned.clear();
         let of_contacts = self.state.contacts.iter().flat_map(|pair| pair.nodes);
         let handed = self.state.handed.iter().map(|handed| handed.particle);
-        turned.clear();
-        turned.extend(of_contacts.map(|node| self.particle_of[node as usize]).chain(handed));
-        turned.sort_unstable();
-        turned.dedup();
-        for &particle in &turned {
-            self.turning[particle as usize] = self.spin_of(solid, particle);
+        for particle in of_contacts.map(|node| self.particle_of[node as usize]).chain(handed) {
+            let place = &mut self.place_in_turned[particle as usize];
+            if *place == NONE {
+                *place = turned.len() as u32;
+                turned.push(Turned { particle, spin: self.state.spin[particle as usize], holder: None });
+            }
         }
+        turned.par_iter_mut().with_min_len(256).for_each(|Turned { particle, spin, holder }| {
+            if self.state.attached[*particle as usize] {
+                *holder = self.holder_of(solid, self.state.nodes[*particle as usize]);
+                *spin = holder.as_ref().map_or_else(Vec3::zeros, |holder| holder.spin(solid));
+            }
+        });
         self.turned = turned;
         let beyond = |handed: &Handed| {
             let node = self.state.nodes[handed.particle as usize];
             let holder = self.holders.element(solid, handed.element, self.radius[node as usize]);
             let spin = holder.map_or_else(Vec3::zeros, |holder| holder.spin(solid));
-            0.5 * dt * handed.torque.dot(&(spin - self.turning[handed.particle as usize]))
+            let own = self.turned[self.place_in_turned[handed.particle as usize] as usize].spin;
+            0.5 * dt * handed.torque.dot(&(spin - own))
         };
         self.state.handed.iter().map(beyond).sum()
     }
@@ -322,10 +342,14 @@ impl Debris {
         self.state.handed.clear();
         for particle in 0..self.len() {
             let torque = self.torque[particle];
-            if self.state.attached[particle]
-                && torque != Vec3::zeros()
-                && let Some(holder) = self.holder_of(solid, self.state.nodes[particle])
-            {
+            if !self.state.attached[particle] || torque == Vec3::zeros() {
+                continue;
+            }
+            let found = match self.place_in_turned[particle] {
+                NONE => self.holder_of(solid, self.state.nodes[particle]),
+                place => self.turned[place as usize].holder,
+            };
+            if let Some(holder) = found {
                 holder.add_torque(solid, torque);
                 self.state.handed.push(Handed { particle: particle as u32, element: holder.number, torque });
             }
@@ -375,7 +399,8 @@ impl Debris {
             self.particle_of[node as usize] = particle;
         }
         self.torque = vec![Vec3::zeros(); state.nodes.len()];
-        self.turning = self.torque.clone();
+        self.turned.clear();
+        self.place_in_turned = vec![NONE; state.nodes.len()];
         self.state = state;
         if !self.radius.is_empty() {
             self.list_anew(solid);

@@ -18,6 +18,7 @@ pub(crate) struct Holders {
 }
 
 /// Nodes of an element and the geometry of its rotation.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Holder {
     /// As [`Holders`] numbers it.
     pub(crate) number: u32,
@@ -67,19 +68,17 @@ impl Holders {
         let nodes = solid.body(body).elements[element];
         let live = &nodes[..corners];
         let middle = live.iter().map(|&n| solid.position(n as usize)).sum::<Vec3>() / corners as f64;
-        let plane = corners == 3;
-        let mut inertia = Mat3::zeros();
-        for &n in live {
-            let r = solid.position(n as usize) - middle;
-            inertia += Mat3::identity() * r.norm_squared() - r * r.transpose();
-        }
-        let inverse_inertia = if plane {
+        let arms = live.iter().map(|&n| solid.position(n as usize) - middle);
+        let (inverse_inertia, size, limit) = if corners == 3 {
             // Nothing turns but about z.
-            Mat3::from_diagonal(&Vec3::new(0.0, 0.0, 1.0 / inertia[(2, 2)]))
+            let inverse = 1.0 / arms.map(|r| r.norm_squared() - r.z * r.z).sum::<f64>();
+            (Mat3::from_diagonal(&Vec3::new(0.0, 0.0, inverse)), inverse, 1.0)
         } else {
-            inertia.try_inverse()?
+            let inertia = arms.map(|r| Mat3::identity() * r.norm_squared() - r * r.transpose()).sum::<Mat3>();
+            let inverse = inertia.try_inverse()?;
+            (inverse, inverse.norm(), 3f64.sqrt())
         };
-        let turns = radius * radius * inverse_inertia.norm() <= if plane { 1.0 } else { 3f64.sqrt() };
+        let turns = radius * radius * size <= limit;
         turns.then_some(Holder { number, nodes, corners, middle, inverse_inertia })
     }
 

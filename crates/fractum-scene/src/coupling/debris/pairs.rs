@@ -22,8 +22,9 @@ pub struct Pair {
     pub(super) memory: ContactMemory,
     /// Force on the second particle [N].
     pub(super) force: Vec3,
-    /// Couple on the second particle beside the moment of the force [N m].
-    pub(super) couple: Vec3,
+    /// Moments of force and couple about the centres, to be taken from the first particle and given to the second [N m].
+    #[serde(skip)]
+    pub(super) moments: [Vec3; 2],
     pub(super) stored: f64,
     pub(super) friction: f64,
     pub(super) damping: f64,
@@ -38,7 +39,7 @@ impl Debris {
             law: self.pair_law(solid, nodes),
             memory: ContactMemory::default(),
             force: Vec3::zeros(),
-            couple: Vec3::zeros(),
+            moments: [Vec3::zeros(); 2],
             stored: 0.0,
             friction: 0.0,
             damping: 0.0,
@@ -63,12 +64,12 @@ impl Debris {
     /// Adds the contact forces of all pairs to the nodes.
     pub(crate) fn add_forces(&mut self, solid: &mut Solid, dt: f64) -> Work {
         let beyond = self.update_turning(solid, dt);
-        let Debris { state, particle_of, radius, torque, turning, .. } = self;
+        let Debris { state, particle_of, radius, torque, turned, place_in_turned, .. } = self;
         let DebrisState { contacts, .. } = state;
         torque.fill(Vec3::zeros());
         {
             let solid = &*solid;
-            let spin = |node: usize| turning[particle_of[node] as usize];
+            let spin = |node: usize| turned[place_in_turned[particle_of[node] as usize] as usize].spin;
             contacts.par_iter_mut().with_min_len(512).for_each(|pair| {
                 let [i, j] = pair.nodes.map(|n| n as usize);
                 let apart = solid.position(j) - solid.position(i);
@@ -80,7 +81,8 @@ impl Debris {
                     PairMotion { normal, overlap: pair.closing - distance, velocity, spin: spin(j) - spin(i), dt };
                 let ContactForce { on_second, couple_on_second, stored, friction, damping } =
                     pair.law.force(&motion, &mut pair.memory);
-                (pair.force, pair.couple) = (on_second, couple_on_second);
+                pair.force = on_second;
+                pair.moments = [arm_i, arm_j].map(|arm| arm.cross(&on_second) + couple_on_second);
                 (pair.stored, pair.friction, pair.damping) = (stored, friction, damping);
             });
         }
@@ -91,11 +93,8 @@ impl Debris {
             let [i, j] = pair.nodes.map(|n| n as usize);
             solid.force[i] -= pair.force;
             solid.force[j] += pair.force;
-            let apart = solid.position(j) - solid.position(i);
-            let distance = apart.norm();
-            let (arm_i, arm_j) = arms(apart / distance, distance, radius[i], radius[j]);
-            torque[particle_of[i] as usize] -= arm_i.cross(&pair.force) + pair.couple;
-            torque[particle_of[j] as usize] += arm_j.cross(&pair.force) + pair.couple;
+            torque[particle_of[i] as usize] -= pair.moments[0];
+            torque[particle_of[j] as usize] += pair.moments[1];
             work += Work::contact(pair.stored, pair.friction, pair.damping);
         }
         work
