@@ -150,7 +150,7 @@ fn largest(history: &Table, name: &str) -> f64 {
 }
 
 /// Ratio of the largest values of two curves beyond which the smaller one lies flat on the axis.
-const FLAT: f64 = 20.0;
+const FLAT: f64 = 8.0;
 
 /// Names in sets that one axis can show, in the order of their first members; what is zero goes with any.
 fn of_like_size(names: Vec<String>, largest: impl Fn(&str) -> f64) -> Vec<Vec<String>> {

@@ -32,7 +32,7 @@ pub(super) fn curve(history: &Table, curve: &Curve) -> Option<Chart> {
         columns.push((name, axis(history, name)?));
     }
     let (_, (first, _)) = columns.first()?;
-    let label = if columns.len() == 1 { first.label.clone() } else { curve.title.clone() };
+    let label = if columns.len() == 1 { first.label.clone() } else { "value".into() };
     let y = Axis::new(label, first.unit.clone()).from_zero();
     let mut chart = Chart { title: curve.title.clone(), x, y, levels: curve.levels.clone(), ..Chart::default() };
     if curve.mark_peak {
