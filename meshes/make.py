@@ -65,6 +65,8 @@ UNSTRUCTURED = {
     "blast/granite": ("blast-plane/disc.geo", {"h": 0.0025, "far": 0.009, "length": 0.15}, True),
     "absorbing-plane/p-30": ("absorbing-plane/channel.geo", {"angle": 30, "W": 0.1, "L": 0.03}, False),
     "absorbing-plane/p-60": ("absorbing-plane/channel.geo", {"angle": 60, "W": 0.1, "L": 0.03}, False),
+    "branching-plane/delaunay": ("branching-plane/plate.geo", {"h": 0.0007, "algorithm": 5}, False),
+    "branching-plane/rows": ("branching-plane/plate.geo", {"h": 0.0005, "algorithm": 6}, False),
     "bending-plane/plain": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0, "layers": 0}, False),
     "bending-plane/notched": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0.03, "layers": 0}, False),
     "bending-plane/notched-10": ("bending/beam.geo", {"h": 0.01, "far": 0.02, "notch": 0.03, "layers": 0}, False),

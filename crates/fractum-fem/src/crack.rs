@@ -83,7 +83,14 @@ impl Solid {
                     continue;
                 }
                 let elements = model.elements_of_edge.row(edge);
-                let volume: f64 = elements.iter().map(|&e| share * self.element_volume(index, e)).sum();
+                // The cell of an edge that has lost no element knows its volume.
+                let whole = model.standard.is_none() && elements.iter().all(|&e| model.alive[e as usize]);
+                let volume: f64 = if whole {
+                    let (block, cell) = model.location[edge];
+                    self.blocks[block as usize].cells.volume[cell as usize]
+                } else {
+                    elements.iter().map(|&e| share * self.element_volume(index, e)).sum()
+                };
                 let [i, j] = edges.nodes[edge];
                 let (area, left) = match &model.phase {
                     None => (volume / field.length[at], (1.0 - state.damage) * state.kappa / field.strength[at]),

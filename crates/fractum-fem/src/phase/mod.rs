@@ -25,7 +25,7 @@ use crate::material::Degradation;
 use laplacian::Rows;
 
 /// Value from which on the neighbours of an edge are active.
-const SPREADS: f64 = 1e-6;
+const SPREADS: f64 = 1e-4;
 /// Sweeps of a step of motion.
 const SWEEPS: usize = 2;
 /// Edges that one thread takes at least.

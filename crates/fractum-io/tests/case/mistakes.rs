@@ -317,6 +317,23 @@ fn each_mistake_has_one_clear_message() {
              friction angle; expected at least 3 Pa; raise compressive_strength or lower friction_angle",
         ),
         (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, length = 1 }",
+            "8:55: materials.steel.damage.length has no effect without regularisation; remove it",
+        ),
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, rate_time = 1, \
+             regularisation = \"phase-field\" }",
+            "8:55: materials.steel.damage.rate_time has no effect with a phase field, whose energy it would raise; remove it",
+        ),
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, crack_plane_gate = true, \
+             regularisation = \"phase-field\" }",
+            "8:55: materials.steel.damage.crack_plane_gate has no effect beside a phase field, which needs no gate; remove it",
+        ),
+        (
             "young_modulus = 210e9",
             "young_modulus = \"2*GPa\"",
             "6:20: materials.steel.young_modulus = \"2*GPa\": unknown name \"GPa\"; a unit stands right behind its \

@@ -29,6 +29,7 @@ fn a_case_with_every_key_is_read_into_si() {
     let angle = 32.0 * (std::f64::consts::PI / 180.0);
     assert_eq!(law.criterion, Criterion::new(CriterionKind::MohrCoulomb, angle, 10.0, 0.2));
     assert_eq!(law.softening, Softening::Bilinear { stress: 0.25, opening: 2.0 * 0.15 / (0.25 + 0.15) });
+    assert_eq!(mortar.damage.as_ref().unwrap().value.regularisation.and_then(|r| r.length), Some(0.02));
     let soft = &mortar.damage.as_ref().unwrap().value.law;
     assert_eq!((mortar.young_modulus, soft.tensile_strength), (14e9, 2e6));
     let angle = 35f64.to_radians();
