@@ -61,7 +61,7 @@ impl Block {
                 outcome
             }
             BlockLaw::Edges(law) => {
-                (law.energy, law.switched) = (start, 0.0);
+                law.energy = start;
                 let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
                 run(model, cells, scratch, &mut EdgesInStep { edges: law, cells, step }, viscous)
             }

@@ -112,17 +112,15 @@ impl Solid {
         }
     }
 
-    /// ½ σ : ε over these cells, of the present and of the step before one the stress and the strain [J].
+    /// ½ σ : ε⁰ over these cells, with the present stress and the strain of the step before [J].
     fn step_energy(&self, dt: f64, cells: &[(u32, u32)]) -> f64 {
         let Solid { displacement, velocity, .. } = self;
         let of = |&(block, cell): &(u32, u32)| {
             let (block, cell) = (&self.blocks[block as usize], cell as usize);
             let model = &self.bodies[block.body];
             let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
-            let (before, now) = (step.strain_before(&block.cells, cell), step.strain_now(&block.cells, cell));
-            // ½ σ⁰ : ε¹ is the same for laws that are linear at constant damage; of the others it is the one that counts.
-            let [of, with] = if block.is_unilateral() { [before, now] } else { [now, before] };
-            0.5 * block.nominal_stress(cell, &model.hooke, of).dot(with) * block.cells.volume[cell]
+            let stress = block.nominal_stress(cell, &model.hooke, step.strain_now(&block.cells, cell));
+            0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
         };
         cells.iter().map(of).sum()
     }
@@ -196,10 +194,6 @@ impl Block {
     /// Strain of one cell at the present displacements.
     pub(crate) fn strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
         kernel::strain(&self.cells.gradient(cell, |node| displacement[node]), kinematics)
-    }
-
-    fn is_unilateral(&self) -> bool {
-        self.edge_field().is_some_and(|field| field.softens.unilateral)
     }
 
     /// Stress of one cell with its damage [Pa].

@@ -185,13 +185,6 @@ impl Solid {
         self.blocks.iter().map(Block::dissipated).sum()
     }
 
-    /// What central differences took in the last step where cells with unilateral damage opened or closed within it, of
-    /// either sign [J].
-    pub fn switched_energy(&self) -> f64 {
-        let of = |block: &Block| if let BlockLaw::Edges(law) = &block.law { law.switched } else { 0.0 };
-        self.blocks.iter().map(of).sum()
-    }
-
     /// Energy dissipated by viscosity so far [J].
     pub fn viscous_dissipation(&self) -> f64 {
         self.viscous_dissipation
@@ -374,7 +367,7 @@ impl BodyModel {
             let law = match (&softens, &threshold) {
                 (Some(softens), Some(t)) if smoothed && t.strength[items[0] as usize].is_finite() => {
                     let field = EdgeField::new(softens.clone(), items.clone(), t);
-                    BlockLaw::Edges(EdgeCells { field, dissipated: 0.0, switched: 0.0, energy: None })
+                    BlockLaw::Edges(EdgeCells { field, dissipated: 0.0, energy: None })
                 }
                 (Some(softens), Some(_)) if !smoothed => {
                     BlockLaw::Standard(StandardCells::new(softens.clone(), items.len()))

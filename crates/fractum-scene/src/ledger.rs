@@ -38,7 +38,7 @@ pub enum EnergyKind {
     /// Energy stored in the springs of elastic supports.
     Foundation,
     /// What central differences keep less of the energy at a start out of balance and at changes of the time step,
-    /// ⅛ (Δt₊² - Δt₋²) Σ F²/m, and in steps within which cracks of unilateral damage open or close: either sign.
+    /// ⅛ (Δt₊² - Δt₋²) Σ F²/m: either sign.
     TimeStep,
     /// Energy of the gas that was put in holes.
     GasSupplied,

@@ -70,7 +70,6 @@ impl Scene {
         let elapsed = if first { 0.0 } else { dt_before };
 
         self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
-        self.books.time_step += self.solid.switched_energy();
         self.refuse_inverted_elements()?;
         passed(Phase::Solid);
         let (bonded_load, faces) = self.add_bond_forces(time, elapsed, dt_before, measure);
