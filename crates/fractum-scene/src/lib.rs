@@ -14,6 +14,7 @@ mod crack_measure;
 mod damaged;
 mod domain;
 mod error;
+mod facet;
 mod fragment;
 mod gas;
 mod leave;

@@ -7,18 +7,20 @@
 mod cavity;
 mod hole_ends;
 mod measure;
+mod settings;
 
 use fractum_fem::{CrackCell, CrackNetwork, CrackNetworkState, CrackSide, Solid};
-use fractum_gas::{Amount, Contents, EquationOfState, Network, Passage, SlitFlow};
+use fractum_gas::{Amount, Contents, Network, Passage};
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::conditions::share_of_torn;
+use crate::facet::share_of_torn;
 use crate::time_function::TimeFunction;
 use cavity::Cavity;
 pub(crate) use cavity::enclosed_volume;
 pub use hole_ends::{HoleEnds, SymmetryPlanes};
 pub use measure::GasMeasure;
+pub use settings::{Charge, GasHole, GasSettings, GasSource};
 
 /// Part of its energy that a cell passes on as a facet between it and another removed element moves, at most.
 const LARGEST_EXCHANGE: f64 = 0.2;
@@ -26,61 +28,6 @@ const LARGEST_EXCHANGE: f64 = 0.2;
 const RESERVE: f64 = 1.5;
 /// Walls of one cell and its neighbours that share a node, in the plane and in space.
 const WALLS_OF_NODE: [f64; 2] = [2.0, 6.0];
-
-/// What stays the same about the gas of a scene.
-#[derive(Clone)]
-pub struct GasSettings {
-    /// Law of the gas.
-    pub law: EquationOfState,
-    /// Viscosity, and roughness of the walls of cracks.
-    pub slits: SlitFlow,
-    /// Opening of a crack whose walls are where they were without load [m], > 0.
-    pub least_opening: f64,
-    /// Whether gas enters cracks, rather than push on the walls of the holes alone.
-    pub in_cracks: bool,
-    /// Pressure where cracks reach the surface of the solids [Pa]; nothing flows in from there.
-    pub outside_pressure: f64,
-    /// Planes of symmetry that the model ends at: holes end there, and nothing leaks.
-    pub symmetry: SymmetryPlanes,
-    /// Holes that gas is put in; no facet is in two of them.
-    pub holes: Vec<GasHole>,
-}
-
-/// A hole that gas is put in.
-#[derive(Clone)]
-pub struct GasHole {
-    /// Outward facets of the solids around it: a closed surface with its ends, in the plane a closed line.
-    pub facets: Vec<[u32; 3]>,
-    /// Its ends; they do not move along the hole, and nothing leaks through them.
-    pub ends: HoleEnds,
-    /// What it holds at the start.
-    pub charge: Charge,
-    /// What comes in over time.
-    pub source: Option<GasSource>,
-}
-
-/// What a hole holds at the start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Charge {
-    /// Mass and internal energy.
-    Amount(Amount),
-    /// Pressure [Pa] and temperature [K] in the hole without load.
-    State {
-        /// Pressure [Pa].
-        pressure: f64,
-        /// Temperature [K].
-        temperature: f64,
-    },
-}
-
-/// Gas that comes in over time.
-#[derive(Clone)]
-pub struct GasSource {
-    /// Mass [kg/s].
-    pub mass: TimeFunction,
-    /// Energy, that of the pressure included [W].
-    pub energy: TimeFunction,
-}
 
 /// A wall under pressure.
 #[derive(Clone, Copy, Debug)]

@@ -13,7 +13,6 @@ pub use body_force::Gravity;
 pub use crack_pressure::CrackPressure;
 pub use nodal::NodalForce;
 pub use pressure::Pressure;
-pub(crate) use pressure::share_of_torn;
 
 use super::{DrivenPoints, Points};
 use crate::gas::{Gas, GasState};

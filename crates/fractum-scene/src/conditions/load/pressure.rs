@@ -3,11 +3,8 @@ use std::fmt;
 use fractum_math::Vec3;
 
 use crate::conditions::Points;
+use crate::facet::share_of_torn;
 use crate::time_function::TimeFunction;
-
-/// Area of a facet under pressure over that without load, at most. Facets of a crushed wall join particles that fly apart: they would grow, be
-/// pushed the more and grow the faster, without any limit. Sound rock breaks far below such strains.
-const LARGEST_STRETCH: f64 = 2.0;
 
 /// Pressure on facets, along their present normals [Pa]; positive pushes into the body.
 #[derive(Clone)]
@@ -46,13 +43,6 @@ pub(super) fn push_facet(
     let share = share_of_torn(&area, &area_vector(&[*a, *b, *c], thickness));
     let force = area * (-pressure(&centre) / corners as f64 * share);
     forces.extend(facet[..corners].iter().map(|&n| (n, force)));
-}
-
-/// The part of a facet's area that pressure acts on: all of it up to twice that without load, and no more than this beyond.
-///
-/// - `area`, `reference`: area vectors at present and without load [m²]
-pub(crate) fn share_of_torn(area: &Vec3, reference: &Vec3) -> f64 {
-    (LARGEST_STRETCH * reference.norm() / area.norm()).min(1.0)
 }
 
 /// Outward area vector of a triangle, or of an edge in the plane with this thickness [m²].
