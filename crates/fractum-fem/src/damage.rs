@@ -329,14 +329,7 @@ impl CellLaw for EdgesInStep<'_> {
 
 /// Stress of the compressive part of the strain, λ⟨tr ε⟩₋ + 2μ ε₋ (Miehe's spectral split).
 fn compressive_stress(hooke: &Hooke, strain: Sym3) -> Sym3 {
-    let (values, directions) = strain.eigen();
-    let mut part = fractum_math::Mat3::zeros();
-    for (i, value) in values.into_iter().enumerate() {
-        let n = directions.column(i);
-        part += (n * n.transpose()) * value.min(0.0);
-    }
-    let stress =
-        Sym3::symmetric_part(&part) * (2.0 * hooke.mu) + Sym3::isotropic(hooke.lambda * strain.trace().min(0.0));
+    let stress = strain.negative_part() * (2.0 * hooke.mu) + Sym3::isotropic(hooke.lambda * strain.trace().min(0.0));
     Sym3([stress.0[0], stress.0[1], hooke.zz * stress.0[2], stress.0[3], stress.0[4], stress.0[5]])
 }
 
