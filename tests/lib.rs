@@ -1,6 +1,6 @@
 //! Helpers shared by the verification and validation tests.
 
-use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, LocalDamping, Softening, Solid};
+use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, LocalDamping, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::{boundary_of_tetrahedra, boundary_of_triangles};
@@ -13,15 +13,7 @@ pub const CONCRETE: Elastic = Elastic { density: 2400.0, young_modulus: 30e9, po
 ///
 /// - `fracture_energy` [J/m²]
 pub fn softening(fracture_energy: f64) -> DamageLaw {
-    DamageLaw {
-        criterion: Criterion::rankine(),
-        tensile_strength: 3e6,
-        fracture_energy,
-        softening: Softening::Exponential,
-        residual: 0.02,
-        unilateral: false,
-        rate_time: 0.0,
-    }
+    DamageLaw::rankine(3e6, fracture_energy)
 }
 
 /// Undamped motion at 0.8 of the stable step to `end` [s].

@@ -171,7 +171,7 @@ fn part(cells: u32, plane: bool, damage: bool) -> (Solid, Vec<[u32; 3]>, Symmetr
     let solid = Solid::new(nodes, vec![body]).unwrap();
     let planes = SymmetryPlanes([Some(half), Some(half), (!plane).then_some(half)]);
     let near = |n: &u32| (solid.reference[*n as usize] - Vec3::repeat(half)).iter().take(axes).all(|c| *c < 0.3 * SIZE);
-    let wall = |f: &[u32; 3]| f.iter().all(near) && planes.across(&solid, f, cell).is_none();
+    let wall = |f: &[u32; 3]| f.iter().all(near) && !planes.hold(&solid, f, cell);
     let facets = surface(&solid).into_iter().filter(wall).collect();
     (solid, facets, planes)
 }
@@ -217,7 +217,7 @@ fn gas_does_not_leak_where_cracks_reach_a_plane_of_symmetry() {
     let gas = scene.gas().unwrap();
     let on_plane = gas.cells().filter_map(|cell| cell.element).filter(|&(body, element)| {
         let nodes = scene.solid.body(body).elements[element as usize];
-        (0..3).any(|i| planes.across(&scene.solid, &[nodes[i], nodes[(i + 1) % 3]], 0.01).is_some())
+        (0..3).any(|i| planes.hold(&scene.solid, &[nodes[i], nodes[(i + 1) % 3]], 0.01))
     });
     let (on_plane, leaked) = (on_plane.count(), gas.leaked().mass);
     assert!(

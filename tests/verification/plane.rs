@@ -1,6 +1,6 @@
 //! Plane bodies: patch test of both plane states, the two-triangle tension test, discs as discrete elements.
 
-use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, Formulation, Plane, Softening, Solid};
+use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Formulation, Plane, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_scene::ContactParameters;
@@ -53,15 +53,7 @@ fn two_triangles_in_tension_follow_the_softening_curve() {
     let area: f64 = 0.5 * (4.38654 - 2.43214) * (1.46037 + 0.656895);
     let side = (4.0 * area / 3f64.sqrt()).sqrt();
     for (formulation, factor) in [(Formulation::Standard, 1.28), (Formulation::Smoothed, 1.124)] {
-        let law = DamageLaw {
-            criterion: Criterion::rankine(),
-            tensile_strength: 1.5e6,
-            fracture_energy: 400.0 * factor * side / 2.317690,
-            softening: Softening::Exponential,
-            residual: 0.02,
-            unilateral: false,
-            rate_time: 0.0,
-        };
+        let law = DamageLaw::rankine(1.5e6, 400.0 * factor * side / 2.317690);
         let nodes: Vec<Vec3> = NODES.iter().map(|p| Vec3::new(p[0], p[1], 0.0)).collect();
         let elements = vec![[3, 1, 2, 2], [1, 0, 2, 2]];
         let body = Body::new("pair", ElementKind::T3, elements, steel).with_damage(law);

@@ -5,7 +5,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as run_benches};
-use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, Kinematics, LocalDamping, Softening, Solid};
+use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, LocalDamping, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::renumber::renumber_along_hilbert_curve;
@@ -33,15 +33,7 @@ fn solid(cells: u32, prepare: impl Fn(Body) -> Body) -> (Solid, usize, f64) {
 }
 
 fn law(strength: f64) -> DamageLaw {
-    DamageLaw {
-        criterion: Criterion::rankine(),
-        tensile_strength: strength,
-        fracture_energy: 1e3,
-        softening: Softening::Exponential,
-        residual: 0.02,
-        unilateral: false,
-        rate_time: 0.0,
-    }
+    DamageLaw::rankine(strength, 1e3)
 }
 
 fn bench_step(bencher: Bencher, cells: u32, prepare: impl Fn(Body) -> Body) {

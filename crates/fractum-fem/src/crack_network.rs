@@ -10,7 +10,7 @@ use fractum_mesh::topology::{TETRAHEDRON_FACETS, TRIANGLE_SIDES};
 use serde::{Deserialize, Serialize};
 
 use crate::body::ElementKind;
-use crate::element::{measure_and_gradients, regular_edge};
+use crate::element::{facet_area, measure_and_gradients, regular_edge};
 use crate::solid::Solid;
 
 const NONE: u32 = u32::MAX;
@@ -296,13 +296,8 @@ impl CrackCell {
 impl Solid {
     /// Area times unit normal of a facet with its nodes at these places [m²]; of an edge in the plane length times thickness.
     pub fn facet_area(&self, nodes: &[u32; 3], at: impl Fn(u32) -> Vec3) -> Vec3 {
-        let [a, b, c] = nodes.map(at);
-        if nodes[1] == nodes[2] {
-            let along = b - a;
-            Vec3::new(along.y, -along.x, 0.0) * self.bodies.first().map_or(1.0, |model| model.body.thickness)
-        } else {
-            (b - a).cross(&(c - a)) * 0.5
-        }
+        let thickness = || self.bodies.first().map_or(1.0, |model| model.body.thickness);
+        facet_area(nodes.map(at), (nodes[1] == nodes[2]).then(thickness))
     }
 
     /// Volume of an element at tⁿ [m³]; negative where it is turned inside out.

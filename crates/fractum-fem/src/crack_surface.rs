@@ -129,20 +129,12 @@ fn behind(model: &BodyModel, around: &[u32], third: u32) -> Option<u32> {
 mod tests {
     use super::*;
     use crate::body::Body;
-    use crate::material::{Criterion, DamageLaw, Elastic, Softening};
+    use crate::material::{DamageLaw, Elastic};
     use fractum_mesh::generate::{structured_box, structured_rectangle};
 
     fn broken(shape: ElementKind, nodes: Vec<Vec3>, elements: Vec<[u32; 4]>) -> Solid {
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
-        let law = DamageLaw {
-            criterion: Criterion::rankine(),
-            tensile_strength: 3e6,
-            fracture_energy: 100.0,
-            softening: Softening::Exponential,
-            residual: 0.02,
-            unilateral: false,
-            rate_time: 0.0,
-        };
+        let law = DamageLaw::rankine(3e6, 100.0);
         let mut body = Body::new("bar", shape, elements, elastic).smoothed().with_damage(law);
         body.thickness = 0.3;
         let mut solid = Solid::new(nodes, vec![body]).unwrap();

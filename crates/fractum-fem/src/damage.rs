@@ -83,7 +83,7 @@ impl Softens {
     ///
     /// The work of the step between the strains ε⁰ and ε¹ minus the change of the stored energy is exactly ½ σ¹ : ε⁰ per damage where
     /// the law is linear but for damage. A unilateral edge takes nothing where it was closed: its ½ σ¹ : ε⁰ may be negative.
-    fn taken(&self, opening: Sym3, before: Sym3) -> f64 {
+    pub(crate) fn taken(&self, opening: Sym3, before: Sym3) -> f64 {
         let taken = 0.5 * opening.dot(before);
         if self.unilateral { taken.max(0.0) } else { taken }
     }
@@ -265,11 +265,11 @@ impl EdgesInStep<'_> {
     /// Takes from an edge the stiffness with which it would store more than `most` [J]; damage of a phase field has no value
     /// of its own.
     pub(crate) fn weaken(&mut self, cell: usize, most: f64) {
-        let strain = self.step.strain_now(self.cells, cell);
         let field = &mut self.edges.field;
         if field.softens.regularised {
             return;
         }
+        let strain = self.step.strain_now(self.cells, cell);
         let (opening, full) = (field.softens.opening_stress(strain), field.softens.hooke.stress(strain));
         let [open, closed] = [opening, full - opening].map(|s| 0.5 * s.dot(strain) * self.cells.volume[cell]);
         let needed = 1.0 - ((most - closed) / open).max(0.0);
@@ -342,15 +342,7 @@ mod tests {
     use crate::material::Elastic;
 
     fn unilateral() -> Softens {
-        let law = DamageLaw {
-            criterion: Criterion::rankine(),
-            tensile_strength: 3e6,
-            fracture_energy: 100.0,
-            softening: Softening::Exponential,
-            residual: 0.02,
-            unilateral: true,
-            rate_time: 0.0,
-        };
+        let law = DamageLaw { unilateral: true, ..DamageLaw::rankine(3e6, 100.0) };
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
         let body = Body::new("edge", ElementKind::T4, vec![[0, 1, 2, 3]], elastic).with_damage(law);
         Softens::new(body.damage.as_ref().unwrap(), Hooke::of(&body), elastic.young_modulus)

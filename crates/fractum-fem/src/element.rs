@@ -47,6 +47,15 @@ pub(crate) fn regular_edge(shape: ElementKind, measure: f64) -> f64 {
     }
 }
 
+/// Area of a facet times its normal [m²]: of a triangle, or with a thickness [m] of the side in the plane between its first two corners,
+/// outward where the solid lies to the left.
+pub fn facet_area([a, b, c]: [Vec3; 3], thickness: Option<f64>) -> Vec3 {
+    match thickness {
+        Some(thickness) => Vec3::new(b.y - a.y, a.x - b.x, 0.0) * thickness,
+        None => (b - a).cross(&(c - a)) * 0.5,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

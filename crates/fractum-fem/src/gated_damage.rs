@@ -139,7 +139,7 @@ impl Solid {
 mod tests {
     use super::*;
     use crate::body::{Body, ElementKind, Kinematics, Plane};
-    use crate::material::{Criterion, DamageLaw, Elastic, Softening};
+    use crate::material::{DamageLaw, Elastic};
     use fractum_mesh::generate::structured_rectangle;
 
     const H: f64 = 0.01;
@@ -151,15 +151,7 @@ mod tests {
         let centred: Vec<Vec3> = mesh.nodes.iter().map(|p| p - Vec3::new(5.5 * H, 5.5 * H, 0.0)).collect();
         let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
-        let law = DamageLaw {
-            criterion: Criterion::rankine(),
-            tensile_strength: 3e6,
-            fracture_energy: 100.0,
-            softening: Softening::Exponential,
-            residual: 0.02,
-            unilateral: false,
-            rate_time: 0.0,
-        };
+        let law = DamageLaw::rankine(3e6, 100.0);
         let mut body = Body::new("plate", ElementKind::T3, elements, elastic).smoothed().with_damage(law);
         body.plane = Plane::Stress;
         body.damage.as_mut().unwrap().crack_plane_gate = gate;

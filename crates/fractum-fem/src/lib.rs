@@ -64,7 +64,7 @@ pub use crack::{CrackEdge, CrackPlane};
 pub use crack_network::{CrackCell, CrackMouth, CrackNetwork, CrackNetworkState, CrackSide};
 pub use crack_surface::{CrackFacet, CrackSurface};
 pub use damage::EdgeDamage;
-pub use element::CUT_MODES;
+pub use element::{CUT_MODES, facet_area};
 pub use error::SolidError;
 pub use gate::GateState;
 pub use inverted::InvertedElement;

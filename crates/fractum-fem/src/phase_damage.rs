@@ -6,7 +6,6 @@ use rayon::prelude::*;
 use crate::cell::Geometry;
 use crate::damage::{Advance, EdgeField};
 use crate::evaluate::{Block, BlockLaw};
-use crate::gate::GateState;
 use crate::phase::{AT_LEAST, ActiveEdge, Drive, Patch, PhaseField};
 use crate::solid::{BodyModel, Solid};
 
@@ -122,7 +121,7 @@ impl Solid {
             let kappa = state.kappa.max(own.seen);
             own.drive = Drive { volume, energy: kappa * kappa * compliance, ..own.drive };
             let before = if state.damage == 0.0 { step.strain_before(&block.cells, cell) } else { state.strain };
-            own.work = 0.5 * softens.opening_stress(strain).dot(before) * volume;
+            own.work = softens.taken(softens.opening_stress(strain), before) * volume;
         });
     }
 
@@ -202,21 +201,15 @@ impl Solid {
     }
 
     /// Puts the saved phase field of a body back, for the elements that are there.
-    pub(crate) fn restore_phase(&mut self, body: usize, state: &GateState) {
+    pub(crate) fn restore_phase(&mut self, body: usize, state: &[(u32, [f64; 2])]) {
         let Some(mut field) = self.bodies[body].phase.take() else { return };
         field.clear();
-        for &(edge, values) in &state.points {
+        for &(edge, values) in state {
             self.activate(body, &mut field, &[edge]);
-            field.restore_last([values.x, values.y]);
+            field.restore_last(values);
         }
         self.bodies[body].phase = Some(field);
     }
-}
-
-/// Active edges of a phase field for a checkpoint, each with d and d of the step before.
-pub(crate) fn state_of(field: &PhaseField) -> GateState {
-    let points = field.state().map(|(edge, [old, before])| (edge, Vec3::new(old, before, 0.0))).collect();
-    GateState { points, strength: Vec::new() }
 }
 
 #[cfg(test)]
@@ -226,18 +219,10 @@ mod tests {
 
     use super::*;
     use crate::body::{Body, ElementKind, Plane, Regularisation};
-    use crate::material::{Criterion, DamageLaw, Elastic, Softening};
+    use crate::material::{DamageLaw, Elastic};
 
     fn law() -> DamageLaw {
-        DamageLaw {
-            criterion: Criterion::rankine(),
-            tensile_strength: 3e6,
-            fracture_energy: 100.0,
-            softening: Softening::Exponential,
-            residual: 0.02,
-            unilateral: false,
-            rate_time: 0.0,
-        }
+        DamageLaw::rankine(3e6, 100.0)
     }
 
     /// A regularised block with its long side along x, all of its edges active.

@@ -197,7 +197,7 @@ impl Block {
     }
 
     /// Stress of one cell with its damage [Pa].
-    fn nominal_stress(&self, cell: usize, hooke: &crate::hooke::Hooke, strain: Sym3) -> Sym3 {
+    pub(crate) fn nominal_stress(&self, cell: usize, hooke: &crate::hooke::Hooke, strain: Sym3) -> Sym3 {
         let full = hooke.stress(strain);
         match &self.law {
             // With unilateral damage the closed part keeps its stress.
@@ -223,22 +223,14 @@ mod tests {
     use proptest::prelude::*;
 
     use crate::body::{Body, ElementKind};
-    use crate::material::{Criterion, DamageLaw, Elastic, Softening};
+    use crate::material::{DamageLaw, Elastic};
     use crate::solid::Solid;
 
     /// A patch of triangles or tetrahedra under random displacements, with random damage; one edge in three is broken.
     fn torn_patch(plane: bool, random: &[f64]) -> Solid {
         let jitter = Some(Jitter { fraction: 0.15, seed: 3 });
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
-        let law = DamageLaw {
-            criterion: Criterion::rankine(),
-            tensile_strength: 3e6,
-            fracture_energy: 100.0,
-            softening: Softening::Exponential,
-            residual: 0.02,
-            unilateral: false,
-            rate_time: 0.0,
-        };
+        let law = DamageLaw::rankine(3e6, 100.0);
         let (nodes, shape, elements) = if plane {
             let mesh = structured_rectangle([3, 3], [0.03; 2], jitter);
             (mesh.nodes, ElementKind::T3, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect())

@@ -7,6 +7,7 @@
 use fractum_math::{Vec3, numbered_parts};
 
 use crate::crack_surface::{CrackFacet, CrackSurface};
+use crate::element::facet_area;
 use crate::solid::Solid;
 
 /// Times the mean of the normals goes on to the next neighbours: a reach of about three facets, within which a mesh is
@@ -89,12 +90,9 @@ impl Solid {
 
     /// Area of a facet times its normal without load; of a side in the plane its length times the thickness [m²].
     fn area_without_load(&self, facet: &CrackFacet) -> Vec3 {
-        let [a, b, c] = facet.nodes.map(|node| self.reference[node as usize]);
-        if facet.nodes[1] == facet.nodes[2] {
-            Vec3::new(b.y - a.y, a.x - b.x, 0.0) * self.body(facet.body).thickness
-        } else {
-            (b - a).cross(&(c - a)) * 0.5
-        }
+        let plane = facet.nodes[1] == facet.nodes[2];
+        let corners = facet.nodes.map(|node| self.reference[node as usize]);
+        facet_area(corners, plane.then_some(self.body(facet.body).thickness))
     }
 
     /// The crack that each of these removed elements is part of, numbered in their order, and how many cracks there are;
@@ -116,7 +114,7 @@ impl Solid {
 mod tests {
     use super::*;
     use crate::body::{Body, ElementKind};
-    use crate::material::{Criterion, DamageLaw, Elastic, Softening};
+    use crate::material::{DamageLaw, Elastic};
     use fractum_mesh::generate::{structured_box, structured_rectangle};
 
     const SIDE: f64 = 0.2;
@@ -125,15 +123,7 @@ mod tests {
     /// A solid torn along planes: nodes beyond each one, y > offset + slope x within the limits of x, move by 5 mm.
     fn torn(shape: ElementKind, nodes: Vec<Vec3>, elements: Vec<[u32; 4]>, beyond: impl Fn(&Vec3) -> f64) -> Solid {
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
-        let law = DamageLaw {
-            criterion: Criterion::rankine(),
-            tensile_strength: 3e6,
-            fracture_energy: 100.0,
-            softening: Softening::Exponential,
-            residual: 0.02,
-            unilateral: false,
-            rate_time: 0.0,
-        };
+        let law = DamageLaw::rankine(3e6, 100.0);
         let mut body = Body::new("bar", shape, elements, elastic).smoothed().with_damage(law);
         body.thickness = THICKNESS;
         let mut solid = Solid::new(nodes, vec![body]).unwrap();

@@ -301,8 +301,7 @@ impl Solid {
     fn cell_field(&self, model: &BodyModel, &(block, cell): &(u32, u32)) -> (Sym3, f64) {
         let (block, cell) = (&self.blocks[block as usize], cell as usize);
         let strain = block.strain_of(cell, model.body.kinematics, &self.displacement);
-        let damage = block.damage_of(cell);
-        (model.hooke.stress(strain) * (1.0 - damage), damage)
+        (block.nominal_stress(cell, &model.hooke, strain), block.damage_of(cell))
     }
 
     /// Centre of an element without load [m].

@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::damage::EdgeDamage;
 use crate::evaluate::{Block, BlockLaw};
-use crate::gate::GateState;
-use crate::phase_damage::state_of;
+use crate::gate::{Gate, GateState};
 use crate::solid::Solid;
 
 /// What changes in a body during a run.
@@ -18,8 +17,10 @@ pub struct BodyState {
     pub edges: Vec<EdgeDamage>,
     /// Damage and last effective stress of elements (standard formulation with damage).
     pub elements: Vec<(f64, Sym3)>,
-    /// Crack-plane gate, or in its place the active edges of a phase field as points (d, d of the step before, 0); empty without either.
+    /// Crack-plane gate; empty without one.
     pub gate: GateState,
+    /// Active edges of a phase field, each with d and d of the step before; empty without one.
+    pub phase: Vec<(u32, [f64; 2])>,
 }
 
 /// What changes in a solid during a run.
@@ -82,12 +83,9 @@ impl Solid {
             _ => (0.0, Sym3::ZERO),
         };
         let elements = if model.standard.is_some() { model.location.iter().map(of).collect() } else { Vec::new() };
-        let gate = match (&model.gate, &model.phase) {
-            (Some(gate), _) => gate.state(),
-            (None, Some(field)) => state_of(field),
-            (None, None) => GateState::default(),
-        };
-        BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements, gate }
+        let gate = model.gate.as_ref().map_or_else(GateState::default, Gate::state);
+        let phase = model.phase.as_ref().map_or_else(Vec::new, |field| field.state().collect());
+        BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements, gate, phase }
     }
 
     /// Puts a saved state back. The solid must have been built from the same bodies.
@@ -116,7 +114,7 @@ impl Solid {
             model.alive = body.alive;
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
             self.rebuild_cells_around(index, &removed);
-            self.restore_phase(index, &body.gate);
+            self.restore_phase(index, &body.phase);
             self.close_edges(index);
         }
         for (block, viscous) in self.blocks.iter_mut().zip(state.viscous) {

@@ -175,20 +175,12 @@ fn piece(solid: &Solid, nodes: Vec<u32>, elements: usize, volume: f64) -> Fragme
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, Softening};
+    use fractum_fem::{Body, DamageLaw, Elastic, ElementKind};
     use fractum_mesh::generate::structured_box;
 
     /// Three cubes in a row; the elements of the middle one are pulled apart.
     fn pulled_bar() -> Solid {
-        let law = DamageLaw {
-            criterion: Criterion::rankine(),
-            tensile_strength: 3e6,
-            fracture_energy: 100.0,
-            softening: Softening::Exponential,
-            residual: 0.02,
-            unilateral: false,
-            rate_time: 0.0,
-        };
+        let law = DamageLaw::rankine(3e6, 100.0);
         let mesh = structured_box([3, 1, 1], Vec3::new(0.03, 0.01, 0.01), None);
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
         let body = Body::new("bar", ElementKind::T4, mesh.tetrahedra, elastic).smoothed().with_damage(law);

@@ -5,7 +5,6 @@ use std::f64::consts::{PI, TAU};
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::{SeparatedElement, Separation, Solid};
 use fractum_math::Vec3;
-use fractum_math::elementary::atan2;
 
 use crate::crack_extent::separated_within;
 use crate::crack_measure::InsideCracks;
@@ -61,7 +60,7 @@ impl RadialCracks {
             let elements = 0..solid.body(body).elements.len() as u32;
             let counts = |element: &u32| inside.as_ref().is_none_or(|inside| inside.has_element(body, *element));
             outwards.extend(elements.filter(counts).map(|element| Ring {
-                distance: away(&axis, &solid.element_middle(body, element)).norm(),
+                distance: axis.cylindrical(solid.element_middle(body, element)).0,
                 volume: solid.element_volume(body, element),
                 body,
                 element,
@@ -85,7 +84,7 @@ impl RadialCracks {
     fn extent(&self, solid: &Solid, of: &SeparatedElement) -> [f64; 2] {
         let body = solid.body(of.body);
         let corners = &body.elements[of.element as usize][..body.shape.node_count()];
-        let distances = corners.iter().map(|&node| away(&self.axis, &solid.reference[node as usize]).norm());
+        let distances = corners.iter().map(|&node| self.axis.cylindrical(solid.reference[node as usize]).0);
         distances.fold([f64::INFINITY, 0.0], |[least, most], r| [least.min(r), most.max(r)])
     }
 
@@ -100,11 +99,7 @@ impl RadialCracks {
             .collect();
         let elements: Vec<SeparatedElement> = near.iter().map(|(of, _)| *of).collect();
         let (part, parts) = solid.separate_cracks(&elements);
-        let mut reach = vec![[f64::INFINITY, 0.0f64]; parts as usize];
-        for ((_, [least, most]), &part) in near.iter().zip(&part) {
-            let [from, to] = &mut reach[part as usize];
-            (*from, *to) = (from.min(*least), to.max(*most));
-        }
+        let reach = reach(near.iter().map(|(_, extent)| *extent), &part, parts);
         let crosses = |part: u32| reach[part as usize][0] <= inner && reach[part as usize][1] >= outer;
         let on_circle = |((of, [least, most]), part): (&(SeparatedElement, [f64; 2]), &u32)| {
             (*least <= self.radius && *most >= self.radius && crosses(*part)).then_some(*of)
@@ -117,15 +112,7 @@ impl RadialCracks {
     }
 
     fn lies_all_around(&self, places: impl Iterator<Item = Vec3>) -> bool {
-        let n = self.axis.direction;
-        let start = if n.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
-        let first = n.cross(&start).normalize();
-        let second = n.cross(&first);
-        let angle = |place: Vec3| {
-            let away = away(&self.axis, &place);
-            atan2(away.dot(&second), away.dot(&first))
-        };
-        let mut angles: Vec<f64> = places.map(angle).collect();
+        let mut angles: Vec<f64> = places.map(|place| self.axis.cylindrical(place).1).collect();
         angles.sort_by(f64::total_cmp);
         let Some((first, last)) = angles.first().copied().zip(angles.last().copied()) else { return false };
         let gap = angles.windows(2).map(|pair| pair[1] - pair[0]).fold(first + TAU - last, f64::max);
@@ -134,12 +121,7 @@ impl RadialCracks {
 
     fn longest(&self, solid: &Solid, separated: &[SeparatedElement]) -> f64 {
         let (part, parts) = solid.separate_cracks(separated);
-        let mut reach = vec![[f64::INFINITY, 0.0f64]; parts as usize];
-        for (of, &part) in separated.iter().zip(&part) {
-            let [least, most] = self.extent(solid, of);
-            let [from, to] = &mut reach[part as usize];
-            (*from, *to) = (from.min(least), to.max(most));
-        }
+        let reach = reach(separated.iter().map(|of| self.extent(solid, of)), &part, parts);
         reach.iter().map(|[from, to]| to - from).fold(0.0, f64::max)
     }
 
@@ -158,16 +140,20 @@ impl RadialCracks {
     }
 }
 
-/// The way from the axis to a place, across the axis [m].
-fn away(axis: &Axis, place: &Vec3) -> Vec3 {
-    let from = place - axis.point;
-    from - axis.direction * from.dot(&axis.direction)
+/// Least and largest distance of each part of a set of elements.
+fn reach(extents: impl Iterator<Item = [f64; 2]>, part: &[u32], parts: u32) -> Vec<[f64; 2]> {
+    let mut reach = vec![[f64::INFINITY, 0.0f64]; parts as usize];
+    for ([least, most], &part) in extents.zip(part) {
+        let [from, to] = &mut reach[part as usize];
+        (*from, *to) = (from.min(least), to.max(most));
+    }
+    reach
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, Softening};
+    use fractum_fem::{Body, DamageLaw, Elastic, ElementKind};
     use fractum_math::elementary::sin_cos;
     use fractum_mesh::generate::structured_rectangle;
 
@@ -177,15 +163,7 @@ mod tests {
 
     /// A plate about the origin without the elements whose middles, away from its centre, are gone.
     fn plate(gone: impl Fn(Vec3) -> bool) -> Solid {
-        let law = DamageLaw {
-            criterion: Criterion::rankine(),
-            tensile_strength: 3e6,
-            fracture_energy: 1e4,
-            softening: Softening::Exponential,
-            residual: 0.02,
-            unilateral: false,
-            rate_time: 0.0,
-        };
+        let law = DamageLaw::rankine(3e6, 1e4);
         let mesh = structured_rectangle([CELLS, CELLS], [SIDE, SIDE], None);
         let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use fractum_io::ReadError;
 use fractum_io::fragments;
 use fractum_io::history::{self, Table};
 use fractum_io::picture::ColourMap;
@@ -73,7 +74,10 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
         Ok(bytes) => serde_json::from_slice(&bytes).map_err(|e| missing(NOTES, &e))?,
         Err(_) => Notes::default(),
     };
-    let fragments = fragments::read(&folder.join("fragments.csv")).unwrap_or_default();
+    let fragments = match fragments::read(&folder.join("fragments.csv")) {
+        Err(ReadError::Refused { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+        read => read.map_err(|e| missing("fragments.csv", &e))?,
+    };
     let pictures = notes.pictures.iter().filter_map(|note| figure(folder, note)).collect();
     // Bonds are columns where there are some; what never grew says nothing.
     let grows = |name: &String| history.column(name).is_some_and(|(values, _)| values.iter().any(|&count| count > 0.0));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use fractum_dem::{BeamSection, Particles};
-use fractum_fem::{Body, Criterion, DamageLaw, Elastic, ElementKind, Kinematics, Softening, Solid, Viscosity};
+use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, Solid, Viscosity};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
@@ -65,15 +65,7 @@ fn block() -> (Vec<Vec3>, Body) {
 }
 
 fn armed(body: Body) -> Body {
-    body.with_damage(DamageLaw {
-        criterion: Criterion::rankine(),
-        tensile_strength: STRENGTH,
-        fracture_energy: 10e3,
-        softening: Softening::Exponential,
-        residual: 0.02,
-        unilateral: false,
-        rate_time: 0.0,
-    })
+    body.with_damage(DamageLaw::rankine(STRENGTH, 10e3))
 }
 
 fn where_x(nodes: &[Vec3], x: f64) -> Vec<u32> {

@@ -15,8 +15,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Distance from the axis, angle about it and position along it.
-    fn cylindrical(&self, x: Vec3) -> (f64, f64, f64) {
+    /// Distance from the axis [m], angle about it from some direction [rad], and position along it [m].
+    pub fn cylindrical(&self, x: Vec3) -> (f64, f64, f64) {
         let Axis { point, direction: n } = self;
         // Any frame across the axis: only differences of angles matter.
         let start = if n.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };

@@ -64,3 +64,20 @@ pub struct DamageLaw {
     /// Relaxation time of the damage driving force [s]; 0 is rate-independent.
     pub rate_time: f64,
 }
+
+impl DamageLaw {
+    /// Rankine's criterion with exponential softening and the default residual.
+    ///
+    /// - `tensile_strength` [Pa], `fracture_energy` [J/m²]
+    pub fn rankine(tensile_strength: f64, fracture_energy: f64) -> Self {
+        DamageLaw {
+            criterion: Criterion::rankine(),
+            tensile_strength,
+            fracture_energy,
+            softening: Softening::Exponential,
+            residual: 0.02,
+            unilateral: false,
+            rate_time: 0.0,
+        }
+    }
+}

@@ -4,16 +4,14 @@
 //! gradient is Σ d_ij (∇N_i + ∇N_j) over the six edges, exact for linear fields; what that does not see is how the sums over the three pairs of opposite edges
 //! differ, which a second term holds together.
 
+use fractum_mesh::topology::{TETRAHEDRON_EDGES, TRIANGLE_EDGES};
+
 use crate::body::{BodyEdges, ElementKind};
 use crate::cell::Geometry;
 
 /// Weight of the second term in tetrahedra. Without it two fields cost nothing; chosen so that an imposed plane crack costs
 /// its area.
 const PAIRS: f64 = 0.3;
-
-/// Local nodes of the local edges.
-const ENDS_T4: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
-const ENDS_T3: [[usize; 2]; 3] = [[0, 1], [1, 2], [0, 2]];
 
 /// Rows of the Laplacian, the own edge first in each.
 #[derive(Clone, Debug, Default)]
@@ -100,17 +98,18 @@ fn element_row(geometry: &Geometry<'_>, element: usize, own: usize) -> [f64; 6] 
     let of = |ends: &[usize; 2]| gradients[ends[0]] + gradients[ends[1]];
     match geometry.body.shape {
         ElementKind::T3 => {
-            let mine = of(&ENDS_T3[own]);
-            std::array::from_fn(|i| ENDS_T3.get(i).map_or(0.0, |ends| 4.0 * volume * mine.dot(&of(ends))))
+            let mine = of(&TRIANGLE_EDGES[own]);
+            std::array::from_fn(|i| TRIANGLE_EDGES.get(i).map_or(0.0, |ends| 4.0 * volume * mine.dot(&of(ends))))
         }
         ElementKind::T4 => {
             let corners = geometry.body.elements[element].map(|node| geometry.nodes[node as usize]);
-            let square: f64 = ENDS_T4.iter().map(|&[i, j]| (corners[j] - corners[i]).norm_squared()).sum::<f64>() / 6.0;
-            let mine = of(&ENDS_T4[own]);
+            let square: f64 =
+                TETRAHEDRON_EDGES.iter().map(|&[i, j]| (corners[j] - corners[i]).norm_squared()).sum::<f64>() / 6.0;
+            let mine = of(&TETRAHEDRON_EDGES[own]);
             std::array::from_fn(|i| {
                 // An edge and that opposite to it share a pair.
                 let pair = if i == own || i == 5 - own { 2.0 / 3.0 } else { -1.0 / 3.0 };
-                volume * (mine.dot(&of(&ENDS_T4[i])) + PAIRS / square * pair)
+                volume * (mine.dot(&of(&TETRAHEDRON_EDGES[i])) + PAIRS / square * pair)
             })
         }
     }

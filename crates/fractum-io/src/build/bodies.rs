@@ -180,7 +180,7 @@ impl<'a> Context<'a> {
             body.plane = part.body.plane.as_ref().map_or(Plane::Strain, |plane| plane.value);
             body.thickness = part.body.thickness.as_ref().map_or(1.0, |t| t.value);
             if let Some(damage) = material.damage.as_ref().filter(|_| part.body.damage) {
-                if damage.value.law.unilateral && body.formulation == Formulation::Standard {
+                if damage.value.unilateral == Some(true) && body.formulation == Formulation::Standard {
                     self.error(
                         &damage.place,
                         ".unilateral = true with the standard formulation",

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use fractum_fem::ElementKind;
+use fractum_fem::{ElementKind, facet_area};
 use fractum_math::Vec3;
 use fractum_scene::{Bonded, CrackPressure, Gravity, Load, Motion, NodalForce, Pressure, Support};
 
@@ -191,12 +191,8 @@ impl<'a> Surface<'a> {
 
     /// Outward normal of a facet without load, as long as its area [m²].
     pub(super) fn area_vector(&self, facet: &[u32; 3]) -> Vec3 {
-        let [a, b, c] = facet.map(|n| self.positions[n as usize]);
-        if self.thickness > 0.0 {
-            Vec3::new(b.y - a.y, a.x - b.x, 0.0) * self.thickness
-        } else {
-            (b - a).cross(&(c - a)) * 0.5
-        }
+        let corners = facet.map(|n| self.positions[n as usize]);
+        facet_area(corners, (self.thickness > 0.0).then_some(self.thickness))
     }
 
     /// Middle of a facet without load [m].

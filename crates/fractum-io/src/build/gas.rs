@@ -105,7 +105,7 @@ impl Context<'_> {
                 |facet: &[u32; 3]| (solid.reference[facet[0] as usize] - solid.reference[facet[1] as usize]).norm();
             let mut ends = facets.iter().flat_map(|facet| facet.map(|node| (node, size(facet))));
             let held = |node: u32| supports.iter().any(|s| s.axis == axis && s.points.contains(&node));
-            let free = ends.find(|&(node, size)| only.across(solid, &[node], size).is_some() && !held(node));
+            let free = ends.find(|&(node, size)| only.hold(solid, &[node], size) && !held(node));
             if let Some((node, _)) = free {
                 let (p, name) = (solid.reference[node as usize], ["x", "y", "z"][axis]);
                 let found =

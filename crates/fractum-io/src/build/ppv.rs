@@ -1,5 +1,6 @@
 //! Stations at which the largest velocity is kept.
 
+use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 use fractum_math::elementary::cbrt;
@@ -35,9 +36,9 @@ impl Context<'_> {
             |nodes: &[u32]| nodes.iter().map(|&node| solid.reference[node as usize]).sum::<Vec3>() / nodes.len() as f64;
         let centre = ppv.centre.unwrap_or_else(|| place(&wall));
         let axis = ppv.axis.or(solid.is_plane().then(Vec3::z));
-        let distance = |place: &Vec3| {
-            let from = place - centre;
-            axis.map_or(from, |axis| from - axis * from.dot(&axis)).norm()
+        let distance = |place: &Vec3| match axis {
+            Some(direction) => Axis { point: centre, direction }.cylindrical(*place).0,
+            None => (place - centre).norm(),
         };
         let mut sets = ppv.line.as_ref().map_or_else(Vec::new, |line| nearest_nodes(solid, line));
         sets.extend(ppv.groups.iter().map(|group| self.group_nodes(group, numbering)));

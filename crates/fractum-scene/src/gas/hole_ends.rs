@@ -13,14 +13,14 @@ const ON_PLANE: f64 = 1e-6;
 pub struct SymmetryPlanes(pub [Option<f64>; 3]);
 
 impl SymmetryPlanes {
-    /// The axis across a plane on which all of these nodes lie in the model without load.
+    /// Whether one of them holds all of these nodes in the model without load.
     ///
     /// - `size`: length of their facet [m]
-    pub fn across(&self, solid: &Solid, nodes: &[u32], size: f64) -> Option<usize> {
+    pub fn hold(&self, solid: &Solid, nodes: &[u32], size: f64) -> bool {
         let on = |axis: usize, plane: f64| {
             nodes.iter().all(|&node| (solid.reference[node as usize][axis] - plane).abs() <= ON_PLANE * size)
         };
-        (0..3).find(|&axis| self.0[axis].is_some_and(|plane| on(axis, plane)))
+        (0..3).any(|axis| self.0[axis].is_some_and(|plane| on(axis, plane)))
     }
 
     /// A place moved onto all of the planes.
@@ -54,7 +54,7 @@ impl HoleEnds {
     pub fn find(solid: &Solid, facets: &[[u32; 3]], planes: SymmetryPlanes, stemmed: bool) -> Result<Self, u32> {
         let size = facets.iter().map(|&[a, b, _]| distance(solid, a, b)).fold(0.0, f64::max);
         let mut ends = HoleEnds { planes, stemmed: Vec::new() };
-        let is_open = |nodes: &[u32]| planes.across(solid, nodes, size).is_none();
+        let is_open = |nodes: &[u32]| !planes.hold(solid, nodes, size);
         if facets.iter().all(|facet| facet[1] == facet[2]) {
             return open_nodes(facets).find(|&node| is_open(&[node])).map_or(Ok(ends), Err);
         }

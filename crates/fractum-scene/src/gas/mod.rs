@@ -169,7 +169,7 @@ impl Gas {
                     CrackSide::Mouth(mouth) => *mouth,
                     // The later one of two cells makes their passage.
                     CrackSide::Cell(other) if (*other as usize) < number => holes as u32 + other,
-                    CrackSide::Outside if self.symmetry.across(solid, nodes, length).is_none() => Passage::OUTSIDE,
+                    CrackSide::Outside if !self.symmetry.hold(solid, nodes, length) => Passage::OUTSIDE,
                     _ => continue,
                 };
                 let passage = self.passage(solid, number, *side, nodes);

@@ -33,7 +33,7 @@ pub struct Material {
 /// Softening damage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Damage {
-    /// When damage begins, and how stress falls with crack opening; not unilateral but by the key.
+    /// When damage begins, and how stress falls with crack opening; the scene settles whether it is unilateral.
     pub law: DamageLaw,
     /// Whether stiffness recovers where cracks close; by the scene if absent.
     pub unilateral: Option<bool>,

@@ -98,7 +98,7 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
             fracture_energy: fracture_energy?,
             softening: softening?,
             residual,
-            unilateral: unilateral? == Some(true),
+            unilateral: false,
             rate_time,
         },
         unilateral: unilateral?,

@@ -210,7 +210,7 @@ fn radial_cracks(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
     let measure = inner.choice("measure").required();
     let about = axis(&inner);
     let radius = if measure == Some(RadialMeasure::Count) {
-        inner.quantity("radius").check(|radius| *radius > 0.0, "a radius above 0").required()
+        inner.quantity("radius").positive().required()
     } else {
         inner.refuse("radius", "with this measure");
         Some(0.0)

@@ -1,5 +1,6 @@
 use std::fmt;
 
+use fractum_fem::facet_area;
 use fractum_math::Vec3;
 
 use crate::conditions::Points;
@@ -39,16 +40,11 @@ pub(super) fn push_facet(
     let place = facet.map(|n| points.position(n as usize));
     let [a, b, c] = facet.map(|n| points.reference(n as usize));
     let (centre, corners) = if thickness > 0.0 { ((a + b) * 0.5, 2) } else { ((a + b + c) / 3.0, 3) };
-    let area = area_vector(&place, thickness);
-    let share = share_of_torn(&area, &area_vector(&[*a, *b, *c], thickness));
+    let thickness = (thickness > 0.0).then_some(thickness);
+    let area = facet_area(place, thickness);
+    let share = share_of_torn(&area, &facet_area([*a, *b, *c], thickness));
     let force = area * (-pressure(&centre) / corners as f64 * share);
     forces.extend(facet[..corners].iter().map(|&n| (n, force)));
-}
-
-/// Outward area vector of a triangle, or of an edge in the plane with this thickness [m²].
-fn area_vector(p: &[Vec3; 3], thickness: f64) -> Vec3 {
-    let along = p[1] - p[0];
-    if thickness > 0.0 { Vec3::new(along.y, -along.x, 0.0) * thickness } else { along.cross(&(p[2] - p[0])) * 0.5 }
 }
 
 impl fmt::Debug for Pressure {
