@@ -232,20 +232,6 @@ fn every_crate_has_a_front_page_and_the_rules_of_the_workspace() {
     }
 }
 
-/// What is larger than [`FUNCTION`], [`FIELDS`] or [`FILE`] allow, and why: file, and the function or type (none for a file).
-const LARGER: [(&str, &str, &str); 7] = [
-    (
-        "fractum-calibrate/src/inversion.rs",
-        "invert",
-        "one iteration with its limits; to be cut with the next change there",
-    ),
-    ("fractum-fem/src/solid.rs", "new", "checks and layout of all bodies"),
-    ("fractum-io/src/build/contacts.rs", "with_contacts", "pairs of every kind in one order, which decides the bits"),
-    ("fractum-io/src/build/mod.rs", "build", "the order in which a scene is put together"),
-    ("fractum-pack/src/certificate.rs", "Certificate", "one field per figure of the certificate"),
-    ("fractum-prepare/src/bonded.rs", "make", "the way from a shape to a bonded body"),
-    ("fractum/src/command/lab_break.rs", "BreakArguments", "one field per option of the command line"),
-];
 /// Lines of a function, fields of a type and lines of a file without its tests, at most.
 const FUNCTION: usize = 80;
 const FIELDS: usize = 15;
@@ -287,31 +273,22 @@ fn extents(code: &str) -> Vec<(String, &'static str, usize)> {
 
 #[test]
 fn functions_types_and_files_stay_small() {
-    let (mut wrong, mut larger) = (Vec::new(), BTreeSet::new());
+    let mut wrong = Vec::new();
     for (name, _) in ARROWS {
         for (path, code) in sources(name) {
             let file = path.strip_prefix(crates()).unwrap_or(&path).to_string_lossy().into_owned();
-            let is_known = |of: &str| LARGER.iter().any(|(known, name, _)| *known == file && *name == of);
-            if code.lines().count() > FILE {
-                larger.insert((file.clone(), String::new()));
-                if !is_known("") {
-                    wrong.push(format!("{file}: {} lines", code.lines().count()));
-                }
+            let lines = code.lines().count();
+            if lines > FILE {
+                wrong.push(format!("{file}: {lines} lines, at most {FILE}"));
             }
             for (of, kind, size) in extents(&code) {
                 let limit = if kind == "type" { FIELDS } else { FUNCTION };
-                if size <= limit {
-                    continue;
-                }
-                if !is_known(&of) {
+                if size > limit {
                     wrong.push(format!("{file}: {kind} {of}: {size}, at most {limit}"));
                 }
-                larger.insert((file.clone(), of));
             }
         }
     }
-    let small = LARGER.iter().filter(|(file, of, _)| !larger.contains(&((*file).to_owned(), (*of).to_owned())));
-    wrong.extend(small.map(|(file, of, _)| format!("{file} {of}: no longer large, and still excepted")));
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

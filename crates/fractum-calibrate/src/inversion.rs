@@ -26,6 +26,8 @@ pub const RADIUS_RATIOS: [f64; 2] = [0.05, 1.2];
 const LONG: f64 = 0.75;
 /// Difference of ν at which the search stops.
 const CLOSE: f64 = 1e-4;
+/// Steps of the search, at most.
+const ITERATIONS: usize = 30;
 
 /// Finds the beam radius and modulus that give a sample Young's modulus and Poisson's ratio, by a safeguarded secant
 /// search on ν(ln r_m) with warm-started solves. On a box, the result is for the mean over the axes along which it is
@@ -61,13 +63,9 @@ pub fn invert(
         Ok((mean, poisson, (high - low) / mean))
     };
     let [thin, thick] = RADIUS_RATIOS.map(ln);
-    // ν falls with the radius; (ln r, ν) of the points that bracket the target.
-    let mut above: Option<(f64, f64)> = None;
-    let mut below: Option<(f64, f64)> = None;
+    let mut search = RadiusSearch::default();
     let mut log = ln(start.clamp(RADIUS_RATIOS[0], RADIUS_RATIOS[1]));
-    let mut last: Option<(f64, f64)> = None;
-    let mut slope: f64 = -0.1;
-    for _ in 0..30 {
+    for _ in 0..ITERATIONS {
         let (young, poisson, anisotropy) = test(sample, log, &axes)?;
         let miss = poisson - poisson_ratio;
         if miss.abs() < CLOSE {
@@ -75,50 +73,59 @@ pub fn invert(
             sample.set_micro(micro)?;
             return Ok(Inverted { micro, young_modulus, poisson_ratio: poisson, anisotropy, solves });
         }
-        if let Some((l, p)) = last.filter(|l| l.0 != log) {
-            let measured = (poisson - p) / (log - l);
-            slope = if measured < -1e-3 { measured } else { slope };
-        }
-        last = Some((log, poisson));
-        *(if miss > 0.0 { &mut above } else { &mut below }) = Some((log, poisson));
-        let mut next = (log - miss / slope).clamp(log - 0.7, log + 0.7).clamp(thin, thick);
-        if let (Some((a, _)), Some((b, _))) = (above, below)
-            && (next <= a || next >= b)
-        {
-            next = 0.5 * (a + b);
-        }
+        let next = search.next(log, poisson, miss);
         if next == log {
             // At an end of the range with the target beyond it.
             let other = if log == thin { thick } else { thin };
             let (_, beyond, _) = test(sample, other, &axes[..1])?;
-            let (highest, lowest) = (poisson.max(beyond), poisson.min(beyond));
-            let (coordination, convention) = (coordination_of(sample), sample.convention);
-            let [thin, thick] = RADIUS_RATIOS;
-            return Err(CalibrateError::PoissonRange {
-                asked: poisson_ratio,
-                coordination,
-                convention,
-                thin,
-                thick,
-                lowest,
-                highest,
-            });
+            return Err(out_of_reach(sample, poisson_ratio, [poisson.min(beyond), poisson.max(beyond)]));
         }
         log = next;
     }
-    let coordination = coordination_of(sample);
+    let last = search.last.map_or(f64::NAN, |(_, poisson)| poisson);
+    Err(out_of_reach(sample, poisson_ratio, [last, last]))
+}
+
+/// Secant search for the logarithm of the beam radius, with which ν falls, kept between the points that bracket the target.
+struct RadiusSearch {
+    /// ln r of the last points with a larger and with a smaller ν than the target.
+    above: Option<f64>,
+    below: Option<f64>,
+    /// (ln r, ν) of the last point.
+    last: Option<(f64, f64)>,
+    /// dν/d(ln r), negative.
+    slope: f64,
+}
+
+impl Default for RadiusSearch {
+    fn default() -> Self {
+        RadiusSearch { above: None, below: None, last: None, slope: -0.1 }
+    }
+}
+
+impl RadiusSearch {
+    /// Where to look after a point that misses the target by `miss`.
+    fn next(&mut self, log: f64, poisson: f64, miss: f64) -> f64 {
+        if let Some((before, then)) = self.last.filter(|last| last.0 != log) {
+            let measured = (poisson - then) / (log - before);
+            self.slope = if measured < -1e-3 { measured } else { self.slope };
+        }
+        self.last = Some((log, poisson));
+        *(if miss > 0.0 { &mut self.above } else { &mut self.below }) = Some(log);
+        let [thin, thick] = RADIUS_RATIOS.map(ln);
+        let next = (log - miss / self.slope).clamp(log - 0.7, log + 0.7).clamp(thin, thick);
+        match (self.above, self.below) {
+            (Some(a), Some(b)) if next <= a || next >= b => 0.5 * (a + b),
+            _ => next,
+        }
+    }
+}
+
+/// The error for a Poisson's ratio that the packing cannot have.
+fn out_of_reach(sample: &Sample, asked: f64, [lowest, highest]: [f64; 2]) -> CalibrateError {
     let [thin, thick] = RADIUS_RATIOS;
-    let nu = last.map_or(f64::NAN, |l| l.1);
-    let convention = sample.convention;
-    Err(CalibrateError::PoissonRange {
-        asked: poisson_ratio,
-        coordination,
-        convention,
-        thin,
-        thick,
-        lowest: nu,
-        highest: nu,
-    })
+    let (coordination, convention) = (coordination_of(sample), sample.convention);
+    CalibrateError::PoissonRange { asked, coordination, convention, thin, thick, lowest, highest }
 }
 
 /// Axes of a box along which it is about as long as it gets, x of a cylinder.

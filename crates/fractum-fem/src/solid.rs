@@ -363,16 +363,7 @@ impl BodyModel {
             for (cell, &item) in items.iter().enumerate() {
                 location[item as usize] = ((first_block + blocks.len()) as u32, cell as u32);
             }
-            let law = match (&softens, &threshold) {
-                (Some(softens), Some(t)) if smoothed && t.strength[items[0] as usize].is_finite() => {
-                    let field = EdgeField::new(softens.clone(), items.clone(), t);
-                    BlockLaw::Edges(EdgeCells { field, dissipated: 0.0, energy: None })
-                }
-                (Some(softens), Some(_)) if !smoothed => {
-                    BlockLaw::Standard(StandardCells::new(softens.clone(), items.len()))
-                }
-                _ => BlockLaw::Elastic { energy: None },
-            };
+            let law = block_law(smoothed, softens.as_ref().zip(threshold.as_ref()), &items);
             let scratch = Scratch::new();
             let (viscous, inverted) = (ViscousCells::default(), None);
             blocks.push(Block { body: index, cells, items, law, scratch, viscous_power: 0.0, viscous, inverted });
@@ -416,5 +407,17 @@ impl BodyModel {
             model.gate = Some(Gate::new(&model.body, edges, nodes, |element| volumes[element as usize], strength));
         }
         Ok((model, blocks))
+    }
+}
+
+/// Law of the cells of a block; one that holds an edge that may be damaged holds such edges only.
+fn block_law(smoothed: bool, damage: Option<(&Arc<Softens>, &Threshold)>, items: &[u32]) -> BlockLaw {
+    match damage {
+        Some((softens, threshold)) if smoothed && threshold.strength[items[0] as usize].is_finite() => {
+            let field = EdgeField::new(softens.clone(), items.to_vec(), threshold);
+            BlockLaw::Edges(EdgeCells { field, dissipated: 0.0, energy: None })
+        }
+        Some((softens, _)) if !smoothed => BlockLaw::Standard(StandardCells::new(softens.clone(), items.len())),
+        _ => BlockLaw::Elastic { energy: None },
     }
 }

@@ -22,18 +22,12 @@ pub struct Certificate {
     pub fraction_box: f64,
     /// Share of the core (deeper than two mean diameters) inside a sphere; none when the core is too small.
     pub fraction_core: Option<f64>,
-    /// Contacts per particle at the end of compaction, over all particles.
-    pub coordination_all: f64,
-    /// The same over the particles that touch no wall.
-    pub coordination_interior: f64,
-    /// Share of particles without a rigid cage.
-    pub rattlers: f64,
-    /// Mean overlap over mean radius at the end of compaction.
-    pub overlap_compacted: f64,
-    /// Mean overlap over mean radius after the release of the walls.
-    pub overlap_mean: f64,
-    /// Largest overlap over mean radius after the release of the walls.
-    pub overlap_max: f64,
+    /// Contacts of the particles at the end of compaction.
+    #[serde(flatten)]
+    pub contacts: ContactFigures,
+    /// Overlaps of neighbours.
+    #[serde(flatten)]
+    pub overlap: OverlapFigures,
     /// Names and sizes of the wall sets.
     pub walls: Vec<(String, usize)>,
     /// Directions of the contacts in the core, deeper than two mean diameters below the walls (in samples with fewer
@@ -45,6 +39,31 @@ pub struct Certificate {
     pub elastic_isotropy: Option<[f64; 3]>,
     /// Relaxation iterations of the cooker.
     pub iterations: usize,
+}
+
+/// How many neighbours the particles of a packing touch.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ContactFigures {
+    /// Contacts per particle at the end of compaction, over all particles.
+    pub coordination_all: f64,
+    /// The same over the particles that touch no wall.
+    pub coordination_interior: f64,
+    /// Share of particles without a rigid cage.
+    pub rattlers: f64,
+}
+
+/// How far the particles of a packing overlap.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct OverlapFigures {
+    /// Mean overlap over mean radius at the end of compaction.
+    #[serde(rename = "overlap_compacted")]
+    pub compacted: f64,
+    /// Mean overlap over mean radius after the release of the walls.
+    #[serde(rename = "overlap_mean")]
+    pub mean: f64,
+    /// Largest overlap over mean radius after the release of the walls.
+    #[serde(rename = "overlap_max")]
+    pub max: f64,
 }
 
 /// Depth of the core in mean diameters.
@@ -97,12 +116,16 @@ impl Certificate {
             dispersion: (largest - least) / mean_radius,
             fraction_box: packing.sphere_volume() / packing.domain.volume(),
             fraction_core: interior_fraction(packing),
-            coordination_all: 2.0 * compaction.contacts as f64 / packing.len() as f64,
-            coordination_interior: compaction.coordination,
-            rattlers: compaction.rattlers as f64 / packing.len() as f64,
-            overlap_compacted: compaction.overlap,
-            overlap_mean: sum / touching.max(1) as f64,
-            overlap_max,
+            contacts: ContactFigures {
+                coordination_all: 2.0 * compaction.contacts as f64 / packing.len() as f64,
+                coordination_interior: compaction.coordination,
+                rattlers: compaction.rattlers as f64 / packing.len() as f64,
+            },
+            overlap: OverlapFigures {
+                compacted: compaction.overlap,
+                mean: sum / touching.max(1) as f64,
+                max: overlap_max,
+            },
             walls: packing.walls.iter().map(|(name, set)| (name.clone(), set.len())).collect(),
             isotropy: Isotropy::of(directions.into_iter()),
             depth: depth.iter().copied().fold(0.0, f64::max),
@@ -126,8 +149,8 @@ impl Certificate {
                 "try another seed",
             );
         }
-        if self.overlap_mean > 5e-3 {
-            let reached = format!("{:.2e}", self.overlap_mean);
+        if self.overlap.mean > 5e-3 {
+            let reached = format!("{:.2e}", self.overlap.mean);
             return refuse("mean overlap below 0.5 % of the mean radius", reached, "ask for a lower coordination");
         }
         if !WALLS_REACH.contains(&self.depth) && !self.isotropy.isotropic() {

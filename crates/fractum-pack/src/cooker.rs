@@ -363,10 +363,10 @@ mod tests {
         for domain in shapes {
             let packing = pack(&PackSpec::new(domain, 2000, 1)).unwrap();
             let certificate = Certificate::of(&packing);
-            assert!((6.2..=6.281).contains(&certificate.coordination_interior), "{certificate:?}");
+            assert!((6.2..=6.281).contains(&certificate.contacts.coordination_interior), "{certificate:?}");
             let core = certificate.fraction_core.unwrap();
             assert!((0.62..0.66).contains(&core), "{:?} {core}", packing.domain);
-            assert!(certificate.overlap_mean < 2e-3 && certificate.rattlers < 0.05, "{certificate:?}");
+            assert!(certificate.overlap.mean < 2e-3 && certificate.contacts.rattlers < 0.05, "{certificate:?}");
             let worst = packing.position.iter().zip(&packing.radius).map(|(x, r)| packing.domain.depth(x) / r);
             let worst = worst.fold(1.0, f64::min);
             assert!(worst > 0.85, "a particle stands out of {:?}: {worst}", packing.domain);

@@ -29,7 +29,7 @@ mod relax;
 mod stl;
 mod surface;
 
-pub use certificate::{Certificate, interior_fraction};
+pub use certificate::{Certificate, ContactFigures, OverlapFigures, interior_fraction};
 pub use cloud::{cloud, cloud_cells};
 pub use cooker::{PackSize, PackSpec, pack, pack_certified};
 pub use domain::{Domain, DomainData};

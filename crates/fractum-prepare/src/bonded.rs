@@ -6,7 +6,9 @@ use fractum_calibrate::strength::{BondKind, strength_factor};
 use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Micro, Sample, prepare, suitable_coordination};
 use fractum_dem::{CrackFaces, FractureCriterion};
 use fractum_io::build::PreparedBody;
-use fractum_io::case::model::{BodyKind, BondFailure, BondedBody, BondedShape, Case, PackingSource, ParticleSize};
+use fractum_io::case::model::{
+    BodyKind, BondFailure, BondedBody, BondedShape, Case, Material, PackingSource, ParticleSize,
+};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
 use fractum_mesh::{Mesh, topology};
 use fractum_pack::{
@@ -149,16 +151,53 @@ impl Maker<'_> {
         let region = self.region()?;
         let (packing, packing_from) = self.packing(region.as_ref())?;
         let packed = Instant::now();
-        if let Err(error) = Certificate::of(&packing).check() {
-            if packing_from != Origin::Given {
-                let wrong = self.refuse(&self.name.place, format!(": {error}"));
-                return Err(Box::new(wrong.remedy(REFUSED)));
-            }
-            let warning = Diagnostic::warning(&self.name.place, format!(": {error}"));
-            all.warnings.push(warning.remedy("fractum pack shows the whole certificate"));
+        all.warnings.extend(self.check_packing(&packing, packing_from)?);
+        let material = self.material();
+        let (made, beams_from, coordination) = self.bond(packing)?;
+        let fracture = match &material.fracture {
+            Some(failure) => Some(self.strengths(&failure.value, &made.sample, made.beams.micro, coordination)?),
+            None => None,
+        };
+        let done = Instant::now();
+        all.timings.push(format!(
+            "{}: packing {:.2} s, bonds and beams {:.2} s",
+            self.name.value,
+            (packed - start).as_secs_f64(),
+            (done - packed).as_secs_f64()
+        ));
+        all.reports.push(self.report(&made, [packing_from, beams_from], fracture));
+        let faces = CrackFaces { friction: material.contact.friction, damping_ratio: material.contact.damping_ratio };
+        let (fraction, volume) = (made.sample.fraction, made.sample.measured_volume());
+        let breaks = |(criterion, _)| BondFracture { criterion, faces, fraction, volume };
+        all.prepared.push(PreparedBody {
+            fracture: fracture.map(breaks),
+            section: made.sample.lattice.section(),
+            particles: made.particles,
+            pairs: made.sample.network.pairs,
+            walls: made.sample.packing.walls,
+            replaced: region.map_or_else(Vec::new, |region| region.elements),
+        });
+        Ok(())
+    }
+
+    fn material(&self) -> &Material {
+        &self.case.materials[self.bonded.material]
+    }
+
+    /// Refuses a packing that misses its targets; warns of one that the user gave.
+    fn check_packing(&self, packing: &Packing, from: Origin) -> Result<Option<Diagnostic>, Box<Diagnostic>> {
+        let Err(error) = Certificate::of(packing).check() else { return Ok(None) };
+        if from != Origin::Given {
+            let wrong = self.refuse(&self.name.place, format!(": {error}"));
+            return Err(Box::new(wrong.remedy(REFUSED)));
         }
-        let material = &self.case.materials[self.bonded.material];
-        let convention = self.bonded.convention;
+        let warning = Diagnostic::warning(&self.name.place, format!(": {error}"));
+        Ok(Some(warning.remedy("fractum pack shows the whole certificate")))
+    }
+
+    /// Bonds a packing with beams that are given, kept or found now, to the coordination that it returns.
+    fn bond(&self, packing: Packing) -> Result<(fractum_calibrate::BondedBody, Origin, f64), Box<Diagnostic>> {
+        let (material, convention) = (self.material(), self.bonded.convention);
         let coordination = match &self.bonded.coordination {
             Some(coordination) => coordination.value,
             None => suitable_coordination(material.poisson_ratio, convention).map_err(|e| self.wrong(&e))?,
@@ -174,44 +213,40 @@ impl Maker<'_> {
             let (radius_ratio, young_modulus) = (bonds.value.radius_ratio, bonds.value.young_modulus);
             Beams::given(Micro { radius_ratio, young_modulus })
         });
-        let (beams, beams_from) = match given {
+        let (beams, from) = match given {
             Some(beams) => (Some(beams), Origin::Given),
             None => match self.cache.find("beams", beams_key, |bytes| postcard::from_bytes(bytes).ok()) {
                 Some(beams) => (Some(beams), Origin::Cached),
                 None => (None, Origin::Made),
             },
         };
-        let made = prepare(
-            packing,
-            &BondedMaterial {
-                young_modulus: material.young_modulus,
-                poisson_ratio: material.poisson_ratio,
-                density: material.density,
-                coordination,
-                convention,
-                beams,
-            },
-        )
-        .map_err(|error| self.wrong(&error))?;
-        if beams_from == Origin::Made {
+        let wanted = BondedMaterial {
+            young_modulus: material.young_modulus,
+            poisson_ratio: material.poisson_ratio,
+            density: material.density,
+            coordination,
+            convention,
+            beams,
+        };
+        let made = prepare(packing, &wanted).map_err(|error| self.wrong(&error))?;
+        if from == Origin::Made {
             // Serialising plain numbers into memory has no way to fail.
             self.cache.keep("beams", beams_key, &postcard::to_stdvec(&made.beams).unwrap_or_default());
         }
-        let fracture = match &material.fracture {
-            Some(failure) => Some(self.strengths(&failure.value, &made.sample, made.beams.micro, coordination)?),
-            None => None,
-        };
-        let done = Instant::now();
-        all.timings.push(format!(
-            "{}: packing {:.2} s, bonds and beams {:.2} s",
-            self.name.value,
-            (packed - start).as_secs_f64(),
-            (done - packed).as_secs_f64()
-        ));
+        Ok((made, from, coordination))
+    }
+
+    /// What the plan says of the body.
+    fn report(
+        &self,
+        made: &fractum_calibrate::BondedBody,
+        [packing, beams_from]: [Origin; 2],
+        fracture: Option<(FractureCriterion, Origin)>,
+    ) -> BondedReport {
         let (sample, network) = (&made.sample, &made.sample.network);
-        all.reports.push(BondedReport {
+        BondedReport {
             name: self.name.value.clone(),
-            packing: packing_from,
+            packing,
             beams_from,
             particles: sample.packing.len(),
             mean_radius: sample.mean_radius,
@@ -219,23 +254,11 @@ impl Maker<'_> {
             bonds: network.pairs.len(),
             coordination_all: network.coordination_all,
             coordination_interior: network.coordination_interior,
-            convention,
+            convention: self.bonded.convention,
             beams: made.beams,
             walls: sample.packing.walls.iter().map(|(name, set)| (name.clone(), set.len())).collect(),
             fracture,
-        });
-        let faces = CrackFaces { friction: material.contact.friction, damping_ratio: material.contact.damping_ratio };
-        let volume = sample.measured_volume();
-        let breaks = |(criterion, _)| BondFracture { criterion, faces, fraction: sample.fraction, volume };
-        all.prepared.push(PreparedBody {
-            fracture: fracture.map(breaks),
-            section: sample.lattice.section(),
-            particles: made.particles,
-            pairs: made.sample.network.pairs,
-            walls: made.sample.packing.walls,
-            replaced: region.map_or_else(Vec::new, |region| region.elements),
-        });
-        Ok(())
+        }
     }
 
     /// The criterion with its own strengths: given, kept, or found by breaking boxes of such bonds.

@@ -51,22 +51,7 @@ impl Context<'_> {
         tied: &[u32],
         warnings: &mut Vec<Diagnostic>,
     ) -> Option<Scene> {
-        let case = self.case;
-        let materials: Vec<ContactMaterial> = case
-            .bodies
-            .iter()
-            .filter_map(|body| match &body.kind {
-                BodyKind::Bonded(own) => Some(own.material),
-                BodyKind::Particles(own) => Some(own.material),
-                _ => None,
-            })
-            .map(|material| {
-                let material = &case.materials[material];
-                let modulus = material.contact_modulus.unwrap_or(material.young_modulus);
-                let elastic = elastic(modulus, material.poisson_ratio);
-                ContactMaterial { elastic, density: material.density, surface: material.contact }
-            })
-            .collect();
+        let materials = self.contact_materials();
         let pieces = pieces(&scene.solid);
         let solids_meet = pieces.iter().any(|piece| *piece != pieces[0]);
         if materials.is_empty() {
@@ -77,33 +62,12 @@ impl Context<'_> {
                 return Some(scene);
             }
         }
-        let mut solids = Vec::new();
-        let meeting = if materials.is_empty() && !solids_meet { &[] } else { facets };
-        for (index, (part, facets)) in parts.iter().zip(meeting).enumerate().filter(|(_, (_, f))| !f.is_empty()) {
-            let surface = case.materials[part.body.material].contact;
-            match SolidSurface::new(&scene.solid, index, surface, facets) {
-                Ok(ground) if tied.is_empty() => solids.push(ground),
-                Ok(ground) => solids.push(ground.without(tied.iter().copied(), &scene.bonded.particles.radius)),
-                Err(error) if materials.is_empty() => {
-                    let found = format!(": other solids pass through it: {error}");
-                    warnings.push(Diagnostic::warning(&part.place, found));
-                }
-                Err(error) => self.error(&part.place, format!(": particles cannot touch it: {error}"), ""),
-            }
-        }
+        let touched = if materials.is_empty() && !solids_meet { &[] } else { facets };
+        let solids = self.solid_surfaces(&scene, parts, touched, tied, materials.is_empty().then_some(&mut *warnings));
         if !self.diagnostics.is_empty() {
             return None;
         }
-        let mut gravity = Vec::new();
-        for load in &case.loads {
-            if let LoadKind::Gravity { acceleration } = &load.kind {
-                let axes = acceleration.iter().enumerate();
-                gravity.extend(
-                    axes.filter_map(|(axis, value)| value.as_ref().map(|value| (axis, function(&value.value)))),
-                );
-            }
-        }
-        let mut contacts = Contacts::new(&scene.bonded, materials, rigid_bodies, solids, gravity);
+        let mut contacts = Contacts::new(&scene.bonded, materials, rigid_bodies, solids, self.gravity());
         if !tied.is_empty() {
             // A bonded region fits its cavity within the tolerance of the packing.
             contacts.take_up_on_solids(&scene.solid, &scene.bonded.particles, |i| {
@@ -111,38 +75,94 @@ impl Context<'_> {
                 body.is_some_and(|body| tied.iter().any(|&t| body.range.contains(&(t as usize))))
             });
         }
-        let (mut solid, mut particles) = (scene.solid.clone(), scene.bonded.particles.clone());
-        let overlaps = contacts.overlaps(&mut solid, &mut particles);
-        let deep = overlaps.iter().filter(|o| o.depth > DEEP * particles.radius[o.particle as usize]);
-        if let Some(worst) = deep.clone().next() {
-            let name = |particle: u32| {
-                let body = scene.bonded.bodies().iter().find(|b| b.range.contains(&(particle as usize)));
-                body.map_or_else(String::new, |b| {
-                    format!("particle {} of {}", particle as usize - b.range.start, b.name)
-                })
-            };
-            let other = match &worst.other {
-                OverlapWith::Particle(other) => name(*other),
-                OverlapWith::RigidBody(rigid_body) => format!("rigid body {rigid_body}"),
-                OverlapWith::Solid(body) => format!("solid {body}"),
-            };
-            let found = format!(
-                "{} at the start, deepest {} and {other}, by {}",
-                match deep.count() {
-                    1 => "1 contact overlaps".to_owned(),
-                    count => format!("{count} contacts overlap"),
-                },
-                name(worst.particle),
-                quantity(worst.depth, "m")
-            );
-            warnings.push(self.overlap_warning(found));
-        }
+        warnings.extend(self.particle_overlaps(&scene, &mut contacts));
         let mut scene = scene.with_contacts(contacts, surface);
         warnings.extend(self.node_overlaps(&scene, surface));
-        if case.solver.initial_overlap == InitialOverlap::Keep {
+        if self.case.solver.initial_overlap == InitialOverlap::Keep {
             scene.accept_initial_overlaps();
         }
         Some(scene)
+    }
+
+    /// What the bodies of particles are to contact, in their order.
+    fn contact_materials(&self) -> Vec<ContactMaterial> {
+        let material = |body: &Body| match &body.kind {
+            BodyKind::Bonded(own) => Some(own.material),
+            BodyKind::Particles(own) => Some(own.material),
+            _ => None,
+        };
+        let contact = |material: usize| {
+            let material = &self.case.materials[material];
+            let modulus = material.contact_modulus.unwrap_or(material.young_modulus);
+            let elastic = elastic(modulus, material.poisson_ratio);
+            ContactMaterial { elastic, density: material.density, surface: material.contact }
+        };
+        self.case.bodies.iter().filter_map(material).map(contact).collect()
+    }
+
+    /// Surfaces of the solids that others touch.
+    ///
+    /// - `tied`: particles that they do not touch; `doubts`: where a surface that cannot be touched is warned of, not refused
+    fn solid_surfaces(
+        &mut self,
+        scene: &Scene,
+        parts: &[Part],
+        facets: &[Vec<[u32; 3]>],
+        tied: &[u32],
+        mut doubts: Option<&mut Vec<Diagnostic>>,
+    ) -> Vec<SolidSurface> {
+        let mut solids = Vec::new();
+        for (index, (part, facets)) in parts.iter().zip(facets).enumerate().filter(|(_, (_, f))| !f.is_empty()) {
+            let surface = self.case.materials[part.body.material].contact;
+            match (SolidSurface::new(&scene.solid, index, surface, facets), &mut doubts) {
+                (Ok(surface), _) if tied.is_empty() => solids.push(surface),
+                (Ok(surface), _) => solids.push(surface.without(tied.iter().copied(), &scene.bonded.particles.radius)),
+                (Err(error), Some(doubts)) => {
+                    let found = format!(": other solids pass through it: {error}");
+                    doubts.push(Diagnostic::warning(&part.place, found));
+                }
+                (Err(error), None) => self.error(&part.place, format!(": particles cannot touch it: {error}"), ""),
+            }
+        }
+        solids
+    }
+
+    /// Components of gravity by axis.
+    fn gravity(&self) -> Vec<(usize, fractum_scene::TimeFunction)> {
+        let mut gravity = Vec::new();
+        for load in &self.case.loads {
+            if let LoadKind::Gravity { acceleration } = &load.kind {
+                let axes = acceleration.iter().enumerate();
+                gravity.extend(axes.filter_map(|(axis, value)| Some((axis, function(&value.as_ref()?.value)))));
+            }
+        }
+        gravity
+    }
+
+    /// Particles that are in other bodies at the start.
+    fn particle_overlaps(&self, scene: &Scene, contacts: &mut Contacts) -> Option<Diagnostic> {
+        let (mut solid, mut particles) = (scene.solid.clone(), scene.bonded.particles.clone());
+        let overlaps = contacts.overlaps(&mut solid, &mut particles);
+        let deep = overlaps.iter().filter(|o| o.depth > DEEP * particles.radius[o.particle as usize]);
+        let worst = deep.clone().next()?;
+        let name = |particle: u32| {
+            let body = scene.bonded.bodies().iter().find(|b| b.range.contains(&(particle as usize)));
+            body.map_or_else(String::new, |b| format!("particle {} of {}", particle as usize - b.range.start, b.name))
+        };
+        let other = match &worst.other {
+            OverlapWith::Particle(other) => name(*other),
+            OverlapWith::RigidBody(rigid_body) => format!("rigid body {rigid_body}"),
+            OverlapWith::Solid(body) => format!("solid {body}"),
+        };
+        Some(self.overlap_warning(format!(
+            "{} at the start, deepest {} and {other}, by {}",
+            match deep.count() {
+                1 => "1 contact overlaps".to_owned(),
+                count => format!("{count} contacts overlap"),
+            },
+            name(worst.particle),
+            quantity(worst.depth, "m")
+        )))
     }
 
     /// Nodes of solids that are in other bodies at the start.

@@ -28,9 +28,11 @@ use fractum_mesh::Mesh;
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::StaticSettings;
 use fractum_scene::{
-    BondedBody, BondedStaticSettings, Loads, Probe, Scene, SceneError, SceneSettings, Supports, TimeStepSettings,
+    BondedBody, BondedStaticSettings, Loads, Probe, Scene, SceneError, SceneSettings, Supports, SurfaceSupports,
+    TimeStepSettings,
 };
 
+use bodies::{Numbering, Part};
 use bonded::ParticleSets;
 use conditions::{LoadedPoints, Surface};
 
@@ -107,7 +109,7 @@ pub fn build_scene(
     }
 }
 
-impl Context<'_> {
+impl<'a> Context<'a> {
     /// A place for mistakes of the whole case.
     fn whole_case(&self) -> Place {
         Place { file: self.case.source.path.display().to_string(), line: 0, column: 0, key: String::new() }
@@ -118,53 +120,20 @@ impl Context<'_> {
     }
 
     fn build(&mut self, prepared: Vec<PreparedBody>, facets: Vec<PreparedFacets>) -> Option<BuiltScene> {
-        if !self.diagnostics.is_empty() {
-            return None;
-        }
+        self.without_mistakes()?;
         let taken = self.taken(&prepared);
         let mut bonded = self.bonded(prepared)?;
         let mut parts = self.solid_parts()?;
         self.take_out(&mut parts, &taken);
-        if !self.diagnostics.is_empty() {
-            return None;
-        }
+        self.without_mistakes()?;
         let numbering = self.number_nodes(&parts)?;
-        let bodies = self.solid_bodies(&parts, &numbering)?;
-        let nodes = numbering.positions.clone();
-        let mut solid = match Solid::new(nodes, bodies) {
-            Ok(solid) => solid,
-            Err(error) => {
-                let place = parts.first().map_or_else(|| self.whole_case(), |part| part.place.clone());
-                self.error(&place, format!(": {error}"), "");
-                return None;
-            }
-        };
+        let mut solid = self.solid(&parts, &numbering)?;
         let mut warnings = self.length_warnings(&solid, &parts);
         self.set_initial_velocity(&mut solid, &parts);
-        let damping = self.case.damping;
-        solid.set_viscosity(Viscosity {
-            stiffness_time: damping.stiffness,
-            bulk_linear: damping.bulk_linear,
-            bulk_quadratic: damping.bulk_quadratic,
-        });
         let boundary = self.boundary(&parts, &numbering);
         let mut boundary_of_parts = self.facets_of_parts(&parts, &numbering);
-        let supports = self.supports(&numbering);
         let surface = Surface::new(&boundary, &parts, &numbering.positions);
-        let (surface_supports, supported) = self.surface_supports(&parts, &numbering, &surface, &solid);
-        let in_situ = self.in_situ_loads(&numbering, &surface, &solid, supported);
-        let points = LoadedPoints::Nodes(&numbering, &surface);
-        let mut loads = self.loads(&points);
-        loads.extend(in_situ);
-        let gas = self.gas(&solid, &points, &supports, &loads);
-        let supports = match Supports::new(supports, &solid.reference) {
-            Ok(supports) => supports,
-            Err(error) => {
-                let place = self.place_of_support(&error);
-                self.error(&place, format!(": {error}"), "");
-                return None;
-            }
-        };
+        let (supports, surface_supports, loads) = self.supports_and_loads(&solid, &parts, &numbering, &surface)?;
         let statics = self.statics(&solid, &numbering);
         let ties = self.ties(&solid, &bonded, &taken, &parts, &numbering, &boundary_of_parts);
         // Facets under tied particles matter to what breaks off only.
@@ -175,30 +144,94 @@ impl Context<'_> {
         let bonded_statics = self.bonded_statics(&bonded);
         let probes = self.probes(&parts, &numbering, &surface, &solid, &supports, &bonded);
         let ppv = self.ppv_stations(&numbering, &solid);
-        if !self.diagnostics.is_empty() {
-            return None;
-        }
+        self.without_mistakes()?;
         let surfaces = parts.iter().map(|part| self.case.materials[part.body.material].contact).collect();
         let debris = Debris::new(&solid, surfaces);
-        let mut surface: Vec<u32> = boundary.iter().flatten().copied().collect();
-        surface.sort_unstable();
-        surface.dedup();
+        let surface_nodes = nodes_of(&boundary);
         let rigid_bodies = self.rigid_bodies(facets);
-        let scene = Scene::new(
-            solid,
-            supports,
-            Loads::new(loads, numbering.positions.len()).with_gas(gas),
-            debris,
-            self.shape_contacts(&rigid_bodies),
-            &surface,
-            self.settings(),
-        )
-        .with_bonded(bonded)
-        .with_ties(&ties.attachments)
-        .with_surface_supports(surface_supports);
+        let shapes = self.shape_contacts(&rigid_bodies);
+        let scene = Scene::new(solid, supports, loads, debris, shapes, &surface_nodes, self.settings())
+            .with_bonded(bonded)
+            .with_ties(&ties.attachments)
+            .with_surface_supports(surface_supports);
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
-        let mut scene =
-            self.with_contacts(scene, &parts, &boundary_of_parts, &surface, rigid_bodies, &tied, &mut warnings)?;
+        let scene =
+            self.with_contacts(scene, &parts, &boundary_of_parts, &surface_nodes, rigid_bodies, &tied, &mut warnings)?;
+        let scene = self.made_ready(scene, &probes, &mut warnings)?;
+        Some(BuiltScene {
+            statics: statics.filter(|_| self.is_held(&scene)),
+            scene,
+            bonded_statics,
+            probes,
+            ppv,
+            file_order: numbering.file_order(),
+            scene_node: numbering.scene_node,
+            elements: parts.into_iter().map(|part| part.elements).collect(),
+            boundary,
+            ties: ties.reports,
+            warnings,
+        })
+    }
+
+    /// Something as long as no mistake has been found.
+    fn without_mistakes(&self) -> Option<()> {
+        self.diagnostics.is_empty().then_some(())
+    }
+
+    /// The elements of all solid bodies.
+    fn solid(&mut self, parts: &[Part<'a>], numbering: &Numbering) -> Option<Solid> {
+        let bodies = self.solid_bodies(parts, numbering)?;
+        let mut solid = match Solid::new(numbering.positions.clone(), bodies) {
+            Ok(solid) => solid,
+            Err(error) => {
+                let place = parts.first().map_or_else(|| self.whole_case(), |part| part.place.clone());
+                self.error(&place, format!(": {error}"), "");
+                return None;
+            }
+        };
+        let damping = self.case.damping;
+        solid.set_viscosity(Viscosity {
+            stiffness_time: damping.stiffness,
+            bulk_linear: damping.bulk_linear,
+            bulk_quadratic: damping.bulk_quadratic,
+        });
+        Some(solid)
+    }
+
+    /// What holds the solids, and what loads them.
+    fn supports_and_loads(
+        &mut self,
+        solid: &Solid,
+        parts: &[Part],
+        numbering: &Numbering,
+        surface: &Surface,
+    ) -> Option<(Supports, SurfaceSupports, Loads)> {
+        let supports = self.supports(numbering);
+        let (surface_supports, supported) = self.surface_supports(parts, numbering, surface, solid);
+        let in_situ = self.in_situ_loads(numbering, surface, solid, supported);
+        let points = LoadedPoints::Nodes(numbering, surface);
+        let mut loads = self.loads(&points);
+        loads.extend(in_situ);
+        let gas = self.gas(solid, &points, &supports, &loads);
+        match Supports::new(supports, &solid.reference) {
+            Ok(supports) => {
+                Some((supports, surface_supports, Loads::new(loads, numbering.positions.len()).with_gas(gas)))
+            }
+            Err(error) => {
+                let place = self.place_of_support(&error);
+                self.error(&place, format!(": {error}"), "");
+                None
+            }
+        }
+    }
+
+    /// The scene as its run begins: with its domain, the contacts that probes follow, and in-situ stress in equilibrium.
+    fn made_ready(
+        &mut self,
+        mut scene: Scene,
+        probes: &[Option<Probe>],
+        warnings: &mut Vec<Diagnostic>,
+    ) -> Option<Scene> {
         if let Some(domain) = self.case.solver.domain.clone() {
             scene = self.with_domain(scene, &domain)?;
         }
@@ -213,26 +246,10 @@ impl Context<'_> {
             self.error(&stress.place.clone(), format!(": {error}"), "");
             return None;
         }
-        let statics = statics.filter(|_| self.is_held(&scene));
         if self.case.solver.kind != SolverKind::Static {
-            self.check_time_step(&scene, &mut warnings);
+            self.check_time_step(&scene, warnings);
         }
-        if !self.diagnostics.is_empty() {
-            return None;
-        }
-        Some(BuiltScene {
-            scene,
-            statics,
-            bonded_statics,
-            probes,
-            ppv,
-            file_order: numbering.file_order(),
-            scene_node: numbering.scene_node,
-            elements: parts.into_iter().map(|part| part.elements).collect(),
-            boundary,
-            ties: ties.reports,
-            warnings,
-        })
+        Some(scene)
     }
 
     /// The support that contradicts one above it.
@@ -260,7 +277,7 @@ impl Context<'_> {
     }
 
     /// Nodes of a group that belong to solid bodies, in the scene's numbering, ascending.
-    fn group_nodes(&mut self, group: &Spanned<String>, numbering: &bodies::Numbering) -> Vec<u32> {
+    fn group_nodes(&mut self, group: &Spanned<String>, numbering: &Numbering) -> Vec<u32> {
         let in_file = self.mesh.group_nodes(&group.value);
         let mut nodes: Vec<u32> =
             in_file.iter().map(|&n| numbering.scene_node[n as usize]).filter(|&n| n != u32::MAX).collect();
@@ -272,7 +289,7 @@ impl Context<'_> {
     }
 
     /// Nodes of solid bodies that are meant, in the scene's numbering, ascending.
-    fn selected_nodes(&mut self, on: &Selection, numbering: &bodies::Numbering) -> Vec<u32> {
+    fn selected_nodes(&mut self, on: &Selection, numbering: &Numbering) -> Vec<u32> {
         let nodes = match &on.group {
             Some(group) => self.group_nodes(group, numbering),
             None => (0..numbering.positions.len() as u32).collect(),
@@ -292,6 +309,14 @@ impl Context<'_> {
         }
         points
     }
+}
+
+/// Nodes of facets, ascending.
+fn nodes_of(facets: &[[u32; 3]]) -> Vec<u32> {
+    let mut nodes: Vec<u32> = facets.iter().flatten().copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
 }
 
 /// A function of time and place as the scene takes it.

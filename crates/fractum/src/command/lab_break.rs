@@ -43,6 +43,31 @@ pub(crate) struct BreakArguments {
     /// Young's modulus of the beams, such as "678 GPa".
     #[arg(long, default_value = "678 GPa")]
     beam_young: String,
+    #[command(flatten)]
+    criterion: CriterionArguments,
+    /// What breaks between two equilibria: for every overloaded particle, or one bond only.
+    #[arg(long, value_parser = choice::<Batch>(), default_value = "site")]
+    batch: Batch,
+    /// Largest nominal strain; a sample that holds says how close it came.
+    #[arg(long)]
+    limit: Option<f64>,
+    /// Load over its peak below which a sample whose cracks have come to rest has lost its strength; 0.02 in
+    /// tension, 0.97 in bending, 0.9 elsewhere.
+    #[arg(long)]
+    stop: Option<f64>,
+    /// Unbalanced forces over the applied ones at which an equilibrium is accepted.
+    #[arg(long, default_value_t = 1e-3)]
+    residual: f64,
+    #[command(flatten)]
+    motion: MotionArguments,
+    /// Folder for the results.
+    #[arg(short, long, default_value = "results/lab/break")]
+    output: PathBuf,
+}
+
+/// When bonds break.
+#[derive(Args)]
+struct CriterionArguments {
     /// When bonds break.
     #[arg(long, value_parser = criterion_names(), default_value = "principal")]
     criterion: String,
@@ -62,19 +87,11 @@ pub(crate) struct BreakArguments {
     /// Bending moment that the beam criterion takes.
     #[arg(long, value_parser = choice::<EndMoments>(), default_value = "mean")]
     moments: EndMoments,
-    /// What breaks between two equilibria: for every overloaded particle, or one bond only.
-    #[arg(long, value_parser = choice::<Batch>(), default_value = "site")]
-    batch: Batch,
-    /// Largest nominal strain; a sample that holds says how close it came.
-    #[arg(long)]
-    limit: Option<f64>,
-    /// Load over its peak below which a sample whose cracks have come to rest has lost its strength; 0.02 in
-    /// tension, 0.97 in bending, 0.9 elsewhere.
-    #[arg(long)]
-    stop: Option<f64>,
-    /// Unbalanced forces over the applied ones at which an equilibrium is accepted.
-    #[arg(long, default_value_t = 1e-3)]
-    residual: f64,
+}
+
+/// How the sample is broken in motion.
+#[derive(Args)]
+struct MotionArguments {
     /// Break the sample in motion too, by explicit steps with the supports at constant speed: the time in which the load
     /// would rise from zero to the first break, in times that a wave takes along the sample; 80 is slow.
     #[arg(long)]
@@ -88,9 +105,6 @@ pub(crate) struct BreakArguments {
     /// Time step over the largest stable one, in motion.
     #[arg(long, default_value_t = 0.5)]
     safety: f64,
-    /// Folder for the results.
-    #[arg(short, long, default_value = "results/lab/break")]
-    output: PathBuf,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -129,22 +143,23 @@ const DEFAULT_STRENGTH: f64 = 50e6;
 
 impl BreakArguments {
     fn criterion(&self, sample: &Sample) -> Result<FractureCriterion, Failure> {
-        let tensile_strength = match &self.strength {
+        let CriterionArguments { criterion, strength, compressive, friction_angle, level, moments } = &self.criterion;
+        let tensile_strength = match strength {
             Some(text) => pressure(text)?,
             None => DEFAULT_STRENGTH / published::strength_ratio(self.radius_ratio, sample.network.coordination_all),
         };
-        let given = self.compressive.as_deref().map(pressure).transpose()?;
+        let given = compressive.as_deref().map(pressure).transpose()?;
         // Pressed samples need a strength in compression; elsewhere it is there when asked for.
         let pressed = matches!(self.test, Test::Compression).then_some(10.0 * tensile_strength);
         let numbers = CriterionNumbers {
             tensile_strength,
             compressive_strength: given.or(pressed),
-            friction_angle: self.friction_angle.to_radians(),
-            level: Level::from_number(self.level).unwrap_or_default(),
-            moments: self.moments,
+            friction_angle: friction_angle.to_radians(),
+            level: Level::from_number(*level).unwrap_or_default(),
+            moments: *moments,
         };
-        let kind = FractureCriterion::KINDS.iter().find(|kind| kind.name == self.criterion);
-        let unknown = || Failure::input(format!("no criterion \"{}\"", self.criterion));
+        let kind = FractureCriterion::KINDS.iter().find(|kind| kind.name == criterion);
+        let unknown = || Failure::input(format!("no criterion \"{criterion}\""));
         kind.map(|kind| (kind.make)(&numbers)).ok_or_else(unknown)
     }
 }
@@ -169,10 +184,10 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
     let folder = &arguments.output;
     atomic::create_folder(folder)?;
     let mut summary = summary(&sample, test, &criterion, &broken, seconds);
-    let density = parse_quantity(&arguments.density, Dimension::DENSITY).map_err(Failure::input)?;
-    if let Some(transits) = arguments.transits {
-        let faces = CrackFaces { friction: arguments.friction, damping_ratio: 0.0 };
-        let motion = lab::MotionOptions { density, transits, start: 0.9, faces, safety: arguments.safety };
+    let density = parse_quantity(&arguments.motion.density, Dimension::DENSITY).map_err(Failure::input)?;
+    if let Some(transits) = arguments.motion.transits {
+        let faces = CrackFaces { friction: arguments.motion.friction, damping_ratio: 0.0 };
+        let motion = lab::MotionOptions { density, transits, start: 0.9, faces, safety: arguments.motion.safety };
         let started = Instant::now();
         let moved = lab::break_in_motion(&sample, test, &options, &motion).map_err(wrong)?;
         say!(

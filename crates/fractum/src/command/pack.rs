@@ -93,15 +93,15 @@ fn show(c: &Certificate) {
     say!("volume fraction      {:.4} box, {core}", c.fraction_box);
     say!(
         "contacts             {:.3} all, {:.3} interior; {:.1} % rattlers",
-        c.coordination_all,
-        c.coordination_interior,
-        100.0 * c.rattlers
+        c.contacts.coordination_all,
+        c.contacts.coordination_interior,
+        100.0 * c.contacts.rattlers
     );
     say!(
         "overlap / radius     {:.1e} mean, {:.1e} largest ({:.1e} mean before the walls were released)",
-        c.overlap_mean,
-        c.overlap_max,
-        c.overlap_compacted
+        c.overlap.mean,
+        c.overlap.max,
+        c.overlap.compacted
     );
     let i = &c.isotropy;
     say!(
