@@ -1,11 +1,12 @@
 //! What goes into fractum and what comes out of it: cases, results, checkpoints and reports.
 //!
-//! Three rooms:
+//! Four rooms:
 //! - [`case`] reads and checks a case file
 //! - [`build`] makes the scene of a case on its mesh
 //! - `output` writes results. To compute with: [`history`] (`history.csv`), [`summary`] (`summary.json`, `verify.json`),
 //!   [`expectation`], [`fragments`]; to look at: [`vtk`] (ParaView), [`picture`] (PNG), [`plot`] (SVG), [`report`]
 //!   (`report.html`); while it runs: [`log`] (`run.log` and the progress line)
+//! - [`study`] says what a study runs, and what its runs say together
 //!
 //! Beside them: [`checkpoint`] (stop and go on, bit for bit), [`atomic`] (files that are whole or absent), [`number`]
 //! (numbers and units as text), [`memory`] (what does not fit is refused), [`error`].
@@ -32,6 +33,7 @@ pub mod error;
 pub mod memory;
 pub mod number;
 mod output;
+pub mod study;
 
 pub use compress::Compression;
 pub use error::{ReadError, WriteError};

@@ -5,6 +5,7 @@
 //! - [`plan`]: what a run will do, before it does it
 //! - [`report`]: the page of a results folder
 //! - [`stress`]: random scenes of every kind of body
+//! - [`study`]: many runs, and what they say together
 //! - [`terminal`]: lines on stdout and stderr
 //! - [`verify`]: the gallery against its references
 //!
@@ -60,6 +61,7 @@ mod series;
 mod simulation;
 mod solver;
 pub mod stress;
+pub mod study;
 mod summary;
 pub mod terminal;
 pub mod verify;

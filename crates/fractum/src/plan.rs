@@ -1,6 +1,7 @@
 //! What a run will do: bodies, physics on and skipped, time step, size, time.
 
 mod bodies;
+mod rows;
 
 use std::fmt;
 

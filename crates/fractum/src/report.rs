@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fractum_io::ReadError;
 use fractum_io::fragments;
-use fractum_io::history::{self, Table};
+use fractum_io::history::{self, Column, Table};
 use fractum_io::picture::ColourMap;
 use fractum_io::report::{self, ColourBar, Curve, EnergyColumns, Figure, ReportData};
 use fractum_io::summary::Summary;
@@ -112,21 +112,24 @@ fn figure(folder: &Path, note: &PictureNote) -> Option<Figure> {
     Some(Figure { title: note.title.clone(), png, colours: Some(colours) })
 }
 
-/// The load curve (first force against first displacement), then the probes over time, one chart per unit.
-fn curves(history: &Table) -> Vec<Curve> {
+/// The columns of probes.
+fn probes(history: &Table) -> &[Column] {
     let names: Vec<&str> = history.columns.iter().map(|c| c.name.as_str()).collect();
-    let probes = &history.columns[crate::record::count_ledger_columns(&names)..];
-    let of_unit = |unit: &str| probes.iter().find(|c| c.unit == unit).map(|c| c.name.clone());
-    let mut curves = Vec::new();
-    if let (Some(load), Some(displacement)) = (of_unit("N"), of_unit("m")) {
-        curves.push(Curve {
-            title: format!("{load} against {displacement}"),
-            x: displacement,
-            y: vec![load],
-            mark_peak: true,
-            levels: Vec::new(),
-        });
-    }
+    &history.columns[crate::record::count_ledger_columns(&names)..]
+}
+
+/// The first force against the first displacement.
+pub(crate) fn load_curve(history: &Table) -> Option<Curve> {
+    let of_unit = |unit: &str| probes(history).iter().find(|c| c.unit == unit).map(|c| c.name.clone());
+    let (load, displacement) = (of_unit("N")?, of_unit("m")?);
+    let title = format!("{load} against {displacement}");
+    Some(Curve { title, x: displacement, y: vec![load], mark_peak: true, levels: Vec::new() })
+}
+
+/// The load curve, then the probes over time, one chart per unit.
+fn curves(history: &Table) -> Vec<Curve> {
+    let probes = probes(history);
+    let mut curves: Vec<Curve> = load_curve(history).into_iter().collect();
     let mut units: Vec<&str> = Vec::new();
     for column in probes {
         if !units.contains(&column.unit.as_str()) {

@@ -10,17 +10,35 @@ use crate::simulation::{Options, Outcome, Simulation};
 /// # Errors
 /// [`Failure`]: mistakes in the input, a run that stopped itself, a machine that failed.
 pub fn run(path: &Path, options: &Options) -> Result<Outcome, Failure> {
+    run_measured(path, options).map(|(outcome, _)| outcome)
+}
+
+/// As [`run`], with the processor time of all its threads [s] where the system tells it.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn run_measured(path: &Path, options: &Options) -> Result<(Outcome, Option<f64>), Failure> {
     let mut pool = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = options.threads {
         pool = pool.num_threads(threads);
     }
+    let pool = pool.build()?;
     // Inside the pool, parallel loops start without a hand-over between threads.
-    pool.build()?.install(|| {
+    let outcome = pool.install(|| {
         let mut simulation = Simulation::open(path, options)?;
         while !simulation.is_over() {
             simulation.step()?;
             simulation.record()?;
         }
         simulation.finish()
-    })
+    })?;
+    let seconds = pool.broadcast(|_| processor_time()).into_iter().sum();
+    Ok((outcome, seconds))
+}
+
+/// Processor time of this thread [s], as Linux tells it.
+fn processor_time() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
 }

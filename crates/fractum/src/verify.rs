@@ -124,7 +124,7 @@ fn find_cases(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
         let path = entry?.path();
         if path.is_dir() {
             find_cases(&path, found)?;
-        } else if path.extension().is_some_and(|e| e == "toml") {
+        } else if path.extension().is_some_and(|e| e == "toml") && path.file_name().is_some_and(|n| n != "study.toml") {
             found.push(path);
         }
     }

@@ -61,4 +61,5 @@ pub use quantity::parse_quantity;
 pub use read::{parse_case, read_case};
 pub use schema::schema;
 pub use time_function::{Field, TimeFunction};
+pub(crate) use tree::place_of;
 pub use unit::Dimension;

@@ -95,6 +95,11 @@ pub(super) fn parse_override(key: &str, text: &str) -> Node {
     Node { value, place, raw: shortened(text) }
 }
 
+/// The place of a byte of a file.
+pub(crate) fn place_of(text: &str, file: &str, offset: usize) -> Place {
+    Source { text, file, lines: line_starts(text) }.place(offset, String::new())
+}
+
 struct Source<'a> {
     text: &'a str,
     file: &'a str,
@@ -165,10 +170,18 @@ fn shortened(raw: &str) -> String {
     format!("{start}...")
 }
 
-/// Puts a value at a dotted path such as `solver.end` or `bodies[0].damage`, making tables on the way.
+/// Puts a value at a dotted path such as `solver.end` or `bodies[0].damage`, making tables on the way; `*` stands for every
+/// entry of a table and `[*]` for every item of an array that has the keys that follow.
 pub(super) fn set(root: &mut Node, path: &str, value: Node) -> Result<(), Box<Diagnostic>> {
     let place = value.place.clone();
     let fail = |found: &str, remedy: String| Box::new(Diagnostic::error(&place, found).remedy(remedy));
+    if path.contains('*') {
+        let paths = matching(root, path);
+        if paths.is_empty() {
+            return Err(fail("cannot be set", "nothing in this case matches it".to_string()));
+        }
+        return paths.iter().try_for_each(|path| set(root, path, value.clone()));
+    }
     let mut at = root;
     let mut so_far = String::new();
     for part in path.split('.') {
@@ -207,6 +220,40 @@ pub(super) fn set(root: &mut Node, path: &str, value: Node) -> Result<(), Box<Di
     }
     *at = value;
     Ok(())
+}
+
+/// The paths that one with `*` stands for.
+fn matching(root: &Node, path: &str) -> Vec<String> {
+    let (above, last) = path.rsplit_once('.').unwrap_or(("", path));
+    let mut found = vec![(String::new(), root)];
+    for part in above.split('.').filter(|part| !part.is_empty()) {
+        found = found.iter().flat_map(|(path, node)| below(path, node, part)).collect();
+    }
+    if last.contains('*') {
+        return found.iter().flat_map(|(path, node)| below(path, node, last)).map(|(path, _)| path).collect();
+    }
+    let tables = found.into_iter().filter(|(_, node)| matches!(node.value, Value::Table(_)));
+    tables.map(|(path, _)| join(&path, last)).collect()
+}
+
+/// What a part of a path names in the table at `path`.
+fn below<'a>(path: &str, node: &'a Node, part: &str) -> Vec<(String, &'a Node)> {
+    let Value::Table(entries) = &node.value else { return Vec::new() };
+    let (name, index) = part.split_once('[').map_or((part, None), |(name, index)| (name, index.strip_suffix(']')));
+    let named = entries.iter().filter(|entry| name == "*" || entry.name == name);
+    let mut found = Vec::new();
+    for Entry { name, node, .. } in named {
+        let path = join(path, name);
+        match (&node.value, index) {
+            (_, None) => found.push((path, node)),
+            (Value::Array(items), Some(index)) => {
+                let wanted = items.iter().enumerate().filter(|(i, _)| index == "*" || index.parse() == Ok(*i));
+                found.extend(wanted.map(|(i, item)| (format!("{path}[{i}]"), item)));
+            }
+            _ => {}
+        }
+    }
+    found
 }
 
 #[cfg(test)]
@@ -260,6 +307,22 @@ mod tests {
         assert_eq!(find(&bodies[0], "x").value, Value::Text("1 mm".to_string()));
         assert_eq!(find(find(&root, "s"), "end").value, Value::Number(0.5));
         assert!(matches!(find(find(find(&root, "new"), "deep"), "key").value, Value::Array(_)));
+        let mut many = parse("[m.a.d]\n[m.b]\n[m.c]\nd = { k = 1 }\n[[b]]\n[[b]]\nx = 1\n", "f").unwrap();
+        for path in ["m.*.d.k", "b[*].x"] {
+            set(&mut many, path, parse_override(path, "7")).unwrap();
+        }
+        let materials = find(&many, "m");
+        for name in ["a", "c"] {
+            assert_eq!(find(find(find(materials, name), "d"), "k").value, Value::Number(7.0));
+        }
+        assert_eq!(
+            find(materials, "b").value,
+            Value::Table(Vec::new()),
+            "nothing is made where the keys are not there"
+        );
+        let Value::Array(bodies) = &find(&many, "b").value else { panic!() };
+        assert!(bodies.iter().all(|body| find(body, "x").value == Value::Number(7.0)));
+        assert!(set(&mut many, "m.*.e.k", parse_override("m.*.e.k", "7")).is_err());
         for path in ["b[1].x", "b[x].x", "b.x.y", "", ".", "b[0]x"] {
             assert!(set(&mut root, path, parse_override(path, "1")).is_err(), "{path}");
         }

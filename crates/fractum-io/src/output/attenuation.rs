@@ -50,19 +50,13 @@ impl Attenuation {
     pub fn new(name: &str, unit: &str, stations: Vec<Station>) -> Self {
         let moved = stations.iter().filter(|station| station.velocity > 0.0 && station.scaled_distance > 0.0);
         let points: Vec<[f64; 2]> = moved.map(|station| [ln(station.scaled_distance), ln(station.velocity)]).collect();
-        let count = points.len() as f64;
-        let [x, y] = [0, 1].map(|axis| points.iter().map(|point| point[axis]).sum::<f64>() / count);
-        let moment = |a: usize, b: usize| -> f64 {
-            let mean = [x, y];
-            points.iter().map(|point| (point[a] - mean[a]) * (point[b] - mean[b])).sum()
-        };
-        let slope = moment(0, 1) / moment(0, 0);
+        let line = line_through(&points);
         Attenuation {
             name: name.into(),
             unit: unit.into(),
-            intercept: exp(y - slope * x),
-            exponent: -slope,
-            r_squared: moment(0, 1) * moment(0, 1) / (moment(0, 0) * moment(1, 1)),
+            intercept: exp(line.intercept),
+            exponent: -line.slope,
+            r_squared: line.r_squared,
             stations,
         }
     }
@@ -71,6 +65,25 @@ impl Attenuation {
     pub fn velocity(&self, scaled_distance: f64) -> f64 {
         self.intercept * exp(-self.exponent * ln(scaled_distance))
     }
+}
+
+/// The straight line of least squares through points.
+pub(crate) struct Line {
+    pub(crate) slope: f64,
+    pub(crate) intercept: f64,
+    /// Coefficient of determination [-].
+    r_squared: f64,
+}
+
+/// The straight line of least squares through `points`; not a number for fewer than two abscissae.
+pub(crate) fn line_through(points: &[[f64; 2]]) -> Line {
+    let count = points.len() as f64;
+    let mean = [0, 1].map(|axis| points.iter().map(|point| point[axis]).sum::<f64>() / count);
+    let moment =
+        |a: usize, b: usize| -> f64 { points.iter().map(|point| (point[a] - mean[a]) * (point[b] - mean[b])).sum() };
+    let slope = moment(0, 1) / moment(0, 0);
+    let r_squared = moment(0, 1) * moment(0, 1) / (moment(0, 0) * moment(1, 1));
+    Line { slope, intercept: mean[1] - slope * mean[0], r_squared }
 }
 
 /// Writes `ppv.csv`: a line per station.

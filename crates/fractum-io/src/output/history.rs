@@ -148,11 +148,13 @@ fn parse(text: &str) -> Result<Table, (usize, String, String)> {
 }
 
 fn header(columns: &[Column]) -> String {
-    let cell = |column: &Column| {
-        let text = format!("{} [{}]", column.name, column.unit);
-        if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
-    };
+    let cell = |column: &Column| quoted(&format!("{} [{}]", column.name, column.unit));
     columns.iter().map(cell).collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// A cell of a CSV file, in quotes where its text needs them.
+pub(crate) fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
 fn parse_header(line: &str) -> Option<Vec<Column>> {

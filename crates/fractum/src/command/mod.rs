@@ -9,6 +9,7 @@ mod mesh;
 mod new;
 mod pack;
 mod shape;
+mod study;
 
 use std::path::PathBuf;
 
@@ -84,6 +85,8 @@ enum Command {
         #[arg(long, default_value_t = 1, requires = "stress")]
         seed: u64,
     },
+    /// Run a case with varied settings, or a study of several cases, and print run time beside error.
+    Study(Box<study::StudyArguments>),
     /// Look at a mesh, or write it in another format.
     Mesh {
         #[command(subcommand)]
@@ -175,6 +178,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
                 }
             })
         }
+        Command::Study(arguments) => study::run(*arguments),
         Command::Mesh { command } => mesh::execute(command, json),
         Command::Report { folder } => fractum::report::write(&folder).map(|()| ExitCode::Done),
         Command::Pack(arguments) => pack::run(&arguments),
