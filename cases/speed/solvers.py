@@ -17,7 +17,7 @@ ELASTIC = ["speed/56k-static", "speed/500k-static"]
 # Compact first, then slender.
 PAIRS = [
     ("brazilian-static/coarse", "brazilian-plane/coarse"),
-    ("notched-beam/tilt-10-gate", "notched-beam/tilt-10-gate-explicit"),
+    ("notched-beam/tilt-10-phase", "notched-beam/tilt-10-phase-explicit"),
 ]
 
 

@@ -1,5 +1,5 @@
-//! The energy balance of violent fracture at the default step: impact, a blast in a hole, a sudden pull, a crack behind its
-//! gate; and what guards it: the start out of balance, elements turned inside out, the stable step with damping.
+//! The energy balance of violent fracture at the default step: impact, a blast in a hole, a sudden pull; and what
+//! guards it: the start out of balance, elements turned inside out, the stable step with damping.
 //!
 //! An edge goes from strong compression to broken within one step here, so that every term of the balance must take the
 //! strain of the step before as it was.
@@ -171,27 +171,6 @@ fn a_bar_pulled_at_once_closes_its_balance() {
             let ledger = run(scene(solid, supports, Vec::new(), Vec::new(), 4e-4), &name);
             balances.push((name, ledger));
         }
-    }
-    assert_closed(&balances, ALLOWED);
-}
-
-#[test]
-fn a_crack_behind_its_gate_closes_its_balance() {
-    let mut balances = Vec::new();
-    for (name, speed) in [("slow", 0.2), ("fast", 2.0)] {
-        let (nodes, mut body) = block([24, 12, 0], Vec3::new(0.2, 0.1, 0.05));
-        body.damage.as_mut().unwrap().crack_plane_gate = true;
-        let solid = Solid::new(nodes, vec![body.smoothed()]).unwrap();
-        let below = nodes_where(&solid, |p| p.y < 1e-9 && (p.x - 0.1).abs() > 0.01);
-        let above = nodes_where(&solid, |p| p.y > 0.1 - 1e-9);
-        let pull = Motion::Velocity(Arc::new(move |t: f64, _: &Vec3| speed * (t / 1e-4).min(1.0)));
-        let supports = vec![
-            Support::new("below", below.clone(), 1, Motion::Fixed),
-            Support::new("across", below, 0, Motion::Fixed),
-            Support::new("above", above, 0, pull),
-        ];
-        let ledger = run(scene(solid, supports, Vec::new(), Vec::new(), 6e-4), name);
-        balances.push((name.to_owned(), ledger));
     }
     assert_closed(&balances, ALLOWED);
 }

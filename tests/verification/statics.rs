@@ -94,7 +94,6 @@ fn bar(formulation: Formulation) -> Solid {
         region,
         strength_factor: Vec::new(),
         reduce_strength_to_fit: false,
-        crack_plane_gate: false,
         regularisation: None,
     };
     Solid::new(mesh.nodes, vec![Body { damage: Some(zone), ..body }]).unwrap()

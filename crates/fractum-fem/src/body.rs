@@ -84,8 +84,6 @@ pub struct DamageZone {
     pub strength_factor: Vec<f64>,
     /// Lower the strength of edges too long for their fracture energy, instead of refusing the body.
     pub reduce_strength_to_fit: bool,
-    /// Near a crack, damage begins only where the plane of the crack goes on (smoothed formulation only).
-    pub crack_plane_gate: bool,
     /// Damage as a phase field instead of edge by edge.
     pub regularisation: Option<Regularisation>,
 }
@@ -141,7 +139,6 @@ impl Body {
             region: Region::Everywhere,
             strength_factor: Vec::new(),
             reduce_strength_to_fit: false,
-            crack_plane_gate: false,
             regularisation: None,
         };
         Body { damage: Some(zone), ..self }

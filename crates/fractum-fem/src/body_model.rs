@@ -1,7 +1,6 @@
 use fractum_math::Ragged;
 
 use crate::body::{Body, BodyEdges};
-use crate::gate::Gate;
 use crate::hooke::Hooke;
 use crate::phase::PhaseField;
 use crate::standard::StandardDamage;
@@ -20,7 +19,6 @@ pub(crate) struct BodyModel {
     /// Block and cell of each cell of the body (element, or edge if smoothed).
     pub(crate) location: Vec<(u32, u32)>,
     pub(crate) standard: Option<StandardDamage>,
-    pub(crate) gate: Option<Gate>,
     pub(crate) phase: Option<Box<PhaseField>>,
     /// Edges whose strength was lowered to fit their length.
     pub(crate) reduced_edges: usize,

@@ -10,7 +10,7 @@ use crate::body::{DamageZone, Kinematics};
 use crate::hooke::Hooke;
 use crate::kernel::{self, CellLaw};
 use crate::material::{Criterion, DamageLaw, Softening};
-use crate::threshold::{IN_RESERVE, Threshold};
+use crate::threshold::Threshold;
 
 /// History of one edge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -69,11 +69,6 @@ impl Softens {
         }
     }
 
-    /// Largest strength that an edge of this characteristic length [m] may have, a tenth of the length in reserve [Pa].
-    pub(crate) fn largest_strength(&self, length: f64) -> f64 {
-        (IN_RESERVE * self.softening.largest_length(self.young_modulus, 1.0, self.fracture_energy) / length).sqrt()
-    }
-
     /// Effective stress that damage acts on [Pa].
     pub(crate) fn opening_stress(&self, strain: Sym3) -> Sym3 {
         self.hooke.stress(strain) - self.closed_stress(strain)
@@ -124,8 +119,7 @@ pub(crate) struct EdgeField {
     /// Numbers of the edges in their body.
     pub(crate) edges: Vec<u32>,
     pub(crate) state: Vec<EdgeDamage>,
-    /// Equivalent stress [Pa] below which an edge of a cell is known to stay intact; negative once it is damaged, infinite
-    /// while a gate keeps it from being damaged.
+    /// Equivalent stress [Pa] below which an edge of a cell is known to stay intact; negative once it is damaged.
     pub(crate) threshold: Vec<f64>,
     /// Strength [Pa] of each edge; infinite where damage may not occur.
     pub(crate) strength: Vec<f64>,
@@ -177,9 +171,9 @@ impl EdgeField {
         growth
     }
 
-    /// Equivalent stress from which on damage grows [Pa]; infinite behind a closed gate.
+    /// Equivalent stress from which on damage grows [Pa].
     pub(crate) fn onset(&self, index: usize) -> f64 {
-        self.state[index].kappa.max(self.threshold[index])
+        self.state[index].kappa
     }
 
     /// Damage that an edge would have after the equivalent stress `q` [Pa].

@@ -38,7 +38,7 @@ pub struct SecantCell<'a> {
 pub struct DamagePoint {
     /// Body it belongs to.
     pub body: usize,
-    /// Largest equivalent stress so far [Pa]; infinite for an edge that a gate keeps from being damaged.
+    /// Largest equivalent stress so far [Pa].
     pub kappa: f64,
     /// Equivalent stress over which softening takes place, E G_f/(l f_t) [Pa].
     pub softening: f64,

@@ -10,7 +10,6 @@ use crate::cell::Geometry;
 use crate::damage::{EdgeCells, EdgeField, Softens};
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
-use crate::gate::Gate;
 use crate::hooke::Hooke;
 use crate::material::{Wave, rayleigh_wave_speed};
 use crate::phase::PhaseField;
@@ -383,7 +382,7 @@ impl BodyModel {
             _ => None,
         };
         let alive = vec![true; body.elements.len()];
-        let mut model = BodyModel {
+        let model = BodyModel {
             body,
             hooke,
             viscosity: None,
@@ -392,20 +391,10 @@ impl BodyModel {
             elements_of_edge,
             location,
             standard,
-            gate: None,
             phase,
             reduced_edges,
             largest_length_ratio,
         };
-        if smoothed && model.body.damage.as_ref().is_some_and(|zone| zone.crack_plane_gate) {
-            let strength = |edge: usize| {
-                let (block, cell) = model.location[edge];
-                blocks[block as usize - first_block].edge_field().map_or(f64::INFINITY, |f| f.strength[cell as usize])
-            };
-            let edges = model.edges.as_ref().map_or(&[][..], |edges| edges.nodes.as_slice());
-            let edges = (edges, &model.elements_of_edge);
-            model.gate = Some(Gate::new(&model.body, edges, nodes, |element| volumes[element as usize], strength));
-        }
         Ok((model, blocks))
     }
 }

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::damage::EdgeDamage;
 use crate::evaluate::{Block, BlockLaw};
-use crate::gate::{Gate, GateState};
 use crate::solid::Solid;
 
 /// What changes in a body during a run.
@@ -17,8 +16,6 @@ pub struct BodyState {
     pub edges: Vec<EdgeDamage>,
     /// Damage and last effective stress of elements (standard formulation with damage).
     pub elements: Vec<(f64, Sym3)>,
-    /// Crack-plane gate; empty without one.
-    pub gate: GateState,
     /// Active edges of a phase field, each with d and d of the step before; empty without one.
     pub phase: Vec<(u32, [f64; 2])>,
 }
@@ -83,9 +80,8 @@ impl Solid {
             _ => (0.0, Sym3::ZERO),
         };
         let elements = if model.standard.is_some() { model.location.iter().map(of).collect() } else { Vec::new() };
-        let gate = model.gate.as_ref().map_or_else(GateState::default, Gate::state);
         let phase = model.phase.as_ref().map_or_else(Vec::new, |field| field.state().collect());
-        BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements, gate, phase }
+        BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements, phase }
     }
 
     /// Puts a saved state back. The solid must have been built from the same bodies.
@@ -108,14 +104,10 @@ impl Solid {
                     (law.damage[cell as usize], law.stress[cell as usize]) = *saved;
                 }
             }
-            if let Some(gate) = &mut model.gate {
-                gate.restore(&body.gate);
-            }
             model.alive = body.alive;
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
             self.rebuild_cells_around(index, &removed);
             self.restore_phase(index, &body.phase);
-            self.close_edges(index);
         }
         for (block, viscous) in self.blocks.iter_mut().zip(state.viscous) {
             block.viscous.stress = viscous;

@@ -16,8 +16,6 @@ const IN_SITU_ROUND_OFF: f64 = 1e-9;
 
 /// Relative difference of two steps that is rounding.
 const SAME_STEP: f64 = 1e-9;
-/// Steps between two looks at where cracks may go on.
-const STEPS_BETWEEN_GATES: u64 = 25;
 /// Removals after which the stable step is looked at again, and the steps that must lie between two looks.
 const STEPS_BETWEEN_CHECKS: u64 = 200;
 /// Steps between two looks for pieces that have left the domain.
@@ -110,9 +108,6 @@ impl Scene {
         self.books += work.after;
         passed(Phase::Motion);
 
-        if self.clock.step.is_multiple_of(STEPS_BETWEEN_GATES) && self.solid.has_gates() {
-            self.solid.update_gates();
-        }
         let report = self.release_cut_elements(dt_after);
         passed(Phase::Transition);
         self.debris.search(&self.solid);

@@ -271,9 +271,6 @@ impl PhaseField {
         if body.formulation == Formulation::Standard {
             return refuse("the standard formulation", "the smoothed one, on whose edges it lives");
         }
-        if zone.crack_plane_gate {
-            return refuse("a crack-plane gate", "one of the two");
-        }
         if zone.law.rate_time > 0.0 {
             return refuse("a rate time, which would act as toughness", "rate_time = 0");
         }

@@ -187,13 +187,6 @@ impl<'a> Context<'a> {
                         "the smoothed formulation, which alone can close cracks; remove one of the two",
                     );
                 }
-                if damage.value.crack_plane_gate && body.formulation == Formulation::Standard {
-                    self.error(
-                        &damage.place,
-                        ".crack_plane_gate = true with the standard formulation",
-                        "the smoothed formulation, on whose edges the gate acts; remove one of the two",
-                    );
-                }
                 if damage.value.regularisation.is_some() && body.formulation == Formulation::Standard {
                     self.error(
                         &damage.place,
@@ -251,7 +244,6 @@ impl<'a> Context<'a> {
             region,
             strength_factor,
             reduce_strength_to_fit: damage.reduce_strength_to_fit,
-            crack_plane_gate: damage.crack_plane_gate,
             regularisation: damage.regularisation,
         }
     }

@@ -148,7 +148,7 @@ impl<'a> Family<'a> {
         if resized { Varies::Case } else { Varies::Setting }
     }
 
-    /// Values of a run on the axes of some kinds, for people: `gate`, `tilt-10, safety 0.5`.
+    /// Values of a run on the axes of some kinds, for people: `local`, `tilt-10, safety 0.5`.
     pub fn name(&self, run: &Run, of: &[Varies]) -> String {
         let shown = self.axes.iter().filter(|(_, varies)| of.contains(varies));
         let words = shown.map(|(axis, _)| match *axis {

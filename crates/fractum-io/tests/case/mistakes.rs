@@ -329,9 +329,9 @@ fn each_mistake_has_one_clear_message() {
         ),
         (
             "poisson_ratio = 0.3",
-            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, crack_plane_gate = true, \
-             regularisation = \"phase-field\" }",
-            "8:55: materials.steel.damage.crack_plane_gate has no effect beside a phase field, which needs no gate; remove it",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, crack_plane_gate = true }",
+            "8:55: materials.steel.damage.crack_plane_gate is not a key; the crack-plane gate is gone; remove the key, and where \
+             cracks follow rows of the mesh take another one or set regularisation = \"phase-field\"",
         ),
         (
             "young_modulus = 210e9",

@@ -234,7 +234,6 @@ impl StaticSolver {
     /// # Errors
     /// [`StepError`] if there is none, or none that the iteration finds.
     pub fn step(&mut self, scene: &mut Scene) -> Result<StepReport, StepError> {
-        scene.solid.update_gates();
         scene.solid.wake_phase_fields();
         let points = scene.solid.damage_points();
         self.damage = scene.solid.cell_damage();

@@ -182,15 +182,11 @@ impl Plan {
                 let sizes = length / size;
                 self.add("", format!("phase field of length {}, {sizes:.1} elements", quantity(length, "m")));
             }
-            if d.crack_plane_gate {
-                let tried = if body.shape == ElementKind::T3 { "" } else { "; in space tried on a tension bar only" };
-                self.add("", format!("crack-plane gate: for few, separate, straight cracks{tried}"));
-            }
             let rows = rows::share(body, &scene.solid.reference);
             if rows > rows::MANY && d.regularisation.is_none() {
                 let (share, count) = (100.0 * rows, rows::directions(body.shape));
                 self.add("", format!(
-                    "rows: {share:.0} % of the edges that may be damaged lie within 5 deg of {count} directions, and cracks like to follow them; set regularisation = \"phase-field\", or mesh by another algorithm (Gmsh: Mesh.Algorithm = 5)"
+                    "rows: {share:.0} % of the edges that may be damaged lie within 5 deg of {count} directions, and cracks like to follow them; mesh by another algorithm (Gmsh: Mesh.Algorithm = 5), or set regularisation = \"phase-field\""
                 ));
             }
         }

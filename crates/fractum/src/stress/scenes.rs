@@ -10,7 +10,7 @@ use super::draw::Draw;
 pub const KINDS: [&str; 14] = [
     "elastic solid",
     "damaged solid",
-    "gate",
+    "phase field",
     "unilateral",
     "solid at rest",
     "impact",
@@ -123,10 +123,10 @@ fn solid(draw: &mut Draw, kind: &'static str) -> RandomScene {
     if damaged {
         case += &damage(draw, kind, &material, strain, size / f64::from(cells));
     }
-    let gated = kind == "gate";
-    let formulation = if gated || damaged || draw.chance(0.5) { "smoothed" } else { "standard" };
+    let regularised = kind == "phase field";
+    let formulation = if regularised || damaged || draw.chance(0.5) { "smoothed" } else { "standard" };
     let formulation =
-        if damaged && !gated && kind != "unilateral" && draw.chance(0.3) { "standard" } else { formulation };
+        if damaged && !regularised && kind != "unilateral" && draw.chance(0.3) { "standard" } else { formulation };
     let kinematics = if kind != "solid at rest" && draw.chance(0.4) { "corotational" } else { "small" };
     case += &format!(
         "\n[[bodies]]\nname = \"block\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stuff\"\n\
@@ -191,8 +191,8 @@ fn damage(draw: &mut Draw, kind: &str, material: &Elastic, strain: f64, edge: f6
         number(strength),
         number(toughness)
     );
-    if kind == "gate" {
-        text += "crack_plane_gate = true\n";
+    if kind == "phase field" {
+        text += "regularisation = \"phase-field\"\n";
     }
     if kind == "unilateral" {
         text += "unilateral = true\n";

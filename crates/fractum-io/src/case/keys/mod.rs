@@ -88,6 +88,12 @@ pub(super) fn children(pattern: &str) -> impl Iterator<Item = &'static str> {
         .map(|name| name.trim_end_matches("[]"))
 }
 
+/// Keys of earlier versions, and what to write instead.
+const RETIRED: [(&str, &str); 1] = [(
+    "materials.NAME.damage.crack_plane_gate",
+    "the crack-plane gate is gone; remove the key, and where cracks follow rows of the mesh take another one or set regularisation = \"phase-field\"",
+)];
+
 /// An unknown key, and the path of the key that was probably meant.
 pub(super) struct Unknown {
     pub(super) diagnostic: Diagnostic,
@@ -105,6 +111,10 @@ pub(super) fn remove_unknown(node: &mut Node, pattern: &str, report: &mut dyn Fn
         let Some(key) = key.filter(|key| key.path != TIME_FUNCTION) else {
             let known: Vec<_> = children(pattern).collect();
             let diagnostic = Diagnostic::error(&entry.key_place, "is not a key");
+            if let Some((_, instead)) = RETIRED.iter().find(|(path, _)| *path == exact) {
+                report(Unknown { diagnostic: diagnostic.remedy(*instead), meant: None });
+                return false;
+            }
             report(match nearest(&entry.name, known.iter().copied()) {
                 Some(near) => Unknown {
                     diagnostic: diagnostic.remedy(format!("did you mean {near}?")),

@@ -41,8 +41,6 @@ pub struct Damage {
     pub scatter: Option<Scatter>,
     /// Lower the strength where an element is too large for its fracture energy, instead of refusing it.
     pub reduce_strength_to_fit: bool,
-    /// Near a crack, damage begins only where the plane of the crack goes on.
-    pub crack_plane_gate: bool,
     /// Damage as a phase field.
     pub regularisation: Option<Regularisation>,
 }

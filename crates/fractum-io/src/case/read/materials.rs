@@ -82,10 +82,6 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
     let scatter = table.table("scatter").map(scatter);
     let reduce_strength_to_fit = table.flag("reduce_strength_to_fit").or(false);
     let regularisation = regularisation(&table);
-    let crack_plane_gate = table.flag("crack_plane_gate").or(false);
-    if crack_plane_gate && matches!(regularisation, Some(Some(_))) {
-        table.refuse("crack_plane_gate", "beside a phase field, which needs no gate");
-    }
     let unilateral = optional(&table, "unilateral", |key| table.flag(key).given());
     let rate_time = table.quantity("rate_time").not_negative().or(0.0);
     table.finish("here");
@@ -104,7 +100,6 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
         unilateral: unilateral?,
         scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,
         reduce_strength_to_fit,
-        crack_plane_gate,
         regularisation: regularisation?,
     })
 }
