@@ -3,7 +3,7 @@
 //! Four rooms:
 //! - [`case`] reads and checks a case file
 //! - [`build`] makes the scene of a case on its mesh
-//! - `output` writes results. To compute with: [`history`] (`history.csv`), [`summary`] (`summary.json`, `verify.json`),
+//! - `output` writes results. To compute with: [`history`] (`history.csv`), [`summary`] (`summary.json`), [`verified`] (`verify.json`),
 //!   [`expectation`], [`fragments`]; to look at: [`vtk`] (ParaView), [`picture`] (PNG), [`plot`] (SVG), [`report`]
 //!   (`report.html`); while it runs: [`log`] (`run.log` and the progress line)
 //! - [`study`] says what a study runs, and what its runs say together
@@ -37,4 +37,6 @@ pub mod study;
 
 pub use compress::Compression;
 pub use error::{ReadError, WriteError};
-pub use output::{OutputError, attenuation, expectation, fragments, history, log, picture, plot, report, summary, vtk};
+pub use output::{
+    OutputError, attenuation, expectation, fragments, history, log, picture, plot, report, summary, verified, vtk,
+};

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use fractum_io::case::read_case;
-use fractum_io::expectation::{Expectation, Verified};
+use fractum_io::expectation::Expectation;
 use fractum_io::number::quantity;
-use fractum_io::summary::{Status, write_verify};
+use fractum_io::summary::Status;
+use fractum_io::verified::{self, Verified};
 
 use crate::error::Failure;
 use crate::run::run;
@@ -24,7 +25,7 @@ pub struct Selection {
     pub names: Vec<String>,
     /// Only cases marked `[verify] quick = true`.
     pub quick: bool,
-    /// Folder for results and `verify.json`.
+    /// Folder for results, `verify.json` and `verify.md`.
     pub output: PathBuf,
     /// Threads per case; all cores if none is given.
     pub threads: Option<usize>,
@@ -32,7 +33,8 @@ pub struct Selection {
     pub cache: Cache,
 }
 
-/// Runs the selected cases that expect something, prints the table and writes `verify.json`; the lines of the table.
+/// Runs the selected cases that expect something, prints the table and writes it after every case into `verify.json` and
+/// `verify.md`; the lines of the table.
 ///
 /// # Errors
 /// [`Failure::Input`] if nothing is selected, [`Failure::Write`] if the table cannot be written. A case that fails to
@@ -94,14 +96,14 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
             }
         }
         lines[first..].iter().for_each(print_line);
+        fractum_io::atomic::create_folder(&selection.output)?;
+        verified::write(&selection.output, &lines)?;
     }
     if lines.is_empty() {
         return Err(Failure::input(format!("{}: no case with [[expect]] matches", selection.cases.display())));
     }
-    fractum_io::atomic::create_folder(&selection.output)?;
-    write_verify(&selection.output.join("verify.json"), &lines)?;
     let passed = lines.iter().filter(|line| line.expectation.pass).count();
-    say!("{passed} of {} passed; {}", lines.len(), selection.output.join("verify.json").display());
+    say!("{passed} of {} passed; {}", lines.len(), selection.output.join("verify.md").display());
     Ok(lines)
 }
 

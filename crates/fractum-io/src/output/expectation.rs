@@ -1,4 +1,4 @@
-//! What a case expects of a run, and whether it came out so: the lines under `expect` in `summary.json`, and `verify.json`.
+//! What a case expects of a run, and whether it came out so: the lines under `expect` in `summary.json`.
 
 use serde::{Deserialize, Serialize};
 
@@ -122,19 +122,6 @@ fn beyond(value: f64, above: f64, below: f64) -> f64 {
     } else {
         value * 0.0
     }
-}
-
-/// One line of `verify.json`: an expectation with the case it belongs to.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Verified {
-    /// Name of the case.
-    pub case: String,
-    /// What was expected, and what came out.
-    #[serde(flatten)]
-    pub expectation: Expectation,
-    /// Time on the clock [s].
-    #[serde(with = "or_null")]
-    pub seconds: f64,
 }
 
 #[cfg(test)]

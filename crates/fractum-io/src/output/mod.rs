@@ -14,6 +14,7 @@ pub mod picture;
 pub mod plot;
 pub mod report;
 pub mod summary;
+pub mod verified;
 pub mod vtk;
 
 use crate::checkpoint::CheckpointError;

@@ -1,4 +1,4 @@
-//! `summary.json` and `verify.json`: the results that scripts read. The names of the keys are a contract.
+//! `summary.json`: the results that scripts read. The names of the keys are a contract.
 //!
 //! Keys come in the order of the structs, maps in the order of their names, so that equal results are equal files. JSON
 //! knows no NaN or infinity: such a number is written as `null`, and read back as NaN.
@@ -14,7 +14,7 @@ use crate::atomic;
 use crate::error::{ReadError, WriteError};
 use crate::number::or_null;
 use crate::output::attenuation::Attenuation;
-use crate::output::expectation::{Expectation, Verified};
+use crate::output::expectation::Expectation;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -240,20 +240,12 @@ impl Summary {
     }
 }
 
-/// Writes `verify.json` at `path`.
-///
-/// # Errors
-/// [`WriteError`].
-pub fn write_verify(path: &Path, lines: &[Verified]) -> Result<(), WriteError> {
-    atomic::write(path, json(lines).as_bytes())
-}
-
 /// A hash as it stands in the summary: 32 hexadecimal digits.
 pub fn hash_text(hash: u128) -> String {
     format!("{hash:032x}")
 }
 
-fn json<T: Serialize + ?Sized>(value: &T) -> String {
+pub(super) fn json<T: Serialize + ?Sized>(value: &T) -> String {
     // Cannot fail: the keys are strings and nothing but memory is written to.
     let mut text = serde_json::to_string_pretty(value).unwrap_or_default();
     text.push('\n');
@@ -372,32 +364,5 @@ mod tests {
         let text = example().to_json();
         fs::write(&path, &text[..text.len() / 2]).unwrap();
         assert!(matches!(Summary::read(&path).unwrap_err(), ReadError::Malformed { line, .. } if line > 10));
-    }
-
-    #[test]
-    fn verify_lines_have_the_names_of_the_contract() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("verify.json");
-        let bound = Bound::Near { value: 1.0, tolerance: 0.1, relative: Some(0.1) };
-        let expectation = Expectation::hold("stress", "Pa", 1.0, bound, "exact");
-        let line = Verified { case: "patch".into(), expectation, seconds: 2.0 };
-        write_verify(&path, &[line]).unwrap();
-        let lines: serde_json::Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
-        let keys: Vec<&String> = lines[0].as_object().unwrap().keys().collect();
-        let mut expected = [
-            "case",
-            "quantity",
-            "unit",
-            "value",
-            "reference",
-            "comparison",
-            "error",
-            "tolerance",
-            "pass",
-            "seconds",
-            "source",
-        ];
-        expected.sort_unstable();
-        assert_eq!(keys, expected);
     }
 }

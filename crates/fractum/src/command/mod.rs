@@ -66,7 +66,7 @@ enum Command {
         /// Folder with the cases.
         #[arg(long, default_value = "cases")]
         cases: PathBuf,
-        /// Folder for results and verify.json.
+        /// Folder for results, verify.json and verify.md.
         #[arg(short, long, default_value = "results/verify")]
         output: PathBuf,
         /// Threads per case; all cores by default.

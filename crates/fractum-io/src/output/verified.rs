@@ -1,0 +1,117 @@
+//! The gallery against its references: `verify.json` for scripts, `verify.md` for people.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::atomic;
+use crate::error::WriteError;
+use crate::number::{or_null, quantity};
+use crate::output::expectation::Expectation;
+use crate::output::summary::json;
+
+/// One line of `verify.json`: an expectation with the case it belongs to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Verified {
+    /// Name of the case.
+    pub case: String,
+    /// What was expected, and what came out.
+    #[serde(flatten)]
+    pub expectation: Expectation,
+    /// Time on the clock [s].
+    #[serde(with = "or_null")]
+    pub seconds: f64,
+}
+
+impl Verified {
+    /// Folder of its case.
+    fn folder(&self) -> &str {
+        self.case.split_once('/').map_or(self.case.as_str(), |(folder, _)| folder)
+    }
+}
+
+/// Writes `verify.json` and `verify.md` into a folder.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn write(folder: &Path, lines: &[Verified]) -> Result<(), WriteError> {
+    atomic::write(&folder.join("verify.json"), json(lines).as_bytes())?;
+    atomic::write(&folder.join("verify.md"), table(lines).as_bytes())
+}
+
+/// Folder by folder how many references are met, then those that are missed. Lines of a case and cases of a folder stand together.
+fn table(lines: &[Verified]) -> String {
+    let met = lines.iter().filter(|line| line.expectation.pass).count();
+    let mut text = format!("{met} of {} references are met.\n\n", lines.len());
+    // Writing into a string has no way to fail.
+    let _ = writeln!(text, "| folder | cases | references | met | seconds |\n|---|---|---|---|---|");
+    for folder in lines.chunk_by(|a, b| a.folder() == b.folder()) {
+        let cases: Vec<&[Verified]> = folder.chunk_by(|a, b| a.case == b.case).collect();
+        let seconds: f64 = cases.iter().map(|case| case[0].seconds).sum();
+        let met = folder.iter().filter(|line| line.expectation.pass).count();
+        let (name, count) = (folder[0].folder(), folder.len());
+        let _ = writeln!(text, "| {name} | {} | {count} | {met} | {seconds:.1} |", cases.len());
+    }
+    if met < lines.len() {
+        text.push_str("\n| missed | quantity | value | expected | off by |\n|---|---|---|---|---|\n");
+    }
+    for Verified { case, expectation: found, .. } in lines.iter().filter(|line| !line.expectation.pass) {
+        let value = quantity(found.value, &found.unit);
+        let _ = writeln!(text, "| {case} | {} | {value} | {} | {} |", found.quantity, found.required(), found.off());
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::case::model::Bound;
+
+    fn line(case: &str, value: f64) -> Verified {
+        let bound = Bound::Near { value: 1.0, tolerance: 0.1, relative: Some(0.1) };
+        Verified {
+            case: case.into(),
+            expectation: Expectation::hold("peak", "Pa", value, bound, "exact"),
+            seconds: 2.0,
+        }
+    }
+
+    #[test]
+    fn the_table_counts_by_folder_and_lists_what_is_missed() {
+        let lines = [line("bar/a", 1.0), line("bar/a", 1.2), line("bar/b", 1.0), line("hole/c", 1.0)];
+        let table = table(&lines);
+        assert!(table.starts_with("3 of 4 references are met.\n"), "{table}");
+        assert!(table.contains("| bar | 2 | 3 | 2 | 4.0 |\n| hole | 1 | 1 | 1 | 2.0 |\n"), "{table}");
+        assert!(table.ends_with("| bar/a | peak | 1.2 Pa | 1 Pa ± 10 % | 20 % |\n"), "{table}");
+    }
+
+    #[test]
+    fn verify_lines_have_the_names_of_the_contract() {
+        let folder = tempfile::tempdir().unwrap();
+        let bound = Bound::Near { value: 1.0, tolerance: 0.1, relative: Some(0.1) };
+        let expectation = Expectation::hold("stress", "Pa", 1.0, bound, "exact");
+        let line = Verified { case: "patch".into(), expectation, seconds: 2.0 };
+        write(folder.path(), &[line]).unwrap();
+        let path = folder.path().join("verify.json");
+        let lines: serde_json::Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+        let keys: Vec<&String> = lines[0].as_object().unwrap().keys().collect();
+        let mut expected = [
+            "case",
+            "quantity",
+            "unit",
+            "value",
+            "reference",
+            "comparison",
+            "error",
+            "tolerance",
+            "pass",
+            "seconds",
+            "source",
+        ];
+        expected.sort_unstable();
+        assert_eq!(keys, expected);
+    }
+}
