@@ -66,7 +66,7 @@ pub enum Region {
     Edges(Vec<bool>),
 }
 
-/// Damage regularised by a cohesive phase field (smoothed formulation only).
+/// Damage regularised by a cohesive phase field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Regularisation {
     /// Length b [m]: a crack is a band of width π b; none is twice the mean size of the elements where damage may occur.

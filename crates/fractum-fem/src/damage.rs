@@ -49,7 +49,7 @@ pub(crate) struct Softens {
     unilateral: bool,
     rate_time: f64,
     /// Damage comes from a phase field; histories only keep what it is driven by.
-    regularised: bool,
+    pub(crate) regularised: bool,
 }
 
 impl Softens {

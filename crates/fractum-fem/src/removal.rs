@@ -134,6 +134,9 @@ impl Solid {
                 let (block, cell) = model.location[element as usize];
                 blocks[block as usize].cells.volume[cell as usize] = 0.0;
             }
+            if model.phase.is_some() {
+                self.refresh_phase(body, &touched_edges(&self.bodies[body], elements));
+            }
             return;
         }
         let geometry = Geometry { body: &model.body, nodes: reference };
@@ -209,7 +212,7 @@ impl Block {
 
 fn touched_edges(model: &BodyModel, elements: &[u32]) -> Vec<u32> {
     let count = model.body.shape.edge_count();
-    let of = &model.edges.as_ref().expect("a smoothed body has edges").of_element;
+    let of = &model.edges.as_ref().expect("a smoothed body and one with damage have edges").of_element;
     let mut edges: Vec<u32> = elements.iter().flat_map(|&e| &of[e as usize][..count]).copied().collect();
     edges.sort_unstable();
     edges.dedup();

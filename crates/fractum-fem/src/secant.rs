@@ -232,10 +232,14 @@ impl Solid {
                 next(field.state.len(), trial);
             }
         }
+        self.trial_phases(q, &mut trial.cells, &mut trial.phases);
         let mut damage = Vec::new();
         for (body, model) in self.bodies.iter().enumerate() {
             let (Some(standard), Some(edges)) = (&model.standard, &model.edges) else { continue };
             next(standard.field.state.len(), &mut damage);
+            if let Some(field) = &model.phase {
+                field.raise(&trial.phases[body], &mut damage);
+            }
             for (block, trial) in self.blocks.iter().zip(&mut trial.cells).filter(|(b, _)| b.body == body) {
                 let of = |(cell, &e): (usize, &u32)| {
                     let of_element = &edges.of_element[e as usize];
@@ -244,7 +248,6 @@ impl Solid {
                 *trial = block.items.iter().enumerate().map(of).collect();
             }
         }
-        self.trial_phases(q, &mut trial.cells, &mut trial.phases);
     }
 
     /// Lets every edge see the equivalent stress `q`, as the solid goes straight from the displacements `before` to

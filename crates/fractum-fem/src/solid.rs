@@ -121,8 +121,9 @@ impl Solid {
     /// - `dt`: time since the last call [s] (for rate-dependent laws)
     /// - `measure`: whether to sum the elastic energy, see [`Solid::elastic_energy`]
     pub fn update_internal_forces(&mut self, dt: f64, measure: bool) {
-        self.update_standard_damage(dt);
+        self.load_standard_edges(dt);
         self.update_phase_fields(dt);
+        self.damage_standard_elements();
         let Solid { displacement, velocity, blocks, bodies, .. } = self;
         blocks
             .par_iter_mut()
@@ -142,15 +143,15 @@ impl Solid {
             .for_each(|(node, f)| *f = slots.gather(node, |block| blocks[block].forces()));
     }
 
-    /// First passes of bodies with damage in the standard formulation: element stress, edge damage, element damage.
-    fn update_standard_damage(&mut self, dt: f64) {
+    /// First passes of bodies with damage in the standard formulation: element stress, edge histories.
+    fn load_standard_edges(&mut self, dt: f64) {
         if self.bodies.iter().all(|b| b.standard.is_none()) {
             return;
         }
         let Solid { displacement, blocks, bodies, .. } = self;
         blocks.par_iter_mut().for_each(|block| block.effective_stress(&bodies[block.body], displacement));
-        for (index, model) in bodies.iter_mut().enumerate() {
-            let BodyModel { standard: Some(standard), alive, location, edges, .. } = model else { continue };
+        for model in bodies {
+            let BodyModel { standard: Some(standard), alive, location, .. } = model else { continue };
             standard.update_edges(dt, |element| {
                 let (block, cell) = location[element as usize];
                 match &blocks[block as usize].law {
@@ -158,8 +159,14 @@ impl Solid {
                     _ => None,
                 }
             });
-            let edges = edges.as_ref().expect("a body with damage has edges");
-            let standard = &*standard;
+        }
+    }
+
+    /// Gives the elements of the standard formulation the damage of their edges.
+    fn damage_standard_elements(&mut self) {
+        let Solid { blocks, bodies, .. } = self;
+        for (index, model) in bodies.iter().enumerate() {
+            let BodyModel { standard: Some(standard), edges: Some(edges), .. } = model else { continue };
             blocks.par_iter_mut().filter(|b| b.body == index).for_each(|block| {
                 let damage = |edge: u32| standard.field.state[edge as usize].damage;
                 block.take_element_damage(|element| {

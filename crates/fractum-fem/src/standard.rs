@@ -44,9 +44,11 @@ impl StandardDamage {
     /// Edge histories from the stresses of the elements (`stress_of`, none for a removed one).
     pub(crate) fn update_edges(&mut self, dt: f64, stress_of: impl Fn(u32) -> Option<Sym3> + Sync) {
         let StandardDamage {
-            field: EdgeField { softens, state, strength, length, fresh, .. }, elements_of_edge, ..
+            field: EdgeField { softens, state, strength, length, fresh, woken, .. },
+            elements_of_edge,
+            ..
         } = self;
-        let broke = state
+        let (broke, loaded) = state
             .par_iter_mut()
             .enumerate()
             .with_min_len(1024)
@@ -57,26 +59,32 @@ impl StandardDamage {
                     count += 1;
                 }
                 if count == 0 {
-                    return false;
+                    return (false, false);
                 }
                 let mean = sum * (1.0 / f64::from(count));
                 if softens.criterion.surely_below(mean, edge.kappa) {
-                    return false;
+                    return (false, false);
                 }
                 let was_broken = edge.broken;
                 let q = softens.criterion.equivalent_stress(mean);
                 softens.load(edge, q, strength[index], length[index], dt);
-                edge.broken && !was_broken
+                (edge.broken && !was_broken, true)
             })
-            .reduce(|| false, |a, b| a || b);
+            .reduce(|| (false, false), |a, b| (a.0 || b.0, a.1 || b.1));
         *fresh |= broke;
+        *woken |= loaded;
     }
 
-    /// Damage of an element with these edges: the largest mean over the ways a crack cuts it.
+    /// Damage of an element with these edges: the largest mean over the ways a crack cuts it; under a phase field, whose band is
+    /// wider than the element, the mean of all.
     ///
     /// - `damage`: of an edge of the body
     pub(crate) fn element_damage(&self, edges: &[u32], damage: impl Fn(u32) -> f64) -> f64 {
         let of = |local: usize| damage(edges[local]);
+        if self.field.softens.regularised {
+            let count = self.shape.edge_count();
+            return (0..count).map(of).sum::<f64>() / count as f64;
+        }
         cut_modes(self.shape)
             .iter()
             .map(|mode| mode.iter().map(|&local| of(local)).sum::<f64>() / mode.len() as f64)

