@@ -17,6 +17,7 @@ import gmsh
 
 import beams
 import boxes
+import extrude
 import quality
 import tunnel
 
@@ -138,6 +139,15 @@ NOTCHED = {
 }
 
 
+# name: mesh of triangles in this folder, and further arguments of extrude.extrude
+EXTRUDED = {
+    "notched-beam/tilt-10": (
+        "notched-beam-plane/tilt-10.msh",
+        {"depth": 0.025, "layers": 2, "body": "beam", "lines": ["left", "right", "load", "mouth_left", "mouth_right"]},
+    ),
+}
+
+
 # name: firing sequence that belongs to the mesh
 TUNNEL = {"blast-plane/tunnel": "../cases/tunnel-front/sequence.csv"}
 
@@ -149,7 +159,7 @@ def main():
     parser.add_argument("--table", action="store_true")
     arguments = parser.parse_args()
 
-    known = [*LARGE] if arguments.large else [*UNSTRUCTURED, *STRUCTURED, *NOTCHED, *TUNNEL]
+    known = [*LARGE] if arguments.large else [*UNSTRUCTURED, *STRUCTURED, *NOTCHED, *EXTRUDED, *TUNNEL]
     chosen = [name for name in known if not arguments.name or name.startswith(tuple(arguments.name))]
     if not chosen:
         sys.exit(f"no mesh begins with {' or '.join(arguments.name)}; there are {', '.join(known)}")
@@ -175,6 +185,9 @@ def make(name, path):
         with_gmsh({}, lambda: boxes.box(path, **STRUCTURED[name]))
     elif name in NOTCHED:
         with_gmsh({}, lambda: beams.notched_beam(path, **NOTCHED[name]))
+    elif name in EXTRUDED:
+        plane, arguments = EXTRUDED[name]
+        with_gmsh({}, lambda: extrude.extrude(path, HERE / plane, **arguments))
     elif name in TUNNEL:
         with_gmsh({}, lambda: tunnel.tunnel(path, HERE / TUNNEL[name]))
     else:
