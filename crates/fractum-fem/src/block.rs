@@ -4,9 +4,7 @@
 //! displacements and forces stay in the cache of one core. Forces are first summed inside a block, in the order of its
 //! cells, and then per node over the blocks, in the order of the blocks: the same bits for any number of threads.
 
-use fractum_math::{Ragged, Vec3};
-
-use crate::lane::Lane;
+use fractum_math::{Lane, Ragged, Vec3};
 
 /// Geometry of the cells of a block.
 ///
@@ -137,7 +135,7 @@ impl NodeSlots {
     pub(crate) fn gather<'a>(&self, node: usize, force: impl Fn(usize) -> &'a [Lane]) -> Vec3 {
         let mut sum = Lane::ZERO;
         for &slot in self.slots.row(node) {
-            sum = sum.add(force((slot >> 16) as usize)[(slot & 0xffff) as usize]);
+            sum = sum + force((slot >> 16) as usize)[(slot & 0xffff) as usize];
         }
         sum.to_vec()
     }

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use fractum_math::{Sym3, Vec3};
+use fractum_math::{Sym3, Vec3, negative_parts};
 use serde::{Deserialize, Serialize};
 
 use crate::block::Cells;
 use crate::body::{DamageZone, Kinematics};
 use crate::hooke::Hooke;
-use crate::kernel::{self, CellLaw};
+use crate::kernel::{self, CellLaw, FOUR};
 use crate::material::{Criterion, DamageLaw, Softening};
 use crate::threshold::Threshold;
 
@@ -69,6 +69,11 @@ impl Softens {
         }
     }
 
+    /// Whether cracks close, so that damage acts on a part of the stress only.
+    pub(crate) fn is_unilateral(&self) -> bool {
+        self.unilateral
+    }
+
     /// Effective stress that damage acts on [Pa].
     pub(crate) fn opening_stress(&self, strain: Sym3) -> Sym3 {
         self.hooke.stress(strain) - self.closed_stress(strain)
@@ -84,9 +89,17 @@ impl Softens {
     }
 
     /// Part of the effective stress that damage leaves alone.
-    #[inline]
     fn closed_stress(&self, strain: Sym3) -> Sym3 {
-        if self.unilateral { compressive_stress(&self.hooke, strain) } else { Sym3::ZERO }
+        if self.unilateral { compressive_stress(&self.hooke, strain, strain.negative_part()) } else { Sym3::ZERO }
+    }
+
+    /// The same of four edges.
+    fn closed_stresses(&self, strains: &[Sym3; FOUR]) -> [Sym3; FOUR] {
+        if !self.unilateral {
+            return [Sym3::ZERO; FOUR];
+        }
+        let negative = negative_parts(strains);
+        std::array::from_fn(|k| compressive_stress(&self.hooke, strains[k], negative[k]))
     }
 
     /// Part of the strength that is left by the softening curve.
@@ -231,14 +244,14 @@ impl Advance<'_> {
     }
 }
 
-/// The edges of one block in one step, as the law of their cells.
-pub(crate) struct EdgesInStep<'a> {
+/// The edges of one block in one step, as the law of their cells; four at a time where cracks close.
+pub(crate) struct EdgesInStep<'a, const BY_FOURS: bool> {
     pub(crate) edges: &'a mut EdgeCells,
     pub(crate) cells: &'a Cells,
     pub(crate) step: Advance<'a>,
 }
 
-impl EdgesInStep<'_> {
+impl<const BY_FOURS: bool> EdgesInStep<'_, BY_FOURS> {
     /// Takes over the strain that an edge has all at once because elements around it left.
     ///
     /// Nothing is booked as damage: the energy belongs to the removal.
@@ -250,7 +263,7 @@ impl EdgesInStep<'_> {
             return;
         }
         let booked = (self.edges.dissipated, self.edges.energy);
-        self.loaded_stress(cell, strain, stress, self.cells.volume[cell]);
+        self.loaded_stress(cell, strain, stress);
         (self.edges.dissipated, self.edges.energy) = booked;
         // The next forces belong to the same step.
         self.edges.field.state[cell].strain = self.step.strain_before(self.cells, cell);
@@ -275,16 +288,60 @@ impl EdgesInStep<'_> {
         }
     }
 
-    /// The path of an edge that is damaged or may become so.
+    /// Stress times volume of an edge that is damaged or may become so.
     #[inline(never)]
-    fn loaded_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3, volume: f64) -> Sym3 {
-        let EdgeCells { field, dissipated, energy } = &mut *self.edges;
-        let closed = field.softens.closed_stress(strain);
-        let opening = stress - closed;
-        let EdgeDamage { damage: damage_before, strain: kept, .. } = field.state[cell];
+    fn loaded_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 {
+        let EdgeField { softens, state, .. } = &self.edges.field;
         // Below its history an edge only unloads: no eigenvalues.
-        let below = field.softens.criterion.surely_below(stress, field.state[cell].kappa);
-        let q = if below { 0.0 } else { field.softens.criterion.equivalent_stress(stress) };
+        let below = softens.criterion.surely_below(stress, state[cell].kappa);
+        let q = if below { 0.0 } else { softens.criterion.equivalent_stress(stress) };
+        let closed = softens.closed_stress(strain);
+        self.advance(cell, strain, [stress, closed], q)
+    }
+
+    /// The same of four edges.
+    ///
+    /// - `below`: which are intact, or have no elements; `stresses`: effective ones
+    #[inline(never)]
+    fn loaded_stresses(
+        &mut self,
+        first: usize,
+        below: [bool; FOUR],
+        strains: &[Sym3; FOUR],
+        stresses: [Sym3; FOUR],
+    ) -> [Sym3; FOUR] {
+        let EdgeField { softens, state, .. } = &self.edges.field;
+        let closed = softens.closed_stresses(strains);
+        let unloads: [bool; FOUR] =
+            std::array::from_fn(|k| below[k] || softens.criterion.surely_below(stresses[k], state[first + k].kappa));
+        let all_unload = unloads == [true; FOUR];
+        let q = if all_unload { [0.0; FOUR] } else { softens.criterion.equivalent_stresses(&stresses) };
+        std::array::from_fn(|k| {
+            if below[k] {
+                return self.intact_stress(first + k, strains[k], stresses[k]);
+            }
+            self.advance(first + k, strains[k], [stresses[k], closed[k]], if unloads[k] { 0.0 } else { q[k] })
+        })
+    }
+
+    /// Stress times volume of an edge without damage.
+    #[inline(always)]
+    fn intact_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 {
+        let volume = self.cells.volume[cell];
+        if let Some(energy) = &mut self.edges.energy {
+            *energy += 0.5 * stress.dot(strain) * volume;
+        }
+        stress * volume
+    }
+
+    /// Lets an edge see its equivalent stress `q`; returns its stress times volume.
+    ///
+    /// - `closed`: part of the effective `stress` that damage leaves alone
+    #[inline]
+    fn advance(&mut self, cell: usize, strain: Sym3, [stress, closed]: [Sym3; 2], q: f64) -> Sym3 {
+        let EdgeCells { field, dissipated, energy } = &mut *self.edges;
+        let (opening, volume) = (stress - closed, self.cells.volume[cell]);
+        let EdgeDamage { damage: damage_before, strain: kept, .. } = field.state[cell];
         let growth = field.load(cell, q, self.step.dt);
         let edge = &mut field.state[cell];
         if growth > 0.0 {
@@ -301,18 +358,36 @@ impl EdgesInStep<'_> {
     }
 }
 
-impl CellLaw for EdgesInStep<'_> {
+impl<const BY_FOURS: bool> CellLaw for EdgesInStep<'_, BY_FOURS> {
+    const BY_FOURS: bool = BY_FOURS;
+
     #[inline(always)]
-    fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
-        let EdgeCells { field, energy, .. } = &mut *self.edges;
-        let stress = field.softens.hooke.stress(strain);
-        if field.softens.criterion.surely_below(stress, field.threshold[cell]) {
-            if let Some(energy) = energy {
-                *energy += 0.5 * stress.dot(strain) * volume;
-            }
-            return stress * volume;
+    fn scaled_stress(&mut self, cell: usize, strain: Sym3, _volume: f64) -> Sym3 {
+        let softens = &self.edges.field.softens;
+        let stress = softens.hooke.stress(strain);
+        if softens.criterion.surely_below(stress, self.edges.field.threshold[cell]) {
+            return self.intact_stress(cell, strain, stress);
         }
-        self.loaded_stress(cell, strain, stress, volume)
+        self.loaded_stress(cell, strain, stress)
+    }
+
+    #[inline(always)]
+    fn scaled_stresses(&mut self, first: usize, strains: &[Sym3; FOUR], volumes: &[f64; FOUR]) -> [Sym3; FOUR] {
+        let EdgeField { softens, threshold, .. } = &self.edges.field;
+        let threshold = &threshold[first..first + FOUR];
+        let (mut stresses, mut below, mut all_below) = ([Sym3::ZERO; FOUR], [true; FOUR], true);
+        for k in 0..FOUR {
+            stresses[k] = softens.hooke.stress(strains[k]);
+            below[k] = volumes[k] == 0.0 || softens.criterion.surely_below(stresses[k], threshold[k]);
+            all_below &= below[k];
+        }
+        if !all_below {
+            return self.loaded_stresses(first, below, strains, stresses);
+        }
+        for k in 0..FOUR {
+            stresses[k] = self.intact_stress(first + k, strains[k], stresses[k]);
+        }
+        stresses
     }
 
     #[inline(always)]
@@ -322,8 +397,10 @@ impl CellLaw for EdgesInStep<'_> {
 }
 
 /// Stress of the compressive part of the strain, λ⟨tr ε⟩₋ + 2μ ε₋ (Miehe's spectral split).
-fn compressive_stress(hooke: &Hooke, strain: Sym3) -> Sym3 {
-    let stress = strain.negative_part() * (2.0 * hooke.mu) + Sym3::isotropic(hooke.lambda * strain.trace().min(0.0));
+///
+/// - `negative`: ε₋
+fn compressive_stress(hooke: &Hooke, strain: Sym3, negative: Sym3) -> Sym3 {
+    let stress = negative * (2.0 * hooke.mu) + Sym3::isotropic(hooke.lambda * strain.trace().min(0.0));
     Sym3([stress.0[0], stress.0[1], hooke.zz * stress.0[2], stress.0[3], stress.0[4], stress.0[5]])
 }
 

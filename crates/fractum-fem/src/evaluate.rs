@@ -1,13 +1,12 @@
 //! Blocks of cells with the law they follow.
 
-use fractum_math::Vec3;
+use fractum_math::{Lane, Vec3};
 
 use crate::block::{Cells, Scratch};
 use crate::body::Kinematics;
 use crate::body_model::BodyModel;
 use crate::damage::{Advance, EdgeCells, EdgeField, EdgesInStep};
 use crate::kernel::{self, ElasticCells, Viscous};
-use crate::lane::Lane;
 use crate::standard::StandardCells;
 use crate::viscosity::ViscousCells;
 
@@ -63,7 +62,11 @@ impl Block {
             BlockLaw::Edges(law) => {
                 law.energy = start;
                 let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
-                run(model, cells, scratch, &mut EdgesInStep { edges: law, cells, step }, viscous)
+                if law.field.softens.is_unilateral() {
+                    run(model, cells, scratch, &mut EdgesInStep::<true> { edges: law, cells, step }, viscous)
+                } else {
+                    run(model, cells, scratch, &mut EdgesInStep::<false> { edges: law, cells, step }, viscous)
+                }
             }
             BlockLaw::Standard(law) => {
                 law.energy = start;

@@ -1,21 +1,34 @@
 //! The force kernel: strain of each cell, stress by its law, forces on its nodes.
 
-use fractum_math::{Mat3, Sym3, widest};
+use fractum_math::{Lane, Mat3, Sym3, widest};
 
 use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
 use crate::body::Kinematics;
 use crate::hooke::Hooke;
-use crate::lane::Lane;
 use crate::polar::{corotational_strain, product, strain_and_turn};
 use crate::viscosity::{BodyViscosity, ViscousCells};
 
 /// Stress of a cell for its strain; owns the history of the cells of a block.
 pub(crate) trait CellLaw {
+    /// Whether the law is faster with four cells at a time.
+    const BY_FOURS: bool = false;
     /// Stress [Pa] times the volume of cell `cell` [m³].
     fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3;
+    /// The same of the four cells from `first` on.
+    #[inline(always)]
+    fn scaled_stresses(&mut self, first: usize, strains: &[Sym3; FOUR], volumes: &[f64; FOUR]) -> [Sym3; FOUR] {
+        let mut stresses = [Sym3::ZERO; FOUR];
+        for k in 0..FOUR {
+            stresses[k] = self.scaled_stress(first + k, strains[k], volumes[k]);
+        }
+        stresses
+    }
     /// Part of the stiffness that is left, 1 - d.
     fn integrity(&self, cell: usize) -> f64;
 }
+
+/// Cells that a law gets at a time: as many as a [`Lane`] has values.
+pub(crate) const FOUR: usize = 4;
 
 /// An elastic block: sums its energy when asked to.
 pub(crate) struct ElasticCells {
@@ -75,7 +88,7 @@ fn gradient_columns(values: &[Lane; BLOCK_NODES], local: &[u16], gradients: &[[f
     let base = values[slot(local[0])];
     let (mut x, mut y, mut z) = (Lane::ZERO, Lane::ZERO, Lane::ZERO);
     for (&node, g) in local[1..].iter().zip(gradients) {
-        let d = values[slot(node)].sub(base);
+        let d = values[slot(node)] - base;
         x = x.plus(d, g[0]);
         y = y.plus(d, g[1]);
         z = z.plus(d, g[2]);
@@ -88,11 +101,11 @@ fn add_cell_forces(force: &mut [Lane; BLOCK_NODES], local: &[u16], gradients: &[
     let mut sum = Lane::ZERO;
     for (&node, g) in local[1..].iter().zip(gradients) {
         let f = Lane::ZERO.plus(stress[0], g[0]).plus(stress[1], g[1]).plus(stress[2], g[2]);
-        force[slot(node)] = force[slot(node)].sub(f);
-        sum = sum.add(f);
+        force[slot(node)] = force[slot(node)] - f;
+        sum = sum + f;
     }
     let base = slot(local[0]);
-    force[base] = force[base].add(sum);
+    force[base] = force[base] + sum;
 }
 
 #[inline(always)]
@@ -151,7 +164,18 @@ struct Sweep<'a, const COROTATIONAL: bool, L> {
 impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
     /// A run of cells of `N` gradients each.
     #[inline(always)]
-    fn run<const N: usize>(&mut self, cells: &Cells, Run { begin, end, .. }: Run) {
+    fn run<const N: usize>(&mut self, cells: &Cells, run: Run) {
+        let Run { mut begin, end, .. } = run;
+        if L::BY_FOURS {
+            let start = cells.starts[begin] as usize;
+            let gradients = cells.gradients[start..].chunks_exact(FOUR * N);
+            let local = cells.local[start + begin..].chunks_exact(FOUR * (N + 1));
+            let volumes = cells.volume[begin..end].as_chunks::<FOUR>().0;
+            for ((gradients, local), volumes) in gradients.zip(local).zip(volumes) {
+                self.four_cells::<N>(begin, local, gradients, volumes);
+                begin += FOUR;
+            }
+        }
         let start = cells.starts[begin] as usize;
         let gradients = cells.gradients[start..].chunks_exact(N);
         let local = cells.local[start + begin..].chunks_exact(N + 1);
@@ -172,21 +196,68 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
 
     #[inline(always)]
     fn cell(&mut self, cell: usize, local: &[u16], gradients: &[[f64; 3]], volume: f64) {
-        let [x, y, z] = gradient_columns(&self.scratch.displacement, local, gradients);
-        let columns = if COROTATIONAL {
-            let h = columns_to_matrix(x, y, z);
-            if is_inverted(&h) && self.inverted.is_none() && volume > 0.0 && self.law.integrity(cell) > CARRIES {
-                self.inverted = Some(cell);
-            }
-            let (strain, m, n) = strain_and_turn(&h);
-            // R σ = M (1 + n) σ: laws are isotropic, so that stress is coaxial with strain.
-            let stress = self.law.scaled_stress(cell, strain, volume);
-            turned_columns(&m, stress + product(n, stress))
-        } else {
-            symmetric_columns(self.law.scaled_stress(cell, small_strain(x, y, z), volume))
-        };
-        add_cell_forces(&mut self.scratch.force, local, gradients, columns);
+        // All elements of the cell have been removed.
+        if volume == 0.0 {
+            return;
+        }
+        let (strain, turn) = self.strain(cell, local, gradients, volume);
+        let stress = self.law.scaled_stress(cell, strain, volume);
+        add_cell_forces(&mut self.scratch.force, local, gradients, Self::stress_columns(stress, &turn));
     }
+
+    /// Four cells of `N` gradients each.
+    #[inline(always)]
+    fn four_cells<const N: usize>(
+        &mut self,
+        first: usize,
+        local: &[u16],
+        gradients: &[[f64; 3]],
+        volumes: &[f64; FOUR],
+    ) {
+        if *volumes == [0.0; FOUR] {
+            return;
+        }
+        // Loops instead of closures: those might be compiled apart, for any processor.
+        let (mut strains, mut turns) = ([Sym3::ZERO; FOUR], [Turn::default(); FOUR]);
+        for k in 0..FOUR {
+            let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
+            (strains[k], turns[k]) = self.strain(first + k, local, gradients, volumes[k]);
+        }
+        let stresses = self.law.scaled_stresses(first, &strains, volumes);
+        for k in 0..FOUR {
+            let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
+            let columns = Self::stress_columns(stresses[k], &turns[k]);
+            add_cell_forces(&mut self.scratch.force, local, gradients, columns);
+        }
+    }
+
+    /// Strain of a cell, and how it turns.
+    #[inline(always)]
+    fn strain(&mut self, cell: usize, local: &[u16], gradients: &[[f64; 3]], volume: f64) -> (Sym3, Turn) {
+        let [x, y, z] = gradient_columns(&self.scratch.displacement, local, gradients);
+        if !COROTATIONAL {
+            return (small_strain(x, y, z), Turn::default());
+        }
+        let h = columns_to_matrix(x, y, z);
+        if is_inverted(&h) && self.inverted.is_none() && volume > 0.0 && self.law.integrity(cell) > CARRIES {
+            self.inverted = Some(cell);
+        }
+        let (strain, m, n) = strain_and_turn(&h);
+        (strain, Turn { m, n })
+    }
+
+    /// Stress on the nodes by columns: R σ = M (1 + n) σ, as laws are isotropic, so that stress is coaxial with strain.
+    #[inline(always)]
+    fn stress_columns(stress: Sym3, turn: &Turn) -> [Lane; 3] {
+        if COROTATIONAL { turned_columns(&turn.m, stress + product(turn.n, stress)) } else { symmetric_columns(stress) }
+    }
+}
+
+/// M and n of a cell that turns, see [`strain_and_turn`].
+#[derive(Clone, Copy, Default)]
+struct Turn {
+    m: Mat3,
+    n: Sym3,
 }
 
 widest! {

@@ -39,7 +39,6 @@ mod evaluate;
 mod hooke;
 mod inverted;
 mod kernel;
-mod lane;
 pub mod material;
 mod phase;
 mod phase_damage;

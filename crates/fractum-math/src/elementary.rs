@@ -5,6 +5,8 @@
 //! one unit in the last place. `sqrt`, `abs`, `floor`, `mul_add` and the other exactly rounded operations need no entry
 //! here, nor does `powi`, which is a fixed sequence of products.
 
+use crate::Lane;
+
 /// Arc cosine [rad], for −1 ≤ x ≤ 1; NaN outside.
 pub fn acos(x: f64) -> f64 {
     libm::acos(x)
@@ -35,24 +37,42 @@ pub fn cos(x: f64) -> f64 {
     libm::cos(x)
 }
 
+/// Chebyshev series of [`cos_of_third`] in t = √(2 + 2x) − 1, summed as a polynomial: coefficients of t⁴ᵏ to t⁴ᵏ⁺³ in row k.
+const COS_OF_THIRD: [[f64; 4]; 5] = [
+    [0.7660444431189779, 0.24740906632285342, -0.015509188436466538, 0.0024663528150652356],
+    [-0.0005041246916553286, 0.00011642545332376988, -2.8919930996008654e-05, 7.541075528639302e-06],
+    [-2.035896969136149e-06, 5.641644492145283e-07, -1.5946448920768576e-07, 4.5826101529351644e-08],
+    [-1.3482454942697049e-08, 3.982274037822892e-09, -1.0522633347918922e-09, 3.092253983971399e-10],
+    [-1.6368329253261365e-10, 5.1178745156550326e-11, 0.0, 0.0],
+];
+
 /// cos(⅓ arccos x) for −1 ≤ x ≤ 1: the largest root c of 4 c³ − 3 c = x, of which principal values are made.
 ///
-/// It is analytic in √(1 + x) up to √(1 + x) = −√2: the Chebyshev series in t = √(2 + 2x) − 1, summed as a polynomial to t¹⁷,
-/// is exact to 5e-16, at a third of the cost of arc cosine and cosine.
+/// It is analytic in √(1 + x) up to √(1 + x) = −√2: the Chebyshev series to t¹⁷ is exact to 5e-16, at a third of the cost of arc
+/// cosine and cosine.
 pub fn cos_of_third(x: f64) -> f64 {
-    /// Coefficients of t⁴ᵏ to t⁴ᵏ⁺³ in row k.
-    const SERIES: [[f64; 4]; 5] = [
-        [0.7660444431189779, 0.24740906632285342, -0.015509188436466538, 0.0024663528150652356],
-        [-0.0005041246916553286, 0.00011642545332376988, -2.8919930996008654e-05, 7.541075528639302e-06],
-        [-2.035896969136149e-06, 5.641644492145283e-07, -1.5946448920768576e-07, 4.5826101529351644e-08],
-        [-1.3482454942697049e-08, 3.982274037822892e-09, -1.0522633347918922e-09, 3.092253983971399e-10],
-        [-1.6368329253261365e-10, 5.1178745156550326e-11, 0.0, 0.0],
-    ];
     let t = (2.0 + 2.0 * x).sqrt() - 1.0;
     let square = t * t;
     let fourth = square * square;
-    let rows = SERIES.into_iter().rev();
+    let rows = COS_OF_THIRD.into_iter().rev();
     let [a, b, c, d] = rows.fold([0.0; 4], |sum, row| std::array::from_fn(|i| sum[i] * fourth + row[i]));
+    (a + b * t) + (c + d * t) * square
+}
+
+/// [`cos_of_third`] of four values, with the same bits.
+#[inline(always)]
+pub(crate) fn cosines_of_thirds(x: Lane) -> Lane {
+    let two = Lane::splat(2.0);
+    let t = (two + two * x).sqrt() - Lane::splat(1.0);
+    let square = t * t;
+    let fourth = square * square;
+    let mut sum = [Lane::ZERO; 4];
+    for row in COS_OF_THIRD.iter().rev() {
+        for (sum, coefficient) in sum.iter_mut().zip(row) {
+            *sum = *sum * fourth + Lane::splat(*coefficient);
+        }
+    }
+    let [a, b, c, d] = sum;
     (a + b * t) + (c + d * t) * square
 }
 

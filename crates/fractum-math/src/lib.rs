@@ -14,6 +14,8 @@
 mod connected;
 pub mod elementary;
 mod lanczos;
+mod lane;
+mod negative_part;
 mod ragged;
 mod reduce;
 mod rotation;
@@ -23,6 +25,8 @@ mod work;
 
 pub use connected::{connected, numbered_parts};
 pub use lanczos::largest_eigenvalue;
+pub use lane::Lane;
+pub use negative_part::{negative_parts, outer_principal_values};
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};
 pub use rotation::{angle_between, rotation_between, rotation_by, rotation_vector};

@@ -91,38 +91,6 @@ impl Sym3 {
         [mean, radius, (4.0 * self.j3() / (radius * radius * radius)).clamp(-1.0, 1.0)]
     }
 
-    /// The negative part Σ min(λᵢ, 0) nᵢ ⊗ nᵢ.
-    ///
-    /// Only the principal value that stands alone on its side of zero needs its direction. Where that is uncertain, beside a value
-    /// close by, both are close to zero: the error stays about 1e-8 of the norm.
-    pub fn negative_part(self) -> Self {
-        let [first, middle, last] = self.principal_values();
-        if last >= 0.0 {
-            Sym3::ZERO
-        } else if first <= 0.0 {
-            self
-        } else if middle >= 0.0 {
-            self.projector(last) * last
-        } else {
-            self - self.projector(first) * first
-        }
-    }
-
-    /// n ⊗ n of a single principal value: the adjugate of A − λ 1 over its trace.
-    fn projector(self, value: f64) -> Self {
-        let [xx, yy, zz, xy, yz, zx] = (self - Sym3::isotropic(value)).0;
-        let adjugate = Sym3([
-            yy * zz - yz * yz,
-            zz * xx - zx * zx,
-            xx * yy - xy * xy,
-            yz * zx - xy * zz,
-            zx * xy - yz * xx,
-            xy * yz - zx * yy,
-        ]);
-        let trace = adjugate.trace();
-        if trace > 0.0 { adjugate * trace.recip() } else { Sym3::ZERO }
-    }
-
     /// Principal values in descending order with their directions (columns), by cyclic Jacobi rotations.
     pub fn eigen(self) -> ([f64; 3], Mat3) {
         let mut a = self.to_matrix();
@@ -221,21 +189,6 @@ mod tests {
         }
 
         #[test]
-        fn negative_part_agrees_with_jacobi(
-            c in prop::array::uniform6(-1e3f64..1e3), turn in prop::array::uniform3(-3.0f64..3.0),
-            values in prop::array::uniform3(prop::sample::select(vec![-1.0, -1e-3, -1e-9, 0.0, 1e-9, 1e-3, 1.0])),
-        ) {
-            let q = nalgebra::Rotation3::new(Vec3::from(turn)).into_inner();
-            let close = Sym3::symmetric_part(&(q * Mat3::from_diagonal(&Vec3::from(values)) * q.transpose()));
-            for tensor in [Sym3(c), close] {
-                let (values, q) = tensor.eigen();
-                let negative = Mat3::from_diagonal(&Vec3::from(values.map(|value| value.min(0.0))));
-                let off = tensor.negative_part().to_matrix() - q * negative * q.transpose();
-                prop_assert!(off.norm() <= 1e-7 * tensor.to_matrix().norm(), "{:e}", off.norm());
-            }
-        }
-
-        #[test]
         fn first_principal_value_stays_below_its_invariant_bound(c in prop::array::uniform6(-1e3f64..1e3)) {
             let tensor = Sym3(c);
             let bound = tensor.trace() / 3.0 + 2.0 * (tensor.j2() / 3.0).sqrt();
@@ -248,7 +201,5 @@ mod tests {
         assert_eq!(Sym3::ZERO.principal_values(), [0.0; 3]);
         assert_eq!(Sym3::isotropic(-4.0).principal_values(), [-4.0; 3]);
         assert_eq!(Sym3::ZERO.eigen().0, [0.0; 3]);
-        assert_eq!([Sym3::ZERO, Sym3::isotropic(2.0)].map(Sym3::negative_part), [Sym3::ZERO; 2]);
-        assert_eq!(Sym3::isotropic(-2.0).negative_part(), Sym3::isotropic(-2.0));
     }
 }

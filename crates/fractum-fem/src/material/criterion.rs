@@ -1,5 +1,5 @@
-use fractum_math::Sym3;
 use fractum_math::elementary::{asin, cos, sin};
+use fractum_math::{Sym3, outer_principal_values};
 use serde::{Deserialize, Serialize};
 
 /// The equivalent stress of a criterion, scaled so that uniaxial tension σ gives q = σ.
@@ -143,14 +143,31 @@ impl Criterion {
         below(self.bounds[0]) && (self.one_bound || below(self.bounds[1]))
     }
 
+    /// Equivalent stresses of four effective stresses, with the bits of [`Criterion::equivalent_stress`].
+    pub(crate) fn equivalent_stresses(&self, stresses: &[Sym3; 4]) -> [f64; 4] {
+        match self.kind {
+            CriterionKind::Rankine | CriterionKind::MohrCoulomb => {
+                let [first, last] = outer_principal_values(stresses);
+                std::array::from_fn(|k| self.of_outer_values(first[k], last[k]).max(0.0))
+            }
+            _ => stresses.map(|stress| self.equivalent_stress(stress)),
+        }
+    }
+
+    /// Rankine's and Mohr-Coulomb's equivalent stress from the first and the last principal value.
+    fn of_outer_values(&self, first: f64, last: f64) -> f64 {
+        let [n, scale, ..] = self.constants;
+        if self.kind == CriterionKind::Rankine { first } else { first.max((n * first - last) * scale) }
+    }
+
     /// Equivalent stress q ≥ 0 [Pa] of an effective stress.
     pub fn equivalent_stress(&self, stress: Sym3) -> f64 {
         let c = self.constants;
         let q = match self.kind {
             CriterionKind::Rankine => stress.first_principal_value(),
             CriterionKind::MohrCoulomb => {
-                let s = stress.principal_values();
-                s[0].max((c[0] * s[0] - s[2]) * c[1])
+                let [first, _, last] = stress.principal_values();
+                self.of_outer_values(first, last)
             }
             CriterionKind::PureMohrCoulomb => {
                 let s = stress.principal_values();

@@ -328,11 +328,14 @@ impl Debris {
         });
         self.turned = turned;
         let beyond = |handed: &Handed| {
+            let now = &self.turned[self.place_in_turned[handed.particle as usize] as usize];
+            if now.holder.as_ref().is_some_and(|holder| holder.number == handed.element) {
+                return 0.0;
+            }
             let node = self.state.nodes[handed.particle as usize];
             let holder = self.holders.element(solid, handed.element, self.radius[node as usize]);
             let spin = holder.map_or_else(Vec3::zeros, |holder| holder.spin(solid));
-            let own = self.turned[self.place_in_turned[handed.particle as usize] as usize].spin;
-            0.5 * dt * handed.torque.dot(&(spin - own))
+            0.5 * dt * handed.torque.dot(&(spin - now.spin))
         };
         self.state.handed.iter().map(beyond).sum()
     }
