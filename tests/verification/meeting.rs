@@ -98,7 +98,8 @@ fn crash(target: Target, particles: bool) -> Scene {
             name: "beads".into(),
             particles: own,
             pairs: Vec::new(),
-            section: fractum_dem::BeamSection { radius: 1.0, young_modulus: 1.0, poisson_ratio: 0.3 },
+            law: fractum_dem::BeamSection { radius: 1.0, young_modulus: 1.0, poisson_ratio: 0.3 }.into(),
+            shares: Vec::new(),
             density: 2400.0,
             fracture: None,
         };

@@ -1,5 +1,7 @@
 //! Bonded bodies of a case made ready: packed or read, bonded, calibrated.
 
+mod interfaces;
+
 use std::time::Instant;
 
 use fractum_calibrate::strength::{BondKind, strength_factor};
@@ -7,18 +9,20 @@ use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Micro, Sample, pr
 use fractum_dem::{CrackFaces, FractureCriterion};
 use fractum_io::build::PreparedBody;
 use fractum_io::case::model::{
-    BodyKind, BondFailure, BondedBody, BondedShape, Case, Material, PackingSource, ParticleSize,
+    BodyKind, BondFailure, BondLawKind, BondedBody, BondedShape, Case, Material, PackingSource, ParticleSize,
 };
 use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
 use fractum_mesh::{Mesh, topology};
 use fractum_pack::{
-    Certificate, ClosedSurface, Convention, Domain, PackError, PackSize, PackSpec, Packing, pack_certified, read_stl,
+    Arrangement, Certificate, ClosedSurface, Convention, Domain, PackError, PackSize, PackSpec, Packing,
+    pack_certified, read_stl, regular,
 };
 use fractum_scene::BondFracture;
 use serde::Serialize;
 
 use crate::cache::{Cache, key};
 use crate::region::{Region, region};
+pub use interfaces::InterfaceReport;
 
 /// Contacts per particle at which compaction stops.
 const CONTACTS: f64 = 6.2;
@@ -44,8 +48,6 @@ pub struct BondedReport {
     pub name: String,
     /// Where its packing came from.
     pub packing: Origin,
-    /// Where its beams came from.
-    pub beams_from: Origin,
     /// Particles.
     pub particles: usize,
     /// Their mean radius [m].
@@ -60,12 +62,21 @@ pub struct BondedReport {
     pub coordination_interior: f64,
     /// The convention that was asked.
     pub convention: Convention,
-    /// The beams.
-    pub beams: Beams,
+    /// What its bonds are.
+    pub joints: Joints,
     /// Names and sizes of the wall sets.
     pub walls: Vec<(String, usize)>,
     /// When its bonds break, with where the strengths came from.
     pub fracture: Option<(FractureCriterion, Origin)>,
+}
+
+/// What the bonds of a body are.
+#[derive(Clone, Copy, Debug)]
+pub enum Joints {
+    /// Beams, and where they came from.
+    Beams(Beams, Origin),
+    /// Interfaces of the local constitutive law.
+    Interfaces(InterfaceReport),
 }
 
 /// All bodies of particles of a case.
@@ -151,7 +162,12 @@ impl Maker<'_> {
         let region = self.region()?;
         let (packing, packing_from) = self.packing(region.as_ref())?;
         let packed = Instant::now();
-        all.warnings.extend(self.check_packing(&packing, packing_from)?);
+        if self.arrangement() == Arrangement::Random {
+            all.warnings.extend(self.check_packing(&packing, packing_from)?);
+        }
+        if self.bonded.law == BondLawKind::Local {
+            return self.make_interfaces(packing, packing_from, region, all);
+        }
         let material = self.material();
         let (made, beams_from, coordination) = self.bond(packing)?;
         let fracture = match &material.fracture {
@@ -165,13 +181,16 @@ impl Maker<'_> {
             (packed - start).as_secs_f64(),
             (done - packed).as_secs_f64()
         ));
-        all.reports.push(self.report(&made, [packing_from, beams_from], fracture));
+        let joints = Joints::Beams(made.beams, beams_from);
+        let mass = made.particles.mass.iter().sum();
+        all.reports.push(BondedReport { fracture, ..self.report(&made.sample, mass, packing_from, joints) });
         let faces = CrackFaces { friction: material.contact.friction, damping_ratio: material.contact.damping_ratio };
         let (fraction, volume) = (made.sample.fraction, made.sample.measured_volume());
-        let breaks = |(criterion, _)| BondFracture { criterion, faces, fraction, volume };
+        let breaks = |(criterion, _)| BondFracture { criterion: Some(criterion), faces, fraction, volume };
         all.prepared.push(PreparedBody {
             fracture: fracture.map(breaks),
-            section: made.sample.lattice.section(),
+            law: made.sample.lattice.section().into(),
+            shares: Vec::new(),
             particles: made.particles,
             pairs: made.sample.network.pairs,
             walls: made.sample.packing.walls,
@@ -236,28 +255,29 @@ impl Maker<'_> {
         Ok((made, from, coordination))
     }
 
-    /// What the plan says of the body.
-    fn report(
-        &self,
-        made: &fractum_calibrate::BondedBody,
-        [packing, beams_from]: [Origin; 2],
-        fracture: Option<(FractureCriterion, Origin)>,
-    ) -> BondedReport {
-        let (sample, network) = (&made.sample, &made.sample.network);
+    /// What the plan says of a body.
+    fn report(&self, sample: &Sample, mass: f64, packing: Origin, joints: Joints) -> BondedReport {
+        let network = &sample.network;
         BondedReport {
             name: self.name.value.clone(),
             packing,
-            beams_from,
             particles: sample.packing.len(),
             mean_radius: sample.mean_radius,
-            mass: made.particles.mass.iter().sum(),
+            mass,
             bonds: network.pairs.len(),
             coordination_all: network.coordination_all,
             coordination_interior: network.coordination_interior,
             convention: self.bonded.convention,
-            beams: made.beams,
+            joints,
             walls: sample.packing.walls.iter().map(|(name, set)| (name.clone(), set.len())).collect(),
-            fracture,
+            fracture: None,
+        }
+    }
+
+    fn arrangement(&self) -> Arrangement {
+        match &self.bonded.packing {
+            PackingSource::Shape { arrangement, .. } => *arrangement,
+            PackingSource::File(_) => Arrangement::Random,
         }
     }
 
@@ -305,12 +325,23 @@ impl Maker<'_> {
                 let found = |error| self.refuse(&file.name.place, format!("= \"{}\": {error}", file.name.value));
                 return read.map(|packing| (packing, Origin::Given)).map_err(found);
             }
-            PackingSource::Shape { shape, size, dispersion, seed } => (shape, size, *dispersion, *seed),
+            PackingSource::Shape { shape, size, dispersion, seed, .. } => (shape, size, *dispersion, *seed),
         };
         let domain = match region {
             Some(region) => region.domain.clone(),
             None => self.domain(&shape.value).map_err(|(place, error)| self.refuse(&place, format!(": {error}")))?,
         };
+        if let (
+            Arrangement::Cartesian | Arrangement::Staggered,
+            Domain::Box { lower, upper },
+            ParticleSize::Radius(radius),
+        ) = (self.arrangement(), &domain, size.value)
+        {
+            let made = regular(*lower, *upper, radius, self.arrangement());
+            return made
+                .map(|packing| (packing, Origin::Made))
+                .map_err(|error| self.refuse(&size.place, format!(": {error}")));
+        }
         let (count, radius) = match size.value {
             ParticleSize::Count(count) => (Some(count), None),
             ParticleSize::Radius(radius) => (None, Some(radius)),

@@ -264,7 +264,7 @@ impl Scene {
         ledger[EnergyKind::BondTorsion] = bonds.torsion;
         ledger[EnergyKind::Elastic] = solid.elastic_energy() + bonds.total();
         // The sum over no block at all is -0.
-        ledger[EnergyKind::Damage] = solid.dissipated_energy() + 0.0;
+        ledger[EnergyKind::Damage] = solid.dissipated_energy() + bonded.dissipated_energy() + 0.0;
         ledger[EnergyKind::External] = books.external;
         ledger[EnergyKind::Removed] = books.removed + bonded.released_energy();
         ledger[EnergyKind::Friction] = books.friction;

@@ -207,7 +207,12 @@ impl Plan {
         let damage = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).damage.is_some());
         choose(damage, "damage and removal of elements", "no body can be damaged");
         choose(damage, "discrete elements (from the first removal)", "nothing turns into them");
-        choose(scene.bonded.bond_counts().0 > 0, "cohesive beams", "no bonded body");
+        let beams = |body: &BondedBody| body.bonds.beam().is_some();
+        let bonded = || scene.bonded.bodies().iter().filter(|body| !body.bonds.is_empty());
+        choose(bonded().any(beams), "cohesive beams", "no bonded body of beams");
+        if bonded().any(|body| !beams(body)) {
+            choose(true, "interfaces of the local law", "");
+        }
         let touched =
             (!scene.shape_contacts.is_empty() || scene.contacts.has_node_contacts()) && scene.solid.body_count() > 0;
         choose(touched, "contact of solids with other bodies", "nothing that a solid could meet");

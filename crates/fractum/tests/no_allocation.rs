@@ -156,7 +156,8 @@ fn lattice() -> Bonded {
     let pairs = (0..count).flat_map(|i| ahead(i).map(move |j| [i as u32, j as u32])).collect();
     let particles = Particles::at_rest(position.clone(), vec![0.5; count], count as f64).unwrap();
     let section = BeamSection::new(1e3, 0.3).unwrap();
-    let part = BondedPart { name: "bar".into(), particles, pairs, section, density: 1.0, fracture: None };
+    let (law, shares) = (section.into(), Vec::new());
+    let part = BondedPart { name: "bar".into(), particles, pairs, law, shares, density: 1.0, fracture: None };
     let mut bonded = Bonded::new(vec![part]).unwrap();
     let end = |x: f64| (0..count as u32).filter(|&i| site(i as usize).x == x).collect::<Vec<u32>>();
     let pull = Motion::Velocity(Arc::new(|_, _| 1e-3));

@@ -22,6 +22,10 @@ pub(super) struct Block<L: BondLaw> {
     start: usize,
     /// Number of particles of the block.
     pub(super) count: usize,
+    /// First bond of the block.
+    pub(super) first_bond: u32,
+    /// Bonds of the block, from its first, that have separated by their law and were not taken.
+    pub(super) separated: Vec<u32>,
     pub(super) groups: Vec<Group<L>>,
     /// Particles of other blocks that this block's bonds reach, ascending.
     pub(super) partners: Vec<u32>,
@@ -89,7 +93,8 @@ impl<L: BondLaw> Block<L> {
             .collect();
         let sums = vec![[0.0; 6]; count + partners.len()];
         let (virials, virial_bounds, incoming) = (Vec::new(), Vec::new(), Vec::new());
-        Block { start, count, groups, partners, sums, virials, virial_bounds, incoming }
+        let (first_bond, separated) = (bonds.start as u32, Vec::new());
+        Block { start, count, first_bond, separated, groups, partners, sums, virials, virial_bounds, incoming }
     }
 
     /// Sums what is wanted of the bonds.
@@ -100,7 +105,7 @@ impl<L: BondLaw> Block<L> {
         law: &L,
     ) {
         debug_assert!(self.start + self.count <= position.len());
-        let Block { groups, sums, virials, virial_bounds, .. } = self;
+        let Block { groups, separated, sums, virials, virial_bounds, .. } = self;
         if FORCES {
             sums.fill([0.0; 6]);
         }
@@ -115,9 +120,15 @@ impl<L: BondLaw> Block<L> {
         if DETAIL == BOUNDS {
             virial_bounds.fill([0.0; 2]);
         }
-        for group in groups {
+        for (index, group) in groups.iter_mut().enumerate() {
             let bonds = group.lanes(position, orientation);
+            let before = group.separated();
             let forces = law.forces(&bonds, &group.own, &mut group.memory);
+            let fresh = group.separated() & !before;
+            if fresh != 0 {
+                let lanes = (0..WIDTH).filter(|lane| fresh >> lane & 1 == 1);
+                separated.extend(lanes.map(|lane| (index * WIDTH + lane) as u32));
+            }
             if FORCES {
                 add_forces(&group.slots, &forces, sums);
             }
@@ -132,6 +143,16 @@ impl<L: BondLaw> Block<L> {
 }
 
 impl<L: BondLaw> Group<L> {
+    /// Bonds that have separated by their law, as bits.
+    #[inline(always)]
+    fn separated(&self) -> u32 {
+        if !L::SEPARATES {
+            return 0;
+        }
+        let bit = |k: usize| u32::from(L::separation(&self.memory[k]).is_some()) << k;
+        (0..WIDTH).fold(0, |bits, k| bits | bit(k))
+    }
+
     /// The bonds at the present positions and orientations.
     #[inline(always)]
     fn lanes(&self, position: &[Vec3], orientation: &[Rotation]) -> BondLanes<WIDTH> {

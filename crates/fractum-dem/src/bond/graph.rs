@@ -94,8 +94,14 @@ impl BondGraph {
     /// The bonds of a particle that hold, in the order of their numbers.
     #[inline]
     pub fn neighbours(&self, particle: usize) -> impl Iterator<Item = HalfEdge> {
+        self.every(particle).filter(|h| self.live[h.bond as usize])
+    }
+
+    /// The bonds of a particle, broken ones included, in the order of their numbers.
+    #[inline]
+    pub fn every(&self, particle: usize) -> impl Iterator<Item = HalfEdge> {
         let row = self.offsets[particle] as usize..self.offsets[particle + 1] as usize;
-        self.half[row].iter().copied().filter(|h| self.live[h.bond as usize])
+        self.half[row].iter().copied()
     }
 
     /// Parts of the body by the bonds that hold, among the particles of `inside` only; the others are parts of their

@@ -1,9 +1,11 @@
 //! The choice of a bond law: the only place that names every law, matched once per batch of bonds.
 
-use fractum_math::Sym3;
+use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::graph::BondGraph;
 use super::law::{BeamSection, BondEnergy, BondForces, BondLaw};
+use super::law::{LocalBond, Separation};
 use super::network::BondNetwork;
 use crate::DemError;
 use crate::particles::Particles;
@@ -55,8 +57,23 @@ macro_rules! laws {
                 pairs: &[[u32; 2]],
                 law: impl Into<AnyBondLaw>,
             ) -> Result<Self, DemError> {
+                Self::with_shares(particles, pairs, &[], law)
+            }
+
+            /// See [`BondNetwork::with_shares`].
+            ///
+            /// # Errors
+            /// As [`Bonds::new`]; another number of factors than of bonds.
+            pub fn with_shares(
+                particles: &Particles,
+                pairs: &[[u32; 2]],
+                shares: &[f64],
+                law: impl Into<AnyBondLaw>,
+            ) -> Result<Self, DemError> {
                 Ok(match law.into() {
-                    $(AnyBondLaw::$name(law) => Bonds::$name(BondNetwork::new(particles, pairs, law)?),)*
+                    $(AnyBondLaw::$name(law) => {
+                        Bonds::$name(BondNetwork::with_shares(particles, pairs, shares, law)?)
+                    })*
                 })
             }
 
@@ -89,6 +106,8 @@ macro_rules! laws {
 laws! {
     /// Cohesive beams.
     CohesiveBeam(BeamSection),
+    /// Interfaces of the local constitutive law.
+    Local(LocalBond),
 }
 
 impl Bonds {
@@ -115,6 +134,21 @@ impl Bonds {
     /// Distance of the particles of a bond when it was made [m].
     pub fn length(&self, bond: usize) -> f64 {
         each!(self, network => network.length(bond))
+    }
+
+    /// See [`BondNetwork::take_separated`].
+    pub fn take_separated(&mut self, out: &mut Vec<(u32, Separation)>) {
+        each!(self, network => network.take_separated(out));
+    }
+
+    /// See [`BondNetwork::viscous_time`].
+    pub fn viscous_time(&self, particles: &Particles) -> f64 {
+        each!(self, network => network.viscous_time(particles))
+    }
+
+    /// See [`BondNetwork::add_viscous_forces`].
+    pub fn add_viscous_forces(&self, particles: &Particles, graph: &BondGraph, out: &mut [Vec3]) {
+        each!(self, network => network.add_viscous_forces(particles, graph, out));
     }
 
     /// Breaks a bond for ever.

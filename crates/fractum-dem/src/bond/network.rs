@@ -5,7 +5,8 @@ use nalgebra::Matrix6;
 use rayon::prelude::*;
 
 use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, WIDTH};
-use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair};
+use super::graph::BondGraph;
+use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
 use crate::DemError;
 use crate::particles::Particles;
 
@@ -38,29 +39,27 @@ impl<L: BondLaw> BondNetwork<L> {
     /// # Errors
     /// Numbers of the law that make no bond; a bond that joins nothing.
     pub fn new(particles: &Particles, pairs: &[[u32; 2]], law: L) -> Result<Self, DemError> {
+        Self::with_shares(particles, pairs, &[], law)
+    }
+
+    /// [`BondNetwork::new`] with a factor on the area of each bond, for laws that give bonds areas of their own.
+    ///
+    /// - `shares`: factors in the order of `pairs`; 1 where there are none
+    ///
+    /// # Errors
+    /// As [`BondNetwork::new`]; another number of factors than of bonds.
+    pub fn with_shares(particles: &Particles, pairs: &[[u32; 2]], shares: &[f64], law: L) -> Result<Self, DemError> {
         law.check()?;
+        let (pairs, shares) = sorted(particles, pairs, shares)?;
         let position = &particles.position;
         let count = position.len();
-        let mut pairs: Vec<[u32; 2]> = pairs.to_vec();
-        for (bond, pair) in pairs.iter_mut().enumerate() {
-            let [first, second] = *pair;
-            let bad = |reason| Err(DemError::BadBond { bond, first, second, count, reason });
-            if first as usize >= count || second as usize >= count {
-                return bad("no such particle");
-            }
-            if first == second || position[first as usize] == position[second as usize] {
-                return bad("a bond needs two different places");
-            }
-            *pair = [first.min(second), first.max(second)];
-        }
-        pairs.sort_unstable();
         let gap = |p: &[u32; 2]| position[p[1] as usize] - position[p[0] as usize];
         let length: Vec<f64> = pairs.iter().map(|p| gap(p).norm()).collect();
         let axis: Vec<Vec3> = pairs.iter().zip(&length).map(|(p, l)| gap(p) / *l).collect();
         let own: Vec<L::Parameters> = pairs
             .iter()
-            .zip(&length)
-            .map(|(pair, l)| law.parameters(*l, pair.map(|i| particles.radius[i as usize])))
+            .zip(length.iter().zip(&shares))
+            .map(|(pair, (l, share))| law.parameters(*l, pair.map(|i| particles.radius[i as usize]), *share))
             .collect();
         let made = Made::<L> { pairs: &pairs, axis: &axis, length: &length, own: &own };
         let mut blocks = Vec::new();
@@ -149,6 +148,54 @@ impl<L: BondLaw> BondNetwork<L> {
         }
         let of = |bond: usize| self.law.dissipated(self.length[bond], &self.own[bond], self.memory_of(bond));
         fractum_math::sum_chunks(self.len(), of)
+    }
+
+    /// Bonds that have separated by the law since the last call, ascending, with the way they did.
+    pub fn take_separated(&mut self, out: &mut Vec<(u32, Separation)>) {
+        out.clear();
+        for block in &mut self.blocks {
+            for bond in block.separated.drain(..) {
+                let (group, lane) = (bond as usize / WIDTH, bond as usize % WIDTH);
+                if let Some(how) = L::separation(&block.groups[group].memory[lane]) {
+                    out.push((block.first_bond + bond, how));
+                }
+            }
+        }
+    }
+
+    /// Largest viscous resistance over stiffness of a bond [s]; 0 where there is no resistance.
+    pub fn viscous_time(&self, particles: &Particles) -> f64 {
+        let time = |bond: usize| {
+            let (length, own) = (self.length[bond], &self.own[bond]);
+            let viscosity = self.law.viscosity(length, own, self.reduced_mass(bond, particles));
+            viscosity / self.law.stiffness(length, own).axial
+        };
+        (0..self.len()).map(time).fold(0.0, f64::max)
+    }
+
+    fn reduced_mass(&self, bond: usize, particles: &Particles) -> f64 {
+        let [first, second] = self.pairs[bond].map(|i| particles.mass[i as usize]);
+        first * second / (first + second)
+    }
+
+    /// Finds the viscous resistance [N s/m] of every bond that acts and its direction, and adds its forces to `out`.
+    pub fn add_viscous_forces(&self, particles: &Particles, graph: &BondGraph, out: &mut [Vec3]) {
+        let Particles { position, velocity, .. } = particles;
+        out.par_iter_mut().enumerate().for_each(|(i, out)| {
+            for half in graph.every(i) {
+                let (bond, j) = (half.bond as usize, half.other as usize);
+                let gap = position[j] - position[i];
+                let length = gap.norm();
+                let strain = length / self.length[bond] - 1.0;
+                if !self.live[bond] || !self.law.touches(strain, self.memory_of(bond)) {
+                    continue;
+                }
+                let mass = self.reduced_mass(bond, particles);
+                let viscosity = self.law.viscosity(self.length[bond], &self.own[bond], mass);
+                let normal = gap / length;
+                *out += normal * (viscosity * (velocity[j] - velocity[i]).dot(&normal));
+            }
+        });
     }
 
     /// Adds the forces and moments of all live bonds to the particles'.
@@ -292,6 +339,27 @@ impl<L: BondLaw> BondNetwork<L> {
         let largest = omega2.into_iter().fold(0.0, f64::max);
         if largest > 0.0 { safety * 2.0 / largest.sqrt() } else { f64::INFINITY }
     }
+}
+
+/// The pairs with the smaller particle first, ascending, and the factors on their areas.
+fn sorted(particles: &Particles, pairs: &[[u32; 2]], shares: &[f64]) -> Result<(Vec<[u32; 2]>, Vec<f64>), DemError> {
+    let (position, count) = (&particles.position, particles.len());
+    if !shares.is_empty() && shares.len() != pairs.len() {
+        return Err(DemError::Length { what: "areas of bonds", found: shares.len(), expected: pairs.len() });
+    }
+    let mut both = Vec::with_capacity(pairs.len());
+    for (bond, &[first, second]) in pairs.iter().enumerate() {
+        let bad = |reason| Err(DemError::BadBond { bond, first, second, count, reason });
+        if first as usize >= count || second as usize >= count {
+            return bad("no such particle");
+        }
+        if first == second || position[first as usize] == position[second as usize] {
+            return bad("a bond needs two different places");
+        }
+        both.push(([first.min(second), first.max(second)], shares.get(bond).copied().unwrap_or(1.0)));
+    }
+    both.sort_by_key(|(pair, _)| *pair);
+    Ok(both.into_iter().unzip())
 }
 
 /// Adds the stiffness of a bond at one end, with `n` from that end to the other.

@@ -5,6 +5,7 @@ pub mod criterion;
 mod faces;
 mod moving;
 mod search;
+mod separated;
 
 pub use crack::Crack;
 pub(crate) use crack::facet_area;

@@ -11,7 +11,7 @@ use super::criterion::{BondLoad, FailureSite, FractureCriterion};
 use super::faces::{CrackFaces, Face, FaceWork};
 use super::search::{Break, FailureSearch, LoadedBonds};
 use crate::DemError;
-use crate::bond::{BondForces, BondGraph, Bonds};
+use crate::bond::{BondForces, BondGraph, Bonds, Separation};
 use crate::particles::Particles;
 
 /// Gap up to which strangers are listed, over the smallest radius.
@@ -24,18 +24,21 @@ const SKIN: f64 = 0.5;
 /// face is as stiff as the bond was, along and across, so that the stable step of the unbroken body holds.
 #[derive(Clone, Debug)]
 pub struct Fracture {
-    graph: BondGraph,
-    search: FailureSearch,
-    reference: Vec<Vec3>,
-    area: f64,
+    pub(super) graph: BondGraph,
+    /// None where bonds separate by their own law.
+    pub(super) search: Option<FailureSearch>,
+    pub(super) reference: Vec<Vec3>,
+    pub(super) area: f64,
     faces: CrackFaces,
     pairs: Vec<Face>,
-    cracks: Vec<Crack>,
+    pub(super) cracks: Vec<Crack>,
     released: f64,
     /// What the bonds that broke last still exert, with the index of their crack.
     acting: Vec<(usize, BondForces)>,
     sites: Vec<FailureSite>,
     breaks: Vec<Break>,
+    /// Scratch: bonds that have separated by their law.
+    pub(super) separated: Vec<(u32, Separation)>,
     /// What was summed of virials with the last forces.
     detail: VirialDetail,
     /// Steps for which whole virials are summed with the forces, since their bounds did not suffice.
@@ -121,7 +124,17 @@ impl Fracture {
         let graph = BondGraph::new(particles.len(), bonds.pairs());
         let search = FailureSearch::new(criterion, &graph, &particles.radius, fraction)?;
         let area = facet_area(volume, &particles.position, bonds.pairs());
-        Ok(Fracture {
+        Ok(Fracture::with_search(graph, Some(search), particles, faces, area))
+    }
+
+    pub(super) fn with_search(
+        graph: BondGraph,
+        search: Option<FailureSearch>,
+        particles: &Particles,
+        faces: CrackFaces,
+        area: f64,
+    ) -> Self {
+        Fracture {
             graph,
             search,
             reference: particles.position.clone(),
@@ -133,9 +146,10 @@ impl Fracture {
             acting: Vec::new(),
             sites: Vec::new(),
             breaks: Vec::new(),
+            separated: Vec::new(),
             detail: VirialDetail::Nothing,
             steps_with_tensor: 0,
-        })
+        }
     }
 
     /// The bonds that hold.
@@ -160,7 +174,7 @@ impl Fracture {
 
     /// Adds the forces of the bonds, and sums with them what the criterion needs: far from failure bounds of the virials.
     pub fn add_bond_forces(&mut self, bonds: &mut Bonds, particles: &mut Particles) {
-        self.detail = match self.search.criterion().level() {
+        self.detail = match self.search.as_ref().and_then(|search| search.criterion().level()) {
             None => VirialDetail::Nothing,
             Some(_) if self.steps_with_tensor > 0 => VirialDetail::Tensor,
             Some(_) => VirialDetail::Bounds,
@@ -185,13 +199,14 @@ impl Fracture {
     /// The forces must be those that [`Fracture::add_bond_forces`] found at these positions.
     pub fn closest(&mut self, bonds: &mut Bonds, particles: &Particles) -> Option<FailureSite> {
         self.need_virials(bonds, particles);
-        self.search.search(&Moving { bonds, particles }, &self.graph, f64::INFINITY);
-        self.search.worst()
+        let search = self.search.as_mut()?;
+        search.search(&Moving { bonds, particles }, &self.graph, f64::INFINITY);
+        search.worst()
     }
 
     /// Position of a site: of a particle, or of the middle of a bond.
     pub fn position_of(&self, site: &FailureSite, position: &[Vec3]) -> Vec3 {
-        match self.search.criterion().level() {
+        match self.search.as_ref().and_then(|search| search.criterion().level()) {
             Some(_) => position[site.index as usize],
             None => {
                 let [i, j] = self.graph.pairs()[site.index as usize].map(|i| position[i as usize]);
@@ -206,8 +221,9 @@ impl Fracture {
     /// are and act on the kick that follows: taken away at once, a force would cost the balance its square, whatever the
     /// motion. [`Fracture::book_last_work`] takes what they do in it off the energies of the cracks.
     pub fn break_overloaded(&mut self, bonds: &mut Bonds, particles: &Particles, occasion: Occasion) -> usize {
+        let Some(search) = &mut self.search else { return self.list_separated(bonds, occasion) };
         if self.detail == VirialDetail::Bounds {
-            if !self.search.virial_bounds_may_fail(bonds, 1.0) {
+            if !search.virial_bounds_may_fail(bonds, 1.0) {
                 return 0;
             }
             self.steps_with_tensor = STEPS_WITH_TENSOR;
@@ -215,7 +231,7 @@ impl Fracture {
         } else {
             self.steps_with_tensor = self.steps_with_tensor.saturating_sub(1);
         }
-        let Fracture { graph, search, sites, breaks, .. } = self;
+        let Fracture { graph, search: Some(search), sites, breaks, .. } = self else { return 0 };
         if !search.may_fail(&Moving { bonds, particles }, 1.0) {
             return 0;
         }
@@ -242,7 +258,7 @@ impl Fracture {
             let rest = bonds.length(bond as usize);
             self.pairs.push(Face::new(bonds, particles, pair, rest, self.faces, false));
             bonds.break_bond(bond as usize);
-            self.search.bond_broken(bond, &self.graph);
+            self.search.iter_mut().for_each(|search| search.bond_broken(bond, &self.graph));
             self.released += energy;
             let (a, b) = (self.reference[i], self.reference[j]);
             let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
@@ -283,14 +299,18 @@ impl Fracture {
         FractureState { faces: self.pairs.clone(), cracks: self.cracks.clone(), released: self.released }
     }
 
-    /// Puts a saved state back, into the network too, which must be unbroken.
+    /// Puts a saved state back, into the network too, which must be unbroken; the memory of a law is not part of it.
     pub fn restore(&mut self, state: FractureState, bonds: &mut Bonds) {
         FractureState { faces: self.pairs, cracks: self.cracks, released: self.released } = state;
         for crack in &self.cracks {
             self.graph.break_bond(crack.bond);
-            bonds.break_bond(crack.bond as usize);
+            if self.search.is_some() {
+                bonds.break_bond(crack.bond as usize);
+            }
         }
-        self.search.gather_all(&self.graph);
+        if let Some(search) = &mut self.search {
+            search.gather_all(&self.graph);
+        }
     }
 
     /// Adds the forces of crack faces and of strangers that touch; one call per step.
@@ -489,10 +509,11 @@ mod tests {
             fracture.add_bond_forces(&mut bonds, &mut particles);
             let worst = fracture.closest(&mut bonds, &particles).unwrap().ratio;
             let body = Moving { bonds: &bonds, particles: &particles };
-            assert!(fracture.search.may_fail(&body, worst));
-            assert!(!fracture.search.may_fail(&body, 100.0 * worst));
-            assert!(fracture.search.virial_bounds_may_fail(&bonds, worst));
-            assert!(!fracture.search.virial_bounds_may_fail(&bonds, 100.0 * worst));
+            let search = fracture.search.as_ref().unwrap();
+            assert!(search.may_fail(&body, worst));
+            assert!(!search.may_fail(&body, 100.0 * worst));
+            assert!(search.virial_bounds_may_fail(&bonds, worst));
+            assert!(!search.virial_bounds_may_fail(&bonds, 100.0 * worst));
         }
     }
 }

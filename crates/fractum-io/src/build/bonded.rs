@@ -1,6 +1,6 @@
 //! Bonded bodies, and the supports, loads and probes on their particles.
 
-use fractum_dem::{BeamSection, Particles};
+use fractum_dem::{AnyBondLaw, Particles};
 use fractum_math::Vec3;
 use fractum_scene::coupling::Attachment;
 use fractum_scene::{BondFracture, Bonded, BondedPart, PointProbe, Population, Probe, Support};
@@ -18,8 +18,10 @@ pub struct PreparedBody {
     pub particles: Particles,
     /// The particles of each bond.
     pub pairs: Vec<[u32; 2]>,
-    /// The beam of its bonds.
-    pub section: BeamSection,
+    /// The law of its bonds.
+    pub law: AnyBondLaw,
+    /// Factors on the areas of the bonds; 1 where there are none.
+    pub shares: Vec<f64>,
     /// Sets of particles that touch the walls of the shape, by name.
     pub walls: Vec<(String, Vec<u32>)>,
     /// When its bonds break, with the criterion's own strengths.
@@ -68,7 +70,8 @@ impl Context<'_> {
                 name: body.name.value.clone(),
                 particles: made.particles,
                 pairs: made.pairs,
-                section: made.section,
+                law: made.law,
+                shares: made.shares,
                 density: case.materials[material].density,
                 fracture: made.fracture,
             });

@@ -166,7 +166,8 @@ step = "0.1 us"
     let made = PreparedBody {
         particles: Particles::at_rest(position, vec![0.9e-3; 4], 4e-3).unwrap(),
         pairs: Vec::new(),
-        section: BeamSection::new(70e9, 1.0).unwrap(),
+        law: BeamSection::new(70e9, 1.0).unwrap().into(),
+        shares: Vec::new(),
         walls: Vec::new(),
         fracture: None,
         replaced: Vec::new(),

@@ -1,8 +1,10 @@
 //! A case with every key, read into SI.
 
+use fractum_dem::{Crushing, InterfaceFailure, LocalBond};
 use fractum_fem::{Criterion, CriterionKind, Formulation, Softening};
 use fractum_io::case::model::{
-    BodyKind, BondedShape, Bound, LoadKind, Motion, PackingSource, ParticleSize, ProbeKind, SurfaceSupport,
+    BodyKind, BondLawKind, BondedShape, Bound, InterfaceArea, Interfaces, LoadKind, Motion, PackingSource,
+    ParticleSize, ProbeKind, SurfaceSupport,
 };
 use fractum_io::case::{Severity, Spanned, TimeFunction, read_case};
 use fractum_math::{Sym3, Vec3};
@@ -21,7 +23,7 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!(mesh.unit, 1e-3);
     assert_eq!(case.source.parameters["E1"], 42e9);
 
-    let [concrete, mortar] = &case.materials[..] else { panic!() };
+    let [concrete, mortar, cement, grout] = &case.materials[..] else { panic!() };
     assert_eq!((concrete.density, concrete.young_modulus, concrete.poisson_ratio), (2400.0, 21e9, 0.2));
     let damage = &concrete.damage.as_ref().unwrap().value;
     let law = &damage.law;
@@ -34,6 +36,31 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!((mortar.young_modulus, soft.tensile_strength), (14e9, 2e6));
     let angle = 35f64.to_radians();
     assert_eq!(soft.criterion, Criterion::new(soft.criterion.kind(), angle, 10.0, mortar.poisson_ratio));
+
+    let interfaces = cement.interfaces.as_ref().unwrap().value;
+    assert_eq!(interfaces.area, InterfaceArea::Porosity);
+    let expected = LocalBond {
+        tensile_strength: 4.8e6,
+        shear_strength: 8.5e6,
+        internal_friction: 0.3,
+        friction: 0.4,
+        softening: [0.5, 0.25],
+        failure: InterfaceFailure::Coupled,
+        crushing: Crushing { stress: [8.5e6, 9e6, 11e6], ratio: [3.0, 9.0, 24.0] },
+        damping_ratio: 0.1,
+        ..LocalBond::elastic(3.8e9, 0.2)
+    };
+    assert_eq!(interfaces.law, expected);
+    let expected = Interfaces {
+        area: InterfaceArea::Factor(1.0),
+        law: LocalBond { friction: 0.5, ..LocalBond::elastic(3.8e9, 0.2) },
+    };
+    assert_eq!(grout.interfaces.as_ref().unwrap().value, expected);
+    let laws = case.bodies.iter().filter_map(|body| match &body.kind {
+        BodyKind::Bonded(own) => Some(own.law),
+        _ => None,
+    });
+    assert_eq!(laws.filter(|law| *law == BondLawKind::Local).count(), 2);
 
     let BodyKind::Solid(block) = &case.bodies[0].kind else { panic!() };
     let here = Vec3::new(0.05, -0.07, 0.0);
@@ -64,7 +91,7 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!(stress, Sym3::new(-2e6, -0.1e6, -3e6, 0.0, 0.0, 1e3));
 
     let BodyKind::Bonded(brick) = &case.bodies[3].kind else { panic!() };
-    let PackingSource::Shape { shape, size, dispersion, seed } = &brick.packing else { panic!() };
+    let PackingSource::Shape { shape, size, dispersion, seed, .. } = &brick.packing else { panic!() };
     let (point, edges) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.01, 0.02, 0.01));
     assert_eq!(shape.value, BondedShape::Box { point, size: edges });
     assert_eq!((size.value, *dispersion, *seed), (ParticleSize::Count(500), 0.2, 3));

@@ -1,22 +1,24 @@
-//! Bonded bodies: particles of their own beside the solids, joined by cohesive beams.
+//! Bonded bodies: particles of their own beside the solids, joined by bonds of a law.
 
 mod momentum;
 mod piece;
 mod points;
+mod state;
 
 use std::ops::Range;
 
 use fractum_dem::{
-    BeamSection, BondEnergy, Bonds, Crack, CrackFaces, Fracture, FractureCriterion, FractureState, Occasion,
+    AnyBondLaw, BondEnergy, BondGraph, Bonds, Crack, CrackFaces, Fracture, FractureCriterion, Occasion,
     ParticleDamping, Particles, PastForces, TimeStep, highest_frequency,
 };
 use fractum_fem::LocalDamping;
-use fractum_math::{HalfSteps, Rotation, Vec3, Work};
+use fractum_math::{HalfSteps, Vec3, Work, sum_chunks};
 use serde::{Deserialize, Serialize};
 
 use crate::conditions::{Load, Loads, Support, Supports};
 use crate::error::SceneError;
 use points::ParticlePoints;
+pub use state::BondedState;
 
 /// Steps between two searches for particles of a broken body that meet others of it.
 const STEPS_BETWEEN_SEARCHES: u64 = 20;
@@ -30,8 +32,10 @@ pub struct BondedPart {
     pub particles: Particles,
     /// The particles of each bond.
     pub pairs: Vec<[u32; 2]>,
-    /// The beam of its bonds.
-    pub section: BeamSection,
+    /// The law of its bonds.
+    pub law: AnyBondLaw,
+    /// Factors on the areas of the bonds; 1 where there are none.
+    pub shares: Vec<f64>,
     /// Density of the continuum that it stands for [kg/m³].
     pub density: f64,
     /// When its bonds break; never where there is nothing.
@@ -41,8 +45,8 @@ pub struct BondedPart {
 /// When the bonds of a body break, and what happens then.
 #[derive(Clone, Copy, Debug)]
 pub struct BondFracture {
-    /// The criterion, with its own strengths.
-    pub criterion: FractureCriterion,
+    /// The criterion, with its own strengths; none where bonds separate by their law.
+    pub criterion: Option<FractureCriterion>,
     /// What crack faces do.
     pub faces: CrackFaces,
     /// Volume fraction of the interior of the packing.
@@ -76,6 +80,8 @@ pub struct BondedBody {
     pub(crate) plan: Option<BondFracture>,
     pub(crate) fracture: Option<Fracture>,
     pub(crate) closest: Option<Closest>,
+    /// All bonds, where they resist the change of their length.
+    viscous: Option<BondGraph>,
 }
 
 impl BondedBody {
@@ -123,24 +129,16 @@ pub struct Bonded {
     pub(crate) energy: BondEnergy,
     /// Elastic energy that bonds which broke before tⁿ held [J].
     released: f64,
+    /// Energy that the laws of bonds have dissipated, when last measured [J].
+    dissipated: f64,
+    /// Viscous forces of bonds, one per particle where there are any [N].
+    viscous: Vec<Vec3>,
     /// Highest natural frequency, or a bound on it [rad/s].
     frequency: f64,
     partial: Vec<HalfSteps>,
     /// φ − 1 of the scheme of Tchamwa and Wielgosz.
     dissipation: f64,
     /// Forces of the step before, where that scheme is used.
-    past: PastForces,
-}
-
-/// Everything that changes in bonded bodies during a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BondedState {
-    position: Vec<Vec3>,
-    orientation: Vec<Rotation>,
-    velocity: Vec<Vec3>,
-    spin: Vec<Vec3>,
-    /// Broken bonds and crack faces of each body, with how close it came to breaking.
-    fracture: Vec<(Option<FractureState>, Option<Closest>)>,
     past: PastForces,
 }
 
@@ -154,7 +152,7 @@ impl Bonded {
         let mut plans = Vec::new();
         for part in parts {
             let start = all.particles.len();
-            let BondedPart { name, mut particles, pairs, section, density, fracture } = part;
+            let BondedPart { name, mut particles, pairs, law, shares, density, fracture } = part;
             let range = start..start + particles.len();
             let own = &mut all.particles;
             own.position.append(&mut particles.position);
@@ -168,18 +166,24 @@ impl Bonded {
             own.radius.append(&mut particles.radius);
             own.held.append(&mut particles.held);
             let pairs: Vec<[u32; 2]> = pairs.iter().map(|pair| pair.map(|i| i + start as u32)).collect();
-            plans.push((name, range, pairs, section, density, fracture));
+            plans.push((name, range, (pairs, shares, law), density, fracture));
         }
         all.reference = all.particles.position.clone();
-        for (name, range, pairs, section, density, plan) in plans {
-            let bonds = Bonds::new(&all.particles, &pairs, section)?;
+        for (name, range, (pairs, shares, law), density, plan) in plans {
+            let bonds = Bonds::with_shares(&all.particles, &pairs, &shares, law)?;
             let fracture = match plan {
-                Some(BondFracture { criterion, faces, fraction, volume }) => {
+                Some(BondFracture { criterion: Some(criterion), faces, fraction, volume }) => {
                     Some(Fracture::new(&bonds, &all.particles, criterion, faces, fraction, volume)?)
                 }
+                Some(plan) => Some(Fracture::of_law(&bonds, &all.particles, plan.faces, plan.volume)),
                 None => None,
             };
-            all.bodies.push(BondedBody { name, range, bonds, density, plan, fracture, closest: None });
+            let resists = bonds.viscous_time(&all.particles) > 0.0;
+            let viscous = resists.then(|| BondGraph::new(all.particles.len(), bonds.pairs()));
+            if resists {
+                all.viscous.resize(all.particles.len(), Vec3::zeros());
+            }
+            all.bodies.push(BondedBody { name, range, bonds, density, plan, fracture, closest: None, viscous });
         }
         all.frequency = all.bodies.iter().map(|body| body.bound(&all.particles)).fold(0.0, f64::max);
         all.partial = vec![HalfSteps::default(); all.particles.block_count()];
@@ -296,9 +300,12 @@ impl Bonded {
         self.frequency
     }
 
-    /// Largest damping ratio of crack faces.
+    /// Largest damping ratio of bonds and crack faces.
     pub(crate) fn damping_ratio(&self) -> f64 {
-        let ratio = |body: &BondedBody| body.fracture.as_ref().map_or(0.0, |f| f.faces().damping_ratio);
+        let ratio = |body: &BondedBody| {
+            let bonds = 0.5 * self.frequency * body.bonds.viscous_time(&self.particles);
+            bonds.max(body.fracture.as_ref().map_or(0.0, |f| f.faces().damping_ratio))
+        };
         self.bodies.iter().map(ratio).fold(0.0, f64::max)
     }
 
@@ -318,16 +325,25 @@ impl Bonded {
         self.released
     }
 
+    /// Energy that the laws of bonds have dissipated, when last measured [J].
+    pub(crate) fn dissipated_energy(&self) -> f64 {
+        self.dissipated
+    }
+
     /// Replaces forces and moments by those of the bonds and of crack faces at the present positions.
     ///
     /// - `dt` [s]: the step that led here
     /// - `measure`: whether to sum the elastic energy, see [`Bonded::energy`]
     pub(crate) fn update_bond_forces(&mut self, dt: f64, measure: bool) -> Work {
-        let Bonded { particles, bodies, energy, released, .. } = self;
+        let Bonded { particles, bodies, energy, released, dissipated, viscous, .. } = self;
         particles.clear_forces();
         let mut work = Work::default();
         *released = 0.0;
-        for BondedBody { bonds, fracture, .. } in bodies.iter_mut() {
+        viscous.fill(Vec3::zeros());
+        for BondedBody { bonds, fracture, viscous: graph, .. } in bodies.iter_mut() {
+            if let Some(graph) = graph {
+                bonds.add_viscous_forces(particles, graph, viscous);
+            }
             let Some(fracture) = fracture else {
                 bonds.add_forces(particles);
                 continue;
@@ -337,7 +353,9 @@ impl Bonded {
             work += faces.contact;
             *released += fracture.released();
         }
+        particles.force.iter_mut().zip(viscous).for_each(|(force, viscous)| *force += *viscous);
         if measure {
+            *dissipated = bodies.iter().map(|body| body.bonds.dissipated()).sum();
             *energy = bodies.iter().fold(BondEnergy::default(), |sum, body| sum + body.bonds.energy(particles));
         }
         work
@@ -387,7 +405,9 @@ impl Bonded {
         measure: bool,
         follow: impl FnOnce(&mut Particles),
     ) -> HalfSteps {
-        let Bonded { particles, reference, bodies, supports, loads, partial, past, dissipation, tied, .. } = self;
+        let Bonded { particles, reference, bodies, supports, loads, partial, past, dissipation, tied, viscous, .. } =
+            self;
+        let resistance = viscous_power(particles, viscous);
         let damping = ParticleDamping { local: damping.local, mass_rate: damping.mass_rate, dissipation: *dissipation };
         let counted_twice = if measure { energy_of(particles, tied) } else { 0.0 };
         let mut points = ParticlePoints { particles, reference, tied };
@@ -395,36 +415,22 @@ impl Bonded {
         let mut work =
             points.particles.kick_and_drift(&TimeStep { dt_before, dt_after, damping, measure }, past, partial);
         work += supports.impose(&mut points, time, dt_before, dt_after);
+        work.before.damping -= 0.5 * dt_before * resistance;
         work.before.kinetic -= counted_twice;
         work.after.kinetic -= counted_twice;
         follow(points.particles);
         for fracture in bodies.iter_mut().filter_map(|body| body.fracture.as_mut()) {
             fracture.book_last_work(points.particles, dt_after);
         }
+        work.after.damping -= 0.5 * dt_after * viscous_power(points.particles, viscous);
         work.after.external += 0.5 * dt_after * loads.power(&points);
         work
     }
+}
 
-    /// Everything that changes, for a checkpoint.
-    pub fn state(&self) -> BondedState {
-        let Particles { position, orientation, velocity, spin, .. } = self.particles.clone();
-        let fracture = self.bodies.iter().map(|body| (body.fracture.as_ref().map(Fracture::state), body.closest));
-        let (fracture, past) = (fracture.collect(), self.past.clone());
-        BondedState { position, orientation, velocity, spin, fracture, past }
-    }
-
-    /// Puts a saved state back into bodies built from the same case.
-    pub fn restore(&mut self, state: BondedState) {
-        let BondedState { position, orientation, velocity, spin, fracture, past } = state;
-        for (body, (broken, closest)) in self.bodies.iter_mut().zip(fracture) {
-            if let (Some(fracture), Some(state)) = (&mut body.fracture, broken) {
-                fracture.restore(state, &mut body.bonds);
-            }
-            body.closest = closest;
-        }
-        self.particles = Particles { position, orientation, velocity, spin, ..std::mem::take(&mut self.particles) };
-        self.past = past;
-    }
+/// Power of the viscous forces of bonds [W], which is never positive.
+fn viscous_power(particles: &Particles, viscous: &[Vec3]) -> f64 {
+    sum_chunks(viscous.len(), |i| viscous[i].dot(&particles.velocity[i]))
 }
 
 /// Kinetic energy that the step sums for particles at constant velocity [J].

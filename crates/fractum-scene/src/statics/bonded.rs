@@ -85,7 +85,7 @@ impl BondedStatics {
         let plan = body.plan;
         let what = Breaking {
             // Without a fracture nothing reaches this strength.
-            criterion: plan.map_or(UNBREAKABLE, |plan| plan.criterion),
+            criterion: plan.and_then(|plan| plan.criterion).unwrap_or(UNBREAKABLE),
             pairs: body.bonds.pairs(),
             radius: &all.radius,
             fraction: plan.map_or(1.0, |plan| plan.fraction),

@@ -6,7 +6,7 @@ use fractum_fem::{ElementKind, Formulation, Kinematics, Plane};
 use fractum_io::case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody};
 use fractum_io::number::quantity;
 use fractum_math::elementary::cbrt;
-use fractum_prepare::{BondedReport, Origin};
+use fractum_prepare::{BondedReport, InterfaceReport, Joints, Origin};
 use fractum_scene::Scene;
 
 use super::{Plan, rows};
@@ -97,7 +97,16 @@ impl Plan {
                 report.bonds, report.coordination_interior, report.coordination_all, report.convention
             ),
         );
-        let beams = &report.beams;
+        let sets: Vec<String> = report.walls.iter().map(|(wall, n)| format!("{}.{wall} {n}", report.name)).collect();
+        let sets = format!("sets of particles: {} {}, {}", report.name, report.particles, sets.join(", "));
+        let (beams, beams_from) = match &report.joints {
+            Joints::Beams(beams, from) => (beams, *from),
+            Joints::Interfaces(interfaces) => {
+                self.describe_interfaces(interfaces);
+                self.add("", sets);
+                return;
+            }
+        };
         let micro = beams.micro;
         let reached = match beams.reached {
             Some((young, poisson)) => format!(
@@ -112,7 +121,7 @@ impl Plan {
             "",
             format!(
                 "beams {}: radius {:.4} mean radii, modulus {}{reached}",
-                from(report.beams_from, "calibrated now"),
+                from(beams_from, "calibrated now"),
                 micro.radius_ratio,
                 quantity(micro.young_modulus, "Pa"),
             ),
@@ -129,8 +138,31 @@ impl Plan {
             None => "bonds hold: the material has no fracture".to_owned(),
         };
         self.add("", breaking);
-        let sets: Vec<String> = report.walls.iter().map(|(wall, n)| format!("{}.{wall} {n}", report.name)).collect();
-        self.add("", format!("sets of particles: {} {}, {}", report.name, report.particles, sets.join(", ")));
+        self.add("", sets);
+    }
+
+    fn describe_interfaces(&mut self, report: &InterfaceReport) {
+        let InterfaceReport { law, mean_share } = report;
+        let share = format!("interfaces of {mean_share:.3} times the section of the smaller particle on average");
+        self.add(
+            "",
+            format!("{share}, E = {}, Poisson's ratio {}", quantity(law.young_modulus, "Pa"), law.poisson_ratio),
+        );
+        if !law.can_fail() {
+            self.add("", "interfaces hold: they have no strength".to_owned());
+            return;
+        }
+        let strength = |value: f64| if value.is_finite() { quantity(value, "Pa") } else { "unlimited".to_owned() };
+        self.add(
+            "",
+            format!(
+                "interfaces fail at {} in tension, {} + {} times the pressure in shear; then friction {}",
+                strength(law.tensile_strength),
+                strength(law.shear_strength),
+                law.internal_friction,
+                law.friction
+            ),
+        );
     }
 
     fn describe_solid(&mut self, case: &Case, scene: &Scene, name: &str, solid: &SolidBody, index: usize) {

@@ -86,7 +86,7 @@ impl BondLaw for BeamSection {
         BeamSection::check(self)
     }
 
-    fn parameters(&self, _: f64, _: [f64; 2]) {}
+    fn parameters(&self, _: f64, _: [f64; 2], _: f64) {}
 
     #[inline(always)]
     fn forces<const W: usize>(&self, bonds: &BondLanes<W>, _: &[(); W], _: &mut [(); W]) -> ForceLanes<W> {

@@ -1,10 +1,12 @@
 //! Laws of bonds, each in its file, behind one trait.
 
 mod cohesive_beam;
+mod local;
 #[cfg(test)]
 mod softening_spring;
 
 pub use cohesive_beam::{BeamSection, cohesive_beam, cohesive_beam_energy};
+pub use local::{Crushing, Interface, InterfaceFailure, InterfaceMemory, LocalBond, Separation};
 
 use std::fmt::Debug;
 
@@ -26,6 +28,9 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// What a bond remembers from step to step, zero when it is made; `()` for an elastic one.
     type Memory: Copy + Debug + Default + PartialEq + Send + Sync + Serialize + DeserializeOwned;
 
+    /// Whether bonds separate by the law itself, see [`BondLaw::separation`].
+    const SEPARATES: bool = false;
+
     /// Refuses numbers that make no bond.
     ///
     /// # Errors
@@ -35,7 +40,8 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// Parameters of a bond when it is made.
     ///
     /// - `length` l₀ [m]; `radius` of its particles [m]
-    fn parameters(&self, length: f64, radius: [f64; 2]) -> Self::Parameters;
+    /// - `share`: factor on the area that the law gives the bond, see [`super::BondNetwork::with_shares`]
+    fn parameters(&self, length: f64, radius: [f64; 2], share: f64) -> Self::Parameters;
 
     /// Forces and moments of `W` bonds side by side at their present state, which also carries memory on. A second call
     /// at the same state must give the same forces and leave memory as it is.
@@ -66,6 +72,21 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// The beam that a bond is for small displacements, as the static lattice knows it; none of other laws.
     fn beam(&self) -> Option<BeamSection> {
         None
+    }
+
+    /// How a bond has separated by the law itself, which from then on is that of a contact.
+    fn separation(_: &Self::Memory) -> Option<Separation> {
+        None
+    }
+
+    /// Viscous resistance to the change of length [N s/m], with the reduced mass of the particles [kg].
+    fn viscosity(&self, _length: f64, _own: &Self::Parameters, _mass: f64) -> f64 {
+        0.0
+    }
+
+    /// Whether the particles of a bond act on each other at a change of length over l₀.
+    fn touches(&self, _strain: f64, _: &Self::Memory) -> bool {
+        true
     }
 }
 

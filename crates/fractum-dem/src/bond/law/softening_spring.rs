@@ -37,7 +37,7 @@ impl BondLaw for SofteningSpring {
         if fine { Ok(()) } else { Err(bad) }
     }
 
-    fn parameters(&self, _: f64, _: [f64; 2]) {}
+    fn parameters(&self, _: f64, _: [f64; 2], _: f64) {}
 
     fn forces<const W: usize>(&self, bonds: &BondLanes<W>, _: &[(); W], memory: &mut [f64; W]) -> ForceLanes<W> {
         let length = dot(bonds.gap, bonds.gap).sqrt();

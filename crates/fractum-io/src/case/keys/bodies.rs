@@ -1,12 +1,13 @@
 //! Mesh, materials, bodies, ties.
 
-use fractum_dem::FractureCriterion;
 use fractum_dem::criterion::EndMoments;
+use fractum_dem::{FractureCriterion, InterfaceFailure};
 use fractum_fem::{CriterionKind, Formulation, Kinematics, Plane};
-use fractum_pack::Convention;
+use fractum_pack::{Arrangement, Convention};
 
 use super::{key, names};
 use crate::case::key_kind::{KeyDoc, KeyKind as K};
+use crate::case::model::BondLawKind;
 use crate::case::unit::Dimension as D;
 
 #[rustfmt::skip] // a table reads best with one row per line
@@ -50,6 +51,19 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("materials.NAME.bonds.convention", K::Choice(names::<Convention>), "required", "Which particles the coordination counts"),
     key("materials.NAME.bonds.radius_ratio", K::Quantity(D::NONE), "required", "Beam radius over mean particle radius, within 0 and 2"),
     key("materials.NAME.bonds.young_modulus", K::Quantity(D::PRESSURE), "required", "Young's modulus of the beams, > 0"),
+    key("materials.NAME.interface", K::Table, "", "Interfaces of bonded bodies with bond = \"local\"; without this table they are elastic and hold"),
+    key("materials.NAME.interface.areas", K::Choice(areas), "\"cells\"", "Factor α on the area π min(r)² of an interface: by the number of neighbours, so that the cells of the particles fill the body; or 40 P/N for all, with porosity P and mean number of neighbours N"),
+    key("materials.NAME.interface.area_factor", K::Quantity(D::NONE), "", "Instead: α, > 0"),
+    key("materials.NAME.interface.tensile_strength", K::Quantity(D::PRESSURE), "unlimited", "Tensile strength of the interface, ≥ 0"),
+    key("materials.NAME.interface.shear_strength", K::Quantity(D::PRESSURE), "unlimited", "Shear strength without pressure, ≥ 0"),
+    key("materials.NAME.interface.internal_friction", K::Quantity(D::NONE), "0", "Coefficient by which pressure adds to the shear strength, ≥ 0"),
+    key("materials.NAME.interface.friction", K::Quantity(D::NONE), "0.5", "Coulomb's coefficient of an interface that has separated, ≥ 0"),
+    key("materials.NAME.interface.tension_softening", K::Quantity(D::NONE), "brittle", "Slope of softening in tension over that of elasticity, > 0; the energy per area is ft²d/2E (1 + 1/slope)"),
+    key("materials.NAME.interface.shear_softening", K::Quantity(D::NONE), "brittle", "The same in shear, > 0"),
+    key("materials.NAME.interface.failure", K::Choice(names::<InterfaceFailure>), "\"uncoupled\"", "Tension and shear damage an interface each for itself, or together"),
+    key("materials.NAME.interface.crushing_stress", K::Point(D::PRESSURE), "", "Three ascending compressive stresses at which the curve of compression bends; elastic without them"),
+    key("materials.NAME.interface.crushing_ratio", K::Point(D::NONE), "", "Young's modulus over the slope of the curve beyond each of them, ≥ 1"),
+    key("materials.NAME.interface.damping_ratio", K::Quantity(D::NONE), "0", "Local viscous damping of the normal motion over the critical one, 0 to 1"),
     key("materials.NAME.fracture", K::Table, "", "When the bonds of bonded bodies break; without this table they hold"),
     key("materials.NAME.fracture.criterion", K::Choice(bond_criteria), "\"principal\"", "What is compared with the strength, and which bonds break; see the list below"),
     key("materials.NAME.fracture.tensile_strength", K::Quantity(D::PRESSURE), "required", "Tensile strength of the material, > 0; the criterion's own strengths are found by breaking two boxes in tension"),
@@ -111,6 +125,8 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].dispersion", K::Quantity(D::NONE), "0.25", "(largest - smallest)/mean of the particle radii, 0 to 1; 0 where loose particles say nothing"),
     key("bodies[].seed", K::Integer, "1", "Bonded and particles: seed of the packing"),
     key("bodies[].packing", K::Text, "", "Bonded: packing made by `fractum pack` (.fpk), relative to the case file, instead of a shape"),
+    key("bodies[].arrangement", K::Choice(names::<Arrangement>), "\"random\"", "Bonded box: how its particles lie; the regular ones have one radius, 6 and 12 neighbours"),
+    key("bodies[].bond", K::Choice(names::<BondLawKind>), "\"cohesive-beam\"", "Bonded: law of the bonds: beams calibrated on the packing, or interfaces with the numbers of the material"),
     key("bodies[].coordination", K::Quantity(D::NONE), "chosen to suit Poisson's ratio", "Bonded: mean number of bonds of a particle"),
     key("bodies[].convention", K::Choice(names::<Convention>), "\"interior\"", "Bonded: which particles the coordination counts: those that touch no wall, or all"),
     key("bodies[].groups", K::NamedTables, "", "Bonded and particles: further sets of its particles by name"),
@@ -136,6 +152,10 @@ fn softenings() -> Vec<&'static str> {
 
 fn regularisations() -> Vec<&'static str> {
     vec!["none", "phase-field"]
+}
+
+fn areas() -> Vec<&'static str> {
+    vec!["cells", "porosity"]
 }
 
 fn distributions() -> Vec<&'static str> {

@@ -1,13 +1,14 @@
 //! Bonded bodies: particles that fill a shape, joined by beams.
 
 use fractum_dem::criterion::EndMoments;
+use fractum_dem::{InterfaceFailure, LocalBond};
 use fractum_math::Vec3;
-use fractum_pack::{Convention, Domain};
+use fractum_pack::{Arrangement, Convention, Domain};
 
 use crate::case::choice::choice;
 use crate::case::{Field, Spanned};
 
-/// Particles joined by cohesive beams that are made to stand for one material.
+/// Particles joined by bonds that are made to stand for one material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BondedBody {
     /// Index into `Case::materials`.
@@ -17,6 +18,8 @@ pub struct BondedBody {
     /// Solid body whose elements wholly within the shape it takes the place of; it fills the region that they leave, and
     /// is tied to the rest.
     pub replaces: Option<Spanned<String>>,
+    /// Law of its bonds.
+    pub law: BondLawKind,
     /// Coordination of its bonds; `None` = chosen to suit Poisson's ratio. That of the material's `bonds`, where it has
     /// them.
     pub coordination: Option<Spanned<f64>>,
@@ -59,6 +62,8 @@ pub enum PackingSource {
         dispersion: f64,
         /// Seed of the packing.
         seed: u64,
+        /// How the particles lie.
+        arrangement: Arrangement,
     },
 }
 
@@ -116,6 +121,42 @@ pub enum ParticleSize {
     /// By their mean radius [m], > 0.
     Radius(f64),
 }
+
+/// Laws of bonds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum BondLawKind {
+    /// Cohesive beams, calibrated on the packing.
+    #[default]
+    CohesiveBeam,
+    /// Interfaces of the local constitutive law, whose numbers are those of the material.
+    Local,
+}
+
+choice!(BondLawKind { "cohesive-beam" => CohesiveBeam, "local" => Local });
+
+/// Interfaces between the particles of a material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interfaces {
+    /// Areas of the interfaces.
+    pub area: InterfaceArea,
+    /// Their law, with the elasticity of the material.
+    pub law: LocalBond,
+}
+
+/// Factor α on the area π min(r)² of an interface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum InterfaceArea {
+    /// By the number of neighbours, so that the cells of the particles fill the body (Oñate et al. 2017, eq. 25).
+    Cells,
+    /// 40 P/N for all, with porosity P and mean number of neighbours N.
+    Porosity,
+    /// Given.
+    Factor(f64),
+}
+
+choice!(InterfaceFailure { "uncoupled" => Uncoupled, "coupled" => Coupled });
+
+choice!(Arrangement { "random" => Random, "cartesian" => Cartesian, "staggered" => Staggered });
 
 choice!(Convention { "interior" => Interior, "all" => All });
 

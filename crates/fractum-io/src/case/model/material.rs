@@ -3,7 +3,7 @@
 use fractum_fem::{CriterionKind, DamageLaw, Regularisation};
 use fractum_scene::ContactParameters;
 
-use super::{BondFailure, Bonds};
+use super::{BondFailure, Bonds, Interfaces};
 use crate::case::Spanned;
 use crate::case::choice::choice;
 
@@ -22,6 +22,8 @@ pub struct Material {
     pub damage: Option<Spanned<Damage>>,
     /// Beams of bonded bodies, where the material has a `bonds` table; found by calibration otherwise.
     pub bonds: Option<Spanned<Bonds>>,
+    /// Interfaces of bonded bodies, where the material has an `interface` table.
+    pub interfaces: Option<Spanned<Interfaces>>,
     /// When bonds break, where the material has a `fracture` table; they hold otherwise.
     pub fracture: Option<Spanned<BondFailure>>,
     /// Contact of the discrete elements that this material leaves behind.

@@ -20,7 +20,10 @@ use fractum_scene::EnergyKind;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
 pub use body::{Body, BodyKind, SolidBody};
-pub use bonded::{BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource, ParticleSize};
+pub use bonded::{
+    BondFailure, BondLawKind, BondedBody, BondedShape, Bonds, FileContent, InterfaceArea, Interfaces, PackingSource,
+    ParticleSize,
+};
 pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
 pub use gas::{Gas, GasHole, GasLaw};
 pub use loose::{LooseBody, LooseSource, Region};

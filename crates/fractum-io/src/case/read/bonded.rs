@@ -3,12 +3,14 @@
 use super::presence::optional;
 use super::vectors::{condition_of, initial_velocity, point};
 use super::{read_file, table_path, unit};
-use crate::case::model::{BondedBody, BondedShape, Bonds, FileContent, Material, PackingSource, ParticleSize};
+use crate::case::model::{
+    BondLawKind, BondedBody, BondedShape, Bonds, FileContent, Material, PackingSource, ParticleSize,
+};
 use crate::case::reader::Table;
 use crate::case::unit::Dimension;
-use crate::case::{Diagnostic, Field, Spanned};
+use crate::case::{Choice, Diagnostic, Field, Place, Spanned};
 use fractum_math::Vec3;
-use fractum_pack::Convention;
+use fractum_pack::{Arrangement, Convention};
 
 /// Particles where nothing is said.
 const PARTICLES: u64 = 10_000;
@@ -38,7 +40,8 @@ pub(super) fn bonded(table: &Table<'_>, material: Option<usize>, here: Option<&M
         false => table.text("replaces").spanned().map(Some).or_if_absent(None),
     };
     let packing = packing(table);
-    let beams = here.and_then(|material| material.bonds.as_ref());
+    let law = law(table, here);
+    let beams = here.and_then(|material| material.bonds.as_ref()).filter(|_| law == BondLawKind::CohesiveBeam);
     let (coordination, convention) = match beams {
         Some(beams) => {
             table.refuse("coordination", "beside the bonds of its material, which have one");
@@ -56,11 +59,35 @@ pub(super) fn bonded(table: &Table<'_>, material: Option<usize>, here: Option<&M
         material: material?,
         packing: packing?,
         replaces: replaces?,
+        law,
         coordination,
         convention,
         groups: groups?,
         initial_velocity: initial_velocity?,
     })
+}
+
+/// The law of the bonds; tables of the material that it does not read are mistakes.
+fn law(table: &Table<'_>, here: Option<&Material>) -> BondLawKind {
+    let law = table.choice("bond").or(BondLawKind::default());
+    let Some(here) = here else { return law };
+    let refuse = |place: &Place, remedy: &str| {
+        let note = Diagnostic::error(place, format!("has no effect on body bonds with bond = \"{}\"", law.name()));
+        table.reader.note(note.remedy(remedy));
+    };
+    if law == BondLawKind::CohesiveBeam {
+        if let Some(own) = &here.interfaces {
+            refuse(&own.place, "bond = \"local\" on the body, or leave the table out");
+        }
+        return law;
+    }
+    if let Some(own) = &here.bonds {
+        refuse(&own.place, "leave the table out: interfaces take their stiffness from the material");
+    }
+    if let Some(own) = &here.fracture {
+        refuse(&own.place, "give the strengths in the table interface");
+    }
+    law
 }
 
 fn packing(table: &Table<'_>) -> Option<PackingSource> {
@@ -70,8 +97,9 @@ fn packing(table: &Table<'_>) -> Option<PackingSource> {
         {
             table.refuse(key, "beside a packing made before");
         }
-        table.refuse("dispersion", "beside a packing made before");
-        table.refuse("seed", "beside a packing made before");
+        for key in ["dispersion", "seed", "arrangement"] {
+            table.refuse(key, "beside a packing made before");
+        }
         return file(table, "packing").map(PackingSource::File);
     }
     let kinds =
@@ -85,11 +113,23 @@ fn packing(table: &Table<'_>) -> Option<PackingSource> {
             None
         }
     };
+    let arrangement = table.choice("arrangement").or(Arrangement::default());
+    if arrangement != Arrangement::Random {
+        if kind.as_ref().is_some_and(|kind| kind.value != Kind::Box) {
+            table.refuse("arrangement", "on this shape, only on a box");
+        }
+        for key in ["particles", "dispersion", "seed"] {
+            table.refuse(key, "in a regular arrangement, which particle_radius decides");
+        }
+        if !table.has("particle_radius") {
+            table.reader.note_missing(&table.place_of("particle_radius"), "the radius of the particles");
+        }
+    }
     let size = size(table);
     let dispersion = table.quantity("dispersion").check(|kappa| (0.0..=1.0).contains(kappa), DISPERSION_RANGE);
     let dispersion = dispersion.or_if_absent(DISPERSION);
     let seed = table.integer("seed").or_if_absent(1);
-    Some(PackingSource::Shape { shape: shape?, size: size?, dispersion: dispersion?, seed: seed? })
+    Some(PackingSource::Shape { shape: shape?, size: size?, dispersion: dispersion?, seed: seed?, arrangement })
 }
 
 pub(super) const DISPERSION_RANGE: &str = "from 0 to 1 (0.25 is usual; packings below 0.15 tend to order)";

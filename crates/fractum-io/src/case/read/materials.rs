@@ -32,6 +32,11 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         let place = table.place.clone();
         super::bonded::bonds(table).map(|bonds| Spanned::new(bonds, place))
     });
+    let interfaces = table.table("interface").map(|table| {
+        let place = table.place.clone();
+        let elasticity = young_modulus.zip(poisson_ratio);
+        super::interface::interface(table, elasticity).map(|interfaces| Spanned::new(interfaces, place))
+    });
     let fracture = table.table("fracture").map(|table| {
         let place = table.place.clone();
         super::fracture::fracture(table).map(|failure| Spanned::new(failure, place))
@@ -46,6 +51,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         poisson_ratio: poisson_ratio?,
         damage: damage.map_or(Some(None), |damage| damage.map(Some))?,
         bonds: bonds.map_or(Some(None), |bonds| bonds.map(Some))?,
+        interfaces: interfaces.map_or(Some(None), |interfaces| interfaces.map(Some))?,
         fracture: fracture.map_or(Some(None), |fracture| fracture.map(Some))?,
         contact,
         contact_modulus: contact_modulus?,

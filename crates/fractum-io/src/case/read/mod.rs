@@ -8,6 +8,7 @@ mod firing;
 mod fracture;
 mod gas;
 mod in_situ;
+mod interface;
 mod loose;
 mod materials;
 mod parameters;

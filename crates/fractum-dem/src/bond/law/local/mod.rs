@@ -1,0 +1,281 @@
+//! The local constitutive bond: an interface of its own area between two particles, with cohesion and friction.
+
+mod interface;
+#[cfg(test)]
+mod tests;
+
+pub use interface::{Crushing, InterfaceFailure, InterfaceMemory, Separation};
+
+use super::{BondEnergy, BondLanes, BondLaw, BondStiffness, BondedPair, ForceLanes, Turn};
+use crate::DemError;
+use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, scale, sub};
+
+/// Stress at the interface of two particles from their relative displacement:
+///
+/// σ = E u_n/d, τ = G u_s/d, G = E/(2(1 + ν)), forces are stresses times α A with A = π min(r)², d the distance at which
+/// the bond was made. Elastic up to σ = σ_t in tension and |τ| = τ_f + μ₁ p under a pressure p, then linear softening; an
+/// interface that has separated is a contact with Coulomb's friction μ₂; plastic compression with elastic unloading. Part D
+/// of an interface that is damaged in shear rubs, and 1 − D is elastic (Alfano and Sacco, *Int. J. Numer. Methods Eng.* 68
+/// (2006) 542–582), so that strength passes over into friction without a jump. The relative displacement is that of the
+/// points which both particles carry where they touch, so that rigid motion gives no force, and the distance at which a
+/// bond is made is free of force.
+///
+/// Oñate, Zárate, Celigueta et al., *Advances in the DEM and coupled DEM and FEM techniques in non linear solid
+/// mechanics* (2017), eqs. (5)–(20).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalBond {
+    /// Young's modulus E [Pa].
+    pub young_modulus: f64,
+    /// Poisson's ratio ν, which sets the shear stiffness.
+    pub poisson_ratio: f64,
+    /// Tensile strength σ_t of the interface [Pa]; infinite where it holds for ever.
+    pub tensile_strength: f64,
+    /// Shear strength τ_f without pressure [Pa]; infinite where it holds for ever.
+    pub shear_strength: f64,
+    /// Coefficient μ₁ ≥ 0 by which pressure adds to the shear strength.
+    pub internal_friction: f64,
+    /// Coulomb's coefficient μ₂ ≥ 0 of what has separated.
+    pub friction: f64,
+    /// Slopes of softening in tension and shear over those of elasticity, H_n/K_n and H_t/K_s, > 0; infinite where it is brittle.
+    pub softening: [f64; 2],
+    /// How tension and shear act together.
+    pub failure: InterfaceFailure,
+    /// Plastic compression.
+    pub crushing: Crushing,
+    /// Local viscous damping ξ ≥ 0 of the normal motion.
+    pub damping_ratio: f64,
+}
+
+/// What an interface has of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Interface {
+    /// α A [m²].
+    area: f64,
+    /// Distance from the first particle to the interface over that of both particles.
+    arm: f64,
+    /// Smaller radius of the two [m].
+    radius: f64,
+}
+
+/// Strains of `W` bonds, and what turns stresses into forces.
+struct Kinematics<const W: usize> {
+    direction: Vector<W>,
+    over: Lanes<W>,
+    normal: Lanes<W>,
+    shear: Vector<W>,
+    /// Arms from both particles to the interface, turned with them, over the length of the bond.
+    arms: [Vector<W>; 2],
+    along: Lanes<W>,
+}
+
+impl<const W: usize> Kinematics<W> {
+    #[inline(always)]
+    fn of(bonds: &BondLanes<W>, own: &[Interface; W]) -> Self {
+        let BondLanes { gap, turns, axis, inverse, .. } = *bonds;
+        let length = dot(gap, gap).sqrt();
+        let over = length.recip();
+        let n = scale(gap, over);
+        let first = Lanes(own.map(|own| own.arm));
+        let second = Lanes::splat(1.0) - first;
+        let [(w1, u1), (w2, u2)] = turns;
+        let arms = [scale(rotate(w1, u1, axis), first), scale(rotate(w2, u2, axis), second)];
+        let sum = add(arms[0], arms[1]);
+        let along = dot(n, sum);
+        let shear = sub(scale(n, along), sum);
+        Kinematics { direction: n, over, normal: length * inverse - Lanes::splat(1.0), shear, arms, along }
+    }
+
+    /// Forces of a normal stress and a stress across, times areas. Moments carry what makes angular momentum exact.
+    #[inline(always)]
+    fn forces(&self, pull: Lanes<W>, across: Vector<W>, length: Lanes<W>, arm: Lanes<W>) -> ForceLanes<W> {
+        let force = sub(scale(self.direction, -pull), scale(across, self.along * length * self.over));
+        let missing = scale(cross(self.shear, across), length);
+        let rest = Lanes::splat(1.0) - arm;
+        let moment = |k: usize, share: Lanes<W>| add(scale(cross(self.arms[k], across), length), scale(missing, share));
+        ForceLanes { force, moment: [moment(0, arm), moment(1, rest)] }
+    }
+}
+
+fn turned<const W: usize>((w, u): Turn<W>, v: Vector<W>, back: bool) -> Vector<W> {
+    rotate(w, if back { u.map(|u| -u) } else { u }, v)
+}
+
+impl LocalBond {
+    /// An elastic interface that holds for ever.
+    pub fn elastic(young_modulus: f64, poisson_ratio: f64) -> Self {
+        LocalBond {
+            young_modulus,
+            poisson_ratio,
+            tensile_strength: f64::INFINITY,
+            shear_strength: f64::INFINITY,
+            internal_friction: 0.0,
+            friction: 0.0,
+            softening: [f64::INFINITY; 2],
+            failure: InterfaceFailure::default(),
+            crushing: Crushing::NONE,
+            damping_ratio: 0.0,
+        }
+    }
+
+    /// G = E/(2(1 + ν)) [Pa].
+    #[inline]
+    pub fn shear_modulus(&self) -> f64 {
+        self.young_modulus / (2.0 * (1.0 + self.poisson_ratio))
+    }
+
+    /// Whether there is any strength.
+    #[inline]
+    pub(super) fn is_cohesive(&self) -> bool {
+        self.tensile_strength > 0.0 || self.shear_strength > 0.0
+    }
+
+    /// Whether bonds can separate.
+    pub fn can_fail(&self) -> bool {
+        self.tensile_strength.is_finite() || self.shear_strength.is_finite()
+    }
+
+    /// Stresses of bonds of which one at least is not, or does not stay, whole.
+    #[inline(never)]
+    fn inelastic<const W: usize>(
+        &self,
+        bonds: &BondLanes<W>,
+        at: &Kinematics<W>,
+        memory: &mut [InterfaceMemory; W],
+    ) -> (Lanes<W>, Vector<W>) {
+        let slips = [0, 1, 2].map(|a| Lanes(std::array::from_fn(|k| memory[k].slip[a])));
+        let mut slips = turned(bonds.turns[0], slips, false);
+        let (mut stress, mut across, mut moved) = ([0.0; W], [[0.0; W]; 3], [false; W]);
+        for k in 0..W {
+            if bonds.live.0[k] == 0.0 {
+                continue;
+            }
+            let (shear, slip) = (at.shear.map(|s| s.0[k]), slips.map(|s| s.0[k]));
+            let (normal_stress, shear_stress, new) = self.stress(at.normal.0[k], shear, slip, &mut memory[k]);
+            stress[k] = normal_stress;
+            moved[k] = new != slip;
+            for a in 0..3 {
+                across[a][k] = shear_stress[a];
+                slips[a].0[k] = new[a];
+            }
+        }
+        if moved.contains(&true) {
+            let back = turned(bonds.turns[0], slips, true);
+            for k in (0..W).filter(|&k| moved[k]) {
+                memory[k].slip = back.map(|b| b.0[k]);
+            }
+        }
+        (Lanes(stress), across.map(Lanes))
+    }
+}
+
+impl BondLaw for LocalBond {
+    type Parameters = Interface;
+    type Memory = InterfaceMemory;
+
+    const SEPARATES: bool = true;
+
+    fn check(&self) -> Result<(), DemError> {
+        let wrong = |what, value, expected| Err(DemError::BadCriterion { what, value, expected });
+        if !(self.young_modulus.is_finite() && self.young_modulus > 0.0) {
+            return wrong("Young's modulus", self.young_modulus, "a positive number of pascals");
+        }
+        if !(self.poisson_ratio > -1.0 && self.poisson_ratio <= 0.5) {
+            return wrong("Poisson's ratio", self.poisson_ratio, "above -1, at most 0.5");
+        }
+        let named = [
+            ("tensile strength", self.tensile_strength),
+            ("shear strength", self.shear_strength),
+            ("internal friction", self.internal_friction),
+            ("friction", self.friction),
+            ("damping ratio", self.damping_ratio),
+        ];
+        if let Some((what, value)) = named.into_iter().find(|(_, value)| value.is_nan() || *value < 0.0) {
+            return wrong(what, value, "zero or more");
+        }
+        if let Some(value) = self.softening.into_iter().find(|h| h.is_nan() || *h <= 0.0) {
+            return wrong("softening", value, "a slope above zero");
+        }
+        let Crushing { stress, ratio } = self.crushing;
+        if let Some(value) = ratio.into_iter().find(|ratio| !(ratio.is_finite() && *ratio >= 1.0)) {
+            return wrong("ratio of moduli in compression", value, "a finite number, 1 or more");
+        }
+        match stress.is_sorted() && stress[0] > 0.0 {
+            true => Ok(()),
+            false => wrong("limit of compressive stress", stress[0], "three positive numbers, ascending"),
+        }
+    }
+
+    fn parameters(&self, length: f64, [first, second]: [f64; 2], share: f64) -> Interface {
+        let radius = first.min(second);
+        let area = share * std::f64::consts::PI * radius * radius;
+        let arm = 0.5 + 0.5 * (first - second) / length;
+        Interface { area, arm: arm.clamp(0.0, 1.0), radius }
+    }
+
+    #[inline(always)]
+    fn forces<const W: usize>(
+        &self,
+        bonds: &BondLanes<W>,
+        own: &[Interface; W],
+        memory: &mut [InterfaceMemory; W],
+    ) -> ForceLanes<W> {
+        let at = Kinematics::of(bonds, own);
+        let square = dot(at.shear, at.shear);
+        let whole = |k: usize| memory[k].is_whole() && self.stays_whole(at.normal.0[k], square.0[k]);
+        let (stress, across) = if (0..W).all(whole) {
+            let (young, shear) = (Lanes::splat(self.young_modulus), Lanes::splat(self.shear_modulus()));
+            (at.normal * young, scale(at.shear, shear))
+        } else {
+            self.inelastic(bonds, &at, memory)
+        };
+        for k in (0..W).filter(|&k| bonds.live.0[k] != 0.0) {
+            memory[k].keep(at.normal.0[k], at.shear.map(|s| s.0[k]));
+        }
+        let area = Lanes(own.map(|own| own.area)) * bonds.live;
+        let arm = Lanes(own.map(|own| own.arm));
+        at.forces(stress * area, scale(across, area), bonds.inverse.recip(), arm)
+    }
+
+    fn energy(&self, pair: &BondedPair, own: &Interface, memory: &InterfaceMemory) -> BondEnergy {
+        let lanes = pair.lanes();
+        let at = Kinematics::of(&lanes, &[*own]);
+        let slip = turned(lanes.turns[0], memory.slip.map(|s| Lanes([s])), false);
+        let [along, across] = self.stored(at.normal.0[0], at.shear.map(|s| s.0[0]), slip.map(|s| s.0[0]), memory);
+        let volume = own.area * pair.length;
+        BondEnergy { tension: along * volume, bending: across * volume, torsion: 0.0 }
+    }
+
+    fn dissipated(&self, length: f64, own: &Interface, memory: &InterfaceMemory) -> f64 {
+        memory.dissipated * own.area * length
+    }
+
+    fn stiffness(&self, length: f64, own: &Interface) -> BondStiffness {
+        let across = self.shear_modulus() * own.area / length;
+        // The longer arm at both ends: a bound where the interface is not in the middle.
+        let bending = across * (own.arm.max(1.0 - own.arm) * length).powi(2);
+        BondStiffness { axial: self.young_modulus * own.area / length, bending, carry_over: bending, twist: 0.0 }
+    }
+
+    fn face_stiffness(&self, rest: f64) -> [f64; 2] {
+        let normal = self.young_modulus * std::f64::consts::PI * rest / 4.0;
+        [normal, normal * self.shear_modulus() / self.young_modulus]
+    }
+
+    fn section_radius(&self) -> f64 {
+        1.0
+    }
+
+    fn separation(memory: &InterfaceMemory) -> Option<Separation> {
+        memory.separation
+    }
+
+    /// C = 2 ξ α A/(d r) √(m K_n) [N s/m], with the smaller radius r and the reduced mass m (eq. 10 of the source).
+    fn viscosity(&self, length: f64, own: &Interface, mass: f64) -> f64 {
+        let stiffness = self.young_modulus * own.area / length;
+        2.0 * self.damping_ratio * own.area / (length * own.radius) * (mass * stiffness).sqrt()
+    }
+
+    fn touches(&self, strain: f64, memory: &InterfaceMemory) -> bool {
+        !memory.is_separated() || self.is_closed(strain, memory)
+    }
+}

@@ -1,0 +1,60 @@
+//! Bonds that separate by their own law.
+
+use super::crack::{Crack, facet_area};
+use super::criterion::BreakMode;
+use super::faces::CrackFaces;
+use super::moving::{Fracture, Occasion};
+use crate::bond::{BondGraph, Bonds, Separation};
+use crate::particles::Particles;
+
+impl Fracture {
+    /// Keeps the list of the bonds of a network that separate by their law, and lets particles touch that were never bonded.
+    ///
+    /// - `faces`: what particles do that were never bonded
+    /// - `volume`: of the body [m³]
+    pub fn of_law(bonds: &Bonds, particles: &Particles, faces: CrackFaces, volume: f64) -> Self {
+        let graph = BondGraph::new(particles.len(), bonds.pairs());
+        let area = facet_area(volume, &particles.position, bonds.pairs());
+        Fracture::with_search(graph, None, particles, faces, area)
+    }
+
+    /// Whether bonds separate by their law, and stay as contacts.
+    pub fn is_by_law(&self) -> bool {
+        self.search.is_none()
+    }
+
+    /// Lists what has separated since the last call; the bonds go on as contacts. Returns their number.
+    pub(super) fn list_separated(&mut self, bonds: &mut Bonds, occasion: Occasion) -> usize {
+        let mut separated = std::mem::take(&mut self.separated);
+        bonds.take_separated(&mut separated);
+        for &(bond, how) in &separated {
+            if !self.graph.break_bond(bond) {
+                continue;
+            }
+            let pair = bonds.pairs()[bond as usize];
+            let [a, b] = pair.map(|i| self.reference[i as usize]);
+            let mode = match how {
+                Separation::Tension => BreakMode::Tension,
+                Separation::Shear => BreakMode::Shear,
+            };
+            let Occasion { time, event, load } = occasion;
+            let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
+            // What the bond held is part of what its law has dissipated.
+            self.cracks.push(Crack {
+                bond,
+                pair,
+                event,
+                time,
+                load,
+                position,
+                normal,
+                area: self.area,
+                mode,
+                energy: 0.0,
+            });
+        }
+        let count = separated.len();
+        self.separated = separated;
+        count
+    }
+}
