@@ -509,7 +509,7 @@ mod tests {
             fracture.add_bond_forces(&mut bonds, &mut particles);
             let worst = fracture.closest(&mut bonds, &particles).unwrap().ratio;
             let body = Moving { bonds: &bonds, particles: &particles };
-            let search = fracture.search.as_ref().unwrap();
+            let search = fracture.search.as_mut().unwrap();
             assert!(search.may_fail(&body, worst));
             assert!(!search.may_fail(&body, 100.0 * worst));
             assert!(search.virial_bounds_may_fail(&bonds, worst));

@@ -3,7 +3,7 @@ use fractum_math::{Rotation, Vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::bond::{BondNetwork, Bonds};
+use crate::bond::{BondForces, BondNetwork, Bonds};
 use crate::particles::Particles;
 
 const LENGTH: f64 = 0.95;

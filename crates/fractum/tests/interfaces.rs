@@ -1,0 +1,108 @@
+//! Bonded bodies of interfaces, as their user meets them.
+
+mod common;
+
+use std::fs;
+
+use common::{Workplace, run, summary};
+
+/// A block that is crushed between two faces.
+const BLOCK: &str = r#"fractum = 1
+title = "A block of cement, crushed"
+
+[parameters]
+length = "20 mm"
+rate = "1.5 m/s"
+
+[materials.cement]
+density = "1700 kg/m^3"
+young_modulus = "3.8 GPa"
+poisson_ratio = 0.2
+[materials.cement.interface]
+tensile_strength = "1 MPa"
+shear_strength = "2 MPa"
+internal_friction = 0.3
+friction = 0.4
+tension_softening = 0.5
+shear_softening = 0.5
+crushing_stress = ["8.5 MPa", "9 MPa", "11 MPa"]
+crushing_ratio = [3, 9, 24]
+damping_ratio = 0.02
+
+[[bodies]]
+name = "block"
+kind = "bonded"
+material = "cement"
+shape = "box"
+size = ["length", "10 mm", "10 mm"]
+particles = 600
+bond = "local"
+initial_velocity = { x = "-rate*x/length" }
+
+[[supports]]
+group = "block.x-"
+fix = "x"
+[[supports]]
+group = "block.x+"
+velocity = { x = "-rate" }
+
+[solver]
+end = "60 us"
+
+[[probes]]
+name = "press"
+reaction = { group = "block.x+", along = "-x" }
+[[probes]]
+name = "broken"
+count = "broken_bonds"
+
+[output]
+fields = { every = "20 us" }
+history = { every = "1 us" }
+checkpoint = { every = "1 ms" }
+"#;
+
+#[test]
+fn interfaces_separate_with_the_same_bits_on_any_threads_and_after_a_checkpoint() {
+    let place = Workplace::new(BLOCK);
+    let one = run(&place, "one", "1");
+    let broken = one["counts"]["broken_bonds"].as_u64().unwrap();
+    assert!(broken > 50, "{}", one["counts"]);
+    let energy = |name: &str| one["energy"][name].as_f64().unwrap();
+    assert!(energy("damage") > 0.1 * energy("external"), "{}", one["energy"]);
+    assert!(energy("residual_max_relative") < 2e-3, "{}", one["energy"]);
+    let table = fs::read_to_string(place.path("one/cracks.csv")).unwrap();
+    assert_eq!(table.lines().count() as u64, broken + 1);
+    assert!(table.contains("shear") && table.contains("tension"));
+    for threads in ["2", "7"] {
+        let other = run(&place, threads, threads);
+        assert_eq!((&other["state_hash"], &other["energy"]), (&one["state_hash"], &one["energy"]), "{threads} threads");
+    }
+    let resumed = place.fractum(&["run", "case.toml", "-o", "2", "--threads", "1", "--resume", "--quiet"]);
+    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+    let resumed = summary(&place, "2");
+    assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
+    assert_eq!(fs::read_to_string(place.path("2/cracks.csv")).unwrap(), table);
+}
+
+#[test]
+fn tables_that_the_law_of_a_body_does_not_read_are_refused() {
+    let beams = BLOCK.replace("bond = \"local\"\n", "");
+    let both = BLOCK.replace("[[bodies]]", "[materials.cement.fracture]\ntensile_strength = 1e6\n[[bodies]]");
+    let at_rest = BLOCK.replace("[solver]", "[solver]\nkind = \"static\"");
+    let regular = BLOCK.replace("particles = 600", "particles = 600\narrangement = \"cartesian\"");
+    for (text, words) in [
+        (beams, "has no effect on body bonds with bond = \"cohesive-beam\""),
+        (both, "give the strengths in the table interface"),
+        (at_rest, "bonds that are cohesive beams"),
+        (regular, "particle_radius"),
+        (BLOCK.replace("[3, 9, 24]", "[0.5, 9, 24]"), "three numbers, 1 or more"),
+        (BLOCK.replace("\"9 MPa\"", "\"8 MPa\""), "three positive stresses, ascending"),
+        (BLOCK.replace("crushing_ratio = [3, 9, 24]\n", ""), "crushing_ratio"),
+    ] {
+        let place = Workplace::new(&text);
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{words}: {}", ended.stderr);
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
+}
