@@ -142,7 +142,11 @@ impl LocalBond {
         let (stress, modulus) = (self.young_modulus * normal, self.shear_modulus());
         let strength = self.shear_strength + self.internal_friction * (-stress).max(0.0);
         let inside = stress <= self.tensile_strength && -stress <= self.crushing.stress[0];
-        inside && modulus * modulus * shear_square <= strength * strength && self.is_cohesive()
+        let shear = modulus * modulus * shear_square;
+        let apart = inside && shear <= strength * strength && self.is_cohesive();
+        // Under pressure both criteria are one.
+        let together = self.failure == InterfaceFailure::Uncoupled || stress <= 0.0;
+        apart && (together || (stress / self.tensile_strength).powi(2) + shear / (strength * strength) <= 1.0)
     }
 
     /// Stresses at the present strains (normal, and a vector across), and the slip; carries the memory on.
