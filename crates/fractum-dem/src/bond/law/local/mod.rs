@@ -96,8 +96,10 @@ impl<const W: usize> Kinematics<W> {
     }
 }
 
-fn turned<const W: usize>((w, u): Turn<W>, v: Vector<W>, back: bool) -> Vector<W> {
-    rotate(w, if back { u.map(|u| -u) } else { u }, v)
+/// Slips in the axes of the first particles, as they lie across the bonds now.
+fn turned_slips<const W: usize>((w, u): Turn<W>, slips: Vector<W>, direction: Vector<W>) -> Vector<W> {
+    let slips = rotate(w, u, slips);
+    sub(slips, scale(direction, dot(direction, slips)))
 }
 
 impl LocalBond {
@@ -143,7 +145,7 @@ impl LocalBond {
         memory: &mut [InterfaceMemory; W],
     ) -> (Lanes<W>, Vector<W>) {
         let slips = [0, 1, 2].map(|a| Lanes(std::array::from_fn(|k| memory[k].slip[a])));
-        let mut slips = turned(bonds.turns[0], slips, false);
+        let mut slips = turned_slips(bonds.turns[0], slips, at.direction);
         let (mut stress, mut across, mut moved) = ([0.0; W], [[0.0; W]; 3], [false; W]);
         for k in 0..W {
             if bonds.live.0[k] == 0.0 {
@@ -159,7 +161,8 @@ impl LocalBond {
             }
         }
         if moved.contains(&true) {
-            let back = turned(bonds.turns[0], slips, true);
+            let (w, u) = bonds.turns[0];
+            let back = rotate(w, u.map(|u| -u), slips);
             for k in (0..W).filter(|&k| moved[k]) {
                 memory[k].slip = back.map(|b| b.0[k]);
             }
@@ -239,7 +242,7 @@ impl BondLaw for LocalBond {
     fn energy(&self, pair: &BondedPair, own: &Interface, memory: &InterfaceMemory) -> BondEnergy {
         let lanes = pair.lanes();
         let at = Kinematics::of(&lanes, &[*own]);
-        let slip = turned(lanes.turns[0], memory.slip.map(|s| Lanes([s])), false);
+        let slip = turned_slips(lanes.turns[0], memory.slip.map(|s| Lanes([s])), at.direction);
         let [along, across] = self.stored(at.normal.0[0], at.shear.map(|s| s.0[0]), slip.map(|s| s.0[0]), memory);
         let volume = own.area * pair.length;
         BondEnergy { tension: along * volume, bending: across * volume, torsion: 0.0 }

@@ -137,8 +137,8 @@ fn coupled_failure_begins_on_the_circle_of_both_ratios_and_takes_both_stiffnesse
     assert!((intact[0] - 0.599 * 3e5 * area()).abs() < 1e-6 * intact[0] && bonds.dissipated() == 0.0);
     // Within both strengths, and beyond the circle.
     let (mut other, mut alike) = pair(law);
-    force(&mut other, &mut alike, 0.8 * along, 0.8 * across);
-    assert!(alike.dissipated() > 0.0);
+    let [pull, _] = force(&mut other, &mut alike, 0.8 * along, 0.8 * across);
+    assert!(pull < 0.75 * 3e5 * area());
     let [pull, push] = force(&mut particles, &mut bonds, 1.2 * along, 1.6 * across);
     let (pull, push) = (pull / (1.2 * 3e5 * area()), push / (1.6 * 5e5 * area()));
     let end = 0.36 * 6.0 + 0.64 * 11.0;
@@ -194,8 +194,8 @@ fn a_bond_without_strength_is_the_contact_of_two_spheres() {
     };
     let mut memory = ContactMemory::default();
     let (mut last, mut slid, mut most) = ([0.0; 2], 0, 0.0f64);
-    for step in 0..=3_000 {
-        let t = f64::from(step) / 3_000.0;
+    for step in 0..=30_000 {
+        let t = f64::from(step) / 30_000.0;
         // Pressed, rubbed to and fro, parted, and pressed again.
         let wave = fractum_math::elementary::sin(20.0 * t);
         let now = [1e-4 * (0.2 - fractum_math::elementary::sin(9.0 * t)), 1.2e-4 * wave];
@@ -206,12 +206,13 @@ fn a_bond_without_strength_is_the_contact_of_two_spheres() {
         let expected = contact.force(&motion, &mut memory).on_second;
         let expected = [-expected.dot(&axis()), -expected.dot(&side())];
         let size = 1e-4 * stiffness;
-        assert!((0..2).all(|k| (found[k] - expected[k]).abs() < 1e-6 * size), "{step}: {found:?} {expected:?}");
+        // That law counts the share of the step in which a contact closes: a way of 3e-4 of the size makes an eighth of it.
+        assert!((0..2).all(|k| (found[k] - expected[k]).abs() < 4e-5 * size), "{step}: {found:?} {expected:?}");
         slid += usize::from(found[1] != 0.0 && (found[1].abs() + 0.4 * found[0]).abs() < 1e-9 * size);
         most = most.max(found[1].abs());
         last = now;
     }
-    assert!(slid > 300 && most > 0.0);
+    assert!(slid > 3000 && most > 0.0);
     let mut separated = Vec::new();
     bonds.take_separated(&mut separated);
     assert!(separated.is_empty());
@@ -292,7 +293,8 @@ proptest! {
         let mut again = before.clone();
         again.clear_forces();
         bonds.add_forces(&mut again);
-        prop_assert_eq!((again.force, bonds.memory()), (before.force, memory));
+        prop_assert!((again.force[1] - before.force[1]).norm() < 1e-14 * size);
+        prop_assert_eq!(bonds.memory(), memory);
     }
 }
 
