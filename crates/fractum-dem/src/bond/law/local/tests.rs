@@ -289,11 +289,11 @@ proptest! {
         prop_assert!((moment[0] - turn * before.moment[0]).norm() < 1e-6 * size);
         let total = (particles.position[1] - particles.position[0]).cross(&force) + moment[0] + moment[1];
         prop_assert!(total.norm() < 1e-12 * size);
-        // A second look at the same state leaves everything as it is.
+        // A second look at the same state leaves the memory as it is, and the forces to the rounding of a slip that is turned to and fro.
         let mut again = before.clone();
         again.clear_forces();
         bonds.add_forces(&mut again);
-        prop_assert!((again.force[1] - before.force[1]).norm() < 1e-14 * size);
+        prop_assert!((again.force[1] - before.force[1]).norm() < 1e-12 * size);
         prop_assert_eq!(bonds.memory(), memory);
     }
 }
