@@ -299,13 +299,14 @@ fn reference<'a>(run: &'a Run, quantity: &str) -> Option<&'a Expectation> {
     run.measured()?.expect.iter().find(|line| line.quantity == quantity)
 }
 
-/// The order of one quantity; none where an error is zero or changes its sign, or has no reference value.
+/// The order of one quantity; none where an error is zero or changes its sign, or is no share of a reference.
 fn order(runs: &[&Run], sizes: &[f64], quantity: &str) -> Option<f64> {
     let lines: Option<Vec<&Expectation>> = runs.iter().map(|run| reference(run, quantity)).collect();
     let lines = lines?;
-    let near = |line: &&Expectation| matches!(line.comparison, Comparison::Relative | Comparison::Absolute);
     let side = lines.first()?.error.signum();
-    let usable = lines.iter().all(|line| near(line) && line.error.is_finite() && line.error * side > 0.0);
+    let usable = lines
+        .iter()
+        .all(|line| line.comparison == Comparison::Relative && line.error.is_finite() && line.error * side > 0.0);
     let points: Vec<[f64; 2]> =
         sizes.iter().zip(&lines).map(|(size, line)| [ln(*size), ln(line.error.abs())]).collect();
     usable.then(|| line_through(&points).slope)
