@@ -153,6 +153,10 @@ fn documented_defaults_are_the_defaults() {
         };
         let mut tried = false;
         for (text, material, body, function) in samples {
+            // A table of interfaces is something else than none.
+            if key.path.contains(".interface.") && !["cement", "grout"].contains(&material) {
+                continue;
+            }
             let path = key
                 .path
                 .replace("NAME", material)
