@@ -89,12 +89,10 @@ fn interfaces_separate_with_the_same_bits_on_any_threads_and_after_a_checkpoint(
 fn tables_that_the_law_of_a_body_does_not_read_are_refused() {
     let beams = BLOCK.replace("bond = \"local\"\n", "");
     let both = BLOCK.replace("[[bodies]]", "[materials.cement.fracture]\ntensile_strength = 1e6\n[[bodies]]");
-    let at_rest = BLOCK.replace("[solver]", "[solver]\nkind = \"static\"");
     let regular = BLOCK.replace("particles = 600", "particles = 600\narrangement = \"cartesian\"");
     for (text, words) in [
         (beams, "has no effect on body bonds with bond = \"cohesive-beam\""),
         (both, "give the strengths in the table interface"),
-        (at_rest, "bonds that are cohesive beams"),
         (regular, "particle_radius"),
         (BLOCK.replace("[3, 9, 24]", "[0.5, 9, 24]"), "three numbers, 1 or more"),
         (BLOCK.replace("\"9 MPa\"", "\"8 MPa\""), "three positive stresses, ascending"),
