@@ -59,7 +59,7 @@ count = "broken_bonds"
 [output]
 fields = { every = "20 us" }
 history = { every = "1 us" }
-checkpoint = { every = "1 ms" }
+checkpoint = { every = "25 us" }
 "#;
 
 #[test]
@@ -97,6 +97,7 @@ fn tables_that_the_law_of_a_body_does_not_read_are_refused() {
         (BLOCK.replace("[3, 9, 24]", "[0.5, 9, 24]"), "three numbers, 1 or more"),
         (BLOCK.replace("\"9 MPa\"", "\"8 MPa\""), "three positive stresses, ascending"),
         (BLOCK.replace("crushing_ratio = [3, 9, 24]\n", ""), "crushing_ratio"),
+        (BLOCK.replace("[solver]", "[solver]\nkind = \"static\""), "and bond = \"local\""),
     ] {
         let place = Workplace::new(&text);
         let ended = place.fractum(&["check", "case.toml"]);

@@ -6,8 +6,8 @@ use fractum_math::Vec3;
 use fractum_scene::{Domain, Scene};
 
 use super::Context;
-use crate::case::model::{Body, BodyKind, GroupUse, Motion, ProbeKind, Selection, SolverKind};
-use crate::case::{Diagnostic, Spanned, TimeFunction, nearest};
+use crate::case::model::{Body, BodyKind, BondLawKind, GroupUse, Motion, ProbeKind, Selection, SolverKind};
+use crate::case::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
 use crate::number::quantity;
 
 /// Steps that a run can count without losing time to rounding.
@@ -190,6 +190,10 @@ impl Context<'_> {
         }
         if body.initial_velocity.iter().any(Option::is_some) {
             self.error(&place, found("initial_velocity"), "a body at rest; or kind = \"explicit\"");
+        }
+        if body.law != BondLawKind::CohesiveBeam {
+            let what = format!("bond = \"{}\"", body.law.name());
+            self.error(&place, found(&what), "bond = \"cohesive-beam\" on the body; or kind = \"explicit\"");
         }
     }
 
