@@ -125,7 +125,7 @@ fn cells(sample: &Sample) -> Vec<f64> {
 
 /// Surface of the regular polyhedra about a sphere over that of the sphere, by their faces.
 const POLYHEDRA: [(f64, f64); 5] =
-    [(4.0, 3.307_973), (6.0, 1.909_859), (8.0, 1.653_987), (12.0, 1.325_034), (20.0, 1.206_571)];
+    [(4.0, 3.307_973), (6.0, 1.909_859), (8.0, 1.653_987), (12.0, 1.325_034), (20.0, 1.206_567)];
 
 /// Surface of a polyhedron about a sphere over that of the sphere, on straight lines between the regular ones.
 fn polyhedron(faces: u32) -> f64 {

@@ -48,13 +48,12 @@ enum Command {
         #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
         set: Vec<(String, String)>,
     },
-    /// Start a case file from a template.
+    /// Write a case that runs as it stands, with its mesh, into a folder.
     New {
         /// Template; without one, the list of templates.
         template: Option<String>,
-        /// File to write; the name of the template if not given.
-        #[arg(short, long)]
-        output: Option<PathBuf>,
+        /// Folder to write into; the name of the template if not given.
+        folder: Option<PathBuf>,
     },
     /// Run the gallery against its references and print the table of errors and run times.
     Verify {
@@ -157,7 +156,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
     let result = match arguments.command {
         Command::Run(run) => run_case(run),
         Command::Check { case, set } => check(&case, &set),
-        Command::New { template, output } => new::new(template.as_deref(), output),
+        Command::New { template, folder } => new::new(template.as_deref(), folder),
         Command::Verify { stress: true, blasts, scenes, seed, output, threads, .. } => {
             let settings = fractum::stress::Settings { scenes, blasts, seed, output, threads, cache: cache() };
             fractum::stress::stress(&settings).and_then(|lines| {

@@ -1,39 +1,90 @@
-//! `fractum new`: a case file to start from.
+//! `fractum new`: a folder with a case that runs as it stands, its mesh, and the geometry that made the mesh.
 
 use std::path::{Path, PathBuf};
 
 use fractum::{ExitCode, Failure, say};
+use fractum_io::atomic;
 
-/// Templates: name, what it is, text. They are cases of the gallery, so that they always run.
-const TEMPLATES: [(&str, &str, &str); 2] = [
-    (
-        "brazilian",
-        "splitting of a disc between platens, with damage and discrete elements",
-        include_str!("../../../../cases/brazilian-concrete/coarse.toml"),
-    ),
-    (
-        "tension-bar",
-        "a bar pulled apart: fracture energy",
-        include_str!("../../../../cases/tension-bar/aligned-coarse.toml"),
-    ),
+/// A case to start from.
+struct Template {
+    name: &'static str,
+    what: &'static str,
+    case: &'static str,
+    /// Mesh and geometry; none of bodies that fractum packs.
+    mesh: Option<(&'static [u8], &'static str)>,
+}
+
+/// A template from its folder below `templates`.
+macro_rules! template {
+    ($name:literal, $what:literal, case alone) => {
+        Template {
+            name: $name,
+            what: $what,
+            case: include_str!(concat!("../../templates/", $name, "/case.toml")),
+            mesh: None,
+        }
+    };
+    ($name:literal, $what:literal) => {
+        Template {
+            name: $name,
+            what: $what,
+            case: include_str!(concat!("../../templates/", $name, "/case.toml")),
+            mesh: Some((
+                include_bytes!(concat!("../../templates/", $name, "/part.msh")),
+                include_str!(concat!("../../templates/", $name, "/part.geo")),
+            )),
+        }
+    };
+}
+
+const TEMPLATES: [Template; 7] = [
+    template!("plate", "plate with two holes pulled apart at rest; triangles"),
+    template!("bracket", "L-shaped bracket bent at rest until it cracks; tetrahedra"),
+    template!("brazilian", "disc of rock split between platens at rest; triangles"),
+    template!("beam", "notched beam in three-point bending at rest; triangles"),
+    template!("bonded-ucs", "cylinder of bonded particles crushed at rest; no mesh", case alone),
+    template!("impact", "steel ball that hits a concrete slab; tetrahedra in motion, fragments"),
+    template!("blast", "pressure pulse in a blast hole below a free face; triangles in motion"),
 ];
 
-pub(crate) fn new(template: Option<&str>, output: Option<PathBuf>) -> Result<ExitCode, Failure> {
+/// Lists the templates, or writes one into a folder.
+///
+/// # Errors
+/// An unknown name; a folder that has one of the files; a disk that cannot be written to.
+pub(crate) fn new(template: Option<&str>, folder: Option<PathBuf>) -> Result<ExitCode, Failure> {
     let Some(name) = template else {
-        for (name, what, _) in TEMPLATES {
-            say!("{name:<16} {what}");
+        for Template { name, what, .. } in TEMPLATES {
+            say!("{name:<12} {what}");
         }
+        say!(
+            "\nfractum new NAME [FOLDER] writes case.toml with its mesh, part.msh, and the Gmsh geometry of that, part.geo"
+        );
         return Ok(ExitCode::Done);
     };
-    let Some((_, _, text)) = TEMPLATES.iter().find(|t| t.0 == name) else {
-        let names: Vec<&str> = TEMPLATES.iter().map(|t| t.0).collect();
+    let Some(template) = TEMPLATES.iter().find(|template| template.name == name) else {
+        let names: Vec<&str> = TEMPLATES.iter().map(|template| template.name).collect();
         return Err(Failure::input(format!("no template \"{name}\"; templates: {}", names.join(", "))));
     };
-    let path = output.unwrap_or_else(|| Path::new(name).with_extension("toml"));
-    if path.exists() {
-        return Err(Failure::input(format!("{}: exists already; name another file with -o", path.display())));
+    let folder = folder.unwrap_or_else(|| PathBuf::from(name));
+    let mut files: Vec<(&str, &[u8])> = vec![("case.toml", template.case.as_bytes())];
+    if let Some((mesh, geometry)) = template.mesh {
+        files.extend([("part.msh", mesh), ("part.geo", geometry.as_bytes())]);
     }
-    fractum_io::atomic::write(&path, text.as_bytes())?;
-    say!("{}: put your mesh beside it and name it under [mesh]", path.display());
+    if let Some((file, _)) = files.iter().find(|(file, _)| folder.join(file).exists()) {
+        let path = folder.join(file);
+        return Err(Failure::input(format!("{}: exists already; name another folder", path.display())));
+    }
+    atomic::create_folder(&folder)?;
+    for (file, bytes) in files {
+        atomic::write(&folder.join(file), bytes)?;
+    }
+    say!("{}: {}", folder.display(), template.what);
+    say!("next: fractum run {}", quoted(&folder.join("case.toml")));
     Ok(ExitCode::Done)
+}
+
+/// A path as a shell takes it.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    if text.contains(char::is_whitespace) { format!("\"{text}\"") } else { text }
 }
