@@ -54,7 +54,7 @@ fn dependencies(manifest: &toml::Table, table: &str) -> (BTreeSet<String>, BTree
     names.partition(|name| name.starts_with("fractum"))
 }
 
-/// Sources of a crate without its tests: files below `src`, each up to its test module.
+/// Sources of a crate without its tests: files below `src` but `tests.rs`, each up to its test module.
 fn sources(name: &str) -> BTreeMap<PathBuf, String> {
     let mut found = BTreeMap::new();
     let mut folders = vec![crates().join(name).join("src")];
@@ -63,7 +63,7 @@ fn sources(name: &str) -> BTreeMap<PathBuf, String> {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else if path.extension().is_some_and(|e| e == "rs") {
+            } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("tests.rs") {
                 let text = fs::read_to_string(&path).unwrap();
                 let code = text.split("#[cfg(test)]").next().unwrap_or_default().to_owned();
                 found.insert(path, code);
