@@ -45,20 +45,19 @@ reaction = { group = "x+", along = "x" }
 name = "angle"
 crack = { measure = "angle", along = "x" }
 [[probes]]
-name = "middle"
-crack = { measure = "centre", along = "x" }
-[[probes]]
 name = "place"
 crack = { measure = "centre", along = "x", where = "y < 6 cm" }
 "#;
 
 #[test]
 fn a_bar_parts_at_its_weak_slab_whatever_controls_the_path() {
-    let by_damage = Workplace::new(BAR);
+    // In a uniform slab a crack may lie anywhere; this one is weakest in the middle.
+    let bar = BAR.replace("if(abs(x - 20 cm) < 3 cm, 0.5, 1.0)", "min(1, 0.5 + 0.02*abs(x - 20 cm)/1 cm)");
+    let by_damage = Workplace::new(&bar);
     let opening = r#"kind = "static"
 control = "opening"
 opening = { group = "x+", against = "x-", along = "x", step = "2 um", end = "0.2 mm" }"#;
-    let by_opening = Workplace::new(&BAR.replace("kind = \"static\"", opening));
+    let by_opening = Workplace::new(&bar.replace("kind = \"static\"", opening));
     let probe = |summary: &serde_json::Value, name: &str, of: &str| summary["probes"][name][of].as_f64().unwrap();
     let first = run(&by_damage, "one", "1");
     assert_eq!(first["state_hash"], run(&by_damage, "two", "2")["state_hash"]);
@@ -68,13 +67,11 @@ opening = { group = "x+", against = "x-", along = "x", step = "2 um", end = "0.2
         assert!((peak / 1.5e6 - 1.0).abs() < 0.08, "{peak} Pa");
         // The crack lies in the middle, rather across the bar than along it: three elements cannot tell better.
         assert!(probe(summary, "angle", "final") > 45f64.to_radians(), "{}", summary["probes"]["angle"]);
-        assert!((probe(summary, "middle", "final") - 0.2).abs() < 0.02, "{}", summary["probes"]["middle"]);
-        let lower = probe(summary, "place", "final");
-        assert!((lower - 0.2).abs() < 0.03, "the lower half of it is in the slab too: {lower}");
+        assert!((probe(summary, "place", "final") - 0.2).abs() < 0.02, "{}", summary["probes"]["place"]);
         assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", summary["energy"]);
     }
     let peaks = [&first, &second].map(|summary| probe(summary, "load", "max"));
-    // A uniform slab may part in more than one way.
+    // The crack may run through the slab in more than one way.
     assert!((peaks[0] / peaks[1] - 1.0).abs() < 0.05, "{peaks:?}");
 }
 

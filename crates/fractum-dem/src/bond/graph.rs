@@ -1,6 +1,26 @@
 //! Which particles are joined by bonds that still hold.
 
-use fractum_math::numbered_parts;
+use fractum_math::{Vec3, numbered_parts};
+
+use crate::DemError;
+
+/// Refuses bonds that join nothing.
+///
+/// # Errors
+/// [`DemError::BadBond`], the first one.
+pub(crate) fn check_pairs(position: &[Vec3], pairs: &[[u32; 2]]) -> Result<(), DemError> {
+    let count = position.len();
+    for (bond, &[first, second]) in pairs.iter().enumerate() {
+        let bad = |reason| Err(DemError::BadBond { bond, first, second, count, reason });
+        if first as usize >= count || second as usize >= count {
+            return bad("no such particle");
+        }
+        if first == second || position[first as usize] == position[second as usize] {
+            return bad("a bond needs two different places");
+        }
+    }
+    Ok(())
+}
 
 /// Particles and bonds as a graph; bonds go and never come back.
 #[derive(Clone, Debug)]

@@ -7,6 +7,7 @@ pub mod lanes;
 mod law;
 mod network;
 
+pub(crate) use graph::check_pairs;
 pub use graph::{BondGraph, HalfEdge, Parts};
 pub use kinds::{AnyBondLaw, BondMemory, Bonds};
 pub use law::*;

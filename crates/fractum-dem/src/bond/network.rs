@@ -5,7 +5,7 @@ use nalgebra::Matrix6;
 use rayon::prelude::*;
 
 use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, WIDTH};
-use super::graph::BondGraph;
+use super::graph::{BondGraph, check_pairs};
 use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
 use crate::DemError;
 use crate::particles::Particles;
@@ -178,7 +178,7 @@ impl<L: BondLaw> BondNetwork<L> {
         first * second / (first + second)
     }
 
-    /// Finds the viscous resistance [N s/m] of every bond that acts and its direction, and adds its forces to `out`.
+    /// Adds the viscous forces of all bonds that act to those of their particles [N].
     pub fn add_viscous_forces(&self, particles: &Particles, graph: &BondGraph, out: &mut [Vec3]) {
         let Particles { position, velocity, .. } = particles;
         out.par_iter_mut().enumerate().for_each(|(i, out)| {
@@ -343,21 +343,14 @@ impl<L: BondLaw> BondNetwork<L> {
 
 /// The pairs with the smaller particle first, ascending, and the factors on their areas.
 fn sorted(particles: &Particles, pairs: &[[u32; 2]], shares: &[f64]) -> Result<(Vec<[u32; 2]>, Vec<f64>), DemError> {
-    let (position, count) = (&particles.position, particles.len());
     if !shares.is_empty() && shares.len() != pairs.len() {
         return Err(DemError::Length { what: "areas of bonds", found: shares.len(), expected: pairs.len() });
     }
-    let mut both = Vec::with_capacity(pairs.len());
-    for (bond, &[first, second]) in pairs.iter().enumerate() {
-        let bad = |reason| Err(DemError::BadBond { bond, first, second, count, reason });
-        if first as usize >= count || second as usize >= count {
-            return bad("no such particle");
-        }
-        if first == second || position[first as usize] == position[second as usize] {
-            return bad("a bond needs two different places");
-        }
-        both.push(([first.min(second), first.max(second)], shares.get(bond).copied().unwrap_or(1.0)));
-    }
+    check_pairs(&particles.position, pairs)?;
+    let share = |bond: usize| shares.get(bond).copied().unwrap_or(1.0);
+    let ascending =
+        |(bond, &[first, second]): (usize, &[u32; 2])| ([first.min(second), first.max(second)], share(bond));
+    let mut both: Vec<([u32; 2], f64)> = pairs.iter().enumerate().map(ascending).collect();
     both.sort_by_key(|(pair, _)| *pair);
     Ok(both.into_iter().unzip())
 }

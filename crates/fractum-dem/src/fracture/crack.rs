@@ -28,6 +28,34 @@ pub struct Crack {
     pub energy: f64,
 }
 
+/// Where and when bonds break, for the list of cracks.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Occasion {
+    /// Time [s].
+    pub time: f64,
+    /// Number of the step or of the equilibrium.
+    pub event: usize,
+    /// Load, where there is one that matters.
+    pub load: f64,
+}
+
+impl Crack {
+    /// A bond between the particles of `pair`, which lie at `reference` in the undeformed body [m], breaks.
+    pub(crate) fn new(
+        bond: u32,
+        pair: [u32; 2],
+        reference: &[Vec3],
+        area: f64,
+        mode: BreakMode,
+        energy: f64,
+        Occasion { time, event, load }: Occasion,
+    ) -> Self {
+        let [a, b] = pair.map(|i| reference[i as usize]);
+        let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
+        Crack { bond, pair, event, time, load, position, normal, area, mode, energy }
+    }
+}
+
 /// Facet area of every bond: bonds and facets fill the body, V = Σ A l/3.
 pub(crate) fn facet_area(volume: f64, position: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
     let length: f64 = pairs.iter().map(|p| (position[p[1] as usize] - position[p[0] as usize]).norm()).sum();

@@ -7,9 +7,9 @@ mod moving;
 mod search;
 mod separated;
 
-pub use crack::Crack;
 pub(crate) use crack::facet_area;
+pub use crack::{Crack, Occasion};
 pub use criterion::{FailureSite, FractureCriterion};
 pub use faces::{CrackFaces, FaceWork};
-pub use moving::{Fracture, FractureState, Occasion};
+pub use moving::{Fracture, FractureState};
 pub use search::{Break, FailureSearch, LoadedBonds};

@@ -6,7 +6,7 @@ use fractum_contact::close_pairs;
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::crack::{Crack, facet_area};
+use super::crack::{Crack, Occasion, facet_area};
 use super::criterion::{BondLoad, FailureSite, FractureCriterion};
 use super::faces::{CrackFaces, Face, FaceWork};
 use super::search::{Break, FailureSearch, LoadedBonds};
@@ -62,17 +62,6 @@ pub struct FractureState {
     faces: Vec<Face>,
     cracks: Vec<Crack>,
     released: f64,
-}
-
-/// Where and when bonds break, for the list of cracks.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Occasion {
-    /// Time [s].
-    pub time: f64,
-    /// Number of the step or of the equilibrium.
-    pub event: usize,
-    /// Load, where there is one that matters.
-    pub load: f64,
 }
 
 /// A network and its particles as a criterion sees them.
@@ -254,16 +243,12 @@ impl Fracture {
             let energy = bonds.energy_of(bond as usize, particles).total();
             self.acting.push((self.cracks.len(), bonds.forces_of(bond as usize, particles)));
             let pair = bonds.pairs()[bond as usize];
-            let [i, j] = pair.map(|i| i as usize);
             let rest = bonds.length(bond as usize);
             self.pairs.push(Face::new(bonds, particles, pair, rest, self.faces, false));
             bonds.break_bond(bond as usize);
             self.search.iter_mut().for_each(|search| search.bond_broken(bond, &self.graph));
             self.released += energy;
-            let (a, b) = (self.reference[i], self.reference[j]);
-            let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
-            let Occasion { time, event, load } = occasion;
-            self.cracks.push(Crack { bond, pair, event, time, load, position, normal, area: self.area, mode, energy });
+            self.cracks.push(Crack::new(bond, pair, &self.reference, self.area, mode, energy, occasion));
         }
         self.cracks.len() - before
     }

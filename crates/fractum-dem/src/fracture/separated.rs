@@ -1,9 +1,9 @@
 //! Bonds that separate by their own law.
 
-use super::crack::{Crack, facet_area};
+use super::crack::{Crack, Occasion, facet_area};
 use super::criterion::BreakMode;
 use super::faces::CrackFaces;
-use super::moving::{Fracture, Occasion};
+use super::moving::Fracture;
 use crate::bond::{BondGraph, Bonds, Separation};
 use crate::particles::Particles;
 
@@ -32,26 +32,12 @@ impl Fracture {
                 continue;
             }
             let pair = bonds.pairs()[bond as usize];
-            let [a, b] = pair.map(|i| self.reference[i as usize]);
             let mode = match how {
                 Separation::Tension => BreakMode::Tension,
                 Separation::Shear => BreakMode::Shear,
             };
-            let Occasion { time, event, load } = occasion;
-            let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
             // What the bond held is part of what its law has dissipated.
-            self.cracks.push(Crack {
-                bond,
-                pair,
-                event,
-                time,
-                load,
-                position,
-                normal,
-                area: self.area,
-                mode,
-                energy: 0.0,
-            });
+            self.cracks.push(Crack::new(bond, pair, &self.reference, self.area, mode, 0.0, occasion));
         }
         let count = separated.len();
         self.separated = separated;

@@ -10,7 +10,7 @@ pub use state::QuasiStaticState;
 use super::{Dof6, Lattice, LatticeSupports, StaticBody, Tolerance};
 use crate::DemError;
 use crate::bond::BondGraph;
-use crate::fracture::{Break, Crack, FailureSearch, FailureSite, FractureCriterion, facet_area};
+use crate::fracture::{Break, Crack, FailureSearch, FailureSite, FractureCriterion, Occasion, facet_area};
 
 /// How many bonds break between two equilibria.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -244,10 +244,9 @@ impl QuasiStatic {
             let energy = progress.factor * progress.factor * body.bond_energy(bond);
             if graph.break_bond(bond) {
                 let pair = graph.pairs()[bond as usize];
-                let [a, b] = pair.map(|i| body.lattice().position()[i as usize]);
-                let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
-                let (event, area, time) = (progress.event, *area, progress.factor);
-                progress.cracks.push(Crack { bond, pair, event, time, load, position, normal, area, mode, energy });
+                let occasion = Occasion { time: progress.factor, event: progress.event, load };
+                let reference = body.lattice().position();
+                progress.cracks.push(Crack::new(bond, pair, reference, *area, mode, energy, occasion));
                 body.break_bond(bond);
                 search.bond_broken(bond, graph);
             }

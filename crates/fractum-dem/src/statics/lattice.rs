@@ -4,7 +4,7 @@ use fractum_math::Vec3;
 use rayon::prelude::*;
 
 use crate::DemError;
-use crate::bond::BeamSection;
+use crate::bond::{BeamSection, check_pairs};
 
 /// Displacement (x, y, z) [m] and rotation (x, y, z) of a particle; or the force [N] and moment [N m] conjugate to it.
 pub type Dof6 = [f64; 6];
@@ -107,14 +107,8 @@ impl Lattice {
         section.check()?;
         let count = position.len();
         let mut offsets = vec![0u32; count + 1];
-        for (bond, &[first, second]) in pairs.iter().enumerate() {
-            let bad = |reason| Err(DemError::BadBond { bond, first, second, count, reason });
-            if first as usize >= count || second as usize >= count {
-                return bad("no such particle");
-            }
-            if first == second || position[first as usize] == position[second as usize] {
-                return bad("a bond needs two different places");
-            }
+        check_pairs(position, pairs)?;
+        for &[first, second] in pairs {
             offsets[first as usize + 1] += 1;
             offsets[second as usize + 1] += 1;
         }

@@ -9,7 +9,7 @@ pub mod expectation;
 pub mod fragments;
 pub mod history;
 pub mod log;
-mod markup;
+pub(crate) mod markup;
 pub mod picture;
 pub mod plot;
 pub mod report;

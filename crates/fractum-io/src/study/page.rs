@@ -4,6 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::compare::{Family, Varies};
 use super::table::{self, Table};
+use crate::output::markup::head;
 use crate::output::plot::{Axis, Chart, Series, Style};
 
 /// What the page shows beside the runs themselves.
@@ -57,12 +58,7 @@ pub fn to_html(title: &str, families: &[Family<'_>], within: Option<f64>, exhibi
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (title) " - fractum" }
-                style { (PreEscaped(include_str!("../output/report/style.css"))) }
-            }
+            (head(title))
             body {
                 header {
                     h1 { (title) }

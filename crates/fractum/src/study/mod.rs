@@ -52,13 +52,14 @@ pub fn study(study: &Study, settings: &Settings) -> Result<Vec<Run>, Failure> {
     let slots: Vec<Mutex<Option<Run>>> = study.runs.iter().map(|_| Mutex::new(None)).collect();
     let next = AtomicUsize::new(0);
     let wrong: Mutex<Option<Failure>> = Mutex::new(None);
+    let program = program()?;
     // Two runs alike share a folder; the second one waits until the first has finished.
     let busy = Mutex::new(BTreeSet::new());
     let work = || {
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(planned) = study.runs.get(index) else { return };
-            let single = Single { planned, settings, busy: &busy };
+            let single = Single { planned, settings, program, busy: &busy };
             match single.run() {
                 Ok(run) => {
                     show(&run, index, study.runs.len());
@@ -86,6 +87,14 @@ pub fn study(study: &Study, settings: &Settings) -> Result<Vec<Run>, Failure> {
         None if is_interrupted() => Err(Failure::Interrupted),
         None => Ok(runs),
     }
+}
+
+/// Hash of this program, by which what another build has found is told from its own results.
+fn program() -> Result<u128, Failure> {
+    let read = std::env::current_exe().and_then(std::fs::read);
+    let bytes =
+        read.map_err(|error| Failure::input(format!("this program cannot be read, to tell its results: {error}")))?;
+    Ok(xxhash_rust::xxh3::xxh3_128(&bytes))
 }
 
 /// A worker that panicked has left its lock poisoned, and its value as it was.

@@ -28,6 +28,8 @@ const RECORD: &str = "study-run.json";
 pub(super) struct Single<'a> {
     pub(super) planned: &'a Planned,
     pub(super) settings: &'a Settings,
+    /// Hash of this program.
+    pub(super) program: u128,
     /// Folders of runs under way.
     pub(super) busy: &'a Mutex<BTreeSet<PathBuf>>,
 }
@@ -59,7 +61,7 @@ impl Single<'_> {
             }
             Err(failure) => return Err(failure),
         };
-        let key = key(&input, self.settings.threads);
+        let key = key(self.program, &input, self.settings.threads);
         let folder = Path::new("runs").join(format!("{}-{}", name(case), &key[..16]));
         let place = self.settings.output.join(&folder);
         if !self.claim(&place) {
@@ -124,9 +126,9 @@ fn name(case: &Path) -> String {
 }
 
 /// What a result depends on: program, case with what was set, mesh, and for its run time the threads.
-fn key(input: &Input, threads: usize) -> String {
+fn key(program: u128, input: &Input, threads: usize) -> String {
     let mut hasher = Xxh3::new();
-    hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
+    hasher.update(&program.to_le_bytes());
     hasher.update(&input.case.hash().to_le_bytes());
     hasher.update(&input.mesh_hash.to_le_bytes());
     hasher.update(&(threads as u64).to_le_bytes());

@@ -16,6 +16,7 @@ use crate::number::{grouped, percent, quantity, significant};
 use crate::output::fragments::Fragment;
 use crate::output::history::Table;
 use crate::output::log::duration;
+use crate::output::markup::head;
 use crate::output::plot::{Chart, Level};
 use crate::output::summary::{Status, Summary, Wall};
 use charts::words;
@@ -105,12 +106,7 @@ pub fn to_html(data: &ReportData) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (summary.title) " - fractum" }
-                style { (PreEscaped(include_str!("style.css"))) }
-            }
+            (head(&summary.title))
             body {
                 (heading(data))
                 (warnings(&data.warnings))
