@@ -149,7 +149,7 @@ impl Plan {
             format!("{share}, E = {}, Poisson's ratio {}", quantity(law.young_modulus, "Pa"), law.poisson_ratio),
         );
         if !law.can_fail() {
-            self.add("", "interfaces hold: they have no strength".to_owned());
+            self.add("", "interfaces hold for ever: their strengths are unlimited".to_owned());
             return;
         }
         let strength = |value: f64| if value.is_finite() { quantity(value, "Pa") } else { "unlimited".to_owned() };
@@ -214,9 +214,10 @@ impl Plan {
                 let sizes = length / size;
                 self.add("", format!("phase field of length {}, {sizes:.1} elements", quantity(length, "m")));
             }
-            let rows = rows::share(body, &scene.solid.reference);
-            if rows > rows::MANY && d.regularisation.is_none() {
-                let (share, count) = (100.0 * rows, rows::directions(body.shape));
+            // A phase field does not follow rows.
+            let in_rows = if d.regularisation.is_none() { rows::share(body, &scene.solid.reference) } else { 0.0 };
+            if in_rows > rows::MANY {
+                let (share, count) = (100.0 * in_rows, rows::directions(body.shape));
                 self.add("", format!(
                     "rows: {share:.0} % of the edges that may be damaged lie within 5 deg of {count} directions, and cracks like to follow them; mesh by another algorithm (Gmsh: Mesh.Algorithm = 5), or set regularisation = \"phase-field\""
                 ));
