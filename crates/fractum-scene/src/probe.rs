@@ -14,7 +14,7 @@ use crate::gas::GasMeasure;
 use crate::ledger::EnergyProbe;
 use crate::piece_probe::{FragmentMeasure, SurfaceMeasure, measure_fragment, measure_surface, passing_size};
 use crate::radial_cracks::RadialCracks;
-use crate::scene::{CountKind, Scene};
+use crate::scene::{CountKind, Counts, Scene};
 
 /// The points that a set is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,17 +135,23 @@ pub struct ProbedScene<'a> {
     scene: &'a Scene,
     fragments: OnceCell<Vec<Fragment>>,
     separation: OnceCell<Separation>,
+    counts: OnceCell<Counts>,
 }
 
 impl<'a> ProbedScene<'a> {
     /// Before the first probe.
     pub fn new(scene: &'a Scene) -> Self {
-        ProbedScene { scene, fragments: OnceCell::new(), separation: OnceCell::new() }
+        ProbedScene { scene, fragments: OnceCell::new(), separation: OnceCell::new(), counts: OnceCell::new() }
     }
 
     /// [`Scene::fragments`], found once.
     pub(crate) fn fragments(&self) -> &[Fragment] {
         self.fragments.get_or_init(|| self.scene.fragments())
+    }
+
+    /// [`Scene::counts`], found once.
+    pub fn counts(&self) -> &Counts {
+        self.counts.get_or_init(|| self.scene.counts())
     }
 
     /// What has separated, found once.
@@ -173,8 +179,7 @@ impl Probe {
                 }
             }
             Probe::Energy(kind) => scene.ledger().probe(*kind),
-            Probe::Count(CountKind::Fragments) => probed.fragments().len() as f64,
-            Probe::Count(kind) => scene.count(*kind) as f64,
+            Probe::Count(kind) => probed.counts().of(*kind).unwrap_or_else(|| probed.fragments().len()) as f64,
             Probe::Stress { elements, between: [normal, along] } => {
                 let (mut sum, mut volume) = (0.0, 0.0);
                 for &(body, element) in elements {

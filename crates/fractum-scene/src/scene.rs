@@ -115,6 +115,22 @@ pub struct Counts {
     pub broken_bonds: usize,
 }
 
+impl Counts {
+    /// One of them; none for fragments.
+    pub(crate) fn of(&self, kind: CountKind) -> Option<usize> {
+        Some(match kind {
+            CountKind::RemovedElements => self.removed_elements,
+            CountKind::BrokenEdges => self.broken_edges,
+            CountKind::DamagedEdges => self.damaged_edges,
+            CountKind::Particles => self.particles,
+            CountKind::Contacts => self.contacts,
+            CountKind::Bonds => self.bonds,
+            CountKind::BrokenBonds => self.broken_bonds,
+            CountKind::Fragments => return None,
+        })
+    }
+}
+
 impl Scene {
     /// Sets up a scene at t = 0 and finds its time step.
     ///
@@ -283,17 +299,7 @@ impl Scene {
 
     /// One count.
     pub fn count(&self, kind: CountKind) -> usize {
-        let counts = self.counts();
-        match kind {
-            CountKind::RemovedElements => counts.removed_elements,
-            CountKind::BrokenEdges => counts.broken_edges,
-            CountKind::DamagedEdges => counts.damaged_edges,
-            CountKind::Particles => counts.particles,
-            CountKind::Contacts => counts.contacts,
-            CountKind::Bonds => counts.bonds,
-            CountKind::BrokenBonds => counts.broken_bonds,
-            CountKind::Fragments => self.fragments().len(),
-        }
+        self.counts().of(kind).unwrap_or_else(|| self.fragments().len())
     }
 
     /// Fragments of solids and bonded bodies, heaviest first: pieces of at least two nodes or particles, joined by edges

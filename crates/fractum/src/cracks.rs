@@ -6,7 +6,7 @@ use std::path::Path;
 use fractum_dem::Crack;
 use fractum_dem::criterion::BreakMode;
 use fractum_fem::{CrackSurface, Solid};
-use fractum_io::vtk::{Field, PolyCells, PolyData};
+use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData};
 use fractum_io::{Compression, atomic};
 
 use crate::error::Failure;
@@ -97,12 +97,12 @@ pub fn write_lines<'a>(
     data.write(path, Compression::default()).map_err(|e| Failure::Output(e.into()))
 }
 
-/// Writes the facets that the removal of elements has exposed, without load and with their displacement, normal, opening and
+/// The file of the facets that the removal of elements has exposed, without load and with their displacement, normal, opening and
 /// body.
 ///
 /// # Errors
-/// A file that cannot be written.
-pub fn write_facets(path: &Path, solid: &Solid, crack: &CrackSurface) -> Result<(), Failure> {
+/// Arrays that do not fit together.
+pub(crate) fn facets_file(path: &Path, solid: &Solid, crack: &CrackSurface) -> Result<PendingFile, Failure> {
     let mut nodes: Vec<u32> = crack.facets.iter().flat_map(|facet| facet.nodes).collect();
     nodes.sort_unstable();
     nodes.dedup();
@@ -127,7 +127,7 @@ pub fn write_facets(path: &Path, solid: &Solid, crack: &CrackSurface) -> Result<
         ],
         time: None,
     };
-    data.write(path, Compression::default()).map_err(|e| Failure::Output(e.into()))
+    data.pending(path, Compression::default()).map_err(|e| Failure::Output(e.into()))
 }
 
 /// Bonds that every particle has lost.

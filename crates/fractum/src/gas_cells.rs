@@ -3,17 +3,17 @@
 use std::path::Path;
 
 use fractum_io::Compression;
-use fractum_io::vtk::{CellBlock, CellKind, Field, UnstructuredGrid};
+use fractum_io::vtk::{CellBlock, CellKind, Field, PendingFile, UnstructuredGrid};
 use fractum_scene::{Gas, GasCell, Scene};
 
 use crate::error::Failure;
 
-/// Writes the removed elements that gas has reached, without load and with their displacement: pressure, temperature and
+/// The file of the removed elements that gas has reached, without load and with their displacement: pressure, temperature and
 /// density of the gas, and the opening of the crack.
 ///
 /// # Errors
-/// A file that cannot be written.
-pub(crate) fn write(path: &Path, scene: &Scene, gas: &Gas) -> Result<(), Failure> {
+/// Arrays that do not fit together.
+pub(crate) fn file(path: &Path, scene: &Scene, gas: &Gas) -> Result<PendingFile, Failure> {
     let solid = &scene.solid;
     let cells: Vec<(usize, u32, GasCell)> =
         gas.cells().filter_map(|cell| cell.element.map(|(body, element)| (body, element, cell))).collect();
@@ -45,5 +45,5 @@ pub(crate) fn write(path: &Path, scene: &Scene, gas: &Gas) -> Result<(), Failure
         ],
         time: Some(scene.clock.time),
     };
-    grid.write(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    grid.pending(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }

@@ -9,7 +9,9 @@ use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::PpvStations;
 use fractum_io::case::model::{Case, ProbeExpression, ProbeInput, ProbeKind, Take};
 use fractum_io::history::{Column, History};
-use fractum_io::vtk::{CellBlock, CellKind, Collection, Field, PolyCells, PolyData, UnstructuredGrid, Values};
+use fractum_io::vtk::{
+    CellBlock, CellKind, Collection, Field, FrameWriter, PendingFile, PolyCells, PolyData, UnstructuredGrid, Values,
+};
 use fractum_scene::statics::NoEquilibrium;
 use fractum_scene::{EnergyKind, EnergyRole, PeakVelocity, ProbedScene, Scene, VelocityStation};
 use serde::{Deserialize, Serialize};
@@ -77,6 +79,7 @@ pub(crate) struct Recorder {
     folder: PathBuf,
     history: History,
     collection: Collection,
+    writer: FrameWriter,
     state: RecordState,
     grid: GridLayout,
     inputs: Vec<f64>,
@@ -157,6 +160,7 @@ impl Recorder {
             folder: folder.to_owned(),
             history,
             collection,
+            writer: FrameWriter::default(),
             grid: GridLayout::new(scene, file_order),
             state,
             inputs: Vec::new(),
@@ -214,7 +218,8 @@ impl Recorder {
     /// - `in_motion`: whether the scene moved then; written where the case may be at rest and in motion
     pub(crate) fn row(&mut self, scene: &Scene, time: f64, dt: f64, in_motion: bool) -> Result<(), Failure> {
         let ledger = scene.ledger();
-        let counts = scene.counts();
+        let probed = ProbedScene::new(scene);
+        let counts = probed.counts();
         let mut row = vec![time, dt];
         row.extend(balance().map(|kind| ledger[kind]));
         row.extend([ledger.residual(), counts.removed_elements as f64, counts.particles as f64]);
@@ -225,7 +230,7 @@ impl Recorder {
         row.extend(scene.domain().into_iter().flat_map(|_| left::values(scene.left())));
         row.extend(self.tells_motion.then_some(f64::from(u8::from(in_motion))));
         self.state.times.push(time);
-        let (case, probed) = (Arc::clone(&self.case), ProbedScene::new(scene));
+        let case = Arc::clone(&self.case);
         for index in 0..case.probes.len() {
             let value = match (&case.probes[index].kind, &self.probes[index]) {
                 (_, Some(probe)) => probe.value(&probed),
@@ -287,44 +292,46 @@ impl Recorder {
         expression.value(&inputs)
     }
 
-    /// Writes the fields of the present instant, and its particles.
+    /// Begins to write the fields of the present instant, and its particles.
     pub(crate) fn frame(&mut self, scene: &Scene) -> Result<(), Failure> {
         let time = scene.clock.time;
+        let mut files = Vec::new();
         if !scene.solid.reference.is_empty() {
             let name = format!("fields/solid-{:05}.vtu", self.state.frames);
-            self.write_solid(scene, &self.folder.join(&name))?;
+            files.push(self.solid_file(scene, &self.folder.join(&name))?);
             self.add_to_collection(time, 0, "solid", name);
         }
         if !scene.debris.is_empty() {
             fractum_io::atomic::create_folder(&self.folder.join("particles"))?;
             let name = format!("particles/particles-{:05}.vtp", self.state.frames);
-            write_particles(scene, &self.folder.join(&name))?;
+            files.push(particles_file(scene, &self.folder.join(&name))?);
             self.add_to_collection(time, 1, "particles", name);
         }
         if !scene.bonded.is_empty() {
             fractum_io::atomic::create_folder(&self.folder.join("particles"))?;
             fractum_io::atomic::create_folder(&self.folder.join("bonds"))?;
             let name = format!("particles/bonded-{:05}.vtp", self.state.frames);
-            bonds::write_particles(scene, &self.folder.join(&name))?;
+            files.push(bonds::particles_file(scene, &self.folder.join(&name))?);
             self.add_to_collection(time, 2, "bonded particles", name);
             let name = format!("bonds/bonds-{:05}.vtp", self.state.frames);
-            bonds::write_bonds(scene, &self.folder.join(&name))?;
+            files.push(bonds::bonds_file(scene, &self.folder.join(&name))?);
             self.add_to_collection(time, 3, "bonds", name);
         }
         if let Some(gas) = scene.gas().filter(|gas| gas.cells().nth(gas.hole_count()).is_some()) {
             fractum_io::atomic::create_folder(&self.folder.join("gas"))?;
             let name = format!("gas/gas-{:05}.vtu", self.state.frames);
-            gas_cells::write(&self.folder.join(&name), scene, gas)?;
+            files.push(gas_cells::file(&self.folder.join(&name), scene, gas)?);
             self.add_to_collection(time, 5, "gas", name);
         }
         let crack = scene.solid.crack_surface();
         if !crack.facets.is_empty() {
             fractum_io::atomic::create_folder(&self.folder.join("cracks"))?;
             let name = format!("cracks/cracks-{:05}.vtp", self.state.frames);
-            cracks::write_facets(&self.folder.join(&name), &scene.solid, &crack)?;
+            files.push(cracks::facets_file(&self.folder.join(&name), &scene.solid, &crack)?);
             self.add_to_collection(time, 4, "cracks", name);
         }
-        self.collection.write(&self.folder.join("fields.pvd"))?;
+        files.push(self.collection.pending(&self.folder.join("fields.pvd")));
+        self.writer.begin(files)?;
         self.state.frames = next_index(time, self.case.output.fields_every);
         Ok(())
     }
@@ -334,7 +341,7 @@ impl Recorder {
         self.state.collection.push((time, part, name.to_owned(), file));
     }
 
-    fn write_solid(&self, scene: &Scene, path: &Path) -> Result<(), Failure> {
+    fn solid_file(&self, scene: &Scene, path: &Path) -> Result<PendingFile, Failure> {
         let (solid, order) = (&scene.solid, &self.grid.file_order);
         let attached = scene.attached_nodes();
         let nodal =
@@ -384,11 +391,22 @@ impl Recorder {
             cell_data: &cell_data,
             time: Some(scene.clock.time),
         };
-        grid.write(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+        grid.pending(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
     }
 
-    /// Brings the rows to the disk; the state that a checkpoint keeps.
+    /// The error of the last frame, where it could not be written.
+    pub(crate) fn check_frame(&mut self) -> Result<(), Failure> {
+        Ok(self.writer.check()?)
+    }
+
+    /// Waits for the last frame.
+    pub(crate) fn finish_frame(&mut self) -> Result<(), Failure> {
+        Ok(self.writer.finish()?)
+    }
+
+    /// Brings the rows and the last frame to the disk; the state that a checkpoint keeps.
     pub(crate) fn sync(&mut self) -> Result<RecordState, Failure> {
+        self.finish_frame()?;
         self.state.history = self.history.sync()?;
         Ok(self.state.clone())
     }
@@ -401,7 +419,7 @@ impl Recorder {
 }
 
 /// Particles as vertices with their radius.
-fn write_particles(scene: &Scene, path: &Path) -> Result<(), Failure> {
+fn particles_file(scene: &Scene, path: &Path) -> Result<PendingFile, Failure> {
     let (solid, debris) = (&scene.solid, &scene.debris);
     let state = debris.state();
     let of = |f: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { state.nodes.iter().map(|&n| f(n as usize)).collect() };
@@ -429,7 +447,7 @@ fn write_particles(scene: &Scene, path: &Path) -> Result<(), Failure> {
         cell_data: &[],
         time: Some(scene.clock.time),
     };
-    data.write(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    data.pending(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }
 
 /// Whether output number `index` of those every `interval` is due at `time`.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fractum_io::Compression;
-use fractum_io::vtk::{Field, PolyCells, PolyData};
+use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData};
 use fractum_math::{Vec3, rotation_vector};
 use fractum_scene::{BondedBody, Scene};
 
@@ -15,7 +15,7 @@ fn vectors<'a>(of: impl Iterator<Item = Vec3> + 'a) -> Vec<[f64; 3]> {
 }
 
 /// Particles of bonded bodies as vertices.
-pub(crate) fn write_particles(scene: &Scene, path: &Path) -> Result<(), Failure> {
+pub(crate) fn particles_file(scene: &Scene, path: &Path) -> Result<PendingFile, Failure> {
     let bonded = &scene.bonded;
     let all = &bonded.particles;
     let points = vectors(all.position.iter().copied());
@@ -44,11 +44,11 @@ pub(crate) fn write_particles(scene: &Scene, path: &Path) -> Result<(), Failure>
         cell_data: &[],
         time: Some(scene.clock.time),
     };
-    data.write(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    data.pending(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }
 
 /// Bonds that hold as lines between the centres of their particles, with their axial force and elastic energy.
-pub(crate) fn write_bonds(scene: &Scene, path: &Path) -> Result<(), Failure> {
+pub(crate) fn bonds_file(scene: &Scene, path: &Path) -> Result<PendingFile, Failure> {
     let bonded = &scene.bonded;
     let all = &bonded.particles;
     let points = vectors(all.position.iter().copied());
@@ -76,5 +76,5 @@ pub(crate) fn write_bonds(scene: &Scene, path: &Path) -> Result<(), Failure> {
         ],
         time: Some(scene.clock.time),
     };
-    data.write(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    data.pending(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }

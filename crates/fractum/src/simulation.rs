@@ -178,6 +178,7 @@ impl Simulation {
             }
         }
         self.messages.tell_event()?;
+        self.recorder.check_frame()?;
         self.prepare_step()?;
         if !self.is_over() && self.messages.progress.due(self.started.elapsed()) {
             self.messages.progress.show(&self.snapshot(), self.started.elapsed());

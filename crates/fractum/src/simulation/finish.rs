@@ -44,6 +44,7 @@ impl Simulation {
         fragments::write(&self.folder.join("fragments.csv"), &fragments_of(&self.scene.solid, &pieces))?;
         self.warn_of_single_nodes()?;
         write_cracks(&self.scene, &self.folder)?;
+        self.phases.timed(Part::Output, || self.recorder.finish_frame())?;
         let mut summary = Summary {
             title: self.case.source.title.clone(),
             status,

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::atomic;
-use crate::error::WriteError;
+use super::frame_writer::PendingFile;
 use crate::number::push_shortest;
 use crate::output::markup::escape;
 
@@ -50,12 +49,9 @@ impl Collection {
         text
     }
 
-    /// Writes the collection at `path`.
-    ///
-    /// # Errors
-    /// [`WriteError`].
-    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
-        atomic::write(path, self.to_xml().as_bytes())
+    /// The collection at `path`, to be written once its files are.
+    pub fn pending(&self, path: &Path) -> PendingFile {
+        PendingFile::of_text(path, self.to_xml())
     }
 }
 

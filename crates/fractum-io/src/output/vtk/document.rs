@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 use std::fmt::Write;
 
-use rayon::prelude::*;
+use flate2::Compress;
 
 use super::Field;
 use crate::compress::{Compression, compressor, deflate};
 use crate::output::markup::escape;
 
-/// Bytes compressed at a time. Small enough to share an array among threads, large enough to compress well.
+/// Bytes compressed at a time, each block for itself.
 pub(super) const BLOCK: usize = 1 << 16;
 
 /// A VTK file in the making: text and arrays in their order.
@@ -87,8 +87,17 @@ impl<'a> Document<'a> {
         self.pieces.push(Piece::Array { tag, bytes });
     }
 
+    /// The same with arrays of its own.
+    pub(super) fn into_owned(self) -> Document<'static> {
+        let owned = |piece| match piece {
+            Piece::Text(text) => Piece::Text(text),
+            Piece::Array { tag, bytes } => Piece::Array { tag, bytes: Cow::Owned(bytes.into_owned()) },
+        };
+        Document { kind: self.kind, pieces: self.pieces.into_iter().map(owned).collect() }
+    }
+
     /// The whole file.
-    pub(super) fn into_bytes(self, compression: Compression) -> Vec<u8> {
+    pub(super) fn to_bytes(&self, compression: Compression) -> Vec<u8> {
         let arrays: Vec<&[u8]> = self
             .pieces
             .iter()
@@ -98,19 +107,19 @@ impl<'a> Document<'a> {
             })
             .collect();
         let stored: Vec<Vec<u8>> = match compression {
-            Compression::None => arrays.par_iter().map(|bytes| raw(bytes)).collect(),
-            Compression::Fast => arrays.par_iter().map(|bytes| compressed(bytes)).collect(),
+            Compression::None => arrays.iter().map(|bytes| raw(bytes)).collect(),
+            Compression::Fast => arrays.iter().map(|bytes| compressed(&mut compressor(), bytes)).collect(),
         };
 
         let kind = self.kind;
         let byte_order = if cfg!(target_endian = "little") { "LittleEndian" } else { "BigEndian" };
-        let compressor = match compression {
+        let compressed_by = match compression {
             Compression::None => "",
             Compression::Fast => " compressor=\"vtkZLibDataCompressor\"",
         };
         let mut xml = format!(
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"{byte_order}\" \
-             header_type=\"UInt64\"{compressor}>\n  <{kind}>\n"
+             header_type=\"UInt64\"{compressed_by}>\n  <{kind}>\n"
         );
         let mut offset = 0;
         let mut lengths = stored.iter().map(Vec::len);
@@ -145,8 +154,8 @@ fn raw(bytes: &[u8]) -> Vec<u8> {
 
 /// Number of blocks, size of a block, size of the last block if it is partial (else 0), compressed sizes; then the
 /// compressed blocks.
-fn compressed(bytes: &[u8]) -> Vec<u8> {
-    let blocks: Vec<Vec<u8>> = bytes.par_chunks(BLOCK).map_init(compressor, deflate).collect();
+fn compressed(compressor: &mut Compress, bytes: &[u8]) -> Vec<u8> {
+    let blocks: Vec<Vec<u8>> = bytes.chunks(BLOCK).map(|block| deflate(compressor, block)).collect();
     let header = [blocks.len(), BLOCK, bytes.len() % BLOCK].into_iter().chain(blocks.iter().map(Vec::len));
     let mut stored = Vec::with_capacity(8 * (3 + blocks.len()) + blocks.iter().map(Vec::len).sum::<usize>());
     header.for_each(|number| stored.extend_from_slice(&(number as u64).to_ne_bytes()));

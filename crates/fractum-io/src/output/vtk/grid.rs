@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use super::document::Document;
+use super::frame_writer::PendingFile;
 use super::{Compression, Field, VtkError, check_points};
-use crate::atomic;
 
 /// Shape of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,11 +66,23 @@ pub struct UnstructuredGrid<'a> {
 }
 
 impl UnstructuredGrid<'_> {
-    /// The file's bytes; the same for any number of threads.
+    /// The file's bytes.
     ///
     /// # Errors
     /// [`VtkError`] where lengths do not fit together or a cell names a point that does not exist.
     pub fn to_bytes(&self, compression: Compression) -> Result<Vec<u8>, VtkError> {
+        Ok(self.document()?.to_bytes(compression))
+    }
+
+    /// The file at `path`, to be written later; all of its content is of now.
+    ///
+    /// # Errors
+    /// As [`to_bytes`](Self::to_bytes).
+    pub fn pending(&self, path: &Path, compression: Compression) -> Result<PendingFile, VtkError> {
+        Ok(PendingFile::of_document(path, self.document()?, compression))
+    }
+
+    fn document(&self) -> Result<Document<'_>, VtkError> {
         let Self { points, cells, point_data, cell_data, time } = *self;
         let mut count = 0;
         for CellBlock { kind, nodes } in cells {
@@ -105,15 +117,7 @@ impl UnstructuredGrid<'_> {
         document.fields("PointData", point_data);
         document.fields("CellData", cell_data);
         document.text("    </Piece>\n");
-        Ok(document.into_bytes(compression))
-    }
-
-    /// Writes the file at `path`.
-    ///
-    /// # Errors
-    /// As [`to_bytes`](Self::to_bytes), and where the file cannot be written.
-    pub fn write(&self, path: &Path, compression: Compression) -> Result<(), VtkError> {
-        Ok(atomic::write(path, &self.to_bytes(compression)?)?)
+        Ok(document)
     }
 }
 
@@ -200,17 +204,6 @@ mod tests {
             let expected: Vec<u8> = bits.iter().flat_map(|bits| bits.to_ne_bytes()).collect();
             prop_assert_eq!(file.bytes("value"), expected);
         }
-    }
-
-    #[test]
-    fn bytes_are_the_same_for_any_number_of_threads() {
-        let points: Vec<[f64; 3]> = (0..30_000).map(|i| [(i as f64).sin(), (i as f64).cos(), i as f64]).collect();
-        let grid = UnstructuredGrid { points: &points, cells: &[], point_data: &[], cell_data: &[], time: None };
-        let bytes = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| grid.to_bytes(Compression::Fast).unwrap())
-        };
-        assert!(bytes(1) == bytes(3));
     }
 
     #[test]

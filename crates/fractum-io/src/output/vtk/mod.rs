@@ -1,8 +1,7 @@
 //! Files for ParaView: VTU (elements), VTP (particles, bonds, facets) and PVD (the same over time).
 //!
-//! Arrays are stored as raw appended data with 64-bit headers, compressed by zlib in blocks. Blocks are compressed in
-//! parallel and have fixed sizes, so the bytes of a file do not depend on the number of threads. ParaView and PyVista
-//! read all of them, meshio the VTU.
+//! Arrays are stored as raw appended data with 64-bit headers, compressed by zlib in blocks. ParaView and
+//! PyVista read all of them, meshio the VTU. A run writes its frames beside itself ([`FrameWriter`]).
 //!
 //! ```
 //! use fractum_io::vtk::{CellBlock, CellKind, Compression, Field, UnstructuredGrid};
@@ -22,12 +21,14 @@ mod collection;
 #[cfg(test)]
 mod decode;
 mod document;
+mod frame_writer;
 mod grid;
 mod poly;
 
 use std::borrow::Cow;
 
 pub use collection::{Collection, Entry};
+pub use frame_writer::{FrameWriter, PendingFile};
 pub use grid::{CellBlock, CellKind, UnstructuredGrid};
 pub use poly::{PolyCells, PolyData};
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::document::Document;
+use super::frame_writer::PendingFile;
 use super::{Compression, Field, VtkError, check_points};
 use crate::atomic;
 
@@ -33,11 +34,23 @@ pub struct PolyData<'a> {
 }
 
 impl PolyData<'_> {
-    /// The file's bytes; the same for any number of threads.
+    /// The file's bytes.
     ///
     /// # Errors
     /// [`VtkError`] where lengths do not fit together or a cell names a point that does not exist.
     pub fn to_bytes(&self, compression: Compression) -> Result<Vec<u8>, VtkError> {
+        Ok(self.document()?.to_bytes(compression))
+    }
+
+    /// The file at `path`, to be written later; all of its content is of now.
+    ///
+    /// # Errors
+    /// As [`to_bytes`](Self::to_bytes).
+    pub fn pending(&self, path: &Path, compression: Compression) -> Result<PendingFile, VtkError> {
+        Ok(PendingFile::of_document(path, self.document()?, compression))
+    }
+
+    fn document(&self) -> Result<Document<'_>, VtkError> {
         let Self { points, cells, point_data, cell_data, time } = *self;
         let all: Vec<u32>;
         let (nodes, per_cell) = match cells {
@@ -71,7 +84,7 @@ impl PolyData<'_> {
         document.fields("PointData", point_data);
         document.fields("CellData", cell_data);
         document.text("    </Piece>\n");
-        Ok(document.into_bytes(compression))
+        Ok(document)
     }
 
     /// Writes the file at `path`.
