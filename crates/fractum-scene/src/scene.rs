@@ -1,4 +1,5 @@
 use fractum_fem::{LocalDamping, Solid, SolidState, StableStep};
+use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::bonded::{Bonded, BondedState};
@@ -242,6 +243,18 @@ impl Scene {
             found.extend(inside.into_iter().map(|(node, depth)| (node, depth, other.clone())));
         }
         found
+    }
+
+    /// Forces on nodes of solids that who drives the scene sets before a step [N]. They act in every step until they are
+    /// set anew, those of a node that is named twice are added, and their work is booked as that of loads. The stable step
+    /// knows nothing of them.
+    pub fn given_node_forces(&mut self) -> &mut Vec<(u32, Vec3)> {
+        self.loads.given()
+    }
+
+    /// As [`Scene::given_node_forces`], on particles of bonded bodies and loose ones.
+    pub fn given_particle_forces(&mut self) -> &mut Vec<(u32, Vec3)> {
+        self.bonded.loads.given()
     }
 
     /// Whether the end of the run has been reached.

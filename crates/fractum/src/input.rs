@@ -1,7 +1,7 @@
 //! From paths to a scene.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use fractum_io::build::{BuiltScene, build_scene, check_before_particles};
 use fractum_io::case::model::MeshSource;
@@ -57,6 +57,18 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
     let later = case.later.iter().map(stage).collect::<Result<_, Diagnostics>>()?;
     let choice = choose(&case, &mut built);
     Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, timings: made.timings, choice })
+}
+
+/// The cache of packings and beams: the folder named by `FRACTUM_CACHE` (none if that is empty), else `fractum` among
+/// the caches of the user.
+pub fn cache_of_user() -> Cache {
+    let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    if std::env::var_os("FRACTUM_CACHE").is_some() {
+        return Cache::new(folder("FRACTUM_CACHE"));
+    }
+    let caches = folder("XDG_CACHE_HOME").or_else(|| folder("LOCALAPPDATA"));
+    let caches = caches.or_else(|| folder("HOME").map(|home| home.join(".cache")));
+    Cache::new(caches.map(|caches| caches.join("fractum")))
 }
 
 /// The mesh in metres, and the hash of its file.

@@ -21,6 +21,11 @@ pub fn is_interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
+/// Forgets that simulations were asked to end, once those that were under way have: others may start.
+pub fn clear_interrupt() {
+    INTERRUPTED.store(false, Ordering::Relaxed);
+}
+
 /// A simulation that has a state to save, as long as this lives.
 pub(crate) struct UnderWay(());
 

@@ -6,6 +6,7 @@
 //! - [`report`]: the page of a results folder
 //! - [`stress`]: random scenes of every kind of body
 //! - [`study`]: many runs, and what they say together
+//! - [`sweep`]: runs of a list, each started by itself
 //! - [`terminal`]: lines on stdout and stderr
 //! - [`verify`]: the gallery against its references
 //!
@@ -63,11 +64,12 @@ mod solver;
 pub mod stress;
 pub mod study;
 mod summary;
+pub mod sweep;
 pub mod terminal;
 pub mod verify;
 
 pub use error::{ExitCode, Failure};
-pub use input::{Input, load};
-pub use interrupt::{interrupt, is_interrupted};
+pub use input::{Input, cache_of_user, load};
+pub use interrupt::{clear_interrupt, interrupt, is_interrupted};
 pub use run::run;
 pub use simulation::{Options, Outcome, Simulation};

@@ -1,5 +1,6 @@
 //! One run that can be driven step by step.
 
+mod drive;
 mod finish;
 mod messages;
 mod open;
@@ -15,7 +16,7 @@ use fractum_io::case::Case;
 use fractum_io::checkpoint::{self, Header, Identity};
 use fractum_io::log::Snapshot;
 use fractum_io::number::quantity;
-use fractum_io::summary::Summary;
+use fractum_io::summary::{Status, Summary};
 use fractum_prepare::Cache;
 use fractum_scene::{EnergyKind, Scene, SceneState, StepError};
 use serde::{Deserialize, Serialize};
@@ -85,6 +86,16 @@ enum End {
     Finished,
     Interrupted,
     Failed(StepError),
+}
+
+impl End {
+    fn status(&self) -> Status {
+        match self {
+            End::Finished => Status::Completed,
+            End::Interrupted => Status::Interrupted,
+            End::Failed(_) => Status::Stopped,
+        }
+    }
 }
 
 /// The whole state of a run: what a checkpoint holds.

@@ -122,7 +122,7 @@ pub struct Bonded {
     pub(crate) reference: Vec<Vec3>,
     pub(crate) bodies: Vec<BondedBody>,
     pub(crate) supports: Supports,
-    loads: Loads,
+    pub(crate) loads: Loads,
     /// Particles that follow the facets of a solid, ascending; their mass is the nodes'.
     tied: Vec<u32>,
     /// Elastic energy of the bonds when last measured.

@@ -10,10 +10,12 @@ mod new;
 mod pack;
 mod shape;
 mod study;
+mod sweep;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use fractum::cache_of_user as cache;
 use fractum::{ExitCode, Failure, Options, Outcome, say, tell};
 use fractum_io::summary::{Fracture, Status};
 
@@ -86,6 +88,11 @@ enum Command {
     },
     /// Run a case with varied settings, or a study of several cases, and print run time beside error.
     Study(Box<study::StudyArguments>),
+    /// Many runs on a cluster or by a workflow program: write their list, do one of them, collect all results.
+    Sweep {
+        #[command(subcommand)]
+        command: sweep::SweepCommand,
+    },
     /// Look at a mesh, or write it in another format.
     Mesh {
         #[command(subcommand)]
@@ -178,6 +185,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
             })
         }
         Command::Study(arguments) => study::run(*arguments),
+        Command::Sweep { command } => sweep::run(command),
         Command::Mesh { command } => mesh::execute(command, json),
         Command::Report { folder } => fractum::report::write(&folder).map(|()| ExitCode::Done),
         Command::Pack(arguments) => pack::run(&arguments),
@@ -211,18 +219,6 @@ fn report(failure: &Failure, json: bool) {
             serde_json::json!({ "severity": "error", "place": null, "found": other.to_string(), "expected": "", "remedy": "" })
         ),
     }
-}
-
-/// The cache of packings and beams: the folder named by `FRACTUM_CACHE` (none if that is empty), else `fractum` among
-/// the caches of the user.
-fn cache() -> fractum_prepare::Cache {
-    let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    if std::env::var_os("FRACTUM_CACHE").is_some() {
-        return fractum_prepare::Cache::new(folder("FRACTUM_CACHE"));
-    }
-    let caches = folder("XDG_CACHE_HOME").or_else(|| folder("LOCALAPPDATA"));
-    let caches = caches.or_else(|| folder("HOME").map(|home| home.join(".cache")));
-    fractum_prepare::Cache::new(caches.map(|caches| caches.join("fractum")))
 }
 
 fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {

@@ -5,7 +5,7 @@ use std::path::Path;
 use fractum_fem::Solid;
 use fractum_io::attenuation;
 use fractum_io::fragments::{self, Fragment};
-use fractum_io::summary::{Status, Summary};
+use fractum_io::summary::Summary;
 use fractum_scene::{BondedBody, Scene, fragment_size};
 
 use super::{End, Outcome, Simulation};
@@ -13,7 +13,7 @@ use crate::cracks::{self, Columns};
 use crate::error::Failure;
 use crate::phases::Part;
 use crate::report::{self, Notes};
-use crate::summary::{self, state_hash};
+use crate::summary;
 
 impl Simulation {
     /// Writes the last frame and row, summary, fragments, cracks and report, and gives the history its final name.
@@ -31,12 +31,7 @@ impl Simulation {
             }
         };
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
-        let status = match &end {
-            End::Finished => Status::Completed,
-            End::Interrupted => Status::Interrupted,
-            End::Failed(_) => Status::Stopped,
-        };
-        let state_hash = state_hash(&self.scene.state());
+        let (status, state_hash) = (end.status(), self.state_hash());
         let clock = self.scene.clock;
         self.record_last(&end)?;
         self.messages.progress.finish(&self.snapshot(), self.started.elapsed());

@@ -29,6 +29,16 @@ impl Simulation {
     pub fn open(path: &Path, options: &Options) -> Result<Self, Failure> {
         let started = Instant::now();
         let input = load(path, &options.overrides, &options.cache)?;
+        Self::start(input, path, options, started)
+    }
+
+    /// As [`Simulation::open`], of a case that [`load`] has read with the overrides of the options.
+    ///
+    /// - `started`: when the work began, from which the time of the run counts
+    ///
+    /// # Errors
+    /// As [`Simulation::open`].
+    pub fn start(input: Input, path: &Path, options: &Options, started: Instant) -> Result<Self, Failure> {
         let plan = Plan::new(&input);
         let Input { case, mesh_hash, built, later, timings, .. } = input;
         let folder = options.output.clone().unwrap_or_else(|| default_folder(path));

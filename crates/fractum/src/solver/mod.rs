@@ -107,6 +107,11 @@ impl Solver {
         }
     }
 
+    /// Whether the scene moves all the time.
+    pub(crate) fn is_explicit(&self) -> bool {
+        matches!(self, Solver::Explicit)
+    }
+
     /// Whether the scene moves.
     pub(crate) fn moves(&self) -> bool {
         match self {

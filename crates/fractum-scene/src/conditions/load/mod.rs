@@ -69,6 +69,8 @@ impl Load {
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
     loads: Vec<Load>,
+    /// Forces that who drives the scene sets from step to step [N].
+    given: Vec<(u32, Vec3)>,
     /// Forces of the last step.
     applied: Applied,
     partial: Vec<Vec3>,
@@ -94,6 +96,7 @@ impl Loads {
             applied: Applied { forces, gravity: Vec3::zeros() },
             partial: vec![Vec3::zeros(); if weighs { count.div_ceil(CHUNK) } else { 0 }],
             loads,
+            given: Vec::new(),
             cracks: None,
             gas: None,
         }
@@ -107,6 +110,11 @@ impl Loads {
     /// Gas in holes and cracks.
     pub fn gas(&self) -> Option<&Gas> {
         self.gas.as_deref()
+    }
+
+    /// The forces of who drives the scene: points, and what acts on each from the next step on [N].
+    pub(crate) fn given(&mut self) -> &mut Vec<(u32, Vec3)> {
+        &mut self.given
     }
 
     /// Finds the cracks of a solid that are open to pressure and gas, if any load enters them.
@@ -181,11 +189,12 @@ impl Loads {
 
     /// Adds the forces of `time` to the points; returns their work in the half step before [J].
     pub(crate) fn add_forces(&mut self, points: &mut impl DrivenPoints, time: f64, dt_before: f64) -> f64 {
-        if self.loads.is_empty() {
+        self.applied.forces.clear();
+        if self.loads.is_empty() && self.given.is_empty() {
             return 0.0;
         }
-        self.applied.forces.clear();
         self.applied.gravity = Vec3::zeros();
+        self.applied.forces.extend_from_slice(&self.given);
         self.loads.iter().for_each(|load| load.apply(points, self.cracks.as_ref(), time, &mut self.applied));
         let forces = points.forces();
         self.applied.forces.iter().for_each(|&(point, force)| forces[point as usize] += force);

@@ -1,0 +1,73 @@
+//! What a program may do that drives a simulation, beside its steps.
+
+use fractum_io::summary::Status;
+use fractum_math::Vec3;
+
+use super::{End, Simulation};
+use crate::error::Failure;
+use crate::summary::state_hash;
+
+impl Simulation {
+    /// Sets forces that the case does not know of, which act from the next step on until they are set anew: nodes of
+    /// solids and particles, in the numbering of the scene, and the force on each [N].
+    ///
+    /// Forces of a point that is named twice are added. Their work is booked as that of loads; the stable step knows
+    /// nothing of them, so that stiff forces need a smaller `solver.safety`. A checkpoint does not hold them.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] in a run that does not move, for a point that is none and for a force that is not finite.
+    pub fn set_forces(&mut self, nodes: &[(u32, Vec3)], particles: &[(u32, Vec3)]) -> Result<(), Failure> {
+        if !self.solver.is_explicit() {
+            let text = "forces from outside the case need a run in motion; expected solver.kind = \"explicit\"";
+            return Err(Failure::input(text));
+        }
+        let scene = &mut self.scene;
+        let counts = [scene.solid.reference.len(), scene.bonded.particles.len()];
+        check(nodes, "node", counts[0])?;
+        check(particles, "particle", counts[1])?;
+        let replace = |given: &mut Vec<(u32, Vec3)>, forces: &[(u32, Vec3)]| {
+            given.clear();
+            given.extend_from_slice(forces);
+        };
+        replace(scene.given_node_forces(), nodes);
+        replace(scene.given_particle_forces(), particles);
+        Ok(())
+    }
+
+    /// Ends the run as if its end were reached; of no effect once it is over.
+    ///
+    /// # Errors
+    /// [`Failure::Write`] where the log cannot be written.
+    pub fn stop(&mut self) -> Result<(), Failure> {
+        if !self.is_over() {
+            self.messages.log.line("ended by the program that drives it")?;
+            self.end = Some(End::Finished);
+        }
+        Ok(())
+    }
+
+    /// How the run ended; none before it is over.
+    pub fn status(&self) -> Option<Status> {
+        self.end.as_ref().map(End::status)
+    }
+
+    /// Hash of everything that changes in the scene, as `summary.json` has it for the end.
+    pub fn state_hash(&self) -> u128 {
+        state_hash(&self.scene.state())
+    }
+}
+
+/// Refuses forces on points that are none, and such that are not finite.
+fn check(forces: &[(u32, Vec3)], what: &str, count: usize) -> Result<(), Failure> {
+    let wrong = forces.iter().find(|(point, force)| *point as usize >= count || !force.iter().all(|f| f.is_finite()));
+    match wrong {
+        None => Ok(()),
+        Some((point, _)) if *point as usize >= count => {
+            Err(Failure::input(format!("a force on {what} {point}; expected less than {count}")))
+        }
+        Some((point, force)) => {
+            let [x, y, z] = [force.x, force.y, force.z];
+            Err(Failure::input(format!("a force of ({x}, {y}, {z}) N on {what} {point}; expected finite numbers")))
+        }
+    }
+}

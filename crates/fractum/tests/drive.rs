@@ -1,0 +1,97 @@
+//! Simulations that a program drives: forces that it sets, and an end that it chooses.
+
+mod common;
+
+use common::Workplace;
+use fractum::{Options, Simulation};
+use fractum_io::summary::Status;
+use fractum_math::Vec3;
+use fractum_scene::EnergyKind;
+
+/// A bar that nothing holds.
+const FREE_BAR: &str = r#"fractum = 1
+mesh = { file = "bar.msh" }
+bodies = [{ name = "bar", kind = "solid", group = "body", material = "soft" }]
+solver = { kind = "explicit", end = "20 ms" }
+output = { history = { every = "0.1 ms" } }
+loads = [{ gravity = { y = "0 m/s^2" } }]
+[materials.soft]
+density = "1000 kg/m^3"
+young_modulus = "1 MPa"
+poisson_ratio = 0.2
+"#;
+
+fn open(place: &Workplace) -> Simulation {
+    let options = Options { output: Some(place.path("out")), quiet: true, ..Options::default() };
+    Simulation::open(&place.path("case.toml"), &options).unwrap()
+}
+
+#[test]
+fn given_forces_give_their_impulse_and_their_work() {
+    let place = Workplace::new(FREE_BAR);
+    let mut simulation = open(&place);
+    let force = Vec3::new(3.0, -1.0, 2.0);
+    let forces = [(0, force * 0.25), (5, force * 0.5), (0, force * 0.25)];
+    // A force that is set anew replaces those before.
+    simulation.set_forces(&[(7, force * 100.0)], &[]).unwrap();
+    simulation.set_forces(&forces, &[]).unwrap();
+    let momentum = |simulation: &Simulation| -> Vec3 {
+        let solid = &simulation.scene().solid;
+        solid.velocity.iter().zip(&solid.mass).map(|(v, m)| v * *m).sum()
+    };
+    let mut half_step = 0.0;
+    while simulation.time() < 5e-3 {
+        half_step = simulation.time() + 0.5 * simulation.scene().clock.dt_after;
+        simulation.step().unwrap();
+        simulation.record().unwrap();
+    }
+    let impulse = force * half_step;
+    assert!((momentum(&simulation) - impulse).norm() < 1e-9 * impulse.norm(), "{} {impulse}", momentum(&simulation));
+    // Without forces the momentum stays.
+    simulation.set_forces(&[], &[]).unwrap();
+    while !simulation.is_over() {
+        simulation.step().unwrap();
+        simulation.record().unwrap();
+    }
+    assert!((momentum(&simulation) - impulse).norm() < 1e-9 * impulse.norm(), "{} {impulse}", momentum(&simulation));
+    let outcome = simulation.finish().unwrap();
+    let energy = &outcome.summary.energy;
+    assert_eq!(outcome.summary.status, Status::Completed);
+    assert!(energy.entries[EnergyKind::External as usize] > 0.0 && energy.residual_max_relative < 1e-9, "{energy:?}");
+}
+
+#[test]
+fn forces_that_cannot_be_are_refused() {
+    let place = Workplace::new(FREE_BAR);
+    let mut simulation = open(&place);
+    let count = simulation.scene().solid.reference.len() as u32;
+    let mut said = |nodes: &[(u32, Vec3)], particles: &[(u32, Vec3)]| {
+        simulation.set_forces(nodes, particles).unwrap_err().to_string()
+    };
+    assert!(said(&[(count, Vec3::zeros())], &[]).contains("expected less than"));
+    assert!(said(&[], &[(0, Vec3::zeros())]).contains("particle 0"));
+    assert!(said(&[(0, Vec3::new(0.0, f64::NAN, 0.0))], &[]).contains("finite"));
+    drop(simulation);
+    let held = "supports = [{ group = \"x-\", fix = \"xyz\" }]\nsolver = { kind = \"static\", end";
+    let place = Workplace::new(&FREE_BAR.replace("solver = { kind = \"explicit\", end", held));
+    let refused = open(&place).set_forces(&[(0, Vec3::zeros())], &[]).unwrap_err().to_string();
+    assert!(refused.contains("solver.kind = \"explicit\""), "{refused}");
+}
+
+#[test]
+fn a_run_that_its_driver_ends_is_complete() {
+    let place = Workplace::new(FREE_BAR);
+    let mut simulation = open(&place);
+    for _ in 0..10 {
+        simulation.step().unwrap();
+        simulation.record().unwrap();
+    }
+    assert_eq!(simulation.status(), None);
+    simulation.stop().unwrap();
+    assert!(simulation.is_over() && simulation.status() == Some(Status::Completed));
+    simulation.step().unwrap();
+    assert_eq!(simulation.steps(), 10);
+    let hash = fractum_io::summary::hash_text(simulation.state_hash());
+    let outcome = simulation.finish().unwrap();
+    assert_eq!((outcome.summary.status, outcome.summary.state_hash), (Status::Completed, hash));
+}

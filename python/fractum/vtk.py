@@ -1,0 +1,124 @@
+"""Reader of the VTK files that the program writes (XML with raw appended arrays)."""
+
+import xml.etree.ElementTree as ElementTree
+import zlib
+
+import numpy as np
+
+_KINDS = {
+    "Float64": "f8",
+    "Float32": "f4",
+    "Int64": "i8",
+    "Int32": "i4",
+    "Int8": "i1",
+    "UInt8": "u1",
+    "UInt32": "u4",
+    "UInt64": "u8",
+}
+
+#: Names of cells as meshio has them, by the number that VTK gives them.
+_CELLS = {1: "vertex", 3: "line", 5: "triangle", 7: "polygon", 10: "tetra"}
+
+_DATA = b'<AppendedData encoding="raw">'
+
+
+class Frame:
+    """Points, cells and fields of one part of a scene at one time.
+
+    - `points`: array (n, 3) [m], without displacement
+    - `cells`: list of pairs of a name (`"tetra"`, `"triangle"`, `"vertex"`, `"line"`) and an array of point numbers
+    - `point_data`, `cell_data`, `field_data`: dictionaries of arrays
+    - `path`: the file; `time` [s]
+    """
+
+    def __init__(self, path):
+        self.path = path
+        with open(path, "rb") as file:
+            content = file.read()
+        head, mark, rest = content.partition(_DATA)
+        if not mark:
+            raise ValueError(f"{path}: no raw appended data; expected a VTK file of fractum")
+        data = memoryview(rest)[rest.index(b"_") + 1 :]
+        root = ElementTree.fromstring(head + b"</VTKFile>")
+        arrays = _Arrays(root, data)
+        grid = root[0]
+        piece = grid.find("Piece")
+        self.field_data = arrays.of(grid.find("FieldData"))
+        time = self.field_data.get("TimeValue")
+        self.time = None if time is None else float(time.ravel()[0])
+        self.points = arrays.of(piece.find("Points"))["Points"]
+        self.point_data = arrays.of(piece.find("PointData"))
+        self.cell_data = arrays.of(piece.find("CellData"))
+        self.cells = []
+        if grid.tag == "UnstructuredGrid":
+            cells = arrays.of(piece.find("Cells"))
+            self.cells = _blocks(cells["connectivity"], cells["offsets"], cells["types"])
+        else:
+            for section, kind in (("Verts", 1), ("Lines", 3), ("Polys", 7)):
+                cells = arrays.of(piece.find(section))
+                if len(cells.get("offsets", ())):
+                    kinds = np.full(len(cells["offsets"]), kind)
+                    self.cells += _blocks(cells["connectivity"], cells["offsets"], kinds)
+
+    def to_meshio(self):
+        """As a `meshio.Mesh`."""
+        import meshio
+
+        ends = np.cumsum([len(nodes) for _, nodes in self.cells])[:-1]
+        cell_data = {name: np.split(values, ends) for name, values in self.cell_data.items()}
+        return meshio.Mesh(self.points, self.cells, point_data=self.point_data, cell_data=cell_data)
+
+    def to_pyvista(self):
+        """As a data set of PyVista."""
+        import pyvista
+
+        return pyvista.read(self.path)
+
+
+class _Arrays:
+    """The arrays of a file."""
+
+    def __init__(self, root, data):
+        self.data = data
+        self.order = "<" if root.get("byte_order") == "LittleEndian" else ">"
+        self.compressed = root.get("compressor") is not None
+
+    def of(self, section):
+        """The arrays of a section, by name."""
+        found = {}
+        for tag in () if section is None else section.iter("DataArray"):
+            kind = np.dtype(self.order + _KINDS[tag.get("type")])
+            values = np.frombuffer(self._bytes(int(tag.get("offset"))), dtype=kind)
+            components = int(tag.get("NumberOfComponents", 1))
+            found[tag.get("Name")] = values.reshape(-1, components) if components > 1 else values
+        return found
+
+    def _numbers(self, at, count):
+        return np.frombuffer(self.data, dtype=self.order + "u8", count=count, offset=at).tolist()
+
+    def _bytes(self, at):
+        if not self.compressed:
+            (length,) = self._numbers(at, 1)
+            return bytes(self.data[at + 8 : at + 8 + length])
+        blocks, _, _ = self._numbers(at, 3)
+        lengths = self._numbers(at + 24, blocks)
+        at += 8 * (3 + blocks)
+        parts = []
+        for length in lengths:
+            parts.append(zlib.decompress(self.data[at : at + length]))
+            at += length
+        return b"".join(parts)
+
+
+def _blocks(nodes, ends, kinds):
+    """Runs of cells of one kind and size."""
+    sizes = np.diff(ends, prepend=0)
+    breaks = np.flatnonzero((np.diff(kinds) != 0) | (np.diff(sizes) != 0)) + 1
+    starts = [0, *breaks.tolist(), len(kinds)]
+    blocks = []
+    for first, last in zip(starts[:-1], starts[1:]):
+        if last > first:
+            part = nodes[ends[first] - sizes[first] : ends[last - 1]]
+            name = _CELLS.get(int(kinds[first]), f"VTK {int(kinds[first])}")
+            blocks.append((name, part.reshape(last - first, -1)))
+    return blocks

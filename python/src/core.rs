@@ -1,0 +1,362 @@
+//! A simulation that Python drives.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use fractum::{Failure, Input, Options, Simulation, cache_of_user, load};
+use fractum_io::case::model::ProbeKind;
+use fractum_io::summary::hash_text;
+use fractum_math::Vec3;
+use fractum_scene::{EnergyKind, Population, Scene};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use rayon::ThreadPool;
+
+use crate::arrays::{flags, indices, numbers, to_indices, to_vectors, vectors};
+use crate::errors::{raise, wrong};
+use crate::watch::{pool, watch};
+
+/// A case under way. After `finish` it is gone, and every call is refused.
+#[pyclass(module = "fractum._core")]
+pub(crate) struct Core {
+    simulation: Mutex<Option<Simulation>>,
+    pool: ThreadPool,
+    numbering: Numbering,
+    /// Sets of points that loads push, in the numbering of the scene.
+    points: Vec<(Population, Vec<u32>)>,
+}
+
+/// Nodes of solids in the order of the mesh file.
+struct Numbering {
+    /// Nodes of the scene.
+    order: Vec<u32>,
+    /// Place of every node of the scene in that order.
+    place: Vec<u32>,
+    /// Nodes of the groups of the mesh, as places in that order.
+    groups: BTreeMap<String, Vec<u32>>,
+}
+
+impl Numbering {
+    fn new(input: &Input) -> Self {
+        let order = input.built.file_order.clone();
+        let mut place = vec![0; order.len()];
+        for (at, &node) in (0..).zip(&order) {
+            place[node as usize] = at;
+        }
+        let scene_node = &input.built.scene_node;
+        let nodes = |name: &str| {
+            let all = input.mesh.group_nodes(name).into_iter().map(|n| scene_node[n as usize]);
+            all.filter(|&n| n != u32::MAX).map(|n| place[n as usize]).collect()
+        };
+        let groups = input.mesh.group_names().into_iter().map(|name| (name.to_owned(), nodes(name))).collect();
+        Numbering { groups, order, place }
+    }
+}
+
+/// A value of everything in a scene that has places and velocities.
+fn no_array(py: Python<'_>, name: &str) -> PyErr {
+    wrong(py, format!("no array is called \"{name}\""))
+}
+
+impl Core {
+    /// Does something with the simulation.
+    fn with<T>(&self, py: Python<'_>, act: impl FnOnce(&mut Simulation) -> PyResult<T>) -> PyResult<T> {
+        let mut simulation = self.simulation.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        simulation.as_mut().map_or_else(|| Err(wrong(py, "the simulation has been finished")), act)
+    }
+
+    fn with_scene<T>(&self, py: Python<'_>, act: impl FnOnce(&Scene) -> PyResult<T>) -> PyResult<T> {
+        self.with(py, |simulation| act(simulation.scene()))
+    }
+}
+
+#[pymethods]
+impl Core {
+    /// Opens a case; arguments as those of `run`.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        case: PathBuf,
+        set: Vec<(String, String)>,
+        output: Option<PathBuf>,
+        threads: Option<usize>,
+        resume: bool,
+        quiet: bool,
+    ) -> PyResult<Self> {
+        let options =
+            Options { output, threads, overrides: set, resume, quiet, cache: cache_of_user(), ..Options::default() };
+        let pool = pool(py, threads)?;
+        let opened = watch(py, &pool, || {
+            let started = Instant::now();
+            let input = load(&case, &options.overrides, &options.cache)?;
+            let numbering = Numbering::new(&input);
+            Ok((Simulation::start(input, &case, &options, started)?, numbering))
+        })?;
+        let (simulation, numbering) = opened.map_err(|failure| raise(py, &failure))?;
+        Ok(Core { simulation: Mutex::new(Some(simulation)), pool, numbering, points: Vec::new() })
+    }
+
+    /// Steps at most `count` times and not beyond `until` [s]; whether the run goes on.
+    fn step(&self, py: Python<'_>, count: u64, until: f64) -> PyResult<bool> {
+        let work = || {
+            let mut guard = self.simulation.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            let Some(simulation) = guard.as_mut() else { return Ok(None) };
+            for _ in 0..count {
+                if simulation.is_over() || simulation.time() >= until {
+                    break;
+                }
+                simulation.step()?;
+                simulation.record()?;
+            }
+            Ok(Some(!simulation.is_over()))
+        };
+        let goes_on = watch(py, &self.pool, work)?.map_err(|failure: Failure| raise(py, &failure))?;
+        goes_on.ok_or_else(|| wrong(py, "the simulation has been finished"))
+    }
+
+    /// Ends the run as if its end were reached.
+    fn stop(&self, py: Python<'_>) -> PyResult<()> {
+        self.with(py, |simulation| simulation.stop().map_err(|failure| raise(py, &failure)))
+    }
+
+    /// Writes the results; their folder.
+    fn finish(&self, py: Python<'_>) -> PyResult<PathBuf> {
+        let taken = self.simulation.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take();
+        let Some(simulation) = taken else { return Err(wrong(py, "the simulation has been finished")) };
+        let outcome = watch(py, &self.pool, || simulation.finish())?.map_err(|failure| raise(py, &failure))?;
+        Ok(outcome.folder)
+    }
+
+    /// Time [s], step [s], steps done, whether the run is over, how it ended, and the results folder.
+    fn progress(&self, py: Python<'_>) -> PyResult<(f64, f64, u64, bool, Option<String>, PathBuf)> {
+        self.with(py, |run| {
+            let status = run.status().map(|status| format!("{status:?}").to_lowercase());
+            let dt = run.scene().clock.dt_after;
+            Ok((run.time(), dt, run.steps(), run.is_over(), status, run.folder().to_owned()))
+        })
+    }
+
+    /// Hash of everything that changes.
+    fn state_hash(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |simulation| Ok(hash_text(simulation.state_hash())))
+    }
+
+    /// The energies at the last row of the history [J], and the counts of everything.
+    fn ledger<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+        self.with_scene(py, |scene| {
+            let (energies, all) = (PyDict::new(py), PyDict::new(py));
+            let ledger = scene.ledger();
+            EnergyKind::ALL.into_iter().try_for_each(|kind| energies.set_item(kind.name(), ledger[kind]))?;
+            let counts = scene.counts();
+            for (name, count) in [
+                ("nodes", counts.nodes),
+                ("elements", counts.elements),
+                ("removed_elements", counts.removed_elements),
+                ("damaged_edges", counts.damaged_edges),
+                ("broken_edges", counts.broken_edges),
+                ("particles", counts.particles),
+                ("contacts", counts.contacts),
+                ("bonds", counts.bonds),
+                ("broken_bonds", counts.broken_bonds),
+            ] {
+                all.set_item(name, count)?;
+            }
+            Ok((energies, all))
+        })
+    }
+
+    /// Names and units of the probes that are columns of the history.
+    fn probes(&self, py: Python<'_>) -> PyResult<Vec<(String, String)>> {
+        self.with(py, |simulation| {
+            let column = |probe: &&fractum_io::case::model::Probe| match &probe.kind {
+                ProbeKind::Expression(expression) => !expression.scalar,
+                _ => true,
+            };
+            let probes = simulation.case().probes.iter().filter(column);
+            Ok(probes.map(|probe| (probe.name.value.clone(), probe.unit.clone())).collect())
+        })
+    }
+
+    /// Times [s] and values of a probe so far.
+    fn probe<'py>(&self, py: Python<'py>, name: &str) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyBytes>)> {
+        self.with(py, |simulation| {
+            let Some((times, values)) = simulation.probe(name) else {
+                let names: Vec<&str> = simulation.case().probes.iter().map(|p| p.name.value.as_str()).collect();
+                return Err(wrong(py, format!("no probe is called \"{name}\"; probes here: {}", names.join(", "))));
+            };
+            let bytes = |values: &[f64]| numbers(py, values.len(), |i| [values[i]]);
+            Ok((bytes(times)?, bytes(values)?))
+        })
+    }
+
+    /// Names of the groups of the mesh.
+    fn groups(&self) -> Vec<String> {
+        self.numbering.groups.keys().cloned().collect()
+    }
+
+    /// Nodes of a group of the mesh that belong to solids.
+    fn group<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let Some(nodes) = self.numbering.groups.get(name) else {
+            let text = format!("no group is called \"{name}\"; groups here: {}", self.groups().join(", "));
+            return Err(wrong(py, text));
+        };
+        Ok(indices(py, nodes.iter().copied()))
+    }
+
+    /// An array over the nodes of solids.
+    fn nodes<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let order = &self.numbering.order;
+        self.with_scene(py, |scene| {
+            let solid = &scene.solid;
+            let of = |values: &dyn Fn(usize) -> Vec3| vectors(py, order.len(), |i| values(order[i] as usize));
+            match name {
+                "reference" => of(&|n| solid.reference[n]),
+                "position" => of(&|n| solid.position(n)),
+                "displacement" => of(&|n| solid.displacement_from_start(n)),
+                "velocity" => of(&|n| solid.velocity[n]),
+                "force" => of(&|n| solid.force[n]),
+                "mass" => numbers(py, order.len(), |i| [solid.mass[order[i] as usize]]),
+                _ => Err(no_array(py, name)),
+            }
+        })
+    }
+
+    /// An array over the particles of bonded bodies and loose ones.
+    fn particles<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
+        self.with_scene(py, |scene| {
+            let particles = &scene.bonded.particles;
+            let of = |values: &[Vec3]| vectors(py, values.len(), |i| values[i]);
+            let scalar = |values: &[f64]| numbers(py, values.len(), |i| [values[i]]);
+            match name {
+                "reference" => of(scene.bonded.reference()),
+                "position" => of(&particles.position),
+                "velocity" => of(&particles.velocity),
+                "spin" => of(&particles.spin),
+                "force" => of(&particles.force),
+                "moment" => of(&particles.moment),
+                "mass" => scalar(&particles.mass),
+                "radius" => scalar(&particles.radius),
+                _ => Err(no_array(py, name)),
+            }
+        })
+    }
+
+    /// An array over the discrete elements that solids have left.
+    fn discrete<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let place = &self.numbering.place;
+        self.with_scene(py, |scene| {
+            let (debris, state, solid) = (&scene.debris, scene.debris.state(), &scene.solid);
+            let nodes = &state.nodes;
+            match name {
+                "node" => Ok(indices(py, nodes.iter().map(|&n| place[n as usize]))),
+                "attached" => Ok(flags(py, state.attached.iter().copied())),
+                "radius" => numbers(py, nodes.len(), |i| [debris.radius(nodes[i])]),
+                "position" => vectors(py, nodes.len(), |i| solid.position(nodes[i] as usize)),
+                "velocity" => vectors(py, nodes.len(), |i| solid.velocity[nodes[i] as usize]),
+                "spin" => vectors(py, nodes.len(), |i| state.spin[i]),
+                _ => Err(no_array(py, name)),
+            }
+        })
+    }
+
+    /// The solid bodies: name, nodes of an element, and the nodes of all elements.
+    fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, usize, Bound<'py, PyBytes>)>> {
+        let place = &self.numbering.place;
+        self.with_scene(py, |scene| {
+            let body = |index: usize| {
+                let body = scene.solid.body(index);
+                let corners = body.shape.node_count();
+                let nodes = body.elements.iter().flat_map(|element| &element[..corners]);
+                (body.name.clone(), corners, indices(py, nodes.map(|&n| place[n as usize])))
+            };
+            Ok((0..scene.solid.body_count()).map(body).collect())
+        })
+    }
+
+    /// An array over the elements of a solid body.
+    fn elements<'py>(&self, py: Python<'py>, body: usize, name: &str) -> PyResult<Bound<'py, PyBytes>> {
+        self.with_scene(py, |scene| {
+            let solid = &scene.solid;
+            if body >= solid.body_count() {
+                return Err(wrong(py, format!("no solid body {body}")));
+            }
+            let fields = || self.pool.install(|| solid.element_fields(body));
+            match name {
+                "alive" => Ok(flags(py, solid.alive(body).iter().copied())),
+                "damage" => {
+                    let fields = fields();
+                    numbers(py, fields.len(), |i| [fields[i].1])
+                }
+                "stress" => {
+                    let fields = fields();
+                    numbers(py, fields.len(), |i| fields[i].0.0)
+                }
+                _ => Err(no_array(py, name)),
+            }
+        })
+    }
+
+    /// Keeps points that a load pushes; their number among such sets.
+    ///
+    /// - `nodes`: whether they are nodes of solids, in the order of the mesh file, or particles
+    fn add_points(&mut self, py: Python<'_>, nodes: bool, points: &[u8]) -> PyResult<usize> {
+        let mut points = to_indices(points);
+        let count = if nodes {
+            self.numbering.order.len()
+        } else {
+            self.with_scene(py, |scene| Ok(scene.bonded.particles.len()))?
+        };
+        if let Some(wrong_one) = points.iter().find(|&&point| point as usize >= count) {
+            return Err(wrong(py, format!("no point {wrong_one}; expected less than {count}")));
+        }
+        if nodes {
+            points.iter_mut().for_each(|point| *point = self.numbering.order[*point as usize]);
+        }
+        self.points.push((if nodes { Population::Nodes } else { Population::Particles }, points));
+        Ok(self.points.len() - 1)
+    }
+
+    /// Positions [m] and velocities [m/s] of a set of points.
+    fn state_of_points<'py>(
+        &self,
+        py: Python<'py>,
+        set: usize,
+    ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyBytes>)> {
+        let Some((population, points)) = self.points.get(set) else {
+            return Err(wrong(py, format!("no set {set} of points")));
+        };
+        self.with_scene(py, |scene| {
+            let (solid, particles) = (&scene.solid, &scene.bonded.particles);
+            let all = |of: &dyn Fn(usize) -> Vec3| vectors(py, points.len(), |i| of(points[i] as usize));
+            Ok(match population {
+                Population::Nodes => (all(&|n| solid.position(n))?, all(&|n| solid.velocity[n])?),
+                Population::Particles => (all(&|n| particles.position[n])?, all(&|n| particles.velocity[n])?),
+            })
+        })
+    }
+
+    /// Sets the forces that act from the next step on: sets of points, and the force on each point [N].
+    fn set_forces(&self, py: Python<'_>, forces: Vec<(usize, Bound<'_, PyBytes>)>) -> PyResult<()> {
+        let (mut on_nodes, mut on_particles) = (Vec::new(), Vec::new());
+        for (set, bytes) in &forces {
+            let Some((population, points)) = self.points.get(*set) else {
+                return Err(wrong(py, format!("no set {set} of points")));
+            };
+            let values = to_vectors(bytes.as_bytes());
+            if values.len() != points.len() {
+                let text = format!("{} forces on {} points; expected one for each", values.len(), points.len());
+                return Err(wrong(py, text));
+            }
+            let pushed = points.iter().copied().zip(values);
+            match population {
+                Population::Nodes => on_nodes.extend(pushed),
+                Population::Particles => on_particles.extend(pushed),
+            }
+        }
+        let act =
+            |run: &mut Simulation| run.set_forces(&on_nodes, &on_particles).map_err(|failure| raise(py, &failure));
+        self.with(py, act)
+    }
+}
