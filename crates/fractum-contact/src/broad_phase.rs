@@ -10,7 +10,7 @@ const UNEVEN: f64 = 3.0;
 
 /// Pairs of spheres whose surfaces are nearer than `skin`, as ascending pairs in ascending order.
 ///
-/// - `centres` [m], `radii` [m] ≥ 0, of the same length
+/// - `centres` [m], `radii` [m], of the same length; spheres with a negative radius are left out
 /// - `skin` [m] ≥ 0
 ///
 /// The work is proportional to the number of near pairs: spheres of similar size are sorted into a grid of cells as wide
@@ -22,7 +22,7 @@ pub fn close_pairs(centres: &[Vec3], radii: &[f64], skin: f64) -> Vec<[u32; 2]> 
     if centres.len() < 2 || width <= 0.0 || !width.is_finite() {
         return Vec::new();
     }
-    let mean = radii.iter().sum::<f64>() / radii.len() as f64;
+    let mean = radii.iter().map(|radius| radius.max(0.0)).sum::<f64>() / radii.len() as f64;
     if widest + 0.5 * skin > UNEVEN * (mean + 0.5 * skin) {
         return pairs_by_tree(centres, radii, skin);
     }
@@ -31,7 +31,7 @@ pub fn close_pairs(centres: &[Vec3], radii: &[f64], skin: f64) -> Vec<[u32; 2]> 
 
 fn pairs_by_tree(centres: &[Vec3], radii: &[f64], skin: f64) -> Vec<[u32; 2]> {
     let around = |i: usize| {
-        let (x, half) = (centres[i], radii[i] + 0.5 * skin);
+        let (x, half) = (centres[i], radii[i].max(0.0) + 0.5 * skin);
         Aabb::from_half_extents(Vector::new(x.x, x.y, x.z), Vector::new(half, half, half))
     };
     let boxes: Vec<Aabb> = (0..centres.len()).map(around).collect();
@@ -39,7 +39,8 @@ fn pairs_by_tree(centres: &[Vec3], radii: &[f64], skin: f64) -> Vec<[u32; 2]> {
     let pairs_of = |(i, own): (usize, &Aabb)| {
         let near = |&j: &u32| {
             let reach = radii[i] + radii[j as usize] + skin;
-            i < j as usize && (centres[j as usize] - centres[i]).norm_squared() < reach * reach
+            let there = radii[i].min(radii[j as usize]) >= 0.0;
+            there && i < j as usize && (centres[j as usize] - centres[i]).norm_squared() < reach * reach
         };
         let mut found: Vec<[u32; 2]> = tree.intersect_aabb(own).filter(near).map(|j| [i as u32, j]).collect();
         found.sort_unstable();
@@ -50,8 +51,8 @@ fn pairs_by_tree(centres: &[Vec3], radii: &[f64], skin: f64) -> Vec<[u32; 2]> {
 
 fn pairs_by_grid(centres: &[Vec3], radii: &[f64], skin: f64, width: f64) -> Vec<[u32; 2]> {
     let cell_of = |p: &Vec3| p.map(|c| (c / width).floor() as i64);
-    let mut sorted: Vec<([i64; 3], u32)> =
-        centres.par_iter().enumerate().map(|(i, p)| (cell_of(p).into(), i as u32)).collect();
+    let there = centres.par_iter().enumerate().filter(|(i, _)| radii[*i] >= 0.0);
+    let mut sorted: Vec<([i64; 3], u32)> = there.map(|(i, p)| (cell_of(p).into(), i as u32)).collect();
     sorted.par_sort_unstable();
     let pairs_of = |&(cell, i): &([i64; 3], u32)| {
         let mut found = Vec::new();

@@ -89,7 +89,7 @@ impl<L: ContactLaw> SurfaceContacts<L> {
 
     fn find_near(&mut self, ground: &Surface, radii: &[f64]) {
         let (centres, skin, depth) = (&self.searched_at, self.skin, self.depth.unwrap_or(0.0));
-        let spheres: Vec<u32> = (0..centres.len() as u32).collect();
+        let spheres: Vec<u32> = (0..centres.len() as u32).filter(|&i| radii[i as usize] >= 0.0).collect();
         let near: Vec<Vec<(u32, Vec<u32>)>> = match ground {
             Surface::Shape { shape, hollow, .. } => spheres
                 .par_chunks(BLOCK)

@@ -92,6 +92,11 @@ impl<L: ContactLaw> SphereContacts<L> {
         true
     }
 
+    /// Has the next search renew the list of near pairs, since radii have changed.
+    pub fn look_again(&mut self) {
+        self.searched_at.clear();
+    }
+
     fn index(&mut self, spheres: usize) {
         self.starts.clear();
         self.starts.resize(spheres + 1, 0);

@@ -16,7 +16,7 @@ pub struct Spheres<'a> {
     pub velocity: &'a [Vec3],
     /// Angular velocities [rad/s].
     pub spin: &'a [Vec3],
-    /// Radii [m].
+    /// Radii [m]; a sphere with a negative one has left, and meets nothing.
     pub radius: &'a [f64],
 }
 

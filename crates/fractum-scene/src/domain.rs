@@ -15,11 +15,11 @@ pub struct Domain {
 /// What has left the run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Left {
-    /// Nodes, in the order in which they left.
-    pub(crate) nodes: Vec<u32>,
+    /// Nodes, and particles of bonded bodies numbered after all nodes, in the order in which they left.
+    points: Vec<u32>,
     /// Elements.
     pub elements: usize,
-    /// Pieces of solids and single discrete elements.
+    /// Pieces of solids and of bonded bodies, and single discrete elements and particles.
     pub pieces: usize,
     /// Mass [kg].
     pub mass: f64,
@@ -27,7 +27,29 @@ pub struct Left {
     pub momentum: Vec3,
 }
 
+impl Left {
+    /// Adds a node, or a particle numbered after all nodes.
+    pub(crate) fn push(&mut self, point: u32) {
+        self.points.push(point);
+    }
+
+    /// Nodes that have left a scene of so many nodes.
+    pub(crate) fn nodes(&self, count: usize) -> impl Iterator<Item = u32> + '_ {
+        self.points.iter().copied().filter(move |&point| (point as usize) < count)
+    }
+
+    /// Bonded and loose particles that have left a scene of so many nodes.
+    pub(crate) fn particles(&self, nodes: usize) -> impl Iterator<Item = u32> + '_ {
+        self.points.iter().filter_map(move |&point| point.checked_sub(nodes as u32))
+    }
+}
+
 impl Domain {
+    /// Whether a ball is wholly outside.
+    pub(crate) fn is_ball_outside(&self, centre: &Vec3, radius: f64) -> bool {
+        (0..3).any(|axis| centre[axis] + radius < self.min[axis] || centre[axis] - radius > self.max[axis])
+    }
+
     /// Whether a point is outside.
     ///
     /// - `planar`: whether z counts for nothing

@@ -6,6 +6,9 @@ use crate::domain::{Domain, Left};
 use crate::fragment::parts;
 use crate::scene::Scene;
 
+/// Steps between two looks for pieces that have left the domain.
+const STEPS_BETWEEN_FAREWELLS: u64 = 100;
+
 impl Scene {
     /// The same scene, in which free pieces outside a box leave the run.
     pub fn with_domain(mut self, domain: Domain) -> Self {
@@ -25,8 +28,29 @@ impl Scene {
 
     /// Has nothing push what has left, which rests where it was then.
     pub(crate) fn let_left_rest(&mut self) {
-        for &node in &self.removals.left.nodes {
-            self.solid.force[node as usize] = Vec3::zeros();
+        let Scene { removals, solid, .. } = self;
+        for node in removals.left.nodes(solid.reference.len()) {
+            solid.force[node as usize] = Vec3::zeros();
+        }
+    }
+
+    /// The box, where it is time to look for what is outside of it.
+    fn domain_to_look_at(&self) -> Option<Domain> {
+        self.removals.domain.filter(|_| self.clock.step.is_multiple_of(STEPS_BETWEEN_FAREWELLS))
+    }
+
+    /// Lets pieces of bonded bodies and loose particles leave, between the forces of tⁿ and the kick.
+    ///
+    /// - `dt`: the step that led to tⁿ [s]
+    pub(crate) fn let_particles_leave(&mut self, dt: f64) {
+        let Some(domain) = self.domain_to_look_at().filter(|domain| self.bonded.has_outside(domain)) else { return };
+        let mut touching: Vec<u32> = Vec::new();
+        self.contacts.each_touching_particle(|i| touching.push(i));
+        let (energy, gone) = self.bonded.let_leave(&domain, &touching, dt, &mut self.removals.left);
+        self.books.left += energy;
+        if !gone.is_empty() {
+            gone.iter().for_each(|&i| self.removals.left.push(self.solid.reference.len() as u32 + i));
+            self.contacts.look_again();
         }
     }
 
@@ -37,10 +61,10 @@ impl Scene {
     ///
     /// - `dt`: time since the forces were last computed [s]
     pub(crate) fn let_pieces_leave(&mut self, dt: f64) {
-        let Some(domain) = self.removals.domain else { return };
+        let Some(domain) = self.domain_to_look_at() else { return };
         let (solid, planar) = (&self.solid, self.solid.is_plane());
         let mut gone = vec![false; solid.reference.len()];
-        self.removals.left.nodes.iter().for_each(|&node| gone[node as usize] = true);
+        self.removals.left.nodes(gone.len()).for_each(|node| gone[node as usize] = true);
         let outside: Vec<bool> = (0..gone.len()).map(|node| domain.is_outside(&solid.position(node), planar)).collect();
         if !outside.iter().zip(&gone).any(|(outside, gone)| *outside && !gone) {
             return;
@@ -61,6 +85,8 @@ impl Scene {
         held.for_each(&mut visit);
         self.surface_supports.nodes().for_each(&mut visit);
         self.debris.bound_nodes().for_each(&mut visit);
+        self.ties.nodes().for_each(&mut visit);
+        self.contacts.each_touching_node(&self.debris, &self.bonded.particles, &mut visit);
         for candidate in self.shape_contacts.iter().flat_map(|ground| &ground.candidates) {
             if candidate.is_loaded() {
                 visit(candidate.node);
@@ -83,11 +109,15 @@ impl Scene {
             removals.left.mass += mass;
             removals.left.momentum += velocity * mass;
             removals.left.pieces += usize::from(piece[node] as usize == node);
-            removals.left.nodes.push(node as u32);
+            removals.left.push(node as u32);
         }
         self.removals.left.elements += elements.len();
         self.books.left += energy;
+        let born = self.debris.state().nodes.clone();
         self.debris.let_leave(&self.solid, leaves);
+        let Scene { solid, debris, contacts, bonded, removals, .. } = self;
+        let gone: Vec<u32> = removals.left.nodes(leaves.len()).collect();
+        contacts.let_nodes_leave(solid, debris, bonded.particles.len(), &born, &gone, &elements);
         for ground in &mut self.shape_contacts {
             ground.candidates.retain(|candidate| !leaves[candidate.node as usize]);
         }

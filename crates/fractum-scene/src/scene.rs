@@ -301,7 +301,8 @@ impl Scene {
             removed_elements: fracture.removed_elements - self.removals.left.elements,
             damaged_edges: fracture.damaged_edges,
             broken_edges: fracture.broken_edges,
-            particles: self.debris.len() + self.bonded.particles.len(),
+            particles: self.debris.len() + self.bonded.particles.len()
+                - self.removals.left.particles(self.solid.reference.len()).count(),
             bonds: self.bonded.bond_counts().0,
             broken_bonds: self.bonded.bond_counts().1,
             contacts: self.debris.touching().count()
@@ -360,10 +361,13 @@ impl Scene {
         self.debris.restore(&self.solid, state.debris);
         if let Some(bonded) = state.bonded {
             self.bonded.restore(bonded);
+            let left: Vec<u32> = state.left.particles(self.solid.reference.len()).collect();
+            self.bonded.take_out(&left);
         }
         self.ties.restore(&self.solid, &self.bonded.particles);
         if let Some(contacts) = state.contacts {
             self.contacts.restore(&self.solid, &self.debris, contacts);
+            self.contacts.leave_out(state.left.nodes(self.solid.reference.len()));
         }
         for (ground, candidates) in self.shape_contacts.iter_mut().zip(state.shape_contacts) {
             ground.restore(candidates);

@@ -18,8 +18,6 @@ const IN_SITU_ROUND_OFF: f64 = 1e-9;
 const SAME_STEP: f64 = 1e-9;
 /// Removals after which the stable step is looked at again, and the steps that must lie between two looks.
 const STEPS_BETWEEN_CHECKS: u64 = 200;
-/// Steps between two looks for pieces that have left the domain.
-const STEPS_BETWEEN_FAREWELLS: u64 = 100;
 
 /// What happened in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -85,6 +83,7 @@ impl Scene {
         let absorbed = self.add_surface_support_forces(first);
         let given = if first { self.start_half_a_step_early(dt_before) } else { 0.0 };
         self.let_left_rest();
+        self.let_particles_leave(dt_before);
         let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
         let mut work = self.advance(measure || step_changes); // vⁿ⁺½, uⁿ⁺¹
         work.before.external += load;
@@ -111,9 +110,7 @@ impl Scene {
         let report = self.release_cut_elements(dt_after);
         passed(Phase::Transition);
         self.debris.search(&self.solid);
-        if self.removals.domain.is_some() && self.clock.step.is_multiple_of(STEPS_BETWEEN_FAREWELLS) {
-            self.let_pieces_leave(dt_after);
-        }
+        self.let_pieces_leave(dt_after);
         if !self.debris.is_empty() {
             let renew = self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS);
             self.update_contact_frequency(report.removed > 0, renew);

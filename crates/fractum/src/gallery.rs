@@ -52,6 +52,7 @@ pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
     let radii: Vec<f64> = debris.nodes.iter().map(|&n| scene.debris.radius(n)).collect();
     let balls: Vec<[f64; 3]> =
         bonded.reference().iter().zip(&moved).map(|(start, u)| (start + u * scale).into()).collect();
+    let ball_radii: Vec<f64> = bonded.particles.radius.iter().map(|radius| radius.max(0.0)).collect();
     let view = view(&all);
     let time = quantity(scene.clock.time, "s");
     let magnified = if scale > 1.0 { format!(", displacements x {scale:.0}") } else { String::new() };
@@ -64,7 +65,7 @@ pub(crate) fn draw(scene: &Scene, folder: &Path) -> Vec<PictureNote> {
         let spheres = Spheres { centres: &centres, radii: &radii, paint: Paint::Plain([200, 120, 40]) };
         let picture = Picture {
             surfaces: &[surface],
-            spheres: &[spheres, Spheres { centres: &balls, radii: &bonded.particles.radius, paint: inside(inner) }],
+            spheres: &[spheres, Spheres { centres: &balls, radii: &ball_radii, paint: inside(inner) }],
             map: if damage { ColourMap::Damage } else { ColourMap::Viridis },
             range,
             clip: None,
@@ -113,7 +114,8 @@ fn broken_bonds(scene: &Scene, balls: &[[f64; 3]], view: &View, folder: &Path, w
     let view = View { direction: look.into(), up, ..*view };
     let depth = |i: usize| reference[i].dot(&look);
     let middle = (0..balls.len()).map(|i| lost[i] * depth(i)).sum::<f64>() / lost.iter().sum::<f64>();
-    let kept: Vec<usize> = (0..balls.len()).filter(|&i| depth(i) >= middle).collect();
+    let drawn = |i: usize| depth(i) >= middle && !bonded.particles.has_left(i);
+    let kept: Vec<usize> = (0..balls.len()).filter(|&i| drawn(i)).collect();
     let centres: Vec<[f64; 3]> = kept.iter().map(|&i| balls[i]).collect();
     let radii: Vec<f64> = kept.iter().map(|&i| bonded.particles.radius[i]).collect();
     let values: Vec<f64> = kept.iter().map(|&i| lost[i]).collect();

@@ -27,12 +27,14 @@ pub(crate) fn particles_file(scene: &Scene, path: &Path) -> Result<PendingFile, 
     for (index, part) in (0..).zip(bonded.bodies()) {
         body[part.range.clone()].fill(index);
     }
+    // What has left is not drawn.
+    let radius: Vec<f64> = all.radius.iter().map(|radius| radius.max(0.0)).collect();
     let lost = lost_bonds(all.len(), bonded.bodies().iter().flat_map(BondedBody::cracks));
     let data = PolyData {
         points: &points,
         cells: PolyCells::Points,
         point_data: &[
-            Field::scalar("radius", &all.radius),
+            Field::scalar("radius", &radius),
             Field::scalar("mass", &all.mass),
             Field::vector("displacement", &displacement),
             Field::vector("rotation", &rotation),

@@ -87,6 +87,12 @@ impl Face {
         (particles.position[j] - particles.position[i]).norm() - self.rest
     }
 
+    /// Whether both touch.
+    pub(crate) fn is_loaded(&self, particles: &Particles) -> bool {
+        let [i, j] = self.pair.map(|i| i as usize);
+        (particles.position[j] - particles.position[i]).norm() < self.closing
+    }
+
     /// Adds the force of the moment; `dt` is the step that led here [s].
     pub(crate) fn add_force(&mut self, particles: &mut Particles, dt: f64, work: &mut FaceWork) {
         let Particles { position, velocity, spin, force, moment, .. } = particles;

@@ -307,6 +307,17 @@ impl Fracture {
         work
     }
 
+    /// Pairs of particles that touch where no bond joins them.
+    pub fn touching<'a>(&'a self, particles: &'a Particles) -> impl Iterator<Item = [u32; 2]> + 'a {
+        self.pairs.iter().filter(|face| face.is_loaded(particles)).map(|face| face.pair)
+    }
+
+    /// Particles have left that touched nothing but each other: they keep no face against others.
+    pub fn part_from_left(&mut self, particles: &Particles) {
+        let left = |i: u32| particles.has_left(i as usize);
+        self.pairs.retain(|face| left(face.pair[0]) == left(face.pair[1]));
+    }
+
     /// Finds pairs of particles that were never bonded to each other and have come close, one of which has lost bonds: they
     /// are in contact from now on as crack faces are. A call every few steps is enough, but must come at the same steps in a run
     /// that goes on from a saved state.
@@ -318,7 +329,8 @@ impl Fracture {
             return;
         }
         let (centres, radii) = (&particles.position[range.clone()], &particles.radius[range.clone()]);
-        let skin = SKIN * radii.iter().copied().fold(f64::INFINITY, f64::min);
+        // Particles that have left have negative radii.
+        let skin = SKIN * radii.iter().copied().filter(|radius| *radius > 0.0).fold(f64::INFINITY, f64::min);
         let mut lost = vec![false; range.len()];
         cracks.iter().flat_map(|crack| crack.pair).for_each(|i| lost[i as usize - range.start] = true);
         // Strangers that have parted again have nothing to remember.

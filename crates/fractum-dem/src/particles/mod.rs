@@ -31,7 +31,7 @@ pub struct Particles {
     pub mass: Vec<f64>,
     /// Moment of inertia about any axis [kg m²].
     pub inertia: Vec<f64>,
-    /// Radius [m].
+    /// Radius [m]; negative once the particle [has left](Particles::let_leave).
     pub radius: Vec<f64>,
     /// Bit d set: degree of freedom d (0–2 translation, 3–5 rotation) keeps its velocity whatever the forces.
     pub held: Vec<u8>,
@@ -81,6 +81,19 @@ impl Particles {
     /// Whether there are no particles.
     pub fn is_empty(&self) -> bool {
         self.position.is_empty()
+    }
+
+    /// Takes a particle out of the run: it rests where it is for ever and meets nothing.
+    pub fn let_leave(&mut self, particle: usize) {
+        self.velocity[particle] = Vec3::zeros();
+        self.spin[particle] = Vec3::zeros();
+        self.held[particle] = 0b11_1111;
+        self.radius[particle] = -self.radius[particle].abs();
+    }
+
+    /// Whether a particle is out of the run.
+    pub fn has_left(&self, particle: usize) -> bool {
+        self.radius[particle] < 0.0
     }
 
     /// Sets all forces and moments to zero.

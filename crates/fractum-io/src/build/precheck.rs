@@ -222,22 +222,15 @@ impl Context<'_> {
         }
     }
 
-    /// The scene with the domain of its run, which must hold all of its nodes at the start.
+    /// The scene with the domain of its run, which must hold all of its nodes and particles at the start.
     pub(super) fn with_domain(&mut self, scene: Scene, domain: &Spanned<Domain>) -> Option<Scene> {
-        let others = [
-            (!scene.bonded.is_empty(), "bodies of particles, which"),
-            (scene.contacts.has_node_contacts(), "solids that meet facets or containers, which"),
-        ];
-        if let Some((_, what)) = others.iter().find(|(there, _)| *there) {
-            let found = format!("stands beside {what} cannot leave a run");
-            self.diagnostics.push(Diagnostic::error(&domain.place, found).remedy("leave the domain out"));
-            return None;
-        }
         let planar = scene.solid.is_plane();
-        if let Some(p) = scene.solid.reference.iter().find(|p| domain.value.is_outside(p, planar)) {
+        let nodes = scene.solid.reference.iter().map(|p| (p, "node"));
+        let points = nodes.chain(scene.bonded.reference().iter().map(|p| (p, "particle")));
+        if let Some((p, what)) = points.clone().find(|(p, _)| domain.value.is_outside(p, planar)) {
             let place = format!("({}, {}, {})", quantity(p.x, "m"), quantity(p.y, "m"), quantity(p.z, "m"));
-            let found = format!("leaves a node at {place} outside at the start");
-            self.error(&domain.place, found, "a box around all solid bodies, with room for pieces to fly");
+            let found = format!("leaves a {what} at {place} outside at the start");
+            self.error(&domain.place, found, "a box around all bodies but rigid ones, with room for pieces to fly");
             return None;
         }
         Some(scene.with_domain(domain.value))

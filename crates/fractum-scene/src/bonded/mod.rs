@@ -1,5 +1,6 @@
 //! Bonded bodies: particles of their own beside the solids, joined by bonds of a law.
 
+mod leave;
 mod momentum;
 mod piece;
 mod points;

@@ -6,13 +6,10 @@ use super::Bonded;
 use crate::fragment::Fragment;
 
 impl Bonded {
-    /// Pieces connected by live bonds, in the order of their first particles.
+    /// Pieces connected by live bonds that have not left the run, in the order of their first particles.
     pub fn fragments(&self) -> Vec<Fragment> {
-        let live = self.bodies.iter().flat_map(|body| {
-            let live = (0..body.bonds.len()).filter(|&bond| body.bonds.is_live(bond));
-            live.map(|bond| body.bonds.pairs()[bond])
-        });
-        let found = pieces(&self.particles, live, |i| self.own_mass(i));
+        let mut found = pieces(&self.particles, self.live_pairs(), |i| self.own_mass(i));
+        found.retain(|piece| !self.particles.has_left(piece.particles[0] as usize));
         let fragment = |piece: Piece| {
             let Piece { particles, bonds, mass, content, centroid, velocity, bounds } = piece;
             let first = particles[0] as usize;

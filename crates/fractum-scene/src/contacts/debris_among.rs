@@ -155,9 +155,35 @@ impl DebrisAmong {
         self.contacts.loads()
     }
 
+    /// Has the next search renew the list of pairs.
+    pub(super) fn look_again(&mut self) {
+        self.contacts.look_again();
+    }
+
+    /// Pairs that touched at the last step, as one population.
+    pub(super) fn pairs_touching(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.contacts.touching()
+    }
+
+    /// Numbers the discrete elements anew, since some have left, which touched nothing.
+    ///
+    /// - `particles`: number of particles; `before`, `now`: nodes of the discrete elements, `now` in the same order
+    pub(super) fn let_leave(&mut self, particles: usize, before: &[u32], now: &[u32]) {
+        let mut staying = now.iter().peekable();
+        let mut number: Vec<u32> = (0..particles as u32).collect();
+        let mut next = particles as u32;
+        for node in before {
+            number.push(next);
+            next += u32::from(staying.next_if_eq(&node).is_some());
+        }
+        let mut state = self.contacts.state();
+        state.iter_mut().for_each(|(pair, _)| *pair = pair.map(|i| number[i as usize]));
+        self.contacts.restore(state);
+    }
+
     /// Number of contacts at the last step.
     pub(super) fn touching(&self) -> usize {
-        self.contacts.touching().count()
+        self.pairs_touching().count()
     }
 
     pub(super) fn state(&self) -> Vec<([u32; 2], ContactMemory)> {

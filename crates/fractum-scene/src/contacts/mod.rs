@@ -3,6 +3,7 @@
 
 mod between;
 mod debris_among;
+mod leave;
 mod node_contacts;
 mod nodes_on_shape;
 mod nodes_on_surface;

@@ -130,6 +130,29 @@ impl NodesOnSurface {
         self.contacts.restore(touches);
     }
 
+    /// Takes nodes out that have left, which touched nothing.
+    ///
+    /// - `gone`: all that have left so far; `debris`: without them
+    pub(crate) fn let_leave(&mut self, gone: &[u32], debris: &Debris) {
+        let (before, mut touches) = (self.nodes.clone(), self.contacts.state());
+        self.restore(debris, Vec::new());
+        for touch in &mut touches {
+            touch.sphere = self.place_of(before[touch.sphere as usize]).map_or(touch.sphere, |place| place as u32);
+        }
+        self.contacts.restore(touches);
+        self.leave_out(gone);
+    }
+
+    /// Leaves out nodes that have left, discrete elements aside, which are no longer listed.
+    pub(crate) fn leave_out(&mut self, gone: &[u32]) {
+        for &node in gone {
+            if let Ok(place) = self.nodes[..self.at_start].binary_search(&node) {
+                self.radius[place] = -1.0;
+            }
+        }
+        self.contacts.look_again();
+    }
+
     /// Finds the contacts of the moment and adds their forces to the nodes; the ground has not got them yet.
     ///
     /// - `law`: of a node on this ground; `on_ground`: takes each contact, its place and its stiffness [N/m]

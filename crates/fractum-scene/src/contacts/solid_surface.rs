@@ -112,6 +112,27 @@ impl SolidSurface {
         self.visitors.as_ref()
     }
 
+    pub(super) fn visitors_mut(&mut self) -> &mut Option<NodesOnSurface> {
+        &mut self.visitors
+    }
+
+    /// Has the next search look up all particles.
+    pub(super) fn look_again(&mut self) {
+        self.contacts.look_again();
+    }
+
+    /// Visits the nodes of facets that something touched at the last step, and the nodes that touched them.
+    ///
+    /// - `particles`: positions of the particles [m]
+    pub(super) fn each_touching_node(&self, particles: &[Vec3], mut visit: impl FnMut(u32)) {
+        let of_particles = self.contacts.touches().map(|t| (t.feature, particles[t.sphere as usize] + t.offset));
+        let visitors = || self.visitors.iter().flat_map(NodesOnSurface::touches);
+        visitors().for_each(|(_, _, node)| visit(node));
+        for (feature, place) in of_particles.chain(visitors().map(|(touch, place, _)| (touch.feature, place))) {
+            self.mesh.share(feature, &place, &self.points, |point, _| visit(self.nodes[point as usize]));
+        }
+    }
+
     pub(super) fn state(&self) -> SolidSurfaceState {
         (self.contacts.state(), self.visitors.as_ref().map_or_else(Vec::new, |nodes| nodes.contacts().state()))
     }

@@ -104,6 +104,11 @@ impl Ties {
         self.facets.iter().flat_map(|facet| self.of(facet).iter().map(|own| (own.particle, facet.nodes[0])))
     }
 
+    /// Nodes that carry tied particles.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = u32> {
+        self.facets.iter().flat_map(|facet| facet.nodes)
+    }
+
     /// Highest natural frequency of solids and bonded bodies together [rad/s]; 0 without ties.
     pub(crate) fn frequency(&self) -> f64 {
         self.frequency

@@ -27,7 +27,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("solver.time_step", K::Choice(names::<TimeStep>), "\"power-iteration\"", "How the stable step is found: for the whole mesh or all bonds, or rigorously by the worst element or particle"),
     key("solver.step", K::Quantity(D::TIME), "", "Explicit: fixed time step, > 0, instead of safety times the stable one; static: largest step, by default the whole run where nothing may break, else 1/50 of it"),
     key("solver.initial_overlap", K::Choice(names::<InitialOverlap>), "\"push\"", "Explicit: what touches and overlaps at the start pushes apart at once, or gives no force and touches no nearer than it starts until it has parted"),
-    key("solver.domain", K::Table, "", "Explicit: box outside of which free pieces of solids and free discrete elements leave the run"),
+    key("solver.domain", K::Table, "", "Explicit: box outside of which free pieces of solids and bonded bodies, discrete elements and loose particles leave the run"),
     key("solver.domain.min", K::Point(D::LENGTH), "required", "Its lower corner; z counts for nothing where all bodies are plane"),
     key("solver.domain.max", K::Point(D::LENGTH), "required", "Its upper corner, above the lower one"),
     key("solver.control", K::Choice(names::<Control>), "\"path\" where something may break, else \"time\"", "Static only: steps of time, or of damage or a crack's opening, along the path of equilibrium through snap-back"),

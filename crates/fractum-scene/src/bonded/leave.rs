@@ -1,0 +1,79 @@
+//! Bonded and loose particles that leave the run.
+
+use fractum_dem::Particles;
+use fractum_math::{Vec3, connected};
+
+use super::Bonded;
+use crate::domain::{Domain, Left};
+
+impl Bonded {
+    /// The particles of each bond that holds.
+    pub(super) fn live_pairs(&self) -> impl Iterator<Item = [u32; 2]> + Clone {
+        self.bodies.iter().flat_map(|body| {
+            let live = (0..body.bonds.len()).filter(|&bond| body.bonds.is_live(bond));
+            live.map(|bond| body.bonds.pairs()[bond])
+        })
+    }
+
+    /// Whether some particle that is still in the run is wholly outside a box.
+    pub(crate) fn has_outside(&self, domain: &Domain) -> bool {
+        let all = &self.particles;
+        (0..all.len()).any(|i| !all.has_left(i) && domain.is_ball_outside(&all.position[i], all.radius[i]))
+    }
+
+    /// Lets every piece leave that live bonds connect, that is wholly outside a box, that nothing holds, and that touches nothing.
+    /// Returns its energy of motion at tⁿ, ½ m v·(v + Δt a) as central differences conserve it [J], and its particles: what its bonds
+    /// store stays in the energy of the bonds. To be called between the forces of tⁿ and the kick.
+    ///
+    /// - `touching`: particles that touch something else than particles of their body
+    /// - `dt` [s]: the step that led to tⁿ
+    pub(crate) fn let_leave(&mut self, domain: &Domain, touching: &[u32], dt: f64, left: &mut Left) -> (f64, Vec<u32>) {
+        let all = &self.particles;
+        let piece = connected(all.len(), self.live_pairs());
+        let mut stays = vec![false; all.len()];
+        touching.iter().for_each(|&i| stays[piece[i as usize] as usize] = true);
+        for i in 0..all.len() {
+            let bound = all.held[i] != 0 || !domain.is_ball_outside(&all.position[i], all.radius[i]);
+            stays[piece[i] as usize] |= bound;
+        }
+        for [i, j] in self.bodies.iter().filter_map(|body| body.fracture.as_ref()).flat_map(|f| f.touching(all)) {
+            let [one, other] = [i, j].map(|i| piece[i as usize] as usize);
+            if one != other {
+                stays[one] = true;
+                stays[other] = true;
+            }
+        }
+        let leaves: Vec<u32> = (0..all.len() as u32).filter(|&i| !stays[piece[i as usize] as usize]).collect();
+        let mut energy = 0.0;
+        for &i in &leaves {
+            let particle = i as usize;
+            let Particles { velocity, spin, force, moment, mass, inertia, .. } = &self.particles;
+            let (v, w, mass) = (velocity[particle], spin[particle], mass[particle]);
+            // What resists the change of lengths books its own work.
+            let viscous = self.viscous.get(particle).copied().unwrap_or_default();
+            energy += 0.5 * (mass * v.norm_squared() + inertia[particle] * w.norm_squared());
+            energy += 0.5 * dt * ((force[particle] - viscous).dot(&v) + moment[particle].dot(&w));
+            left.mass += mass;
+            left.momentum += v * mass;
+            left.pieces += usize::from(piece[particle] == i);
+        }
+        self.take_out(&leaves);
+        (energy, leaves)
+    }
+
+    /// Takes particles out of the run, which touch nothing but each other.
+    pub(crate) fn take_out(&mut self, particles: &[u32]) {
+        if particles.is_empty() {
+            return;
+        }
+        for i in particles.iter().map(|&i| i as usize) {
+            self.particles.let_leave(i);
+            for past in [&mut self.past.force, &mut self.past.moment] {
+                past.get_mut(i).into_iter().for_each(|past| *past = Vec3::zeros());
+            }
+        }
+        for body in &mut self.bodies {
+            body.fracture.iter_mut().for_each(|fracture| fracture.part_from_left(&self.particles));
+        }
+    }
+}
