@@ -1,11 +1,10 @@
 //! Contact without what has left the run.
 
-use fractum_contact::{SphereContacts, SurfaceContacts};
+use fractum_contact::SphereContacts;
 use fractum_dem::Particles;
 use fractum_fem::Solid;
 
 use super::debris_among::DebrisAmong;
-use super::nodes_on_surface::NodesOnSurface;
 use super::{Contacts, SolidSurface};
 use crate::coupling::Debris;
 
