@@ -1,7 +1,5 @@
 //! Motion or equilibrium: what each would cost, for the plan of `fractum check`.
 
-use std::time::Instant;
-
 use fractum_io::build::{BuiltScene, may_rest};
 use fractum_io::case::TimeFunction;
 use fractum_io::case::model::{Body, BodyKind, Case, Motion, SolverKind};
@@ -14,74 +12,40 @@ use fractum_scene::statics::Stiffness;
 const PERIODS: f64 = 20.0;
 /// Iterations to equilibrium along the path of one crack through a specimen: 390 to 980 in the gallery.
 const ITERATIONS: f64 = 600.0;
-/// Time that is spent twice for a better estimate [s].
-const SOON: f64 = 0.5;
 /// Nodes up to which the first period is looked for: a few seconds.
 const MOST_NODES: usize = 300_000;
 
-/// What the solvers would do with a case, line by line; empty where only motion can be meant.
-///
-/// - `step_seconds`: estimated time of one explicit step [s]
-pub fn compare(case: &Case, built: &mut BuiltScene, step_seconds: f64) -> Vec<(&'static str, String)> {
-    let scene = &mut built.scene;
-    if scene.solid.body_count() == 0 {
+/// Which solver suits a case that names one, why, and which end suits it, line by line; nothing where the case leaves it open,
+/// since [`choose`] has said it.
+pub fn compare(case: &Case, built: &mut BuiltScene) -> Vec<(&'static str, String)> {
+    if built.scene.solid.body_count() == 0 || case.solver.kind == SolverKind::Auto {
         return Vec::new();
     }
-    if case.solver.kind == SolverKind::Auto {
-        return Vec::new();
+    if let Some(why) = motion_only(case, &built.scene) {
+        return vec![("choice", said("explicit", why))];
     }
-    if let Some(why) = motion_only(case, scene) {
-        return vec![("choice", format!("kind = \"explicit\": {why}"))];
-    }
-    if scene.solid.reference.len() > MOST_NODES {
+    if built.scene.solid.reference.len() > MOST_NODES {
         let text = format!("not estimated for more than {MOST_NODES} nodes; slender bodies are for kind = \"static\"");
         return vec![("choice", text)];
     }
-    let Ok(mut stiffness) = Stiffness::new(scene) else { return Vec::new() };
-    // The first assembly is slower than those of a run: where that costs little, the second counts.
-    let mut prepared = f64::INFINITY;
-    for _ in 0..2 {
-        let begin = Instant::now();
-        if stiffness.prepare(scene).is_err() {
-            return Vec::new();
-        }
-        prepared = begin.elapsed().as_secs_f64().min(prepared);
-        if prepared > SOON {
-            break;
-        }
+    let Decision { kind, why, period } = decide(case, built);
+    let mut lines = vec![("choice", said(kind, &why))];
+    let slow = |period: f64| periods(&built.scene) * period;
+    if let Some(slow) = period.map(slow).filter(|slow| built.statics.is_none() && case.solver.end < *slow) {
+        let [slow, end] = [slow, case.solver.end].map(|time| quantity(time, "s"));
+        let text = format!("this run ends at {end}; to load slowly in motion, load {slow} long: end = \"{slow}\"");
+        lines.push(("end", text));
     }
-    let Ok(period) = stiffness.first_period(scene, case.solver.end) else { return Vec::new() };
-    let dt = case.solver.safety * 2.0 / scene.solid.stable_step().frequency;
-    let periods = if scene.solid.has_damage() { 2.0 * PERIODS } else { PERIODS };
-    let steps = periods * period / dt;
-    let motion = steps * step_seconds;
-    let (times, what) = if scene.solid.has_damage() {
-        (ITERATIONS, format!("about {ITERATIONS} iterations along the path of a crack"))
-    } else {
-        (1.0, "one solution".to_owned())
-    };
-    // Two solutions go with each factorisation, and take less.
-    let rest = times * (1.3 * prepared + evaluation(scene));
-    let lasting = case.solver.end / period;
-    let equilibrium = built.statics.is_some();
-    let advice = if !equilibrium && lasting < PERIODS {
-        format!("this run lasts {lasting:.2} first periods, so that inertia counts: kind = \"explicit\"")
-    } else {
-        let better = if rest < motion { "static" } else { "explicit" };
-        format!("for slow loading take kind = \"{better}\"")
-    };
-    let moved = format!("{periods} periods of motion are {steps:.0} steps, {}", quantity(motion, "s"));
-    vec![
-        (
-            "period",
-            format!(
-                "{} of the slowest vibration that the load excites, {:.0} time steps",
-                quantity(period, "s"),
-                period / dt
-            ),
-        ),
-        ("choice", format!("{moved}; equilibrium is {what}, {}: {advice}", quantity(rest, "s"))),
-    ]
+    lines
+}
+
+fn said(kind: &str, why: &str) -> String {
+    format!("kind = \"{kind}\": {why}")
+}
+
+/// First periods over which motion is slow loading.
+fn periods(scene: &Scene) -> f64 {
+    if scene.solid.has_damage() { 2.0 * PERIODS } else { PERIODS }
 }
 
 /// Seconds of an iteration to equilibrium on a common machine, per entry of the factor and per entry of a matrix that is solved
@@ -100,36 +64,47 @@ pub fn choose(case: &Case, built: &mut BuiltScene) -> Option<String> {
     if case.solver.kind != SolverKind::Auto {
         return None;
     }
-    let (chosen, why) = if built.statics.is_none() {
-        let why = motion_only(case, &built.scene).unwrap_or("no solid bodies by themselves");
-        ("explicit", why.to_owned())
+    let decision = if built.statics.is_none() {
+        Decision::motion(motion_only(case, &built.scene).unwrap_or("no solid bodies by themselves"))
     } else {
         decide(case, built)
     };
-    if chosen == "explicit" {
+    if decision.kind == "explicit" {
         built.statics = None;
     }
-    Some(format!("kind = \"{chosen}\": {why}"))
+    Some(said(decision.kind, &decision.why))
 }
 
-fn decide(case: &Case, built: &mut BuiltScene) -> (&'static str, String) {
+/// A kind of solver, and why.
+struct Decision {
+    kind: &'static str,
+    why: String,
+    /// First period that the load excites [s], where it was found.
+    period: Option<f64>,
+}
+
+impl Decision {
+    fn motion(why: &str) -> Self {
+        Decision { kind: "explicit", why: why.to_owned(), period: None }
+    }
+}
+
+fn decide(case: &Case, built: &mut BuiltScene) -> Decision {
     let (scene, end) = (&mut built.scene, case.solver.end);
     if let Some(why) = inertia_counts(case) {
-        return ("explicit", why.to_owned());
+        return Decision::motion(why);
     }
     let Ok(mut stiffness) = Stiffness::new(scene) else {
-        return ("explicit", "the linear system is too large".to_owned());
+        return Decision::motion("the linear system is too large");
     };
     let period = stiffness.prepare(scene).and_then(|()| stiffness.first_period(scene, end));
-    let Ok(period) = period else { return ("explicit", "the stiffness is singular".to_owned()) };
+    let Ok(period) = period else { return Decision::motion("the stiffness is singular") };
     let first = quantity(period, "s");
     let change = scene.fastest_change(period, end);
     if change > 2.0 / PERIODS {
         let part = 100.0 * change;
-        return (
-            "explicit",
-            format!("loads change by {part:.0} % within the first period of {first}, so that inertia counts"),
-        );
+        let why = format!("loads change by {part:.0} % within the first period of {first}, so that inertia counts");
+        return Decision { period: Some(period), ..Decision::motion(&why) };
     }
     let elements = scene.counts().elements;
     let steps = end / (case.solver.safety * 2.0 / scene.solid.stable_step().frequency);
@@ -137,12 +112,12 @@ fn decide(case: &Case, built: &mut BuiltScene) -> (&'static str, String) {
     let (entries, direct) = stiffness.entries();
     let times = if scene.solid.has_damage() { ITERATIONS } else { 1.0 };
     let rest = times * (entries as f64 * if direct { DIRECT } else { ITERATIVE } + evaluation(scene));
-    let costs = format!(
+    let why = format!(
         "loads are slow against the first period of {first}; equilibrium takes about {}, {steps:.0} steps of motion about {}",
         quantity(rest, "s"),
         quantity(motion, "s")
     );
-    (if rest < motion { "static" } else { "explicit" }, costs)
+    Decision { kind: if rest < motion { "static" } else { "explicit" }, why, period: Some(period) }
 }
 
 /// Time of an iteration beside the linear system [s].

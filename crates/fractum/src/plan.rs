@@ -7,7 +7,7 @@ use std::fmt;
 
 use fractum_fem::{ElementKind, Formulation, Kinematics};
 use fractum_io::build::{BuiltScene, TieReport};
-use fractum_io::case::model::{Case, GroupUse, Load, LoadKind, MeshSource, Selection, SurfaceSupport};
+use fractum_io::case::model::{Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SurfaceSupport};
 use fractum_io::number::quantity;
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
@@ -22,9 +22,6 @@ const COST: [f64; 3] = [20.0, 45.0, 50.0];
 const MEMORY: [f64; 3] = [250.0, 450.0, 550.0];
 /// Bytes per node of solids that may turn into discrete elements, if all of them do.
 const MEMORY_OF_DEBRIS: f64 = 400.0;
-
-/// Elements that a further thread needs to be of use.
-const ELEMENTS_PER_THREAD: usize = 5_000;
 
 /// The same for a bond with its share of particles.
 const COST_OF_BOND: f64 = 60.0;
@@ -193,9 +190,27 @@ impl Plan {
             let amount = quantity(of(GasMeasure::Mass), "kg") + ", " + &quantity(of(GasMeasure::Energy), "J");
             self.add("gas", format!("in {} holes: {amount} at the start", gas.hole_count()));
         }
+        self.describe_what_moves(case, scene);
+    }
+
+    /// What moves a scene without supports and loads.
+    fn describe_what_moves(&mut self, case: &Case, scene: &Scene) {
         let pushed = !case.loads.is_empty() || scene.gas().is_some();
         if scene.supports().count() == 0 && scene.bonded.held_count() == 0 && !pushed {
-            self.add("load", "none: only initial velocities move this scene");
+            let driven = |body: &&Body| match &body.kind {
+                BodyKind::Rigid(rigid) => {
+                    rigid.velocity.iter().chain(&rigid.spin).chain(&rigid.force).any(Option::is_some)
+                }
+                _ => false,
+            };
+            let driven: Vec<&str> = case.bodies.iter().filter(driven).map(|body| body.name.value.as_str()).collect();
+            self.add(
+                "load",
+                match driven.as_slice() {
+                    [] => "none: only initial velocities move this scene".to_owned(),
+                    driven => format!("none: rigid bodies move this scene: {}", driven.join(", ")),
+                },
+            );
         }
     }
 
@@ -283,15 +298,10 @@ impl Plan {
 
     /// Adds what motion and equilibrium would cost.
     pub fn compare_solvers(&mut self, case: &Case, built: &mut BuiltScene) {
-        if !case.later.is_empty() {
-            return;
-        }
-        let (nanoseconds, _, elements) = elements_cost(&built.scene);
-        // Few elements keep one thread busy only.
-        let threads = rayon::current_num_threads().min(1 + elements / ELEMENTS_PER_THREAD);
-        let seconds = 1e-9 * nanoseconds / threads as f64;
-        for (topic, text) in fractum_prepare::compare(case, built, seconds) {
-            self.add(topic, text);
+        if case.later.is_empty() {
+            for (topic, text) in fractum_prepare::compare(case, built) {
+                self.add(topic, text);
+            }
         }
     }
 

@@ -5,6 +5,7 @@ mod bodies;
 mod bonded;
 mod conditions;
 mod contacts;
+mod doubts;
 mod gas;
 mod in_situ;
 mod ppv;
@@ -16,6 +17,7 @@ mod ties;
 
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
+pub use doubts::doubts;
 pub use ppv::PpvStations;
 pub use statics::may_rest;
 pub use ties::TieReport;
@@ -81,7 +83,7 @@ struct Context<'a> {
 pub fn check_before_particles(case: &Case, mesh: &Mesh) -> Result<(), Diagnostics> {
     let mut context = Context { case, mesh, particle_sets: Vec::new(), diagnostics: Vec::new() };
     context.check_before_particles();
-    if context.diagnostics.is_empty() { Ok(()) } else { Err(Diagnostics(context.diagnostics)) }
+    if context.diagnostics.is_empty() { Ok(()) } else { Err(Diagnostics::of_many(context.diagnostics)) }
 }
 
 /// Builds the scene of a case on its mesh (coordinates already in metres; an empty one where the case has none).
@@ -103,9 +105,10 @@ pub fn build_scene(
     match built {
         Some(mut built) if context.diagnostics.is_empty() => {
             built.warnings.extend(context.case.warnings().iter().cloned());
+            built.warnings.extend(doubts(case, mesh));
             Ok(built)
         }
-        _ => Err(Diagnostics(context.diagnostics)),
+        _ => Err(Diagnostics::of_many(context.diagnostics)),
     }
 }
 
@@ -186,6 +189,9 @@ impl<'a> Context<'a> {
             Err(error) => {
                 let place = parts.first().map_or_else(|| self.whole_case(), |part| part.place.clone());
                 self.error(&place, format!(": {error}"), "");
+                // The reason may be another unit, of the material or of the mesh.
+                self.diagnostics.extend(self.case.warnings().iter().cloned());
+                self.diagnostics.extend(doubts(self.case, self.mesh));
                 return None;
             }
         };

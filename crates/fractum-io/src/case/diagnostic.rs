@@ -99,6 +99,25 @@ pub fn printable(text: &str) -> String {
 #[serde(transparent)]
 pub struct Diagnostics(pub Vec<Diagnostic>);
 
+/// Diagnostics that are listed; beyond them a file is probably of another kind.
+pub(crate) const MOST_LISTED: usize = 20;
+
+impl Diagnostics {
+    /// The first of many, with the count of the others.
+    pub(crate) fn of_many(mut diagnostics: Vec<Diagnostic>) -> Self {
+        let more = diagnostics.len().saturating_sub(MOST_LISTED);
+        let last = diagnostics.get(MOST_LISTED).and_then(|diagnostic| diagnostic.place.clone());
+        if more > 1
+            && let Some(place) = last
+        {
+            diagnostics.truncate(MOST_LISTED);
+            let whole = Place { line: 0, column: 0, key: String::new(), ..place };
+            diagnostics.push(Diagnostic::error(&whole, format!("{more} further mistakes are not listed")));
+        }
+        Self(diagnostics)
+    }
+}
+
 /// One diagnostic per line.
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

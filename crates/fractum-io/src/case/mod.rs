@@ -49,6 +49,7 @@ mod schema;
 mod time_function;
 mod tree;
 mod unit;
+mod usual;
 
 pub use choice::Choice;
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, printable};

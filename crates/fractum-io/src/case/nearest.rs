@@ -3,8 +3,11 @@
 /// Longest name worth comparing.
 const LONGEST: usize = 64;
 
+/// Shortest name that counts as the beginning of another.
+const BEGINNING: usize = 3;
+
 /// The candidate that resembles `name` most, if one does: at most a third of its letters differ, upper and lower case
-/// aside. The first of several equals wins.
+/// aside, or else one of both begins the other. The first of several equals wins.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if name.chars().count() > LONGEST {
         return None;
@@ -13,10 +16,20 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     let name = plain(name);
     let distance = |candidate: &str| strsim::osa_distance(&name, &plain(candidate));
     let allowed = |candidate: &str| (candidate.chars().count().max(name.chars().count()) / 3).max(1);
+    let begins = |candidate: &str| {
+        let candidate = plain(candidate);
+        let length = candidate.len().min(name.len());
+        length >= BEGINNING && (candidate.starts_with(&name) || name.starts_with(&candidate))
+    };
     let close = candidates.into_iter().filter(|candidate| candidate.len() <= 4 * LONGEST);
     let close = close.map(|candidate| (distance(candidate), candidate));
-    let close = close.filter(|&(distance, candidate)| distance <= allowed(candidate));
-    close.min_by_key(|(distance, _)| *distance).map(|(_, candidate)| candidate)
+    // What differs in few letters comes before what only begins alike.
+    let rank = |&(distance, candidate): &(usize, &str)| match distance <= allowed(candidate) {
+        true => Some((0, distance)),
+        false => begins(candidate).then_some((1, distance)),
+    };
+    let ranked = close.filter_map(|pair| Some((rank(&pair)?, pair.1)));
+    ranked.min_by_key(|(rank, _)| *rank).map(|(_, candidate)| candidate)
 }
 
 #[cfg(test)]
@@ -30,6 +43,8 @@ mod tests {
         assert_eq!(nearest("young-modulus", names), Some("young_modulus"));
         assert_eq!(nearest("Poisson_ration", names), Some("poisson_ratio"));
         assert_eq!(nearest("viscosity", names), None);
+        assert_eq!(nearest("fixed", ["name", "fix", "fix_rotation"]), Some("fix"));
+        assert_eq!(nearest("poisson", names), Some("poisson_ratio"));
         assert_eq!(nearest(&"x".repeat(1000), names), None);
     }
 }

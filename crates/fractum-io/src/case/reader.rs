@@ -6,6 +6,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
+use super::diagnostic::MOST_LISTED;
 use super::expression::{Compiled, ExpressionError, Named, Names, Op, Type, compile};
 use super::key_kind::KeyKind;
 use super::keys::{Unknown, describe};
@@ -15,8 +16,6 @@ use super::{Choice, Diagnostic, Place, nearest};
 pub(super) use reading::Reading;
 use reading::State;
 
-/// Mistakes that are listed, and to which suggestions are looked for; beyond them a file is probably of another kind.
-pub(super) const MOST_MISTAKES: usize = 100;
 /// Names that a list of valid ones shows at most.
 const MOST_NAMES: usize = 20;
 
@@ -73,7 +72,7 @@ impl Reader {
 
     /// Whether so much is wrong that suggestions help no more.
     pub(super) fn has_many_mistakes(&self) -> bool {
-        self.diagnostics.borrow().len() > MOST_MISTAKES
+        self.diagnostics.borrow().len() > MOST_LISTED
     }
 
     /// Adds the nearest valid name to a mistake, or what the valid names are: `kind: a, b, c`.
@@ -151,6 +150,12 @@ impl Reader {
             note
         });
         false
+    }
+
+    /// Where the parameter stands that is the whole value of a node.
+    pub(super) fn place_of_parameter(&self, node: &Node) -> Option<Place> {
+        let Value::Text(text) = &node.value else { return None };
+        self.parameters.borrow().get(text.trim()).map(|parameter| parameter.place.clone())
     }
 
     /// Names for an expression of parameters and these variables, which become its inputs in order.
@@ -291,15 +296,17 @@ impl<'a> Table<'a> {
 
     /// Place of the value at a dotted path below this table; that of the table where there is none.
     pub(super) fn place_below(&self, path: &str) -> Place {
+        self.node_below(path).map_or_else(|| self.place_of(path), |node| node.place.clone())
+    }
+
+    /// The value at a dotted path below this table, without taking it.
+    pub(super) fn node_below(&self, path: &str) -> Option<&'a Node> {
         let mut parts = path.split('.');
-        let mut node = parts.next().and_then(|name| self.peek(name));
-        for part in parts {
-            node = node.and_then(|node| match &node.value {
-                Value::Table(entries) => entries.iter().find(|entry| entry.name == part).map(|entry| &entry.node),
-                _ => None,
-            });
-        }
-        node.map_or_else(|| self.place_of(path), |node| node.place.clone())
+        let first = parts.next().and_then(|name| self.peek(name));
+        parts.fold(first, |node, part| match &node?.value {
+            Value::Table(entries) => entries.iter().find(|entry| entry.name == part).map(|entry| &entry.node),
+            _ => None,
+        })
     }
 
     /// What the list of keys says a key holds.

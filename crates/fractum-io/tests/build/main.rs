@@ -3,6 +3,7 @@
 mod about_axis;
 mod blast;
 mod contact_force;
+mod doubts;
 mod gas;
 mod selection;
 mod sides;

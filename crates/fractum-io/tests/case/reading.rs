@@ -159,7 +159,7 @@ fn risky_settings_are_warned_of() {
     assert_eq!(warned(SMALL), Vec::<String>::new());
     assert_eq!(warned(&SMALL.replace("1e-3", "1e-3\nsafety = 1.1")), ["solver.safety"]);
     assert_eq!(
-        warned(&SMALL.replace("[mesh]", "[materials.idle]\ndensity=1\nyoung_modulus=1\npoisson_ratio=0\n[mesh]")),
+        warned(&SMALL.replace("[mesh]", "[materials.idle]\ndensity=1e3\nyoung_modulus=1e9\npoisson_ratio=0\n[mesh]")),
         ["materials.idle"]
     );
     assert_eq!(warned(&format!("{SMALL}[output.fields]\nevery = 1\n")), ["output.fields.every"]);

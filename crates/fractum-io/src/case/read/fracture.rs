@@ -7,6 +7,7 @@ use fractum_dem::criterion::{
 
 use crate::case::model::BondFailure;
 use crate::case::reader::Table;
+use crate::case::usual::STRENGTH;
 
 /// Reads the table: the strength, and what the criterion says that it takes.
 pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
@@ -19,7 +20,7 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
         table.refuse("tensile_strength", "beside criterion_strength, which is the criterion's own");
         table.quantity("criterion_strength").positive().required()
     } else {
-        table.quantity("tensile_strength").positive().required()
+        table.quantity("tensile_strength").positive().usual(&STRENGTH).required()
     };
     let Some(kind) = kind else {
         table.pass_over(&["compressive_strength", "friction_angle", "level", "moments"]);

@@ -6,14 +6,15 @@ use fractum_math::Vec3;
 use super::vectors::point;
 use crate::case::model::{InterfaceArea, Interfaces};
 use crate::case::reader::Table;
+use crate::case::usual::STRENGTH;
 
 /// Reads the table; nothing where it, or the elasticity of the material, is wrong.
 ///
 /// - `elasticity`: Young's modulus [Pa] and Poisson's ratio of the material
 pub(super) fn interface(table: Table<'_>, elasticity: Option<(f64, f64)>) -> Option<Interfaces> {
     let area = area(&table);
-    let tensile_strength = table.quantity("tensile_strength").not_negative().or(f64::INFINITY);
-    let shear_strength = table.quantity("shear_strength").not_negative().or(f64::INFINITY);
+    let tensile_strength = table.quantity("tensile_strength").not_negative().usual(&STRENGTH).or(f64::INFINITY);
+    let shear_strength = table.quantity("shear_strength").not_negative().usual(&STRENGTH).or(f64::INFINITY);
     let internal_friction = table.quantity("internal_friction").not_negative().or(0.0);
     let friction = table.quantity("friction").not_negative().or(0.5);
     let tension_softening = table.quantity("tension_softening").positive().or(f64::INFINITY);

@@ -4,6 +4,7 @@ use super::fracture::{FRICTION_ANGLE, read_friction_angle};
 use super::presence::optional;
 use crate::case::model::{Damage, Distribution, Material, Scatter};
 use crate::case::reader::Table;
+use crate::case::usual::{DENSITY, FRACTURE_ENERGY, STRENGTH, YOUNG_MODULUS};
 use crate::case::{Diagnostic, Spanned};
 use fractum_fem::{Criterion, CriterionKind, DamageLaw, Regularisation, Softening};
 use fractum_scene::{ContactParameters, damping_of_restitution};
@@ -21,8 +22,8 @@ pub(super) fn read(root: &Table<'_>) -> Vec<(String, Option<Material>)> {
 }
 
 fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
-    let density = table.quantity("density").physical().required();
-    let young_modulus = table.quantity("young_modulus").physical().required();
+    let density = table.quantity("density").physical().usual(&DENSITY).required();
+    let young_modulus = table.quantity("young_modulus").physical().usual(&YOUNG_MODULUS).required();
     let poisson_ratio = table.quantity("poisson_ratio").between(-1.0, 0.5).required();
     let damage = table.table("damage").map(|table| {
         let place = table.place.clone();
@@ -41,6 +42,12 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         let place = table.place.clone();
         super::fracture::fracture(table).map(|failure| Spanned::new(failure, place))
     });
+    super::ratios::doubt(
+        &table,
+        young_modulus,
+        damage.as_ref().and_then(Option::as_ref),
+        fracture.as_ref().and_then(Option::as_ref),
+    );
     let contact_modulus = contact_modulus(&table);
     let contact = contact(&table);
     table.finish("here");
@@ -74,8 +81,8 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
         let note = Diagnostic::warning(&node.place, node.found());
         table.reader.note(note.remedy("pure Mohr-Coulomb loses about a fifth of the strength in Brazilian tests"));
     }
-    let tensile_strength = table.quantity("tensile_strength").physical().required();
-    let fracture_energy = table.quantity("fracture_energy").physical().required();
+    let tensile_strength = table.quantity("tensile_strength").physical().usual(&STRENGTH).required();
+    let fracture_energy = table.quantity("fracture_energy").physical().usual(&FRACTURE_ENERGY).required();
     let friction_angle = if criterion.uses_friction_angle() {
         read_friction_angle(&table)
     } else {
@@ -213,7 +220,8 @@ fn scatter(table: Table<'_>) -> Option<Scatter> {
 
 /// Young's modulus of contacts; `Some(None)` where nothing is said.
 fn contact_modulus(parent: &Table<'_>) -> Option<Option<f64>> {
-    parent.table_or_empty("contact").quantity("young_modulus").physical().map(Some).or_if_absent(None)
+    let contact = parent.table_or_empty("contact");
+    contact.quantity("young_modulus").physical().usual(&YOUNG_MODULUS).map(Some).or_if_absent(None)
 }
 
 /// The `contact` table of a material or tool.

@@ -16,6 +16,7 @@ mod ppv;
 mod presence;
 mod probe_kinds;
 mod probes;
+mod ratios;
 mod rigid;
 mod solver;
 mod stages;
@@ -32,7 +33,7 @@ use std::path::Path;
 use super::expression::parse_unit;
 use super::keys::remove_unknown;
 use super::model::{Body, BodyKind, BondedShape, Case, CaseSource, MeshSource, PackingSource, RigidShape};
-use super::reader::{MOST_MISTAKES, Reader, Table};
+use super::reader::{Reader, Table};
 use super::tree::{self, Node, Value};
 use super::unit::Dimension;
 use super::{Diagnostic, Diagnostics, Place, Severity, Spanned};
@@ -52,13 +53,38 @@ pub fn read_case(path: &Path, overrides: &[(String, String)]) -> Result<Case, Di
     let file = path.display().to_string();
     let place = Place { file, line: 0, column: 0, key: String::new() };
     let fail = |message: String| Diagnostics(vec![Diagnostic::error(&place, message)]);
+    if path.is_dir() {
+        let remedy = "name the case file in it, such as case.toml";
+        return Err(Diagnostics(vec![Diagnostic::error(&place, "is a folder").expected("a case file").remedy(remedy)]));
+    }
     let bytes = read_file(path).map_err(&fail)?;
+    if let Some(kind) = foreign(&bytes) {
+        let note = Diagnostic::error(&place, format!("is {kind}")).expected("a case file");
+        let remedy = "name a mesh as mesh.file of a case; fractum new writes cases to start from";
+        return Err(Diagnostics(vec![note.remedy(remedy)]));
+    }
     let text = String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
         fail(format!("line {line} is not UTF-8 text"))
     })?;
     parse_case(&text, path, overrides)
+}
+
+/// What a file is that is given as a case by mistake, by its first bytes.
+fn foreign(bytes: &[u8]) -> Option<&'static str> {
+    const KINDS: [(&[u8], &str); 9] = [
+        (b"$MeshFormat", "a Gmsh mesh"),
+        (b"$Comments", "a Gmsh mesh"),
+        (b"<?xml", "an XML file, as those of VTK"),
+        (b"<VTKFile", "a VTK file"),
+        (b"# vtk", "a VTK file"),
+        (b"*Heading", "an Abaqus input file"),
+        (b"*HEADING", "an Abaqus input file"),
+        (b"solid ", "an STL surface"),
+        (b"\x89HDF", "an HDF5 file"),
+    ];
+    KINDS.iter().find(|(start, _)| bytes.starts_with(start)).map(|(_, kind)| *kind)
 }
 
 /// Reads a case from its text. `path` stands in messages, and its folder is where other files are looked for.
@@ -136,13 +162,7 @@ fn sorted(mut diagnostics: Vec<Diagnostic>, file: &str) -> Diagnostics {
     };
     diagnostics.sort_by_key(rank);
     diagnostics.dedup();
-    let more = diagnostics.len().saturating_sub(MOST_MISTAKES);
-    if more > 1 {
-        diagnostics.truncate(MOST_MISTAKES);
-        let whole = Place { file: file.to_string(), line: 0, column: 0, key: String::new() };
-        diagnostics.push(Diagnostic::error(&whole, format!("{more} further mistakes are not listed")));
-    }
-    Diagnostics(diagnostics)
+    Diagnostics::of_many(diagnostics)
 }
 
 /// Reads every part, so that all mistakes are found; gives the case where none is missing.
@@ -215,7 +235,8 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
     let unit = unit(&table, "unit", Dimension::LENGTH).unwrap_or(1.0);
     table.finish("here");
     let Spanned { value, place } = file?;
-    Some(Some(MeshSource { file: Spanned::new(table_path(root.reader, &value), place), unit }))
+    let file = Spanned::new(table_path(root.reader, &value), place);
+    Some(Some(MeshSource { file, unit }))
 }
 
 fn table_path(reader: &Reader, file: &str) -> std::path::PathBuf {

@@ -3,6 +3,7 @@
 use super::Table;
 use crate::case::key_kind::KeyKind;
 use crate::case::tree::Node;
+use crate::case::usual::Usual;
 use crate::case::{Diagnostic, Spanned};
 
 /// A value on its way out of a table: absent, wrong (and noted), or given.
@@ -89,6 +90,16 @@ impl Reading<'_, '_, f64> {
     /// Above zero, and within the range in which squares and quotients of such numbers stay numbers.
     pub(in crate::case) fn physical(self) -> Self {
         self.positive().check(|value| (1e-30..=1e30).contains(value), "from 1e-30 to 1e30 in SI units")
+    }
+
+    /// Warns of a value that no solid has, with the unit that was probably meant.
+    pub(in crate::case) fn usual(self, usual: &Usual) -> Self {
+        if let (State::Given(value), Some(node)) = (&self.state, self.node)
+            && let Some(doubt) = usual.doubt(node, *value, self.table.reader.place_of_parameter(node))
+        {
+            self.table.reader.note(doubt);
+        }
+        self
     }
 
     /// At least zero.
