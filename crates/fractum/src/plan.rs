@@ -2,6 +2,7 @@
 
 mod bodies;
 mod rows;
+mod wrap;
 
 use std::fmt;
 
@@ -44,6 +45,18 @@ impl fmt::Display for Plan {
 }
 
 impl Plan {
+    /// The plan in lines of at most `width` characters, with its topics in a tone of their own.
+    pub fn wrapped(&self, width: usize, topic: impl Fn(&str) -> String) -> String {
+        let mut text = String::new();
+        for (name, about) in &self.lines {
+            for (index, line) in wrap::lines(about, width).iter().enumerate() {
+                let name = if index == 0 { format!("{name:<12}") } else { " ".repeat(12) };
+                text += &format!("{}{} {line}", if text.is_empty() { "" } else { "\n" }, topic(&name));
+            }
+        }
+        text
+    }
+
     /// The plan of a case that was read.
     pub fn new(input: &Input) -> Self {
         let Input { case, mesh, built, later, bonded, choice, .. } = input;
@@ -216,38 +229,58 @@ impl Plan {
 
     fn describe_physics(&mut self, case: &Case, scene: &Scene) {
         let (mut on, mut off) = (vec!["elasticity"], Vec::new());
-        let mut choose = |active: bool, name: &'static str, reason: &'static str| {
-            if active { on.push(name) } else { off.push(format!("{name} ({reason})")) }
+        let mut choose = |active: bool, name: &'static str, short: &'static str| {
+            if active { on.push(name) } else { off.push(short) }
         };
         let damage = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).damage.is_some());
-        choose(damage, "damage and removal of elements", "no body can be damaged");
-        choose(damage, "discrete elements (from the first removal)", "nothing turns into them");
+        choose(damage, "damage and removal of elements", "damage");
+        choose(damage, "discrete elements (from the first removal)", "discrete elements");
         let beams = |body: &BondedBody| body.bonds.beam().is_some();
         let bonded = || scene.bonded.bodies().iter().filter(|body| !body.bonds.is_empty());
-        choose(bonded().any(beams), "cohesive beams", "no bonded body of beams");
+        choose(bonded().any(beams), "cohesive beams", "bonds");
         if bonded().any(|body| !beams(body)) {
             choose(true, "interfaces of the local law", "");
         }
         let touched =
             (!scene.shape_contacts.is_empty() || scene.contacts.has_node_contacts()) && scene.solid.body_count() > 0;
-        choose(touched, "contact of solids with other bodies", "nothing that a solid could meet");
         let balls = !scene.contacts.is_empty() && (damage || !scene.bonded.particles.is_empty());
-        choose(balls, "contact of particles by Hertz' law", "no particles that could meet anything");
-        let breaks = scene.bonded.bodies().iter().any(BondedBody::can_break);
-        choose(breaks, "breaking of bonds", "no material of bonded bodies has a fracture");
+        if touched {
+            choose(true, "contact of solids with other bodies", "");
+        }
+        if balls {
+            choose(true, "contact of particles by Hertz' law", "");
+        }
+        if !(touched || balls) {
+            choose(false, "", "contact");
+        }
+        if scene.bonded.bodies().iter().any(BondedBody::can_break) {
+            choose(true, "breaking of bonds", "");
+        }
         let damping = case.damping;
-        choose(damping.local > 0.0 || damping.mass > 0.0, "damping on the nodes", "not asked for");
         let viscous = damping.stiffness > 0.0 || damping.bulk_linear > 0.0 || damping.bulk_quadratic > 0.0;
-        choose(viscous, "viscous stress", "not asked for");
+        let on_nodes = damping.local > 0.0 || damping.mass > 0.0;
         let dissipation = damping.tchamwa_wielgosz.is_some();
-        choose(dissipation, "damping of the highest frequencies of particles", "not asked for");
+        if on_nodes {
+            choose(true, "damping on the nodes", "");
+        }
+        if viscous {
+            choose(true, "viscous stress", "");
+        }
+        if dissipation {
+            choose(true, "damping of the highest frequencies of particles", "");
+        }
+        if !(on_nodes || viscous || dissipation) {
+            choose(false, "", "damping");
+        }
         let turning = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).kinematics == Kinematics::Corotational);
-        choose(turning, "large rotations", "all bodies have small strains");
+        choose(turning, "large rotations", "large rotations");
         if !scene.ties.is_empty() {
             on.push("ties of particles to facets");
         }
         self.add("physics", on.join(", "));
-        self.add("skipped", off.join(", "));
+        if !off.is_empty() {
+            self.add("skipped", off.join(", "));
+        }
     }
 
     fn describe_time(&mut self, case: &Case, scene: &Scene) {

@@ -15,7 +15,7 @@ use fractum_io::build::BuiltScene;
 use fractum_io::case::Case;
 use fractum_io::checkpoint::{self, Header, Identity};
 use fractum_io::log::Snapshot;
-use fractum_io::number::quantity;
+use fractum_io::number::{percent, quantity};
 use fractum_io::summary::{Status, Summary};
 use fractum_prepare::Cache;
 use fractum_scene::{EnergyKind, Scene, SceneState, StepError};
@@ -53,6 +53,8 @@ pub struct Outcome {
     pub summary: Summary,
     /// Results folder.
     pub folder: PathBuf,
+    /// Name of the probe that measures the load: the first in newtons.
+    pub load: Option<String>,
 }
 
 /// A case under way: its scene, its solver and its results folder.
@@ -184,8 +186,8 @@ impl Simulation {
             let Simulation { recorder, scene, phases, .. } = self;
             phases.timed(Part::Output, || recorder.row(scene, time, dt, in_motion))?;
             self.messages.warn_of_balance(&self.scene, self.case.solver.balance_warning)?;
-            if self.falls_below() {
-                self.end_stage()?;
+            if let Some(why) = self.falls_below() {
+                self.end_stage(why)?;
             }
         }
         self.messages.tell_event()?;
@@ -203,7 +205,8 @@ impl Simulation {
             return Ok(());
         }
         if self.solver.is_finished(&self.scene) {
-            self.end_stage()?;
+            let why = self.last_step();
+            self.end_stage(why)?;
         }
         if self.is_over() {
             return Ok(());
@@ -225,8 +228,9 @@ impl Simulation {
     }
 
     /// Goes on with the next stage, if there is one.
-    fn end_stage(&mut self) -> Result<(), Failure> {
+    fn end_stage(&mut self, why: String) -> Result<(), Failure> {
         let Some((case, built)) = self.later.pop_front() else {
+            self.messages.ended = why;
             self.end.get_or_insert(End::Finished);
             return Ok(());
         };
@@ -243,13 +247,24 @@ impl Simulation {
         Ok(())
     }
 
-    /// The early end that the stage asks for.
-    fn falls_below(&self) -> bool {
-        let Some(stop) = &self.case.solver.stop_when else { return false };
+    /// Why there is no further step.
+    fn last_step(&self) -> String {
+        let (time, end) = (self.time(), self.case.solver.end);
+        match time >= end * (1.0 - 1e-9) {
+            true => format!("t = {} is the end of the run", quantity(end, "s")),
+            false => format!("last step at t = {}, before its end at {}", quantity(time, "s"), quantity(end, "s")),
+        }
+    }
+
+    /// The early end that the stage asks for, and why it is reached.
+    fn falls_below(&self) -> Option<String> {
+        let stop = self.case.solver.stop_when.as_ref()?;
         let record = self.recorder.state();
         let (values, time) = (&record.series[stop.probe], record.times.last().copied().unwrap_or(0.0));
         let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        largest > 0.0 && time >= stop.after && values.last().is_some_and(|&v| v < stop.below * largest)
+        let fallen = largest > 0.0 && time >= stop.after && values.last().is_some_and(|&v| v < stop.below * largest);
+        let (name, part) = (&self.case.probes[stop.probe].name.value, percent(stop.below));
+        fallen.then(|| format!("{name} fell below {part} of its largest value at t = {}", quantity(time, "s")))
     }
 
     fn save(&mut self) -> Result<(), Failure> {
@@ -282,6 +297,20 @@ impl Simulation {
             broken_edges: counts.broken_edges as u64,
             broken_bonds: counts.broken_bonds as u64,
             particles: counts.particles as u64,
+            load: self.load().map(|index| self.load_and_peak(index)),
         }
+    }
+
+    /// Index of the probe that measures the load: the first in newtons with a column of its own.
+    fn load(&self) -> Option<usize> {
+        let probes = self.case.probes.iter().zip(&self.recorder.state().series);
+        probes.enumerate().find(|(_, (probe, values))| probe.unit == "N" && !values.is_empty()).map(|(index, _)| index)
+    }
+
+    /// Last value of a probe, and that of the largest absolute value.
+    fn load_and_peak(&self, index: usize) -> [f64; 2] {
+        let values = &self.recorder.state().series[index];
+        let peak = values.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+        [values.last().copied().unwrap_or(0.0), peak]
     }
 }

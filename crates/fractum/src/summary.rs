@@ -61,9 +61,9 @@ pub(crate) fn probes(case: &Case, recorder: &Recorder) -> BTreeMap<String, summa
     case.probes.iter().enumerate().map(|probe| (probe.1.name.value.clone(), of(probe))).collect()
 }
 
-/// Steps and times.
-pub(crate) fn time(clock: &Clock) -> summary::Time {
-    summary::Time { steps: clock.step, dt: clock.dt_before, dt_min: clock.dt_min, end: clock.time }
+/// Steps and times, and why they ended.
+pub(crate) fn time(clock: &Clock, reason: String) -> summary::Time {
+    summary::Time { steps: clock.step, dt: clock.dt_before, dt_min: clock.dt_min, end: clock.time, reason }
 }
 
 /// Sizes of the fragments; none where there are none.

@@ -83,19 +83,47 @@ pub struct Snapshot {
     pub broken_bonds: u64,
     /// Particles.
     pub particles: u64,
+    /// The load and its largest absolute value so far [N], where a probe measures one.
+    pub load: Option<[f64; 2]>,
+}
+
+impl Snapshot {
+    /// What it says, the most wanted first.
+    fn words(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        if let Some(load) = self.load {
+            let [load, peak] = load.map(|load| quantity(load, "N"));
+            words.push(format!("load {load} (peak {peak})"));
+        }
+        words.push(format!("t {}", quantity(self.time, "s")));
+        words.push(format!("step {}", self.step));
+        let counts =
+            [(self.broken_edges, "broken edges"), (self.broken_bonds, "broken bonds"), (self.particles, "particles")];
+        words.extend(counts.iter().filter(|(count, _)| *count > 0).map(|(count, name)| format!("{count} {name}")));
+        let energies = [("dissipated", self.dissipated), ("elastic", self.elastic), ("kinetic", self.kinetic)];
+        words.extend(energies.map(|(name, energy)| format!("{name} {}", quantity(energy, "J"))));
+        words.push(format!("dt {}", quantity(self.dt, "s")));
+        words.push(format!("balance {}", significant(self.balance_error, 2)));
+        words
+    }
 }
 
 impl fmt::Display for Snapshot {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { step, time, dt, kinetic, elastic, dissipated, balance_error, .. } = *self;
-        write!(f, "step {step}  t {}  dt {}", quantity(time, "s"), quantity(dt, "s"))?;
-        let [kinetic, elastic, dissipated] = [kinetic, elastic, dissipated].map(|energy| quantity(energy, "J"));
-        write!(f, "  kinetic {kinetic}  elastic {elastic}  dissipated {dissipated}")?;
-        write!(f, "  balance {}", significant(balance_error, 2))?;
-        let counts =
-            [(self.broken_edges, "broken edges"), (self.broken_bonds, "broken bonds"), (self.particles, "particles")];
-        counts.iter().filter(|(count, _)| *count > 0).try_for_each(|(count, name)| write!(f, "  {count} {name}"))
+        write!(f, "{}", self.words().join("  "))
     }
+}
+
+/// As many of these words, from the first, as fit a line of this width.
+fn fitted(first: String, words: Vec<String>, width: usize) -> String {
+    let mut line = first;
+    for word in words {
+        if line.chars().count() + 2 + word.chars().count() > width {
+            break;
+        }
+        line = line + "  " + &word;
+    }
+    line
 }
 
 /// How progress is shown.
@@ -119,6 +147,8 @@ pub struct Progress<W: Write> {
     /// Simulated time per time on the clock, smoothed.
     rate: Option<f64>,
     line_open: bool,
+    /// Columns of the terminal, where it is one.
+    width: fn() -> Option<usize>,
 }
 
 impl Progress<Stderr> {
@@ -129,14 +159,15 @@ impl Progress<Stderr> {
             (false, true) => Style::Overwrite,
             (false, false) => Style::Lines,
         };
-        Self::new(io::stderr(), style)
+        let width = || terminal_size::terminal_size_of(io::stderr()).map(|(width, _)| usize::from(width.0));
+        Self { width, ..Self::new(io::stderr(), style) }
     }
 }
 
 impl<W: Write> Progress<W> {
     /// A progress line on `out`.
     pub fn new(out: W, style: Style) -> Self {
-        Self { out, style, shown: None, rate: None, line_open: false }
+        Self { out, style, shown: None, rate: None, line_open: false, width: || None }
     }
 
     /// Whether it is time to show progress again, `elapsed` after the run began. Cheap: ask after every step.
@@ -159,9 +190,10 @@ impl<W: Write> Progress<W> {
             share if share.is_finite() => format!("{:3.0} %", share.clamp(0.0, 100.0)),
             _ => "  ? %".into(),
         };
-        let line = format!("{percent}  ETA {}  {snapshot}", self.eta(snapshot));
-        // Write errors are nobody's business, see the type. Without wrapping, a line wider than the terminal is cut at
-        // its edge, so that the next can overwrite it.
+        let width = (self.width)().unwrap_or(usize::MAX);
+        let line = fitted(format!("{percent}  ETA {}", self.eta(snapshot)), snapshot.words(), width);
+        // Write errors are nobody's business, see the type. Without wrapping, a line of a terminal that has just become
+        // narrower is cut at its edge, so that the next can overwrite it.
         let _ = match self.style {
             Style::Overwrite => write!(self.out, "\r\x1b[K\x1b[?7l{line}\x1b[?7h"),
             _ => writeln!(self.out, "{line}"),
@@ -249,8 +281,30 @@ mod tests {
         let text = snapshot(1.84e-4).to_string();
         assert_eq!(
             text,
-            "step 1200  t 184 µs  dt 73 ns  kinetic 1.2 mJ  elastic 34 mJ  dissipated 0 J  balance 1.2e-6  12 broken edges"
+            "t 184 µs  step 1200  12 broken edges  dissipated 0 J  elastic 34 mJ  kinetic 1.2 mJ  dt 73 ns  balance 1.2e-6"
         );
+        let loaded = Snapshot { load: Some([3100.0, -3400.0]), ..snapshot(1.84e-4) }.to_string();
+        assert!(loaded.starts_with("load 3.1 kN (peak -3.4 kN)  t 184 µs  step 1200"), "{loaded}");
+    }
+
+    #[test]
+    fn the_line_fits_the_terminal_load_first_and_balance_last() {
+        for width in [20, 60, 79, 80, 120, 200] {
+            let mut progress = Progress { width: || None, ..Progress::new(Vec::new(), Style::Lines) };
+            progress.width = match width {
+                20 => || Some(20),
+                60 => || Some(60),
+                79 => || Some(79),
+                80 => || Some(80),
+                120 => || Some(120),
+                _ => || Some(200),
+            };
+            progress.show(&Snapshot { load: Some([3100.0, 3400.0]), ..snapshot(1e-4) }, Duration::ZERO);
+            let line = text(&progress).trim_end();
+            assert!(line.chars().count() <= width, "{width}: {line}");
+            assert_eq!(line.contains("load 3.1 kN (peak 3.4 kN)"), width >= 60, "{width}: {line}");
+            assert_eq!(line.ends_with("balance 1.2e-6"), width == 200, "{width}: {line}");
+        }
     }
 
     #[test]
@@ -260,7 +314,7 @@ mod tests {
         progress.message("warning: element 5 is large");
         progress.finish(&snapshot(2e-3), Duration::from_secs(2));
         let text = text(&progress);
-        assert!(text.starts_with("\r\x1b[K\x1b[?7l  5 %  ETA --:--  step 1200"), "{text:?}");
+        assert!(text.starts_with("\r\x1b[K\x1b[?7l  5 %  ETA --:--  t 100 µs"), "{text:?}");
         assert!(text.contains("\x1b[?7h\r\x1b[Kwarning: element 5 is large\n\r\x1b[K\x1b[?7l100 %"), "{text:?}");
         assert!(text.ends_with("\x1b[?7h\n"), "{text:?}");
     }

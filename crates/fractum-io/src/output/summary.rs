@@ -185,7 +185,7 @@ pub struct Counts {
 }
 
 /// Simulated time [s].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Time {
     /// Steps done.
     pub steps: u64,
@@ -198,6 +198,9 @@ pub struct Time {
     /// Time reached.
     #[serde(with = "or_null")]
     pub end: f64,
+    /// Why the run ended.
+    #[serde(default)]
+    pub reason: String,
 }
 
 /// Time on the clock [s].

@@ -2,9 +2,11 @@
 
 mod calibrate;
 mod convergence;
+mod help;
 mod lab;
 mod lab_break;
 mod lab_strength;
+mod manual;
 mod mesh;
 mod new;
 mod pack;
@@ -16,12 +18,13 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use fractum::cache_of_user as cache;
+use fractum::terminal::{Stream, Tone, toned};
 use fractum::{ExitCode, Failure, Options, Outcome, say, tell};
-use fractum_io::summary::{Fracture, Status};
+use fractum_io::summary::{Fracture, Probe, Status};
 
 /// Fracture of solids: finite elements with damage, discrete elements, and the transition between them.
 #[derive(Parser)]
-#[command(version, about)]
+#[command(version, about, after_help = help::PROGRAM)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -41,8 +44,10 @@ enum Format {
 #[derive(Subcommand)]
 enum Command {
     /// Run a case and leave its results in a folder.
+    #[command(after_help = help::RUN)]
     Run(RunArguments),
     /// Find every mistake of a case and show the plan.
+    #[command(after_help = help::CHECK)]
     Check {
         /// Case file.
         case: PathBuf,
@@ -51,6 +56,7 @@ enum Command {
         set: Vec<(String, String)>,
     },
     /// Write a case that runs as it stands, with its mesh, into a folder.
+    #[command(after_help = help::NEW)]
     New {
         /// Template; without one, the list of templates.
         template: Option<String>,
@@ -118,6 +124,18 @@ enum Command {
     Explain {
         /// Dotted path of the key; without one, all keys.
         key: Option<String>,
+    },
+    /// Print the completions of a shell.
+    #[command(after_help = help::COMPLETIONS)]
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, or write those of all commands into a folder.
+    #[command(after_help = help::MAN)]
+    Man {
+        /// Folder for the pages.
+        folder: Option<PathBuf>,
     },
 }
 
@@ -196,6 +214,8 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
             Ok(ExitCode::Done)
         }
         Command::Explain { key } => explain(key.as_deref()),
+        Command::Completions { shell } => Ok(manual::completions(shell)),
+        Command::Man { folder } => manual::manual(folder.as_deref()),
     };
     result.unwrap_or_else(|failure| {
         report(&failure, json);
@@ -205,7 +225,8 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
 
 fn report(failure: &Failure, json: bool) {
     if !json {
-        tell!("{failure}");
+        let text = failure.to_string();
+        text.lines().for_each(|line| tell!("{}", with_place(line, Tone::Wrong, Stream::Error)));
         return;
     }
     match failure {
@@ -230,7 +251,7 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
         quiet: run.quiet,
         cache: cache(),
     };
-    let Outcome { summary, folder } = fractum::run(&run.case, &options)?;
+    let Outcome { summary, folder, load } = fractum::run(&run.case, &options)?;
     if summary.status == Status::Interrupted {
         let results = folder.display();
         tell!("interrupted; state saved, go on with: fractum run {} -o {results} --resume", run.case.display());
@@ -244,13 +265,28 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
             say!("{:<28} {}", body.body, fracture_text(body));
         }
         for expect in &summary.expect {
-            let verdict = if expect.pass { "as expected" } else { "NOT as expected" };
+            let (verdict, tone) =
+                if expect.pass { ("as expected", Tone::Good) } else { ("NOT as expected", Tone::Wrong) };
+            let verdict = toned(verdict, tone, Stream::Out);
             let value = fractum_io::number::quantity(expect.value, &expect.unit);
             say!("{:<28} {value}, {verdict}: {} ({})", expect.quantity, expect.required(), expect.source);
         }
+        if let Some((name, probe)) = load.as_ref().and_then(|name| summary.probes.get_key_value(name)) {
+            say!("{:<28} {}", "peak", peak_text(name, probe));
+        }
+        say!("{:<28} {}", "end", summary.time.reason);
         say!("results in {}", folder.display());
     }
     Ok(ExitCode::Done)
+}
+
+/// The largest absolute value of the load, in words.
+fn peak_text(name: &str, probe: &Probe) -> String {
+    use fractum_io::number::quantity;
+    if probe.min.abs() > probe.max.abs() {
+        return format!("{name} {}", quantity(probe.min, &probe.unit));
+    }
+    format!("{name} {} at t = {}", quantity(probe.max, &probe.unit), quantity(probe.time_of_max, "s"))
 }
 
 /// What became of the bonds of a body, in words.
@@ -270,13 +306,24 @@ fn fracture_text(body: &Fracture) -> String {
     }
 }
 
+/// A message with its place in the case file in the tone of what it says.
+fn with_place(line: &str, tone: Tone, stream: Stream) -> String {
+    match line.split_once(": ") {
+        Some((place, rest)) => format!("{}: {rest}", toned(place, tone, stream)),
+        None => toned(line, tone, stream),
+    }
+}
+
 fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, Failure> {
     let mut input = fractum::load(case, set, &cache())?;
     let mut plan = fractum::plan::Plan::new(&input);
     plan.compare_solvers(&input.case, &mut input.built);
-    say!("{plan}");
+    match Stream::Out.width() {
+        Some(width) => say!("{}", plan.wrapped(width, |topic| toned(topic, Tone::Name, Stream::Out))),
+        None => say!("{plan}"),
+    }
     for warning in &input.built.warnings {
-        say!("{warning}");
+        say!("{}", with_place(&warning.to_string(), Tone::Doubt, Stream::Out));
     }
     Ok(ExitCode::Done)
 }

@@ -32,6 +32,11 @@ impl Simulation {
         };
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         let (status, state_hash) = (end.status(), self.state_hash());
+        let reason = match &end {
+            End::Finished => std::mem::take(&mut self.messages.ended),
+            End::Interrupted => "interrupted".to_owned(),
+            End::Failed(error) => error.to_string(),
+        };
         let clock = self.scene.clock;
         self.record_last(&end)?;
         self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
@@ -48,7 +53,7 @@ impl Simulation {
             probes: summary::probes(&self.case, &self.recorder),
             ppv: self.recorder.attenuations(),
             fragment_sizes: summary::fragment_sizes(&self.scene.solid, &pieces),
-            time: summary::time(&clock),
+            time: summary::time(&clock, reason),
             wall: summary::wall(self.started.elapsed(), &self.phases),
             ..summary::of_scene(&self.scene)
         };
@@ -59,9 +64,10 @@ impl Simulation {
         summary.write(&self.folder.join("summary.json"))?;
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
+        let load = self.load().map(|index| self.case.probes[index].name.value.clone());
         let notes = Notes {
             case_file: self.case.source.path.display().to_string(),
-            plan: self.plan.to_string(),
+            plan: self.plan.wrapped(PLAN_WIDTH, str::to_owned),
             warnings: self.messages.warnings,
             pictures: crate::gallery::draw(&self.scene, &self.folder),
         };
@@ -73,7 +79,7 @@ impl Simulation {
                 self.messages.log.line(&error)?;
                 Err(Failure::Stopped { error, folder: self.folder.display().to_string() })
             }
-            _ => Ok(Outcome { summary, folder: self.folder }),
+            _ => Ok(Outcome { summary, folder: self.folder, load }),
         }
     }
 
@@ -93,6 +99,9 @@ impl Simulation {
         Ok(())
     }
 }
+
+/// Characters in a line of the plan in the report.
+const PLAN_WIDTH: usize = 120;
 
 /// The bonds that broke, where some could.
 fn write_cracks(scene: &Scene, folder: &Path) -> Result<(), Failure> {

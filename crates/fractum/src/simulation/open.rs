@@ -20,6 +20,7 @@ use crate::plan::Plan;
 use crate::record::Recorder;
 use crate::solver::Solver;
 use crate::tell;
+use crate::terminal::{Stream, Tone, toned};
 
 impl Simulation {
     /// Reads a case, makes its bodies ready, and starts its results folder, or goes on from its last checkpoint.
@@ -45,7 +46,10 @@ impl Simulation {
         let identity = Identity { program: program(), case_hash: case.hash(), mesh_hash };
         let loaded = if options.resume { Some(find_checkpoint(&folder, &identity)?) } else { None };
         if !options.quiet {
-            tell!("{plan}");
+            match Stream::Error.width() {
+                Some(width) => tell!("{}", plan.wrapped(width, |topic| toned(topic, Tone::Name, Stream::Error))),
+                None => tell!("{plan}"),
+            }
             tell!("results in {}", folder.display());
         }
         // Prepared before anything is put back: a resumed run solves the same systems in the same order.

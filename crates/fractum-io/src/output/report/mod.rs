@@ -147,6 +147,7 @@ fn heading(data: &ReportData) -> Markup {
                 (duration(wall.total)) " on " (threads) @if *threads == 1 { " thread" } @else { " threads" }
                 " · fractum " (fractum)
             }
+            @if !time.reason.is_empty() { p { "End: " (time.reason) } }
         }
     }
 }

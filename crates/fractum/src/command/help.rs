@@ -1,0 +1,56 @@
+//! What `--help` says below the options: examples and exit codes.
+
+/// Of the program.
+pub(super) const PROGRAM: &str = "\
+Examples:
+  fractum new plate                      write a case with its mesh into the folder plate
+  fractum check plate/case.toml          find mistakes and show the plan
+  fractum run plate/case.toml            run it; results in results/plate/case
+  fractum explain solver.end             what a key of the case file means
+  fractum completions bash > ~/.local/share/bash-completion/completions/fractum
+
+Exit codes:
+  0    done
+  1    the case, the mesh or an option is wrong, or a reference is not met
+  2    the run stopped itself; results and last state are in its folder
+  3    the machine failed: disk or memory
+  130  interrupted; the state is saved, and --resume goes on from it
+
+Environment:
+  FRACTUM_CACHE  folder for packings and calibrated bonds (empty: none)
+  NO_COLOR       set to anything: no colours";
+
+/// Of `fractum run`.
+pub(super) const RUN: &str = "\
+Examples:
+  fractum run case.toml
+  fractum run case.toml -o results/second --set velocity=\"2 mm/s\" --threads 4
+  fractum run case.toml --set solver.end=\"3 ms\"
+  fractum run case.toml -o results/second --resume
+
+Exit codes: 0 done, 1 wrong input, 2 stopped itself, 3 disk or memory, 130 interrupted with its state saved.";
+
+/// Of `fractum check`.
+pub(super) const CHECK: &str = "\
+Examples:
+  fractum check case.toml
+  fractum check case.toml --set size=\"5 mm\" --format json";
+
+/// Of `fractum new`.
+pub(super) const NEW: &str = "\
+Examples:
+  fractum new                   list the templates
+  fractum new beam tests/beam   write one into a folder";
+
+/// Of `fractum completions`.
+pub(super) const COMPLETIONS: &str = "\
+Examples:
+  fractum completions bash > ~/.local/share/bash-completion/completions/fractum
+  fractum completions zsh > ~/.zfunc/_fractum
+  fractum completions fish > ~/.config/fish/completions/fractum.fish";
+
+/// Of `fractum man`.
+pub(super) const MAN: &str = "\
+Examples:
+  fractum man | man -l -
+  fractum man ~/.local/share/man/man1";
