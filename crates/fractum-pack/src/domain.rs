@@ -211,6 +211,19 @@ impl Domain {
         }
     }
 
+    /// Calls `visit(wall, depth of x below it, inward normal)` for every wall of an analytic shape, and for the nearest
+    /// place of a triangulated surface.
+    pub(crate) fn walls_at(&self, x: &Vec3, mut visit: impl FnMut(usize, f64, Vec3)) {
+        match self {
+            Domain::Surface(surface) => {
+                if let (depth, Some(inward)) = surface.nearest(x) {
+                    visit(0, depth, inward);
+                }
+            }
+            _ => self.plain_walls(x, visit),
+        }
+    }
+
     /// Visits the walls that a sphere touches; `candidates` are the triangles near it (triangulated surfaces only).
     #[inline]
     pub(crate) fn contacts(&self, x: &Vec3, r: f64, candidates: &[u32], mut visit: impl FnMut(WallContact)) {

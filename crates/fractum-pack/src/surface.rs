@@ -99,11 +99,17 @@ impl ClosedSurface {
 
     /// Distance to the surface [m], positive inside.
     pub fn depth(&self, x: &Vec3) -> f64 {
+        self.nearest(x).0
+    }
+
+    /// Distance to the surface [m], positive inside, and the unit vector that leads inward there; none on the surface itself.
+    pub(crate) fn nearest(&self, x: &Vec3) -> (f64, Option<Vec3>) {
         let point = Vector::new(x.x, x.y, x.z);
         let projection = self.mesh.project_local_point(point, false);
         let d = projection.point - point;
-        let distance = Vec3::new(d.x, d.y, d.z).norm();
-        if projection.is_inside { distance } else { -distance }
+        let out = Vec3::new(d.x, d.y, d.z);
+        let depth = if projection.is_inside { out.norm() } else { -out.norm() };
+        (depth, (depth != 0.0).then(|| -out / depth))
     }
 
     /// Triangles whose box comes within `reach` of `x`, in ascending order.

@@ -193,6 +193,7 @@ impl Maker<'_> {
             shares: Vec::new(),
             particles: made.particles,
             pairs: made.sample.network.pairs,
+            shift_to_walls: made.sample.packing.shift_to_walls(),
             walls: made.sample.packing.walls,
             replaced: region.map_or_else(Vec::new, |region| region.elements),
         });

@@ -41,7 +41,16 @@ pub(crate) fn prepare(body: &LooseBody, material: &Material) -> Result<PreparedB
     // No bond uses it.
     let section = BeamSection::new(material.young_modulus, 1.0).map_err(|e| wrong(&e))?;
     let (pairs, shares, walls, law) = (Vec::new(), Vec::new(), Vec::new(), section.into());
-    Ok(PreparedBody { particles, pairs, law, shares, walls, fracture: None, replaced: Vec::new() })
+    Ok(PreparedBody {
+        particles,
+        pairs,
+        law,
+        shares,
+        walls,
+        shift_to_walls: Vec::new(),
+        fracture: None,
+        replaced: Vec::new(),
+    })
 }
 
 fn fill(region: &Region, radius: f64, dispersion: f64, most: usize, seed: u64) -> (Vec<Vec3>, Vec<f64>) {

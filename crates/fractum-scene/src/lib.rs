@@ -33,8 +33,8 @@ pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Clos
 pub use clock::{Clock, TimeStepSettings};
 pub use conditions::*;
 pub use contacts::{
-    ContactBody, ContactMaterial, ContactProbe, Contacts, Drive, Form, Inertia, NodesOnShape, Overlap, OverlapWith,
-    RigidBody, SolidSurface, pieces,
+    ContactBody, ContactMaterial, ContactProbe, Contacts, Drive, FlatFaces, Form, Inertia, NodesOnShape, Overlap,
+    OverlapWith, RigidBody, SolidSurface, pieces,
 };
 pub use crack_measure::{CrackMeasure, InsideCracks};
 pub use damaged::{DamagedMeasure, DamagedPart};

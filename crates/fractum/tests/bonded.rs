@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{Workplace, files_below, run};
+use common::{Workplace, files_below, history, run};
 use fractum_pack::{Domain, PackSpec, pack};
 
 const BAR: &str = r#"fractum = 1
@@ -250,4 +250,86 @@ fn a_packing_that_misses_its_targets_is_refused_unless_it_is_given() {
     let ended = place.fractum(&["check", "case.toml"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     assert!((ended.stdout + &ended.stderr).contains("misses its target"));
+}
+
+const BETWEEN_PLATES: &str = r#"fractum = 1
+title = "A bonded cylinder between two plates"
+
+[parameters]
+length = "40 mm"
+radius = "10 mm"
+E = "30 GPa"
+transit = "length/sqrt(E/2400 kg/m^3)"
+# Of the upper plate into the body.
+depth = "0 mm"
+
+[materials.stone]
+density = "2400 kg/m^3"
+young_modulus = "E"
+poisson_ratio = 0.2
+
+[[bodies]]
+name = "core"
+kind = "bonded"
+material = "stone"
+shape = "cylinder"
+length = "length"
+radius = "radius"
+particles = 600
+
+[[bodies]]
+name = "lower"
+kind = "rigid"
+shape = "plane"
+point = ["0 mm", "0 mm", "0 mm"]
+normal = ["1", "0", "0"]
+contact = { friction = 0 }
+
+[[bodies]]
+name = "upper"
+kind = "rigid"
+shape = "box"
+point = ["length - depth", "-2*radius", "-2*radius"]
+size = ["10 mm", "4*radius", "4*radius"]
+contact = { friction = 0 }
+velocity = { x = { smooth_ramp = [["0 s", "0 m/s"], ["10*transit", "-0.4 m/s"]] } }
+
+[solver]
+end = "20*transit"
+
+[[probes]]
+name = "press"
+reaction = { group = "upper", along = "-x" }
+[[probes]]
+name = "way"
+displacement = { group = "upper", along = "-x" }
+
+[output]
+history = { every = "transit/4" }
+"#;
+
+/// Young's modulus by the motion of the plates, and the first row: press and kinetic energy.
+fn pressed(place: &Workplace, folder: &str) -> (f64, [f64; 2]) {
+    let rows = history(place, folder, &["press", "way", "kinetic"]);
+    let (first, last) = (&rows[0], rows.last().unwrap());
+    // Two transits and more before the end: waves have run to and fro.
+    let early = &rows[rows.len() - 32];
+    let stress = (last[0] - early[0]) / (std::f64::consts::PI * 1e-4);
+    (stress / ((last[1] - early[1]) / 40e-3), [first[0], first[2]])
+}
+
+#[test]
+fn a_cylinder_between_plates_has_the_modulus_of_its_material_and_starts_without_load() {
+    let place = Workplace::new(BETWEEN_PLATES);
+    let one = run(&place, "one", "1");
+    let (modulus, start) = pressed(&place, "one");
+    assert!((modulus / 30e9 - 1.0).abs() < 0.03, "{modulus:e}");
+    assert_eq!(start, [0.0; 2]);
+    assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-4, "{}", one["energy"]);
+    assert_eq!(run(&place, "two", "2")["state_hash"], one["state_hash"]);
+    // A plate that stands in the body is told, and brings no energy either.
+    let deep = place.fractum(&["run", "case.toml", "-o", "deep", "--threads", "1", "--set", "depth=0.5 mm"]);
+    assert!(deep.code == Some(0) && deep.stderr.contains("give no force until they have parted"), "{}", deep.stderr);
+    let (modulus, start) = pressed(&place, "deep");
+    assert!((modulus / 30e9 - 1.0).abs() < 0.06 && start == [0.0; 2], "{modulus:e} {start:?}");
 }

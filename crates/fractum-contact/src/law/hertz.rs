@@ -1,6 +1,7 @@
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
+use super::linear::partial_spring;
 use super::rolling::{Rolling, RollingMemory};
 use super::slip::slip_to_cone;
 use super::{ContactForce, ContactLaw, ContactParameters, PairMotion};
@@ -60,14 +61,18 @@ impl MaterialPair {
 ///   while it sticks. Under growing load the force is kept and new slip meets the new stiffness; under falling load the
 ///   force falls with the stiffness: no path gains energy (Thornton, Cummins and Cleary 2011).
 ///
-/// Johnson, *Contact Mechanics* (1985), eqs (4.22), (7.43); Antypov and Elliott (2011) for the damping.
+/// A *flat* contact has its full size from the first touch on, as that of a flat punch: F_n = k δ + c dδ/dt with constant
+/// stiffnesses, c = 2 ζ √(m* k). One that begins or ends within a step acts for its share of that step, as
+/// [`Linear`](super::Linear) does.
+///
+/// Johnson, *Contact Mechanics* (1985), eqs (3.36), (4.22), (7.43); Antypov and Elliott (2011) for the damping.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hertz {
-    /// k_h [N/m^(3/2)].
+    /// k_h [N/m^(3/2)]; the normal stiffness of a flat contact [N/m].
     pub normal: f64,
-    /// 8 G* √R* [N/m^(3/2)]: tangential stiffness over √δ.
+    /// 8 G* √R* [N/m^(3/2)]: tangential stiffness over √δ; that of a flat contact [N/m].
     pub tangential: f64,
-    /// √5 ζ √(m* k_h) [N s/m^(5/4)]: normal damping over δ^¼.
+    /// √5 ζ √(m* k_h) [N s/m^(5/4)]: normal damping over δ^¼; that of a flat contact [N s/m].
     pub damping: f64,
     /// Tangential over normal damping.
     pub damping_share: f64,
@@ -75,6 +80,8 @@ pub struct Hertz {
     pub friction: f64,
     /// Friction against rolling.
     pub rolling: Rolling,
+    /// Whether the contact is flat: stiffnesses do not grow with the overlap.
+    pub flat: bool,
 }
 
 /// What a Hertz contact remembers.
@@ -107,7 +114,37 @@ impl Hertz {
             damping_share: (tangential / (1.5 * normal)).sqrt(),
             friction: pair.surface.friction,
             rolling: Rolling { arm: pair.surface.rolling_friction * effective_radius },
+            flat: false,
         }
+    }
+
+    /// The flat contact of a body of effective mass m* [kg].
+    ///
+    /// - `stiffness`: normal and tangential [N/m]; `arm`: radius that friction against rolling takes [m]
+    pub fn flat(stiffness: [f64; 2], surface: ContactParameters, arm: f64, effective_mass: f64) -> Self {
+        let [normal, tangential] = stiffness;
+        Hertz {
+            normal,
+            tangential,
+            damping: 2.0 * surface.damping_ratio * (effective_mass * normal).sqrt(),
+            damping_share: (tangential / normal).sqrt(),
+            friction: surface.friction,
+            rolling: Rolling { arm: surface.rolling_friction * arm },
+            flat: true,
+        }
+    }
+
+    /// Force [N] and energy [J] of the normal spring at an overlap δ > 0, and √δ [m^½], which is 1 for a flat contact.
+    ///
+    /// - `way`: change of the overlap in the step [m]
+    fn elastic(&self, overlap: f64, way: f64) -> (f64, f64, f64) {
+        if self.flat {
+            let (force, stored) = partial_spring(self.normal, overlap, way);
+            return (force, stored, 1.0);
+        }
+        let root = overlap.sqrt();
+        let force = self.normal * overlap * root;
+        (force, 0.4 * force * overlap, root)
     }
 }
 
@@ -131,8 +168,7 @@ impl ContactLaw for Hertz {
                 ..ContactForce::default()
             };
         }
-        let root = overlap.sqrt();
-        let elastic = self.normal * overlap * root;
+        let (elastic, compressed, root) = self.elastic(overlap, approach * motion.dt);
         let viscosity = self.damping * root.sqrt();
         let damper = (viscosity * approach).max(-elastic);
         let normal_force = elastic + damper;
@@ -167,12 +203,12 @@ impl ContactLaw for Hertz {
         let mut force = ContactForce {
             on_second: n * normal_force - slip * stiffness - drag,
             couple_on_second: Vec3::zeros(),
-            stored: 0.4 * elastic * overlap + spring,
+            stored: compressed + spring,
             friction: work + old_spring - spring,
             damping: 0.5 * ((old.damper + damper) * approach + (old.drag + drag).dot(&across)) * motion.dt,
         };
         if self.rolling.arm > 0.0 {
-            let normal_stiffness = 1.5 * self.normal * root;
+            let normal_stiffness = self.stiffness(overlap).0;
             let rolled = self.rolling.couple(motion, normal_force, normal_stiffness, &mut memory.rolling);
             force.couple_on_second = rolled.on_second;
             force.stored += rolled.stored;
@@ -190,6 +226,9 @@ impl ContactLaw for Hertz {
     }
 
     fn stiffness(&self, overlap: f64) -> (f64, f64) {
+        if self.flat {
+            return (self.normal, self.tangential);
+        }
         let root = overlap.max(0.0).sqrt();
         (1.5 * self.normal * root, self.tangential * root)
     }

@@ -101,7 +101,7 @@ impl Linear {
     /// Force of a pair; its memory advances with the call.
     ///
     /// A contact that begins or ends in a step beside the moment acts for a part of that step only, see
-    /// [`Linear::elastic`]. Out of contact the slip is forgotten. The damper never pulls: the normal force stays ≥ 0. Energies are those of
+    /// `partial_spring`. Out of contact the slip is forgotten. The damper never pulls: the normal force stays ≥ 0. Energies are those of
     /// the step that led here, with the mean of the forces at its ends, as central differences book them.
     pub fn force(&self, motion: &PairMotion, memory: &mut ContactMemory) -> ContactForce {
         let n = motion.normal;
@@ -121,7 +121,7 @@ impl Linear {
                 ..ContactForce::default()
             };
         }
-        let (elastic, compressed) = self.elastic(overlap, approach * motion.dt);
+        let (elastic, compressed) = partial_spring(self.normal_stiffness, overlap, approach * motion.dt);
         let damper = (self.normal_damping * approach).max(-elastic);
         let normal_force = elastic + damper;
         memory.damper = n * damper;
@@ -152,22 +152,6 @@ impl Linear {
         force
     }
 
-    /// Force [N] and energy [J] of the normal spring at an overlap δ > 0 that changes by `way` w in a step [m].
-    ///
-    /// Central differences let the force of a moment act over the halves of the steps beside it. Where the pair was δ - |w| < 0 a step
-    /// ago, or will be after the next, it is in contact for the share δ/|w| of that step, and so is the force:
-    /// k δ (1 + δ/|w|)/2. The energy is what it has done in the step to here, or will do in the next one: F |w|/2. At a constant
-    /// rate the spring then closes and opens without gain or loss; with the full force each time costs or brings
-    /// k δ (|w| - δ)/2, which does not vanish in the sum where contacts last for few steps.
-    fn elastic(&self, overlap: f64, way: f64) -> (f64, f64) {
-        let (full, way) = (self.normal_stiffness * overlap, way.abs());
-        if way <= overlap {
-            return (full, 0.5 * full * overlap);
-        }
-        let force = 0.5 * full * (1.0 + overlap / way);
-        (force, 0.5 * force * way)
-    }
-
     /// Stretch of the tangential spring that a largest force [N] leaves of `trial`, and the energy that slipping took since the
     /// stretch was `before` [J].
     fn slide(&self, before: Vec3, trial: Vec3, limit: f64) -> (Vec3, f64) {
@@ -175,6 +159,22 @@ impl Linear {
         let mean_force = (before + after) * (0.5 * self.tangential_stiffness);
         (after, mean_force.dot(&(trial - after)).max(0.0))
     }
+}
+
+/// Force [N] and energy [J] of a normal spring of stiffness k [N/m] at an overlap δ > 0 that changes by `way` w in a step [m].
+///
+/// Central differences let the force of a moment act over the halves of the steps beside it. Where the pair was δ - |w| < 0 a step
+/// ago, or will be after the next, it is in contact for the share δ/|w| of that step, and so is the force:
+/// k δ (1 + δ/|w|)/2. The energy is what it has done in the step to here, or will do in the next one: F |w|/2. At a constant
+/// rate the spring then closes and opens without gain or loss; with the full force each time costs or brings
+/// k δ (|w| - δ)/2, which does not vanish in the sum where contacts last for few steps.
+pub(super) fn partial_spring(stiffness: f64, overlap: f64, way: f64) -> (f64, f64) {
+    let (full, way) = (stiffness * overlap, way.abs());
+    if way <= overlap {
+        return (full, 0.5 * full * overlap);
+    }
+    let force = 0.5 * full * (1.0 + overlap / way);
+    (force, 0.5 * force * way)
 }
 
 /// A stretch turned into the plane across a normal, where it keeps its length.

@@ -3,12 +3,12 @@
 use fractum_dem::{AnyBondLaw, Particles};
 use fractum_math::Vec3;
 use fractum_scene::coupling::Attachment;
-use fractum_scene::{BondFracture, Bonded, BondedPart, PointProbe, Population, Probe, Support};
+use fractum_scene::{BondFracture, Bonded, BondedPart, FlatFaces, PointProbe, Population, Probe, Support};
 
 use super::Context;
 use super::conditions::{LoadedPoints, motion_of};
 use super::probes::is_held;
-use crate::case::model::{BodyKind, ProbeKind, Selection, TimeStep};
+use crate::case::model::{BodyKind, Material, ProbeKind, Selection, TimeStep};
 use crate::case::{Diagnostic, Field, Spanned};
 
 /// The particles of a bonded or loose body, made outside: packed or read, bonded and calibrated.
@@ -24,6 +24,8 @@ pub struct PreparedBody {
     pub shares: Vec<f64>,
     /// Sets of particles that touch the walls of the shape, by name.
     pub walls: Vec<(String, Vec<u32>)>,
+    /// How far each particle is from touching the walls of the shape exactly [m]; empty where that does not matter.
+    pub shift_to_walls: Vec<Vec3>,
     /// When its bonds break, with the criterion's own strengths.
     pub fracture: Option<BondFracture>,
     /// Tetrahedra of the mesh that it takes the place of.
@@ -66,6 +68,7 @@ impl Context<'_> {
                 sets.push((name.value.clone(), set));
             }
             self.particle_sets.push(ParticleSets { body: index, sets });
+            self.flat_faces.push(flat_faces(&case.materials[material], made.shift_to_walls));
             parts.push(BondedPart {
                 name: body.name.value.clone(),
                 particles: made.particles,
@@ -191,6 +194,13 @@ impl Context<'_> {
         };
         Some(Probe::Points { population: Population::Particles, probe })
     }
+}
+
+/// Faces of a bonded body as rigid bodies feel them; none where its particles touch as spheres of the modulus given for them.
+fn flat_faces(material: &Material, shift: Vec<Vec3>) -> Option<FlatFaces> {
+    let flat = material.contact_modulus.is_none() && !shift.is_empty();
+    let (young_modulus, poisson_ratio) = (material.young_modulus, material.poisson_ratio);
+    flat.then_some(FlatFaces { young_modulus, poisson_ratio, shift })
 }
 
 /// Gives particles the velocity of the field at their centres, and its rate of rotation, half the curl.

@@ -4,7 +4,7 @@ use fractum_fem as fem;
 use fractum_math::{Mat3, Vec3, rotation_between};
 use fractum_mesh::topology;
 use fractum_scene::{
-    Along, ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, NodesOnShape,
+    Along, ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, NodesOnShape, Overlap,
     OverlapWith, Probe, RigidBody, Scene, Shape, SolidSurface, pieces,
 };
 
@@ -16,6 +16,9 @@ use crate::number::quantity;
 
 /// Depth of an overlap over the radius of the particle at the start that is reported.
 const DEEP: f64 = 1e-6;
+
+/// What becomes of overlaps that are taken as they stand.
+const NO_FORCE: &str = "they give no force until they have parted";
 
 /// Triangles of a rigid body, read outside.
 #[derive(Clone, Debug)]
@@ -75,6 +78,8 @@ impl Context<'_> {
                 body.is_some_and(|body| tied.iter().any(|&t| body.range.contains(&(t as usize))))
             });
         }
+        let deep = contacts.flatten(std::mem::take(&mut self.flat_faces), &scene.bonded.particles);
+        warnings.extend(self.overlap_of_particles(&scene, &deep, NO_FORCE));
         warnings.extend(self.particle_overlaps(&scene, &mut contacts));
         let mut scene = scene.with_contacts(contacts, surface);
         warnings.extend(self.node_overlaps(&scene, surface));
@@ -142,9 +147,14 @@ impl Context<'_> {
     /// Particles that are in other bodies at the start.
     fn particle_overlaps(&self, scene: &Scene, contacts: &mut Contacts) -> Option<Diagnostic> {
         let (mut solid, mut particles) = (scene.solid.clone(), scene.bonded.particles.clone());
-        let overlaps = contacts.overlaps(&mut solid, &mut particles);
-        let deep = overlaps.iter().filter(|o| o.depth > DEEP * particles.radius[o.particle as usize]);
-        let worst = deep.clone().next()?;
+        let mut overlaps = contacts.overlaps(&mut solid, &mut particles);
+        overlaps.retain(|o| o.depth > DEEP * particles.radius[o.particle as usize]);
+        self.overlap_of_particles(scene, &overlaps, self.overlap_remedy())
+    }
+
+    /// The warning of overlaps, if any, deepest first.
+    fn overlap_of_particles(&self, scene: &Scene, overlaps: &[Overlap], remedy: &str) -> Option<Diagnostic> {
+        let worst = overlaps.iter().reduce(|a, b| if b.depth > a.depth { b } else { a })?;
         let name = |particle: u32| {
             let body = scene.bonded.bodies().iter().find(|b| b.range.contains(&(particle as usize)));
             body.map_or_else(String::new, |b| format!("particle {} of {}", particle as usize - b.range.start, b.name))
@@ -154,15 +164,16 @@ impl Context<'_> {
             OverlapWith::RigidBody(rigid_body) => format!("rigid body {rigid_body}"),
             OverlapWith::Solid(body) => format!("solid {body}"),
         };
-        Some(self.overlap_warning(format!(
+        let found = format!(
             "{} at the start, deepest {} and {other}, by {}",
-            match deep.count() {
+            match overlaps.len() {
                 1 => "1 contact overlaps".to_owned(),
                 count => format!("{count} contacts overlap"),
             },
             name(worst.particle),
             quantity(worst.depth, "m")
-        )))
+        );
+        Some(Diagnostic::warning(&self.whole_case(), found).remedy(remedy))
     }
 
     /// Nodes of solids that are in other bodies at the start.
@@ -179,7 +190,7 @@ impl Context<'_> {
             OverlapWith::Particle(particle) => format!("particle {particle}"),
         };
         let at = scene.solid.position(*node as usize);
-        Some(self.overlap_warning(format!(
+        let found = format!(
             "{} within other bodies at the start, deepest that at ({}, {}, {}) in {other}, by {}",
             match deep.count() {
                 1 => "1 node of a solid is".to_owned(),
@@ -189,16 +200,17 @@ impl Context<'_> {
             quantity(at.y, "m"),
             quantity(at.z, "m"),
             quantity(*depth, "m")
-        )))
+        );
+        Some(Diagnostic::warning(&self.whole_case(), found).remedy(self.overlap_remedy()))
     }
 
-    fn overlap_warning(&self, found: String) -> Diagnostic {
-        Diagnostic::warning(&self.whole_case(), found).remedy(match self.case.solver.initial_overlap {
+    fn overlap_remedy(&self) -> &'static str {
+        match self.case.solver.initial_overlap {
             InitialOverlap::Push => {
                 "they push apart at once; move one of them, make the cloud looser, or set solver.initial_overlap = \"keep\""
             }
-            InitialOverlap::Keep => "they give no force until they have parted",
-        })
+            InitialOverlap::Keep => NO_FORCE,
+        }
     }
 
     /// Facets of rigid bodies and containers act in space only.

@@ -30,8 +30,8 @@ use fractum_mesh::Mesh;
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::StaticSettings;
 use fractum_scene::{
-    BondedBody, BondedStaticSettings, Loads, Probe, Scene, SceneError, SceneSettings, Supports, SurfaceSupports,
-    TimeStepSettings,
+    BondedBody, BondedStaticSettings, FlatFaces, Loads, Probe, Scene, SceneError, SceneSettings, Supports,
+    SurfaceSupports, TimeStepSettings,
 };
 
 use bodies::{Numbering, Part};
@@ -73,6 +73,8 @@ struct Context<'a> {
     mesh: &'a Mesh,
     /// Sets of particles of the bonded bodies.
     particle_sets: Vec<ParticleSets>,
+    /// Faces of each body of particles as rigid bodies feel them.
+    flat_faces: Vec<Option<FlatFaces>>,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -81,7 +83,8 @@ struct Context<'a> {
 /// # Errors
 /// Groups and sets of particles that are missing or empty, loads and motions that are not finite numbers.
 pub fn check_before_particles(case: &Case, mesh: &Mesh) -> Result<(), Diagnostics> {
-    let mut context = Context { case, mesh, particle_sets: Vec::new(), diagnostics: Vec::new() };
+    let mut context =
+        Context { case, mesh, particle_sets: Vec::new(), flat_faces: Vec::new(), diagnostics: Vec::new() };
     context.check_before_particles();
     if context.diagnostics.is_empty() { Ok(()) } else { Err(Diagnostics::of_many(context.diagnostics)) }
 }
@@ -99,7 +102,8 @@ pub fn build_scene(
     prepared: Vec<PreparedBody>,
     facets: Vec<PreparedFacets>,
 ) -> Result<BuiltScene, Diagnostics> {
-    let mut context = Context { case, mesh, particle_sets: Vec::new(), diagnostics: Vec::new() };
+    let mut context =
+        Context { case, mesh, particle_sets: Vec::new(), flat_faces: Vec::new(), diagnostics: Vec::new() };
     context.check_before_particles();
     let built = context.build(prepared, facets);
     match built {

@@ -169,6 +169,7 @@ step = "0.1 us"
         law: BeamSection::new(70e9, 1.0).unwrap().into(),
         shares: Vec::new(),
         walls: Vec::new(),
+        shift_to_walls: Vec::new(),
         fracture: None,
         replaced: Vec::new(),
     };

@@ -75,6 +75,7 @@ fn with_interfaces(
         law: own.law.into(),
         shares,
         walls: sample.packing.walls.clone(),
+        shift_to_walls: sample.packing.shift_to_walls(),
         fracture: own.law.can_fail().then_some(fracture),
         replaced,
     };

@@ -3,6 +3,7 @@
 
 mod between;
 mod debris_among;
+mod flat_faces;
 mod leave;
 mod node_contacts;
 mod nodes_on_shape;
@@ -19,6 +20,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use between::Touching;
 pub use between::{ContactBody, ContactProbe};
+pub use flat_faces::FlatFaces;
 pub use node_contacts::pieces;
 pub(crate) use nodes_on_shape::Candidate;
 pub use nodes_on_shape::NodesOnShape;
@@ -71,6 +73,13 @@ pub struct Contacts {
     /// Accelerations of everything, by axis.
     gravity: Vec<(usize, TimeFunctionOf)>,
     rayleigh_frequency: f64,
+    /// Faces of each body that rigid bodies feel as flat; empty where there are none.
+    flat: Vec<Option<FlatFaces>>,
+    /// How far each particle is from where rigid bodies feel it, and where that is [m]; empty where nothing is flat.
+    shift: Vec<Vec3>,
+    shifted: Vec<Vec3>,
+    /// Squared frequency that flat faces ask of the step [1/s²].
+    flat_frequency_square: f64,
     /// Largest squared frequency that contacts have given to nodes of solids so far [1/s²].
     node_frequency_square: f64,
     /// Forces between bodies that probes ask for [N].
@@ -172,6 +181,10 @@ impl Contacts {
             body,
             rigid_bodies,
             rayleigh_frequency,
+            flat: Vec::new(),
+            shift: Vec::new(),
+            shifted: Vec::new(),
+            flat_frequency_square: 0.0,
             node_frequency_square: 0.0,
             watched: Vec::new(),
         }
@@ -193,7 +206,7 @@ impl Contacts {
 
     /// Squared frequency that contacts ask of the step [1/s²].
     pub(crate) fn frequency_square(&self) -> f64 {
-        self.rayleigh_frequency * self.rayleigh_frequency + self.node_frequency_square
+        self.rayleigh_frequency * self.rayleigh_frequency + self.flat_frequency_square + self.node_frequency_square
     }
 
     /// Energy of the mean particle at the speed of the fastest rigid body [J]: what the first touch is about.
@@ -220,6 +233,7 @@ impl Contacts {
     /// - `dt` [s]: the step that led here
     pub(crate) fn add_forces(&mut self, solid: &mut Solid, particles: &mut Particles, dt: f64) -> Work {
         let mut work = Work::default();
+        self.shift_particles(&particles.position);
         let Particles { position, velocity, spin, radius, mass, force, moment, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
         if let Some(mut among) = self.among.take() {
@@ -227,22 +241,27 @@ impl Contacts {
             work += among.add_forces(&spheres, force, moment, dt);
             self.among = Some(among);
         }
-        let Contacts { body, rigid_bodies, on_tools, solids, .. } = self;
+        let Contacts { body, rigid_bodies, on_tools, solids, flat, shifted, .. } = self;
         let body = &*body;
+        let felt = Spheres { position: if shifted.is_empty() { position } else { shifted }, ..spheres };
         for (rigid_body, (contacts, pairs)) in rigid_bodies.iter_mut().zip(on_tools) {
             let heavy = rigid_body.mass();
             let law = |i: u32, curvature: f64| {
                 let i = i as usize;
                 let moved = if heavy.is_finite() { mass[i] * heavy / (mass[i] + heavy) } else { mass[i] };
-                Hertz::new(&pairs[body[i] as usize], 1.0 / (1.0 / radius[i] + curvature), moved)
+                let pair = &pairs[body[i] as usize];
+                match flat.get(body[i] as usize) {
+                    Some(Some(faces)) => faces.law(radius[i], pair.surface, moved),
+                    _ => Hertz::new(pair, 1.0 / (1.0 / radius[i] + curvature), moved),
+                }
             };
             let ground = rigid_body.ground();
-            contacts.search(&ground, &spheres);
-            work += contacts.update(&ground, &spheres, law, dt);
+            contacts.search(&ground, &felt);
+            work += contacts.update(&ground, &felt, law, dt);
             contacts.add_to(force, moment);
             rigid_body.clear_forces();
             for touch in contacts.touches() {
-                let place = position[touch.sphere as usize] + touch.offset;
+                let place = felt.position[touch.sphere as usize] + touch.offset;
                 rigid_body.push(&-touch.force, &-touch.couple, &place);
             }
         }

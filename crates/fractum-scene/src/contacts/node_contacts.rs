@@ -136,10 +136,7 @@ impl Contacts {
             among.accept_initial_overlap(&spheres, |_, _| true);
             self.among = Some(among);
         }
-        for (rigid_body, (contacts, _)) in self.rigid_bodies.iter().zip(&mut self.on_tools) {
-            contacts.search(&rigid_body.ground(), &spheres);
-            contacts.accept_initial_overlap(&rigid_body.ground(), &spheres, |_| Some(0.0));
-        }
+        self.accept_on_rigid_bodies(particles, false);
     }
 
     /// Takes all contacts of nodes as they stand, and tells them: node, depth [m] and what the node is in.

@@ -77,7 +77,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("materials.NAME.contact.rolling_friction", K::Quantity(D::NONE), "0", "Coefficient of rolling friction, ≥ 0: couple over normal force and reduced radius"),
     key("materials.NAME.contact.damping_ratio", K::Quantity(D::NONE), "0.1", "Fraction of critical damping, 0 to 1"),
     key("materials.NAME.contact.restitution", K::Quantity(D::NONE), "", "Coefficient of restitution, above 0 to 1, instead of the damping ratio"),
-    key("materials.NAME.contact.young_modulus", K::Quantity(D::PRESSURE), "", "Young's modulus that contacts of its particles take instead, > 0: particles of a bonded body stand for a continuum that yields by itself, and a stiff contact adds little to it"),
+    key("materials.NAME.contact.young_modulus", K::Quantity(D::PRESSURE), "", "Young's modulus of the spheres in contact, > 0, instead of that of the material. Rigid bodies then feel the particles of a bonded body as spheres, too; without it, as parts of a flat face"),
     key("bodies[]", K::Tables, "required", "Bodies, at least one"),
     key("bodies[].name", K::Text, "required", "Name, unique among bodies"),
     key("bodies[].kind", K::Choice(body_kinds), "required", "What the body is"),
