@@ -50,6 +50,17 @@ pub enum CalibrateError {
         /// Ratio of the thinnest beams.
         highest: f64,
     },
+    /// A strength in compression that the strength in tension does not allow.
+    #[error(
+        "compressive strength {asked} Pa is out of reach: prisms of such bonds bear {reached:.4e} Pa at most beside this tensile \
+         strength; lower one or raise the other"
+    )]
+    Compression {
+        /// The asked strength [Pa].
+        asked: f64,
+        /// The nearest that was reached [Pa].
+        reached: f64,
+    },
     /// A coordination outside the table of a law.
     #[error("coordination {asked} is outside the law's range {from} to {to} ({convention}); use direct inversion")]
     LawRange {

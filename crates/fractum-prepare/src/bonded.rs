@@ -1,15 +1,15 @@
 //! Bonded bodies of a case made ready: packed or read, bonded, calibrated.
 
 mod interfaces;
+mod strengths;
 
 use std::time::Instant;
 
-use fractum_calibrate::strength::{BondKind, strength_factor};
 use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Micro, Sample, prepare, suitable_coordination};
-use fractum_dem::{CrackFaces, FractureCriterion};
+use fractum_dem::CrackFaces;
 use fractum_io::build::PreparedBody;
 use fractum_io::case::model::{
-    BodyKind, BondFailure, BondLawKind, BondedBody, BondedShape, Case, Material, PackingSource, ParticleSize,
+    BodyKind, BondLawKind, BondedBody, BondedShape, Case, Material, PackingSource, ParticleSize,
 };
 use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
 use fractum_mesh::{Mesh, topology};
@@ -23,6 +23,7 @@ use serde::Serialize;
 use crate::cache::{Cache, key};
 use crate::region::{Region, region};
 pub use interfaces::InterfaceReport;
+pub use strengths::FoundStrengths;
 
 /// Contacts per particle at which compaction stops.
 const CONTACTS: f64 = 6.2;
@@ -66,8 +67,8 @@ pub struct BondedReport {
     pub joints: Joints,
     /// Names and sizes of the wall sets.
     pub walls: Vec<(String, usize)>,
-    /// When its bonds break, with where the strengths came from.
-    pub fracture: Option<(FractureCriterion, Origin)>,
+    /// When its bonds break.
+    pub fracture: Option<FoundStrengths>,
 }
 
 /// What the bonds of a body are.
@@ -140,14 +141,6 @@ struct BeamsKey {
     poisson_ratio: f64,
 }
 
-/// What decides the strengths of a criterion.
-#[derive(Serialize)]
-struct StrengthKey {
-    bonds: BondKind,
-    asked: f64,
-    criterion: FractureCriterion,
-}
-
 struct Maker<'a> {
     case: &'a Case,
     mesh: &'a Mesh,
@@ -186,7 +179,7 @@ impl Maker<'_> {
         all.reports.push(BondedReport { fracture, ..self.report(&made.sample, mass, packing_from, joints) });
         let faces = CrackFaces { friction: material.contact.friction, damping_ratio: material.contact.damping_ratio };
         let (fraction, volume) = (made.sample.fraction, made.sample.measured_volume());
-        let breaks = |(criterion, _)| BondFracture { criterion: Some(criterion), faces, fraction, volume };
+        let breaks = |found: FoundStrengths| BondFracture { criterion: Some(found.criterion), faces, fraction, volume };
         all.prepared.push(PreparedBody {
             fracture: fracture.map(breaks),
             law: made.sample.lattice.section().into(),
@@ -280,28 +273,6 @@ impl Maker<'_> {
             PackingSource::Shape { arrangement, .. } => *arrangement,
             PackingSource::File(_) => Arrangement::Random,
         }
-    }
-
-    /// The criterion with its own strengths: given, kept, or found by breaking boxes of such bonds.
-    fn strengths(
-        &self,
-        failure: &BondFailure,
-        sample: &Sample,
-        micro: Micro,
-        coordination: f64,
-    ) -> Result<(FractureCriterion, Origin), Box<Diagnostic>> {
-        let Some(asked) = failure.tensile_strength else { return Ok((failure.criterion, Origin::Given)) };
-        let (convention, dispersion) = (self.bonded.convention, sample.packing.dispersion);
-        let criterion = failure.criterion;
-        let bonds = BondKind { micro, coordination, convention, dispersion };
-        let strength_key = key(&StrengthKey { bonds, asked, criterion });
-        let kept = self.cache.find("strength", strength_key, |bytes| Some(f64::from_le_bytes(bytes.try_into().ok()?)));
-        if let Some(factor) = kept.filter(|factor| factor.is_finite() && *factor > 0.0) {
-            return Ok((criterion.scaled(factor), Origin::Cached));
-        }
-        let factor = strength_factor(&bonds, asked, criterion).map_err(|error| self.wrong(&error))?;
-        self.cache.keep("strength", strength_key, &factor.to_le_bytes());
-        Ok((criterion.scaled(factor), Origin::Made))
     }
 
     /// What it takes the place of.

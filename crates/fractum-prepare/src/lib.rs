@@ -27,7 +27,9 @@ mod loose;
 mod memory;
 mod region;
 
-pub use bonded::{BondedBodies, BondedReport, InterfaceReport, Joints, Origin, group_surface, prepare_bodies};
+pub use bonded::{
+    BondedBodies, BondedReport, FoundStrengths, InterfaceReport, Joints, Origin, group_surface, prepare_bodies,
+};
 pub use cache::Cache;
 pub use choice::{choose, compare};
 pub use loose::facets;

@@ -289,7 +289,7 @@ impl Plan {
                 let (body, element) = stable.governing;
                 format!("element {element} of {}", scene.solid.body(body).name)
             }
-            None if scene.contacts_govern() => "the contacts (Rayleigh's time)".to_owned(),
+            None if scene.contacts_govern() => "the contacts of particles".to_owned(),
             None => "the bonds".to_owned(),
         };
         self.add(

@@ -6,7 +6,7 @@ use fractum_fem::{ElementKind, Formulation, Kinematics, Plane};
 use fractum_io::case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody};
 use fractum_io::number::quantity;
 use fractum_math::elementary::cbrt;
-use fractum_prepare::{BondedReport, InterfaceReport, Joints, Origin};
+use fractum_prepare::{BondedReport, FoundStrengths, InterfaceReport, Joints, Origin};
 use fractum_scene::Scene;
 
 use super::{Plan, rows};
@@ -127,17 +127,21 @@ impl Plan {
             ),
         );
         let breaking = match &report.fracture {
-            Some((criterion, origin)) => {
+            Some(FoundStrengths { criterion, origin, crushing }) => {
+                let tests = if crushing.is_some() { ", and two prisms in compression" } else { "" };
                 let found = match origin {
-                    Origin::Made => "found now by breaking two boxes in tension",
-                    Origin::Cached => "from the cache",
-                    Origin::Given => "as given",
+                    Origin::Made => format!("found now by breaking two boxes in tension{tests}"),
+                    Origin::Cached => "from the cache".to_owned(),
+                    Origin::Given => "as given".to_owned(),
                 };
                 format!("bonds break by {}; strengths {found}", criterion_text(criterion))
             }
             None => "bonds hold: the material has no fracture".to_owned(),
         };
         self.add("", breaking);
+        if let Some(text) = report.fracture.as_ref().and_then(compression_text) {
+            self.add("", text);
+        }
         self.add("", sets);
     }
 
@@ -233,6 +237,24 @@ fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
         ElementKind::T4 => cbrt(6.0 * 2f64.sqrt() * each),
         ElementKind::T3 => (4.0 * each / model.thickness / 3f64.sqrt()).sqrt(),
     }
+}
+
+/// What is known of the strength in compression; nothing where it is as given.
+fn compression_text(found: &FoundStrengths) -> Option<String> {
+    let Some(crushing) = found.crushing else {
+        let calibrated = found.origin != Origin::Given;
+        return calibrated.then(|| {
+            let kind = found.criterion.kind().name;
+            format!(
+                "strength in compression is not calibrated with criterion = \"{kind}\"; it is with \"mohr-coulomb\""
+            )
+        });
+    };
+    Some(format!(
+        "calibrated in compression: prisms of such bonds bear {} (two packings differ by {:.1} %)",
+        quantity(crushing.reached, "Pa"),
+        100.0 * crushing.scatter
+    ))
 }
 
 /// A criterion for bonds in words, with its own strengths.

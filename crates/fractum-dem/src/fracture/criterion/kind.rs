@@ -54,6 +54,8 @@ pub trait NamedCriterion: Sized {
     const WORDS: &'static str;
     /// What it takes beside its strength in tension.
     const TAKES: &'static [CriterionParameter];
+    /// Whether a body under compression fails by slip, so that a compression test can tell the strength in compression.
+    const SLIPS: bool = false;
 
     /// The criterion of these numbers.
     fn from_numbers(numbers: &CriterionNumbers) -> Self;
@@ -71,6 +73,8 @@ pub struct BondCriterionKind {
     pub words: &'static str,
     /// What it takes beside its strength in tension.
     pub takes: &'static [CriterionParameter],
+    /// See [`NamedCriterion::SLIPS`].
+    pub slips: bool,
     /// The criterion of these numbers.
     pub make: fn(&CriterionNumbers) -> FractureCriterion,
 }

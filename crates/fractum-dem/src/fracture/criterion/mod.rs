@@ -180,6 +180,7 @@ macro_rules! criteria {
                 name: $name::NAME,
                 words: $name::WORDS,
                 takes: $name::TAKES,
+                slips: $name::SLIPS,
                 make: |numbers| FractureCriterion::$name($name::from_numbers(numbers)),
             },)*];
 
@@ -249,6 +250,13 @@ impl FractureCriterion {
     pub fn scaled(mut self, factor: f64) -> Self {
         self.strengths_mut().scale(factor);
         self
+    }
+
+    /// The same criterion with another strength in compression [Pa], where it has one.
+    pub fn with_compressive_strength(self, strength: f64) -> Self {
+        let numbers = self.numbers();
+        let compressive_strength = numbers.compressive_strength.map(|_| strength);
+        (self.kind().make)(&CriterionNumbers { compressive_strength, ..numbers })
     }
 
     /// Over which particles stress is taken; none for a criterion of single bonds.

@@ -8,8 +8,13 @@ use super::{
 };
 use crate::DemError;
 
-/// Mohr–Coulomb with tension cut-off on the virial stress: max(σ₁/f_t, (N σ₁ − σ₃)/f_c) with
+/// Mohr–Coulomb with tension cut-off on the virial stress: max(min(σ₁, 5 σ₁ + σ₃)/f_t, (N σ₁ − σ₃)/f_c) with
 /// N = (1 + sin φ)/(1 − sin φ), tension positive.
+///
+/// The cut-off is f_t as long as no compression exceeds 4 f_t (3 f_t in the middle of a Brazilian disc), and (f_t − σ₃)/5 beyond:
+/// where a body is compressed along one axis, chains of particles bear the load, and between them neighbourhoods are pulled apart
+/// by an eighth of it, where a continuum bears nothing across. With f_t alone these chains split, and no body of spheres bears more
+/// than some eight times its tensile strength, whatever its strength in shear.
 ///
 /// In tension the bond nearest to the first principal direction breaks; in shear the one nearest to a normal of the two
 /// planes on which shear slips, at 45° − φ/2 from the first principal direction towards the third.
@@ -26,7 +31,15 @@ pub struct MohrCoulomb {
     pub level: Level,
 }
 
+/// Compression over tensile strength up to which the tension cut-off does not depend on it, plus one.
+const COMPRESSED: f64 = 5.0;
+
 impl MohrCoulomb {
+    #[inline]
+    fn tension(&self, first: f64, last: f64) -> f64 {
+        first.min(COMPRESSED * first + last) / self.tensile_strength
+    }
+
     #[inline]
     fn shear(&self, first: f64, last: f64) -> f64 {
         let sine = sin(self.friction_angle);
@@ -37,6 +50,7 @@ impl MohrCoulomb {
 impl NamedCriterion for MohrCoulomb {
     const NAME: &'static str = "mohr-coulomb";
     const WORDS: &'static str = "Mohr-Coulomb on the virial stress";
+    const SLIPS: bool = true;
     const TAKES: &'static [CriterionParameter] =
         &[CriterionParameter::CompressiveStrength, CriterionParameter::FrictionAngle, CriterionParameter::Level];
 
@@ -86,13 +100,13 @@ impl StressCriterion for MohrCoulomb {
     #[inline]
     fn ratio(&self, stress: &Sym3) -> f64 {
         let [first, _, last] = stress.principal_values();
-        (first / self.tensile_strength).max(self.shear(first, last)).max(0.0)
+        self.tension(first, last).max(self.shear(first, last)).max(0.0)
     }
 
     fn release(&self, stress: &Sym3) -> Release {
         let ([first, _, last], axes) = stress.eigen();
         let (along, across): (Vec3, Vec3) = (axes.column(0).into_owned(), axes.column(2).into_owned());
-        if first / self.tensile_strength >= self.shear(first, last) {
+        if self.tension(first, last) >= self.shear(first, last) {
             return Release::Nearest([along; 2], BreakMode::Tension);
         }
         let angle = std::f64::consts::FRAC_PI_4 - 0.5 * self.friction_angle;
@@ -104,6 +118,21 @@ impl StressCriterion for MohrCoulomb {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_tension_cut_off_grows_where_compression_exceeds_four_times_the_strength() {
+        let (tensile_strength, compressive_strength) = (2.0, 1e9);
+        let criterion =
+            MohrCoulomb { tensile_strength, compressive_strength, friction_angle: 0.6, level: Level::Neighbours };
+        let at_limit = |first: f64, last: f64| criterion.ratio(&Sym3::new(first, 0.5 * last, last, 0.0, 0.0, 0.0));
+        for (first, last) in [(2.0, 0.0), (2.0, -6.0), (2.0, -8.0), (4.0, -18.0), (20.4, -100.0)] {
+            assert!((at_limit(first, last) - 1.0).abs() < 1e-7, "{first} {last}: {}", at_limit(first, last));
+            // Proportional to the stress, and never above its bound.
+            assert!((at_limit(3.0 * first, 3.0 * last) - 3.0).abs() < 1e-6);
+            assert!(criterion.bound(&Sym3::new(first, 0.5 * last, last, 0.0, 0.0, 0.0)) >= at_limit(first, last));
+        }
+        assert!(at_limit(1.0, -8.0) < 1e-7);
+    }
 
     #[test]
     fn slip_planes_make_the_angle_of_coulomb_with_the_compression() {

@@ -2,9 +2,11 @@
 
 use fractum_dem::FractureCriterion;
 use fractum_dem::criterion::{
-    BondCriterionKind, CriterionNumbers, CriterionParameter, EndMoments, Level, NamedCriterion, Principal,
+    BondCriterionKind, CriterionNumbers, CriterionParameter, EndMoments, Level, MohrCoulomb, NamedCriterion, Principal,
 };
+use fractum_math::elementary::sin;
 
+use crate::case::Diagnostic;
 use crate::case::model::BondFailure;
 use crate::case::reader::Table;
 use crate::case::usual::STRENGTH;
@@ -13,7 +15,9 @@ use crate::case::usual::STRENGTH;
 pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
     let kinds: Vec<(&'static str, &BondCriterionKind)> =
         FractureCriterion::KINDS.iter().map(|kind| (kind.name, kind)).collect();
-    let usual = kinds.iter().find(|(name, _)| *name == Principal::NAME).map(|(_, kind)| *kind);
+    // Of the criteria, the one that can have both strengths of the material.
+    let usual = if table.has("compressive_strength") { MohrCoulomb::NAME } else { Principal::NAME };
+    let usual = kinds.iter().find(|(name, _)| *name == usual).map(|(_, kind)| *kind);
     let kind = table.one_of("criterion", &kinds).map(Some).or_if_absent(usual).flatten();
     let own = table.has("criterion_strength");
     let strength = if own {
@@ -49,9 +53,23 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
     if takes(CriterionParameter::Moments, "moments") {
         numbers.moments = table.choice("moments").or(EndMoments::Mean);
     }
+    check_slip(&table, kind, &numbers);
     table.finish("here");
     let tensile_strength = strength?;
     Some(BondFailure { criterion: (kind.make)(&numbers), tensile_strength: (!own).then_some(tensile_strength) })
+}
+
+/// A body that slips in tension has no tensile strength of its own.
+fn check_slip(table: &Table<'_>, kind: &BondCriterionKind, numbers: &CriterionNumbers) {
+    let sine = sin(numbers.friction_angle);
+    let least = numbers.tensile_strength * (1.0 + sine) / (1.0 - sine);
+    let Some(strength) = numbers.compressive_strength.filter(|strength| kind.slips && *strength < least) else {
+        return;
+    };
+    let place = table.peek("compressive_strength").map_or_else(|| table.place.clone(), |node| node.place.clone());
+    let found = format!("is {strength} Pa as compressive strength, too low for its friction angle");
+    let note = Diagnostic::error(&place, found).expected(format!("at least {least} Pa"));
+    table.reader.note(note.remedy("raise compressive_strength or lower friction_angle"));
 }
 
 /// The angle of internal friction [rad].
