@@ -126,8 +126,8 @@ class Simulation:
     >>> simulation.results.history
     """
 
-    def __init__(self, case, set=None, output=None, threads=None, resume=False, quiet=True):
-        self._core = _core.Core(case, overrides(set), output, threads, resume, quiet)
+    def __init__(self, case, set=None, output=None, threads=None, resume=False, quiet=True, overwrite=False):
+        self._core = _core.Core(case, overrides(set), output, threads, (resume, overwrite), quiet)
         self._loads = []
         self.results = None
         self.nodes = Nodes(self._core.nodes)

@@ -82,11 +82,10 @@ impl Core {
         set: Vec<(String, String)>,
         output: Option<PathBuf>,
         threads: Option<usize>,
-        resume: bool,
+        (resume, overwrite): (bool, bool),
         quiet: bool,
     ) -> PyResult<Self> {
-        let options =
-            Options { output, threads, overrides: set, resume, quiet, cache: cache_of_user(), ..Options::default() };
+        let options = Options { output, threads, overrides: set, resume, overwrite, quiet, cache: cache_of_user() };
         let pool = pool(py, threads)?;
         let opened = watch(py, &pool, || {
             let started = Instant::now();

@@ -30,11 +30,10 @@ fn run(
     set: Vec<(String, String)>,
     output: Option<PathBuf>,
     threads: Option<usize>,
-    resume: bool,
+    (resume, overwrite): (bool, bool),
     quiet: bool,
 ) -> PyResult<(PathBuf, bool)> {
-    let options =
-        Options { output, threads, overrides: set, resume, quiet, cache: cache_of_user(), ..Options::default() };
+    let options = Options { output, threads, overrides: set, resume, overwrite, quiet, cache: cache_of_user() };
     // A thread that waits for those of the run.
     let host = pool(py, Some(1))?;
     let outcome = watch(py, &host, || fractum::run(&case, &options))?.map_err(|failure| raise(py, &failure))?;

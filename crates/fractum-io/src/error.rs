@@ -74,7 +74,7 @@ pub enum WriteError {
     /// A growing file lacks bytes that it held when the state to resume from was saved.
     #[error(
         "{}: it has {found} bytes but had {expected} when the state was saved; \
-         restore the file or start the run again without --resume",
+         restore the file or start the run again with --overwrite",
         path.display()
     )]
     Shortened {
@@ -87,7 +87,7 @@ pub enum WriteError {
     },
     /// A growing file holds other bytes than when the state to resume from was saved.
     #[error(
-        "{}: it was changed or damaged since the state was saved; restore the file or start the run again without --resume",
+        "{}: it was changed or damaged since the state was saved; restore the file or start the run again with --overwrite",
         path.display()
     )]
     Damaged {

@@ -70,7 +70,8 @@ pub struct SceneSettings {
 /// Everything that changes during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneState {
-    clock: Clock,
+    /// Time and steps.
+    pub clock: Clock,
     solid: SolidState,
     debris: DebrisState,
     bonded: Option<BondedState>,

@@ -25,13 +25,13 @@ pub enum Failure {
     /// Mistakes in the case or the mesh.
     #[error(transparent)]
     Input(#[from] Diagnostics),
-    /// The run stopped itself; its last good state is in the results folder.
-    #[error("{error}; last good state saved in {folder}")]
+    /// The run stopped itself; the state that it saved last is in the results folder.
+    #[error("{error}; last good state saved in {saved}")]
     Stopped {
         /// Why.
         error: StepError,
-        /// Results folder.
-        folder: String,
+        /// Results folder, and which state was saved last.
+        saved: String,
     },
     /// A file could not be written.
     #[error(transparent)]

@@ -72,4 +72,4 @@ pub use error::{ExitCode, Failure};
 pub use input::{Input, cache_of_user, load};
 pub use interrupt::{clear_interrupt, interrupt, is_interrupted};
 pub use run::run;
-pub use simulation::{Options, Outcome, Simulation};
+pub use simulation::{Options, Outcome, Simulation, for_shell};

@@ -7,7 +7,7 @@ use fractum_io::Compression;
 use fractum_io::atomic::Written;
 use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::PpvStations;
-use fractum_io::case::model::{Case, ProbeExpression, ProbeInput, ProbeKind, Take};
+use fractum_io::case::model::{Case, Output, ProbeExpression, ProbeInput, ProbeKind, Take};
 use fractum_io::history::{Column, History};
 use fractum_io::vtk::{
     CellBlock, CellKind, Collection, Field, FrameWriter, PendingFile, PolyCells, PolyData, UnstructuredGrid, Values,
@@ -69,6 +69,15 @@ pub(crate) struct RecordState {
     pub(crate) series: Vec<Vec<f64>>,
     /// Largest velocities so far, table by table and station by station.
     peaks: Vec<Vec<PeakVelocity>>,
+}
+
+impl RecordState {
+    /// Numbers rows and frames anew, for other times between them.
+    pub(crate) fn count_anew(&mut self, output: &Output) {
+        let next = |last: Option<f64>, every: f64| last.map_or(0, |time| next_index(time, every));
+        self.rows = next(self.times.last().copied(), output.history_every);
+        self.frames = next(self.collection.last().map(|entry| entry.0), output.fields_every);
+    }
 }
 
 /// Writes the results of a run while it goes.

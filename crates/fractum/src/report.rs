@@ -95,10 +95,14 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
         plan: notes.plan,
         warnings: notes.warnings,
         case_file: notes.case_file,
-        versions: vec![
-            ("fractum".into(), summary.fractum.clone()),
-            ("platform".into(), format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
-        ],
+        versions: [
+            ("fractum", summary.fractum.clone()),
+            ("platform", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
+        ]
+        .into_iter()
+        .chain(summary.origin.lines())
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect(),
         summary,
         history,
     };

@@ -4,6 +4,7 @@ mod drive;
 mod finish;
 mod messages;
 mod open;
+mod origin;
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -16,6 +17,7 @@ use fractum_io::case::Case;
 use fractum_io::checkpoint::{self, Header, Identity};
 use fractum_io::log::Snapshot;
 use fractum_io::number::{percent, quantity};
+use fractum_io::origin::Origin;
 use fractum_io::summary::{Status, Summary};
 use fractum_prepare::Cache;
 use fractum_scene::{EnergyKind, Scene, SceneState, StepError};
@@ -28,6 +30,7 @@ use crate::plan::Plan;
 use crate::record::{RecordState, Recorder};
 use crate::solver::{Measured, Solver, SolverState};
 use messages::Messages;
+pub use origin::for_shell;
 
 /// How a case is run.
 #[derive(Clone, Debug, Default)]
@@ -38,8 +41,10 @@ pub struct Options {
     pub threads: Option<usize>,
     /// Overrides of parameters.
     pub overrides: Vec<(String, String)>,
-    /// Go on from the last checkpoint.
+    /// Go on from the last checkpoint; only the end of the run may be another than it was.
     pub resume: bool,
+    /// Replace results that the folder holds; without it they are an error.
+    pub overwrite: bool,
     /// No plan and no progress line.
     pub quiet: bool,
     /// Where packings and beams of bonded bodies are kept.
@@ -70,17 +75,24 @@ pub struct Simulation {
     later: VecDeque<(Case, BuiltScene)>,
     recorder: Recorder,
     folder: PathBuf,
-    identity: Identity,
-    plan: Plan,
+    about: About,
     messages: Messages,
     phases: Phases,
     started: Instant,
-    saved: Option<Instant>,
+    saved: Option<Saved>,
     /// The instant that the last step measured, until its row is written.
     measured: Option<Measured>,
     end: Option<End>,
     /// A signal leaves the program the time to save the state.
     _under_way: UnderWay,
+}
+
+/// What is known of a run before its first step.
+struct About {
+    identity: Identity,
+    case_hash: u128,
+    origin: Origin,
+    plan: Plan,
 }
 
 /// Why a run is over.
@@ -100,9 +112,19 @@ impl End {
     }
 }
 
+/// The last checkpoint of this run.
+#[derive(Clone, Copy)]
+struct Saved {
+    at: Instant,
+    step: u64,
+    time: f64,
+}
+
 /// The whole state of a run: what a checkpoint holds.
 #[derive(Serialize, Deserialize)]
 struct RunState {
+    /// End of the run when it was saved [s].
+    end: f64,
     scene: SceneState,
     record: RecordState,
     /// Stages that were still to come.
@@ -171,7 +193,11 @@ impl Simulation {
                 self.save_state(scene, solver)?;
                 self.end = Some(End::Interrupted);
             }
-            (Err(error), _) => self.end = Some(End::Failed(error)),
+            (Err(error), before) => {
+                // The equilibrium before the one that was not found; of motion the last checkpoint remains.
+                before.map_or(Ok(()), |(scene, solver)| self.save_state(scene, solver))?;
+                self.end = Some(End::Failed(error));
+            }
         }
         Ok(())
     }
@@ -217,7 +243,7 @@ impl Simulation {
             return Ok(());
         }
         let every = Duration::try_from_secs_f64(self.case.output.checkpoint_every).unwrap_or(Duration::MAX);
-        if self.saved.is_none_or(|saved| saved.elapsed() >= every) {
+        if self.saved.is_none_or(|saved| saved.at.elapsed() >= every) {
             self.save()?;
         }
         if self.recorder.frame_is_due(self.scene.clock.time) {
@@ -272,13 +298,19 @@ impl Simulation {
     }
 
     fn save_state(&mut self, scene: SceneState, solver: SolverState) -> Result<(), Failure> {
-        let state = RunState { scene, record: self.recorder.sync()?, later: self.later.len(), solver };
-        let clock = self.scene.clock;
-        let header = Header { identity: self.identity.clone(), step: clock.step, time: clock.time };
+        let clock = scene.clock;
+        let (end, later) = (self.end_of_run(), self.later.len());
+        let state = RunState { end, scene, record: self.recorder.sync()?, later, solver };
+        let header = Header { identity: self.about.identity.clone(), step: clock.step, time: clock.time };
         let file = checkpoint::save(&self.folder.join("checkpoint"), &header, &state, Compression::Fast)?;
         self.messages.log.line(format!("step {}: state saved in {}", clock.step, file.display()))?;
-        self.saved = Some(Instant::now());
+        self.saved = Some(Saved { at: Instant::now(), step: clock.step, time: clock.time });
         Ok(())
+    }
+
+    /// End of the last stage [s].
+    fn end_of_run(&self) -> f64 {
+        self.later.back().map_or(&*self.case, |(case, _)| case).solver.end
     }
 
     fn snapshot(&self) -> Snapshot {

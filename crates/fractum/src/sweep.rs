@@ -45,19 +45,19 @@ pub fn run_one(listed: &Listed, folder: &Path, options: &Options, anew: bool) ->
     let place = folder.join(&listed.name);
     let case = read_case(&listed.case, &listed.overrides)?;
     let summary = Summary::read(&place.join("summary.json")).ok();
-    let own = summary.filter(|summary| summary.case_hash == hash_text(case.hash()) && !anew);
+    let own = summary.filter(|summary| summary.hashes.case_hash == hash_text(case.hash()) && !anew);
     if own.as_ref().is_some_and(|summary| summary.status == Status::Completed) {
         tell!("run {} has finished before: {}", listed.name, place.display());
         return Ok(Status::Completed);
     }
     let resume = !anew && has_state(&place);
     let overrides = listed.overrides.clone();
-    let options = Options { output: Some(place), overrides, resume, ..options.clone() };
+    let options = Options { output: Some(place), overrides, resume, overwrite: !resume, ..options.clone() };
     match run(&listed.case, &options) {
         // The state is that of another case or program.
         Err(failure @ Failure::Checkpoint(_)) if resume && failure.exit_code() == ExitCode::Input => {
             tell!("{failure}; run {} starts anew", listed.name);
-            run(&listed.case, &Options { resume: false, ..options })
+            run(&listed.case, &Options { resume: false, overwrite: true, ..options })
         }
         ended => ended,
     }

@@ -74,6 +74,7 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
             output: Some(selection.output.join(&name)),
             threads: selection.threads,
             quiet: true,
+            overwrite: true,
             cache: selection.cache.clone(),
             ..Options::default()
         };

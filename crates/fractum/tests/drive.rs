@@ -93,5 +93,5 @@ fn a_run_that_its_driver_ends_is_complete() {
     assert_eq!(simulation.steps(), 10);
     let hash = fractum_io::summary::hash_text(simulation.state_hash());
     let outcome = simulation.finish().unwrap();
-    assert_eq!((outcome.summary.status, outcome.summary.state_hash), (Status::Completed, hash));
+    assert_eq!((outcome.summary.status, outcome.summary.hashes.state_hash), (Status::Completed, hash));
 }

@@ -26,4 +26,23 @@ impl Case {
         }
         hasher.digest128()
     }
+
+    /// Hash of everything that a resumed run must find as it was: values and tables, without the end of the run and without
+    /// comments.
+    pub fn hash_but_end(&self) -> u128 {
+        let mut hasher = Xxh3::new();
+        hasher.update(&self.source.hash_but_end.to_le_bytes());
+        for (name, content) in &self.source.tables {
+            for part in [name.as_bytes(), content] {
+                hasher.update(&(part.len() as u64).to_le_bytes());
+                hasher.update(part);
+            }
+        }
+        hasher.digest128()
+    }
+
+    /// End of the last stage, or of the only one [s].
+    pub fn end(&self) -> f64 {
+        self.later.last().unwrap_or(self).solver.end
+    }
 }

@@ -34,6 +34,7 @@
 //! ```
 
 mod choice;
+mod continued;
 mod diagnostic;
 mod expression;
 mod hash;

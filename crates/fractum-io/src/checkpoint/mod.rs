@@ -97,7 +97,7 @@ pub enum CheckpointError {
     /// The container is of another format.
     #[error(
         "{}: checkpoint format {found}, this program reads {FORMAT}; continue with the program that wrote it, \
-         or start again without --resume",
+         or start again with --overwrite",
         path.display()
     )]
     OtherFormat {
@@ -123,7 +123,7 @@ pub enum CheckpointError {
     /// Written by another version of the program.
     #[error(
         "{}: saved by fractum {found}, this is {expected}; continue with that version, \
-         or start again without --resume",
+         or start again with --overwrite",
         path.display()
     )]
     OtherProgram {
@@ -136,8 +136,8 @@ pub enum CheckpointError {
     },
     /// The case is another one, or was changed.
     #[error(
-        "{}: saved from another case, or the case was changed since; restore the case, \
-         or start again without --resume",
+        "{}: saved from another case, or the case was changed since; only the end of the run (solver.end) may change: \
+         restore the case, or start again with --overwrite",
         path.display()
     )]
     OtherCase {
@@ -147,7 +147,7 @@ pub enum CheckpointError {
     /// The mesh is another one, or was changed.
     #[error(
         "{}: saved with another mesh, or the mesh was changed since; restore the mesh, \
-         or start again without --resume",
+         or start again with --overwrite",
         path.display()
     )]
     OtherMesh {
@@ -155,7 +155,7 @@ pub enum CheckpointError {
         path: PathBuf,
     },
     /// The bytes are whole but hold another kind of state.
-    #[error("{}: holds a state of another layout ({reason}); start again without --resume", path.display())]
+    #[error("{}: holds a state of another layout ({reason}); start again with --overwrite", path.display())]
     OtherLayout {
         /// The file.
         path: PathBuf,

@@ -10,6 +10,7 @@ pub mod fragments;
 pub mod history;
 pub mod log;
 pub(crate) mod markup;
+pub mod origin;
 pub mod picture;
 pub mod plot;
 pub mod report;

@@ -15,6 +15,7 @@ use crate::error::{ReadError, WriteError};
 use crate::number::or_null;
 use crate::output::attenuation::Attenuation;
 use crate::output::expectation::Expectation;
+use crate::output::origin::Origin;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -40,10 +41,12 @@ pub struct Summary {
     pub status: Status,
     /// Threads used.
     pub threads: usize,
-    /// Hash of the case, 32 hexadecimal digits ([`hash_text`]).
-    pub case_hash: String,
-    /// Hash of the final state, 32 hexadecimal digits.
-    pub state_hash: String,
+    /// What tells this case and its end from others.
+    #[serde(flatten)]
+    pub hashes: Hashes,
+    /// Case, overrides, input files, command and date.
+    #[serde(default)]
+    pub origin: Origin,
     /// The probes by name.
     pub probes: BTreeMap<String, Probe>,
     /// What the case expected, and what came out.
@@ -65,6 +68,15 @@ pub struct Summary {
     pub time: Time,
     /// Time on the clock.
     pub wall: Wall,
+}
+
+/// Hashes of input and result, 32 hexadecimal digits each ([`hash_text`]).
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Hashes {
+    /// Of the case: text, overrides, tables.
+    pub case_hash: String,
+    /// Of the final state.
+    pub state_hash: String,
 }
 
 /// A probe over the run.
@@ -267,7 +279,7 @@ mod tests {
         summary.probes.insert("load".into(), probe);
         let bound = Bound::Near { value: 10_000.0, tolerance: 500.0, relative: Some(0.05) };
         summary.expect.push(Expectation::hold("strength", "Pa", 10_200.0, bound, "a paper"));
-        summary.case_hash = hash_text(0xff);
+        summary.hashes.case_hash = hash_text(0xff);
         summary.wall.phases.insert("solid".into(), 1.25);
         summary
     }

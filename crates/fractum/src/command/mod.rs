@@ -152,9 +152,12 @@ struct RunArguments {
     /// Replace a value of [parameters].
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     set: Vec<(String, String)>,
-    /// Go on from the last checkpoint in the results folder.
+    /// Go on from the last checkpoint in the results folder; the end of the run (solver.end) may be another.
     #[arg(long)]
     resume: bool,
+    /// Replace the results that the folder holds.
+    #[arg(long, conflicts_with = "resume")]
+    overwrite: bool,
     /// No plan and no progress line.
     #[arg(long)]
     quiet: bool,
@@ -248,13 +251,15 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
         threads: run.threads,
         overrides: run.set,
         resume: run.resume,
+        overwrite: run.overwrite,
         quiet: run.quiet,
         cache: cache(),
     };
     let Outcome { summary, folder, load } = fractum::run(&run.case, &options)?;
     if summary.status == Status::Interrupted {
-        let results = folder.display();
-        tell!("interrupted; state saved, go on with: fractum run {} -o {results} --resume", run.case.display());
+        let program = std::env::args().next().unwrap_or_else(|| "fractum".to_owned());
+        let resume = Options { resume: true, overwrite: false, ..options };
+        tell!("interrupted; state saved, go on with: {}", resume.command(&program, &run.case, &folder));
         return Ok(ExitCode::Interrupted);
     }
     if !run.quiet {

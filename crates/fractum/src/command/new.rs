@@ -1,6 +1,6 @@
 //! `fractum new`: a folder with a case that runs as it stands, its mesh, and the geometry that made the mesh.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use fractum::{ExitCode, Failure, say};
 use fractum_io::atomic;
@@ -79,12 +79,6 @@ pub(crate) fn new(template: Option<&str>, folder: Option<PathBuf>) -> Result<Exi
         atomic::write(&folder.join(file), bytes)?;
     }
     say!("{}: {}", folder.display(), template.what);
-    say!("next: fractum run {}", quoted(&folder.join("case.toml")));
+    say!("next: fractum run {}", fractum::for_shell(&folder.join("case.toml").display().to_string()));
     Ok(ExitCode::Done)
-}
-
-/// A path as a shell takes it.
-fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    if text.contains(char::is_whitespace) { format!("\"{text}\"") } else { text }
 }

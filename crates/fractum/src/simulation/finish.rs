@@ -5,10 +5,11 @@ use std::path::Path;
 use fractum_fem::Solid;
 use fractum_io::attenuation;
 use fractum_io::fragments::{self, Fragment};
-use fractum_io::summary::Summary;
+use fractum_io::number::quantity;
+use fractum_io::summary::{Hashes, Summary, hash_text};
 use fractum_scene::{BondedBody, Scene, fragment_size};
 
-use super::{End, Outcome, Simulation};
+use super::{End, Outcome, Saved, Simulation};
 use crate::cracks::{self, Columns};
 use crate::error::Failure;
 use crate::phases::Part;
@@ -38,6 +39,10 @@ impl Simulation {
             End::Failed(error) => error.to_string(),
         };
         let clock = self.scene.clock;
+        if matches!(end, End::Finished) && self.saved.is_none_or(|saved| saved.step != clock.step) {
+            // So that the run can be continued to a later end.
+            self.save()?;
+        }
         self.record_last(&end)?;
         self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
         let pieces = self.scene.fragments();
@@ -48,8 +53,8 @@ impl Simulation {
         let mut summary = Summary {
             title: self.case.source.title.clone(),
             status,
-            case_hash: fractum_io::summary::hash_text(self.identity.case_hash),
-            state_hash: fractum_io::summary::hash_text(state_hash),
+            hashes: Hashes { case_hash: hash_text(self.about.case_hash), state_hash: hash_text(state_hash) },
+            origin: self.about.origin.clone(),
             probes: summary::probes(&self.case, &self.recorder),
             ppv: self.recorder.attenuations(),
             fragment_sizes: summary::fragment_sizes(&self.scene.solid, &pieces),
@@ -67,7 +72,7 @@ impl Simulation {
         let load = self.load().map(|index| self.case.probes[index].name.value.clone());
         let notes = Notes {
             case_file: self.case.source.path.display().to_string(),
-            plan: self.plan.wrapped(PLAN_WIDTH, str::to_owned),
+            plan: self.about.plan.wrapped(PLAN_WIDTH, str::to_owned),
             warnings: self.messages.warnings,
             pictures: crate::gallery::draw(&self.scene, &self.folder),
         };
@@ -77,7 +82,11 @@ impl Simulation {
         match end {
             End::Failed(error) => {
                 self.messages.log.line(&error)?;
-                Err(Failure::Stopped { error, folder: self.folder.display().to_string() })
+                let folder = self.folder.display();
+                let saved = self.saved.map_or(format!("{folder}"), |Saved { step, time, .. }| {
+                    format!("{folder}: step {step}, t = {}", quantity(time, "s"))
+                });
+                Err(Failure::Stopped { error, saved })
             }
             _ => Ok(Outcome { summary, folder: self.folder, load }),
         }

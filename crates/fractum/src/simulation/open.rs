@@ -7,17 +7,21 @@ use std::time::Instant;
 
 use fractum_io::WriteError;
 use fractum_io::atomic::create_folder;
+use fractum_io::case::{Case, Diagnostic, Diagnostics};
 use fractum_io::checkpoint::{self, Identity, Loaded};
 use fractum_io::log::RunLog;
+use fractum_io::number::quantity;
+use fractum_scene::Scene;
 
 use super::messages::Messages;
-use super::{Options, RunState, Simulation};
+use super::origin::{keep_case, origin};
+use super::{About, Options, RunState, Simulation};
 use crate::error::Failure;
 use crate::input::{Input, load};
 use crate::interrupt::UnderWay;
 use crate::phases::Phases;
 use crate::plan::Plan;
-use crate::record::Recorder;
+use crate::record::{RecordState, Recorder};
 use crate::solver::Solver;
 use crate::tell;
 use crate::terminal::{Stream, Tone, toned};
@@ -29,6 +33,8 @@ impl Simulation {
     /// [`Failure`]: mistakes in the input, a folder that cannot be written, no checkpoint that fits.
     pub fn open(path: &Path, options: &Options) -> Result<Self, Failure> {
         let started = Instant::now();
+        // Before anything is prepared, which may take long.
+        folder_of(path, options)?;
         let input = load(path, &options.overrides, &options.cache)?;
         Self::start(input, path, options, started)
     }
@@ -40,16 +46,20 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::open`].
     pub fn start(input: Input, path: &Path, options: &Options, started: Instant) -> Result<Self, Failure> {
+        let folder = folder_of(path, options)?;
         let plan = Plan::new(&input);
         let Input { case, mesh_hash, built, later, timings, .. } = input;
-        let folder = options.output.clone().unwrap_or_else(|| default_folder(path));
-        let identity = Identity { program: program(), case_hash: case.hash(), mesh_hash };
+        let identity = Identity { program: program(), case_hash: case.hash_but_end(), mesh_hash };
         let loaded = if options.resume { Some(find_checkpoint(&folder, &identity)?) } else { None };
+        let goes_on = loaded.as_ref().map(|loaded| goes_on(&case, loaded)).transpose()?;
+        let about =
+            About { identity, case_hash: case.hash(), origin: origin(&case, mesh_hash, options, &folder), plan };
         if !options.quiet {
             match Stream::Error.width() {
-                Some(width) => tell!("{}", plan.wrapped(width, |topic| toned(topic, Tone::Name, Stream::Error))),
-                None => tell!("{plan}"),
+                Some(width) => tell!("{}", about.plan.wrapped(width, |topic| toned(topic, Tone::Name, Stream::Error))),
+                None => tell!("{}", about.plan),
             }
+            goes_on.iter().for_each(|text| tell!("{text}"));
             tell!("results in {}", folder.display());
         }
         // Prepared before anything is put back: a resumed run solves the same systems in the same order.
@@ -67,16 +77,16 @@ impl Simulation {
             scene.begin_stage(built.scene);
             (stage, probes) = (Arc::new(next), built.probes);
         }
-        let resumed = loaded.map(|Loaded { state, .. }| {
-            scene.restore(state.scene);
-            solver.restore(&mut scene, state.solver);
-            state.record
-        });
+        let put_back = |Loaded { state, .. }: Loaded<RunState>| put_back(state, &mut scene, &mut solver, &case);
+        let resumed = loaded.map(put_back).transpose()?;
         let mut messages = Messages::new(open_folder(&folder, resumed.is_none())?, options.quiet);
+        keep_case(&case, &folder)?;
         let threads = rayon::current_num_threads();
         let version = env!("CARGO_PKG_VERSION");
         messages.log.line(format!("fractum {version} on {threads} threads: {}", path.display()))?;
-        messages.log.line(&plan)?;
+        about.origin.lines().iter().try_for_each(|(name, value)| messages.log.line(format!("{name}: {value}")))?;
+        goes_on.iter().try_for_each(|text| messages.log.line(text))?;
+        messages.log.line(&about.plan)?;
         timings.iter().try_for_each(|timing| messages.log.line(timing))?;
         built.warnings.iter().try_for_each(|warning| messages.warn(warning.to_string()))?;
         let recorder = Recorder::open(case, &scene, probes, built.ppv, &built.file_order, &folder, resumed)?;
@@ -87,8 +97,7 @@ impl Simulation {
             later,
             recorder,
             folder,
-            identity,
-            plan,
+            about,
             messages,
             phases,
             started,
@@ -114,6 +123,65 @@ fn find_checkpoint(folder: &Path, identity: &Identity) -> Result<Loaded<RunState
     Ok(loaded)
 }
 
+/// Where a resumed run goes on, in words.
+///
+/// # Errors
+/// [`Failure::Input`] where the case ends before that.
+fn goes_on(case: &Case, loaded: &Loaded<RunState>) -> Result<String, Failure> {
+    let (time, end) = (loaded.header.time, case.end());
+    let (reached, ends) = (quantity(time, "s"), quantity(end, "s"));
+    if end < time && end < loaded.state.end {
+        let place = &case.later.last().unwrap_or(case).solver.end_place;
+        let found = format!("= {ends}: the saved run has reached t = {reached}");
+        let error = Diagnostic::error(place, found).remedy("choose a later end, or start again with --overwrite");
+        return Err(Failure::Input(Diagnostics(vec![error])));
+    }
+    let before = loaded.state.end;
+    let was = if before == end { String::new() } else { format!(" instead of {}", quantity(before, "s")) };
+    Ok(format!("goes on from step {}, t = {reached}, to t = {ends}{was}", loaded.header.step))
+}
+
+/// Puts a saved state back into a scene and its solver; what was recorded by then.
+///
+/// # Errors
+/// [`Failure::Input`] where a run with another end has another solver, or loads that the end decides.
+fn put_back(state: RunState, scene: &mut Scene, solver: &mut Solver, case: &Case) -> Result<RecordState, Failure> {
+    let is_other = state.end != case.end();
+    if is_other && !solver.may_go_on(&state.solver) {
+        return Err(Failure::input(
+            "another end of the run (solver.end) means another load or another solver here: a bonded body at rest is loaded \
+             in proportion to it, and kind = \"auto\" chooses by it; restore the end, or start again with --overwrite",
+        ));
+    }
+    scene.restore(state.scene);
+    solver.restore(scene, state.solver);
+    let mut record = state.record;
+    if is_other {
+        record.count_anew(&case.output);
+    }
+    Ok(record)
+}
+
+/// The results folder of a run.
+///
+/// # Errors
+/// [`Failure::Input`] where it holds results or a state that the run would replace unasked.
+fn folder_of(case: &Path, options: &Options) -> Result<PathBuf, Failure> {
+    let folder = options.output.clone().unwrap_or_else(|| default_folder(case));
+    if options.resume || options.overwrite {
+        return Ok(folder);
+    }
+    let holds = |name: &str| folder.join(name).is_file();
+    let states = std::fs::read_dir(folder.join("checkpoint")).into_iter().flatten().flatten();
+    if !holds("summary.json") && !holds("history.csv") && states.count() == 0 {
+        return Ok(folder);
+    }
+    Err(Failure::input(format!(
+        "{}: holds the results of another run; --resume continues it, --overwrite replaces it, -o names another folder",
+        folder.display()
+    )))
+}
+
 /// Makes the results folder and opens its log.
 ///
 /// - `anew`: without the results of an earlier run
@@ -130,6 +198,19 @@ fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
     Ok(log)
 }
 
+/// Files of a run, beside its frames and states.
+const RESULTS: [&str; 9] = [
+    "summary.json",
+    "history.csv",
+    "fields.pvd",
+    "fragments.csv",
+    "cracks.csv",
+    "cracks.vtp",
+    "ppv.csv",
+    "report.html",
+    "pictures/notes.json",
+];
+
 /// A run that starts anew leaves nothing of an earlier one that could be taken for its own: no state to resume from, no
 /// frames. Files of other kinds in these folders are the user's, and stay.
 fn discard_results(folder: &Path) -> Result<(), Failure> {
@@ -140,7 +221,10 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
         }
         _ => {}
     }
-    for frames in ["fields", "particles", "bonds"] {
+    for path in RESULTS.map(|name| folder.join(name)).into_iter().filter(|path| path.is_file()) {
+        std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
+    }
+    for frames in ["fields", "particles", "bonds", "cracks", "gas"] {
         let Ok(entries) = std::fs::read_dir(folder.join(frames)) else { continue };
         for path in entries.flatten().map(|entry| entry.path()) {
             if path.extension().is_some_and(|e| e == "vtu" || e == "vtp") {

@@ -80,6 +80,11 @@ impl Solver {
         }
     }
 
+    /// Whether a run with another end can go on from this state.
+    pub(crate) fn may_go_on(&self, state: &SolverState) -> bool {
+        matches!((self, state), (Solver::Explicit, SolverState::Explicit) | (Solver::Static(_), SolverState::Static(_)))
+    }
+
     /// Goes on where a checkpoint of the same case stood; the scene has been put back.
     pub(crate) fn restore(&mut self, scene: &mut Scene, state: SolverState) {
         match (self, state) {

@@ -89,6 +89,7 @@ impl Single<'_> {
             quiet: true,
             cache: self.settings.cache.clone(),
             resume: false,
+            overwrite: true,
         };
         let end = match run_measured(&self.planned.case, &options) {
             Ok((outcome, _)) if outcome.summary.status == Status::Interrupted => return Ok(End::Open),

@@ -91,6 +91,7 @@ pub struct CaseSource {
     pub stage: String,
     /// Whether `fractum verify --quick` runs this case.
     pub verify_quick: bool,
+    pub(super) hash_but_end: u128,
     pub(super) warnings: Vec<Diagnostic>,
 }
 

@@ -36,7 +36,7 @@ use super::model::{Body, BodyKind, BondedShape, Case, CaseSource, MeshSource, Pa
 use super::reader::{Reader, Table};
 use super::tree::{self, Node, Value};
 use super::unit::Dimension;
-use super::{Diagnostic, Diagnostics, Place, Severity, Spanned};
+use super::{Diagnostic, Diagnostics, Place, Severity, Spanned, continued};
 
 /// The version of the case format this reads.
 const VERSION: u64 = 1;
@@ -112,6 +112,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
         parameters: BTreeMap::new(),
         stage: String::new(),
         verify_quick: false,
+        hash_but_end: continued::hash(&root),
         warnings: Vec::new(),
     };
     let mut cases = Vec::new();

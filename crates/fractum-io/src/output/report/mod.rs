@@ -18,7 +18,7 @@ use crate::output::history::Table;
 use crate::output::log::duration;
 use crate::output::markup::head;
 use crate::output::plot::{Chart, Level};
-use crate::output::summary::{Status, Summary, Wall};
+use crate::output::summary::{Hashes, Status, Summary, Wall};
 use charts::words;
 
 /// Fragments listed; the file `fragments.csv` has them all.
@@ -336,10 +336,10 @@ fn wall(summary: &Summary) -> Markup {
 }
 
 fn origin(data: &ReportData) -> Markup {
-    let Summary { case_hash, state_hash, .. } = &data.summary;
+    let Summary { hashes: Hashes { case_hash, state_hash }, .. } = &data.summary;
     html! {
         section.keep {
-            h2 { "Versions" }
+            h2 { "Origin" }
             table {
                 @for (name, version) in &data.versions { tr { td { (name) } td { (version) } } }
                 @for (name, hash) in [("Hash of the case", case_hash), ("Hash of the final state", state_hash)] {

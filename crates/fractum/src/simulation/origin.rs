@@ -1,0 +1,77 @@
+//! Where results come from, and the command that makes or continues them.
+
+use std::path::Path;
+use std::time::SystemTime;
+
+use fractum_io::atomic;
+use fractum_io::case::Case;
+use fractum_io::origin::{InputFile, Origin, utc};
+use fractum_io::summary::hash_text;
+
+use super::Options;
+use crate::error::Failure;
+
+impl Options {
+    /// The command that runs `case` with these options, for a shell.
+    ///
+    /// - `program`: how the program is called
+    /// - `results`: folder of the results
+    pub fn command(&self, program: &str, case: &Path, results: &Path) -> String {
+        let mut words = vec![program.to_owned(), "run".to_owned(), case.display().to_string()];
+        words.extend(["-o".to_owned(), results.display().to_string()]);
+        words.extend(self.overrides.iter().flat_map(|(name, value)| ["--set".to_owned(), format!("{name}={value}")]));
+        words.extend(self.threads.iter().flat_map(|threads| ["--threads".to_owned(), threads.to_string()]));
+        let flags = [(self.resume, "--resume"), (self.overwrite, "--overwrite"), (self.quiet, "--quiet")];
+        words.extend(flags.into_iter().filter(|(given, _)| *given).map(|(_, flag)| flag.to_owned()));
+        words.iter().map(|word| for_shell(word)).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// A word as a shell (sh, bash, zsh) takes it.
+pub fn for_shell(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_@%+=:,./-".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
+/// Where the results of this run come from.
+pub(super) fn origin(case: &Case, mesh_hash: u128, options: &Options, results: &Path) -> Origin {
+    let source = &case.source;
+    let mesh = case.mesh.iter().map(|mesh| (mesh.file.value.display().to_string(), mesh_hash));
+    let tables = source.tables.iter().map(|(name, bytes)| (name.clone(), xxhash_rust::xxh3::xxh3_128(bytes)));
+    Origin {
+        case: source.path.display().to_string(),
+        overrides: source.overrides.iter().map(|(name, value)| format!("{name}={value}")).collect(),
+        files: mesh.chain(tables).map(|(file, hash)| InputFile { file, hash: hash_text(hash) }).collect(),
+        command: options.command("fractum", &source.path, results),
+        folder: std::env::current_dir().map_or(String::new(), |folder| folder.display().to_string()),
+        started: utc(SystemTime::now()),
+    }
+}
+
+/// Keeps the text of the case in the folder `input` of the results.
+///
+/// # Errors
+/// [`Failure::Write`].
+pub(super) fn keep_case(case: &Case, results: &Path) -> Result<(), Failure> {
+    let folder = results.join("input");
+    atomic::create_folder(&folder)?;
+    let name = case.source.path.file_name().map_or("case.toml".into(), |name| name.to_owned());
+    Ok(atomic::write(&folder.join(name), case.source.text.as_bytes())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_with_spaces_and_quotes_are_one_word_for_a_shell() {
+        for word in ["plain-1.toml", "end=2 ms", "it's $HOME", "", "a;b", "\"x\"", "bodies[0].damage=false"] {
+            let script = format!("printf %s {}", for_shell(word));
+            let echoed = std::process::Command::new("sh").args(["-c", &script]).output().unwrap();
+            assert_eq!(String::from_utf8_lossy(&echoed.stdout), word);
+        }
+    }
+}
