@@ -270,7 +270,22 @@ impl Solid {
     /// Nominal stress [Pa] and damage of every element of a body: means over its edges where it is smoothed.
     pub fn element_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
         let model = &self.bodies[index];
-        let cells: Vec<(Sym3, f64)> = model.location.par_iter().map(|cell| self.cell_field(model, cell)).collect();
+        self.means(model, |cell| self.cell_field(model, cell))
+    }
+
+    /// Strain of every element of a body [-]: the mean over its edges where it is smoothed.
+    pub fn element_strains(&self, index: usize) -> Vec<Sym3> {
+        let model = &self.bodies[index];
+        let strain = |&(block, cell): &(u32, u32)| {
+            let (block, kinematics) = (&self.blocks[block as usize], model.body.kinematics);
+            (block.strain_of(cell as usize, kinematics, &self.displacement), 0.0)
+        };
+        self.means(model, strain).into_iter().map(|(strain, _)| strain).collect()
+    }
+
+    /// What cells hold, as means over the edges of each element where the body is smoothed.
+    fn means(&self, model: &BodyModel, of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync) -> Vec<(Sym3, f64)> {
+        let cells: Vec<(Sym3, f64)> = model.location.par_iter().map(of_cell).collect();
         match model.smoothed_edges() {
             None => cells,
             Some(edges) => {

@@ -1,9 +1,10 @@
 //! Compression shared by the binary outputs: zlib at its fastest level, block by block.
 
 use flate2::{Compress, Compression as Level, FlushCompress, Status};
+use serde::{Deserialize, Serialize};
 
 /// Whether arrays and states are compressed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Compression {
     /// Raw bytes: fastest where the disk is.
     None,

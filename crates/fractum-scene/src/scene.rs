@@ -329,6 +329,17 @@ impl Scene {
         found
     }
 
+    /// Number of the fragment of every node of the solids, in the order of [`Scene::fragments`] without bonded bodies, from 1;
+    /// 0 for single nodes.
+    pub fn fragment_of_nodes(&self) -> Vec<i32> {
+        let mut fragment = vec![0; self.solid.reference.len()];
+        let pieces = solid_pieces(&self.solid, self.settings.joined_below);
+        for (number, piece) in (1..).zip(pieces.iter().filter(|piece| piece.nodes.len() > 1)) {
+            piece.nodes.iter().for_each(|&node| fragment[node as usize] = number);
+        }
+        fragment
+    }
+
     /// Share of the mass of every solid body that has come apart into single nodes.
     pub fn single_share(&self) -> Vec<f64> {
         single_share(&self.solid, self.settings.joined_below)

@@ -6,8 +6,10 @@ use std::path::Path;
 use fractum_dem::Crack;
 use fractum_dem::criterion::BreakMode;
 use fractum_fem::{CrackSurface, Solid};
+use fractum_io::history::quoted;
 use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData};
 use fractum_io::{Compression, atomic};
+use fractum_math::{Vec3, rotation_between};
 
 use crate::error::Failure;
 
@@ -64,45 +66,75 @@ pub fn write_table<'a>(
     Ok(atomic::write(path, text.as_bytes())?)
 }
 
-/// Writes broken bonds as lines between the centres of their particles, with mode, event, time, area, load and energy.
+/// Writes broken bonds as the facets that they stand for: regular hexagons of their area, across the bond, where it was in the
+/// undeformed body; with mode, event, time, area, normal, load and energy.
+///
+/// - `displacement`: how far a particle has moved [m]; with it the hexagons have their displacement and opening
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write_lines<'a>(
+pub fn write_polygons<'a>(
     path: &Path,
-    points: &[[f64; 3]],
     cracks: impl Iterator<Item = &'a Crack> + Clone,
+    displacement: Option<&dyn Fn(u32) -> Vec3>,
 ) -> Result<(), Failure> {
-    let lines: Vec<[u32; 2]> = cracks.clone().map(|c| c.pair).collect();
+    let points: Vec<[f64; 3]> = cracks.clone().flat_map(hexagon).map(Into::into).collect();
+    let hexagons: Vec<[u32; 6]> = (0..cracks.clone().count() as u32)
+        .map(|facet| std::array::from_fn(|corner| 6 * facet + corner as u32))
+        .collect();
     let code = |mode: BreakMode| BreakMode::ALL.iter().position(|&m| m == mode).unwrap_or_default() as i32;
     let modes: Vec<i32> = cracks.clone().map(|c| code(c.mode)).collect();
     let events: Vec<i32> = cracks.clone().map(|c| c.event as i32).collect();
     let column = |f: &dyn Fn(&Crack) -> f64| cracks.clone().map(f).collect::<Vec<f64>>();
     let (time, load) = (column(&|c| c.time), column(&|c| c.load));
     let (area, energy) = (column(&|c| c.area), column(&|c| c.energy));
-    let data = PolyData {
-        points,
-        cells: PolyCells::Lines(&lines),
-        point_data: &[],
-        cell_data: &[
-            Field::integer("mode", &modes),
-            Field::integer("event", &events),
-            Field::scalar("time", &time),
-            Field::scalar("load", &load),
-            Field::scalar("area", &area),
-            Field::scalar("energy", &energy),
-        ],
-        time: None,
-    };
+    let normal: Vec<[f64; 3]> = cracks.clone().map(|c| c.normal.into()).collect();
+    let moved = displacement.map(|of| {
+        let pair = |c: &Crack| c.pair.map(of);
+        let mean: Vec<[f64; 3]> =
+            cracks.clone().map(pair).flat_map(|[a, b]| [(a + b) * 0.5; 6]).map(Into::into).collect();
+        (mean, column(&|c| (pair(c)[1] - pair(c)[0]).dot(&c.normal)))
+    });
+    let mut cell_data = vec![
+        Field::integer("mode", &modes),
+        Field::integer("event", &events),
+        Field::scalar("time", &time),
+        Field::scalar("load", &load),
+        Field::scalar("area", &area),
+        Field::scalar("energy", &energy),
+        Field::vector("normal", &normal),
+    ];
+    let mut point_data = Vec::new();
+    if let Some((displacement, opening)) = &moved {
+        point_data.push(Field::vector("displacement", displacement));
+        cell_data.push(Field::scalar("opening", opening));
+    }
+    let cells = PolyCells::Hexagons(&hexagons);
+    let data = PolyData { points: &points, cells, point_data: &point_data, cell_data: &cell_data, time: None };
     data.write(path, Compression::default()).map_err(|e| Failure::Output(e.into()))
 }
 
-/// The file of the facets that the removal of elements has exposed, without load and with their displacement, normal, opening and
-/// body.
+/// Corners of a regular hexagon of the area of a crack, across its normal. With side a, the area is 3√3/2 a².
+fn hexagon(crack: &Crack) -> [Vec3; 6] {
+    let side = (crack.area * 2.0 / (3.0 * 3.0f64.sqrt())).sqrt();
+    let turn = rotation_between(&Vec3::z(), &crack.normal);
+    let (half, height) = (0.5 * side, 0.5 * 3.0f64.sqrt() * side);
+    let flat = [(side, 0.0), (half, height), (-half, height), (-side, 0.0), (-half, -height), (half, -height)];
+    flat.map(|(x, y)| crack.position + turn * Vec3::new(x, y, 0.0))
+}
+
+/// The facets that the removal of elements has exposed, without load and with their displacement, normal, opening and body.
+///
+/// - `history`: when the element before each facet was removed, and the fragment that each facet belongs to
 ///
 /// # Errors
-/// Arrays that do not fit together.
-pub(crate) fn facets_file(path: &Path, solid: &Solid, crack: &CrackSurface) -> Result<PendingFile, Failure> {
+/// Fields that do not fit together.
+pub(crate) fn facets_file(
+    path: &Path,
+    solid: &Solid,
+    crack: &CrackSurface,
+    history: Option<&FacetHistory>,
+) -> Result<PendingFile, Failure> {
     let mut nodes: Vec<u32> = crack.facets.iter().flat_map(|facet| facet.nodes).collect();
     nodes.sort_unstable();
     nodes.dedup();
@@ -116,18 +148,56 @@ pub(crate) fn facets_file(path: &Path, solid: &Solid, crack: &CrackSurface) -> R
     let normal: Vec<[f64; 3]> = crack.facets.iter().map(|facet| facet.normal.into()).collect();
     let opening: Vec<f64> = crack.facets.iter().map(|facet| facet.opening).collect();
     let bodies: Vec<i32> = crack.facets.iter().map(|facet| facet.body as i32).collect();
-    let data = PolyData {
-        points: &points,
-        cells,
-        point_data: &[Field::vector("displacement", &displacement)],
-        cell_data: &[
-            Field::vector("normal", &normal),
-            Field::scalar("opening", &opening),
-            Field::integer("body", &bodies),
-        ],
-        time: None,
-    };
+    let mut cell_data =
+        vec![Field::vector("normal", &normal), Field::scalar("opening", &opening), Field::integer("body", &bodies)];
+    if let Some(FacetHistory { time, fragment }) = history {
+        cell_data.extend([Field::scalar("time", time), Field::integer("fragment", fragment)]);
+    }
+    let point_data = [Field::vector("displacement", &displacement)];
+    let data = PolyData { points: &points, cells, point_data: &point_data, cell_data: &cell_data, time: None };
     data.pending(path, Compression::default()).map_err(|e| Failure::Output(e.into()))
+}
+
+/// What is known of every facet of a crack at the end of a run.
+pub(crate) struct FacetHistory {
+    /// When the element before it was first missing in a row of the history, else now [s]; the load factor at rest.
+    pub(crate) time: Vec<f64>,
+    /// Number of its fragment; 0 for single nodes.
+    pub(crate) fragment: Vec<i32>,
+}
+
+/// Writes the facets that the removal of elements has exposed: one line each, where it is now.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(crate) fn write_facets(
+    path: &Path,
+    solid: &Solid,
+    crack: &CrackSurface,
+    history: &FacetHistory,
+) -> Result<(), Failure> {
+    let mut text =
+        "body,element,removed,time [s],x [m],y [m],z [m],nx,ny,nz,area [m^2],opening [m],fragment\n".to_owned();
+    for ((facet, time), fragment) in crack.facets.iter().zip(&history.time).zip(&history.fragment) {
+        let (body, x, n) = (&solid.body(facet.body).name, facet.centre, facet.normal);
+        // Writing into a string has no way to fail.
+        let _ = writeln!(
+            text,
+            "{},{},{},{time:e},{:e},{:e},{:e},{:.6},{:.6},{:.6},{:e},{:e},{fragment}",
+            quoted(body),
+            facet.element,
+            facet.removed,
+            x.x,
+            x.y,
+            x.z,
+            n.x,
+            n.y,
+            n.z,
+            facet.area,
+            facet.opening
+        );
+    }
+    Ok(atomic::write(path, text.as_bytes())?)
 }
 
 /// Bonds that every particle has lost.

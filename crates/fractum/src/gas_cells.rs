@@ -27,7 +27,7 @@ pub(crate) fn file(path: &Path, scene: &Scene, gas: &Gas) -> Result<PendingFile,
     let connected: Vec<u32> =
         cells.iter().flat_map(|&(body, element, _)| of_element(body, element)).map(place).collect();
     let points: Vec<[f64; 3]> = nodes.iter().map(|&n| solid.reference[n as usize].into()).collect();
-    let displacement: Vec<[f64; 3]> = nodes.iter().map(|&n| solid.displacement[n as usize].into()).collect();
+    let displacement: Vec<[f64; 3]> = nodes.iter().map(|&n| solid.displacement_from_start(n as usize).into()).collect();
     let column = |of: fn(&GasCell) -> f64| cells.iter().map(|(_, _, cell)| of(cell)).collect::<Vec<f64>>();
     let (pressure, temperature) = (column(|cell| cell.pressure), column(|cell| cell.temperature));
     let (density, opening) = (column(|cell| cell.amount.mass / cell.volume), column(|cell| cell.opening));

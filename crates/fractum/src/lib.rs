@@ -47,16 +47,19 @@
 
 pub mod cracks;
 mod error;
+mod frames;
 mod gallery;
 mod gas_cells;
 mod input;
 mod interrupt;
 mod left;
+mod path_frames;
 mod phases;
 pub mod plan;
 mod record;
 mod record_bonded;
 pub mod report;
+mod rigid_surface;
 mod run;
 mod series;
 mod simulation;

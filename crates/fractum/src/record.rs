@@ -1,26 +1,23 @@
 //! What a run leaves behind: history, fields, particles, pictures of numbers over time.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use fractum_io::Compression;
 use fractum_io::atomic::Written;
 use fractum_io::attenuation::{Attenuation, Station};
-use fractum_io::build::PpvStations;
+use fractum_io::build::{BuiltScene, PpvStations};
 use fractum_io::case::model::{Case, Output, ProbeExpression, ProbeInput, ProbeKind, Take};
-use fractum_io::history::{Column, History};
-use fractum_io::vtk::{
-    CellBlock, CellKind, Collection, Field, FrameWriter, PendingFile, PolyCells, PolyData, UnstructuredGrid, Values,
-};
-use fractum_scene::statics::NoEquilibrium;
+use fractum_io::history::{Column, History, Table};
+use fractum_io::vtk::{Collection, FrameWriter};
+use fractum_scene::statics::{Control, NoEquilibrium};
 use fractum_scene::{EnergyKind, EnergyRole, PeakVelocity, ProbedScene, Scene, VelocityStation};
 use serde::{Deserialize, Serialize};
 
-use crate::cracks;
 use crate::error::Failure;
-use crate::gas_cells;
+use crate::frames::{Frame, GridLayout};
 use crate::left;
-use crate::record_bonded as bonds;
+use crate::path_frames::PathFrames;
 use crate::series::{index_of_max, interpolate, slope_of_window, speed, time_mean};
 
 /// Columns of the history before the probes: name and unit.
@@ -44,15 +41,58 @@ fn parts_of_bonds() -> impl Iterator<Item = EnergyKind> {
     EnergyKind::ALL.into_iter().filter(|kind| kind.role() == EnergyRole::PartOfBonds)
 }
 
+/// Further column where the load factor may run back: it orders rows and frames.
+pub(crate) const STEP: (&str, &str) = ("step", "1");
+
 /// Further column where equilibrium may give way to motion: 1 while the scene moves.
 const IN_MOTION: (&str, &str) = ("in_motion", "1");
 
 /// How many columns of a history, which these names begin, belong to the ledger and not to probes.
 pub(crate) fn count_ledger_columns(names: &[&str]) -> usize {
+    if let [first, others @ ..] = names
+        && *first == STEP.0
+    {
+        return 1 + count_ledger_columns(others);
+    }
     let known = ledger_columns(true);
     let count = names.iter().zip(known).take_while(|(name, (column, _))| *name == column).count();
     let count = if names.get(count) == Some(&left::COLUMNS[0].0) { count + left::COLUMNS.len() } else { count };
+    let count = count + usize::from(names.get(count) == Some(&STEP.0));
     count + usize::from(names.get(count) == Some(&IN_MOTION.0))
+}
+
+/// A history whose first column orders its rows: the step where the load factor may run back, else the time.
+pub(crate) fn ordered(mut history: Table) -> Table {
+    let step = {
+        let names: Vec<&str> = history.columns.iter().map(|column| column.name.as_str()).collect();
+        names[..count_ledger_columns(&names)].iter().position(|name| *name == STEP.0)
+    };
+    if let Some(step) = step {
+        history.columns[..=step].rotate_right(1);
+        history.values[..=step].rotate_right(1);
+    }
+    history
+}
+
+/// How a run proceeds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Course {
+    /// Whether a part of it is a path of equilibria.
+    pub(crate) rests: bool,
+    /// Whether the load factor may run back: rows and frames are then ordered by steps.
+    pub(crate) turns_back: bool,
+}
+
+impl Course {
+    /// That of the stages of a run.
+    pub(crate) fn of<'a>(stages: impl Iterator<Item = &'a BuiltScene>) -> Self {
+        stages.fold(Course::default(), |course, stage| Course {
+            rests: course.rests || stage.statics.is_some() || stage.bonded_statics.is_some(),
+            turns_back: course.turns_back
+                || stage.bonded_statics.is_some()
+                || stage.statics.as_ref().is_some_and(|statics| statics.control != Control::Time),
+        })
+    }
 }
 
 /// Where recording stands; part of every checkpoint.
@@ -63,10 +103,13 @@ pub(crate) struct RecordState {
     frames: u64,
     history: Written,
     collection: Vec<(f64, u32, String, String)>,
+    path: PathFrames,
     /// Time of each row [s].
     pub(crate) times: Vec<f64>,
     /// Values of each probe that is a column, row by row.
     pub(crate) series: Vec<Vec<f64>>,
+    /// Body, element and time [s] of the elements that rows have found removed.
+    pub(crate) removed: Vec<(u32, u32, f64)>,
     /// Largest velocities so far, table by table and station by station.
     peaks: Vec<Vec<PeakVelocity>>,
 }
@@ -76,7 +119,10 @@ impl RecordState {
     pub(crate) fn count_anew(&mut self, output: &Output) {
         let next = |last: Option<f64>, every: f64| last.map_or(0, |time| next_index(time, every));
         self.rows = next(self.times.last().copied(), output.history_every);
-        self.frames = next(self.collection.last().map(|entry| entry.0), output.fields_every);
+        // Along a path frames are not counted by time, and may be listed by steps.
+        let along_path = self.path.frames() > 0;
+        let last = if along_path { self.times.last().copied() } else { self.collection.last().map(|entry| entry.0) };
+        self.frames = next(last, output.fields_every);
     }
 }
 
@@ -92,34 +138,9 @@ pub(crate) struct Recorder {
     state: RecordState,
     grid: GridLayout,
     inputs: Vec<f64>,
+    course: Course,
     /// Whether rows tell rest from motion.
     tells_motion: bool,
-}
-
-/// The mesh of the solids as VTK wants it, in the order of the file.
-struct GridLayout {
-    file_order: Vec<u32>,
-    /// Connectivity of each body in the order of `file_order`.
-    bodies: Vec<(CellKind, Vec<u32>)>,
-}
-
-impl GridLayout {
-    fn new(scene: &Scene, file_order: &[u32]) -> Self {
-        let mut place = vec![0u32; file_order.len()];
-        for (file, &node) in (0..).zip(file_order) {
-            place[node as usize] = file;
-        }
-        let bodies = (0..scene.solid.body_count())
-            .map(|body| {
-                let body = scene.solid.body(body);
-                let corners = body.shape.node_count();
-                let kind = if corners == 4 { CellKind::Tetrahedron } else { CellKind::Triangle };
-                let nodes = body.elements.iter().flat_map(|e| &e[..corners]).map(|&n| place[n as usize]).collect();
-                (kind, nodes)
-            })
-            .collect();
-        GridLayout { file_order: file_order.to_vec(), bodies }
-    }
 }
 
 impl Recorder {
@@ -129,8 +150,8 @@ impl Recorder {
         scene: &Scene,
         probes: Vec<Option<fractum_scene::Probe>>,
         ppv: Vec<PpvStations>,
-        file_order: &[u32],
-        folder: &Path,
+        grid: GridLayout,
+        (folder, course): (&Path, Course),
         resumed: Option<RecordState>,
     ) -> Result<Self, Failure> {
         let hands_over = case.solver.statics.as_ref().is_some_and(|s| s.no_equilibrium == NoEquilibrium::Motion);
@@ -138,6 +159,7 @@ impl Recorder {
         let columns: Vec<Column> = ledger_columns(!scene.bonded.is_empty())
             .into_iter()
             .chain(scene.domain().into_iter().flat_map(|_| left::COLUMNS))
+            .chain(course.turns_back.then_some(STEP))
             .chain(tells_motion.then_some(IN_MOTION))
             .map(|(name, unit)| Column::new(name, unit))
             .collect();
@@ -170,9 +192,10 @@ impl Recorder {
             history,
             collection,
             writer: FrameWriter::default(),
-            grid: GridLayout::new(scene, file_order),
+            grid,
             state,
             inputs: Vec::new(),
+            course,
             tells_motion,
         })
     }
@@ -212,9 +235,12 @@ impl Recorder {
         is_due(time, self.state.rows, self.case.output.history_every)
     }
 
-    /// Whether a frame of the fields is due at `time`.
-    pub(crate) fn frame_is_due(&self, time: f64) -> bool {
-        is_due(time, self.state.frames, self.case.output.fields_every)
+    /// Whether a frame of the fields is due: by time in motion, by progress along the path in a run at rest.
+    pub(crate) fn frame_is_due(&self, time: f64, by_time: bool) -> bool {
+        if by_time {
+            return is_due(time, self.state.frames, self.case.output.fields_every);
+        }
+        self.state.path.frame_is_due()
     }
 
     /// What has been recorded.
@@ -237,6 +263,7 @@ impl Recorder {
             row.push(counts.broken_bonds as f64);
         }
         row.extend(scene.domain().into_iter().flat_map(|_| left::values(scene.left())));
+        row.extend(self.course.turns_back.then_some(scene.clock.step as f64));
         row.extend(self.tells_motion.then_some(f64::from(u8::from(in_motion))));
         self.state.times.push(time);
         let case = Arc::clone(&self.case);
@@ -249,9 +276,23 @@ impl Recorder {
             self.state.series[index].push(value);
             row.push(value);
         }
+        if counts.removed_elements > self.state.removed.len() {
+            self.note_removed(scene, time);
+        }
         self.history.record(&row)?;
         self.state.rows = next_index(time, self.case.output.history_every);
         Ok(())
+    }
+
+    /// Notes the elements that have been removed since the row before.
+    fn note_removed(&mut self, scene: &Scene, time: f64) {
+        let known: BTreeSet<(u32, u32)> =
+            self.state.removed.iter().map(|&(body, element, _)| (body, element)).collect();
+        for body in 0..scene.solid.body_count() {
+            let gone = (0..).zip(scene.solid.alive(body)).filter(|(_, alive)| !**alive).map(|(element, _)| element);
+            let new = gone.map(|element: u32| (body as u32, element)).filter(|removed| !known.contains(removed));
+            self.state.removed.extend(new.map(|(body, element)| (body, element, time)));
+        }
     }
 
     /// Value of an expression of probes with what has been recorded so far.
@@ -301,106 +342,58 @@ impl Recorder {
         expression.value(&inputs)
     }
 
-    /// Begins to write the fields of the present instant, and its particles.
+    /// Begins to write a frame of the present instant; before it that of the peak, where no frame has shown it.
     pub(crate) fn frame(&mut self, scene: &Scene) -> Result<(), Failure> {
-        let time = scene.clock.time;
-        let mut files = Vec::new();
-        if !scene.solid.reference.is_empty() {
-            let name = format!("fields/solid-{:05}.vtu", self.state.frames);
-            files.push(self.solid_file(scene, &self.folder.join(&name))?);
-            self.add_to_collection(time, 0, "solid", name);
+        let frame = self.frame_of(scene)?;
+        let peak = self.state.path.unseen_peak().filter(|peak| peak.step < frame.step);
+        for frame in peak.into_iter().chain([frame]) {
+            self.write(frame)?;
         }
-        if !scene.debris.is_empty() {
-            fractum_io::atomic::create_folder(&self.folder.join("particles"))?;
-            let name = format!("particles/particles-{:05}.vtp", self.state.frames);
-            files.push(particles_file(scene, &self.folder.join(&name))?);
-            self.add_to_collection(time, 1, "particles", name);
-        }
-        if !scene.bonded.is_empty() {
-            fractum_io::atomic::create_folder(&self.folder.join("particles"))?;
-            fractum_io::atomic::create_folder(&self.folder.join("bonds"))?;
-            let name = format!("particles/bonded-{:05}.vtp", self.state.frames);
-            files.push(bonds::particles_file(scene, &self.folder.join(&name))?);
-            self.add_to_collection(time, 2, "bonded particles", name);
-            let name = format!("bonds/bonds-{:05}.vtp", self.state.frames);
-            files.push(bonds::bonds_file(scene, &self.folder.join(&name))?);
-            self.add_to_collection(time, 3, "bonds", name);
-        }
-        if let Some(gas) = scene.gas().filter(|gas| gas.cells().nth(gas.hole_count()).is_some()) {
-            fractum_io::atomic::create_folder(&self.folder.join("gas"))?;
-            let name = format!("gas/gas-{:05}.vtu", self.state.frames);
-            files.push(gas_cells::file(&self.folder.join(&name), scene, gas)?);
-            self.add_to_collection(time, 5, "gas", name);
-        }
-        let crack = scene.solid.crack_surface();
-        if !crack.facets.is_empty() {
-            fractum_io::atomic::create_folder(&self.folder.join("cracks"))?;
-            let name = format!("cracks/cracks-{:05}.vtp", self.state.frames);
-            files.push(cracks::facets_file(&self.folder.join(&name), &scene.solid, &crack)?);
-            self.add_to_collection(time, 4, "cracks", name);
-        }
-        files.push(self.collection.pending(&self.folder.join("fields.pvd")));
-        self.writer.begin(files)?;
-        self.state.frames = next_index(time, self.case.output.fields_every);
+        self.state.frames = next_index(scene.clock.time, self.case.output.fields_every);
         Ok(())
     }
 
-    fn add_to_collection(&mut self, time: f64, part: u32, name: &str, file: String) {
-        self.collection.push(time, part, name, file.clone());
-        self.state.collection.push((time, part, name.to_owned(), file));
+    /// Follows a run at rest after a step: how far it has come, and whether its load is the largest so far.
+    pub(crate) fn follow(&mut self, scene: &Scene) -> Result<(), Failure> {
+        if !self.course.rests {
+            return Ok(());
+        }
+        let ledger = scene.ledger();
+        let [elastic, spent] = [ledger[EnergyKind::Elastic], ledger.spent()];
+        self.state.path.advance(scene.clock.time, spent, elastic, self.case.output.fields_every);
+        let load = self.load().map_or(Some(elastic), |force| self.state.series[force].last().copied());
+        if self.state.path.is_peak(load.unwrap_or(0.0).abs()) && !self.state.path.frame_is_due() {
+            let frame = self.frame_of(scene)?;
+            self.state.path.keep_peak(frame);
+        }
+        Ok(())
     }
 
-    fn solid_file(&self, scene: &Scene, path: &Path) -> Result<PendingFile, Failure> {
-        let (solid, order) = (&scene.solid, &self.grid.file_order);
-        let attached = scene.attached_nodes();
-        let nodal =
-            |of: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { order.iter().map(|&n| of(n as usize)).collect() };
-        let points = nodal(&|n| solid.reference[n].into());
-        let displacement = nodal(&|n| solid.displacement_from_start(n).into());
-        let velocity: Vec<[f32; 3]> =
-            order.iter().map(|&n| solid.velocity[n as usize].map(|v| v as f32).into()).collect();
-        let held: Vec<u8> = order.iter().map(|&n| u8::from(attached[n as usize])).collect();
-        // Seven digits are plenty for looking at stress, and halve what is compressed and written.
-        let (mut stress, mut first, mut damage): (Vec<[f32; 6]>, Vec<f32>, Vec<f32>) = Default::default();
-        let (mut cells, mut bodies, mut phase) = (Vec::new(), Vec::new(), Vec::<f32>::new());
-        for (body, (kind, nodes)) in self.grid.bodies.iter().enumerate() {
-            let corners = kind.nodes();
-            let mut kept = Vec::with_capacity(nodes.len());
-            let phases = solid.element_phase(body);
-            for (element, (s, d)) in solid.element_fields(body).into_iter().enumerate() {
-                if solid.alive(body)[element] {
-                    kept.extend_from_slice(&nodes[corners * element..corners * (element + 1)]);
-                    first.push(s.principal_values()[0] as f32);
-                    stress.push(s.0.map(|s| s as f32));
-                    damage.push(d as f32);
-                    phase.push(phases.as_ref().map_or(0.0, |phases| phases[element] as f32));
-                    bodies.push(body as i32);
-                }
-            }
-            cells.push((*kind, kept));
+    /// Index of the probe that measures the load: the first in newtons with a column of its own.
+    pub(crate) fn load(&self) -> Option<usize> {
+        self.case.probes.iter().position(|probe| probe.unit == "N" && !probe.is_scalar())
+    }
+
+    fn frame_of(&self, scene: &Scene) -> Result<Frame, Failure> {
+        let instant = if self.course.turns_back { scene.clock.step as f64 } else { scene.clock.time };
+        Frame::of(scene, &self.grid, instant)
+    }
+
+    fn write(&mut self, frame: Frame) -> Result<(), Failure> {
+        let number = if self.course.rests { self.state.path.frames() } else { self.state.frames };
+        let (mut files, instant) = (Vec::new(), frame.instant);
+        for (part, file) in frame.files(number) {
+            let path = self.folder.join(&file.0);
+            path.parent().map_or(Ok(()), fractum_io::atomic::create_folder)?;
+            files.push(file.1.at(&path));
+            self.collection.push(instant, part.0, part.1, file.0.clone());
+            self.state.collection.push((instant, part.0, part.1.to_owned(), file.0));
         }
-        let cells: Vec<CellBlock> = cells.iter().map(|(kind, nodes)| CellBlock { kind: *kind, nodes }).collect();
-        let mut cell_data = vec![
-            Field { name: "stress", components: 6, values: Values::F32(stress.as_flattened()) },
-            Field { name: "first_principal_stress", components: 1, values: Values::F32(&first) },
-            Field { name: "damage", components: 1, values: Values::F32(&damage) },
-            Field::integer("body", &bodies),
-        ];
-        if solid.has_phase_fields() {
-            cell_data.push(Field { name: "d", components: 1, values: Values::F32(&phase) });
+        files.push(self.collection.pending(&self.folder.join("fields.pvd")));
+        if self.course.rests {
+            self.state.path.begin_frame();
         }
-        let grid = UnstructuredGrid {
-            points: &points,
-            cells: &cells,
-            point_data: &[
-                Field::vector("displacement", &displacement),
-                Field { name: "velocity", components: 3, values: Values::F32(velocity.as_flattened()) },
-                Field::flag("attached", &held),
-            ],
-            cell_data: &cell_data,
-            time: Some(scene.clock.time),
-        };
-        grid.pending(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+        Ok(self.writer.begin(files)?)
     }
 
     /// The error of the last frame, where it could not be written.
@@ -425,38 +418,6 @@ impl Recorder {
         self.history.finish()?;
         Ok(self.state)
     }
-}
-
-/// Particles as vertices with their radius.
-fn particles_file(scene: &Scene, path: &Path) -> Result<PendingFile, Failure> {
-    let (solid, debris) = (&scene.solid, &scene.debris);
-    let state = debris.state();
-    let of = |f: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { state.nodes.iter().map(|&n| f(n as usize)).collect() };
-    let points = of(&|n| solid.position(n).into());
-    let velocity = of(&|n| solid.velocity[n].into());
-    let radius: Vec<f64> = state.nodes.iter().map(|&n| debris.radius(n)).collect();
-    let mass: Vec<f64> = state.nodes.iter().map(|&n| solid.mass[n as usize]).collect();
-    let attached: Vec<u8> = state.attached.iter().map(|&a| u8::from(a)).collect();
-    let spin: Vec<[f64; 3]> = state.spin.iter().map(|&s| s.into()).collect();
-    let thickness: Vec<f64> = state.nodes.iter().map(|&n| debris.thickness(n)).collect();
-    let mut point_data = vec![
-        Field::scalar("radius", &radius),
-        Field::scalar("mass", &mass),
-        Field::vector("velocity", &velocity),
-        Field { name: "spin", components: 3, values: Values::F64(spin.as_flattened()) },
-        Field::flag("attached", &attached),
-    ];
-    if thickness.iter().any(|&t| t > 0.0) {
-        point_data.push(Field::scalar("thickness", &thickness));
-    }
-    let data = PolyData {
-        points: &points,
-        cells: PolyCells::Points,
-        point_data: &point_data,
-        cell_data: &[],
-        time: Some(scene.clock.time),
-    };
-    data.pending(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }
 
 /// Whether output number `index` of those every `interval` is due at `time`.

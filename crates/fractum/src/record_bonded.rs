@@ -1,10 +1,13 @@
-//! Fields of bonded bodies for ParaView: particles as points, bonds as lines.
+//! Fields of bonded bodies and loose particles for ParaView: particles as points, bonds as lines.
+//!
+//! Points are where particles were at the start; the field `displacement` moves them to the present, as it does the nodes of solids.
 
 use std::path::Path;
 
+use fractum_dem::stress::particle_virials;
 use fractum_io::Compression;
-use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData};
-use fractum_math::{Vec3, rotation_vector};
+use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData, Values};
+use fractum_math::{Sym3, Vec3, rotation_vector};
 use fractum_scene::{BondedBody, Scene};
 
 use crate::cracks::lost_bonds;
@@ -14,63 +17,138 @@ fn vectors<'a>(of: impl Iterator<Item = Vec3> + 'a) -> Vec<[f64; 3]> {
     of.map(Into::into).collect()
 }
 
-/// Particles of bonded bodies as vertices.
-pub(crate) fn particles_file(scene: &Scene, path: &Path) -> Result<PendingFile, Failure> {
-    let bonded = &scene.bonded;
-    let all = &bonded.particles;
-    let points = vectors(all.position.iter().copied());
-    let displacement = vectors(all.position.iter().zip(bonded.reference()).map(|(x, start)| x - start));
-    let velocity = vectors(all.velocity.iter().copied());
-    let spin = vectors(all.spin.iter().copied());
-    let rotation = vectors(all.orientation.iter().map(rotation_vector));
-    let mut body = vec![0i32; all.len()];
-    for (index, part) in (0..).zip(bonded.bodies()) {
-        body[part.range.clone()].fill(index);
+/// Particles with and without bonds, and the bonds that hold; none where there is none of a kind.
+pub(crate) struct ParticleFiles {
+    pub(crate) bonded: Option<PendingFile>,
+    pub(crate) loose: Option<PendingFile>,
+    pub(crate) bonds: Option<PendingFile>,
+}
+
+impl ParticleFiles {
+    /// Those of the present instant.
+    pub(crate) fn of(scene: &Scene) -> Result<Self, Failure> {
+        let bodies = || (0..).zip(scene.bonded.bodies());
+        let [bonded, loose] = [false, true].map(|is_loose| {
+            bodies().filter(|(_, body): &(i32, &BondedBody)| body.bonds.is_empty() == is_loose).collect::<Vec<_>>()
+        });
+        let count = |bodies: &[(i32, &BondedBody)]| bodies.iter().map(|(_, body)| body.range.len()).sum::<usize>();
+        let loose = if count(&loose) > 0 { Some(particles_file(scene, &loose, None)?) } else { None };
+        if count(&bonded) == 0 {
+            return Ok(ParticleFiles { bonded: None, loose, bonds: None });
+        }
+        let live = live_bonds(scene, &bonded);
+        let stress = stresses(scene, &bonded, &live);
+        Ok(ParticleFiles {
+            bonded: Some(particles_file(scene, &bonded, Some(&stress))?),
+            loose,
+            bonds: Some(bonds_file(scene, &bonded, &live)?),
+        })
     }
+}
+
+/// A bond that holds.
+struct LiveBond {
+    pair: [u32; 2],
+    body: i32,
+    /// Force on its second particle [N].
+    force: Vec3,
+    /// Elastic energy [J].
+    energy: f64,
+}
+
+fn live_bonds(scene: &Scene, bodies: &[(i32, &BondedBody)]) -> Vec<LiveBond> {
+    let all = &scene.bonded.particles;
+    let of_body = |&(body, part): &(i32, &BondedBody)| {
+        let live = |bond: usize| LiveBond {
+            pair: part.bonds.pairs()[bond],
+            body,
+            force: part.bonds.forces_of(bond, all).force,
+            energy: part.bonds.energy_of(bond, all).total(),
+        };
+        (0..part.bonds.len()).filter(|&bond| part.bonds.is_live(bond)).map(live).collect::<Vec<_>>()
+    };
+    bodies.iter().flat_map(of_body).collect()
+}
+
+/// Stress of every particle by its bonds, over the part of the continuum that it stands for [Pa].
+fn stresses(scene: &Scene, bodies: &[(i32, &BondedBody)], bonds: &[LiveBond]) -> Vec<[f32; 6]> {
+    let all = &scene.bonded.particles;
+    let virials: Vec<Sym3> = particle_virials(all.len(), |visit| {
+        for bond in bonds {
+            let [i, j] = bond.pair.map(|particle| particle as usize);
+            visit(i, j, all.position[j] - all.position[i], -bond.force);
+        }
+    });
+    let of_body = |(_, body): &(i32, &BondedBody)| {
+        let stress = |i: usize| (virials[i] * (body.density / all.mass[i])).0.map(|s| s as f32);
+        body.range.clone().map(stress).collect::<Vec<_>>()
+    };
+    bodies.iter().flat_map(of_body).collect()
+}
+
+/// Particles of some bodies as vertices.
+fn particles_file(
+    scene: &Scene,
+    bodies: &[(i32, &BondedBody)],
+    stress: Option<&[[f32; 6]]>,
+) -> Result<PendingFile, Failure> {
+    let (bonded, all) = (&scene.bonded, &scene.bonded.particles);
+    let shown = || bodies.iter().flat_map(|(_, body)| body.range.clone());
+    let scalar = |of: &[f64]| shown().map(|i| of[i]).collect::<Vec<f64>>();
+    let points = vectors(shown().map(|i| bonded.reference()[i]));
+    let displacement = vectors(shown().map(|i| all.position[i] - bonded.reference()[i]));
+    let velocity = vectors(shown().map(|i| all.velocity[i]));
+    let spin = vectors(shown().map(|i| all.spin[i]));
+    let rotation = vectors(shown().map(|i| rotation_vector(&all.orientation[i])));
+    let body: Vec<i32> = bodies.iter().flat_map(|(index, body)| body.range.clone().map(|_| *index)).collect();
     // What has left is not drawn.
-    let radius: Vec<f64> = all.radius.iter().map(|radius| radius.max(0.0)).collect();
-    let lost = lost_bonds(all.len(), bonded.bodies().iter().flat_map(BondedBody::cracks));
+    let radius: Vec<f64> = shown().map(|i| all.radius[i].max(0.0)).collect();
+    let mass = scalar(&all.mass);
+    let lost = scalar(&lost_bonds(all.len(), bodies.iter().flat_map(|(_, body)| body.cracks())));
+    let mut point_data = vec![
+        Field::scalar("radius", &radius),
+        Field::scalar("mass", &mass),
+        Field::vector("displacement", &displacement),
+        Field::vector("rotation", &rotation),
+        Field::vector("velocity", &velocity),
+        Field::vector("spin", &spin),
+        Field::integer("body", &body),
+    ];
+    if let Some(stress) = stress {
+        point_data.push(Field::scalar("broken_bonds", &lost));
+        point_data.push(Field { name: "stress", components: 6, values: Values::F32(stress.as_flattened()) });
+    }
     let data = PolyData {
         points: &points,
         cells: PolyCells::Points,
-        point_data: &[
-            Field::scalar("radius", &radius),
-            Field::scalar("mass", &all.mass),
-            Field::vector("displacement", &displacement),
-            Field::vector("rotation", &rotation),
-            Field::vector("velocity", &velocity),
-            Field::vector("spin", &spin),
-            Field::integer("body", &body),
-            Field::scalar("broken_bonds", &lost),
-        ],
+        point_data: &point_data,
         cell_data: &[],
         time: Some(scene.clock.time),
     };
-    data.pending(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    data.pending(Path::new(""), Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }
 
 /// Bonds that hold as lines between the centres of their particles, with their axial force and elastic energy.
-pub(crate) fn bonds_file(scene: &Scene, path: &Path) -> Result<PendingFile, Failure> {
-    let bonded = &scene.bonded;
-    let all = &bonded.particles;
-    let points = vectors(all.position.iter().copied());
-    let (mut lines, mut force, mut energy, mut body) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (index, part) in (0..).zip(bonded.bodies()) {
-        for bond in (0..part.bonds.len()).filter(|&bond| part.bonds.is_live(bond)) {
-            let pair = part.bonds.pairs()[bond];
-            let [first, second] = pair.map(|i| all.position[i as usize]);
-            // The force on the second particle draws it towards the first in tension.
-            let pull = part.bonds.forces_of(bond, all).force;
-            lines.push(pair);
-            force.push(-pull.dot(&(second - first).normalize()));
-            energy.push(part.bonds.energy_of(bond, all).total());
-            body.push(index);
-        }
-    }
+fn bonds_file(scene: &Scene, bodies: &[(i32, &BondedBody)], bonds: &[LiveBond]) -> Result<PendingFile, Failure> {
+    let (bonded, all) = (&scene.bonded, &scene.bonded.particles);
+    let shown = || bodies.iter().flat_map(|(_, body)| body.range.clone());
+    let mut place = vec![0; all.len()];
+    (0..).zip(shown()).for_each(|(index, particle)| place[particle] = index);
+    let points = vectors(shown().map(|i| bonded.reference()[i]));
+    let displacement = vectors(shown().map(|i| all.position[i] - bonded.reference()[i]));
+    let lines: Vec<[u32; 2]> = bonds.iter().map(|bond| bond.pair.map(|particle| place[particle as usize])).collect();
+    let axial = |bond: &LiveBond| {
+        let [first, second] = bond.pair.map(|i| all.position[i as usize]);
+        // The force on the second particle draws it towards the first in tension.
+        -bond.force.dot(&(second - first).normalize())
+    };
+    let force: Vec<f64> = bonds.iter().map(axial).collect();
+    let energy: Vec<f64> = bonds.iter().map(|bond| bond.energy).collect();
+    let body: Vec<i32> = bonds.iter().map(|bond| bond.body).collect();
     let data = PolyData {
         points: &points,
         cells: PolyCells::Lines(&lines),
-        point_data: &[],
+        point_data: &[Field::vector("displacement", &displacement)],
         cell_data: &[
             Field::scalar("axial_force", &force),
             Field::scalar("elastic_energy", &energy),
@@ -78,5 +156,5 @@ pub(crate) fn bonds_file(scene: &Scene, path: &Path) -> Result<PendingFile, Fail
         ],
         time: Some(scene.clock.time),
     };
-    data.pending(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    data.pending(Path::new(""), Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }

@@ -70,6 +70,7 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
     };
     let summary = Summary::read(&folder.join("summary.json")).map_err(|e| missing("summary.json", &e))?;
     let history = history::read(&folder.join("history.csv")).map_err(|e| missing("history.csv", &e))?;
+    let history = crate::record::ordered(history);
     let notes: Notes = match fs::read(folder.join(NOTES)) {
         Ok(bytes) => serde_json::from_slice(&bytes).map_err(|e| missing(NOTES, &e))?,
         Err(_) => Notes::default(),
@@ -148,7 +149,7 @@ fn curves(history: &Table) -> Vec<Curve> {
                 (_, "1") => "probes without unit".to_owned(),
                 _ => format!("probes in {unit}"),
             };
-            curves.push(Curve { title, x: "time".into(), y, mark_peak: false, levels: Vec::new() });
+            curves.push(Curve { title, x: history.columns[0].name.clone(), y, mark_peak: false, levels: Vec::new() });
         }
     }
     curves

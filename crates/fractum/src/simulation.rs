@@ -216,6 +216,9 @@ impl Simulation {
                 self.end_stage(why)?;
             }
         }
+        if !self.is_over() && !self.solver.is_explicit() {
+            self.recorder.follow(&self.scene)?;
+        }
         self.messages.tell_event()?;
         self.recorder.check_frame()?;
         self.prepare_step()?;
@@ -246,7 +249,7 @@ impl Simulation {
         if self.saved.is_none_or(|saved| saved.at.elapsed() >= every) {
             self.save()?;
         }
-        if self.recorder.frame_is_due(self.scene.clock.time) {
+        if self.recorder.frame_is_due(self.scene.clock.time, self.solver.is_explicit()) {
             let Simulation { recorder, scene, phases, .. } = self;
             phases.timed(Part::Output, || recorder.frame(scene))?;
         }
@@ -330,13 +333,13 @@ impl Simulation {
             broken_bonds: counts.broken_bonds as u64,
             particles: counts.particles as u64,
             load: self.load().map(|index| self.load_and_peak(index)),
+            at_rest: !self.solver.is_explicit() && !self.solver.moves(),
         }
     }
 
-    /// Index of the probe that measures the load: the first in newtons with a column of its own.
+    /// Index of the probe that measures the load, once it has a row.
     fn load(&self) -> Option<usize> {
-        let probes = self.case.probes.iter().zip(&self.recorder.state().series);
-        probes.enumerate().find(|(_, (probe, values))| probe.unit == "N" && !values.is_empty()).map(|(index, _)| index)
+        self.recorder.load().filter(|&index| !self.recorder.state().series[index].is_empty())
     }
 
     /// Last value of a probe, and that of the largest absolute value.

@@ -62,8 +62,10 @@ pub(crate) fn probes(case: &Case, recorder: &Recorder) -> BTreeMap<String, summa
 }
 
 /// Steps and times, and why they ended.
-pub(crate) fn time(clock: &Clock, reason: String) -> summary::Time {
-    summary::Time { steps: clock.step, dt: clock.dt_before, dt_min: clock.dt_min, end: clock.time, reason }
+///
+/// - `at_rest`: whether time is a load factor
+pub(crate) fn time(clock: &Clock, reason: String, at_rest: bool) -> summary::Time {
+    summary::Time { steps: clock.step, dt: clock.dt_before, dt_min: clock.dt_min, end: clock.time, reason, at_rest }
 }
 
 /// Sizes of the fragments; none where there are none.

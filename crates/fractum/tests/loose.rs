@@ -130,6 +130,8 @@ fn a_heap_runs_with_the_same_bits_on_any_threads_and_after_a_checkpoint() {
     assert!(energy("friction") > 0.0 && energy("damping") > 0.0);
     assert!(energy("residual_max_relative") < 5e-3, "{}", one["energy"]);
     assert_eq!(files_below(&place.path("one").join("particles"), ".vtp").len(), 3);
+    let listed = std::fs::read_to_string(place.path("one/fields.pvd")).unwrap();
+    assert!(listed.contains("name=\"loose particles\"") && !listed.contains("name=\"bonded"), "{listed}");
     let two = run(&place, "two", "2");
     assert_eq!((&two["state_hash"], &two["probes"]), (&one["state_hash"], &one["probes"]));
     let resumed = place.fractum(&["run", "case.toml", "-o", "two", "--threads", "1", "--resume", "--quiet"]);

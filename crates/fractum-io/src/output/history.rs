@@ -153,7 +153,7 @@ fn header(columns: &[Column]) -> String {
 }
 
 /// A cell of a CSV file, in quotes where its text needs them.
-pub(crate) fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 

@@ -85,6 +85,8 @@ pub struct Snapshot {
     pub particles: u64,
     /// The load and its largest absolute value so far [N], where a probe measures one.
     pub load: Option<[f64; 2]>,
+    /// Whether the scene is at rest, so that `time` is a load factor.
+    pub at_rest: bool,
 }
 
 impl Snapshot {
@@ -95,14 +97,18 @@ impl Snapshot {
             let [load, peak] = load.map(|load| quantity(load, "N"));
             words.push(format!("load {load} (peak {peak})"));
         }
-        words.push(format!("t {}", quantity(self.time, "s")));
+        words.push(if self.at_rest {
+            format!("load factor {}", significant(self.time, 4))
+        } else {
+            format!("t {}", quantity(self.time, "s"))
+        });
         words.push(format!("step {}", self.step));
         let counts =
             [(self.broken_edges, "broken edges"), (self.broken_bonds, "broken bonds"), (self.particles, "particles")];
         words.extend(counts.iter().filter(|(count, _)| *count > 0).map(|(count, name)| format!("{count} {name}")));
         let energies = [("dissipated", self.dissipated), ("elastic", self.elastic), ("kinetic", self.kinetic)];
         words.extend(energies.map(|(name, energy)| format!("{name} {}", quantity(energy, "J"))));
-        words.push(format!("dt {}", quantity(self.dt, "s")));
+        words.extend((!self.at_rest).then(|| format!("dt {}", quantity(self.dt, "s"))));
         words.push(format!("balance {}", significant(self.balance_error, 2)));
         words
     }

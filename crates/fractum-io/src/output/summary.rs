@@ -213,6 +213,9 @@ pub struct Time {
     /// Why the run ended.
     #[serde(default)]
     pub reason: String,
+    /// Whether the scene was at rest then, so that `end` is a load factor rather than time.
+    #[serde(default)]
+    pub at_rest: bool,
 }
 
 /// Time on the clock [s].

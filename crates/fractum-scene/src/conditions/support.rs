@@ -185,6 +185,17 @@ impl Supports {
         Ok(found)
     }
 
+    /// Forces of the supports on all points of the population at the last step [N].
+    ///
+    /// - `count`: number of these points
+    pub fn reactions(&self, count: usize) -> Vec<Vec3> {
+        let mut reactions = vec![Vec3::zeros(); count];
+        for Support { points, axis, reaction, .. } in &self.sets {
+            points.iter().zip(reaction).for_each(|(&point, &value)| reactions[point as usize][*axis] += value);
+        }
+        reactions
+    }
+
     /// Takes the reactions of an equilibrium: force of the support on a point along an axis [N].
     pub(crate) fn set_reactions(&mut self, of: impl Fn(u32, usize) -> f64) {
         for Support { points, axis, reaction, .. } in &mut self.sets {

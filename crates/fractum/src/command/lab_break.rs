@@ -374,7 +374,7 @@ fn fields(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Fa
     let outcome = &broken.outcome;
     let trouble = |error: fractum_io::vtk::VtkError| Failure::Output(error.into());
     let points: Vec<[f64; 3]> = sample.packing.position.iter().map(|x| (*x).into()).collect();
-    cracks::write_lines(&folder.join("broken.vtp"), &points, outcome.cracks.iter())?;
+    cracks::write_polygons(&folder.join("broken.vtp"), outcome.cracks.iter(), None)?;
     let parts = outcome.graph.parts();
     let fragment: Vec<i32> = parts.of.iter().map(|&p| p as i32).collect();
     let lost = cracks::lost_bonds(points.len(), outcome.cracks.iter());

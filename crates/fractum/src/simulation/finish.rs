@@ -1,8 +1,9 @@
 //! The end of a run: last frame, last row, summary, report and final names.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use fractum_fem::Solid;
+use fractum_fem::{CrackFacet, Solid};
 use fractum_io::attenuation;
 use fractum_io::fragments::{self, Fragment};
 use fractum_io::number::quantity;
@@ -10,7 +11,7 @@ use fractum_io::summary::{Hashes, Summary, hash_text};
 use fractum_scene::{BondedBody, Scene, fragment_size};
 
 use super::{End, Outcome, Saved, Simulation};
-use crate::cracks::{self, Columns};
+use crate::cracks::{self, Columns, FacetHistory};
 use crate::error::Failure;
 use crate::phases::Part;
 use crate::report::{self, Notes};
@@ -48,7 +49,7 @@ impl Simulation {
         let pieces = self.scene.fragments();
         fragments::write(&self.folder.join("fragments.csv"), &fragments_of(&self.scene.solid, &pieces))?;
         self.warn_of_single_nodes()?;
-        write_cracks(&self.scene, &self.folder)?;
+        write_cracks(&self.scene, &self.folder, &self.recorder.state().removed)?;
         self.phases.timed(Part::Output, || self.recorder.finish_frame())?;
         let mut summary = Summary {
             title: self.case.source.title.clone(),
@@ -58,7 +59,7 @@ impl Simulation {
             probes: summary::probes(&self.case, &self.recorder),
             ppv: self.recorder.attenuations(),
             fragment_sizes: summary::fragment_sizes(&self.scene.solid, &pieces),
-            time: summary::time(&clock, reason),
+            time: summary::time(&clock, reason, !self.solver.is_explicit()),
             wall: summary::wall(self.started.elapsed(), &self.phases),
             ..summary::of_scene(&self.scene)
         };
@@ -113,16 +114,40 @@ impl Simulation {
 const PLAN_WIDTH: usize = 120;
 
 /// The bonds that broke, where some could.
-fn write_cracks(scene: &Scene, folder: &Path) -> Result<(), Failure> {
+fn write_broken_bonds(scene: &Scene, folder: &Path) -> Result<(), Failure> {
     let bodies = scene.bonded.bodies();
-    if !bodies.iter().any(BondedBody::can_break) {
-        return Ok(());
-    }
     let all = bodies.iter().flat_map(|body| body.cracks().iter().map(|crack| (Some(body.name.as_str()), crack)));
     let columns = Columns { time: "time [s]", load: None };
     cracks::write_table(&folder.join("cracks.csv"), all.clone(), columns)?;
-    let points: Vec<[f64; 3]> = scene.bonded.reference().iter().map(|x| (*x).into()).collect();
-    cracks::write_lines(&folder.join("cracks.vtp"), &points, all.map(|(_, crack)| crack))
+    let (position, reference) = (&scene.bonded.particles.position, scene.bonded.reference());
+    let displacement = |particle: u32| position[particle as usize] - reference[particle as usize];
+    cracks::write_polygons(&folder.join("cracks.vtp"), all.map(|(_, crack)| crack), Some(&displacement))
+}
+
+/// The cracks of solids and of bonded bodies; those of solids have names of their own where both can break.
+///
+/// - `removed`: body, element and time of what was removed
+fn write_cracks(scene: &Scene, folder: &Path, removed: &[(u32, u32, f64)]) -> Result<(), Failure> {
+    let bonds = scene.bonded.bodies().iter().any(BondedBody::can_break);
+    if bonds {
+        write_broken_bonds(scene, folder)?;
+    }
+    let crack = scene.solid.crack_surface();
+    if crack.facets.is_empty() {
+        return Ok(());
+    }
+    let times: BTreeMap<(u32, u32), f64> =
+        removed.iter().map(|&(body, element, time)| ((body, element), time)).collect();
+    let nodes = scene.fragment_of_nodes();
+    let of = |facet: &CrackFacet| times.get(&(facet.body as u32, facet.removed)).copied().unwrap_or(scene.clock.time);
+    let history = FacetHistory {
+        time: crack.facets.iter().map(of).collect(),
+        fragment: crack.facets.iter().map(|facet| nodes[facet.nodes[0] as usize]).collect(),
+    };
+    let name = if bonds { "cracks-solids" } else { "cracks" };
+    cracks::write_facets(&folder.join(format!("{name}.csv")), &scene.solid, &crack, &history)?;
+    let file = cracks::facets_file(&folder.join(format!("{name}.vtp")), &scene.solid, &crack, Some(&history))?;
+    Ok(file.write()?)
 }
 
 impl Simulation {

@@ -17,11 +17,12 @@ use super::messages::Messages;
 use super::origin::{keep_case, origin};
 use super::{About, Options, RunState, Simulation};
 use crate::error::Failure;
+use crate::frames::GridLayout;
 use crate::input::{Input, load};
 use crate::interrupt::UnderWay;
 use crate::phases::Phases;
 use crate::plan::Plan;
-use crate::record::{RecordState, Recorder};
+use crate::record::{Course, RecordState, Recorder};
 use crate::solver::Solver;
 use crate::tell;
 use crate::terminal::{Stream, Tone, toned};
@@ -65,6 +66,7 @@ impl Simulation {
         // Prepared before anything is put back: a resumed run solves the same systems in the same order.
         let mut phases = Phases::default();
         let mut solver = Solver::new(&built.scene, &built, &mut phases)?;
+        let course = Course::of(later.iter().map(|(_, built)| built).chain([&built]));
         let (mut scene, mut probes) = (built.scene, built.probes);
         let case = Arc::new(case);
         let (mut stage, mut later) = (Arc::clone(&case), VecDeque::from(later));
@@ -77,9 +79,12 @@ impl Simulation {
             scene.begin_stage(built.scene);
             (stage, probes) = (Arc::new(next), built.probes);
         }
+        // Rigid bodies are drawn from where they lie at the start.
+        let grid = GridLayout::new(&scene, &built.file_order, &case);
         let put_back = |Loaded { state, .. }: Loaded<RunState>| put_back(state, &mut scene, &mut solver, &case);
         let resumed = loaded.map(put_back).transpose()?;
-        let mut messages = Messages::new(open_folder(&folder, resumed.is_none())?, options.quiet);
+        let is_new = resumed.is_none();
+        let mut messages = Messages::new(open_folder(&folder, is_new)?, options.quiet);
         keep_case(&case, &folder)?;
         let threads = rayon::current_num_threads();
         let version = env!("CARGO_PKG_VERSION");
@@ -89,7 +94,7 @@ impl Simulation {
         messages.log.line(&about.plan)?;
         timings.iter().try_for_each(|timing| messages.log.line(timing))?;
         built.warnings.iter().try_for_each(|warning| messages.warn(warning.to_string()))?;
-        let recorder = Recorder::open(case, &scene, probes, built.ppv, &built.file_order, &folder, resumed)?;
+        let recorder = Recorder::open(case, &scene, probes, built.ppv, grid, (&folder, course), resumed)?;
         let mut simulation = Simulation {
             case: stage,
             scene,
@@ -106,6 +111,12 @@ impl Simulation {
             end: None,
             _under_way: UnderWay::new(),
         };
+        if is_new && !simulation.solver.moves() {
+            // A path begins where nothing acts.
+            let Simulation { recorder, scene, .. } = &mut simulation;
+            recorder.row(scene, 0.0, 0.0, false)?;
+            recorder.follow(scene)?;
+        }
         simulation.prepare_step()?;
         Ok(simulation)
     }
@@ -199,13 +210,15 @@ fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
 }
 
 /// Files of a run, beside its frames and states.
-const RESULTS: [&str; 9] = [
+const RESULTS: [&str; 11] = [
     "summary.json",
     "history.csv",
     "fields.pvd",
     "fragments.csv",
     "cracks.csv",
     "cracks.vtp",
+    "cracks-solids.csv",
+    "cracks-solids.vtp",
     "ppv.csv",
     "report.html",
     "pictures/notes.json",
@@ -224,7 +237,7 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
     for path in RESULTS.map(|name| folder.join(name)).into_iter().filter(|path| path.is_file()) {
         std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
     }
-    for frames in ["fields", "particles", "bonds", "cracks", "gas"] {
+    for frames in ["fields", "particles", "bonds", "cracks", "gas", "rigid"] {
         let Ok(entries) = std::fs::read_dir(folder.join(frames)) else { continue };
         for path in entries.flatten().map(|entry| entry.path()) {
             if path.extension().is_some_and(|e| e == "vtu" || e == "vtp") {

@@ -108,6 +108,26 @@ line = { from = ["5 cm", "1 cm", "1 cm"], to = ["40 cm", "1 cm", "1 cm"], statio
 groups = ["x+"]
 "#;
 
+/// A bonded bar that is pulled apart from break to break.
+pub(crate) const BONDED_BAR: &str = r#"fractum = 1
+supports = [{ group = "bar.x-", fix = "x" }, { group = "bar.x+", displacement = { x = "6 um*t/1 s" } }]
+solver = { kind = "static", end = "1 s" }
+probes = [{ name = "load", reaction = { group = "bar.x+", along = "x" } }]
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "72 GPa"
+poisson_ratio = 0.23
+fracture = { criterion_strength = "60 MPa" }
+[[bodies]]
+name = "bar"
+kind = "bonded"
+material = "glass"
+shape = "box"
+size = ["2 mm", "1 mm", "1 mm"]
+particles = 600
+coordination = 8
+"#;
+
 /// A folder of one test, gone at its end.
 pub(crate) struct Workplace {
     folder: tempfile::TempDir,

@@ -251,9 +251,24 @@ pub struct StopWhen {
     pub after: f64,
 }
 
+/// Fields of solids that are written only where the case asks for them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FurtherFields {
+    /// Principal stresses and their directions.
+    pub principal: bool,
+    /// Strain.
+    pub strain: bool,
+    /// Forces of supports.
+    pub reaction: bool,
+    /// Number of the fragment.
+    pub fragment: bool,
+}
+
 /// What is written, and how often.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Output {
+    /// What frames hold besides what they always do.
+    pub fields: FurtherFields,
     /// Time between fields [s].
     pub fields_every: f64,
     /// Time between rows of the history [s].

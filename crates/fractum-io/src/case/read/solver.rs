@@ -3,8 +3,8 @@
 use super::probes::ReadProbe;
 use super::vectors::{direction, point};
 use crate::case::model::{
-    Body, BodyKind, Control, Damping, InitialOverlap, Opening, Output, Solver, SolverKind, StaticOptions, StopWhen,
-    TimeStep,
+    Body, BodyKind, Control, Damping, FurtherFields, InitialOverlap, Opening, Output, Solver, SolverKind,
+    StaticOptions, StopWhen, TimeStep,
 };
 use crate::case::reader::Table;
 use crate::case::tree::Value;
@@ -210,9 +210,20 @@ const JOINED_BELOW: f64 = 0.95;
 /// Reads what is written; `end` is that of the run, where it is known.
 pub(super) fn output(root: &Table<'_>, end: Option<f64>) -> Option<Output> {
     let table = root.table_or_empty("output");
-    let every = |name: &'static str, longest: Option<f64>| {
+    let mut further = FurtherFields::default();
+    let mut every = |name: &'static str, longest: Option<f64>| {
         let inner = table.table(name)?;
-        let every = inner.quantity("every").positive().spanned().required();
+        let every = inner.quantity("every").positive().spanned();
+        let every = if name == "fields" {
+            let flag = |name: &'static str| inner.flag(name).or(false);
+            further.principal = flag("principal");
+            further.strain = flag("strain");
+            further.reaction = flag("reaction");
+            further.fragment = flag("fragment");
+            every.given()
+        } else {
+            every.required()
+        };
         inner.finish("here");
         if let (Some(every), Some(longest)) = (&every, longest)
             && every.value > longest
@@ -232,6 +243,7 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>) -> Option<Output> {
     table.finish("here");
     let end = end?;
     Some(Output {
+        fields: further,
         fields_every: fields.unwrap_or(end / FRAMES),
         history_every: history.unwrap_or(end / ROWS),
         checkpoint_every: checkpoint.unwrap_or(CHECKPOINT),

@@ -143,7 +143,9 @@ fn heading(data: &ReportData) -> Markup {
             p {
                 span class={ "status " (status) } { (status) }
                 @if !data.case_file.is_empty() { (data.case_file) " · " }
-                (quantity(time.end, "s")) " simulated in " (grouped(&time.steps.to_string())) " steps · "
+                @if time.at_rest { "load factor " (significant(time.end, 4)) " after " }
+                @else { (quantity(time.end, "s")) " simulated in " }
+                (grouped(&time.steps.to_string())) " steps · "
                 (duration(wall.total)) " on " (threads) @if *threads == 1 { " thread" } @else { " threads" }
                 " · fractum " (fractum)
             }

@@ -6,6 +6,7 @@ use std::fmt::Write;
 use flate2::Compress;
 
 use super::Field;
+use super::unit::unit_of;
 use crate::compress::{Compression, compressor, deflate};
 use crate::output::markup::escape;
 
@@ -13,24 +14,31 @@ use crate::output::markup::escape;
 pub(super) const BLOCK: usize = 1 << 16;
 
 /// A VTK file in the making: text and arrays in their order.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Document<'a> {
-    kind: &'static str,
+    kind: Cow<'static, str>,
     pieces: Vec<Piece<'a>>,
 }
 
+#[derive(Clone, Debug, Serialize, Deserialize)]
 enum Piece<'a> {
     Text(String),
-    Array { tag: String, bytes: Cow<'a, [u8]> },
+    Array {
+        tag: String,
+        /// Name and unit as VTK keeps them beside an array; empty without a unit.
+        unit: String,
+        bytes: Cow<'a, [u8]>,
+    },
 }
 
 impl<'a> Document<'a> {
     /// Starts a file of that kind, with the time if it is known.
     pub(super) fn new(kind: &'static str, time: Option<f64>) -> Self {
-        let mut document = Self { kind, pieces: Vec::new() };
+        let mut document = Self { kind: Cow::Borrowed(kind), pieces: Vec::new() };
         if let Some(time) = time {
             document.text("    <FieldData>\n");
             let tag = "type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\"";
-            document.tagged(tag.into(), Cow::Owned(time.to_ne_bytes().to_vec()));
+            document.tagged(tag.into(), "TimeValue", Cow::Owned(time.to_ne_bytes().to_vec()));
             document.text("    </FieldData>\n");
         }
         document
@@ -45,10 +53,10 @@ impl<'a> Document<'a> {
 
     /// Adds an array of `kind` (`Float64`, ...).
     pub(super) fn array(&mut self, kind: &str, name: &str, components: usize, bytes: Cow<'a, [u8]>) {
-        let name = escape(name);
+        let escaped = escape(name);
         // One component is the default; meshio makes a matrix with one column of a scalar that says so.
         let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
-        self.tagged(format!("type=\"{kind}\" Name=\"{name}\"{components}"), bytes);
+        self.tagged(format!("type=\"{kind}\" Name=\"{escaped}\"{components}"), name, bytes);
     }
 
     /// Adds the points.
@@ -83,15 +91,17 @@ impl<'a> Document<'a> {
         }
     }
 
-    fn tagged(&mut self, tag: String, bytes: Cow<'a, [u8]>) {
-        self.pieces.push(Piece::Array { tag, bytes });
+    fn tagged(&mut self, tag: String, name: &str, bytes: Cow<'a, [u8]>) {
+        let key =
+            |unit| format!("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{unit}</InformationKey>");
+        self.pieces.push(Piece::Array { tag, unit: unit_of(name).map_or(String::new(), key), bytes });
     }
 
     /// The same with arrays of its own.
     pub(super) fn into_owned(self) -> Document<'static> {
         let owned = |piece| match piece {
             Piece::Text(text) => Piece::Text(text),
-            Piece::Array { tag, bytes } => Piece::Array { tag, bytes: Cow::Owned(bytes.into_owned()) },
+            Piece::Array { tag, unit, bytes } => Piece::Array { tag, unit, bytes: Cow::Owned(bytes.into_owned()) },
         };
         Document { kind: self.kind, pieces: self.pieces.into_iter().map(owned).collect() }
     }
@@ -111,7 +121,7 @@ impl<'a> Document<'a> {
             Compression::Fast => arrays.iter().map(|bytes| compressed(&mut compressor(), bytes)).collect(),
         };
 
-        let kind = self.kind;
+        let kind = &self.kind;
         let byte_order = if cfg!(target_endian = "little") { "LittleEndian" } else { "BigEndian" };
         let compressed_by = match compression {
             Compression::None => "",
@@ -126,9 +136,10 @@ impl<'a> Document<'a> {
         for piece in &self.pieces {
             match piece {
                 Piece::Text(text) => xml.push_str(text),
-                Piece::Array { tag, .. } => {
+                Piece::Array { tag, unit, .. } => {
+                    let _ = write!(xml, "        <DataArray {tag} format=\"appended\" offset=\"{offset}\"");
                     // Writing to a String cannot fail.
-                    let _ = writeln!(xml, "        <DataArray {tag} format=\"appended\" offset=\"{offset}\"/>");
+                    let _ = if unit.is_empty() { writeln!(xml, "/>") } else { writeln!(xml, ">{unit}</DataArray>") };
                     offset += lengths.next().unwrap_or(0);
                 }
             }

@@ -4,17 +4,21 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
+use serde::{Deserialize, Serialize};
+
 use super::Compression;
 use super::document::Document;
 use crate::atomic;
 use crate::error::WriteError;
 
 /// A file of which everything is known, but which is neither compressed nor written yet.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PendingFile {
     path: PathBuf,
     content: Content,
 }
 
+#[derive(Clone, Debug, Serialize, Deserialize)]
 enum Content {
     Document(Document<'static>, Compression),
     Text(String),
@@ -27,6 +31,12 @@ impl PendingFile {
 
     pub(super) fn of_text(path: &Path, text: String) -> Self {
         PendingFile { path: path.to_path_buf(), content: Content::Text(text) }
+    }
+
+    /// The same file under another name.
+    #[must_use]
+    pub fn at(self, path: &Path) -> Self {
+        PendingFile { path: path.to_path_buf(), ..self }
     }
 
     /// Writes the file.

@@ -24,6 +24,7 @@ mod document;
 mod frame_writer;
 mod grid;
 mod poly;
+mod unit;
 
 use std::borrow::Cow;
 

@@ -16,6 +16,8 @@ pub enum PolyCells<'a> {
     Lines(&'a [[u32; 2]]),
     /// Triangles.
     Triangles(&'a [[u32; 3]]),
+    /// Polygons of six corners.
+    Hexagons(&'a [[u32; 6]]),
 }
 
 /// What goes into one VTP. For particles, give the radius as a field at the points: ParaView's glyphs take it as scale.
@@ -60,13 +62,15 @@ impl PolyData<'_> {
             }
             PolyCells::Lines(lines) => (lines.as_flattened(), 2),
             PolyCells::Triangles(triangles) => (triangles.as_flattened(), 3),
+            PolyCells::Hexagons(hexagons) => (hexagons.as_flattened(), 6),
         };
         check_points(nodes, points.len())?;
         let count = nodes.len() / per_cell;
         point_data.iter().try_for_each(|field| field.check(points.len()))?;
         cell_data.iter().try_for_each(|field| field.check(count))?;
 
-        let count_if = |size| if size == per_cell { count } else { 0 };
+        let size = per_cell.min(3);
+        let count_if = |other| if other == size { count } else { 0 };
         let mut document = Document::new("PolyData", time);
         document.text(&format!(
             "    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" \
@@ -77,7 +81,7 @@ impl PolyData<'_> {
             count_if(3)
         ));
         document.points(points);
-        let section = ["Verts", "Lines", "Polys"][per_cell - 1];
+        let section = ["Verts", "Lines", "Polys"][size - 1];
         document.text(&format!("      <{section}>\n"));
         document.cells(nodes, (1..=count).map(|cell| cell * per_cell));
         document.text(&format!("      </{section}>\n"));

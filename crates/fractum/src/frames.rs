@@ -1,0 +1,304 @@
+//! Frames: what ParaView shows of one instant, a file per population.
+
+use std::path::Path;
+
+use fractum_io::Compression;
+use fractum_io::case::model::{BodyKind, Case, FurtherFields};
+use fractum_io::vtk::{CellBlock, CellKind, Field, PendingFile, PolyCells, PolyData, UnstructuredGrid, Values};
+use fractum_math::Sym3;
+use fractum_scene::Scene;
+use serde::{Deserialize, Serialize};
+
+use crate::cracks;
+use crate::error::Failure;
+use crate::gas_cells;
+use crate::record_bonded::ParticleFiles;
+use crate::rigid_surface::RigidSurfaces;
+
+/// The files of one instant, not written yet.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Frame {
+    /// Where it stands in the collection: time [s], or the step of a path that may turn back.
+    pub(crate) instant: f64,
+    /// Steps done.
+    pub(crate) step: u64,
+    parts: Vec<(Part, PendingFile)>,
+}
+
+/// A population that is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Part {
+    Solid,
+    Debris,
+    Bonded,
+    Loose,
+    Bonds,
+    Cracks,
+    Gas,
+    Rigid,
+}
+
+impl Part {
+    /// Its number in the collection, its name, and its file up to the number of the frame, with the ending.
+    fn names(self) -> (u32, &'static str, [&'static str; 2]) {
+        match self {
+            Part::Solid => (0, "solid", ["fields/solid", "vtu"]),
+            Part::Debris => (1, "discrete elements", ["particles/particles", "vtp"]),
+            Part::Bonded => (2, "bonded particles", ["particles/bonded", "vtp"]),
+            Part::Loose => (6, "loose particles", ["particles/loose", "vtp"]),
+            Part::Bonds => (3, "bonds", ["bonds/bonds", "vtp"]),
+            Part::Cracks => (4, "cracks", ["cracks/cracks", "vtp"]),
+            Part::Gas => (5, "gas", ["gas/gas", "vtu"]),
+            Part::Rigid => (7, "rigid bodies", ["rigid/rigid", "vtp"]),
+        }
+    }
+}
+
+impl Frame {
+    /// The frame of the present instant.
+    ///
+    /// - `instant`: where it stands in the collection
+    pub(crate) fn of(scene: &Scene, grid: &GridLayout, instant: f64) -> Result<Self, Failure> {
+        let mut parts = Vec::new();
+        if !scene.solid.reference.is_empty() {
+            parts.push((Part::Solid, solid_file(scene, grid)?));
+        }
+        if !scene.debris.is_empty() {
+            parts.push((Part::Debris, particles_file(scene)?));
+        }
+        let ParticleFiles { bonded, loose, bonds } = ParticleFiles::of(scene)?;
+        let particles = [(Part::Bonded, bonded), (Part::Loose, loose), (Part::Bonds, bonds)];
+        parts.extend(particles.into_iter().filter_map(|(part, file)| Some((part, file?))));
+        if !grid.rigid.is_empty() {
+            parts.push((Part::Rigid, grid.rigid.file(scene)?));
+        }
+        if let Some(gas) = scene.gas().filter(|gas| gas.cells().nth(gas.hole_count()).is_some()) {
+            parts.push((Part::Gas, gas_cells::file(Path::new(""), scene, gas)?));
+        }
+        let crack = scene.solid.crack_surface();
+        if !crack.facets.is_empty() {
+            parts.push((Part::Cracks, cracks::facets_file(Path::new(""), &scene.solid, &crack, None)?));
+        }
+        Ok(Frame { instant, step: scene.clock.step, parts })
+    }
+
+    /// Number and name of each part in the collection; name of its file, as that of frame `number`, and the file.
+    pub(crate) fn files(self, number: u64) -> impl Iterator<Item = ((u32, &'static str), (String, PendingFile))> {
+        self.parts.into_iter().map(move |(part, file)| {
+            let (index, name, [path, ending]) = part.names();
+            ((index, name), (format!("{path}-{number:05}.{ending}"), file))
+        })
+    }
+}
+
+/// What stays the same in all frames: the mesh of the solids in the order of the file, and the surfaces of rigid bodies.
+pub(crate) struct GridLayout {
+    file_order: Vec<u32>,
+    /// Connectivity of each body in the order of `file_order`.
+    bodies: Vec<(CellKind, Vec<u32>)>,
+    /// Number of the material of each body in the case, from 0.
+    materials: Vec<i32>,
+    rigid: RigidSurfaces,
+    further: FurtherFields,
+}
+
+impl GridLayout {
+    pub(crate) fn new(scene: &Scene, file_order: &[u32], case: &Case) -> Self {
+        let mut place = vec![0u32; file_order.len()];
+        for (file, &node) in (0..).zip(file_order) {
+            place[node as usize] = file;
+        }
+        let bodies = (0..scene.solid.body_count())
+            .map(|body| {
+                let body = scene.solid.body(body);
+                let corners = body.shape.node_count();
+                let kind = if corners == 4 { CellKind::Tetrahedron } else { CellKind::Triangle };
+                let nodes = body.elements.iter().flat_map(|e| &e[..corners]).map(|&n| place[n as usize]).collect();
+                (kind, nodes)
+            })
+            .collect();
+        let material = |body: usize| {
+            let name = &scene.solid.body(body).name;
+            let own = case.bodies.iter().find(|of_case| of_case.name.value == *name);
+            own.map_or(-1, |body| if let BodyKind::Solid(solid) = &body.kind { solid.material as i32 } else { -1 })
+        };
+        GridLayout {
+            file_order: file_order.to_vec(),
+            bodies,
+            materials: (0..scene.solid.body_count()).map(material).collect(),
+            rigid: RigidSurfaces::new(scene),
+            further: case.output.fields,
+        }
+    }
+}
+
+/// The elements that are left, with displacement, velocity, stress and damage.
+fn solid_file(scene: &Scene, grid: &GridLayout) -> Result<PendingFile, Failure> {
+    let (solid, order) = (&scene.solid, &grid.file_order);
+    let attached = scene.attached_nodes();
+    let nodal = |of: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { order.iter().map(|&n| of(n as usize)).collect() };
+    let points = nodal(&|n| solid.reference[n].into());
+    let displacement = nodal(&|n| solid.displacement_from_start(n).into());
+    let velocity: Vec<[f32; 3]> = order.iter().map(|&n| single(solid.velocity[n as usize].into())).collect();
+    let held: Vec<u8> = order.iter().map(|&n| u8::from(attached[n as usize])).collect();
+    let reactions = if grid.further.reaction { scene.supports().reactions(solid.reference.len()) } else { Vec::new() };
+    let reaction: Vec<[f32; 3]> = if grid.further.reaction {
+        order.iter().map(|&n| single(reactions[n as usize].into())).collect()
+    } else {
+        Vec::new()
+    };
+    let fragments = if grid.further.fragment { scene.fragment_of_nodes() } else { Vec::new() };
+    let fragment: Vec<i32> =
+        if grid.further.fragment { order.iter().map(|&n| fragments[n as usize]).collect() } else { Vec::new() };
+    let mut point_data = vec![
+        Field::vector("displacement", &displacement),
+        vector("velocity", &velocity),
+        Field::flag("attached", &held),
+    ];
+    if grid.further.reaction {
+        point_data.push(vector("reaction", &reaction));
+    }
+    if grid.further.fragment {
+        point_data.push(Field::integer("fragment", &fragment));
+    }
+    let elements = ElementFields::of(scene, grid);
+    let cells: Vec<CellBlock> = elements.cells.iter().map(|(kind, nodes)| CellBlock { kind: *kind, nodes }).collect();
+    let grid = UnstructuredGrid {
+        points: &points,
+        cells: &cells,
+        point_data: &point_data,
+        cell_data: &elements.fields(grid.further, solid.has_phase_fields()),
+        time: Some(scene.clock.time),
+    };
+    grid.pending(Path::new(""), Compression::Fast).map_err(|e| Failure::Output(e.into()))
+}
+
+/// What is known of the elements that are left, body after body. Seven digits are plenty for looking at it, and halve what is
+/// compressed and written.
+#[derive(Default)]
+struct ElementFields {
+    cells: Vec<(CellKind, Vec<u32>)>,
+    stress: Vec<[f32; 6]>,
+    first: Vec<f32>,
+    von_mises: Vec<f32>,
+    principal: Vec<[f32; 3]>,
+    directions: [Vec<[f32; 3]>; 3],
+    strain: Vec<[f32; 6]>,
+    damage: Vec<f32>,
+    phase: Vec<f32>,
+    body: Vec<i32>,
+    material: Vec<i32>,
+}
+
+impl ElementFields {
+    fn of(scene: &Scene, grid: &GridLayout) -> Self {
+        let solid = &scene.solid;
+        let mut fields = ElementFields::default();
+        for (body, (kind, nodes)) in grid.bodies.iter().enumerate() {
+            let corners = kind.nodes();
+            let mut kept = Vec::with_capacity(nodes.len());
+            let phases = solid.element_phase(body);
+            let strains = if grid.further.strain { solid.element_strains(body) } else { Vec::new() };
+            for (element, (stress, damage)) in solid.element_fields(body).into_iter().enumerate() {
+                if !solid.alive(body)[element] {
+                    continue;
+                }
+                kept.extend_from_slice(&nodes[corners * element..corners * (element + 1)]);
+                fields.add_stress(stress, grid.further.principal);
+                fields.strain.extend(strains.get(element).map(|strain| strain.0.map(|e| e as f32)));
+                fields.damage.push(damage as f32);
+                fields.phase.push(phases.as_ref().map_or(0.0, |phases| phases[element] as f32));
+                fields.body.push(body as i32);
+                fields.material.push(grid.materials[body]);
+            }
+            fields.cells.push((*kind, kept));
+        }
+        fields
+    }
+
+    fn add_stress(&mut self, stress: Sym3, principal: bool) {
+        self.stress.push(stress.0.map(|s| s as f32));
+        self.von_mises.push((3.0 * stress.j2()).sqrt() as f32);
+        self.first.push(stress.principal_values()[0] as f32);
+        if principal {
+            let (values, directions) = stress.eigen();
+            self.principal.push(single(values));
+            for (axis, of) in self.directions.iter_mut().enumerate() {
+                of.push(single(directions.column(axis).into_owned().into()));
+            }
+        }
+    }
+
+    fn fields(&self, further: FurtherFields, phase: bool) -> Vec<Field<'_>> {
+        let mut fields = vec![
+            tensor("stress", &self.stress),
+            scalar("first_principal_stress", &self.first),
+            scalar("von_mises_stress", &self.von_mises),
+            scalar("damage", &self.damage),
+            Field::integer("body", &self.body),
+            Field::integer("material", &self.material),
+        ];
+        if further.principal {
+            fields.push(vector("principal_stresses", &self.principal));
+            let names = ["principal_direction_1", "principal_direction_2", "principal_direction_3"];
+            fields.extend(names.into_iter().zip(&self.directions).map(|(name, of)| vector(name, of)));
+        }
+        if further.strain {
+            fields.push(tensor("strain", &self.strain));
+        }
+        if phase {
+            fields.push(scalar("d", &self.phase));
+        }
+        fields
+    }
+}
+
+fn single(vector: [f64; 3]) -> [f32; 3] {
+    vector.map(|component| component as f32)
+}
+
+fn scalar<'a>(name: &'a str, values: &'a [f32]) -> Field<'a> {
+    Field { name, components: 1, values: Values::F32(values) }
+}
+
+fn vector<'a>(name: &'a str, values: &'a [[f32; 3]]) -> Field<'a> {
+    Field { name, components: 3, values: Values::F32(values.as_flattened()) }
+}
+
+fn tensor<'a>(name: &'a str, values: &'a [[f32; 6]]) -> Field<'a> {
+    Field { name, components: 6, values: Values::F32(values.as_flattened()) }
+}
+
+/// Discrete elements as vertices with their radius.
+fn particles_file(scene: &Scene) -> Result<PendingFile, Failure> {
+    let (solid, debris) = (&scene.solid, &scene.debris);
+    let state = debris.state();
+    let of = |f: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { state.nodes.iter().map(|&n| f(n as usize)).collect() };
+    let points = of(&|n| solid.reference[n].into());
+    let displacement = of(&|n| solid.displacement_from_start(n).into());
+    let velocity = of(&|n| solid.velocity[n].into());
+    let radius: Vec<f64> = state.nodes.iter().map(|&n| debris.radius(n)).collect();
+    let mass: Vec<f64> = state.nodes.iter().map(|&n| solid.mass[n as usize]).collect();
+    let attached: Vec<u8> = state.attached.iter().map(|&a| u8::from(a)).collect();
+    let spin: Vec<[f64; 3]> = state.spin.iter().map(|&s| s.into()).collect();
+    let thickness: Vec<f64> = state.nodes.iter().map(|&n| debris.thickness(n)).collect();
+    let mut point_data = vec![
+        Field::scalar("radius", &radius),
+        Field::scalar("mass", &mass),
+        Field::vector("displacement", &displacement),
+        Field::vector("velocity", &velocity),
+        Field { name: "spin", components: 3, values: Values::F64(spin.as_flattened()) },
+        Field::flag("attached", &attached),
+    ];
+    if thickness.iter().any(|&t| t > 0.0) {
+        point_data.push(Field::scalar("thickness", &thickness));
+    }
+    let data = PolyData {
+        points: &points,
+        cells: PolyCells::Points,
+        point_data: &point_data,
+        cell_data: &[],
+        time: Some(scene.clock.time),
+    };
+    data.pending(Path::new(""), Compression::Fast).map_err(|e| Failure::Output(e.into()))
+}
