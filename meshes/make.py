@@ -69,6 +69,7 @@ UNSTRUCTURED = {
     "blast-plane/shale": ("blast-plane/hole.geo", {"h": 0.02, "band": 0.06, "L": 30}, False),
     "blast-plane/granite": ("blast-plane/disc.geo", {"h": 0.0006, "far": 0.0011, "length": 0}, False),
     "blast-plane/bench": ("blast-plane/bench.geo", {"h": 0.06}, False),
+    "blast/bench": ("blast/bench.geo", {"h": 0.1}, True),
     "blast/granite": ("blast-plane/disc.geo", {"h": 0.0025, "far": 0.009, "length": 0.15}, True),
     "absorbing-plane/p-30": ("absorbing-plane/channel.geo", {"angle": 30, "W": 0.1, "L": 0.03}, False),
     "absorbing-plane/p-60": ("absorbing-plane/channel.geo", {"angle": 60, "W": 0.1, "L": 0.03}, False),
