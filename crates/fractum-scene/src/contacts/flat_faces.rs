@@ -47,6 +47,37 @@ impl FlatFaces {
     }
 }
 
+/// The bodies of particles that have flat faces.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FlatBodies {
+    /// Faces of each body of particles; empty where no body has any.
+    faces: Vec<Option<FlatFaces>>,
+    /// How far each particle is from where rigid bodies feel it, and where that is [m]; empty where nothing is flat.
+    shift: Vec<Vec3>,
+    shifted: Vec<Vec3>,
+    /// Squared frequency that flat faces ask of the step [1/s²].
+    pub(super) frequency_square: f64,
+}
+
+impl FlatBodies {
+    /// Faces of a body; none where its particles touch as spheres.
+    pub(super) fn of(&self, body: u16) -> Option<&FlatFaces> {
+        self.faces.get(usize::from(body)).and_then(Option::as_ref)
+    }
+
+    /// Puts particles where rigid bodies feel them, where that is not at their centres.
+    pub(super) fn shift_particles(&mut self, position: &[Vec3]) {
+        for ((place, x), shift) in self.shifted.iter_mut().zip(position).zip(&self.shift) {
+            *place = x + shift;
+        }
+    }
+
+    /// Where rigid bodies feel particles [m].
+    pub(super) fn places<'a>(&'a self, position: &'a [Vec3]) -> &'a [Vec3] {
+        if self.shifted.is_empty() { position } else { &self.shifted }
+    }
+}
+
 impl Contacts {
     /// Makes the faces of bonded bodies flat to rigid bodies, and takes as they stand those that touch one; returns overlaps of
     /// more than a tenth of a radius, which no packing makes.
@@ -58,7 +89,7 @@ impl Contacts {
         }
         let alone = self.among.is_none() && self.solids.is_empty();
         let damping = self.rigid_bodies.iter().map(|rigid_body| rigid_body.surface.damping_ratio).fold(0.0, f64::max);
-        let (mut shift, mut flat_square) = (Vec::with_capacity(particles.len()), 0.0f64);
+        let (mut shift, mut frequency_square) = (Vec::with_capacity(particles.len()), 0.0f64);
         for (body, faces) in faces.iter().enumerate() {
             let own = shift.len()..shift.len() + self.body.iter().filter(|&&of| usize::from(of) == body).count();
             let Some(faces) = faces else {
@@ -69,13 +100,12 @@ impl Contacts {
             shift.resize(own.end, Vec3::zeros());
             let ratio = 0.5 * (damping + self.materials[body].surface.damping_ratio);
             let squares = own.map(|i| faces.frequency_square(particles.radius[i], particles.mass[i], ratio));
-            flat_square = squares.fold(flat_square, f64::max);
+            frequency_square = squares.fold(frequency_square, f64::max);
         }
         if alone {
             self.rayleigh_frequency = 0.0;
         }
-        self.flat_frequency_square = flat_square;
-        (self.flat, self.shift, self.shifted) = (faces, shift, particles.position.clone());
+        self.flat = FlatBodies { faces, shift, shifted: particles.position.clone(), frequency_square };
         self.accept_on_rigid_bodies(particles, true)
     }
 
@@ -83,12 +113,11 @@ impl Contacts {
     ///
     /// - `flat`: only those of flat faces
     pub(super) fn accept_on_rigid_bodies(&mut self, particles: &Particles, flat: bool) -> Vec<Overlap> {
-        self.shift_particles(&particles.position);
-        let Contacts { body, rigid_bodies, on_tools, flat: faces, shifted, .. } = self;
+        self.flat.shift_particles(&particles.position);
+        let Contacts { body, rigid_bodies, on_tools, flat: bodies, .. } = self;
         let Particles { position, velocity, spin, radius, .. } = particles;
-        let position = if shifted.is_empty() { position } else { &*shifted };
-        let spheres = Spheres { position, velocity, spin, radius };
-        let is_flat = |i: u32| faces.get(usize::from(body[i as usize])).is_some_and(Option::is_some);
+        let spheres = Spheres { position: bodies.places(position), velocity, spin, radius };
+        let is_flat = |i: u32| bodies.of(body[i as usize]).is_some();
         let mut deep = Vec::new();
         for (rigid_body, (contacts, _)) in rigid_bodies.iter().zip(on_tools) {
             contacts.search(&rigid_body.ground(), &spheres);
@@ -100,12 +129,5 @@ impl Contacts {
             deep.extend(worse.map(|t| Overlap { particle: t.sphere, other: other.clone(), depth: t.overlap }));
         }
         deep
-    }
-
-    /// Puts particles where rigid bodies feel them, where that is not at their centres.
-    pub(super) fn shift_particles(&mut self, position: &[Vec3]) {
-        for ((place, x), shift) in self.shifted.iter_mut().zip(position).zip(&self.shift) {
-            *place = x + shift;
-        }
     }
 }

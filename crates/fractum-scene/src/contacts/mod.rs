@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use between::Touching;
 pub use between::{ContactBody, ContactProbe};
+use flat_faces::FlatBodies;
 pub use flat_faces::FlatFaces;
 pub use node_contacts::pieces;
 pub(crate) use nodes_on_shape::Candidate;
@@ -73,13 +74,8 @@ pub struct Contacts {
     /// Accelerations of everything, by axis.
     gravity: Vec<(usize, TimeFunctionOf)>,
     rayleigh_frequency: f64,
-    /// Faces of each body that rigid bodies feel as flat; empty where there are none.
-    flat: Vec<Option<FlatFaces>>,
-    /// How far each particle is from where rigid bodies feel it, and where that is [m]; empty where nothing is flat.
-    shift: Vec<Vec3>,
-    shifted: Vec<Vec3>,
-    /// Squared frequency that flat faces ask of the step [1/s²].
-    flat_frequency_square: f64,
+    /// Faces of bonded bodies that rigid bodies feel as flat.
+    flat: FlatBodies,
     /// Largest squared frequency that contacts have given to nodes of solids so far [1/s²].
     node_frequency_square: f64,
     /// Forces between bodies that probes ask for [N].
@@ -181,10 +177,7 @@ impl Contacts {
             body,
             rigid_bodies,
             rayleigh_frequency,
-            flat: Vec::new(),
-            shift: Vec::new(),
-            shifted: Vec::new(),
-            flat_frequency_square: 0.0,
+            flat: FlatBodies::default(),
             node_frequency_square: 0.0,
             watched: Vec::new(),
         }
@@ -206,7 +199,7 @@ impl Contacts {
 
     /// Squared frequency that contacts ask of the step [1/s²].
     pub(crate) fn frequency_square(&self) -> f64 {
-        self.rayleigh_frequency * self.rayleigh_frequency + self.flat_frequency_square + self.node_frequency_square
+        self.rayleigh_frequency * self.rayleigh_frequency + self.flat.frequency_square + self.node_frequency_square
     }
 
     /// Energy of the mean particle at the speed of the fastest rigid body [J]: what the first touch is about.
@@ -233,7 +226,7 @@ impl Contacts {
     /// - `dt` [s]: the step that led here
     pub(crate) fn add_forces(&mut self, solid: &mut Solid, particles: &mut Particles, dt: f64) -> Work {
         let mut work = Work::default();
-        self.shift_particles(&particles.position);
+        self.flat.shift_particles(&particles.position);
         let Particles { position, velocity, spin, radius, mass, force, moment, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
         if let Some(mut among) = self.among.take() {
@@ -241,18 +234,18 @@ impl Contacts {
             work += among.add_forces(&spheres, force, moment, dt);
             self.among = Some(among);
         }
-        let Contacts { body, rigid_bodies, on_tools, solids, flat, shifted, .. } = self;
+        let Contacts { body, rigid_bodies, on_tools, solids, flat, .. } = self;
         let body = &*body;
-        let felt = Spheres { position: if shifted.is_empty() { position } else { shifted }, ..spheres };
+        let felt = Spheres { position: flat.places(position), ..spheres };
         for (rigid_body, (contacts, pairs)) in rigid_bodies.iter_mut().zip(on_tools) {
             let heavy = rigid_body.mass();
             let law = |i: u32, curvature: f64| {
                 let i = i as usize;
                 let moved = if heavy.is_finite() { mass[i] * heavy / (mass[i] + heavy) } else { mass[i] };
                 let pair = &pairs[body[i] as usize];
-                match flat.get(body[i] as usize) {
-                    Some(Some(faces)) => faces.law(radius[i], pair.surface, moved),
-                    _ => Hertz::new(pair, 1.0 / (1.0 / radius[i] + curvature), moved),
+                match flat.of(body[i]) {
+                    Some(faces) => faces.law(radius[i], pair.surface, moved),
+                    None => Hertz::new(pair, 1.0 / (1.0 / radius[i] + curvature), moved),
                 }
             };
             let ground = rigid_body.ground();
