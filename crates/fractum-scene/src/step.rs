@@ -269,7 +269,7 @@ impl Scene {
         ledger[EnergyKind::TimeStep] = books.time_step;
         ledger[EnergyKind::Absorbed] = books.absorbed;
         ledger[EnergyKind::Left] = books.left;
-        ledger[EnergyKind::Foundation] = surface_supports.stored(&*solid);
+        ledger[EnergyKind::Foundation] = surface_supports.stored();
         if self.clock.step == 0 {
             ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];
             if !solid.initial_displacement.is_empty() {

@@ -1,5 +1,6 @@
 //! The gallery against its references.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -34,7 +35,7 @@ pub struct Selection {
 }
 
 /// Runs the selected cases that expect something, prints the table and writes it after every case into `verify.json` and
-/// `verify.md`; the lines of the table.
+/// `verify.md`, with the shares of the parts of each run in `phases.md`; the lines of the table.
 ///
 /// # Errors
 /// [`Failure::Input`] if nothing is selected, [`Failure::Write`] if the table cannot be written. A case that fails to
@@ -84,16 +85,20 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
         let first = lines.len();
         match outcome {
             Ok(outcome) if outcome.summary.status == Status::Interrupted => return Err(Failure::Interrupted),
-            Ok(outcome) => lines.extend(outcome.summary.expect.into_iter().map(|expectation| Verified {
-                case: name.clone(),
-                expectation,
-                seconds,
-            })),
+            Ok(outcome) => {
+                let phases = outcome.summary.wall.phases;
+                lines.extend(outcome.summary.expect.into_iter().map(|expectation| Verified {
+                    case: name.clone(),
+                    expectation,
+                    seconds,
+                    phases: phases.clone(),
+                }));
+            }
             Err(error) => {
                 tell!("{name}: {error}");
                 let expectation =
                     Expectation { quantity: "run".into(), source: error.to_string(), ..Expectation::default() };
-                lines.push(Verified { case: name.clone(), expectation, seconds });
+                lines.push(Verified { case: name.clone(), expectation, seconds, phases: BTreeMap::new() });
             }
         }
         lines[first..].iter().for_each(print_line);

@@ -1,5 +1,6 @@
-//! The gallery against its references: `verify.json` for scripts, `verify.md` for people.
+//! The gallery against its references: `verify.json` for scripts, `verify.md` for people, `phases.md` with what took the time.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -22,6 +23,9 @@ pub struct Verified {
     /// Time on the clock [s].
     #[serde(with = "or_null")]
     pub seconds: f64,
+    /// Time on the clock by part of the run [s], as in `summary.json`.
+    #[serde(default)]
+    pub phases: BTreeMap<String, f64>,
 }
 
 impl Verified {
@@ -31,13 +35,38 @@ impl Verified {
     }
 }
 
-/// Writes `verify.json` and `verify.md` into a folder.
+/// Writes `verify.json`, `verify.md` and `phases.md` into a folder.
 ///
 /// # Errors
 /// [`WriteError`].
 pub fn write(folder: &Path, lines: &[Verified]) -> Result<(), WriteError> {
     atomic::write(&folder.join("verify.json"), json(lines).as_bytes())?;
+    atomic::write(&folder.join("phases.md"), phases(lines).as_bytes())?;
     atomic::write(&folder.join("verify.md"), table(lines).as_bytes())
+}
+
+/// Case by case the share of every part of the run in per cent; a dash where a part has not run at all. Setting up is what no part has.
+fn phases(lines: &[Verified]) -> String {
+    let names: Vec<&str> = lines
+        .iter()
+        .find(|line| !line.phases.is_empty())
+        .map_or(Vec::new(), |line| line.phases.keys().map(String::as_str).collect());
+    let mut text =
+        format!("| case | seconds | {} | set up |\n|---|---|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
+    for case in lines.chunk_by(|a, b| a.case == b.case) {
+        let Verified { case, seconds, phases, .. } = &case[0];
+        // Writing into a string has no way to fail.
+        let _ = write!(text, "| {case} | {seconds:.2} |");
+        for name in &names {
+            let _ = match phases.get(*name) {
+                Some(time) if *time > 0.0 => write!(text, " {:.1} |", 100.0 * time / seconds),
+                _ => write!(text, " - |"),
+            };
+        }
+        let rest = seconds - phases.values().sum::<f64>();
+        let _ = writeln!(text, " {:.1} |", 100.0 * rest / seconds);
+    }
+    text
 }
 
 /// Folder by folder how many references are met, then those that are missed. Lines of a case and cases of a folder stand together.
@@ -76,7 +105,15 @@ mod tests {
             case: case.into(),
             expectation: Expectation::hold("peak", "Pa", value, bound, "exact"),
             seconds: 2.0,
+            phases: [("contact".to_owned(), 0.0), ("solid".to_owned(), 1.5)].into(),
         }
+    }
+
+    #[test]
+    fn shares_of_parts_are_told_case_by_case() {
+        let table = phases(&[line("bar/a", 1.0), line("bar/a", 1.2), line("bar/b", 1.0)]);
+        let head = "| case | seconds | contact | solid | set up |\n|---|---|---|---|---|\n";
+        assert_eq!(table, format!("{head}| bar/a | 2.00 | - | 75.0 | 25.0 |\n| bar/b | 2.00 | - | 75.0 | 25.0 |\n"));
     }
 
     #[test]
@@ -93,7 +130,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let bound = Bound::Near { value: 1.0, tolerance: 0.1, relative: Some(0.1) };
         let expectation = Expectation::hold("stress", "Pa", 1.0, bound, "exact");
-        let line = Verified { case: "patch".into(), expectation, seconds: 2.0 };
+        let line = Verified { case: "patch".into(), expectation, seconds: 2.0, phases: BTreeMap::new() };
         write(folder.path(), &[line]).unwrap();
         let path = folder.path().join("verify.json");
         let lines: serde_json::Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();

@@ -8,8 +8,6 @@ use fractum_fem::Solid;
 use fractum_math::{Vec3, Work};
 use nalgebra::Matrix3;
 
-use super::Points;
-
 /// A facet on which something outside answers to the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SupportedFacet {
@@ -61,6 +59,8 @@ pub struct SurfaceSupports {
     /// Forces of the dashpots at tⁿ [N].
     absorbing: Vec<Vec3>,
     springs: NodeMatrices,
+    /// Energy in the springs at tⁿ [J].
+    stored: f64,
     /// Largest square of a frequency that springs add, K/m [1/s²].
     frequency_square: f64,
 }
@@ -77,7 +77,13 @@ impl SurfaceSupports {
         let (dashpots, springs) = (NodeMatrices::new(absorbing), NodeMatrices::new(elastic));
         let square = |(&node, k): (&u32, &Matrix3<f64>)| k.symmetric_eigenvalues().max() / mass[node as usize];
         let frequency_square = springs.nodes.iter().zip(&springs.matrix).map(square).fold(0.0, f64::max);
-        SurfaceSupports { absorbing: vec![Vec3::zeros(); dashpots.nodes.len()], dashpots, springs, frequency_square }
+        SurfaceSupports {
+            absorbing: vec![Vec3::zeros(); dashpots.nodes.len()],
+            dashpots,
+            springs,
+            stored: 0.0,
+            frequency_square,
+        }
     }
 
     /// What springs add to the square of the highest frequency at most, by Weyl's inequality [1/s²].
@@ -85,19 +91,18 @@ impl SurfaceSupports {
         self.frequency_square
     }
 
-    /// Energy in the springs [J].
-    pub(crate) fn stored(&self, points: &impl Points) -> f64 {
-        let energy = |(&node, k): (&u32, &Matrix3<f64>)| {
-            let u = points.displacement(node as usize);
-            0.5 * u.dot(&(k * u))
-        };
-        self.springs.nodes.iter().zip(&self.springs.matrix).map(energy).fold(0.0, |sum, energy| sum + energy)
+    /// Energy in the springs when their forces were added last [J].
+    pub(crate) fn stored(&self) -> f64 {
+        self.stored
     }
 
     /// Adds the forces of the springs.
-    pub(crate) fn push(&self, solid: &mut Solid) {
+    pub(crate) fn push(&mut self, solid: &mut Solid) {
+        self.stored = 0.0;
         for (&node, k) in self.springs.nodes.iter().zip(&self.springs.matrix) {
-            let force = k * solid.displacement_from_start(node as usize);
+            let displacement = solid.displacement_from_start(node as usize);
+            let force = k * displacement;
+            self.stored += 0.5 * displacement.dot(&force);
             solid.force[node as usize] -= force;
         }
     }

@@ -85,6 +85,12 @@ enum Command {
         /// Random blasts only.
         #[arg(long, requires = "stress")]
         blasts: bool,
+        /// The largest stable step of every kind of scene instead of random ones.
+        #[arg(long, requires = "stress", conflicts_with = "blasts")]
+        steps: bool,
+        /// With --steps: a steps.json of before, to tell what has changed.
+        #[arg(long, requires = "steps")]
+        baseline: Option<PathBuf>,
         /// Number of random scenes.
         #[arg(long, default_value_t = 300, requires = "stress")]
         scenes: usize,
@@ -185,16 +191,9 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Run(run) => run_case(run),
         Command::Check { case, set } => check(&case, &set),
         Command::New { template, folder } => new::new(template.as_deref(), folder),
-        Command::Verify { stress: true, blasts, scenes, seed, output, threads, .. } => {
+        Command::Verify { stress: true, blasts, steps, baseline, scenes, seed, output, threads, .. } => {
             let settings = fractum::stress::Settings { scenes, blasts, seed, output, threads, cache: cache() };
-            fractum::stress::stress(&settings).and_then(|lines| {
-                match lines.iter().filter(|line| line.end == fractum::stress::End::Silent).count() {
-                    0 => Ok(ExitCode::Done),
-                    silent => {
-                        Err(Failure::Unmet(format!("{silent} of {} scenes went wrong without a word", lines.len())))
-                    }
-                }
-            })
+            if steps { measure_steps(&settings, baseline.as_deref()) } else { run_random_scenes(&settings) }
         }
         Command::Verify { names, quick, cases, output, threads, .. } => {
             let selection = fractum::verify::Selection { cases, names, quick, output, threads, cache: cache() };
@@ -224,6 +223,27 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         report(&failure, json);
         failure.exit_code()
     })
+}
+
+fn run_random_scenes(settings: &fractum::stress::Settings) -> Result<ExitCode, Failure> {
+    let lines = fractum::stress::stress(settings)?;
+    match lines.iter().filter(|line| line.end == fractum::stress::End::Silent).count() {
+        0 => Ok(ExitCode::Done),
+        silent => Err(Failure::Unmet(format!("{silent} of {} scenes went wrong without a word", lines.len()))),
+    }
+}
+
+fn measure_steps(
+    settings: &fractum::stress::Settings,
+    baseline: Option<&std::path::Path>,
+) -> Result<ExitCode, Failure> {
+    let limits = fractum::stress::steps(settings, baseline)?;
+    match limits.iter().filter(|limit| !limit.holds()).count() {
+        0 => Ok(ExitCode::Done),
+        unstable => {
+            Err(Failure::Unmet(format!("{unstable} of {} scenes are unstable at the default step", limits.len())))
+        }
+    }
 }
 
 fn report(failure: &Failure, json: bool) {

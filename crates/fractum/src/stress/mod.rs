@@ -7,6 +7,8 @@
 pub mod blast;
 pub mod draw;
 pub mod scenes;
+mod situations;
+mod steps;
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use fractum_io::atomic;
-use fractum_mesh::{MshFormat, write_msh};
+use fractum_mesh::{Mesh, MshFormat, write_msh};
 use fractum_prepare::Cache;
 use serde::Serialize;
 use serde_json::Value;
@@ -25,6 +27,7 @@ use crate::{Options, Outcome, run};
 use blast::{BLAST, blast};
 use draw::Draw;
 use scenes::{KINDS, RandomScene, scene};
+pub use steps::{Limit, steps};
 
 /// Relative residual of the energy balance below which a run is good.
 const GOOD_RESIDUAL: f64 = 1e-3;
@@ -117,13 +120,14 @@ pub fn stress(settings: &Settings) -> Result<Vec<Line>, Failure> {
 fn write_case(scene: &RandomScene, folder: &Path) -> Result<(), Failure> {
     atomic::create_folder(folder)?;
     atomic::write(&folder.join("case.toml"), scene.case.as_bytes())?;
-    if let Some(mesh) = &scene.mesh {
-        let mut bytes = Vec::new();
-        // Writing to memory does not fail.
-        let _ = write_msh(mesh, MshFormat::V4_1Binary, &mut bytes);
-        atomic::write(&folder.join("mesh.msh"), &bytes)?;
-    }
-    Ok(())
+    scene.mesh.as_ref().map_or(Ok(()), |mesh| write_mesh(mesh, folder))
+}
+
+fn write_mesh(mesh: &Mesh, folder: &Path) -> Result<(), Failure> {
+    let mut bytes = Vec::new();
+    // Writing to memory does not fail.
+    let _ = write_msh(mesh, MshFormat::V4_1Binary, &mut bytes);
+    Ok(atomic::write(&folder.join("mesh.msh"), &bytes)?)
 }
 
 /// Runs a case; how it ended, its residual, and what there is to say.
