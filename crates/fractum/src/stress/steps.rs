@@ -159,9 +159,9 @@ fn fails(scene: &mut Scene, situation: &Situation) -> Option<String> {
             return Some(reason(&error).to_owned());
         }
         if look {
-            let velocities = scene.solid.velocity.iter().chain(&scene.bonded.particles.velocity);
-            let largest = velocities.map(|velocity| velocity.norm()).fold(0.0, f64::max);
-            if !(largest <= BLOWN_UP * situation.speed) {
+            let mut velocities = scene.solid.velocity.iter().chain(&scene.bonded.particles.velocity);
+            let most = BLOWN_UP * situation.speed;
+            if velocities.any(|velocity| !velocity.norm().is_finite() || velocity.norm() > most) {
                 return Some("velocities grow without end".to_owned());
             }
         }
