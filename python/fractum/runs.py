@@ -54,12 +54,13 @@ def run(case, set=None, output=None, threads=None, resume=False, quiet=True, ove
     return Results(folder)
 
 
-def sweep(case, vary, workers=1, set=None, output=None, threads=1):
+def sweep(case, vary, workers=1, set=None, output=None, threads=1, overwrite=False):
     """Runs a case with every combination of values; a table with a row for each run.
 
     - `vary`: keys with their values: `{"nu": [0.1, 0.2], "materials.rock.young_modulus": ["40 GPa", "50 GPa"]}`
     - `workers`: runs at the same time, each with `threads` threads
     - `output`: folder for the results folders of all runs; `results/sweep/<case>` by default
+    - `overwrite`: replace results of earlier runs
 
     Columns: the varied keys, `status` (`completed`, `stopped`, `failed`), `folder`, `error`, and the last value of each
     probe. A run that fails is a row with the reason; the others go on. Ctrl-C ends all runs and raises
@@ -74,7 +75,7 @@ def sweep(case, vary, workers=1, set=None, output=None, threads=1):
     def one(point, folder):
         values = {**(set or {}), **dict(zip(keys, point))}
         try:
-            return run(case, values, folder, threads), ""
+            return run(case, values, folder, threads, overwrite=overwrite), ""
         except FractumError as error:
             return (Results(folder) if (folder / "summary.json").exists() else None), str(error)
 

@@ -101,19 +101,19 @@ class Body(_State):
 
 
 class _Load:
-    """A load, with the points that it pushes."""
+    """A function of a load between the bytes of the simulation and arrays."""
 
-    def __init__(self, function, points, count, width=3):
+    def __init__(self, function, count):
         self.function = function
-        self.points = points
-        self.shape = (count, width)
+        self.shape = (count, 3)
 
-    def forces(self, core, time):
-        """The forces of an instant as bytes."""
-        position, velocity = (_array(part, 3) for part in core.state_of_points(self.points))
-        forces = np.asarray(self.function(time, position, velocity), dtype="f8")
-        # A single force acts on every point.
-        return np.ascontiguousarray(np.broadcast_to(forces, self.shape)).tobytes()
+    def __call__(self, time, position, velocity):
+        forces = self.function(time, _array(position, 3), _array(velocity, 3))
+        forces = np.asarray(forces, dtype="f8")
+        if forces.shape != self.shape:
+            # A single force acts on every point.
+            forces = np.broadcast_to(forces, self.shape)
+        return forces.tobytes()
 
 
 class Simulation:
@@ -212,7 +212,7 @@ class Simulation:
 
         Before every step `function(time, position, velocity)` is called with the time [s] and the arrays (n, 3) of the
         points that the load pushes; it returns their forces [N] as an array (n, 3), or three numbers for the same force on
-        each. Name the points by one of
+        each. It is called on a thread of the simulation. Name the points by one of
 
         - `group`: the nodes of a group of the mesh
         - `nodes`: indices into the arrays of `nodes`
@@ -232,7 +232,7 @@ class Simulation:
             raise IndexError("points of a load count from 0")
         points = np.ascontiguousarray(points, dtype="u4")
         index = self._core.add_points(particles is None, points.tobytes())
-        self._loads.append(_Load(function, index, len(points)))
+        self._loads.append((index, _Load(function, len(points))))
 
     def step(self, count=1):
         """Steps `count` times; whether the run goes on."""
@@ -244,29 +244,13 @@ class Simulation:
         - `until`: time [s] at which the stepping ends, and can go on
         - `stop`: looked at after every `every` steps; once it is true the run is over, as if its end were reached
         """
-        if stop is None:
-            self._advance(_NO_LIMIT, until)
-            return
-        while self.time < until and self._advance(every, until):
-            if stop(self):
-                self.stop()
+        self._advance(_NO_LIMIT, until, stop and (lambda: stop(self)), every)
 
-    def _advance(self, count, until):
+    def _advance(self, count, until, stop=None, every=1):
         """Whether the run goes on after `count` steps or the time `until`."""
-        if not self._loads:
-            return self._checked(self._core.step(count, until))
-        goes_on = not self.is_over
-        for _ in range(count):
-            time = self.time
-            if not goes_on or time >= until:
-                break
-            self._core.set_forces([(load.points, load.forces(self._core, time)) for load in self._loads])
-            goes_on = self._checked(self._core.step(1, until))
-        return goes_on
-
-    def _checked(self, goes_on):
-        """Another thread or a signal may have interrupted the run."""
+        goes_on = self._core.step(count, until, self._loads, stop, every)
         if not goes_on and self.status == "interrupted":
+            # By another thread.
             raise KeyboardInterrupt(f"state saved in {self.folder}")
         return goes_on
 

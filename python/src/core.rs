@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use fractum::{Failure, Input, Options, Simulation, cache_of_user, load};
@@ -11,6 +12,7 @@ use fractum_io::summary::hash_text;
 use fractum_math::Vec3;
 use fractum_scene::{EnergyKind, Population, Scene};
 use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
 use pyo3::types::{PyBytes, PyDict};
 use rayon::ThreadPool;
 
@@ -24,6 +26,8 @@ pub(crate) struct Core {
     simulation: Mutex<Option<Simulation>>,
     pool: ThreadPool,
     numbering: Numbering,
+    /// Whether a step is under way.
+    stepping: AtomicBool,
     /// Sets of points that loads push, in the numbering of the scene.
     points: Vec<(Population, Vec<u32>)>,
 }
@@ -61,14 +65,86 @@ fn no_array(py: Python<'_>, name: &str) -> PyErr {
 }
 
 impl Core {
-    /// Does something with the simulation.
+    /// Does something with the simulation, on whatever thread.
+    fn look<T>(&self, act: impl FnOnce(&mut Simulation) -> Result<T, Failure>) -> PyResult<T> {
+        let mut simulation = self.simulation.lock().unwrap_or_else(PoisonError::into_inner);
+        let finished = || Failure::input("the simulation has been finished");
+        let ended = simulation.as_mut().ok_or_else(finished).and_then(act);
+        drop(simulation);
+        ended.map_err(|failure| Python::attach(|py| raise(py, &failure)))
+    }
+
+    /// As [`Core::look`], where Python's lock is held and exceptions may come.
     fn with<T>(&self, py: Python<'_>, act: impl FnOnce(&mut Simulation) -> PyResult<T>) -> PyResult<T> {
-        let mut simulation = self.simulation.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut simulation = self.simulation.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         simulation.as_mut().map_or_else(|| Err(wrong(py, "the simulation has been finished")), act)
     }
 
     fn with_scene<T>(&self, py: Python<'_>, act: impl FnOnce(&Scene) -> PyResult<T>) -> PyResult<T> {
         self.with(py, |simulation| act(simulation.scene()))
+    }
+
+    /// Whether a step is still to be made before a time [s].
+    fn is_before(&self, until: f64) -> PyResult<bool> {
+        self.look(|run| Ok(!run.is_over() && run.time() < until))
+    }
+
+    /// Makes a step unless the time has come [s]; whether there may be another one.
+    fn advance(&self, until: f64) -> PyResult<bool> {
+        self.look(|run| {
+            if run.is_over() || run.time() >= until {
+                return Ok(false);
+            }
+            run.step()?;
+            run.record()?;
+            Ok(!run.is_over())
+        })
+    }
+
+    /// Sets the forces that functions give for the next step.
+    fn push(&self, py: Python<'_>, loads: &[(usize, Py<PyAny>)]) -> PyResult<()> {
+        let (mut on_nodes, mut on_particles) = (Vec::new(), Vec::new());
+        for (set, function) in loads {
+            let Some((population, points)) = self.points.get(*set) else {
+                return Err(wrong(py, format!("no set {set} of points")));
+            };
+            let (time, position, velocity) = self.state_of_points(py, *population, points)?;
+            let forces = function.call1(py, (time, position, velocity))?;
+            let values = to_vectors(forces.extract::<&[u8]>(py)?);
+            if values.len() != points.len() {
+                let text = format!("{} forces on {} points; expected one for each", values.len(), points.len());
+                return Err(wrong(py, text));
+            }
+            let pushed = points.iter().copied().zip(values);
+            match population {
+                Population::Nodes => on_nodes.extend(pushed),
+                Population::Particles => on_particles.extend(pushed),
+            }
+        }
+        self.look(|run| run.set_forces(&on_nodes, &on_particles))
+    }
+
+    /// Time [s], positions [m] and velocities [m/s] of points.
+    fn state_of_points<'py>(
+        &self,
+        py: Python<'py>,
+        population: Population,
+        points: &[u32],
+    ) -> PyResult<(f64, Bound<'py, PyBytes>, Bound<'py, PyBytes>)> {
+        self.with_scene(py, |scene| {
+            let (solid, particles) = (&scene.solid, &scene.bonded.particles);
+            let (position, velocity) = match population {
+                Population::Nodes => (
+                    vectors(py, points.len(), |i| solid.position(points[i] as usize))?,
+                    vectors(py, points.len(), |i| solid.velocity[points[i] as usize])?,
+                ),
+                Population::Particles => (
+                    vectors(py, points.len(), |i| particles.position[points[i] as usize])?,
+                    vectors(py, points.len(), |i| particles.velocity[points[i] as usize])?,
+                ),
+            };
+            Ok((scene.clock.time, position, velocity))
+        })
     }
 }
 
@@ -94,25 +170,49 @@ impl Core {
             Ok((Simulation::start(input, &case, &options, started)?, numbering))
         })?;
         let (simulation, numbering) = opened.map_err(|failure| raise(py, &failure))?;
-        Ok(Core { simulation: Mutex::new(Some(simulation)), pool, numbering, points: Vec::new() })
+        let simulation = Mutex::new(Some(simulation));
+        Ok(Core { simulation, pool, numbering, stepping: AtomicBool::new(false), points: Vec::new() })
     }
 
     /// Steps at most `count` times and not beyond `until` [s]; whether the run goes on.
-    fn step(&self, py: Python<'_>, count: u64, until: f64) -> PyResult<bool> {
-        let work = || {
-            let mut guard = self.simulation.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            let Some(simulation) = guard.as_mut() else { return Ok(None) };
-            for _ in 0..count {
-                if simulation.is_over() || simulation.time() >= until {
+    ///
+    /// Functions are called on a thread of the simulation, so that no step waits for one thread to wake another.
+    ///
+    /// - `loads`: sets of points and functions of time, positions and velocities (bytes of arrays), which give forces so
+    /// - `stop`: a function that ends the run where it is true, looked at after every `every` steps
+    fn step(
+        &self,
+        py: Python<'_>,
+        count: u64,
+        until: f64,
+        loads: Vec<(usize, Py<PyAny>)>,
+        stop: Option<Py<PyAny>>,
+        every: u64,
+    ) -> PyResult<bool> {
+        if self.stepping.swap(true, Ordering::Acquire) {
+            return Err(wrong(
+                py,
+                "the simulation is being stepped already; a load or a condition may look at it only",
+            ));
+        }
+        let every = every.max(1);
+        let work = || -> PyResult<bool> {
+            for done in 1..=count {
+                if !loads.is_empty() && self.is_before(until)? {
+                    Python::attach(|py| self.push(py, &loads))?;
+                }
+                if !self.advance(until)? {
                     break;
                 }
-                simulation.step()?;
-                simulation.record()?;
+                if let Some(stop) = stop.as_ref().filter(|_| done.is_multiple_of(every)) {
+                    Python::attach(|py| if stop.call0(py)?.is_truthy(py)? { self.stop(py) } else { Ok(()) })?;
+                }
             }
-            Ok(Some(!simulation.is_over()))
+            self.look(|run| Ok(!run.is_over()))
         };
-        let goes_on = watch(py, &self.pool, work)?.map_err(|failure: Failure| raise(py, &failure))?;
-        goes_on.ok_or_else(|| wrong(py, "the simulation has been finished"))
+        let ended = watch(py, &self.pool, work);
+        self.stepping.store(false, Ordering::Release);
+        ended?
     }
 
     /// Ends the run as if its end were reached.
@@ -122,7 +222,7 @@ impl Core {
 
     /// Writes the results; their folder.
     fn finish(&self, py: Python<'_>) -> PyResult<PathBuf> {
-        let taken = self.simulation.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take();
+        let taken = self.simulation.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner).take();
         let Some(simulation) = taken else { return Err(wrong(py, "the simulation has been finished")) };
         let outcome = watch(py, &self.pool, || simulation.finish())?.map_err(|failure| raise(py, &failure))?;
         Ok(outcome.folder)
@@ -315,47 +415,5 @@ impl Core {
         }
         self.points.push((if nodes { Population::Nodes } else { Population::Particles }, points));
         Ok(self.points.len() - 1)
-    }
-
-    /// Positions [m] and velocities [m/s] of a set of points.
-    fn state_of_points<'py>(
-        &self,
-        py: Python<'py>,
-        set: usize,
-    ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyBytes>)> {
-        let Some((population, points)) = self.points.get(set) else {
-            return Err(wrong(py, format!("no set {set} of points")));
-        };
-        self.with_scene(py, |scene| {
-            let (solid, particles) = (&scene.solid, &scene.bonded.particles);
-            let all = |of: &dyn Fn(usize) -> Vec3| vectors(py, points.len(), |i| of(points[i] as usize));
-            Ok(match population {
-                Population::Nodes => (all(&|n| solid.position(n))?, all(&|n| solid.velocity[n])?),
-                Population::Particles => (all(&|n| particles.position[n])?, all(&|n| particles.velocity[n])?),
-            })
-        })
-    }
-
-    /// Sets the forces that act from the next step on: sets of points, and the force on each point [N].
-    fn set_forces(&self, py: Python<'_>, forces: Vec<(usize, Bound<'_, PyBytes>)>) -> PyResult<()> {
-        let (mut on_nodes, mut on_particles) = (Vec::new(), Vec::new());
-        for (set, bytes) in &forces {
-            let Some((population, points)) = self.points.get(*set) else {
-                return Err(wrong(py, format!("no set {set} of points")));
-            };
-            let values = to_vectors(bytes.as_bytes());
-            if values.len() != points.len() {
-                let text = format!("{} forces on {} points; expected one for each", values.len(), points.len());
-                return Err(wrong(py, text));
-            }
-            let pushed = points.iter().copied().zip(values);
-            match population {
-                Population::Nodes => on_nodes.extend(pushed),
-                Population::Particles => on_particles.extend(pushed),
-            }
-        }
-        let act =
-            |run: &mut Simulation| run.set_forces(&on_nodes, &on_particles).map_err(|failure| raise(py, &failure));
-        self.with(py, act)
     }
 }

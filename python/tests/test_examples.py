@@ -1,0 +1,39 @@
+"""The recipes run as they stand."""
+
+import numpy as np
+import pytest
+
+import load_cost
+import moving_load
+import read_results
+import stop_at_crack
+import sweep_strength
+
+
+def test_moving_load(tmp_path):
+    results = moving_load.main(tmp_path)
+    assert results.summary["status"] == "completed"
+    assert results.summary["energy"]["residual_max_relative"] < 1e-9
+    # The static deflection of a clamped beam under F at its middle is F L^3 / (192 E I) = 6.3e-5 m in the theory of slender beams.
+    assert -3e-4 < results.probes["middle"] and -3e-4 < min(results.history["middle"]) < -1e-5
+
+
+def test_stop_at_crack(tmp_path):
+    results = stop_at_crack.main(tmp_path)
+    assert results.summary["time"]["end"] < 1e-3
+    assert max(results.history["load"]) == pytest.approx(3e4, rel=0.05)
+
+
+def test_sweep_strength(tmp_path):
+    table = sweep_strength.main(tmp_path)
+    assert list(table["status"]) == ["completed"] * 6
+
+
+def test_read_results(tmp_path, capsys):
+    results = read_results.main(tmp_path)
+    assert len(results.fragments["mass"]) == 2 and "crack at x" in capsys.readouterr().out
+
+
+def test_load_cost(tmp_path):
+    found = load_cost.main(tmp_path, cells=(4, 4, 4), steps=5, rounds=1)
+    assert len(found) == 4 and all(np.isfinite(cost) for cost in found.values())

@@ -1,0 +1,130 @@
+"""Whole runs, their errors, sweeps and interrupts."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import fractum
+from fractum import _core, runs, tables
+
+SHORT = {"solver.end": "0.3 ms"}
+
+
+def program():
+    """The program, where it has been built."""
+    built = ROOT / "target" / "release" / "fractum"
+    return str(built) if built.exists() else shutil.which("fractum")
+
+
+@pytest.mark.skipif(program() is None, reason="the program has not been built")
+def test_a_run_has_the_state_hash_of_the_program(breaking, tmp_path):
+    results = fractum.run(breaking, set=SHORT, output=tmp_path / "out", threads=2)
+    command = [program(), "run", breaking, "--quiet", "-o", tmp_path / "direct", "--set", "solver.end=0.3 ms"]
+    subprocess.run(command, check=True)
+    direct = fractum.Results(tmp_path / "direct")
+    assert results.summary["state_hash"] == direct.summary["state_hash"]
+    assert results.summary["counts"] == direct.summary["counts"]
+
+
+def test_mistakes_of_a_case_are_exceptions_with_their_place(breaking, tmp_path):
+    breaking.write_text(breaking.read_text().replace("poisson_ratio = 0.2", "poisson_ratio = 0.7"))
+    with pytest.raises(fractum.CaseError, match=r"case.toml:\d+.*poisson_ratio = 0.7; expected") as caught:
+        fractum.run(breaking, output=tmp_path / "out")
+    (mistake,) = caught.value.diagnostics
+    assert mistake["place"]["key"].endswith("poisson_ratio") and mistake["place"]["line"] > 0
+    assert isinstance(caught.value, ValueError)
+    with pytest.raises(fractum.CaseError, match="cannot be opened"):
+        fractum.run(tmp_path / "none.toml")
+
+
+def test_a_run_that_stops_itself_says_why(breaking, tmp_path):
+    with pytest.raises(fractum.StoppedError, match="step"):
+        fractum.run(breaking, set={"solver.safety": 1.5}, output=tmp_path / "out")
+    assert fractum.Results(tmp_path / "out").summary["status"] == "stopped"
+
+
+def test_values_are_written_as_a_case_file_has_them():
+    values = {"a": 0.5, "b": "2 mm/s", "c": ["1 mm", 2], "d": {"x": "1 m"}, "e": True, "f": np.float64(0.25)}
+    written = dict(runs.overrides(values))
+    assert written["a"] == "0.5" and written["b"] == "2 mm/s" and written["c"] == '["1 mm", 2]'
+    assert written["d"] == '{ "x" = "1 m" }' and written["e"] == "true" and written["f"] == "0.25"
+
+
+def test_a_sweep_is_a_table_with_failures(breaking, tmp_path):
+    vary = {"strength": ["2 MPa", "3 MPa"], "materials.concrete.poisson_ratio": [0.2, 0.7]}
+    table = fractum.sweep(breaking, vary, workers=2, set=SHORT, output=tmp_path / "runs")
+    assert list(table["status"]) == ["completed", "failed"] * 2
+    assert "poisson_ratio" in table["error"][1] and table["error"][0] == ""
+    peak = [fractum.Results(table["folder"][run]).summary["probes"]["load"]["max"] for run in (0, 2)]
+    # Strength times 0.01 m².
+    assert peak == pytest.approx([2e4, 3e4], rel=0.02)
+    assert np.isnan(table["load"][1]) and np.isfinite(table["load"][2])
+    direct = fractum.run(breaking, set={**SHORT, "strength": "3 MPa"}, output=tmp_path / "direct")
+    assert direct.summary["state_hash"] == fractum.Results(table["folder"][2]).summary["state_hash"]
+
+
+def test_python_goes_on_while_a_run_computes(breaking, tmp_path):
+    moments = []
+    worker = threading.Thread(target=lambda: fractum.run(breaking, output=tmp_path / "out", threads=1))
+    worker.start()
+    while worker.is_alive():
+        moments.append(time.monotonic())
+        time.sleep(0.001)
+    assert len(moments) > 5 and np.diff(moments).max() < 0.5 * (moments[-1] - moments[0])
+
+
+def test_ctrl_c_saves_the_state_and_other_runs_may_follow(breaking, tmp_path):
+    script = f"""
+        import os, signal, threading, time
+        import fractum
+        case, out = {str(breaking)!r}, {str(tmp_path / "out")!r}
+        long = {{"solver.end": "3 ms"}}
+        def interrupt():
+            while not os.path.exists(out + "/history.csv.part"):
+                time.sleep(0.001)
+            os.kill(os.getpid(), signal.SIGINT)
+        threading.Thread(target=interrupt).start()
+        try:
+            fractum.run(case, set=long, output=out, threads=1)
+            print("not interrupted")
+        except KeyboardInterrupt:
+            print(fractum.Results(out).summary["status"])
+        print(fractum.run(case, set={SHORT}, output=out + "-next", threads=1).summary["status"])
+        print(fractum.run(case, set=long, output=out, threads=1, resume=True).summary["state_hash"])
+    """
+    ended = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=100)
+    said = ended.stdout.split()
+    assert said[:2] == ["interrupted", "completed"], ended.stdout + ended.stderr
+    whole = fractum.run(breaking, set={"solver.end": "3 ms"}, output=tmp_path / "whole")
+    assert said[2] == whole.summary["state_hash"]
+
+
+def test_an_interrupt_is_forgotten_after_a_sweep(breaking, tmp_path):
+    _core.interrupt()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            fractum.run(breaking, output=tmp_path / "out")
+    finally:
+        _core.clear_interrupt()
+    assert fractum.run(breaking, set=SHORT, output=tmp_path / "next").summary["status"] == "completed"
+
+
+def test_tables_without_pandas_are_arrays_with_the_same_columns(breaking, tmp_path, monkeypatch):
+    results = fractum.run(breaking, set=SHORT, output=tmp_path / "out")
+    with_pandas = results.history
+    monkeypatch.setattr(tables, "pandas", None)
+    plain = results.history
+    assert isinstance(plain, np.ndarray) and plain["time"][-1] == pytest.approx(0.3e-3)
+    assert list(plain.dtype.names) == list(with_pandas.dtype.names if tables.pandas else results.units)
+    assert results.units["load"] == "N" and results.units["time"] == "s"
+    table = fractum.sweep(breaking, {"strength": ["3 MPa"]}, set=SHORT, output=tmp_path / "runs")
+    assert table["status"][0] == "completed" and table["folder"][0].endswith("1")
