@@ -48,8 +48,20 @@ pub fn prefixed(largest: f64, unit: &str) -> Prefixed {
     Prefixed { factor: size(exponent), unit: readable_unit(&format!("{prefix}{symbol}{rest}")) }
 }
 
-/// `value` with its prefixed unit and four significant digits: `10.24 kPa`, `0.05`, `-3.2 mm/s`, `n/a` for NaN.
+/// The unit in which people read a quantity, and its size in the SI unit: angles in degrees, all others in SI.
+pub fn reading_unit(unit: &str) -> (&str, f64) {
+    match unit {
+        "rad" => ("deg", 1f64.to_radians()),
+        "rad/s" => ("deg/s", 1f64.to_radians()),
+        other => (other, 1.0),
+    }
+}
+
+/// `value` with its prefixed unit and four significant digits: `10.24 kPa`, `0.05`, `-3.2 mm/s`, `n/a` for NaN; angles in
+/// degrees.
 pub fn quantity(value: f64, unit: &str) -> String {
+    let (unit, size) = reading_unit(unit);
+    let value = value / size;
     let prefixed = prefixed(value.abs(), unit);
     let number = significant(value / prefixed.factor, 4);
     if prefixed.unit.is_empty() || value.is_nan() { number } else { format!("{number} {}", prefixed.unit) }
@@ -189,6 +201,8 @@ mod tests {
             (0.0, "Pa", "0 Pa"),
             (f64::NAN, "Pa", "n/a"),
             (5.0, "kN", "5 kN"),
+            (std::f64::consts::FRAC_PI_4, "rad", "45 deg"),
+            (std::f64::consts::PI, "rad/s", "180 deg/s"),
         ];
         for (value, unit, text) in cases {
             assert_eq!(quantity(value, unit), text);

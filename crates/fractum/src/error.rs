@@ -1,6 +1,7 @@
 use fractum_io::case::{Diagnostic, Diagnostics};
 use fractum_io::checkpoint::CheckpointError;
 use fractum_io::memory::TooLarge;
+use fractum_io::picture::PictureError;
 use fractum_io::{OutputError, WriteError};
 use fractum_scene::StepError;
 
@@ -51,6 +52,9 @@ pub enum Failure {
     /// The user ended it.
     #[error("interrupted")]
     Interrupted,
+    /// A picture could not be drawn.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
     /// A quantity of the case did not meet its reference.
     #[error("{0}")]
     Unmet(String),
@@ -71,7 +75,8 @@ impl Failure {
     /// The exit code that tells a script what kind of failure this is.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Failure::Input(_) | Failure::Unmet(_) => ExitCode::Input,
+            Failure::Picture(PictureError::Write(_)) => ExitCode::Machine,
+            Failure::Input(_) | Failure::Unmet(_) | Failure::Picture(_) => ExitCode::Input,
             Failure::Stopped { .. } => ExitCode::Stopped,
             Failure::Interrupted => ExitCode::Interrupted,
             Failure::Write(WriteError::Busy { .. }) => ExitCode::Input,

@@ -47,10 +47,12 @@
 
 pub mod cracks;
 mod error;
+mod frame_pictures;
 mod frames;
 mod gallery;
 mod gas_cells;
 mod input;
+mod inputs;
 mod interrupt;
 mod left;
 mod path_frames;
@@ -65,6 +67,7 @@ mod series;
 mod simulation;
 mod solver;
 pub mod stress;
+mod strip;
 pub mod study;
 mod summary;
 pub mod sweep;
@@ -72,6 +75,7 @@ pub mod terminal;
 pub mod verify;
 
 pub use error::{ExitCode, Failure};
+pub use frame_pictures::{Movie, MovieSettings, movie};
 pub use input::{Input, cache_of_user, load};
 pub use interrupt::{clear_interrupt, interrupt, is_interrupted};
 pub use run::run;

@@ -6,7 +6,7 @@ use std::path::Path;
 use fractum_io::ReadError;
 use fractum_io::fragments;
 use fractum_io::history::{self, Column, Table};
-use fractum_io::picture::ColourMap;
+use fractum_io::picture::{ColourMap, Scale};
 use fractum_io::report::{self, ColourBar, Curve, EnergyColumns, Figure, ReportData};
 use fractum_io::summary::Summary;
 use fractum_scene::EnergyKind;
@@ -28,6 +28,9 @@ pub struct Notes {
     pub warnings: Vec<String>,
     /// Pictures in the folder `pictures`.
     pub pictures: Vec<PictureNote>,
+    /// Materials and settings: what and its value.
+    #[serde(default)]
+    pub inputs: Vec<(String, String)>,
 }
 
 /// A picture in the folder `pictures`.
@@ -45,6 +48,18 @@ pub struct PictureNote {
     pub damage: bool,
     /// Values at the ends of the colours.
     pub range: (f64, f64),
+    /// Pixels of a metre; none where that is not known.
+    #[serde(default)]
+    pub pixels_per_metre: Option<f64>,
+    /// Where the axes point in the picture: right and down.
+    #[serde(default)]
+    pub axes: [[f64; 2]; 3],
+    /// Width and height [pixels].
+    #[serde(default)]
+    pub size: [usize; 2],
+    /// Whether it is one of the strip over time.
+    #[serde(default)]
+    pub in_strip: bool,
 }
 
 /// Keeps the notes of a run in its folder.
@@ -93,6 +108,7 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
         cracks,
         fragments,
         pictures,
+        inputs: notes.inputs,
         plan: notes.plan,
         warnings: notes.warnings,
         case_file: notes.case_file,
@@ -114,7 +130,8 @@ fn figure(folder: &Path, note: &PictureNote) -> Option<Figure> {
     let png = fs::read(folder.join("pictures").join(&note.file)).ok()?;
     let map = if note.damage { ColourMap::Damage } else { ColourMap::Viridis };
     let colours = ColourBar { label: note.label.clone(), unit: note.unit.clone(), map, range: note.range };
-    Some(Figure { title: note.title.clone(), png, colours: Some(colours) })
+    let scale = note.pixels_per_metre.map(|pixels_per_metre| (Scale { pixels_per_metre, axes: note.axes }, note.size));
+    Some(Figure { title: note.title.clone(), png, colours: Some(colours), scale, in_strip: note.in_strip })
 }
 
 /// The columns of probes.
@@ -128,7 +145,7 @@ pub(crate) fn load_curve(history: &Table) -> Option<Curve> {
     let of_unit = |unit: &str| probes(history).iter().find(|c| c.unit == unit).map(|c| c.name.clone());
     let (load, displacement) = (of_unit("N")?, of_unit("m")?);
     let title = format!("{load} against {displacement}");
-    Some(Curve { title, x: displacement, y: vec![load], mark_peak: true, levels: Vec::new() })
+    Some(Curve { title, x: displacement, y: vec![load], mark_peak: true, ..Curve::default() })
 }
 
 /// The load curve, then the probes over time, one chart per unit.
@@ -144,15 +161,40 @@ fn curves(history: &Table) -> Vec<Curve> {
     for unit in units {
         let names = probes.iter().filter(|c| c.unit == unit).map(|c| c.name.clone()).collect();
         for y in of_like_size(names, |name| largest(history, name)) {
-            let title = match (&y[..], unit) {
-                ([only], _) => only.clone(),
-                (_, "1") => "probes without unit".to_owned(),
-                _ => format!("probes in {unit}"),
+            let (one, several) = quantity_of(unit);
+            let title = match &y[..] {
+                [only] => only.replace('_', " "),
+                _ => several,
             };
-            curves.push(Curve { title, x: history.columns[0].name.clone(), y, mark_peak: false, levels: Vec::new() });
+            let x = history.columns[0].name.clone();
+            curves.push(Curve { title, x, y, quantity: one, ..Curve::default() });
         }
     }
     curves
+}
+
+/// What a unit measures, one and several of them.
+fn quantity_of(unit: &str) -> (String, String) {
+    let (one, several) = match unit {
+        "N" => ("force", "Forces"),
+        "N*m" | "N m" => ("moment", "Moments"),
+        "m" => ("length", "Displacements and lengths"),
+        "m/s" => ("velocity", "Velocities"),
+        "m/s^2" => ("acceleration", "Accelerations"),
+        "m^2" => ("area", "Areas"),
+        "m^3" => ("volume", "Volumes"),
+        "Pa" => ("stress", "Stresses and pressures"),
+        "J" => ("energy", "Energies"),
+        "J/m^2" => ("energy per area", "Energies per area"),
+        "kg" => ("mass", "Masses"),
+        "s" => ("time", "Times"),
+        "rad" => ("angle", "Angles"),
+        "rad/s" => ("angular velocity", "Angular velocities"),
+        "K" => ("temperature", "Temperatures"),
+        "1" | "-" | "" => ("value", "Numbers and ratios"),
+        other => return ("value".to_owned(), format!("Values in {other}")),
+    };
+    (one.to_owned(), several.to_owned())
 }
 
 /// Largest absolute value of a column.
@@ -186,6 +228,16 @@ fn of_like_size(names: Vec<String>, largest: impl Fn(&str) -> f64) -> Vec<Vec<St
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn titles_name_quantities() {
+        let column = |name: &str, unit: &str| Column::new(name, unit);
+        let table = |columns: Vec<Column>| Table { values: vec![vec![1.0, 2.0]; columns.len()], columns };
+        let titles = |table: Table| curves(&table).into_iter().map(|curve| curve.title).collect::<Vec<_>>();
+        assert_eq!(titles(table(vec![column("top", "N"), column("base", "N")])), ["Forces"]);
+        assert_eq!(titles(table(vec![column("tip_angle", "rad")])), ["tip angle"]);
+        assert_eq!(titles(table(vec![column("a", "1"), column("b", "1")])), ["Numbers and ratios"]);
+    }
 
     #[test]
     fn curves_that_an_axis_would_hide_have_a_chart_of_their_own() {

@@ -67,6 +67,20 @@ impl RigidSurfaces {
     }
 }
 
+/// Triangles in space.
+pub(crate) struct Triangles {
+    /// Corners [m].
+    pub(crate) points: Vec<[f64; 3]>,
+    /// Points of each triangle.
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+/// Where a rigid body is now.
+pub(crate) fn outline(body: &RigidBody, scene: &Scene) -> Triangles {
+    let (points, triangles) = surface_of(body, scene);
+    Triangles { points: points.iter().map(|x| in_space(&body.frame, x).into()).collect(), triangles }
+}
+
 fn in_space(frame: &Frame, x: &Vec3) -> Vec3 {
     frame.origin + frame.to_space(x)
 }

@@ -28,6 +28,7 @@ use crate::interrupt::{UnderWay, is_interrupted};
 use crate::phases::{Part, Phases};
 use crate::plan::Plan;
 use crate::record::{RecordState, Recorder};
+use crate::series::index_of_max;
 use crate::solver::{Measured, Solver, SolverState};
 use messages::Messages;
 pub use origin::for_shell;
@@ -340,6 +341,13 @@ impl Simulation {
     /// Index of the probe that measures the load, once it has a row.
     fn load(&self) -> Option<usize> {
         self.recorder.load().filter(|&index| !self.recorder.state().series[index].is_empty())
+    }
+
+    /// When the load was largest [s], where a probe measures one.
+    fn time_of_peak(&self) -> Option<f64> {
+        let record = self.recorder.state();
+        let values: Vec<f64> = record.series[self.load()?].iter().map(|value| value.abs()).collect();
+        index_of_max(&values).map(|index| record.times[index])
     }
 
     /// Last value of a probe, and that of the largest absolute value.

@@ -42,6 +42,12 @@ Examples:
   fractum new                   list the templates
   fractum new beam tests/beam   write one into a folder";
 
+/// Of `fractum movie`.
+pub(super) const MOVIE: &str = "\
+Examples:
+  fractum movie results/plate/case
+  fractum movie results/plate/case -o plate.png --rate 20 --width 1200 --height 900";
+
 /// Of `fractum completions`.
 pub(super) const COMPLETIONS: &str = "\
 Examples:

@@ -8,6 +8,7 @@ mod lab_break;
 mod lab_strength;
 mod manual;
 mod mesh;
+mod movie;
 mod new;
 mod pack;
 mod shape;
@@ -115,6 +116,9 @@ enum Command {
         /// Results folder of a run.
         folder: PathBuf,
     },
+    /// Write the frames of a results folder as an animated picture (APNG), which browsers play.
+    #[command(after_help = help::MOVIE)]
+    Movie(movie::MovieArguments),
     /// Fill a shape with particles and certify the packing.
     Pack(Box<pack::PackArguments>),
     /// Test bonded packings in the virtual laboratory.
@@ -208,6 +212,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Sweep { command } => sweep::run(command),
         Command::Mesh { command } => mesh::execute(command, json),
         Command::Report { folder } => fractum::report::write(&folder).map(|()| ExitCode::Done),
+        Command::Movie(arguments) => movie::run(&arguments),
         Command::Pack(arguments) => pack::run(&arguments),
         Command::Lab { command } => lab::run(&command),
         Command::Calibrate(arguments) => calibrate::run(&arguments),

@@ -70,14 +70,17 @@ impl Simulation {
         summary.write(&self.folder.join("summary.json"))?;
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
+        let peak = self.time_of_peak();
         let load = self.load().map(|index| self.case.probes[index].name.value.clone());
-        let notes = Notes {
+        let mut notes = Notes {
             case_file: self.case.source.path.display().to_string(),
             plan: self.about.plan.wrapped(PLAN_WIDTH, str::to_owned),
             warnings: self.messages.warnings,
             pictures: crate::gallery::draw(&self.scene, &self.folder),
+            inputs: crate::inputs::table(&self.case),
         };
         self.recorder.finish()?;
+        notes.pictures.extend(crate::strip::strip(&self.folder, peak));
         report::keep(&self.folder, &notes)?;
         report::write(&self.folder)?;
         match end {

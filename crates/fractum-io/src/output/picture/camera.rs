@@ -65,6 +65,11 @@ impl Camera {
         Some(camera)
     }
 
+    /// Where the axes point in the picture: right and down.
+    pub(super) fn axes(&self) -> [[f64; 2]; 3] {
+        [0, 1, 2].map(|axis| [self.right[axis], -self.up[axis]])
+    }
+
     /// Position of `point` in the picture.
     pub(super) fn project(&self, point: [f64; 3]) -> [f64; 3] {
         let Self { right, up, forward, scale, shift } = self;

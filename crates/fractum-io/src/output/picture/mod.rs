@@ -21,6 +21,7 @@
 //! # Ok::<(), fractum_io::picture::PictureError>(())
 //! ```
 
+mod animation;
 mod camera;
 mod colour;
 mod raster;
@@ -28,6 +29,7 @@ mod shade;
 
 use std::path::Path;
 
+pub use animation::animation;
 pub use colour::{ColourMap, Rgb};
 
 use crate::atomic;
@@ -180,7 +182,31 @@ pub fn range(values: &[f64]) -> (f64, f64) {
     }
 }
 
+/// The range of all but the lowest and the highest hundredth of the finite values, so that a few odd ones do not rule
+/// the colours.
+pub fn robust_range(values: &[f64]) -> (f64, f64) {
+    let mut finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    finite.sort_unstable_by(f64::total_cmp);
+    let odd = finite.len() / 100;
+    range(&finite[odd..finite.len() - odd])
+}
+
+/// How large a picture shows things, and which way the axes point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Scale {
+    /// Pixels of a metre across the view.
+    pub pixels_per_metre: f64,
+    /// Where the axes x, y, z point: right and down, of length one where they lie across the view.
+    pub axes: [[f64; 2]; 3],
+}
+
 impl Picture<'_> {
+    /// The scale in which a view shows the picture; none without a direction.
+    pub fn scale(&self, view: &View) -> Option<Scale> {
+        let camera = camera::Camera::new(view, self)?;
+        Some(Scale { pixels_per_metre: camera.scale / SUPERSAMPLING as f64, axes: camera.axes() })
+    }
+
     /// Draws the picture on white.
     ///
     /// # Errors
@@ -388,6 +414,25 @@ mod tests {
         let surfaces = [Surface { triangles: &[[0, 1, 4]], ..square(Paint::Plain([0; 3])) }];
         let wrong = Picture { surfaces: &surfaces, ..picture }.render(&FRONT).unwrap_err();
         assert!(matches!(wrong, PictureError::NoSuchPoint { point: 4, points: 4 }));
+    }
+
+    #[test]
+    fn one_odd_value_does_not_rule_the_colours() {
+        let mut values: Vec<f64> = (0..1000).map(|i| f64::from(i) / 1000.0).collect();
+        values.push(1e9);
+        let (low, high) = robust_range(&values);
+        assert!(low < 0.02 && high > 0.98 && high <= 1.0, "{low} {high}");
+        assert_eq!((robust_range(&[]), robust_range(&[3.0])), ((0.0, 1.0), (3.0, 6.0)));
+    }
+
+    #[test]
+    fn the_scale_is_that_of_the_picture() {
+        let surfaces = [square(Paint::Plain([200, 0, 0]))];
+        let scale = Picture { surfaces: &surfaces, ..Picture::default() }.scale(&FRONT).unwrap();
+        // 40 pixels less the border of 1.2 on both sides for 2 m.
+        assert!((scale.pixels_per_metre - (40.0 - 2.4) / 2.0).abs() < 1e-9, "{scale:?}");
+        let [x, y, z] = scale.axes;
+        assert!(x[0] > 0.999 && y[1] < -0.999 && z[0].abs() + z[1].abs() < 1e-9, "{scale:?}");
     }
 
     #[test]

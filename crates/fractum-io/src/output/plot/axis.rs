@@ -132,7 +132,7 @@ impl Scale {
 }
 
 /// Ticks at multiples of 1, 2 or 5 times a power of ten, with as many decimals as they need.
-fn linear_ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
+pub(crate) fn linear_ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
     let rough = (high - low) / count.max(1) as f64;
     let exponent = log10(rough).floor() as i32;
     // Powers as quotients where possible: 0.1 is 1/10, not an inexact product.

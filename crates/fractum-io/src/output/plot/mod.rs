@@ -21,6 +21,7 @@ use std::fmt::Write;
 
 pub use axis::Axis;
 use axis::Scale;
+pub(crate) use axis::linear_ticks;
 
 use crate::output::markup::escape;
 
@@ -59,12 +60,14 @@ pub struct Series {
     pub y: Vec<f64>,
     /// How it is drawn.
     pub style: Style,
+    /// Its colour, as `#2166a5`; one of its own by its number if there is none.
+    pub colour: Option<&'static str>,
 }
 
 impl Series {
     /// A series.
     pub fn new(name: impl Into<String>, x: Vec<f64>, y: Vec<f64>, style: Style) -> Self {
-        Self { name: name.into(), x, y, style }
+        Self { name: name.into(), x, y, style, colour: None }
     }
 }
 
@@ -152,6 +155,9 @@ impl Chart {
 
     /// Colour of a series: one after the other, of areas from the lowest up, which is the last.
     fn colour(&self, index: usize) -> &'static str {
+        if let Some(colour) = self.series[index].colour {
+            return colour;
+        }
         let areas = |series: &[Series]| series.iter().filter(|series| series.style == Style::Area).count();
         match self.series[index].style {
             Style::Outline => "#111",

@@ -1,17 +1,35 @@
 //! The charts of the report, from the columns of the history.
 
 use super::{Curve, EnergyColumns};
-use crate::number::{quantity, significant};
+use fractum_scene::EnergyKind;
+
+use crate::number::{quantity, reading_unit, significant};
 use crate::output::attenuation::Attenuation;
 use crate::output::fragments::Fragment;
 use crate::output::history::Table;
 use crate::output::plot::{Axis, Chart, Mark, Series, Style, stacked};
 use crate::output::summary::FragmentSizes;
 
+/// One colour for each energy, the same in every report, in the order of the list of energies.
+const ENERGY_COLOURS: [&str; 24] = [
+    "#111111", "#2166a5", "#2e8b57", "#5fb08a", "#86c5a5", "#aad8c0", "#b2303c", "#d6761c", "#7b5aa6", "#2a98a8",
+    "#8a6d3b", "#6b7280", "#9ab53a", "#c06090", "#404080", "#e0b030", "#a0522d", "#708090", "#c0c020", "#004d40",
+    "#ff8a65", "#5d4037", "#90a4ae", "#7cb342",
+];
+
+/// The colour of an energy by the name of its column.
+fn colour_of_energy(column: &str) -> Option<&'static str> {
+    EnergyKind::ALL
+        .into_iter()
+        .find(|kind| kind.name() == column)
+        .map(|kind| ENERGY_COLOURS[kind as usize % ENERGY_COLOURS.len()])
+}
+
 /// The column called `name`, as an axis with that name in words, and its values.
 fn axis(history: &Table, name: &str) -> Option<(Axis, Vec<f64>)> {
     let (values, unit) = history.column(name)?;
-    Some((Axis::new(words(name), unit), values.to_vec()))
+    let (unit, size) = reading_unit(unit);
+    Some((Axis::new(words(name), unit), values.iter().map(|value| value / size).collect()))
 }
 
 /// The time axis: the first column.
@@ -32,7 +50,7 @@ pub(super) fn curve(history: &Table, curve: &Curve) -> Option<Chart> {
         columns.push((name, axis(history, name)?));
     }
     let (_, (first, _)) = columns.first()?;
-    let label = if columns.len() == 1 { first.label.clone() } else { "value".into() };
+    let label = if columns.len() == 1 { first.label.clone() } else { curve.quantity.clone() };
     let y = Axis::new(label, first.unit.clone()).from_zero();
     let mut chart = Chart { title: curve.title.clone(), x, y, levels: curve.levels.clone(), ..Chart::default() };
     if curve.mark_peak {
@@ -74,6 +92,10 @@ pub(super) fn energy(history: &Table, columns: &EnergyColumns) -> Option<Chart> 
         let parts: Vec<(&str, &[f64])> = parts.iter().map(|(name, values)| (name.as_str(), *values)).collect();
         stacked(&times, &parts)
     };
+    for series in &mut chart.series {
+        let column = columns.parts.iter().find(|name| words(name) == series.name);
+        series.colour = column.and_then(|name| colour_of_energy(name));
+    }
     chart.series.push(Series::new(words(&columns.external), times, work.to_vec(), Style::Outline));
     Some(chart)
 }
@@ -230,6 +252,23 @@ mod tests {
         assert_eq!(chart.series[0].y, [0.0, 2.0, 3.0]);
         let chart = energy(&history(), &columns(&["elastic", "load"])).unwrap();
         assert!(chart.series.iter().all(|series| series.style != Style::Area));
+    }
+
+    #[test]
+    fn an_energy_has_one_colour_in_every_report() {
+        let columns = |parts: &[&str]| EnergyColumns {
+            external: "work".into(),
+            parts: parts.iter().map(|part| part.to_string()).collect(),
+        };
+        let of = |chart: &Chart, name: &str| chart.series.iter().find(|series| series.name == name).unwrap().colour;
+        let both = energy(&history(), &columns(&["elastic", "damage"])).unwrap();
+        let alone = energy(&history(), &columns(&["damage"])).unwrap();
+        assert_eq!(of(&both, "damage"), of(&alone, "damage"));
+        assert_eq!(of(&alone, "damage"), Some("#b2303c"));
+        let mut all = ENERGY_COLOURS.to_vec();
+        all.sort_unstable();
+        all.dedup();
+        assert!(all.len() == ENERGY_COLOURS.len() && all.len() >= EnergyKind::COUNT);
     }
 
     #[test]

@@ -1,8 +1,12 @@
 //! Pictures inside the page, with the bar that tells what the colours mean.
 
-use crate::number::{prefixed, significant};
+use crate::number::prefixed;
 use crate::output::markup::escape;
 use crate::output::picture::ColourMap;
+use crate::output::plot::linear_ticks;
+
+/// Ticks of a colour bar, about.
+const TICKS: usize = 6;
 
 /// What the colours of a picture mean.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,7 +22,7 @@ pub struct ColourBar {
 }
 
 impl ColourBar {
-    /// The bar with five labelled values as an SVG element.
+    /// The bar with round values as an SVG element.
     pub fn to_svg(&self) -> String {
         let (low, high) = self.range;
         let prefix = prefixed(low.abs().max(high.abs()), &self.unit);
@@ -37,11 +41,11 @@ impl ColourBar {
             svg += &format!("<rect x=\"{x:.2}\" y=\"0\" width=\"3.2\" height=\"12\" fill=\"#{r:02x}{g:02x}{b:02x}\"/>");
         }
         svg.push_str("</g>");
-        for tick in 0..=4 {
-            let share = f64::from(tick) / 4.0;
-            let x = 20.0 + 380.0 * share;
-            let value = significant((low + share * (high - low)) / prefix.factor, 3);
-            svg += &format!("<text x=\"{x:.1}\" y=\"27\" text-anchor=\"middle\">{value}</text>");
+        for (value, text) in linear_ticks(low / prefix.factor, high / prefix.factor, TICKS) {
+            let x = 20.0 + 380.0 * (value * prefix.factor - low) / (high - low);
+            svg += &format!(
+                "<path d=\"M{x:.1} 12v3\" stroke=\"#555\"/><text x=\"{x:.1}\" y=\"27\" text-anchor=\"middle\">{text}</text>"
+            );
         }
         svg + &format!("<text x=\"210\" y=\"43\" text-anchor=\"middle\">{label}</text></svg>\n")
     }

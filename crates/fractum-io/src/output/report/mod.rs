@@ -2,6 +2,7 @@
 
 mod charts;
 mod figure;
+mod overlay;
 
 use std::path::Path;
 
@@ -17,12 +18,16 @@ use crate::output::fragments::Fragment;
 use crate::output::history::Table;
 use crate::output::log::duration;
 use crate::output::markup::head;
+use crate::output::picture::Scale;
 use crate::output::plot::{Chart, Level};
 use crate::output::summary::{Hashes, Status, Summary, Wall};
 use charts::words;
 
 /// Fragments listed; the file `fragments.csv` has them all.
 const FRAGMENTS_LISTED: usize = 10;
+
+/// Part of the largest value of a table below which a value is rounding.
+const NOTHING: f64 = 1e-9;
 
 /// Everything that the report shows. What is empty is left out.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +48,8 @@ pub struct ReportData {
     pub fragments: Vec<Fragment>,
     /// Pictures of the body.
     pub pictures: Vec<Figure>,
+    /// Materials and settings: what and its value.
+    pub inputs: Vec<(String, String)>,
     /// The plan, as `check` prints it.
     pub plan: String,
     /// What the user should know.
@@ -60,6 +67,8 @@ pub struct Curve {
     pub x: String,
     /// Columns of the ordinates, of one unit.
     pub y: Vec<String>,
+    /// What they are together, as `force`.
+    pub quantity: String,
     /// Whether the largest absolute value of the first ordinate is pointed out.
     pub mark_peak: bool,
     /// Values to compare with.
@@ -84,6 +93,10 @@ pub struct Figure {
     pub png: Vec<u8>,
     /// What its colours mean.
     pub colours: Option<ColourBar>,
+    /// Its scale, with width and height [pixels].
+    pub scale: Option<(Scale, [usize; 2])>,
+    /// Whether it is one of a strip over time.
+    pub in_strip: bool,
 }
 
 /// Writes the report at `path`.
@@ -112,6 +125,7 @@ pub fn to_html(data: &ReportData) -> String {
                 (warnings(&data.warnings))
                 (expectations(summary))
                 (pictures(&data.pictures))
+                (strip(&data.pictures))
                 @if !figures.is_empty() {
                     section {
                         h2 { "Curves" }
@@ -122,6 +136,7 @@ pub fn to_html(data: &ReportData) -> String {
                 (fragments(&data.fragments))
                 (energies(summary))
                 (wall(summary))
+                (inputs(&data.inputs))
                 @if !data.plan.is_empty() { section { h2 { "Plan" } pre { (data.plan.trim_end()) } } }
                 (origin(data))
             }
@@ -192,14 +207,17 @@ fn expectations(summary: &Summary) -> Markup {
 
 fn pictures(pictures: &[Figure]) -> Markup {
     html! {
-        @if !pictures.is_empty() {
+        @if pictures.iter().any(|picture| !picture.in_strip) {
             section {
                 h2 { "Pictures" }
                 div.grid {
-                    @for Figure { title, png, colours } in pictures {
+                    @for Figure { title, png, colours, scale, .. } in pictures.iter().filter(|picture| !picture.in_strip) {
                         figure {
                             figcaption { (title) }
-                            img src=(figure::data_address(png)) alt=(title);
+                            div.picture {
+                                img src=(figure::data_address(png)) alt=(title);
+                                @if let Some((scale, size)) = scale { (PreEscaped(overlay::to_svg(scale, *size))) }
+                            }
                             @if let Some(bar) = colours { div.bar { (PreEscaped(bar.to_svg())) } }
                         }
                     }
@@ -207,6 +225,42 @@ fn pictures(pictures: &[Figure]) -> Markup {
             }
         }
     }
+}
+
+/// The body at some instants, in the colours of one range.
+fn strip(pictures: &[Figure]) -> Markup {
+    let strip: Vec<&Figure> = pictures.iter().filter(|picture| picture.in_strip).collect();
+    html! {
+        @if !strip.is_empty() {
+            section {
+                h2 { "Over time" }
+                div.strip {
+                    @for Figure { title, png, .. } in &strip {
+                        figure { figcaption { (title) } img src=(figure::data_address(png)) alt=(title); }
+                    }
+                }
+                @if let Some(bar) = strip.iter().find_map(|figure| figure.colours.as_ref()) {
+                    div.bar { (PreEscaped(bar.to_svg())) }
+                }
+            }
+        }
+    }
+}
+
+fn inputs(inputs: &[(String, String)]) -> Markup {
+    html! {
+        @if !inputs.is_empty() {
+            section.keep {
+                h2 { "Inputs" }
+                table { @for (what, value) in inputs { tr { td { (what) } td { (value) } } } }
+            }
+        }
+    }
+}
+
+/// A value that is nothing beside a larger one, as zero.
+fn or_zero(value: f64, beside: f64) -> f64 {
+    if value.abs() < NOTHING * beside.abs() { 0.0 } else { value }
 }
 
 fn probes(summary: &Summary) -> Markup {
@@ -220,12 +274,14 @@ fn probes(summary: &Summary) -> Markup {
                         th.number { "At the end" }
                     }
                     @for (name, probe) in &summary.probes {
+                        @let size = probe.max.abs().max(probe.min.abs());
+                        @let shown = |value: f64| quantity(or_zero(value, size), &probe.unit);
                         tr {
                             td { (words(name)) }
-                            td.number { (quantity(probe.max, &probe.unit)) }
+                            td.number { (shown(probe.max)) }
                             td.number { (quantity(probe.time_of_max, "s")) }
-                            td.number { (quantity(probe.min, &probe.unit)) }
-                            td.number { (quantity(probe.r#final, &probe.unit)) }
+                            td.number { (shown(probe.min)) }
+                            td.number { (shown(probe.r#final)) }
                         }
                     }
                 } }
@@ -271,6 +327,8 @@ fn energies(summary: &Summary) -> Markup {
     let counts = &summary.counts;
     // The work stands even when it is zero; other zeros are what is not part of the run.
     let ledger = EnergyKind::ALL.map(|kind| (kind, energy.entries[kind as usize]));
+    let largest = ledger.iter().map(|(_, value)| value.abs()).fold(0.0, f64::max);
+    let ledger = ledger.map(|(kind, value)| (kind, or_zero(value, largest)));
     let ledger = ledger.iter().filter(|(kind, value)| *value != 0.0 || kind.role() == EnergyRole::Supplied);
     let sizes = [
         ("Nodes", counts.nodes),
@@ -375,7 +433,7 @@ mod tests {
                 ..Curve::default()
             }],
             cracks: vec!["broken_edges".into()],
-            pictures: vec![Figure { title: "At the end".into(), png: b"not looked at".to_vec(), colours: None }],
+            pictures: vec![Figure { title: "At the end".into(), png: b"not looked at".to_vec(), ..Figure::default() }],
             plan: "bodies: <disc>".into(),
             warnings: vec!["element 5 & 6 are large".into()],
             ..ReportData::default()

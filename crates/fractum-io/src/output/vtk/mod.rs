@@ -24,6 +24,7 @@ mod document;
 mod frame_writer;
 mod grid;
 mod poly;
+mod read;
 mod unit;
 
 use std::borrow::Cow;
@@ -32,6 +33,7 @@ pub use collection::{Collection, Entry};
 pub use frame_writer::{FrameWriter, PendingFile};
 pub use grid::{CellBlock, CellKind, UnstructuredGrid};
 pub use poly::{PolyCells, PolyData};
+pub use read::{Arrays, read_collection};
 
 pub use crate::compress::Compression;
 use crate::error::WriteError;

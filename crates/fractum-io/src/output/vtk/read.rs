@@ -1,0 +1,202 @@
+//! Reading the VTK files of a results folder again, for pictures and movies.
+//!
+//! Only what the writers here make is read: arrays appended as raw bytes, in this machine's byte order. A file that is
+//! damaged or from elsewhere is an error, and no size that it states is believed before the bytes are there.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{self, Read};
+use std::path::Path;
+
+use super::collection::{Collection, Entry};
+use crate::error::ReadError;
+
+/// Largest array that is read [bytes].
+const LARGEST: usize = 1 << 32;
+
+/// Arrays of a VTU or VTP by name; numbers of every type as doubles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Arrays(BTreeMap<String, Vec<f64>>);
+
+impl Arrays {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`ReadError`]: no such file, or none that this program wrote.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let file = fs::read(path).map_err(|error| refused(path, error))?;
+        decode(&file).map(Arrays).ok_or_else(|| damaged(path))
+    }
+
+    /// The numbers of an array; none of one that is not there.
+    pub fn get(&self, name: &str) -> &[f64] {
+        self.0.get(name).map_or(&[], Vec::as_slice)
+    }
+
+    /// The vectors of an array.
+    pub fn vectors(&self, name: &str) -> Vec<[f64; 3]> {
+        self.get(name).chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect()
+    }
+
+    /// The cells with this number of corners.
+    pub fn cells<const N: usize>(&self) -> Vec<[u32; N]> {
+        let (nodes, ends) = (self.get("connectivity"), self.get("offsets"));
+        let points = self.get("Points").len() / 3;
+        let begins = std::iter::once(0).chain(ends.iter().map(|&end| end as usize));
+        let ranges = begins.zip(ends.iter().map(|&end| end as usize));
+        let cell = |(begin, end): (usize, usize)| {
+            let corners: [f64; N] = nodes.get(begin..end)?.try_into().ok()?;
+            corners.iter().all(|&n| (n as usize) < points).then(|| corners.map(|n| n as u32))
+        };
+        ranges.filter_map(cell).collect()
+    }
+}
+
+/// Reads a `fields.pvd`.
+///
+/// # Errors
+/// [`ReadError`].
+pub fn read_collection(path: &Path) -> Result<Collection, ReadError> {
+    let text = fs::read_to_string(path).map_err(|error| refused(path, error))?;
+    let mut collection = Collection::default();
+    for tag in text.split('<').filter(|tag| tag.starts_with("DataSet")) {
+        let attributes = attributes(tag);
+        let get = |name: &str| attributes.get(name).copied();
+        let entry = || {
+            Some(Entry {
+                time: get("timestep")?.parse().ok()?,
+                part: get("part")?.parse().ok()?,
+                name: get("name")?.to_owned(),
+                file: get("file")?.to_owned(),
+            })
+        };
+        collection.entries.push(entry().ok_or_else(|| damaged(path))?);
+    }
+    Ok(collection)
+}
+
+fn damaged(path: &Path) -> ReadError {
+    let text = "this is no whole VTK file of this program";
+    refused(path, io::Error::new(io::ErrorKind::InvalidData, text))
+}
+
+fn refused(path: &Path, source: io::Error) -> ReadError {
+    ReadError::Refused { path: path.to_owned(), source }
+}
+
+fn decode(file: &[u8]) -> Option<BTreeMap<String, Vec<f64>>> {
+    let start = find(file, b"<AppendedData")?;
+    let xml = std::str::from_utf8(&file[..start]).ok()?;
+    let data = &file[start + find(&file[start..], b"_")? + 1..];
+    let compressed = xml.contains("compressor=\"vtkZLibDataCompressor\"");
+    let mut arrays = BTreeMap::new();
+    for tag in xml.split('<').filter(|tag| tag.starts_with("DataArray")) {
+        let attributes = attributes(tag);
+        let offset: usize = attributes.get("offset")?.parse().ok()?;
+        let stored = data.get(offset..)?;
+        let bytes = if compressed { inflate(stored)? } else { plain(stored)?.to_vec() };
+        arrays.insert((*attributes.get("Name")?).to_owned(), numbers(attributes.get("type")?, &bytes)?);
+    }
+    Some(arrays)
+}
+
+fn attributes(tag: &str) -> BTreeMap<&str, &str> {
+    let mut attributes = BTreeMap::new();
+    let mut rest = tag;
+    while let Some((before, after)) = rest.split_once("=\"") {
+        let Some((value, after)) = after.split_once('"') else { break };
+        attributes.insert(before.rsplit([' ', '\n']).next().unwrap_or_default(), value);
+        rest = after;
+    }
+    attributes
+}
+
+fn numbers(kind: &str, bytes: &[u8]) -> Option<Vec<f64>> {
+    fn of<const N: usize>(bytes: &[u8], number: fn([u8; N]) -> f64) -> Vec<f64> {
+        bytes.chunks_exact(N).filter_map(|bytes| bytes.try_into().ok()).map(number).collect()
+    }
+    Some(match kind {
+        "Float64" => of(bytes, f64::from_ne_bytes),
+        "Float32" => of(bytes, |b| f64::from(f32::from_ne_bytes(b))),
+        "Int64" => of(bytes, |b| i64::from_ne_bytes(b) as f64),
+        "Int32" => of(bytes, |b| f64::from(i32::from_ne_bytes(b))),
+        "UInt8" => of(bytes, |[b]: [u8; 1]| f64::from(b)),
+        "Int8" => of(bytes, |[b]: [u8; 1]| f64::from(b as i8)),
+        // Text and other types show in no picture.
+        _ => Vec::new(),
+    })
+}
+
+fn number(data: &[u8], index: usize) -> Option<usize> {
+    let bytes = data.get(8 * index..8 * index + 8)?;
+    usize::try_from(u64::from_ne_bytes(bytes.try_into().ok()?)).ok()
+}
+
+fn plain(data: &[u8]) -> Option<&[u8]> {
+    data.get(8..)?.get(..number(data, 0)?)
+}
+
+fn inflate(data: &[u8]) -> Option<Vec<u8>> {
+    let blocks = number(data, 0)?;
+    let mut position = blocks.checked_add(3)?.checked_mul(8)?;
+    let mut bytes = Vec::new();
+    for block in 0..blocks {
+        let end = position.checked_add(number(data, 3 + block)?)?;
+        let room = LARGEST.checked_sub(bytes.len())? as u64;
+        flate2::read::ZlibDecoder::new(data.get(position..end)?).take(room).read_to_end(&mut bytes).ok()?;
+        position = end;
+    }
+    Some(bytes)
+}
+
+fn find(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
+    bytes.windows(pattern.len()).position(|window| window == pattern)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compress::Compression;
+    use crate::output::vtk::{Field, PolyCells, PolyData};
+
+    #[test]
+    fn what_was_written_is_read_and_what_is_cut_off_is_refused() {
+        let points: Vec<[f64; 3]> = (0..20_000).map(|i| [f64::from(i), 0.5, -1.0]).collect();
+        let radius: Vec<f64> = points.iter().map(|p| p[0] + 1.0).collect();
+        let triangles: Vec<[u32; 3]> = (2..20_000).map(|i| [0, i - 1, i]).collect();
+        let data = PolyData {
+            points: &points,
+            cells: PolyCells::Triangles(&triangles),
+            point_data: &[Field::scalar("radius", &radius)],
+            cell_data: &[],
+            time: Some(0.5),
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.vtp");
+        for compression in [Compression::Fast, Compression::None] {
+            let bytes = data.to_bytes(compression).unwrap();
+            fs::write(&path, &bytes).unwrap();
+            let arrays = Arrays::read(&path).unwrap();
+            assert_eq!((arrays.vectors("Points"), arrays.get("radius")), (points.clone(), &radius[..]));
+            assert_eq!((arrays.cells::<3>(), arrays.get("TimeValue")), (triangles.clone(), &[0.5][..]));
+            assert!(arrays.cells::<4>().is_empty() && arrays.get("absent").is_empty());
+            for part in [0, 10, bytes.len() / 3, bytes.len() / 2] {
+                fs::write(&path, &bytes[..part]).unwrap();
+                assert!(Arrays::read(&path).is_err(), "{part}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_collection_reads_back() {
+        let mut collection = Collection::default();
+        collection.push(0.0, 0, "solid", "fields/solid-00000.vtu");
+        collection.push(1.5e-4, 1, "particles", "particles/particles-00001.vtp");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("fields.pvd");
+        fs::write(&path, collection.to_xml()).unwrap();
+        assert_eq!(read_collection(&path).unwrap(), collection);
+        fs::write(&path, "<DataSet timestep=\"x\"/>").unwrap();
+        assert!(read_collection(&path).is_err());
+    }
+}

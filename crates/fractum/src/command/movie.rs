@@ -1,0 +1,42 @@
+//! `fractum movie`: the frames of a results folder as an animated picture.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use fractum::{ExitCode, Failure, MovieSettings, say};
+use fractum_io::number::quantity;
+
+/// Pictures per second at most.
+const FASTEST: u16 = 100;
+
+#[derive(Args)]
+pub(crate) struct MovieArguments {
+    /// Results folder of a run.
+    folder: PathBuf,
+    /// File to write; movie.png in the results folder by default.
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    /// Pictures per second.
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=i64::from(FASTEST)))]
+    rate: u16,
+    /// Width in pixels.
+    #[arg(long, default_value_t = 800)]
+    width: usize,
+    /// Height in pixels.
+    #[arg(long, default_value_t = 680)]
+    height: usize,
+}
+
+/// Writes the movie.
+///
+/// # Errors
+/// A folder without frames, a size out of range, a disk that cannot be written to.
+pub(crate) fn run(arguments: &MovieArguments) -> Result<ExitCode, Failure> {
+    let MovieArguments { folder, output, rate, width, height } = arguments;
+    let output = output.clone().unwrap_or_else(|| folder.join("movie.png"));
+    let settings = MovieSettings { width: *width, height: *height, rate: *rate };
+    let movie = fractum::movie(folder, &output, settings)?;
+    let [low, high] = [movie.range.0, movie.range.1].map(|value| quantity(value, movie.unit));
+    say!("{}: {} frames, colours are {} from {low} to {high}", output.display(), movie.frames, movie.label);
+    Ok(ExitCode::Done)
+}
