@@ -284,7 +284,7 @@ impl Solid {
     }
 
     /// What cells hold, as means over the edges of each element where the body is smoothed.
-    fn means(&self, model: &BodyModel, of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync) -> Vec<(Sym3, f64)> {
+    fn means(&self, model: &BodyModel, of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
         let cells: Vec<(Sym3, f64)> = model.location.par_iter().map(of_cell).collect();
         match model.smoothed_edges() {
             None => cells,

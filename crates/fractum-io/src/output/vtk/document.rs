@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::fmt::Write;
 
 use flate2::Compress;
+use serde::{Deserialize, Serialize};
 
 use super::Field;
 use super::unit::unit_of;
