@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use modules::Modules;
 
 /// What each crate may name of the others. A new crate or arrow is entered here on purpose, or not at all.
-const ARROWS: [(&str, &[&str]); 13] = [
+const ARROWS: [(&str, &[&str]); 14] = [
     ("fractum-math", &[]),
     ("fractum-mesh", &["math"]),
     ("fractum-contact", &["math", "mesh"]),
@@ -19,14 +19,15 @@ const ARROWS: [(&str, &[&str]); 13] = [
     ("fractum-fem", &["math", "mesh"]),
     ("fractum-sparse", &["math"]),
     ("fractum-gas", &["math"]),
-    ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse", "gas"]),
+    ("fractum-heat", &["math", "sparse"]),
+    ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse", "gas", "heat"]),
     ("fractum-io", &["math", "mesh", "fem", "dem", "pack", "scene"]),
     ("fractum-prepare", &["math", "mesh", "dem", "pack", "calibrate", "scene", "io"]),
     ("fractum", &["math", "mesh", "fem", "dem", "pack", "calibrate", "scene", "io", "prepare"]),
 ];
 
 /// Crates whose kernels take numbers: no files, no printing, no wall clock, nothing of the case format.
-const BELOW_IO: [&str; 10] = [
+const BELOW_IO: [&str; 11] = [
     "fractum-math",
     "fractum-mesh",
     "fractum-contact",
@@ -36,6 +37,7 @@ const BELOW_IO: [&str; 10] = [
     "fractum-fem",
     "fractum-sparse",
     "fractum-gas",
+    "fractum-heat",
     "fractum-scene",
 ];
 

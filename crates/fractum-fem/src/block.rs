@@ -4,7 +4,9 @@
 //! displacements and forces stay in the cache of one core. Forces are first summed inside a block, in the order of its
 //! cells, and then per node over the blocks, in the order of the blocks: the same bits for any number of threads.
 
-use fractum_math::{Lane, Ragged, Vec3};
+use fractum_math::{Lane, Ragged, Sym3, Vec3};
+
+use crate::thermal_strain::ThermalStrain;
 
 /// Geometry of the cells of a block.
 ///
@@ -23,6 +25,8 @@ pub(crate) struct Cells {
     pub(crate) volume: Vec<f64>,
     /// Runs of cells with as many gradients each, for loops of a length known to the compiler.
     pub(crate) runs: Vec<Run>,
+    /// Thermal strains, where the body expands.
+    pub(crate) thermal: Option<Box<ThermalStrain>>,
 }
 
 /// Cells `begin..end` of a block, each with `gradients` gradients.
@@ -56,6 +60,18 @@ fn local_lanes() -> LocalLanes {
 }
 
 impl Cells {
+    /// Strain of a cell that stress belongs to: beyond the thermal one.
+    #[inline]
+    pub(crate) fn elastic_strain(&self, cell: usize, strain: Sym3) -> Sym3 {
+        self.thermal.as_ref().map_or(strain, |thermal| thermal.elastic(cell, strain))
+    }
+
+    /// The same at the step before.
+    #[inline]
+    pub(crate) fn elastic_strain_before(&self, cell: usize, strain: Sym3) -> Sym3 {
+        self.thermal.as_ref().map_or(strain, |thermal| thermal.elastic_before(cell, strain))
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.volume.len()
     }

@@ -232,15 +232,16 @@ pub(crate) struct Advance<'a> {
 }
 
 impl Advance<'_> {
-    /// Strain of a cell now.
+    /// Elastic strain of a cell now.
     pub(crate) fn strain_now(&self, cells: &Cells, cell: usize) -> Sym3 {
-        kernel::strain(&cells.gradient(cell, |node| self.displacement[node]), self.kinematics)
+        let strain = kernel::strain(&cells.gradient(cell, |node| self.displacement[node]), self.kinematics);
+        cells.elastic_strain(cell, strain)
     }
 
-    /// Strain of a cell at the step before.
+    /// Elastic strain of a cell at the step before.
     pub(crate) fn strain_before(&self, cells: &Cells, cell: usize) -> Sym3 {
         let h = cells.gradient(cell, |node| self.displacement[node] - self.velocity[node] * self.dt);
-        kernel::strain(&h, self.kinematics)
+        cells.elastic_strain_before(cell, kernel::strain(&h, self.kinematics))
     }
 }
 

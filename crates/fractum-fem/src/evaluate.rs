@@ -6,7 +6,7 @@ use crate::block::{Cells, Scratch};
 use crate::body::Kinematics;
 use crate::body_model::BodyModel;
 use crate::damage::{Advance, EdgeCells, EdgeField, EdgesInStep};
-use crate::kernel::{self, ElasticCells, Viscous};
+use crate::kernel::{self, ElasticCells, ExpandingCells, Viscous};
 use crate::standard::StandardCells;
 use crate::viscosity::ViscousCells;
 
@@ -86,6 +86,7 @@ impl Block {
         let Block { cells, law: BlockLaw::Standard(law), .. } = self else { return };
         for cell in 0..cells.len() {
             let strain = kernel::strain(&cells.gradient(cell, |node| displacement[node]), model.body.kinematics);
+            let strain = cells.elastic_strain(cell, strain);
             law.mixed_energy[cell] = 0.5 * law.stress[cell].dot(strain);
             law.stress[cell] = model.hooke.stress(strain);
         }
@@ -132,8 +133,22 @@ impl Block {
     }
 }
 
-/// Runs the cheapest kernel that the body allows; returns the viscous power [W] and a cell that is turned inside out.
+/// Runs the cells with the law, beyond their thermal strains where they have some; see [`run_law`].
 fn run<L: kernel::CellLaw>(
+    model: &BodyModel,
+    cells: &Cells,
+    scratch: &mut Scratch,
+    law: &mut L,
+    viscous: &mut ViscousCells,
+) -> (f64, Option<usize>) {
+    match &cells.thermal {
+        Some(thermal) => run_law(model, cells, scratch, &mut ExpandingCells { law, thermal }, viscous),
+        None => run_law(model, cells, scratch, law, viscous),
+    }
+}
+
+/// Runs the cheapest kernel that the body allows; returns the viscous power [W] and a cell that is turned inside out.
+fn run_law<L: kernel::CellLaw>(
     model: &BodyModel,
     cells: &Cells,
     scratch: &mut Scratch,

@@ -6,6 +6,7 @@ use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
 use crate::body::Kinematics;
 use crate::hooke::Hooke;
 use crate::polar::{corotational_strain, product, strain_and_turn};
+use crate::thermal_strain::ThermalStrain;
 use crate::viscosity::{BodyViscosity, ViscousCells};
 
 /// Stress of a cell for its strain; owns the history of the cells of a block.
@@ -49,6 +50,35 @@ impl CellLaw for ElasticCells {
     #[inline(always)]
     fn integrity(&self, _cell: usize) -> f64 {
         1.0
+    }
+}
+
+/// The law of cells that expand: it sees the strain beyond the thermal one.
+pub(crate) struct ExpandingCells<'a, L> {
+    pub(crate) law: &'a mut L,
+    pub(crate) thermal: &'a ThermalStrain,
+}
+
+impl<L: CellLaw> CellLaw for ExpandingCells<'_, L> {
+    const BY_FOURS: bool = L::BY_FOURS;
+
+    #[inline(always)]
+    fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
+        self.law.scaled_stress(cell, self.thermal.elastic(cell, strain), volume)
+    }
+
+    #[inline(always)]
+    fn scaled_stresses(&mut self, first: usize, strains: &[Sym3; FOUR], volumes: &[f64; FOUR]) -> [Sym3; FOUR] {
+        let mut elastic = *strains;
+        for k in 0..FOUR {
+            elastic[k] = self.thermal.elastic(first + k, strains[k]);
+        }
+        self.law.scaled_stresses(first, &elastic, volumes)
+    }
+
+    #[inline(always)]
+    fn integrity(&self, cell: usize) -> f64 {
+        self.law.integrity(cell)
     }
 }
 

@@ -194,9 +194,10 @@ impl Solid {
 }
 
 impl Block {
-    /// Strain of one cell at the present displacements.
+    /// Elastic strain of one cell at the present displacements.
     pub(crate) fn strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
-        kernel::strain(&self.cells.gradient(cell, |node| displacement[node]), kinematics)
+        let strain = kernel::strain(&self.cells.gradient(cell, |node| displacement[node]), kinematics);
+        self.cells.elastic_strain(cell, strain)
     }
 
     /// Stress of one cell with its damage [Pa].

@@ -88,6 +88,16 @@ pub enum SceneError {
         /// Why.
         reason: String,
     },
+    /// The conductivity of a packing was not found.
+    #[error(
+        "body {body}: the conductivity of its packing was not found: {reason}; take heat.packing = \"table\", or a body whose particles are all bonded"
+    )]
+    PackingConduction {
+        /// Name of the body.
+        body: String,
+        /// Why.
+        reason: String,
+    },
     /// The solid cannot be built.
     #[error(transparent)]
     Solid(#[from] fractum_fem::SolidError),
@@ -147,6 +157,16 @@ pub enum StepError {
         step: u64,
         /// Load parameter of the last equilibrium [s].
         time: f64,
+    },
+    /// Temperatures were not found.
+    #[error("step {step}, t = {time:.6e} s: conduction of heat failed: {reason}; lower heat.step or solver.safety")]
+    Heat {
+        /// Step number.
+        step: u64,
+        /// Time [s].
+        time: f64,
+        /// Why, in words.
+        reason: String,
     },
     /// A piece is held by nothing any more.
     #[error(

@@ -83,7 +83,7 @@ impl Scene {
     fn each_bound_node(&self, mut visit: impl FnMut(u32)) {
         let held = (0..).zip(self.supports.held()).filter(|(_, held)| **held != 0).map(|(node, _)| node);
         held.for_each(&mut visit);
-        self.surface_supports.nodes().for_each(&mut visit);
+        self.optional.surface_supports.nodes().for_each(&mut visit);
         self.debris.bound_nodes().for_each(&mut visit);
         self.ties.nodes().for_each(&mut visit);
         self.contacts.each_touching_node(&self.debris, &self.bonded.particles, &mut visit);

@@ -7,6 +7,7 @@
 mod bonded;
 mod clock;
 mod conditions;
+mod conduct;
 mod contacts;
 pub mod coupling;
 mod crack_extent;
@@ -17,6 +18,7 @@ mod error;
 mod facet;
 mod fragment;
 mod gas;
+mod heat;
 mod leave;
 mod ledger;
 mod piece_probe;
@@ -43,8 +45,12 @@ pub use error::{SceneError, StepError};
 pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution};
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fractum_gas::{Amount, EquationOfState, Jwl, NobleAbel, PerfectGas, SlitFlow};
+pub use fractum_heat::HeatCondition;
 pub use fragment::{Fragment, solid_pieces};
 pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, HoleEnds, SymmetryPlanes};
+pub use heat::{
+    Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
+};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use piece_probe::{FragmentMeasure, SurfaceMeasure, equivalent_diameter, fragment_size, passing_size};
 pub use probe::{Population, Probe, ProbedScene};

@@ -11,6 +11,7 @@ use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
 use crate::damaged::DamagedPart;
 use crate::fragment::Fragment;
 use crate::gas::GasMeasure;
+use crate::heat::{HeatMeasure, TemperatureTake};
 use crate::ledger::EnergyProbe;
 use crate::piece_probe::{FragmentMeasure, SurfaceMeasure, measure_fragment, measure_surface, passing_size};
 use crate::radial_cracks::RadialCracks;
@@ -80,6 +81,17 @@ pub enum Probe {
         /// Of this hole; of everything if absent.
         hole: Option<usize>,
     },
+    /// Temperature of points [K]; not a number without heat.
+    Temperature {
+        /// Whose points.
+        population: Population,
+        /// The points.
+        points: Vec<u32>,
+        /// Which temperature of them.
+        take: TemperatureTake,
+    },
+    /// Something about the heat of everything [J]; not a number without heat.
+    Heat(HeatMeasure),
     /// Sum of the loads on nodes of solids along a component [N].
     Load {
         /// The nodes, ascending.
@@ -214,6 +226,11 @@ impl Probe {
                 scene.contacts.rigid_bodies()[*rigid_body].frame.velocity.dot(direction)
             }
             Probe::Gas { measure, hole } => scene.gas().map_or(f64::NAN, |gas| gas.measure(solid, *measure, *hole)),
+            Probe::Temperature { population, points, take } => {
+                let of_particles = *population == Population::Particles;
+                scene.heat().map_or(f64::NAN, |heat| heat.temperature_of(of_particles, points, *take))
+            }
+            Probe::Heat(measure) => scene.heat().map_or(f64::NAN, |heat| heat.measure(*measure)),
             Probe::Load { points, along } => scene.loads.resultant(points, |point| along.at(&solid.reference[point])),
             Probe::Surface { facets, measure } => measure_surface(solid, facets, *measure),
             Probe::Fragment { points, measure, along } => {

@@ -11,6 +11,7 @@ use crate::coupling::{Attachment, Debris, DebrisState, Ties};
 use crate::domain::{Domain, Left};
 use crate::fragment::{Fragment, joined, single_share, solid_pieces};
 use crate::gas::Gas;
+use crate::heat::Heat;
 use crate::ledger::{Books, Ledger};
 
 /// One simulation: bodies, boundary conditions, clock and ledger.
@@ -32,12 +33,21 @@ pub struct Scene {
     pub clock: Clock,
     pub(crate) supports: Supports,
     pub(crate) loads: Loads,
-    pub(crate) surface_supports: SurfaceSupports,
+    pub(crate) optional: Optional,
     pub(crate) settings: SceneSettings,
     pub(crate) ledger: Ledger,
     pub(crate) books: Books,
     pub(crate) frequencies: Frequencies,
     pub(crate) removals: Removals,
+}
+
+/// What only some scenes have.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Optional {
+    /// Dashpots and springs on facets.
+    pub(crate) surface_supports: SurfaceSupports,
+    /// Heat in solids and bonded bodies.
+    pub(crate) heat: Option<Box<Heat>>,
 }
 
 /// Elements that have left the solids.
@@ -166,7 +176,7 @@ impl Scene {
             clock: Clock::new(0.0),
             supports,
             loads,
-            surface_supports: SurfaceSupports::default(),
+            optional: Optional::default(),
             settings,
             ledger: Ledger::default(),
             books: Books::default(),
@@ -204,7 +214,7 @@ impl Scene {
 
     /// The same scene with supports on facets of its solids, before its first step.
     pub fn with_surface_supports(mut self, supports: SurfaceSupports) -> Self {
-        self.surface_supports = supports;
+        self.optional.surface_supports = supports;
         self.clock = Clock::new(self.next_dt(0.0));
         self
     }
@@ -214,7 +224,7 @@ impl Scene {
         (self.supports, self.settings) = (next.supports, next.settings);
         let before = std::mem::replace(&mut self.loads, next.loads);
         self.loads.follow(before, &self.solid);
-        self.surface_supports = next.surface_supports;
+        self.optional.surface_supports = next.optional.surface_supports;
         self.removals.domain = next.removals.domain;
     }
 

@@ -33,7 +33,7 @@ impl Scene {
         let gas = self.loads.gas().map_or(0.0, Gas::frequency_square);
         let Frequencies { walls_square, contact_square, .. } = self.frequencies;
         let contacts = walls_square + contact_square + self.contacts.frequency_square() * divisor * divisor + gas;
-        let contacts = contacts + self.surface_supports.frequency_square();
+        let contacts = contacts + self.optional.surface_supports.frequency_square();
         // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
         let frequency = ((frequency * frequency + contacts) * (1.0 + self.settings.damping.local)).sqrt();
         let contact = if walls_square + contact_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
@@ -49,8 +49,7 @@ impl Scene {
     pub(crate) fn next_dt(&self, time: f64) -> f64 {
         let TimeStepSettings { safety, fixed, end, .. } = self.settings.time_step;
         let dt = fixed.unwrap_or_else(|| safety * self.stable_dt());
-        let left = end - time;
-        if left > 1e-9 * dt { left / (left / dt * (1.0 - 1e-9)).ceil() } else { dt }
+        equal_steps(dt, end - time)
     }
 
     pub(crate) fn update_wall_frequency(&mut self) {
@@ -74,6 +73,11 @@ impl Scene {
             *contact_peak = now;
         }
     }
+}
+
+/// The largest step up to `dt` that divides what is left of a run into equal ones [s].
+pub(crate) fn equal_steps(dt: f64, left: f64) -> f64 {
+    if left > 1e-9 * dt { left / (left / dt * (1.0 - 1e-9)).ceil() } else { dt }
 }
 
 /// The smallest of the values unit · 2^(k/2), from a quarter of the unit on, that is no smaller; 0 for 0.

@@ -72,6 +72,7 @@ impl Scene {
         if !self.bonded.is_empty() {
             passed(Phase::Bonds);
         }
+        self.finish_expansion();
         let contact = self.add_contact_forces(elapsed, faces);
         if measure {
             self.sum_watched_contacts();
@@ -85,7 +86,9 @@ impl Scene {
         self.let_left_rest();
         self.let_particles_leave(dt_before);
         let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
+        let expansion = self.conduct(dt_after)?;
         let mut work = self.advance(measure || step_changes); // vⁿ⁺½, uⁿ⁺¹
+        work.after.external += expansion;
         work.before.external += load;
         work.before += absorbed;
 
@@ -133,7 +136,7 @@ impl Scene {
         work += self.contacts.move_bodies(time, dt_before, dt_after);
         work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
         self.loads.spend_gas_work(&self.solid, dt_after);
-        work.after += self.surface_supports.absorbed_after(&self.solid, dt_after);
+        work.after += self.optional.surface_supports.absorbed_after(&self.solid, dt_after);
         work
     }
 
@@ -176,7 +179,8 @@ impl Scene {
 
     /// Forces of supports on facets; what the absorbing ones take in the half step before.
     fn add_surface_support_forces(&mut self, first: bool) -> Work {
-        let Scene { surface_supports, solid, supports, clock, .. } = self;
+        let Scene { optional, solid, supports, clock, .. } = self;
+        let surface_supports = &mut optional.surface_supports;
         surface_supports.push(solid);
         let dt_kick = 0.5 * (clock.dt_before + clock.dt_after);
         surface_supports.absorb(solid, supports.held(), [clock.dt_before, dt_kick], first)
@@ -225,6 +229,7 @@ impl Scene {
         let mut report = StepReport { removed: self.removals.last.len(), particles_born: 0 };
         if report.removed > 0 {
             self.books.removed += energy;
+            self.heat_loses_elements();
             self.loads.extend_cracks(&self.solid, &self.removals.last);
             let before = self.debris.len();
             self.debris.release(&self.solid, &self.removals.last);
@@ -254,7 +259,7 @@ impl Scene {
 
     /// Completes the ledger of tⁿ and holds it against the guard.
     fn close_balance(&mut self) -> Result<(), StepError> {
-        let Scene { ledger, solid, bonded, books, contacts, surface_supports, .. } = self;
+        let Scene { ledger, solid, bonded, books, contacts, optional, .. } = self;
         let bonds = bonded.energy();
         ledger[EnergyKind::BondTension] = bonds.tension;
         ledger[EnergyKind::BondBending] = bonds.bending;
@@ -269,7 +274,7 @@ impl Scene {
         ledger[EnergyKind::TimeStep] = books.time_step;
         ledger[EnergyKind::Absorbed] = books.absorbed;
         ledger[EnergyKind::Left] = books.left;
-        ledger[EnergyKind::Foundation] = surface_supports.stored();
+        ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
         if self.clock.step == 0 {
             ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];
             if !solid.initial_displacement.is_empty() {

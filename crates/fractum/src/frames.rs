@@ -161,6 +161,9 @@ fn solid_file(scene: &Scene, grid: &GridLayout) -> Result<PendingFile, Failure> 
     if grid.further.fragment {
         point_data.push(Field::integer("fragment", &fragment));
     }
+    let temperature: Option<Vec<f64>> =
+        scene.heat().map(|heat| order.iter().map(|&n| heat.of_nodes()[n as usize]).collect());
+    point_data.extend(temperature.as_ref().map(|temperature| Field::scalar("temperature", temperature)));
     let elements = ElementFields::of(scene, grid);
     let cells: Vec<CellBlock> = elements.cells.iter().map(|(kind, nodes)| CellBlock { kind: *kind, nodes }).collect();
     let grid = UnstructuredGrid {

@@ -1,6 +1,7 @@
 //! What a run will do: bodies, physics on and skipped, time step, size, time.
 
 mod bodies;
+mod heat;
 mod rows;
 mod wrap;
 
@@ -79,6 +80,7 @@ impl Plan {
             plan.add("choice", choice);
         }
         plan.describe_solver(case, built);
+        plan.describe_heat(case, scene);
         for (case, built) in later {
             plan.add("stage", &case.source.stage);
             plan.describe_conditions(case, mesh, &built.scene);
@@ -98,6 +100,7 @@ impl Plan {
                 let end = quantity(case.solver.end, "s");
                 self.add("equilibrium", format!("{unknowns} unknowns, {path}, to t = {end}"));
             }
+            None if built.conducts_alone => {}
             None => {
                 self.describe_time(case, scene);
                 self.describe_size(case, scene);

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
 use crate::frames::{Frame, GridLayout};
+use crate::heat_columns;
 use crate::left;
 use crate::path_frames::PathFrames;
 use crate::series::{index_of_max, interpolate, slope_of_window, speed, time_mean};
@@ -57,6 +58,8 @@ pub(crate) fn count_ledger_columns(names: &[&str]) -> usize {
     let known = ledger_columns(true);
     let count = names.iter().zip(known).take_while(|(name, (column, _))| *name == column).count();
     let count = if names.get(count) == Some(&left::COLUMNS[0].0) { count + left::COLUMNS.len() } else { count };
+    let heated = names.get(count) == Some(&heat_columns::COLUMNS[0].0);
+    let count = if heated { count + heat_columns::COLUMNS.len() } else { count };
     let count = count + usize::from(names.get(count) == Some(&STEP.0));
     count + usize::from(names.get(count) == Some(&IN_MOTION.0))
 }
@@ -159,6 +162,7 @@ impl Recorder {
         let columns: Vec<Column> = ledger_columns(!scene.bonded.is_empty())
             .into_iter()
             .chain(scene.domain().into_iter().flat_map(|_| left::COLUMNS))
+            .chain(scene.heat().into_iter().flat_map(|_| heat_columns::COLUMNS))
             .chain(course.turns_back.then_some(STEP))
             .chain(tells_motion.then_some(IN_MOTION))
             .map(|(name, unit)| Column::new(name, unit))
@@ -263,6 +267,7 @@ impl Recorder {
             row.push(counts.broken_bonds as f64);
         }
         row.extend(scene.domain().into_iter().flat_map(|_| left::values(scene.left())));
+        row.extend(scene.heat().into_iter().flat_map(heat_columns::values));
         row.extend(self.course.turns_back.then_some(scene.clock.step as f64));
         row.extend(self.tells_motion.then_some(f64::from(u8::from(in_motion))));
         self.state.times.push(time);

@@ -118,6 +118,8 @@ fn particles_file(
         point_data.push(Field::scalar("broken_bonds", &lost));
         point_data.push(Field { name: "stress", components: 6, values: Values::F32(stress.as_flattened()) });
     }
+    let temperature = scene.heat().map(|heat| scalar(heat.of_particles()));
+    point_data.extend(temperature.as_ref().map(|temperature| Field::scalar("temperature", temperature)));
     let data = PolyData {
         points: &points,
         cells: PolyCells::Points,

@@ -20,7 +20,7 @@ use fractum_io::number::{percent, quantity};
 use fractum_io::origin::Origin;
 use fractum_io::summary::{Status, Summary};
 use fractum_prepare::Cache;
-use fractum_scene::{EnergyKind, Scene, SceneState, StepError};
+use fractum_scene::{EnergyKind, HeatState, Scene, SceneState, StepError};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
@@ -127,6 +127,7 @@ struct RunState {
     /// End of the run when it was saved [s].
     end: f64,
     scene: SceneState,
+    heat: Option<HeatState>,
     record: RecordState,
     /// Stages that were still to come.
     later: usize,
@@ -183,7 +184,7 @@ impl Simulation {
             return Ok(());
         }
         let measure = self.recorder.row_is_due(self.scene.clock.time);
-        let before = (!self.solver.moves()).then(|| (self.scene.state(), self.solver.state()));
+        let before = self.solver.searches().then(|| (self.scene.state(), self.solver.state()));
         match (self.solver.step(&mut self.scene, measure, &mut self.phases), before) {
             (Ok(advance), _) => {
                 self.recorder.watch(&self.scene);
@@ -304,7 +305,8 @@ impl Simulation {
     fn save_state(&mut self, scene: SceneState, solver: SolverState) -> Result<(), Failure> {
         let clock = scene.clock;
         let (end, later) = (self.end_of_run(), self.later.len());
-        let state = RunState { end, scene, record: self.recorder.sync()?, later, solver };
+        let heat = self.scene.heat_state();
+        let state = RunState { end, scene, heat, record: self.recorder.sync()?, later, solver };
         let header = Header { identity: self.about.identity.clone(), step: clock.step, time: clock.time };
         let file = checkpoint::save(&self.folder.join("checkpoint"), &header, &state, Compression::Fast)?;
         self.messages.log.line(format!("step {}: state saved in {}", clock.step, file.display()))?;

@@ -7,7 +7,7 @@ use fractum_fem::Solid;
 use fractum_io::case::model::{Case, Expect, ProbeKind};
 use fractum_io::expectation::Expectation;
 use fractum_io::summary::{self, Status, Summary};
-use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, SceneState, passing_size};
+use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, passing_size};
 
 use crate::phases::Phases;
 use crate::record::Recorder;
@@ -103,8 +103,11 @@ fn fracture_of(body: &BondedBody) -> summary::Fracture {
 }
 
 /// Hash of everything that changes in a scene.
-pub(crate) fn state_hash(state: &SceneState) -> u128 {
-    let bytes = postcard::to_stdvec(state).unwrap_or_default();
+pub(crate) fn state_hash(scene: &Scene) -> u128 {
+    let mut bytes = postcard::to_stdvec(&scene.state()).unwrap_or_default();
+    if let Some(heat) = scene.heat_state() {
+        bytes.extend(postcard::to_stdvec(&heat).unwrap_or_default());
+    }
     xxhash_rust::xxh3::xxh3_128(&bytes)
 }
 

@@ -47,7 +47,7 @@ pub(super) struct Group<L: BondLaw> {
     /// Slots in the block's sums.
     slots: [[u32; WIDTH]; 2],
     axis: [[f64; WIDTH]; 3],
-    inverse: [f64; WIDTH],
+    pub(super) inverse: [f64; WIDTH],
     pub(super) live: [f64; WIDTH],
     own: [L::Parameters; WIDTH],
     pub(super) memory: [L::Memory; WIDTH],

@@ -131,9 +131,14 @@ impl Bonds {
         each!(self, network => network.is_live(bond))
     }
 
-    /// Distance of the particles of a bond when it was made [m].
+    /// Distance of the particles of a bond without load [m].
     pub fn length(&self, bond: usize) -> f64 {
         each!(self, network => network.length(bond))
+    }
+
+    /// See [`BondNetwork::set_length`].
+    pub fn set_length(&mut self, bond: usize, length: f64) {
+        each!(self, network => network.set_length(bond, length));
     }
 
     /// See [`BondNetwork::take_separated`].

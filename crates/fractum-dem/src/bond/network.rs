@@ -120,6 +120,13 @@ impl<L: BondLaw> BondNetwork<L> {
         self.blocks[block].groups[group].live[lane] = 0.0;
     }
 
+    /// Gives a bond another length without load [m], as a change of temperature does.
+    pub fn set_length(&mut self, bond: usize, length: f64) {
+        self.length[bond] = length;
+        let [block, group, lane] = self.index[bond].map(|i| i as usize);
+        self.blocks[block].groups[group].inverse[lane] = 1.0 / length;
+    }
+
     /// What a bond remembers.
     pub fn memory_of(&self, bond: usize) -> &L::Memory {
         let [block, group, lane] = self.index[bond].map(|i| i as usize);
@@ -284,7 +291,7 @@ impl<L: BondLaw> BondNetwork<L> {
         }
     }
 
-    /// Distance of the particles of a bond when it was made [m].
+    /// Distance of the particles of a bond without load [m].
     pub fn length(&self, bond: usize) -> f64 {
         self.length[bond]
     }

@@ -172,11 +172,15 @@ impl Context<'_> {
             ProbeKind::Reaction { on, .. }
             | ProbeKind::Displacement { on, .. }
             | ProbeKind::Velocity { on, .. }
-            | ProbeKind::Rotation { on, .. } => on,
+            | ProbeKind::Rotation { on, .. }
+            | ProbeKind::Temperature { on, .. } => on,
             _ => return None,
         };
         let group = on.group.as_ref().filter(|_| self.names_particles(on))?;
         let particles = self.selected_particles(on, group, bonded);
+        if let ProbeKind::Temperature { take, .. } = kind {
+            return Some(Probe::Temperature { population: Population::Particles, points: particles, take: *take });
+        }
         let probe = match kind {
             ProbeKind::Reaction { along, .. } => {
                 let places = bonded.supports().places(&particles);

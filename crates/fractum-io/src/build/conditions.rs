@@ -83,7 +83,7 @@ impl Context<'_> {
     }
 
     /// Shares of a total force: by area where facets or particles are meant, else equal.
-    fn shares(&mut self, on: &Selection, points: &LoadedPoints) -> Vec<(u32, f64)> {
+    pub(super) fn shares(&mut self, on: &Selection, points: &LoadedPoints) -> Vec<(u32, f64)> {
         let areas = match (points, &on.group) {
             (LoadedPoints::Nodes(numbering, surface), _) => surface.areas(&self.facets(on, numbering, surface)),
             (LoadedPoints::Particles(bonded), Some(group)) => {
@@ -212,7 +212,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Area that belongs to each node of the facets [m²], ascending by node.
-    fn areas(&self, facets: &[[u32; 3]]) -> Vec<(u32, f64)> {
+    pub(super) fn areas(&self, facets: &[[u32; 3]]) -> Vec<(u32, f64)> {
         let mut shares: Vec<(u32, f64)> = Vec::new();
         for facet in facets {
             let corners = self.corners(facet);

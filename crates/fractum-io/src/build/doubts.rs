@@ -85,7 +85,7 @@ fn is_of_the_field(case: &Case) -> bool {
         LoadKind::Pressure { pressure, .. } => pressure.value.is_pulse() || pressure.value.delay().is_some(),
         _ => false,
     };
-    case.gas.is_some()
+    case.flows.gas.is_some()
         || case.in_situ.is_some()
         || case.loads.iter().any(|load| heavy(&load.kind))
         || case.supports.iter().any(|support| support.surface.is_some())

@@ -19,7 +19,7 @@ impl Context<'_> {
         loads: &[Load],
     ) -> Option<Gas> {
         let case = self.case;
-        let gas = case.gas.as_ref().filter(|_| case.solver.kind == SolverKind::Explicit)?;
+        let gas = case.flows.gas.as_ref().filter(|_| case.solver.kind == SolverKind::Explicit)?;
         if loads.iter().any(|load| matches!(load, Load::CrackPressure(_))) {
             self.error(&gas.place, ": a load enters cracks too", "either gas or loads with in_cracks");
         }
@@ -97,7 +97,7 @@ impl Context<'_> {
 
     /// Walls that end at a plane of symmetry are held there, or the hole would open towards its mirror image.
     fn check_symmetry(&mut self, solid: &Solid, facets: &[[u32; 3]], supports: &[Support]) {
-        let Some(gas) = &self.case.gas else { return };
+        let Some(gas) = &self.case.flows.gas else { return };
         for (axis, plane) in gas.symmetry.iter().enumerate() {
             let Some(plane) = plane else { continue };
             let only = SymmetryPlanes(std::array::from_fn(|a| (a == axis).then_some(plane.value)));

@@ -7,6 +7,7 @@ mod conditions;
 mod contacts;
 mod doubts;
 mod gas;
+mod heat;
 mod in_situ;
 mod ppv;
 mod precheck;
@@ -63,6 +64,8 @@ pub struct BuiltScene {
     pub boundary: Vec<[u32; 3]>,
     /// Ties of bonded bodies to solids.
     pub ties: Vec<TieReport>,
+    /// Whether heat is conducted alone.
+    pub conducts_alone: bool,
     /// Doubts that do not keep the scene from running.
     pub warnings: Vec<Diagnostic>,
 }
@@ -164,6 +167,7 @@ impl<'a> Context<'a> {
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
         let scene =
             self.with_contacts(scene, &parts, &boundary_of_parts, &surface_nodes, rigid_bodies, &tied, &mut warnings)?;
+        let scene = self.with_heat(scene, &numbering, &surface)?;
         let scene = self.made_ready(scene, &probes, &mut warnings)?;
         Some(BuiltScene {
             statics: statics.filter(|_| self.is_held(&scene)),
@@ -176,6 +180,7 @@ impl<'a> Context<'a> {
             elements: parts.into_iter().map(|part| part.elements).collect(),
             boundary,
             ties: ties.reports,
+            conducts_alone: self.case.solver.kind == SolverKind::Heat,
             warnings,
         })
     }
@@ -256,7 +261,7 @@ impl<'a> Context<'a> {
             self.error(&stress.place.clone(), format!(": {error}"), "");
             return None;
         }
-        if self.case.solver.kind != SolverKind::Static {
+        if !matches!(self.case.solver.kind, SolverKind::Static | SolverKind::Heat) {
             self.check_time_step(&scene, warnings);
         }
         Some(scene)
@@ -275,7 +280,8 @@ impl<'a> Context<'a> {
             time_step: TimeStepSettings {
                 safety: solver.safety,
                 // Without motion the step is of no use: its bound is cheap.
-                element_bound: solver.time_step == TimeStep::Element || solver.kind == SolverKind::Static,
+                element_bound: solver.time_step == TimeStep::Element
+                    || matches!(solver.kind, SolverKind::Static | SolverKind::Heat),
                 fixed: solver.step.as_ref().filter(|_| solver.statics.is_none()).map(|step| step.value),
                 end: solver.end,
             },

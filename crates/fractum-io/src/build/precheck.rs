@@ -21,6 +21,17 @@ impl Context<'_> {
         self.check_time_functions();
         self.check_bonded_statics();
         self.check_contact_probes();
+        self.check_heat_probes();
+    }
+
+    /// Probes of heat need heat.
+    fn check_heat_probes(&mut self) {
+        let case = self.case;
+        let of_heat = |kind: &ProbeKind| matches!(kind, ProbeKind::Temperature { .. } | ProbeKind::Heat(_));
+        for probe in case.probes.iter().filter(|probe| of_heat(&probe.kind) && case.flows.heat.is_none()) {
+            let found = format!("= \"{}\": the case has no heat", probe.name.value);
+            self.error(&probe.name.place, found, "a table [heat]");
+        }
     }
 
     /// Probes of contact name two bodies of which one at least is not rigid.
@@ -93,9 +104,11 @@ impl Context<'_> {
             ProbeKind::Reaction { on, .. }
             | ProbeKind::Displacement { on, .. }
             | ProbeKind::Velocity { on, .. }
-            | ProbeKind::Rotation { on, .. } => Some(on),
+            | ProbeKind::Rotation { on, .. }
+            | ProbeKind::Temperature { on, .. } => Some(on),
             _ => None,
         }));
+        named.extend(case.flows.heat.iter().flat_map(|heat| &heat.conditions).map(|condition| &condition.on));
         let groups = named.into_iter().filter_map(|on| on.group.as_ref());
         let groups = groups.chain(case.ties.iter().map(|tie| &tie.bonded));
         for group in groups {
@@ -142,6 +155,9 @@ impl Context<'_> {
                 let all = rigid.velocity.iter().chain(&rigid.spin).chain(&rigid.force);
                 functions.extend(all.flatten().map(|f| (f, None)));
             }
+        }
+        for condition in case.flows.heat.iter().flat_map(|heat| &heat.conditions) {
+            functions.push((condition.kind.function(), Some(&condition.on)));
         }
         for (function, on) in functions {
             self.check_function(&function.value, function, on);

@@ -88,6 +88,11 @@ impl Context<'_> {
             ProbeKind::Momentum { along } => Probe::Momentum(*along),
             ProbeKind::AngularMomentum { along } => Probe::AngularMomentum(*along),
             ProbeKind::Gas { measure, group } => Probe::Gas { measure: *measure, hole: self.hole(group.as_ref()) },
+            ProbeKind::Temperature { on, take } => {
+                let points = self.selected_nodes(on, numbering);
+                Probe::Temperature { population: Population::Nodes, points, take: *take }
+            }
+            ProbeKind::Heat(measure) => Probe::Heat(*measure),
             ProbeKind::CrackArea => Probe::CrackArea,
             ProbeKind::Crack { measure, along, point, within } => {
                 let inside = self.inside_cracks(within.as_ref(), solid, bonded);
@@ -225,7 +230,7 @@ impl Context<'_> {
     /// The hole of this group; an error if it is none.
     fn hole(&mut self, group: Option<&Spanned<String>>) -> Option<usize> {
         let (group, case) = (group?, self.case);
-        let holes = case.gas.as_ref().map_or(&[][..], |gas| &gas.holes);
+        let holes = case.flows.gas.as_ref().map_or(&[][..], |gas| &gas.holes);
         let hole = holes.iter().position(|hole| hole.on.group_name() == group.value);
         if hole.is_none() {
             self.error(&group.place, format!("= \"{}\"", group.value), "the group of one of gas.holes");

@@ -55,6 +55,16 @@ impl Dimension {
     pub const FRACTURE_ENERGY: Self = dimension(1, 0, -2);
     /// Heat capacity per mass [J/(kg K)].
     pub const HEAT_CAPACITY: Self = Dimension { halves: [0, 4, -4, -2] };
+    /// Thermal conductivity [W/(m K)].
+    pub const CONDUCTIVITY: Self = Dimension { halves: [2, 2, -6, -2] };
+    /// Heat flow per area [W/m²].
+    pub const HEAT_FLUX: Self = dimension(1, 0, -3);
+    /// Heat flow per volume [W/m³].
+    pub const HEAT_SOURCE: Self = dimension(1, -1, -3);
+    /// Coefficient of heat transfer [W/(m² K)].
+    pub const HEAT_TRANSFER: Self = Dimension { halves: [2, 0, -6, -2] };
+    /// Coefficient of thermal expansion [1/K].
+    pub const EXPANSION: Self = Dimension { halves: [0, 0, 0, -2] };
     /// Volume per mass [m³/kg].
     pub const SPECIFIC_VOLUME: Self = dimension(-1, 3, 0);
     /// Dynamic viscosity [Pa s].
@@ -165,6 +175,11 @@ static KNOWN: &[Known] = &[
     known(Dimension::POWER, "W", "a power", "100 W"),
     known(Dimension::DENSITY, "kg/m^3", "a density", "2400 kg/m^3"),
     known(Dimension::HEAT_CAPACITY, "J/(kg K)", "a heat capacity per mass", "300 J/(kg K)"),
+    known(Dimension::CONDUCTIVITY, "W/(m K)", "a thermal conductivity", "134 W/(m K)"),
+    known(Dimension::HEAT_FLUX, "W/m^2", "a heat flow per area", "5 kW/m^2"),
+    known(Dimension::HEAT_SOURCE, "W/m^3", "a heat flow per volume", "10 MW/m^3"),
+    known(Dimension::HEAT_TRANSFER, "W/(m^2 K)", "a coefficient of heat transfer", "50 W/(m^2 K)"),
+    known(Dimension::EXPANSION, "1/K", "a coefficient of thermal expansion", "1e-5 1/K"),
     known(Dimension::SPECIFIC_VOLUME, "m^3/kg", "a volume per mass", "1 L/kg"),
     known(Dimension::VISCOSITY, "Pa s", "a viscosity", "5e-5 Pa s"),
     known(Dimension::MASS_RATE, "kg/s", "a mass flow", "0.1 kg/s"),

@@ -53,7 +53,7 @@ impl Simulation {
 
     /// Hash of everything that changes in the scene, as `summary.json` has it for the end.
     pub fn state_hash(&self) -> u128 {
-        state_hash(&self.scene.state())
+        state_hash(&self.scene)
     }
 }
 

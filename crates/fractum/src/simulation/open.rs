@@ -165,6 +165,7 @@ fn put_back(state: RunState, scene: &mut Scene, solver: &mut Solver, case: &Case
         ));
     }
     scene.restore(state.scene);
+    scene.restore_heat(state.heat);
     solver.restore(scene, state.solver);
     let mut record = state.record;
     if is_other {

@@ -2,6 +2,7 @@
 
 mod breaking;
 mod equilibrium;
+mod heat;
 mod motion;
 
 use fractum_io::build::BuiltScene;
@@ -21,6 +22,8 @@ pub(crate) enum Solver {
     Static(Box<EquilibriumRun>),
     /// A bonded body from break to break.
     BondedStatic(Box<BreakingRun>),
+    /// Heat, while nothing moves.
+    Heat,
 }
 
 /// What a solver remembers beside the scene, for a checkpoint.
@@ -29,6 +32,7 @@ pub(crate) enum SolverState {
     Explicit,
     Static(EquilibriumState),
     BondedStatic(BondedStaticState),
+    Heat,
 }
 
 /// An instant at which the ledger was measured: a row of the history.
@@ -64,6 +68,7 @@ impl Solver {
         Ok(match (&built.statics, built.bonded_statics) {
             (Some(settings), _) => Solver::Static(Box::new(EquilibriumRun::new(scene, settings.clone())?)),
             (None, Some(settings)) => Solver::BondedStatic(Box::new(BreakingRun::new(scene, settings, phases)?)),
+            (None, None) if built.conducts_alone => Solver::Heat,
             (None, None) => Solver::Explicit,
         })
     }
@@ -76,7 +81,7 @@ impl Solver {
             Solver::Explicit if moving => scene.renew_step(),
             Solver::Explicit => scene.start_from_rest(),
             Solver::Static(run) => run.take_over(),
-            Solver::BondedStatic(_) => {}
+            Solver::BondedStatic(_) | Solver::Heat => {}
         }
     }
 
@@ -100,13 +105,14 @@ impl Solver {
             Solver::Explicit => SolverState::Explicit,
             Solver::Static(run) => SolverState::Static(run.state()),
             Solver::BondedStatic(run) => SolverState::BondedStatic(run.state()),
+            Solver::Heat => SolverState::Heat,
         }
     }
 
     /// Whether the run is over.
     pub(crate) fn is_finished(&self, scene: &Scene) -> bool {
         match self {
-            Solver::Explicit => scene.is_finished(),
+            Solver::Explicit | Solver::Heat => scene.is_finished(),
             Solver::Static(run) => run.is_finished(scene),
             Solver::BondedStatic(run) => run.is_finished(scene),
         }
@@ -122,8 +128,13 @@ impl Solver {
         match self {
             Solver::Explicit => true,
             Solver::Static(run) => run.moves(),
-            Solver::BondedStatic(_) => false,
+            Solver::BondedStatic(_) | Solver::Heat => false,
         }
+    }
+
+    /// Whether the next step is a search that may be interrupted.
+    pub(crate) fn searches(&self) -> bool {
+        !self.moves() && !matches!(self, Solver::Heat)
     }
 
     /// Brings the scene to the next instant.
@@ -137,13 +148,14 @@ impl Solver {
             Solver::Explicit => motion::step(scene, measure, phases),
             Solver::Static(run) => run.step(scene, phases),
             Solver::BondedStatic(run) => run.step(scene, phases),
+            Solver::Heat => heat::step(scene, measure, phases),
         }
     }
 
     /// How much work it was, in words.
     pub(crate) fn effort(&self) -> Option<String> {
         match self {
-            Solver::Explicit => None,
+            Solver::Explicit | Solver::Heat => None,
             Solver::Static(run) => Some(run.effort()),
             Solver::BondedStatic(run) => Some(run.effort()),
         }

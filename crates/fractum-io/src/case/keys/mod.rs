@@ -5,6 +5,7 @@
 mod bodies;
 mod conditions;
 mod gas;
+mod heat;
 mod output;
 mod probes;
 mod solver;
@@ -30,7 +31,7 @@ const fn key(path: &'static str, kind: KeyKind, default: &'static str, doc: &'st
 /// Every key of the case file, parents before children.
 pub fn keys() -> &'static [KeyDoc] {
     static KEYS: LazyLock<Vec<KeyDoc>> = LazyLock::new(|| {
-        [bodies::KEYS, conditions::KEYS, gas::KEYS, solver::KEYS, probes::KEYS, output::KEYS].concat()
+        [bodies::KEYS, conditions::KEYS, gas::KEYS, heat::KEYS, solver::KEYS, probes::KEYS, output::KEYS].concat()
     });
     &KEYS
 }

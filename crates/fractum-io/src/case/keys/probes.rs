@@ -2,7 +2,8 @@
 
 use fractum_fem::Wave;
 use fractum_scene::{
-    CountKind, CrackMeasure, DamagedMeasure, EnergyProbe, FragmentMeasure, GasMeasure, RadialMeasure, SurfaceMeasure,
+    CountKind, CrackMeasure, DamagedMeasure, EnergyProbe, FragmentMeasure, GasMeasure, HeatMeasure, RadialMeasure,
+    SurfaceMeasure, TemperatureTake,
 };
 
 use super::{key, names};
@@ -75,6 +76,11 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("probes[].momentum.along", K::Direction, "required", "Direction"),
     key("probes[].angular_momentum", K::Table, "", "Angular momentum of the scene about the origin, in kg m^2/s"),
     key("probes[].angular_momentum.along", K::Direction, "required", "Direction"),
+    key("probes[].temperature", K::Table, "", "Temperature of a group's nodes or particles, in K"),
+    key("probes[].temperature.group", K::Text, "", "Mesh group or set of particles; required without `where`"),
+    key("probes[].temperature.where", K::Condition, "", "Which nodes or particles, by their positions at the start; without `group`: which nodes of all solid bodies"),
+    key("probes[].temperature.take", K::Choice(names::<TemperatureTake>), "\"mean\"", "Mean, weighted by heat capacities, or an extreme"),
+    key("probes[].heat", K::Choice(names::<HeatMeasure>), "", "Heat in J: stored since the start; brought by prescribed temperatures, by fluxes, powers and sources, by convection; what is missing in this balance; or the mechanical work of thermal expansion"),
     key("probes[].gas", K::Table, "", "A number about the gas; not a number in stages at rest"),
     key("probes[].gas.measure", K::Choice(names::<GasMeasure>), "required", "Pressure, in Pa (of everything: mean over the volume); temperature, in K (mean over the mass); mass, in kg; internal energy, in J; room for gas, in m^3; area of the walls under pressure without load, in m^2; or mass that has leaked, in kg"),
     key("probes[].gas.group", K::Text, "", "Group of a hole: its gas, or the area that gas from it wets; absent means all gas, in cracks too; not with leaked_mass"),

@@ -3,7 +3,7 @@
 use fractum_fem::{CriterionKind, DamageLaw, Regularisation};
 use fractum_scene::ContactParameters;
 
-use super::{BondFailure, Bonds, Interfaces};
+use super::{BondFailure, Bonds, Interfaces, Thermal};
 use crate::case::Spanned;
 use crate::case::choice::choice;
 
@@ -26,6 +26,8 @@ pub struct Material {
     pub interfaces: Option<Spanned<Interfaces>>,
     /// When bonds break, where the material has a `fracture` table; they hold otherwise.
     pub fracture: Option<Spanned<BondFailure>>,
+    /// What it is to heat.
+    pub thermal: Option<Spanned<Thermal>>,
     /// Contact of the discrete elements that this material leaves behind.
     pub contact: ContactParameters,
     /// Young's modulus that contacts of its particles take [Pa], > 0; `None` = that of the material.

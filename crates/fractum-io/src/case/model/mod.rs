@@ -4,6 +4,7 @@ mod body;
 mod bonded;
 mod boundary;
 mod gas;
+mod heat;
 mod loose;
 mod material;
 mod ppv;
@@ -26,6 +27,7 @@ pub use bonded::{
 };
 pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
 pub use gas::{Gas, GasHole, GasLaw};
+pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Distribution, Material, Scatter};
 pub use ppv::{Ppv, Scaling, StationLine};
@@ -56,8 +58,8 @@ pub struct Case {
     pub loads: Vec<Load>,
     /// Stress of the solids before the run.
     pub in_situ: Option<InSitu>,
-    /// Gas in holes and in the cracks that open to them.
-    pub gas: Option<Gas>,
+    /// Gas and heat.
+    pub flows: Flows,
     /// Damping of the solids.
     pub damping: Damping,
     /// Time and its steps.
@@ -161,9 +163,11 @@ pub enum SolverKind {
     Static,
     /// Whichever suits the scene.
     Auto,
+    /// Conduction of heat alone.
+    Heat,
 }
 
-choice!(SolverKind { "explicit" => Explicit, "static" => Static, "auto" => Auto });
+choice!(SolverKind { "explicit" => Explicit, "static" => Static, "auto" => Auto, "heat" => Heat });
 
 /// What concerns a static run only.
 #[derive(Debug, Clone, PartialEq)]
@@ -370,7 +374,7 @@ impl Case {
     pub fn is_blast(&self) -> bool {
         let pulse =
             |load: &Load| matches!(&load.kind, LoadKind::Pressure { pressure, .. } if pressure.value.is_pulse());
-        self.solver.kind == SolverKind::Explicit && (self.gas.is_some() || self.loads.iter().any(pulse))
+        self.solver.kind == SolverKind::Explicit && (self.flows.gas.is_some() || self.loads.iter().any(pulse))
     }
 
     /// Doubtful choices that do not keep the case from running.
@@ -423,14 +427,18 @@ impl Case {
         let loads = self.loads.iter().filter_map(|load| load.kind.on());
         let loads = loads.filter_map(|(on, group_use)| on.group.as_ref().map(|group| (group, group_use)));
         let in_situ = self.in_situ.iter().flat_map(|own| &own.groups).map(|group| (group, GroupUse::Facets));
-        let holes = self.gas.iter().flat_map(|gas| &gas.holes).filter_map(|hole| hole.on.group.as_ref());
+        let Flows { gas, heat } = &self.flows;
+        let holes = gas.iter().flat_map(|gas| &gas.holes).filter_map(|hole| hole.on.group.as_ref());
         let holes = holes.map(|group| (group, GroupUse::Facets));
+        let heated = heat.iter().flat_map(|heat| &heat.conditions);
+        let heated = heated.filter_map(|own| Some((own.on.group.as_ref()?, own.kind.group_use())));
         let probes = self.probes.iter().filter_map(|probe| match &probe.kind {
             ProbeKind::Reaction { on, .. }
             | ProbeKind::Displacement { on, .. }
             | ProbeKind::Velocity { on, .. }
             | ProbeKind::Load { on, .. }
             | ProbeKind::Fragment { on, .. }
+            | ProbeKind::Temperature { on, .. }
             | ProbeKind::Rotation { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::ProbeNodes)),
             ProbeKind::Surface { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::Facets)),
             ProbeKind::Stress { group, .. } | ProbeKind::Damaged { group: Some(group), .. } => {
@@ -444,7 +452,7 @@ impl Case {
         let openings = opening.into_iter().flat_map(|o| [&o.group, &o.against]).map(|g| (g, GroupUse::ProbeNodes));
         let of_mesh =
             |group: &&Spanned<String>| self.particle_group(&group.value).is_none() && self.tool(&group.value).is_none();
-        let named = supports.chain(loads).chain(holes).chain(probes).filter(|(group, _)| of_mesh(group));
+        let named = supports.chain(loads).chain(holes).chain(heated).chain(probes).filter(|(group, _)| of_mesh(group));
         bodies.chain(ties).chain(named).chain(in_situ).chain(openings).chain(stations).collect()
     }
 }

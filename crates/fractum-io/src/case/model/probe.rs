@@ -4,8 +4,8 @@ use fractum_dem::crack_shape::Axis;
 use fractum_fem::Wave;
 use fractum_math::Vec3;
 use fractum_scene::{
-    Along, CountKind, CrackMeasure, DamagedMeasure, EnergyProbe, FragmentMeasure, GasMeasure, RadialMeasure,
-    SurfaceMeasure,
+    Along, CountKind, CrackMeasure, DamagedMeasure, EnergyProbe, FragmentMeasure, GasMeasure, HeatMeasure,
+    RadialMeasure, SurfaceMeasure, TemperatureTake,
 };
 
 use super::Selection;
@@ -124,6 +124,15 @@ pub enum ProbeKind {
         /// Group of the hole; everything if absent.
         group: Option<Spanned<String>>,
     },
+    /// Temperature [K].
+    Temperature {
+        /// Of these nodes or particles.
+        on: Selection,
+        /// Which of them.
+        take: TemperatureTake,
+    },
+    /// Something about the heat of everything [J].
+    Heat(HeatMeasure),
     /// Area of the cracks [m²].
     CrackArea,
     /// How a crack lies, by its edges that have lost half of their strength and its broken bonds; or how much has separated.

@@ -48,6 +48,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         damage.as_ref().and_then(Option::as_ref),
         fracture.as_ref().and_then(Option::as_ref),
     );
+    let thermal = super::heat::thermal(&table);
     let contact_modulus = contact_modulus(&table);
     let contact = contact(&table);
     table.finish("here");
@@ -60,6 +61,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         bonds: bonds.map_or(Some(None), |bonds| bonds.map(Some))?,
         interfaces: interfaces.map_or(Some(None), |interfaces| interfaces.map(Some))?,
         fracture: fracture.map_or(Some(None), |fracture| fracture.map(Some))?,
+        thermal: thermal?,
         contact,
         contact_modulus: contact_modulus?,
     })

@@ -7,6 +7,7 @@ mod expect;
 mod firing;
 mod fracture;
 mod gas;
+mod heat;
 mod in_situ;
 mod interface;
 mod loose;
@@ -32,7 +33,7 @@ use std::path::Path;
 
 use super::expression::parse_unit;
 use super::keys::remove_unknown;
-use super::model::{Body, BodyKind, BondedShape, Case, CaseSource, MeshSource, PackingSource, RigidShape};
+use super::model::{Body, BodyKind, BondedShape, Case, CaseSource, Flows, MeshSource, PackingSource, RigidShape};
 use super::reader::{Reader, Table};
 use super::tree::{self, Node, Value};
 use super::unit::Dimension;
@@ -184,6 +185,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let probes = probes::read(&table);
     let solver = solver::read(&table, &probes.list, bodies.as_deref());
     let gas = gas::read(&table, solver.as_ref(), !stage.is_empty());
+    let heat = heat::read(&table, solver.as_ref(), !stage.is_empty());
     let output = solver::output(&table, solver.as_ref().map(|solver| solver.end));
     let expect = expect::read(&table, &probes);
     let verify = table.table_or_empty("verify");
@@ -201,7 +203,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
         supports: supports?,
         loads: loads?,
         in_situ: in_situ?,
-        gas: gas?,
+        flows: Flows { gas: gas?, heat: heat? },
         damping,
         solver: solver?,
         probes: probes.list.into_iter().map(|probe| probe.probe).collect::<Option<_>>()?,

@@ -2,7 +2,9 @@
 
 use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
-use fractum_scene::{Along, CrackMeasure, DamagedMeasure, FragmentMeasure, GasMeasure, RadialMeasure, SurfaceMeasure};
+use fractum_scene::{
+    Along, CrackMeasure, DamagedMeasure, FragmentMeasure, GasMeasure, RadialMeasure, SurfaceMeasure, TemperatureTake,
+};
 
 use super::boundary::selection;
 use super::presence::optional;
@@ -72,6 +74,14 @@ pub(super) fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKin
         "count" => (ProbeKind::Count(table.choice("count").required()?), Dimension::NONE),
         "momentum" => (ProbeKind::Momentum { along: along()? }, Dimension::MOMENTUM),
         "angular_momentum" => (ProbeKind::AngularMomentum { along: along()? }, Dimension::ANGULAR_MOMENTUM),
+        "temperature" => {
+            let inner = table.table(key)?;
+            let on = selection(&inner);
+            let take = inner.choice("take").or_if_absent(TemperatureTake::Mean);
+            inner.finish("here");
+            (ProbeKind::Temperature { on: on?, take: take? }, Dimension::TEMPERATURE)
+        }
+        "heat" => (ProbeKind::Heat(table.choice("heat").required()?), Dimension::ENERGY),
         "gas" => gas(table)?,
         "crack" => crack(table)?,
         "radial_cracks" => radial_cracks(table)?,

@@ -89,6 +89,8 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
         "count",
         "momentum",
         "angular_momentum",
+        "temperature",
+        "heat",
         "gas",
         "crack_area",
         "crack",

@@ -8,7 +8,7 @@ use crate::case::model::{
 };
 use crate::case::reader::Table;
 use crate::case::tree::Value;
-use crate::case::{Diagnostic, Spanned};
+use crate::case::{Choice, Diagnostic, Spanned};
 use fractum_dem::Batch;
 use fractum_scene::Domain;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
@@ -60,12 +60,17 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     let place = table.peek("kind").map_or_else(|| table.place_of("kind"), |node| node.place.clone());
     let end = table.quantity("end").positive().required();
     let end_place = table.place_below("end");
+    if kind == Some(SolverKind::Heat) {
+        for key in ["step", "time_step", "initial_overlap", "domain", "balance_warning", "balance_stop"] {
+            table.refuse(key, "with kind = \"heat\"");
+        }
+    }
     let is_static = kind == Some(SolverKind::Static);
     let statics = match kind {
         Some(SolverKind::Static | SolverKind::Auto) => statics(&table, bodies).map(Some),
-        Some(SolverKind::Explicit) => {
+        Some(kind @ (SolverKind::Explicit | SolverKind::Heat)) => {
             for key in ["control", "opening", "linear_solver", "tolerance", "batch", "max_steps", "no_equilibrium"] {
-                table.refuse(key, "with kind = \"explicit\"");
+                table.refuse(key, &format!("with kind = \"{}\"", kind.name()));
             }
             Some(None)
         }

@@ -1,0 +1,211 @@
+//! Thermal expansion of cells: their stress belongs to the strain beyond α (T - T₀).
+
+use fractum_math::Sym3;
+use rayon::prelude::*;
+
+use crate::block::Cells;
+use crate::body::Formulation;
+use crate::body_model::BodyModel;
+use crate::cell::Geometry;
+use crate::evaluate::Block;
+use crate::solid::Solid;
+use crate::thermal_strain::ThermalStrain;
+
+impl Solid {
+    /// Lets bodies expand with temperature, before the first step.
+    ///
+    /// - `coefficients`: α of each body [1/K]; 0 leaves it as it is
+    pub fn set_expansion(&mut self, coefficients: &[f64]) {
+        let Solid { blocks, bodies, reference, .. } = self;
+        blocks.par_iter_mut().filter(|block| coefficients[block.body] != 0.0).for_each(|block| {
+            let model = &bodies[block.body];
+            let geometry = Geometry { body: &model.body, nodes: reference };
+            let zero = vec![0.0; block.cells.len()];
+            block.cells.thermal = Some(Box::new(ThermalStrain {
+                coefficient: coefficients[block.body],
+                unit: Sym3([1.0, 1.0, model.hooke.zz, 0.0, 0.0, 0.0]),
+                weights: weights(block, model, &geometry),
+                now: zero.clone(),
+                before: zero,
+                work: 0.0,
+            }));
+        });
+    }
+
+    /// Takes over temperatures T - T₀ of the nodes [K] as if they had always been so.
+    pub fn start_expanded(&mut self, rise: &[f64]) {
+        self.blocks.par_iter_mut().for_each(|block| {
+            block.expand(rise);
+            block.forget_expansion();
+        });
+    }
+
+    /// Takes over temperatures T - T₀ of the nodes [K] for the next step; returns the work of the expansion at the present
+    /// stresses in half a step, -½ Σ V σ : Δεᵗ [J]. [`Solid::finish_expansion`] does the other half.
+    pub fn expand(&mut self, rise: &[f64]) -> f64 {
+        let Solid { blocks, bodies, displacement, .. } = self;
+        blocks.par_iter_mut().for_each(|block| {
+            let Block { cells, .. } = &*block;
+            if cells.thermal.is_none() {
+                return;
+            }
+            let model = &bodies[block.body];
+            let traces: f64 = (0..cells.len())
+                .map(|cell| {
+                    let change = block.change_of(cell, rise);
+                    let strain = block.strain_of(cell, model.body.kinematics, displacement);
+                    -0.5 * cells.volume[cell] * block.nominal_stress(cell, &model.hooke, strain).dot(change)
+                })
+                .sum();
+            block.expand(rise);
+            if let Some(own) = &mut block.cells.thermal {
+                own.work = traces;
+            }
+        });
+        self.expansion_work()
+    }
+
+    /// The other half of the work of [`Solid::expand`], at the stresses of the step after it [J].
+    pub fn finish_expansion(&mut self) -> f64 {
+        let Solid { blocks, bodies, displacement, .. } = self;
+        blocks.par_iter_mut().for_each(|block| {
+            let Some(own) = &block.cells.thermal else { return };
+            let model = &bodies[block.body];
+            let work: f64 = (0..block.cells.len())
+                .map(|cell| {
+                    let change = own.unit * (own.now[cell] - own.before[cell]);
+                    let strain = block.strain_of(cell, model.body.kinematics, displacement);
+                    -0.5 * block.cells.volume[cell] * block.nominal_stress(cell, &model.hooke, strain).dot(change)
+                })
+                .sum();
+            block.forget_expansion();
+            if let Some(own) = &mut block.cells.thermal {
+                own.work = work;
+            }
+        });
+        self.expansion_work()
+    }
+
+    fn expansion_work(&self) -> f64 {
+        self.blocks.iter().filter_map(|block| Some(block.cells.thermal.as_ref()?.work)).sum()
+    }
+
+    /// Heat that an element conducts per conductivity, as its local edges and ∫ -∇Nᵢ·∇Nⱼ dV of each [m].
+    pub fn element_conduction(&self, body: usize, element: u32) -> impl Iterator<Item = ([u32; 2], f64)> + use<> {
+        let model = &self.bodies[body];
+        let geometry = Geometry { body: &model.body, nodes: &self.reference };
+        let (volume, gradients) = geometry.element(element as usize);
+        let (nodes, count) = (model.body.elements[element as usize], model.body.shape.node_count());
+        let pairs = (0..count).flat_map(move |i| (i + 1..count).map(move |j| (i, j)));
+        pairs.map(move |(i, j)| ([nodes[i], nodes[j]], -volume * gradients[i].dot(&gradients[j])))
+    }
+}
+
+impl Block {
+    /// Thermal strain that a cell gets beyond the present one at other temperatures.
+    fn change_of(&self, cell: usize, rise: &[f64]) -> Sym3 {
+        let Some(own) = &self.cells.thermal else { return Sym3::ZERO };
+        own.unit * (strain_at(own, &self.cells, cell, rise) - own.now[cell])
+    }
+
+    fn expand(&mut self, rise: &[f64]) {
+        let Some(mut own) = self.cells.thermal.take() else { return };
+        for cell in 0..self.cells.len() {
+            let now = strain_at(&own, &self.cells, cell, rise);
+            (own.before[cell], own.now[cell]) = (own.now[cell], now);
+        }
+        self.cells.thermal = Some(own);
+    }
+
+    fn forget_expansion(&mut self) {
+        if let Some(own) = &mut self.cells.thermal {
+            own.before.copy_from_slice(&own.now);
+        }
+    }
+}
+
+/// α (T - T₀) of a cell.
+fn strain_at(own: &ThermalStrain, cells: &Cells, cell: usize, rise: &[f64]) -> f64 {
+    let weights = &own.weights[cells.starts[cell] as usize + cell..];
+    let sum: f64 = cells.global_nodes(cell).zip(weights).map(|(node, weight)| weight * rise[node]).sum();
+    own.coefficient * sum
+}
+
+/// Parts of nodes in the temperatures of cells: means over elements, and over those around an edge by their volumes.
+fn weights(block: &Block, model: &BodyModel, geometry: &Geometry<'_>) -> Vec<f64> {
+    let corners = model.body.shape.node_count();
+    let mut weights = vec![0.0; block.cells.local.len()];
+    for (cell, &item) in block.items.iter().enumerate() {
+        let own = &mut weights[block.cells.starts[cell] as usize + cell..];
+        let one = [item];
+        let elements = match model.body.formulation {
+            Formulation::Standard => &one[..],
+            Formulation::Smoothed => model.elements_of_edge.row(item as usize),
+        };
+        let volumes: Vec<f64> = elements.iter().map(|&e| geometry.element(e as usize).0).collect();
+        let share = 1.0 / (corners as f64 * volumes.iter().sum::<f64>());
+        for (&element, volume) in elements.iter().zip(volumes) {
+            for &node in &model.body.elements[element as usize][..corners] {
+                let place = block.cells.global_nodes(cell).position(|n| n == node as usize);
+                own[place.expect("a cell holds the nodes of its elements")] += volume * share;
+            }
+        }
+    }
+    weights
+}
+
+#[cfg(test)]
+mod tests {
+    use fractum_math::Vec3;
+    use fractum_mesh::generate::{Jitter, structured_box};
+
+    use super::*;
+    use crate::body::{Body, ElementKind};
+    use crate::material::Elastic;
+
+    const ALPHA: f64 = 1e-5;
+
+    fn cube(smoothed: bool) -> Solid {
+        let mesh = structured_box([3; 3], Vec3::repeat(1.0), Some(Jitter { fraction: 0.15, seed: 3 }));
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let body = Body::new("box", ElementKind::T4, mesh.tetrahedra, elastic);
+        let mut solid = Solid::new(mesh.nodes, vec![if smoothed { body.smoothed() } else { body }]).unwrap();
+        solid.set_expansion(&[ALPHA]);
+        solid
+    }
+
+    #[test]
+    fn free_expansion_has_no_stress_and_held_one_that_of_the_closed_form() {
+        for smoothed in [false, true] {
+            let mut solid = cube(smoothed);
+            let count = solid.reference.len();
+            let free = solid.expand(&vec![100.0; count]);
+            // Held in all directions: σ = -E α ΔT/(1 - 2 ν), energy 3/2 V E (α ΔT)²/(1 - 2 ν).
+            solid.update_internal_forces(0.0, true);
+            let pressure = -30e9 * ALPHA * 100.0 / 0.6;
+            let (stress, _) = solid.element_field(0, 7);
+            assert!((stress.0[0] / pressure - 1.0).abs() < 1e-12 && stress.0[3].abs() < 1.0, "{stress:?}");
+            let energy = -1.5 * pressure * ALPHA * 100.0;
+            assert!((solid.elastic_energy() / energy - 1.0).abs() < 1e-12);
+            // Half of the work at no stress, half at the full one.
+            let work = free + solid.finish_expansion();
+            assert!(free == 0.0 && (work / energy - 1.0).abs() < 1e-12, "{work} {energy}");
+            solid.displacement = solid.reference.iter().map(|x| x * (ALPHA * 100.0)).collect();
+            solid.update_internal_forces(0.0, true);
+            let largest = solid.force.iter().map(|f| f.norm()).fold(0.0, f64::max);
+            assert!(largest < 1e-9 * pressure.abs() && solid.elastic_energy() < 1e-12 * energy, "{largest}");
+        }
+    }
+
+    #[test]
+    fn an_element_conducts_a_linear_temperature_as_its_continuum() {
+        let solid = cube(false);
+        let slope = Vec3::new(3.0, -2.0, 5.0);
+        let temperature: Vec<f64> = solid.reference.iter().map(|x| slope.dot(x)).collect();
+        let power: f64 = (0..solid.body(0).elements.len() as u32)
+            .flat_map(|element| solid.element_conduction(0, element))
+            .map(|([i, j], g)| g * (temperature[i as usize] - temperature[j as usize]).powi(2))
+            .sum();
+        assert!((power / slope.norm_squared() - 1.0).abs() < 1e-12, "{power}");
+    }
+}

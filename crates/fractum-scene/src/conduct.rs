@@ -1,0 +1,82 @@
+//! Heat in the step of a scene, and alone.
+
+use crate::clock::Clock;
+use crate::error::StepError;
+use crate::heat::{Heat, HeatState};
+use crate::scene::Scene;
+use crate::stable_step::equal_steps;
+
+impl Scene {
+    /// The same scene with heat, before its first step.
+    ///
+    /// - `alone`: nothing moves, the clock is that of the heat
+    pub fn with_heat(mut self, heat: Heat, alone: bool) -> Self {
+        if alone {
+            self.clock = Clock::new(equal_steps(heat.step_size(), self.settings.time_step.end));
+        }
+        self.optional.heat = Some(Box::new(heat));
+        self
+    }
+
+    /// Heat in the bodies.
+    pub fn heat(&self) -> Option<&Heat> {
+        self.optional.heat.as_deref()
+    }
+
+    /// What changes in heat, for a checkpoint.
+    pub fn heat_state(&self) -> Option<HeatState> {
+        self.heat().map(Heat::state)
+    }
+
+    /// Puts a saved state of heat back, after that of the scene.
+    pub fn restore_heat(&mut self, state: Option<HeatState>) {
+        let Scene { optional, solid, bonded, .. } = self;
+        if let (Some(heat), Some(state)) = (&mut optional.heat, state) {
+            heat.restore(solid, bonded, state);
+        }
+    }
+
+    /// Advances temperatures by a step of their own; nothing moves.
+    ///
+    /// # Errors
+    /// [`StepError::Heat`].
+    pub fn conduct_alone(&mut self) -> Result<(), StepError> {
+        let (step, time) = (self.clock.step, self.clock.time);
+        let target = time + self.clock.dt_after;
+        let Scene { optional, solid, bonded, .. } = self;
+        let Some(heat) = &mut optional.heat else { return Ok(()) };
+        heat.conduct_to(target, solid, bonded).map_err(|reason| StepError::Heat { step, time, reason })?;
+        let dt = equal_steps(heat.step_size(), self.settings.time_step.end - target);
+        self.clock.advance(dt);
+        Ok(())
+    }
+
+    /// Books the work of the last expansion at the present stresses.
+    pub(crate) fn finish_expansion(&mut self) {
+        let Scene { optional, solid, bonded, books, .. } = self;
+        if let Some(heat) = &mut optional.heat {
+            books.external += heat.finish_expansion(solid, bonded);
+        }
+    }
+
+    /// Conducts heat for the step that follows, where its own step is due; returns the work of the expansion at the present
+    /// stresses [J].
+    pub(crate) fn conduct(&mut self, dt: f64) -> Result<f64, StepError> {
+        let (step, time) = (self.clock.step, self.clock.time);
+        let (target, end) = (time + dt, self.settings.time_step.end);
+        let Scene { optional, solid, bonded, .. } = self;
+        let Some(heat) = &mut optional.heat else { return Ok(0.0) };
+        if !heat.is_due(target + dt) && target < end * (1.0 - 1e-9) {
+            return Ok(0.0);
+        }
+        heat.conduct_to(target, solid, bonded).map_err(|reason| StepError::Heat { step, time, reason })?;
+        Ok(heat.expand(solid, bonded))
+    }
+
+    /// Nothing conducts through elements that have left.
+    pub(crate) fn heat_loses_elements(&mut self) {
+        if let Some(heat) = &mut self.optional.heat {
+            heat.lose_elements();
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Numbers about heat.
+
+use super::Heat;
+
+/// What a probe of heat shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeatMeasure {
+    /// Heat stored beyond that of the start [J].
+    Stored,
+    /// Heat brought through points of prescribed temperature [J].
+    Held,
+    /// Heat brought by flows and sources [J].
+    Supplied,
+    /// Heat brought by convection [J].
+    Convection,
+    /// What is missing in the balance of heat [J].
+    Residual,
+    /// Mechanical work of thermal expansion [J].
+    ExpansionWork,
+}
+
+impl HeatMeasure {
+    /// Every measure with its name.
+    pub const NAMES: [(&'static str, HeatMeasure); 6] = [
+        ("stored", HeatMeasure::Stored),
+        ("held", HeatMeasure::Held),
+        ("supplied", HeatMeasure::Supplied),
+        ("convection", HeatMeasure::Convection),
+        ("residual", HeatMeasure::Residual),
+        ("expansion_work", HeatMeasure::ExpansionWork),
+    ];
+}
+
+/// Which temperature of a set of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TemperatureTake {
+    /// Mean, weighted by heat capacities.
+    Mean,
+    /// Lowest.
+    Lowest,
+    /// Highest.
+    Highest,
+}
+
+impl Heat {
+    /// A number about the heat of everything [J].
+    pub fn measure(&self, measure: HeatMeasure) -> f64 {
+        let ledger = self.ledger();
+        match measure {
+            HeatMeasure::Stored => ledger.stored,
+            HeatMeasure::Held => ledger.held,
+            HeatMeasure::Supplied => ledger.supplied,
+            HeatMeasure::Convection => ledger.convection,
+            HeatMeasure::Residual => ledger.residual(),
+            HeatMeasure::ExpansionWork => self.expansion_work(),
+        }
+    }
+
+    /// Temperature of points [K].
+    ///
+    /// - `of_particles`: whether they are particles, not nodes
+    pub fn temperature_of(&self, of_particles: bool, points: &[u32], take: TemperatureTake) -> f64 {
+        let first = if of_particles { self.nodes as u32 } else { 0 };
+        let all = self.field.temperature();
+        let own = points.iter().map(|&point| all[(first + point) as usize]);
+        match take {
+            TemperatureTake::Mean => self.field.mean(points.iter().map(|point| first + point)),
+            TemperatureTake::Lowest => own.fold(f64::INFINITY, f64::min),
+            TemperatureTake::Highest => own.fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+}

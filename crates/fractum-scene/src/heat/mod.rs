@@ -1,0 +1,179 @@
+//! Heat in solids and bonded bodies: one field of temperature over nodes and particles, which expands both.
+
+mod expansion;
+mod measure;
+mod pairs;
+mod step;
+
+use fractum_fem::Solid;
+use fractum_heat::{HeatCondition, HeatField, HeatFieldState, HeatLedger, HeatNetwork, ImplicitHeat};
+use serde::{Deserialize, Serialize};
+
+use crate::bonded::Bonded;
+use crate::error::SceneError;
+use crate::time_function::TimeFunction;
+use expansion::Expansion;
+pub use measure::{HeatMeasure, TemperatureTake};
+use pairs::Pairs;
+pub use pairs::{PackingConduction, PackingReport};
+
+/// Part of the stable step of conduction that is taken where temperatures expand bodies in motion: what a step adds is small,
+/// so that it excites no waves to speak of.
+const SMOOTH: f64 = 0.05;
+
+/// What a body is to heat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThermalMaterial {
+    /// Conductivity λ [W/(m K)], > 0.
+    pub conductivity: f64,
+    /// Heat capacity per mass c [J/(kg K)], > 0.
+    pub capacity: f64,
+    /// Coefficient of linear expansion α [1/K]; 0 where it does not expand.
+    pub expansion: f64,
+}
+
+/// What heat needs beside the bodies.
+pub struct HeatSettings {
+    /// Of the solid bodies, in their order.
+    pub solids: Vec<ThermalMaterial>,
+    /// Of the bonded bodies, in their order.
+    pub bonded: Vec<ThermalMaterial>,
+    /// How particles conduct.
+    pub packing: PackingConduction,
+    /// Temperature at t = 0 [K].
+    pub initial: TimeFunction,
+    /// Temperature at which nothing is stressed [K].
+    pub stress_free: f64,
+    /// What heats and cools; particles count after all nodes.
+    pub conditions: Vec<HeatCondition>,
+    /// Whether steps are implicit.
+    pub implicit: bool,
+    /// Step of conduction [s]; from the stable one where there is nothing.
+    pub step: Option<f64>,
+    /// Part of the stable step that is taken.
+    pub safety: f64,
+    /// Whether nothing moves.
+    pub alone: bool,
+}
+
+/// Heat in the bodies of a scene.
+#[derive(Debug)]
+pub struct Heat {
+    field: HeatField,
+    pairs: Pairs,
+    solver: Option<ImplicitHeat>,
+    /// Largest step [s].
+    step: f64,
+    /// Nodes come before particles.
+    nodes: usize,
+    /// Elements have left since the conductances were found.
+    stale: bool,
+    expansion: Option<Expansion>,
+}
+
+/// What changes in heat, for a checkpoint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HeatState {
+    field: HeatFieldState,
+    expansion: Option<expansion::ExpansionState>,
+}
+
+impl Clone for Heat {
+    fn clone(&self) -> Self {
+        Heat {
+            field: self.field.clone(),
+            pairs: self.pairs.clone(),
+            // Prepared anew where it is needed.
+            solver: self.solver.as_ref().map(|_| ImplicitHeat::default()),
+            step: self.step,
+            nodes: self.nodes,
+            stale: self.stale,
+            expansion: self.expansion.clone(),
+        }
+    }
+}
+
+impl Heat {
+    /// Heat at t = 0; bodies have the thermal strains of that instant.
+    ///
+    /// # Errors
+    /// [`SceneError::PackingConduction`] where the conductivity of a packing was not found.
+    pub fn new(solid: &mut Solid, bonded: &mut Bonded, settings: HeatSettings) -> Result<Self, SceneError> {
+        let HeatSettings { solids, bonded: of_bonded, packing, initial, stress_free, conditions, .. } = settings;
+        let nodes = solid.reference.len();
+        let places = [solid.reference.as_slice(), bonded.reference()].concat();
+        let pairs = Pairs::new(solid, bonded, &solids, &of_bonded, packing)?;
+        let network = HeatNetwork::new(pairs.capacity(solid, bonded), pairs.pairs(), pairs.conductances());
+        let start = places.iter().map(|place| initial(0.0, place)).collect();
+        let field = HeatField::new(network, places, start, conditions);
+        let coefficient = |of: &[ThermalMaterial]| of.iter().map(|own| own.expansion).collect::<Vec<f64>>();
+        let expansion = Expansion::new(solid, bonded, &coefficient(&solids), &coefficient(&of_bonded), stress_free)
+            .filter(|_| !settings.alone)
+            .map(|mut expansion| {
+                expansion.start(solid, bonded, field.temperature());
+                expansion
+            });
+        let stable = settings.safety * field.stable_step() * if expansion.is_some() { SMOOTH } else { 1.0 };
+        let solver = settings.implicit.then(ImplicitHeat::default);
+        Ok(Heat { step: settings.step.unwrap_or(stable), field, pairs, solver, nodes, stale: false, expansion })
+    }
+
+    /// Temperatures of the nodes [K].
+    pub fn of_nodes(&self) -> &[f64] {
+        &self.field.temperature()[..self.nodes]
+    }
+
+    /// Temperatures of the particles [K].
+    pub fn of_particles(&self) -> &[f64] {
+        &self.field.temperature()[self.nodes..]
+    }
+
+    /// Where the heat came from and is.
+    pub fn ledger(&self) -> HeatLedger {
+        self.field.ledger()
+    }
+
+    /// Largest step of conduction [s].
+    pub fn step_size(&self) -> f64 {
+        self.step
+    }
+
+    /// Largest stable explicit step [s].
+    pub fn stable_step(&self) -> f64 {
+        self.field.stable_step()
+    }
+
+    /// Whether steps are implicit.
+    pub fn is_implicit(&self) -> bool {
+        self.solver.is_some()
+    }
+
+    /// Points, and pairs that conduct.
+    pub fn counts(&self) -> [usize; 2] {
+        [self.field.network().len(), self.field.network().pairs().len()]
+    }
+
+    /// How bonded bodies conduct.
+    pub fn packings(&self) -> &[PackingReport] {
+        self.pairs.packings()
+    }
+
+    /// Work that thermal expansion has done [J].
+    pub fn expansion_work(&self) -> f64 {
+        self.expansion.as_ref().map_or(0.0, |expansion| expansion.work)
+    }
+
+    /// Everything that changes.
+    pub(crate) fn state(&self) -> HeatState {
+        HeatState { field: self.field.state(), expansion: self.expansion.as_ref().map(Expansion::state) }
+    }
+
+    /// Puts a saved state back, once the bodies have theirs.
+    pub(crate) fn restore(&mut self, solid: &mut Solid, bonded: &mut Bonded, state: HeatState) {
+        self.field.restore(state.field);
+        if let (Some(expansion), Some(state)) = (&mut self.expansion, state.expansion) {
+            expansion.restore(solid, bonded, self.field.temperature(), state);
+        }
+        self.find_conductances(solid, bonded);
+    }
+}
