@@ -79,6 +79,8 @@ UNSTRUCTURED = {
     "l-panel-plane/rows-5": ("l-panel-plane/panel.geo", {"h": 0.005, "algorithm": 6}, False),
     "branching-plane/delaunay": ("branching-plane/plate.geo", {"h": 0.0007, "algorithm": 5}, False),
     "branching-plane/rows": ("branching-plane/plate.geo", {"h": 0.0005, "algorithm": 6}, False),
+    "heat-plane/sheet": ("heat-plane/plate.geo", {"L": 0.05, "H": 0.03, "h": 0.001}, False),
+    "heat-plane/strip": ("heat-plane/plate.geo", {"L": 0.01, "H": 0.005, "h": 0.00012}, False),
     "bending-plane/plain": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0, "layers": 0}, False),
     "bending-plane/notched": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0.03, "layers": 0}, False),
     "bending-plane/notched-10": ("bending/beam.geo", {"h": 0.01, "far": 0.02, "notch": 0.03, "layers": 0}, False),

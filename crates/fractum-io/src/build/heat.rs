@@ -2,13 +2,17 @@
 
 use std::collections::HashSet;
 
-use fractum_scene::{Heat, HeatCondition, HeatSettings, Scene, SceneError, ThermalMaterial};
+use fractum_math::Vec3;
+use fractum_scene::{Heat, HeatCondition, HeatSettings, Population, Probe, Scene, SceneError, ThermalMaterial};
 
 use super::bodies::Numbering;
 use super::conditions::{LoadedPoints, Surface};
 use super::{Context, function};
-use crate::case::model::{self, BodyKind, HeatKind, HeatScheme, SolverKind};
+use crate::case::model::{self, BodyKind, HeatKind, HeatScheme, ProbeKind, SolverKind};
 use crate::number::quantity;
+
+/// Least number of steps of conduction in a run that gives none.
+const STEPS: f64 = 1000.0;
 
 impl Context<'_> {
     /// The scene with the heat of the case, if it has any.
@@ -44,11 +48,12 @@ impl Context<'_> {
             bonded,
             packing: heat.packing,
             stress_free: heat.stress_free.unwrap_or_else(|| initial.at(Default::default())),
-            initial: std::sync::Arc::new(move |_, place| initial.at(*place)),
+            initial: std::sync::Arc::new(move |_, place: &Vec3| initial.at(*place)),
             conditions,
             implicit: heat.scheme == HeatScheme::Implicit,
             step: heat.step.as_ref().map(|step| step.value),
             safety: case.solver.safety,
+            longest: case.solver.end / STEPS,
             alone,
         };
         match Heat::new(&mut scene.solid, &mut scene.bonded, settings) {
@@ -161,6 +166,18 @@ impl Context<'_> {
             }
             _ => HeatCondition::Supply { points, value },
         })
+    }
+
+    /// A probe of heat, on nodes where it has points.
+    pub(super) fn heat_probe(&mut self, kind: &ProbeKind, numbering: &Numbering) -> Option<Probe> {
+        match kind {
+            ProbeKind::Temperature { on, take } => {
+                let points = self.selected_nodes(on, numbering);
+                Some(Probe::Temperature { population: Population::Nodes, points, take: *take })
+            }
+            ProbeKind::Heat(measure) => Some(Probe::Heat(*measure)),
+            _ => None,
+        }
     }
 
     /// An explicit step that was asked for must be stable.

@@ -27,11 +27,17 @@ impl Context<'_> {
     ) -> Vec<Option<Probe>> {
         let case = self.case;
         case.probes.iter().filter(|_| !solid.is_plane()).for_each(|probe| self.refuse_in_space(probe));
-        let mut measured = |kind| match self.particle_probe(kind, bonded).or_else(|| self.rigid_body_probe(kind)) {
+        let mut measured = |kind| match self.special_probe(kind, numbering, bonded) {
             Some(probe) => Some(probe),
             None => self.probe(kind, parts, numbering, surface, solid, supports, bonded),
         };
         case.probes.iter().map(|probe| measured(&probe.kind)).collect()
+    }
+
+    /// A probe of particles, rigid bodies or heat; none for others.
+    fn special_probe(&mut self, kind: &ProbeKind, numbering: &Numbering, bonded: &Bonded) -> Option<Probe> {
+        let found = self.particle_probe(kind, bonded).or_else(|| self.rigid_body_probe(kind));
+        found.or_else(|| self.heat_probe(kind, numbering))
     }
 
     fn probe(
@@ -88,11 +94,6 @@ impl Context<'_> {
             ProbeKind::Momentum { along } => Probe::Momentum(*along),
             ProbeKind::AngularMomentum { along } => Probe::AngularMomentum(*along),
             ProbeKind::Gas { measure, group } => Probe::Gas { measure: *measure, hole: self.hole(group.as_ref()) },
-            ProbeKind::Temperature { on, take } => {
-                let points = self.selected_nodes(on, numbering);
-                Probe::Temperature { population: Population::Nodes, points, take: *take }
-            }
-            ProbeKind::Heat(measure) => Probe::Heat(*measure),
             ProbeKind::CrackArea => Probe::CrackArea,
             ProbeKind::Crack { measure, along, point, within } => {
                 let inside = self.inside_cracks(within.as_ref(), solid, bonded);
@@ -113,7 +114,7 @@ impl Context<'_> {
                 }
                 Probe::WaveSpeed { body: index?, wave: *wave }
             }
-            ProbeKind::Expression(_) => return None,
+            ProbeKind::Temperature { .. } | ProbeKind::Heat(_) | ProbeKind::Expression(_) => return None,
         })
     }
 

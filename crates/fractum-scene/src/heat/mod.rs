@@ -52,6 +52,8 @@ pub struct HeatSettings {
     pub step: Option<f64>,
     /// Part of the stable step that is taken.
     pub safety: f64,
+    /// Longest step that is taken where none is given, so that what heats is resolved [s].
+    pub longest: f64,
     /// Whether nothing moves.
     pub alone: bool,
 }
@@ -115,7 +117,8 @@ impl Heat {
             });
         let stable = settings.safety * field.stable_step() * if expansion.is_some() { SMOOTH } else { 1.0 };
         let solver = settings.implicit.then(ImplicitHeat::default);
-        Ok(Heat { step: settings.step.unwrap_or(stable), field, pairs, solver, nodes, stale: false, expansion })
+        let step = settings.step.unwrap_or(stable.min(settings.longest));
+        Ok(Heat { step, field, pairs, solver, nodes, stale: false, expansion })
     }
 
     /// Temperatures of the nodes [K].

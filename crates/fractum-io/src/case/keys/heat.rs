@@ -17,7 +17,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("heat.initial_temperature", K::Field(D::TEMPERATURE), "required", "Temperature at t = 0"),
     key("heat.stress_free_temperature", K::Quantity(D::TEMPERATURE), "the initial one", "Temperature at which bodies have no thermal strain; required where they expand from an uneven initial temperature"),
     key("heat.scheme", K::Choice(names::<HeatScheme>), "\"explicit\"", "Steps of conduction: forward Euler below the stable step, or backward Euler of any step"),
-    key("heat.step", K::Quantity(D::TIME), "solver.safety times the stable step; where bodies expand in motion a twentieth of that", "Step of conduction, > 0; required with scheme = \"implicit\""),
+    key("heat.step", K::Quantity(D::TIME), "solver.safety times the stable step; where bodies expand in motion a twentieth of that; at most a thousandth of the run", "Step of conduction, > 0; required with scheme = \"implicit\""),
     key("heat.packing", K::Choice(names::<PackingConduction>), "\"measured\"", "How particles conduct: by the published table, times what gives the body the conductivity and the heat capacity of its material; or by the table alone"),
     key("heat.conditions[]", K::Tables, "", "What heats and cools; surfaces without a condition are insulated"),
     key("heat.conditions[].group", K::Text, "", "Mesh group of nodes (temperature, power, source) or facets (flux, convection), or set of particles; required without `where`"),

@@ -41,9 +41,7 @@ pub(super) fn read(root: &Table<'_>, solver: Option<&Solver>, staged: bool) -> O
     let scheme = table.choice("scheme").or_if_absent(HeatScheme::Explicit);
     let step = optional(&table, "step", |name| table.quantity(name).positive().spanned().given());
     if let (Some(HeatScheme::Implicit), Some(None)) = (scheme, &step) {
-        table
-            .reader
-            .note_missing(&table.place_of("step"), "with scheme = \"implicit\": a time such as \"1 ms\"");
+        table.reader.note_missing(&table.place_of("step"), "with scheme = \"implicit\": a time such as \"1 ms\"");
         return None;
     }
     let packing = table.choice("packing").or_if_absent(PackingConduction::Measured);

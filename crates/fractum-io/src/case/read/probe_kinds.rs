@@ -74,13 +74,7 @@ pub(super) fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKin
         "count" => (ProbeKind::Count(table.choice("count").required()?), Dimension::NONE),
         "momentum" => (ProbeKind::Momentum { along: along()? }, Dimension::MOMENTUM),
         "angular_momentum" => (ProbeKind::AngularMomentum { along: along()? }, Dimension::ANGULAR_MOMENTUM),
-        "temperature" => {
-            let inner = table.table(key)?;
-            let on = selection(&inner);
-            let take = inner.choice("take").or_if_absent(TemperatureTake::Mean);
-            inner.finish("here");
-            (ProbeKind::Temperature { on: on?, take: take? }, Dimension::TEMPERATURE)
-        }
+        "temperature" => temperature(table)?,
         "heat" => (ProbeKind::Heat(table.choice("heat").required()?), Dimension::ENERGY),
         "gas" => gas(table)?,
         "crack" => crack(table)?,
@@ -165,6 +159,14 @@ fn gas(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
         GasMeasure::WettedArea => Dimension::AREA,
     };
     Some((ProbeKind::Gas { measure: measure?, group: group? }, dimension))
+}
+
+fn temperature(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("temperature")?;
+    let on = selection(&inner);
+    let take = inner.choice("take").or_if_absent(TemperatureTake::Mean);
+    inner.finish("here");
+    Some((ProbeKind::Temperature { on: on?, take: take? }, Dimension::TEMPERATURE))
 }
 
 fn fragment(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {

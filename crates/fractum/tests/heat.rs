@@ -1,0 +1,212 @@
+//! Heat, as its user meets it.
+
+mod common;
+
+use common::{Workplace, history, run, summary};
+
+/// A clamped bar of elements and a free bonded box, both heated by 20 K.
+const HOT: &str = r#"fractum = 1
+title = "A clamped bar and a free box get hot"
+
+[mesh]
+file = "bar.msh"
+
+[materials.stone]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+[materials.stone.thermal]
+conductivity = "3 W/(m K)"
+heat_capacity = "800 J/(kg K)"
+expansion = "1e-5 1/K"
+[materials.stone.bonds]
+coordination = 8
+convention = "all"
+radius_ratio = 0.5
+young_modulus = "60 GPa"
+
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "stone"
+
+[[bodies]]
+name = "box"
+kind = "bonded"
+material = "stone"
+shape = "box"
+point = ["1 m", "0 m", "0 m"]
+size = ["0.3 m", "0.3 m", "0.3 m"]
+particles = 300
+coordination = 8
+
+[[supports]]
+group = "x-"
+fix = "x"
+
+[[supports]]
+group = "x+"
+fix = "x"
+
+[heat]
+initial_temperature = "293 K"
+stress_free_temperature = "293 K"
+
+[[heat.conditions]]
+group = "body"
+source = { ramp = [["0 s", "0 W/m^3"], ["1 ms", "19.2 GW/m^3"], ["3 ms", "0 W/m^3"]] }
+
+[[heat.conditions]]
+group = "box"
+source = { ramp = [["0 s", "0 W/m^3"], ["1 ms", "19.2 GW/m^3"], ["3 ms", "0 W/m^3"]] }
+
+[damping]
+mass = "3000 1/s"
+
+[solver]
+end = "6 ms"
+
+[[probes]]
+name = "push"
+reaction = { group = "x+", along = "-x" }
+
+[[probes]]
+name = "bar_temperature"
+temperature = { group = "body" }
+
+[[probes]]
+name = "box_temperature"
+temperature = { group = "box" }
+
+[[probes]]
+name = "left"
+displacement = { group = "box.x-", along = "x" }
+
+[[probes]]
+name = "right"
+displacement = { group = "box.x+", along = "x" }
+
+[[probes]]
+name = "bond_energy"
+energy = "bond_tension"
+
+[[probes]]
+name = "work"
+heat = "expansion_work"
+
+[output]
+history = { every = "0.1 ms" }
+checkpoint = { every = "5 ms" }
+"#;
+
+/// The table that bodies need to conduct.
+const THERMAL: &str = "[materials.stone.thermal]
+conductivity = \"3 W/(m K)\"
+heat_capacity = \"800 J/(kg K)\"
+expansion = \"1e-5 1/K\"
+";
+
+#[test]
+fn clamped_bodies_are_pressed_and_free_ones_grow_with_the_same_bits_on_any_threads() {
+    let place = Workplace::new(HOT);
+    let one = run(&place, "one", "1");
+    let last = |name: &str| one["probes"][name]["final"].as_f64().unwrap();
+    // The source puts in 19.2 GW/m3 over 1.5 ms at half of that: 28.8 MJ/m3 over 1.92 MJ/(m3 K), 15 K.
+    for name in ["bar_temperature", "box_temperature"] {
+        assert!((last(name) - 308.0).abs() < 0.05, "{name}: {}", last(name));
+    }
+    // E α ΔT A, without stress across.
+    let pressed = 30e9 * 1e-5 * 15.0 * 0.12 * 0.12;
+    assert!((last("push") / pressed - 1.0).abs() < 0.01, "{} N of {pressed} N", last("push"));
+    let grown = (last("right") - last("left")) / (1e-5 * 15.0 * 0.3);
+    // The walls of the sets are a radius inside the box.
+    assert!((0.85..1.0).contains(&grown), "{grown}");
+    let stored = 0.5 * 30e9 * (1e-5f64 * 15.0).powi(2) * 0.3f64.powi(3);
+    assert!(last("bond_energy") < 1e-2 * stored, "{} J of {stored} J", last("bond_energy"));
+    assert!(last("work") > 0.9 * 0.5 * pressed * 1e-5 * 15.0 * 0.4, "{} J", last("work"));
+    assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", one["energy"]);
+    for row in history(&place, "one", &["heat_stored", "heat_residual"]) {
+        assert!(row[1].abs() < 1e-10 * 28.8e6 * 0.03, "{row:?}");
+    }
+    for threads in ["2", "7"] {
+        let other = run(&place, threads, threads);
+        assert_eq!((&other["state_hash"], &other["energy"]), (&one["state_hash"], &one["energy"]), "{threads} threads");
+    }
+    let resumed = place.fractum(&["run", "case.toml", "-o", "2", "--threads", "1", "--resume", "--quiet"]);
+    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+    let resumed = summary(&place, "2");
+    assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
+}
+
+/// The same bodies without motion: prescribed temperature, flux, convection.
+fn alone(steps: &str) -> String {
+    let conditions = r#"[[heat.conditions]]
+group = "x-"
+temperature = "400 K"
+
+[[heat.conditions]]
+group = "x+"
+convection = { coefficient = "100 W/(m^2 K)", ambient = "250 K" }
+
+[[heat.conditions]]
+group = "box.y+"
+flux = "2 kW/m^2"
+area = "0.09 m^2"
+
+[solver]
+kind = "heat"
+end = "2000 s"
+"#;
+    let [before, after] = [HOT.find("[[heat.conditions]]"), HOT.find("[[probes]]")].map(Option::unwrap);
+    let text = [&HOT[..before], steps, "\n", conditions, &HOT[after..]].concat();
+    text.replace("every = \"0.1 ms\"", "every = \"100 s\"")
+        .replace("reaction = { group = \"x+\", along = \"-x\" }", "count = \"bonds\"")
+}
+
+#[test]
+fn heat_alone_keeps_its_balance_by_explicit_and_implicit_steps() {
+    let mut ends = Vec::new();
+    for steps in ["step = \"2 s\"", "scheme = \"implicit\"\nstep = \"2 s\""] {
+        let place = Workplace::new(&alone(steps));
+        let one = run(&place, "one", "1");
+        let rows = history(&place, "one", &["time", "heat_stored", "heat_brought", "heat_residual"]);
+        assert_eq!(rows.len(), 21, "{rows:?}");
+        let last = &rows[20];
+        assert!((last[0] - 2000.0).abs() < 1e-6 && last[1] > 1e6, "{last:?}");
+        assert!(rows.iter().all(|row| row[3].abs() < 1e-10 * last[1]), "{rows:?}");
+        let two = run(&place, "two", "2");
+        assert_eq!(two["state_hash"], one["state_hash"]);
+        let resumed = place.fractum(&["run", "case.toml", "-o", "two", "--threads", "1", "--resume", "--quiet"]);
+        assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+        assert_eq!(summary(&place, "two")["state_hash"], one["state_hash"]);
+        ends.push(last[1]);
+    }
+    assert!((ends[0] / ends[1] - 1.0).abs() < 5e-3, "{ends:?}");
+}
+
+#[test]
+fn what_heat_cannot_do_is_told_with_its_remedy() {
+    let hot = alone("");
+    for (text, words) in [
+        (hot.replace(THERMAL, ""), "[materials.stone.thermal] with"),
+        (HOT.replace("[heat]\n", "[other]\n"), "is not a key"),
+        (alone("scheme = \"implicit\""), "with scheme = \"implicit\""),
+        (alone("step = \"1e6 s\""), "is above the stable step"),
+        (
+            hot.replace(
+                "group = \"x+\"\nconvection",
+                "group = \"x-\"\ntemperature = 300\n[[heat.conditions]]\ngroup = \"x+\"\nconvection",
+            ),
+            "shares points",
+        ),
+        (hot.replace("area = \"0.09 m^2\"\n", ""), "particles have no surface of their own"),
+        (hot.replace("kind = \"heat\"", "kind = \"static\""), "is conducted in motion, or alone"),
+        (hot.replace("\"400 K\"", "\"400 C\""), "400 C"),
+    ] {
+        let place = Workplace::new(&text);
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{words}: {}", ended.stderr);
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
+}
