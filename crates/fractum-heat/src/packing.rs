@@ -11,13 +11,13 @@ use crate::network::HeatNetwork;
 /// Regular solids around a sphere of radius 1: number of faces, area of a face, and the volume fraction of the crystal whose
 /// spheres have that many neighbours.
 const SOLIDS: [(f64, f64, f64); 4] = [
-    (4.0, 10.392_304_845_413_264, 0.340_087_379_635_667_1),
+    (4.0, 10.392_304_845_413_264, 0.340_087_380_793_915_8),
     (6.0, 4.0, 0.523_598_775_598_298_8),
-    (8.0, 2.598_076_211_353_316, 0.680_174_759_271_334_2),
-    (12.0, 1.387_570_501_100_8, 0.740_480_489_693_061),
+    (8.0, 2.598_076_211_353_316, 0.680_174_761_587_831_6),
+    (12.0, 1.387_572_757_128_877_2, 0.740_480_489_693_060_9),
 ];
 /// The icosahedron, for the areas of spheres of more than twelve neighbours.
-const TWENTY: (f64, f64) = (20.0, 0.758_103_030_706);
+const TWENTY: (f64, f64) = (20.0, 0.758_108_421_539_835_5);
 
 /// What a sphere of a packing is to conduction, by its number of neighbours: the regular solid around it gives area and
 /// volume.

@@ -109,12 +109,13 @@ impl Heat {
         let start = places.iter().map(|place| initial(0.0, place)).collect();
         let field = HeatField::new(network, places, start, conditions);
         let coefficient = |of: &[ThermalMaterial]| of.iter().map(|own| own.expansion).collect::<Vec<f64>>();
-        let expansion = Expansion::new(solid, bonded, &coefficient(&solids), &coefficient(&of_bonded), stress_free)
-            .filter(|_| !settings.alone)
-            .map(|mut expansion| {
-                expansion.start(solid, bonded, field.temperature());
-                expansion
-            });
+        let mut expansion = match settings.alone {
+            true => None,
+            false => Expansion::new(solid, bonded, &coefficient(&solids), &coefficient(&of_bonded), stress_free),
+        };
+        if let Some(expansion) = &mut expansion {
+            expansion.start(solid, bonded, field.temperature());
+        }
         let stable = settings.safety * field.stable_step() * if expansion.is_some() { SMOOTH } else { 1.0 };
         let solver = settings.implicit.then(ImplicitHeat::default);
         let step = settings.step.unwrap_or(stable.min(settings.longest));
