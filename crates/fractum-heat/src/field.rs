@@ -110,16 +110,6 @@ impl HeatField {
         self.network.set_conductances(conductances);
     }
 
-    /// Whether the temperature of each point is prescribed.
-    pub(crate) fn held(&self) -> &[bool] {
-        &self.held
-    }
-
-    /// Coefficient of heat transfer times area of each point [W/K].
-    pub(crate) fn exchange(&self) -> &[f64] {
-        &self.exchange
-    }
-
     /// A step of [`HeatField::step`] that is surely stable [s]; infinite where nothing conducts.
     ///
     /// By Gershgorin's theorem the largest eigenvalue of C⁻¹ K is at most max (Σ Gᵢⱼ + Σ |Gᵢⱼ| + h A)/Cᵢ over free points, and
@@ -156,7 +146,7 @@ impl HeatField {
         self.find_flows(self.time);
         let right = |i: usize| [if self.held[i] { 0.0 } else { dt * self.flow[i] }];
         let right: Vec<[f64; 1]> = (0..self.network.len()).map(right).collect();
-        let change = solver.solve(self, dt, &right)?;
+        let change = solver.solve(&self.network, &self.exchange, &self.held, dt, &right)?;
         self.temperature.iter_mut().zip(&change).for_each(|(t, [change])| *t += change);
         let powers = self.find_flows(self.time);
         let given = risen - dt * self.flow_into_held();

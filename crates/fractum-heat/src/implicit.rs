@@ -3,7 +3,6 @@ use std::sync::Arc;
 use fractum_math::Ragged;
 use fractum_sparse::{BlockMatrix, Pattern, Preconditioner, SparseError, conjugate_gradients};
 
-use crate::field::HeatField;
 use crate::network::HeatNetwork;
 
 /// Residual over the right-hand side at which a solution is accepted: what heat balances lose by it is of this order.
@@ -34,18 +33,20 @@ impl ImplicitHeat {
     }
 
     /// Solves (C + Δt (K + h A)) ΔT = `right`, with ΔT = 0 where temperatures are prescribed.
+    ///
+    /// - `exchange`: h A of each point [W/K]; `held`: whether its temperature is prescribed
     pub(crate) fn solve(
         &mut self,
-        field: &HeatField,
+        network: &HeatNetwork,
+        exchange: &[f64],
+        held: &[bool],
         dt: f64,
         right: &[[f64; 1]],
     ) -> Result<Vec<[f64; 1]>, SparseError> {
-        let network = field.network();
         let prepared = match self.prepared.take().filter(|prepared| prepared.dt == dt) {
             Some(prepared) => prepared,
             None => {
-                let own = |i: usize| network.capacity()[i] + dt * field.exchange()[i];
-                let held = field.held();
+                let own = |i: usize| network.capacity()[i] + dt * exchange[i];
                 let matrix = matrix(network, dt, own, held);
                 Prepared { dt, preconditioner: Preconditioner::new(&matrix, None)?, matrix }
             }
