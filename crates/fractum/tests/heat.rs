@@ -39,7 +39,6 @@ shape = "box"
 point = ["1 m", "0 m", "0 m"]
 size = ["0.3 m", "0.3 m", "0.3 m"]
 particles = 300
-coordination = 8
 
 [[supports]]
 group = "x-"
@@ -173,7 +172,7 @@ fn heat_alone_keeps_its_balance_by_explicit_and_implicit_steps() {
         let rows = history(&place, "one", &["time", "heat_stored", "heat_brought", "heat_residual"]);
         assert_eq!(rows.len(), 21, "{rows:?}");
         let last = &rows[20];
-        assert!((last[0] - 2000.0).abs() < 1e-6 && last[1] > 1e6, "{last:?}");
+        assert!((last[0] - 2000.0).abs() < 1e-6 && last[1] > 4e5, "{last:?}");
         assert!(rows.iter().all(|row| row[3].abs() < 1e-10 * last[1]), "{rows:?}");
         let two = run(&place, "two", "2");
         assert_eq!(two["state_hash"], one["state_hash"]);
