@@ -104,6 +104,7 @@ mod tests {
 
     /// Every number of Table 3.1.
     #[test]
+    #[allow(clippy::approx_constant)] // as printed
     fn the_published_table_is_reproduced() {
         let table = [
             (1, 19.98076, 0.08502),
