@@ -4,6 +4,7 @@ use fractum_math::elementary::asin;
 use fractum_math::{Sym3, Vec3};
 
 use crate::body::ElementKind;
+use crate::evaluate::Block;
 use crate::solid::Solid;
 
 /// An edge that a crack runs through.
@@ -115,6 +116,19 @@ impl Solid {
     /// Area of crack, Σ d V/l over the edges [m²]: a crack through all of a bar counts as its cross-section.
     pub fn crack_area(&self) -> f64 {
         self.crack_edges().iter().map(|edge| edge.damage * edge.area).sum()
+    }
+
+    /// Energy that damage has taken in a body with a phase field over the fracture energy of its area of crack; none without one, or without a crack.
+    ///
+    /// About 1 where cracks open. The field is driven by the equivalent stress, so that a band that is sheared takes up to 2 (1 + ν) times the
+    /// fracture energy under Rankine's criterion.
+    pub fn cost_of_bands(&self, body: usize) -> Option<f64> {
+        let model = &self.bodies[body];
+        let (zone, _) = model.body.damage.as_ref().zip(model.phase.as_ref())?;
+        let area = |edge: &CrackEdge| if edge.body == body { edge.damage * edge.area } else { 0.0 };
+        let needed = zone.law.fracture_energy * self.crack_edges().iter().map(area).sum::<f64>();
+        let taken: f64 = self.blocks.iter().filter(|block| block.body == body).map(Block::dissipated).sum();
+        (needed > 0.0).then(|| taken / needed)
     }
 
     /// Whether the solid is plane.

@@ -1,6 +1,7 @@
 //! The end of a run: last frame, last row, summary, report and final names.
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 use std::path::Path;
 
 use fractum_fem::{CrackFacet, Solid};
@@ -49,6 +50,7 @@ impl Simulation {
         let pieces = self.scene.fragments();
         fragments::write(&self.folder.join("fragments.csv"), &fragments_of(&self.scene.solid, &pieces))?;
         self.warn_of_single_nodes()?;
+        self.warn_of_merged_bands()?;
         write_cracks(&self.scene, &self.folder, &self.recorder.state().removed)?;
         self.phases.timed(Part::Output, || self.recorder.finish_frame())?;
         let mut summary = Summary {
@@ -165,8 +167,27 @@ impl Simulation {
         }
         Ok(())
     }
+
+    /// Warns of phase fields whose bands are sheared or pressed, as those of two cracks are that have become one.
+    fn warn_of_merged_bands(&mut self) -> Result<(), Failure> {
+        let solid = &self.scene.solid;
+        let bodies = (0..solid.body_count()).filter_map(|body| {
+            let [length, _] = solid.phase_sizes(body)?;
+            Some((&solid.body(body).name, solid.cost_of_bands(body)?, length))
+        });
+        let sheared = bodies.filter(|(_, cost, _)| *cost > SHEARED);
+        for (name, cost, length) in sheared {
+            self.messages.warn(format!(
+                "warning: body \"{name}\": damage took {cost:.1} times the fracture energy of its area of crack: the bands of its phase field, {:.2e} m wide, are sheared, or pressed along the crack. Where two cracks are nearer to each other than that, their bands become one: take a smaller length on a finer mesh",
+                PI * length
+            ))?;
+        }
+        Ok(())
+    }
 }
 
+/// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is 0.85 to 1.1.
+const SHEARED: f64 = 1.3;
 /// Share of a body's mass in single nodes above which its fragments tell little.
 const MOSTLY_SINGLE: f64 = 0.5;
 
