@@ -139,7 +139,11 @@ impl Solid {
 
 #[cfg(test)]
 mod tests {
+    use fractum_mesh::generate::structured_rectangle;
+
     use super::*;
+    use crate::body::{Body, Plane, Regularisation};
+    use crate::material::{DamageLaw, Elastic};
 
     fn at(x: f64, y: f64, z: f64) -> (Vec3, f64) {
         (Vec3::new(x, y, z), 1.0)
@@ -158,6 +162,38 @@ mod tests {
         assert!((line.angle_to(&Vec3::x()).to_degrees() - 20.0).abs() < 0.5);
         assert!((line.angle_to(&Vec3::y()).to_degrees() - 70.0).abs() < 0.5);
         assert_eq!(line.normal.z, 0.0);
+    }
+
+    /// Energy over that of the area of a band across a plate, whose faces part by this vector as they reach ten times the strength.
+    fn cost_of_a_band(part: Vec3) -> f64 {
+        let mesh = structured_rectangle([6, 21], [0.06, 0.21], None);
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
+        let law = DamageLaw::rankine(3e6, 100.0);
+        let mut body = Body::new("plate", ElementKind::T3, elements, elastic).smoothed().with_damage(law);
+        body.plane = Plane::Stress;
+        body.damage.as_mut().unwrap().regularisation = Some(Regularisation { length: None });
+        let mut solid = Solid::new(mesh.nodes, vec![body]).unwrap();
+        let (dt, steps) = (1e-6, 200);
+        for (v, p) in solid.velocity.iter_mut().zip(&solid.reference) {
+            *v = if p.y > 0.105 { part * (10.0 * 3e6 * 0.01 / 30e9 / (f64::from(steps) * dt)) } else { Vec3::zeros() };
+        }
+        for _ in 0..steps {
+            for (u, v) in solid.displacement.iter_mut().zip(&solid.velocity) {
+                *u += v * dt;
+            }
+            solid.update_internal_forces(dt, false);
+        }
+        solid.cost_of_bands(0).unwrap()
+    }
+
+    /// Both bands see the same equivalent stress, and store ½ τ²/G and ½ σ² (1 - ν²)/E under it.
+    #[test]
+    fn a_sheared_band_costs_more_than_one_that_opens() {
+        let open = cost_of_a_band(Vec3::y() * (1.0 - 0.2 * 0.2));
+        let sheared = cost_of_a_band(Vec3::x() * 2.0 * (1.0 + 0.2));
+        assert!((sheared / open - 2.0 / (1.0 - 0.2)).abs() < 1e-6, "{sheared} {open}");
+        assert!(open > 0.7 && open < 1.15, "{open}");
     }
 
     #[test]
