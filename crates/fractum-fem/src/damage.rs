@@ -102,6 +102,13 @@ impl Softens {
         std::array::from_fn(|k| compressive_stress(&self.hooke, strains[k], negative[k]))
     }
 
+    /// Whether an edge needs no eigenvalues: below its history it only unloads, and one that the phase field has damaged was searched before the forces of
+    /// a step of motion.
+    #[inline(always)]
+    fn needs_no_search(&self, edge: &EdgeDamage, stress: Sym3, dt: f64) -> bool {
+        dt > 0.0 && self.regularised && edge.damage > 0.0 || self.criterion.surely_below(stress, edge.kappa)
+    }
+
     /// Part of the strength that is left by the softening curve.
     pub(crate) fn residual_ratio(&self, kappa: f64, strength: f64, length: f64) -> f64 {
         self.softening.residual_ratio(kappa, strength, length, self.young_modulus, self.fracture_energy)
@@ -293,8 +300,7 @@ impl<const BY_FOURS: bool> EdgesInStep<'_, BY_FOURS> {
     #[inline(never)]
     fn loaded_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 {
         let EdgeField { softens, state, .. } = &self.edges.field;
-        // Below its history an edge only unloads: no eigenvalues.
-        let below = softens.criterion.surely_below(stress, state[cell].kappa);
+        let below = softens.needs_no_search(&state[cell], stress, self.step.dt);
         let q = if below { 0.0 } else { softens.criterion.equivalent_stress(stress) };
         let closed = softens.closed_stress(strain);
         self.advance(cell, strain, [stress, closed], q)
@@ -314,7 +320,7 @@ impl<const BY_FOURS: bool> EdgesInStep<'_, BY_FOURS> {
         let EdgeField { softens, state, .. } = &self.edges.field;
         let closed = softens.closed_stresses(strains);
         let unloads: [bool; FOUR] =
-            std::array::from_fn(|k| below[k] || softens.criterion.surely_below(stresses[k], state[first + k].kappa));
+            std::array::from_fn(|k| below[k] || softens.needs_no_search(&state[first + k], stresses[k], self.step.dt));
         let all_unload = unloads == [true; FOUR];
         let q = if all_unload { [0.0; FOUR] } else { softens.criterion.equivalent_stresses(&stresses) };
         std::array::from_fn(|k| {

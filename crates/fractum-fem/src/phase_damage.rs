@@ -338,6 +338,18 @@ mod tests {
         }
     }
 
+    /// A sweep of the field alone multiplies its modes by 1 - λ, which lies within -1 and 1.
+    #[test]
+    fn a_sweep_of_the_laplacian_never_grows() {
+        for (kind, cells) in [(ElementKind::T3, [4, 3, 1]), (ElementKind::T4, [2, 2, 2])] {
+            let solid = block(kind, cells, Some(Jitter { fraction: 0.3, seed: 5 }));
+            let field = field(&solid);
+            let roots = DMatrix::from_diagonal(&field.bounds().map(|bound| bound.sqrt().recip()));
+            let values = (&roots * dense(field) * &roots).symmetric_eigenvalues();
+            assert!(values.max() > 1.5 && values.max() <= 2.0, "{kind:?}: {}", values.max());
+        }
+    }
+
     /// The surface energy of a plane crack: d = 1 where edges cross a plane, the rest as it wants to be.
     fn imposed_crack(mut solid: Solid, place: f64) -> f64 {
         let ends = solid.body_edges(0).unwrap().nodes.clone();

@@ -19,6 +19,9 @@ pub(crate) struct Rows {
     starts: Vec<u32>,
     columns: Vec<u32>,
     values: Vec<f64>,
+    /// Half of the sum of the magnitudes of every row [m³/m²]: the diagonal, or more where values beside it are positive. Jacobi's iteration with
+    /// it never grows (Gershgorin), while that with the diagonal does so by up to 2.1 a sweep in tetrahedra.
+    bounds: Vec<f64>,
 }
 
 impl Rows {
@@ -36,7 +39,14 @@ impl Rows {
         (columns.iter().zip(values).map(|(&column, value)| value * field[column as usize]).sum(), values[0])
     }
 
+    /// What a sweep may divide the residual of a row by [m³/m²].
+    #[inline(always)]
+    pub(crate) fn bound(&self, row: usize) -> f64 {
+        self.bounds[row]
+    }
+
     pub(crate) fn clear(&mut self) {
+        self.bounds.clear();
         self.starts.clear();
         self.columns.clear();
         self.values.clear();
@@ -64,6 +74,7 @@ impl Rows {
             }
         }
         self.values.resize(self.columns.len(), 0.0);
+        self.bounds.push(0.0);
         self.starts.push(self.columns.len() as u32);
         self.refresh(self.starts.len() - 2, geometry, edges, around, alive);
     }
@@ -89,6 +100,7 @@ impl Rows {
                 values[place] += value;
             }
         }
+        self.bounds[row] = values[0].max(0.5 * values.iter().map(|value| value.abs()).sum::<f64>());
     }
 }
 

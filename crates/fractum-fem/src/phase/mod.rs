@@ -182,6 +182,14 @@ impl PhaseField {
         self.active.iter().enumerate().map(|(row, own)| (own.edge, self.rows.product(row, field).0))
     }
 
+    /// What a sweep divides by in the row of every edge.
+    #[cfg(test)]
+    pub(crate) fn bounds(&self) -> nalgebra::DVector<f64> {
+        let mut bounds = nalgebra::DVector::zeros(self.value.len());
+        self.active.iter().enumerate().for_each(|(row, own)| bounds[own.edge as usize] = self.rows.bound(row));
+        bounds
+    }
+
     /// Advances d by a step of motion with the drives of its end.
     ///
     /// Begins with the growth of the step before; two sweeps then are as good as the exact solution.
@@ -193,7 +201,8 @@ impl PhaseField {
         for _ in 0..SWEEPS {
             let field = &*value;
             active.par_iter_mut().enumerate().with_min_len(AT_LEAST).for_each(|(row, own)| {
-                own.next = law.swept(&own.drive, rows.product(row, field), field[own.edge as usize], own.old);
+                let flow = rows.product(row, field).0;
+                own.next = law.swept(&own.drive, (flow, rows.bound(row)), field[own.edge as usize], own.old);
             });
             for own in active.iter() {
                 value[own.edge as usize] = own.next;
@@ -243,11 +252,11 @@ impl PhaseField {
 impl PhaseLaw {
     /// d of an edge after one sweep.
     ///
-    /// - `product`: (L d) and the diagonal of L; `d`: now; `old`: at the step before
+    /// - `flow`: (L d); `bound`: that of the row; `d`: now; `old`: at the step before
     #[inline(always)]
-    fn swept(&self, drive: &Drive, (flow, diagonal): (f64, f64), d: f64, old: f64) -> f64 {
+    fn swept(&self, drive: &Drive, (flow, bound): (f64, f64), d: f64, old: f64) -> f64 {
         let (residual, slope) = self.residual(drive, flow, d);
-        let slope = slope + self.gradient * diagonal;
+        let slope = slope + self.gradient * bound;
         if slope > 0.0 { (d - residual / slope).clamp(old, 1.0) } else { d.max(old) }
     }
 

@@ -186,7 +186,7 @@ impl Simulation {
     }
 }
 
-/// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is 0.85 to 1.1.
+/// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is at most 1.1.
 const SHEARED: f64 = 1.3;
 /// Share of a body's mass in single nodes above which its fragments tell little.
 const MOSTLY_SINGLE: f64 = 0.5;
