@@ -256,6 +256,45 @@ fn a_restored_state_goes_on_with_the_same_bits() {
     }
 }
 
+/// A cube of which strengths scatter, and which expands until nearly all of its nodes are discrete elements.
+fn expanding_cube(cells: u32) -> Scene {
+    let (nodes, body) = jittered_box([cells; 3], Vec3::repeat(1.0));
+    let mut body = body.smoothed().with_damage(softening(100.0));
+    let count = body.edge_midpoints(&nodes).len();
+    body.damage.as_mut().unwrap().strength_factor = (0..count).map(|edge| 1.0 + noise(edge)).collect();
+    let mut solid = Solid::new(nodes, vec![body]).unwrap();
+    for i in 0..solid.velocity.len() {
+        solid.velocity[i] = 10.0 * (solid.reference[i] - Vec3::repeat(0.5));
+    }
+    scene(solid, Vec::new(), Vec::new(), settings(6e-4))
+}
+
+#[test]
+fn a_cube_that_becomes_debris_within_some_steps_keeps_its_balance_and_has_the_same_bits_on_any_threads_and_after_resume()
+ {
+    let whole = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut scene = expanding_cube(8);
+            run(&mut scene).unwrap();
+            scene
+        })
+    };
+    let one = whole(1);
+    let (counts, ledger) = (one.counts(), one.ledger());
+    assert!(5 * counts.particles > 4 * counts.nodes && one.clock.step < 500, "{counts:?} {:?}", one.clock);
+    assert!(ledger.residual_max_relative < 1e-4, "{ledger:?}");
+    let mut first = expanding_cube(8);
+    // In the middle of the births.
+    while 2 * first.counts().particles < first.counts().nodes {
+        first.step(first.clock.step.is_multiple_of(20)).unwrap();
+    }
+    let mut second = expanding_cube(8);
+    second.restore(first.state());
+    run(&mut second).unwrap();
+    assert!(one.state() == second.state() && one.state() == whole(2).state() && one.state() == whole(7).state());
+}
+
 #[test]
 fn damping_of_every_kind_is_booked() {
     let (nodes, body) = jittered_box(CELLS, SIZE);

@@ -145,8 +145,8 @@ pub(crate) struct EdgeField {
     pub(crate) strength: Vec<f64>,
     /// Characteristic length [m] of each edge.
     pub(crate) length: Vec<f64>,
-    /// An edge broke since removal last looked.
-    pub(crate) fresh: bool,
+    /// Edges of this field that broke since removal last looked.
+    pub(crate) fresh: Vec<u32>,
     /// An edge has passed its strength and has no damage yet, which the phase field must give it.
     pub(crate) woken: bool,
 }
@@ -162,7 +162,7 @@ impl EdgeField {
             length: edges.iter().map(|&e| threshold.length[e as usize]).collect(),
             strength,
             edges,
-            fresh: false,
+            fresh: Vec::new(),
             woken: false,
         }
     }
@@ -173,8 +173,10 @@ impl EdgeField {
         let was_broken = edge.broken;
         let growth = self.softens.load(edge, q, self.strength[index], self.length[index], dt);
         self.threshold[index] = edge.threshold();
-        self.fresh |= edge.broken && !was_broken;
         self.woken |= edge.damage == 0.0;
+        if edge.broken && !was_broken {
+            self.fresh.push(index as u32);
+        }
         growth
     }
 
@@ -186,9 +188,18 @@ impl EdgeField {
         self.threshold[index] = edge.threshold();
         // The stress never exceeds (1 - d) κ.
         let parted = (1.0 - edge.damage) * edge.kappa <= self.softens.residual * self.strength[index];
-        self.fresh |= parted && !edge.broken;
-        edge.broken = edge.broken || parted;
+        if parted && !edge.broken {
+            edge.broken = true;
+            self.fresh.push(index as u32);
+        }
         growth
+    }
+
+    /// Has removal look at every broken edge.
+    pub(crate) fn renew_fresh(&mut self) {
+        let EdgeField { fresh, state, .. } = self;
+        fresh.clear();
+        fresh.extend((0..).zip(&*state).filter(|(_, edge)| edge.broken).map(|(index, _)| index));
     }
 
     /// Equivalent stress from which on damage grows [Pa].
@@ -212,7 +223,8 @@ impl EdgeField {
             *state = saved[*edge as usize];
             *threshold = state.threshold();
         }
-        (self.fresh, self.woken) = (true, true);
+        self.woken = true;
+        self.renew_fresh();
     }
 }
 

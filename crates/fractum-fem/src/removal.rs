@@ -72,7 +72,7 @@ impl Solid {
         0.5 * block.nominal_stress(cell, &model.hooke, strain).dot(strain) * block.cells.volume[cell]
     }
 
-    /// Elements of a body that are newly cut through; only fields in which an edge broke are looked at.
+    /// Elements of a body that are newly cut through; only edges that broke since the last look matter.
     fn find_cut_elements(&mut self, body: usize, removed: &mut Vec<(usize, u32)>) {
         if self.bodies[body].body.damage.is_none() {
             return;
@@ -82,10 +82,8 @@ impl Solid {
         let BodyModel { standard, elements_of_edge, .. } = &mut bodies[body];
         let cells = blocks.iter_mut().filter(|b| b.body == body).filter_map(Block::edge_field_mut);
         for field in cells.chain(standard.as_mut().map(|standard| &mut standard.field)) {
-            if std::mem::take(&mut field.fresh) {
-                let broken = field.edges.iter().zip(&field.state).filter(|(_, edge)| edge.broken);
-                broken.for_each(|(&edge, _)| candidates.extend(elements_of_edge.row(edge as usize)));
-            }
+            let broken = field.fresh.drain(..).map(|index| field.edges[index as usize]);
+            broken.for_each(|edge| candidates.extend(elements_of_edge.row(edge as usize)));
         }
         let model = &self.bodies[body];
         let Some(edges) = &model.edges else { return };

@@ -44,9 +44,7 @@ impl StandardDamage {
     /// Edge histories from the stresses of the elements (`stress_of`, none for a removed one).
     pub(crate) fn update_edges(&mut self, dt: f64, stress_of: impl Fn(u32) -> Option<Sym3> + Sync) {
         let StandardDamage {
-            field: EdgeField { softens, state, strength, length, fresh, woken, .. },
-            elements_of_edge,
-            ..
+            field: EdgeField { softens, state, strength, length, woken, .. }, elements_of_edge, ..
         } = self;
         let (broke, loaded) = state
             .par_iter_mut()
@@ -71,8 +69,10 @@ impl StandardDamage {
                 (edge.broken && !was_broken, true)
             })
             .reduce(|| (false, false), |a, b| (a.0 || b.0, a.1 || b.1));
-        *fresh |= broke;
         *woken |= loaded;
+        if broke {
+            self.field.renew_fresh();
+        }
     }
 
     /// Damage of an element with these edges: the largest mean over the ways a crack cuts it; under a phase field, whose band is

@@ -21,9 +21,11 @@ use crate::input::Input;
 /// Nanoseconds per element and step on one core of a common machine: standard, smoothed, smoothed with damage.
 const COST: [f64; 3] = [20.0, 45.0, 50.0];
 /// Bytes per element: standard, smoothed, smoothed with damage.
-const MEMORY: [f64; 3] = [250.0, 450.0, 550.0];
+const MEMORY: [f64; 3] = [420.0, 600.0, 720.0];
+/// Bytes of the program itself.
+const MEMORY_OF_PROGRAM: f64 = 35e6;
 /// Bytes per node of solids that may turn into discrete elements, if all of them do.
-const MEMORY_OF_DEBRIS: f64 = 400.0;
+const MEMORY_OF_DEBRIS: f64 = 800.0;
 
 /// The same for a bond with its share of particles.
 const COST_OF_BOND: f64 = 60.0;
@@ -354,6 +356,8 @@ impl Plan {
         let frames = (case.solver.end / case.output.fields_every).ceil() + 1.0;
         let rows = (case.solver.end / case.output.history_every).ceil();
         let threads = rayon::current_num_threads() as f64;
+        // A frame is held until it is written.
+        bytes += MEMORY_OF_PROGRAM + output;
         self.add(
             "size",
             format!(
