@@ -158,9 +158,10 @@ impl Core {
         set: Vec<(String, String)>,
         output: Option<PathBuf>,
         threads: Option<usize>,
-        (resume, overwrite): (bool, bool),
+        begin: (bool, bool),
         quiet: bool,
     ) -> PyResult<Self> {
+        let (resume, overwrite) = begin;
         let options = Options { output, threads, overrides: set, resume, overwrite, quiet, cache: cache_of_user() };
         let pool = pool(py, threads)?;
         let opened = watch(py, &pool, || {

@@ -30,9 +30,10 @@ fn run(
     set: Vec<(String, String)>,
     output: Option<PathBuf>,
     threads: Option<usize>,
-    (resume, overwrite): (bool, bool),
+    begin: (bool, bool),
     quiet: bool,
 ) -> PyResult<(PathBuf, bool)> {
+    let (resume, overwrite) = begin;
     let options = Options { output, threads, overrides: set, resume, overwrite, quiet, cache: cache_of_user() };
     // A thread that waits for those of the run.
     let host = pool(py, Some(1))?;
