@@ -342,11 +342,11 @@ mod tests {
     #[test]
     fn a_sweep_of_the_laplacian_never_grows() {
         for (kind, cells) in [(ElementKind::T3, [4, 3, 1]), (ElementKind::T4, [2, 2, 2])] {
-            let solid = block(kind, cells, Some(Jitter { fraction: 0.3, seed: 5 }));
+            let solid = block(kind, cells, JITTER);
             let field = field(&solid);
             let roots = DMatrix::from_diagonal(&field.bounds().map(|bound| bound.sqrt().recip()));
             let values = (&roots * dense(field) * &roots).symmetric_eigenvalues();
-            assert!(values.max() > 1.5 && values.max() <= 2.0, "{kind:?}: {}", values.max());
+            assert!(values.max() > 1.0 && values.max() <= 2.0, "{kind:?}: {}", values.max());
         }
     }
 
