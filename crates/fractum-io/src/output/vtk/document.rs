@@ -6,8 +6,6 @@ use std::fmt::Write;
 use flate2::Compress;
 use serde::{Deserialize, Serialize};
 
-use serde::{Deserialize, Serialize};
-
 use super::Field;
 use super::unit::unit_of;
 use crate::compress::{Compression, compressor, deflate};
