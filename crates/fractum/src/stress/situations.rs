@@ -1,6 +1,7 @@
 //! Small scenes of every element, kinematics, law, criterion and damping, in motion over all their modes.
 
 use fractum_math::Vec3;
+use fractum_math::elementary::{cos, sin};
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_mesh::{Group, Mesh};
 
@@ -222,7 +223,7 @@ fn particles() -> Vec<Situation> {
     let mut unequal = String::from("0.5,0.5,0.4,0.3\n");
     for number in 0..40 {
         let turn = 2.4 * f64::from(number);
-        let (x, y) = (0.5 + 0.2 * turn.cos(), 0.5 + 0.2 * turn.sin());
+        let (x, y) = (0.5 + 0.2 * cos(turn), 0.5 + 0.2 * sin(turn));
         unequal += &format!("{x},{y},{},0.003\n", 0.75 + 0.005 * f64::from(number));
     }
     let bonded = |name: &str, material: &str, keys: &str, rest: &str, speed: f64| {

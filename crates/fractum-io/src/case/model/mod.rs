@@ -10,15 +10,13 @@ mod material;
 mod ppv;
 mod probe;
 mod rigid;
+mod solver;
 mod tie;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use fractum_dem::Batch;
-use fractum_math::Vec3;
 use fractum_scene::EnergyKind;
-use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
 pub use body::{Body, BodyKind, SolidBody};
 pub use bonded::{
@@ -33,10 +31,10 @@ pub use material::{Damage, Distribution, Material, Scatter};
 pub use ppv::{Ppv, Scaling, StationLine};
 pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
 pub use rigid::{RigidBody, RigidShape};
+pub use solver::{Control, InitialOverlap, Opening, Solver, SolverKind, StaticOptions, StopWhen, TimeStep};
 pub use tie::Tie;
 
-use super::choice::choice;
-use super::{Diagnostic, Dimension, Place, Spanned};
+use super::{Diagnostic, Dimension, Spanned};
 
 /// A case, read and checked. What needs the mesh (group names, two or three dimensions) is checked by its user, with
 /// the places kept here.
@@ -121,138 +119,6 @@ pub struct Damping {
     pub bulk_quadratic: f64,
     /// φ of the scheme of Tchamwa and Wielgosz on bodies of particles [-], 1..2.
     pub tchamwa_wielgosz: Option<f64>,
-}
-
-/// Time and its steps.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Solver {
-    /// Kind of solver.
-    pub kind: SolverKind,
-    /// Where it is written.
-    pub place: Place,
-    /// End of the run [s], > 0.
-    pub end: f64,
-    /// Where its end is written.
-    pub end_place: Place,
-    /// Factor on the stable step [-], within 0..=2.
-    pub safety: f64,
-    /// How the stable step is found.
-    pub time_step: TimeStep,
-    /// Fixed time step [s], > 0; `None` = from the stable one.
-    pub step: Option<Spanned<f64>>,
-    /// Options of a static run, or of one that may become static; `None` with the explicit solver.
-    pub statics: Option<StaticOptions>,
-    /// What overlaps at the start does.
-    pub initial_overlap: InitialOverlap,
-    /// Free pieces outside it leave the run.
-    pub domain: Option<Spanned<fractum_scene::Domain>>,
-    /// Early end.
-    pub stop_when: Option<StopWhen>,
-    /// Energy imbalance over external work at which to warn [-].
-    pub balance_warning: f64,
-    /// Energy imbalance over external work at which to stop [-].
-    pub balance_stop: f64,
-}
-
-/// Kinds of solvers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SolverKind {
-    /// Explicit central differences.
-    Explicit,
-    /// Quasi-static equilibrium.
-    Static,
-    /// Whichever suits the scene.
-    Auto,
-    /// Conduction of heat alone.
-    Heat,
-}
-
-choice!(SolverKind { "explicit" => Explicit, "static" => Static, "auto" => Auto, "heat" => Heat });
-
-/// What concerns a static run only.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StaticOptions {
-    /// How the load parameter proceeds; `None` = along the path where something may break, else by time.
-    pub control: Option<Control>,
-    /// The opening that controls the path; with `Control::Opening` only.
-    pub opening: Option<Opening>,
-    /// How linear systems are solved.
-    pub linear_solver: LinearSolver,
-    /// Unbalanced force over internal forces at which a step is accepted [-], > 0.
-    pub tolerance: f64,
-    /// Steps after which the run ends in any case, ≥ 1.
-    pub most_steps: u64,
-    /// How many bonds of a bonded body break between two equilibria.
-    pub batch: Batch,
-    /// What happens where a step has no equilibrium.
-    pub no_equilibrium: NoEquilibrium,
-}
-
-choice!(NoEquilibrium { "stop" => Stop, "motion" => Motion });
-
-choice!(Batch { "site" => PerSite, "one" => One });
-
-/// How the load parameter of a static run proceeds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Control {
-    /// By steps of time.
-    Time,
-    /// By steps of damage, through snap-back.
-    Path,
-    /// By steps of the opening of a crack, through snap-back.
-    Opening,
-}
-
-choice!(Control { "time" => Time, "path" => Path, "opening" => Opening });
-
-/// The opening of a crack that controls a static run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Opening {
-    /// Mesh group on one side.
-    pub group: Spanned<String>,
-    /// Mesh group on the other side.
-    pub against: Spanned<String>,
-    /// Unit vector along which `group` moves away from `against`.
-    pub along: Vec3,
-    /// Growth in a step [m], > 0.
-    pub step: f64,
-    /// Opening at which the run ends [m], > 0.
-    pub end: f64,
-}
-
-choice!(LinearSolver { "auto" => Auto, "direct" => Direct, "iterative" => Iterative });
-
-/// How the stable time step is found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TimeStep {
-    /// Largest frequency of the assembled mesh by power iteration.
-    PowerIteration,
-    /// Largest frequency of any single element: smaller, and rigorous.
-    Element,
-}
-
-choice!(TimeStep { "power-iteration" => PowerIteration, "element" => Element });
-
-/// What overlaps at the start does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum InitialOverlap {
-    /// It pushes apart at once.
-    Push,
-    /// It gives no force, and touches no nearer than it starts until it has parted.
-    Keep,
-}
-
-choice!(InitialOverlap { "push" => Push, "keep" => Keep });
-
-/// Ends the run early, when a probe has fallen below a fraction of its largest value so far.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StopWhen {
-    /// Index into `Case::probes` of a column of the history.
-    pub probe: usize,
-    /// Fraction of the largest value so far [-], within 0..1.
-    pub below: f64,
-    /// Not before this time [s].
-    pub after: f64,
 }
 
 /// Fields of solids that are written only where the case asks for them.
