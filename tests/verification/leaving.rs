@@ -37,7 +37,6 @@ fn part(name: &str, particles: Particles, bonded: bool, strength: Option<f64>) -
     let breaking = |strength| BondFracture {
         criterion: Some(FractureCriterion::BeamRankine(BeamRankine { strength, moments: Default::default() })),
         faces: CrackFaces { friction: 0.3, damping_ratio: 0.0 },
-        fraction: 0.6,
         volume: 1e-4,
     };
     BondedPart {
@@ -47,6 +46,7 @@ fn part(name: &str, particles: Particles, bonded: bool, strength: Option<f64>) -
         law: section().into(),
         shares: Vec::new(),
         density: 2400.0,
+        fraction: 0.6,
         fracture: strength.map(breaking),
     }
 }

@@ -101,6 +101,7 @@ fn crash(target: Target, particles: bool) -> Scene {
             law: fractum_dem::BeamSection { radius: 1.0, young_modulus: 1.0, poisson_ratio: 0.3 }.into(),
             shares: Vec::new(),
             density: 2400.0,
+            fraction: 1.0,
             fracture: None,
         };
         bonded = Bonded::new(vec![part]).unwrap();

@@ -64,7 +64,7 @@ pub use fracture::{
     Break, Crack, CrackFaces, FaceWork, FailureSearch, FailureSite, Fracture, FractureCriterion, FractureState,
     LoadedBonds, Occasion, criterion,
 };
-pub use measure::{Piece, crack_shape, pieces, strain, stress};
+pub use measure::{Piece, StrainGauge, StrainMeasure, crack_shape, pieces, strain, stress};
 pub use particles::{CentralDifference, ParticleDamping, Particles, PastForces, TimeStep};
 pub use statics::{
     Batch, Breaking, BreakingOutcome, CriticalLoad, Dof6, Equilibrium, Lattice, LatticeSupports, LoadPoint, LoadStage,

@@ -48,6 +48,7 @@ pub(crate) fn prepare(body: &LooseBody, material: &Material) -> Result<PreparedB
         shares,
         walls,
         shift_to_walls: Vec::new(),
+        fraction: 1.0,
         fracture: None,
         replaced: Vec::new(),
     })

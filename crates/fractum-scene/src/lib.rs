@@ -24,6 +24,7 @@ mod ledger;
 mod piece_probe;
 mod probe;
 mod radial_cracks;
+mod region_probe;
 mod scene;
 mod stable_step;
 pub mod statics;
@@ -53,8 +54,9 @@ pub use heat::{
 };
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use piece_probe::{FragmentMeasure, SurfaceMeasure, equivalent_diameter, fragment_size, passing_size};
-pub use probe::{Population, Probe, ProbedScene};
+pub use probe::{Probe, ProbedScene};
 pub use radial_cracks::{RadialCracks, RadialMeasure};
+pub use region_probe::{Population, RegionStrain, RegionStress};
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::{Phase, StepReport};

@@ -15,16 +15,8 @@ use crate::heat::{HeatMeasure, TemperatureTake};
 use crate::ledger::EnergyProbe;
 use crate::piece_probe::{FragmentMeasure, SurfaceMeasure, measure_fragment, measure_surface, passing_size};
 use crate::radial_cracks::RadialCracks;
+use crate::region_probe::{Population, RegionStrain, RegionStress};
 use crate::scene::{CountKind, Counts, Scene};
-
-/// The points that a set is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Population {
-    /// Nodes of solids.
-    Nodes,
-    /// Particles of bonded bodies and loose ones.
-    Particles,
-}
 
 /// A number that a scene yields at every instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +39,10 @@ pub enum Probe {
         /// The stress on a plane with the first normal along the second, at the middle of the element without load.
         between: [Along; 2],
     },
+    /// Virial stress of particles [Pa].
+    ParticleStress(RegionStress),
+    /// Mean strain of nodes or particles.
+    Strain(RegionStrain),
     /// Linear momentum along a direction [kg m/s].
     Momentum(Vec3),
     /// Angular momentum about the origin along a direction [kg m²/s].
@@ -202,6 +198,8 @@ impl Probe {
                 }
                 sum / volume
             }
+            Probe::ParticleStress(probe) => probe.value(&scene.bonded),
+            Probe::Strain(probe) => probe.value(scene),
             Probe::Momentum(direction) => {
                 let nodes = (0..solid.mass.len()).map(|i| solid.mass[i] * solid.velocity[i].dot(direction));
                 let rigid_bodies: Vec3 =

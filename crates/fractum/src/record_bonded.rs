@@ -114,7 +114,15 @@ fn particles_file(
         Field::vector("spin", &spin),
         Field::integer("body", &body),
     ];
+    let strain: Vec<[f32; 6]> = match stress {
+        Some(_) => {
+            let all = bonded.strains();
+            shown().map(|i| all[i].0.map(|e| e as f32)).collect()
+        }
+        None => Vec::new(),
+    };
     if let Some(stress) = stress {
+        point_data.push(Field { name: "strain", components: 6, values: Values::F32(strain.as_flattened()) });
         point_data.push(Field::scalar("broken_bonds", &lost));
         point_data.push(Field { name: "stress", components: 6, values: Values::F32(stress.as_flattened()) });
     }

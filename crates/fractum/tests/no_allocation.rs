@@ -157,7 +157,8 @@ fn lattice() -> Bonded {
     let particles = Particles::at_rest(position.clone(), vec![0.5; count], count as f64).unwrap();
     let section = BeamSection::new(1e3, 0.3).unwrap();
     let (law, shares) = (section.into(), Vec::new());
-    let part = BondedPart { name: "bar".into(), particles, pairs, law, shares, density: 1.0, fracture: None };
+    let part =
+        BondedPart { name: "bar".into(), particles, pairs, law, shares, density: 1.0, fraction: 1.0, fracture: None };
     let mut bonded = Bonded::new(vec![part]).unwrap();
     let end = |x: f64| (0..count as u32).filter(|&i| site(i as usize).x == x).collect::<Vec<u32>>();
     let pull = Motion::Velocity(Arc::new(|_, _| 1e-3));

@@ -26,8 +26,7 @@ impl Gauge {
         let virials = stress::particle_virials(position.len(), |visit| {
             sample.lattice.bond_forces(&rest.state, |i, j, force| visit(i, j, position[j] - position[i], force));
         });
-        let sphere = |r: &f64| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3);
-        let volume: Vec<f64> = sample.packing.radius.iter().map(sphere).collect();
+        let volume: Vec<f64> = sample.packing.radius.iter().map(|r| stress::sphere_volume(*r)).collect();
         let stress = stress::mean_stress(&virials, &volume, sample.fraction, set.iter().copied());
         let displacement = |i: usize| Vec3::new(rest.state[i][0], rest.state[i][1], rest.state[i][2]);
         let strain = strain::best_fit(set.iter().map(|&i| (position[i], displacement(i))))?;
@@ -44,5 +43,49 @@ impl Gauge {
     /// Stress as a tensor [Pa].
     pub fn stress(&self) -> Sym3 {
         Sym3(self.stress)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fractum_dem::{StrainGauge, StrainMeasure, Tolerance};
+    use fractum_math::rotation_by;
+    use fractum_pack::{Convention, Domain, PackSpec, pack};
+
+    use super::*;
+    use crate::Micro;
+    use crate::lab::tension;
+
+    #[test]
+    fn every_strain_of_a_random_packing_under_tension_is_that_of_its_borders_within_three_per_cent() {
+        let packing = pack(&PackSpec::new(Domain::cuboid(2e-3, 1e-3, 1e-3), 4000, 1)).unwrap();
+        let mut sample = Sample::new(packing, 10.0, Convention::Interior).unwrap();
+        sample.set_micro(Micro { radius_ratio: 0.5, young_modulus: 100e9 }).unwrap();
+        let (test, rest) = tension(&sample, 0, None, Tolerance::default()).unwrap();
+        let place = &sample.packing.position;
+        let mean = |wall: &str, axis: usize| {
+            let set = sample.packing.wall(wall).unwrap();
+            let [x, u] = [0, 1].map(|k| {
+                let of = |i: &u32| if k == 0 { place[*i as usize][axis] } else { rest.state[*i as usize][axis] };
+                set.iter().map(of).sum::<f64>() / set.len() as f64
+            });
+            (x, u)
+        };
+        let border = |low: &str, high: &str, axis: usize| {
+            let ((x0, u0), (x1, u1)) = (mean(low, axis), mean(high, axis));
+            (u1 - u0) / (x1 - x0)
+        };
+        let borders = [border("x-", "x+", 0), border("y-", "y+", 1), border("z-", "z+", 2)];
+        let set: Vec<u32> = (0..place.len() as u32).collect();
+        let rotation = |i: usize| rotation_by(Vec3::new(rest.state[i][3], rest.state[i][4], rest.state[i][5]));
+        let displacement = |i: usize| Vec3::new(rest.state[i][0], rest.state[i][1], rest.state[i][2]);
+        for measure in [StrainMeasure::Cundall, StrainMeasure::Bagi, StrainMeasure::Satake] {
+            let gauge = StrainGauge::new(measure, &set, |i| place[i], |i| sample.packing.radius[i]).unwrap();
+            let found = gauge.strain(displacement, rotation).0;
+            println!("{measure:?}: {:?} over {borders:?}, Poisson's ratio {}", &found[..3], test.poisson_ratio);
+            for (found, border) in found.iter().zip(borders) {
+                assert!((found - border).abs() < 0.03 * borders[0].abs(), "{measure:?}: {found} {border}");
+            }
+        }
     }
 }

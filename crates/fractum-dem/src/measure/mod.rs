@@ -1,8 +1,11 @@
 //! Macroscopic quantities of a bonded body: stress, strain, the shape of its cracks, its fragments.
 
+mod cells;
 pub mod crack_shape;
 mod fragment;
+mod gauge;
 pub mod strain;
 pub mod stress;
 
 pub use fragment::{Piece, pieces};
+pub use gauge::{StrainGauge, StrainMeasure};

@@ -12,11 +12,23 @@ use fractum_math::{Sym3, Vec3};
 pub fn particle_virials(count: usize, bonds: impl FnOnce(&mut dyn FnMut(usize, usize, Vec3, Vec3))) -> Vec<Sym3> {
     let mut virials = vec![Sym3::ZERO; count];
     bonds(&mut |i, j, arm, force| {
-        let virial = Sym3::symmetric_part(&(arm * force.transpose())) * 0.5;
+        let virial = virial(arm, force);
         virials[i] += virial;
         virials[j] += virial;
     });
     virials
+}
+
+/// Half the dyad sym(r ⊗ f) of a bond, which is the share of each of its particles [N m].
+///
+/// - `arm`: from the first to the second particle [m]; `force` on the first [N]
+pub fn virial(arm: Vec3, force: Vec3) -> Sym3 {
+    Sym3::symmetric_part(&(arm * force.transpose())) * 0.5
+}
+
+/// Volume of a sphere [m³].
+pub fn sphere_volume(radius: f64) -> f64 {
+    4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
 }
 
 /// Mean stress [Pa] of a set of particles: their virials over ΣV/f_v.

@@ -1,9 +1,12 @@
 //! Bonded bodies, and the supports, loads and probes on their particles.
 
 use fractum_dem::{AnyBondLaw, Particles};
+use fractum_fem::Solid;
 use fractum_math::Vec3;
 use fractum_scene::coupling::Attachment;
-use fractum_scene::{BondFracture, Bonded, BondedPart, FlatFaces, PointProbe, Population, Probe, Support};
+use fractum_scene::{
+    BondFracture, Bonded, BondedPart, FlatFaces, PointProbe, Population, Probe, RegionStress, Support,
+};
 
 use super::Context;
 use super::conditions::{LoadedPoints, motion_of};
@@ -26,6 +29,8 @@ pub struct PreparedBody {
     pub walls: Vec<(String, Vec<u32>)>,
     /// How far each particle is from touching the walls of the shape exactly [m]; empty where that does not matter.
     pub shift_to_walls: Vec<Vec3>,
+    /// Volume fraction of the interior of its packing.
+    pub fraction: f64,
     /// When its bonds break, with the criterion's own strengths.
     pub fracture: Option<BondFracture>,
     /// Tetrahedra of the mesh that it takes the place of.
@@ -76,6 +81,7 @@ impl Context<'_> {
                 law: made.law,
                 shares: made.shares,
                 density: case.materials[material].density,
+                fraction: made.fraction,
                 fracture: made.fracture,
             });
             start += count;
@@ -167,11 +173,13 @@ impl Context<'_> {
     }
 
     /// A probe of particles; none where it names a mesh group, or measures something else.
-    pub(super) fn particle_probe(&mut self, kind: &ProbeKind, bonded: &Bonded) -> Option<Probe> {
+    pub(super) fn particle_probe(&mut self, kind: &ProbeKind, bonded: &Bonded, solid: &Solid) -> Option<Probe> {
         let on = match kind {
             ProbeKind::Reaction { on, .. }
             | ProbeKind::Displacement { on, .. }
             | ProbeKind::Velocity { on, .. }
+            | ProbeKind::Stress { on, .. }
+            | ProbeKind::Strain { on, .. }
             | ProbeKind::Rotation { on, .. }
             | ProbeKind::Temperature { on, .. } => on,
             _ => return None,
@@ -194,6 +202,12 @@ impl Context<'_> {
             ProbeKind::Displacement { along, .. } => PointProbe::Displacement { points: particles, along: *along },
             ProbeKind::Velocity { along, .. } => PointProbe::Velocity { points: particles, along: *along },
             ProbeKind::Rotation { along, .. } => PointProbe::Rotation { points: particles, axis: *along },
+            ProbeKind::Stress { between, .. } => {
+                return Some(Probe::ParticleStress(RegionStress::new(bonded, &particles, *between)));
+            }
+            ProbeKind::Strain { measure, between, .. } => {
+                return self.strain((bonded, solid), Population::Particles, &particles, on, *measure, *between);
+            }
             _ => return None,
         };
         Some(Probe::Points { population: Population::Particles, probe })

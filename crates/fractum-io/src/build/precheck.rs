@@ -104,6 +104,8 @@ impl Context<'_> {
             ProbeKind::Reaction { on, .. }
             | ProbeKind::Displacement { on, .. }
             | ProbeKind::Velocity { on, .. }
+            | ProbeKind::Stress { on, .. }
+            | ProbeKind::Strain { on, .. }
             | ProbeKind::Rotation { on, .. }
             | ProbeKind::Temperature { on, .. } => Some(on),
             _ => None,

@@ -1,10 +1,11 @@
 //! Probes on the groups of the mesh.
 
+use fractum_dem::StrainMeasure;
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
 use fractum_scene::{
     Along, Bonded, BondedBody, ContactBody, ContactProbe, CrackMeasure, DamagedMeasure, DamagedPart, HoleEnds,
-    InsideCracks, PointProbe, Population, Probe, RadialCracks, Supports, SurfaceMeasure, SymmetryPlanes,
+    InsideCracks, PointProbe, Population, Probe, RadialCracks, RegionStrain, Supports, SurfaceMeasure, SymmetryPlanes,
 };
 
 use super::Context;
@@ -12,7 +13,7 @@ use super::bodies::{Numbering, Part};
 use super::conditions::Surface;
 use super::use_in_words;
 use crate::case::model::{self, GroupUse, ProbeKind, Selection};
-use crate::case::{Field, Spanned};
+use crate::case::{Choice, Field, Spanned};
 
 impl Context<'_> {
     /// The measured probes of the case; none for expressions.
@@ -27,7 +28,7 @@ impl Context<'_> {
     ) -> Vec<Option<Probe>> {
         let case = self.case;
         case.probes.iter().filter(|_| !solid.is_plane()).for_each(|probe| self.refuse_in_space(probe));
-        let mut measured = |kind| match self.special_probe(kind, numbering, bonded) {
+        let mut measured = |kind| match self.special_probe(kind, numbering, bonded, solid) {
             Some(probe) => Some(probe),
             None => self.probe(kind, parts, numbering, surface, solid, supports, bonded),
         };
@@ -35,8 +36,14 @@ impl Context<'_> {
     }
 
     /// A probe of particles, rigid bodies or heat; none for others.
-    fn special_probe(&mut self, kind: &ProbeKind, numbering: &Numbering, bonded: &Bonded) -> Option<Probe> {
-        let found = self.particle_probe(kind, bonded).or_else(|| self.rigid_body_probe(kind));
+    fn special_probe(
+        &mut self,
+        kind: &ProbeKind,
+        numbering: &Numbering,
+        bonded: &Bonded,
+        solid: &Solid,
+    ) -> Option<Probe> {
+        let found = self.particle_probe(kind, bonded, solid).or_else(|| self.rigid_body_probe(kind));
         found.or_else(|| self.heat_probe(kind, numbering))
     }
 
@@ -72,9 +79,12 @@ impl Context<'_> {
                 self.error(&place, format!("= \"{}\"", on.label()), "a set of particles of a bonded body");
                 return None;
             }
-            ProbeKind::Stress { group, between } => {
-                let elements = self.elements_of(group, parts);
-                Probe::Stress { elements, between: *between }
+            ProbeKind::Stress { on, between } => {
+                Probe::Stress { elements: self.selected_elements(on, parts, solid), between: *between }
+            }
+            ProbeKind::Strain { on, measure, between } => {
+                let nodes = self.selected_nodes(on, numbering);
+                self.strain((bonded, solid), Population::Nodes, &nodes, on, *measure, *between)?
             }
             ProbeKind::ContactForce { on, from, along } => {
                 let body = |name: &str| self.contact_body(name, solid, bonded);
@@ -152,6 +162,60 @@ impl Context<'_> {
         Some(inside)
     }
 
+    /// Elements of a group, or of all bodies, that a selection means; an error if there are none.
+    fn selected_elements(&mut self, on: &Selection, parts: &[Part], solid: &Solid) -> Vec<(usize, u32)> {
+        let mut elements = self.elements_of_or_all(on.group.as_ref(), parts, solid);
+        let Some(within) = &on.within else { return elements };
+        let named = elements.len();
+        elements.retain(|&(body, element)| within.value.holds_at(solid.element_middle(body, element)));
+        if elements.is_empty() && (named > 0 || on.group.is_none()) {
+            self.error(&within.place, "holds for no element", "a condition that the middle of one fulfils");
+        }
+        elements
+    }
+
+    fn elements_of_or_all(
+        &mut self,
+        group: Option<&Spanned<String>>,
+        parts: &[Part],
+        solid: &Solid,
+    ) -> Vec<(usize, u32)> {
+        let all = || {
+            let of = |body: usize| (0..solid.body(body).elements.len() as u32).map(move |element| (body, element));
+            (0..solid.body_count()).flat_map(of).collect()
+        };
+        group.map_or_else(all, |group| self.elements_of(group, parts))
+    }
+
+    /// The strain of nodes or particles; an error if they do not span what is measured.
+    pub(super) fn strain(
+        &mut self,
+        scene: (&Bonded, &Solid),
+        population: Population,
+        points: &[u32],
+        on: &Selection,
+        measure: StrainMeasure,
+        between: [Along; 2],
+    ) -> Option<Probe> {
+        if population == Population::Nodes && measure != StrainMeasure::Cundall {
+            let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
+            let found = format!("= \"{}\", which are nodes, with measure = \"{}\"", on.label(), measure.name());
+            self.error(&place, found, "particles of a bonded body; or measure = \"cundall\"");
+            return None;
+        }
+        let probe = RegionStrain::new(scene, population, points, measure, between);
+        if probe.is_none() && !points.is_empty() {
+            let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
+            let found = format!("= \"{}\": its {} points do not span the strain", on.label(), points.len());
+            self.error(
+                &place,
+                found,
+                "points that span a volume, or a plane with both directions of the component in it",
+            );
+        }
+        probe.map(Probe::Strain)
+    }
+
     /// Bodies and elements of a group, or all, that may be damaged and fulfil a condition; an error if there are none.
     fn elements_that_may_be_damaged(
         &mut self,
@@ -160,11 +224,7 @@ impl Context<'_> {
         parts: &[Part],
         solid: &Solid,
     ) -> Vec<(usize, u32)> {
-        let all = || {
-            let of = |body: usize| (0..solid.body(body).elements.len() as u32).map(move |element| (body, element));
-            (0..solid.body_count()).flat_map(of).collect()
-        };
-        let mut elements: Vec<(usize, u32)> = group.map_or_else(all, |group| self.elements_of(group, parts));
+        let mut elements = self.elements_of_or_all(group, parts, solid);
         let named = elements.len();
         elements.retain(|&(body, element)| {
             let inside = within.is_none_or(|within| within.value.holds_at(solid.element_middle(body, element)));

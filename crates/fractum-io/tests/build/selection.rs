@@ -170,6 +170,7 @@ step = "0.1 us"
         shares: Vec::new(),
         walls: Vec::new(),
         shift_to_walls: Vec::new(),
+        fraction: 0.6,
         fracture: None,
         replaced: Vec::new(),
     };

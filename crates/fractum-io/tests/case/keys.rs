@@ -168,6 +168,7 @@ fn documented_defaults_are_the_defaults() {
                 .replace("probes[].velocity.about", "probes[17].velocity.about")
                 .replace("probes[].contact_force.about", "probes[20].contact_force.about")
                 .replace("probes[].stress.about", "probes[18].stress.about")
+                .replace("probes[].strain", "probes[34].strain")
                 .replace("probes[].load.about", "probes[22].load.about")
                 .replace("probes[].radial_cracks", "probes[29].radial_cracks")
                 .replace("probes[].damaged", "probes[30].damaged")

@@ -68,7 +68,7 @@ fn with_interfaces(
     let shares = shares(sample, own.area);
     let mean_share = shares.iter().sum::<f64>() / shares.len().max(1) as f64;
     let faces = CrackFaces { friction: own.law.friction, damping_ratio: own.law.damping_ratio };
-    let fracture = BondFracture { criterion: None, faces, fraction: sample.fraction, volume };
+    let fracture = BondFracture { criterion: None, faces, volume };
     let body = PreparedBody {
         particles,
         pairs: sample.network.pairs.clone(),
@@ -76,6 +76,7 @@ fn with_interfaces(
         shares,
         walls: sample.packing.walls.clone(),
         shift_to_walls: sample.packing.shift_to_walls(),
+        fraction: sample.fraction,
         fracture: own.law.can_fail().then_some(fracture),
         replaced,
     };

@@ -1,5 +1,6 @@
 //! Bonded bodies: particles of their own beside the solids, joined by bonds of a law.
 
+mod fields;
 mod leave;
 mod momentum;
 mod piece;
@@ -13,11 +14,12 @@ use fractum_dem::{
     ParticleDamping, Particles, PastForces, TimeStep, highest_frequency,
 };
 use fractum_fem::LocalDamping;
-use fractum_math::{HalfSteps, Vec3, Work, sum_chunks};
+use fractum_math::{HalfSteps, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
 use crate::conditions::{Load, Loads, Support, Supports};
 use crate::error::SceneError;
+use momentum::{energy_of, viscous_power};
 use points::ParticlePoints;
 pub use state::BondedState;
 
@@ -39,6 +41,8 @@ pub struct BondedPart {
     pub shares: Vec<f64>,
     /// Density of the continuum that it stands for [kg/m³].
     pub density: f64,
+    /// Volume fraction of the interior of the packing.
+    pub fraction: f64,
     /// When its bonds break; never where there is nothing.
     pub fracture: Option<BondFracture>,
 }
@@ -50,8 +54,6 @@ pub struct BondFracture {
     pub criterion: Option<FractureCriterion>,
     /// What crack faces do.
     pub faces: CrackFaces,
-    /// Volume fraction of the interior of the packing.
-    pub fraction: f64,
     /// Volume of the body [m³].
     pub volume: f64,
 }
@@ -78,6 +80,8 @@ pub struct BondedBody {
     pub bonds: Bonds,
     /// Density of the continuum that it stands for [kg/m³].
     pub density: f64,
+    /// Volume fraction of the interior of the packing.
+    pub fraction: f64,
     pub(crate) plan: Option<BondFracture>,
     pub(crate) fracture: Option<Fracture>,
     pub(crate) closest: Option<Closest>,
@@ -153,7 +157,7 @@ impl Bonded {
         let mut plans = Vec::new();
         for part in parts {
             let start = all.particles.len();
-            let BondedPart { name, mut particles, pairs, law, shares, density, fracture } = part;
+            let BondedPart { name, mut particles, pairs, law, shares, density, fraction, fracture } = part;
             let range = start..start + particles.len();
             let own = &mut all.particles;
             own.position.append(&mut particles.position);
@@ -167,13 +171,13 @@ impl Bonded {
             own.radius.append(&mut particles.radius);
             own.held.append(&mut particles.held);
             let pairs: Vec<[u32; 2]> = pairs.iter().map(|pair| pair.map(|i| i + start as u32)).collect();
-            plans.push((name, range, (pairs, shares, law), density, fracture));
+            plans.push((name, range, (pairs, shares, law), [density, fraction], fracture));
         }
         all.reference = all.particles.position.clone();
-        for (name, range, (pairs, shares, law), density, plan) in plans {
+        for (name, range, (pairs, shares, law), [density, fraction], plan) in plans {
             let bonds = Bonds::with_shares(&all.particles, &pairs, &shares, law)?;
             let fracture = match plan {
-                Some(BondFracture { criterion: Some(criterion), faces, fraction, volume }) => {
+                Some(BondFracture { criterion: Some(criterion), faces, volume }) => {
                     Some(Fracture::new(&bonds, &all.particles, criterion, faces, fraction, volume)?)
                 }
                 Some(plan) => Some(Fracture::of_law(&bonds, &all.particles, plan.faces, plan.volume)),
@@ -184,7 +188,17 @@ impl Bonded {
             if resists {
                 all.viscous.resize(all.particles.len(), Vec3::zeros());
             }
-            all.bodies.push(BondedBody { name, range, bonds, density, plan, fracture, closest: None, viscous });
+            all.bodies.push(BondedBody {
+                name,
+                range,
+                bonds,
+                density,
+                fraction,
+                plan,
+                fracture,
+                closest: None,
+                viscous,
+            });
         }
         all.frequency = all.bodies.iter().map(|body| body.bound(&all.particles)).fold(0.0, f64::max);
         all.partial = vec![HalfSteps::default(); all.particles.block_count()];
@@ -427,18 +441,4 @@ impl Bonded {
         work.after.external += 0.5 * dt_after * loads.power(&points);
         work
     }
-}
-
-/// Power of the viscous forces of bonds [W], which is never positive.
-fn viscous_power(particles: &Particles, viscous: &[Vec3]) -> f64 {
-    sum_chunks(viscous.len(), |i| viscous[i].dot(&particles.velocity[i]))
-}
-
-/// Kinetic energy that the step sums for particles at constant velocity [J].
-fn energy_of(particles: &Particles, of: &[u32]) -> f64 {
-    let energy = |i: usize| {
-        particles.mass[i] * particles.velocity[i].norm_squared()
-            + particles.inertia[i] * particles.spin[i].norm_squared()
-    };
-    of.iter().map(|&i| 0.5 * energy(i as usize)).sum()
 }

@@ -1,6 +1,7 @@
-//! Momentum of the particles of bonded bodies, and the fastest of them.
+//! Momentum and energy of the particles of bonded bodies, and the fastest of them.
 
-use fractum_math::Vec3;
+use fractum_dem::Particles;
+use fractum_math::{Vec3, sum_chunks};
 
 use super::Bonded;
 
@@ -41,4 +42,18 @@ impl Bonded {
         );
         Some((energy(worst), text))
     }
+}
+
+/// Power of the viscous forces of bonds [W], which is never positive.
+pub(super) fn viscous_power(particles: &Particles, viscous: &[Vec3]) -> f64 {
+    sum_chunks(viscous.len(), |i| viscous[i].dot(&particles.velocity[i]))
+}
+
+/// Kinetic energy that the step sums for particles at constant velocity [J].
+pub(super) fn energy_of(particles: &Particles, of: &[u32]) -> f64 {
+    let energy = |i: usize| {
+        particles.mass[i] * particles.velocity[i].norm_squared()
+            + particles.inertia[i] * particles.spin[i].norm_squared()
+    };
+    of.iter().map(|&i| 0.5 * energy(i as usize)).sum()
 }

@@ -345,8 +345,16 @@ mod tests {
         let particles = Particles::at_rest(position, vec![RADIUS; 64], 2500.0 * 64e-9).unwrap();
         let section = BeamSection { radius: 0.4 * RADIUS, young_modulus: 200e9, poisson_ratio: 0.3 };
         let (law, shares) = (section.into(), Vec::new());
-        let part =
-            BondedPart { name: "lattice".into(), particles, pairs, law, shares, density: 2500.0, fracture: None };
+        let part = BondedPart {
+            name: "lattice".into(),
+            particles,
+            pairs,
+            law,
+            shares,
+            density: 2500.0,
+            fraction: 1.0,
+            fracture: None,
+        };
         let mut bonded = Bonded::new(vec![part]).unwrap();
         bonded.set_loads(on_particles);
         let among: Vec<u32> = (0..64).collect();

@@ -88,7 +88,7 @@ impl BondedStatics {
             criterion: plan.and_then(|plan| plan.criterion).unwrap_or(UNBREAKABLE),
             pairs: body.bonds.pairs(),
             radius: &all.radius,
-            fraction: plan.map_or(1.0, |plan| plan.fraction),
+            fraction: body.fraction,
             volume: plan.map_or(1.0, |plan| plan.volume),
             displacement: 1.0,
             batch: settings.batch,

@@ -1,5 +1,6 @@
 //! Probes.
 
+use fractum_dem::StrainMeasure;
 use fractum_fem::Wave;
 use fractum_scene::{
     CountKind, CrackMeasure, DamagedMeasure, EnergyProbe, FragmentMeasure, GasMeasure, HeatMeasure, RadialMeasure,
@@ -47,12 +48,21 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("probes[].contact_force.about", K::Table, "", "radial and tangential only: the axis"),
     key("probes[].contact_force.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
     key("probes[].contact_force.about.axis", K::Direction, "\"z\"", "Its direction"),
-    key("probes[].stress", K::Table, "", "Volume mean of a stress component, in Pa"),
-    key("probes[].stress.group", K::Text, "required", "Mesh group of elements"),
+    key("probes[].stress", K::Table, "", "Mean stress over elements by their volumes; or virial stress of particles, which is that of the bonds of these particles over their volume; in Pa"),
+    key("probes[].stress.group", K::Text, "", "Mesh group of elements, or set of particles of a bonded body; required without `where`"),
+    key("probes[].stress.where", K::Condition, "", "Which elements, by their middles, or particles, by their positions at the start; without `group`: which elements of all solid bodies"),
     key("probes[].stress.component", K::Choice(names::<StressComponent>), "required", "Component; tension is positive"),
     key("probes[].stress.about", K::Table, "", "radial, tangential and radial_tangential only: the axis"),
     key("probes[].stress.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
     key("probes[].stress.about.axis", K::Direction, "\"z\"", "Its direction"),
+    key("probes[].strain", K::Table, "", "Mean strain of nodes or particles, as a strain gauge or a region of image correlation measures it; rotation of the whole is no strain"),
+    key("probes[].strain.group", K::Text, "", "Mesh group or set of particles; required without `where`"),
+    key("probes[].strain.where", K::Condition, "", "Which nodes or particles, by their positions at the start; without `group`: which nodes of all solid bodies"),
+    key("probes[].strain.measure", K::Choice(names::<StrainMeasure>), "\"cundall\"", "Affine field closest to the displacements; particles only: mean over the space cells between the centres (bagi), or of the relative displacements at contact points, rotations included (satake)"),
+    key("probes[].strain.component", K::Choice(names::<StressComponent>), "required", "Component; elongation is positive, xy is half the change of the right angle"),
+    key("probes[].strain.about", K::Table, "", "radial, tangential and radial_tangential only: the axis; directions are those at the centre of the points"),
+    key("probes[].strain.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
+    key("probes[].strain.about.axis", K::Direction, "\"z\"", "Its direction"),
     key("probes[].load", K::Table, "", "Sum of the loads on the nodes of a group, weight aside, in N"),
     key("probes[].load.group", K::Text, "", "Mesh group; required without `where`"),
     key("probes[].load.where", K::Condition, "", "Which nodes, by their positions at the start"),

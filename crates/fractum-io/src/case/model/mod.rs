@@ -305,11 +305,11 @@ impl Case {
             | ProbeKind::Load { on, .. }
             | ProbeKind::Fragment { on, .. }
             | ProbeKind::Temperature { on, .. }
+            | ProbeKind::Strain { on, .. }
             | ProbeKind::Rotation { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::ProbeNodes)),
             ProbeKind::Surface { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::Facets)),
-            ProbeKind::Stress { group, .. } | ProbeKind::Damaged { group: Some(group), .. } => {
-                Some((group, GroupUse::ProbeElements))
-            }
+            ProbeKind::Stress { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::ProbeElements)),
+            ProbeKind::Damaged { group: Some(group), .. } => Some((group, GroupUse::ProbeElements)),
             _ => None,
         });
         let stations = self.output.ppv.iter().flat_map(|ppv| ppv.groups.iter().chain([&ppv.hole]));

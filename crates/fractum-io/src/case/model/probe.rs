@@ -1,5 +1,6 @@
 //! Probes: the numbers a run records.
 
+use fractum_dem::StrainMeasure;
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::Wave;
 use fractum_math::Vec3;
@@ -71,11 +72,20 @@ pub enum ProbeKind {
         /// Which component, at each place of contact.
         along: Along,
     },
-    /// Volume mean of a stress component over the elements of a group [Pa].
+    /// Volume mean of a stress component over elements, or virial stress of particles [Pa].
     Stress {
-        /// Mesh group of elements.
-        group: Spanned<String>,
+        /// Elements by their middles, or particles.
+        on: Selection,
         /// Normal of the plane, and direction of the stress on it.
+        between: [Along; 2],
+    },
+    /// Mean strain of nodes or particles [-].
+    Strain {
+        /// The points.
+        on: Selection,
+        /// How it is defined.
+        measure: StrainMeasure,
+        /// The two directions of the component.
         between: [Along; 2],
     },
     /// Sum of the loads on nodes [N].
@@ -239,6 +249,8 @@ choice!(CrackMeasure {
     "angle" => Angle, "centre" => Centre, "front" => Front, "helix" => Helix, "cone" => Cone,
     "cone_share" => ConeShare, "area" => Area, "length" => Length, "count" => Count, "tip" => Tip,
 });
+
+choice!(StrainMeasure { "cundall" => Cundall, "bagi" => Bagi, "satake" => Satake });
 
 choice!(RadialMeasure { "count" => Count, "longest" => Longest, "crushed_radius" => CrushedRadius });
 

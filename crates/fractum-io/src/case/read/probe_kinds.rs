@@ -1,5 +1,6 @@
 //! What probes measure, key by key.
 
+use fractum_dem::StrainMeasure;
 use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 use fractum_scene::{
@@ -9,7 +10,7 @@ use fractum_scene::{
 use super::boundary::selection;
 use super::presence::optional;
 use super::vectors::{condition, direction, point};
-use crate::case::model::{ProbeKind, StressComponent};
+use crate::case::model::{ProbeKind, Selection, StressComponent};
 use crate::case::reader::Table;
 use crate::case::tree::Value;
 use crate::case::unit::Dimension;
@@ -48,12 +49,13 @@ pub(super) fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKin
             (ProbeKind::ContactForce { on: on?, from: from?, along: along? }, Dimension::FORCE)
         }
         "stress" => {
-            let inner = table.table(key)?;
-            let group = inner.text("group").spanned().required();
-            let component = inner.choice("component").required();
-            let between = component.and_then(|component| stress_between(&inner, component));
-            inner.finish("here");
-            (ProbeKind::Stress { group: group?, between: between? }, Dimension::PRESSURE)
+            let (on, between, _) = stress_or_strain(table.table(key)?, |_| Some(()))?;
+            (ProbeKind::Stress { on, between }, Dimension::PRESSURE)
+        }
+        "strain" => {
+            let measure = |inner: &Table<'_>| inner.choice("measure").or_if_absent(StrainMeasure::default());
+            let (on, between, measure) = stress_or_strain(table.table(key)?, measure)?;
+            (ProbeKind::Strain { on, measure, between }, Dimension::NONE)
         }
         "load" => on_along().map(|(on, along)| (ProbeKind::Load { on, along }, Dimension::FORCE))?,
         "surface" => {
@@ -117,8 +119,20 @@ fn axis(table: &Table<'_>) -> Option<Axis> {
     Some(Axis { point: point?, direction: direction? })
 }
 
-/// Normal of the plane and direction of a stress component.
-fn stress_between(table: &Table<'_>, component: StressComponent) -> Option<[Along; 2]> {
+/// Where a tensor is measured, its component, and what else the table says of it.
+fn stress_or_strain<T>(
+    table: Table<'_>,
+    other: impl FnOnce(&Table<'_>) -> Option<T>,
+) -> Option<(Selection, [Along; 2], T)> {
+    let (on, other) = (selection(&table), other(&table));
+    let component = table.choice("component").required();
+    let between = component.and_then(|component| between(&table, component));
+    table.finish("here");
+    Some((on?, between?, other?))
+}
+
+/// Normal of the plane and direction of a component of stress or strain.
+fn between(table: &Table<'_>, component: StressComponent) -> Option<[Along; 2]> {
     use StressComponent::{Radial, RadialTangential, Tangential, Xx, Xy, Yy, Yz, Zx, Zz};
     let [x, y, z] = [Vec3::x(), Vec3::y(), Vec3::z()].map(Along::Direction);
     let fixed = match component {

@@ -81,6 +81,7 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
         "rotation",
         "contact_force",
         "stress",
+        "strain",
         "load",
         "surface",
         "fragment",

@@ -1,0 +1,31 @@
+//! Strain of every particle.
+
+use fractum_dem::strain::small_part_of_stretch;
+use fractum_math::{Mat3, Sym3};
+
+use super::Bonded;
+
+impl Bonded {
+    /// Strain of every particle: the affine field closest to the displacements of those that it is bonded to, against its own;
+    /// zero where they do not span a volume.
+    pub fn strains(&self) -> Vec<Sym3> {
+        let mut sums = vec![[Mat3::zeros(); 2]; self.particles.len()];
+        let displacement = |i: usize| self.particles.position[i] - self.reference[i];
+        for body in &self.bodies {
+            for (_, pair) in body.bonds.pairs().iter().enumerate().filter(|(bond, _)| body.bonds.is_live(*bond)) {
+                let [i, j] = pair.map(|i| i as usize);
+                let way = self.reference[j] - self.reference[i];
+                let parts = [way * way.transpose(), (displacement(j) - displacement(i)) * way.transpose()];
+                for end in [i, j] {
+                    (0..2).for_each(|k| sums[end][k] += parts[k]);
+                }
+            }
+        }
+        let strain = |[moments, mixed]: &[Mat3; 2]| {
+            let size = moments.trace();
+            let inverse = (moments / size).try_inverse().filter(|inverse| inverse.norm() < 1e6);
+            inverse.map_or(Sym3::ZERO, |inverse| small_part_of_stretch(&(mixed * inverse / size)))
+        };
+        sums.iter().map(strain).collect()
+    }
+}

@@ -1,0 +1,114 @@
+//! Mean stress and strain of a region of a body.
+
+use fractum_dem::{StrainGauge, StrainMeasure, stress};
+use fractum_math::{Rotation, Vec3, rotation_by};
+
+use crate::bonded::Bonded;
+use crate::conditions::{Along, Points};
+use crate::scene::Scene;
+
+/// The points that a set is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Population {
+    /// Nodes of solids.
+    Nodes,
+    /// Particles of bonded bodies and loose ones.
+    Particles,
+}
+
+/// Virial stress of a set of particles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegionStress {
+    /// Body, bond, and how many of its particles are in the set.
+    bonds: Vec<(u32, u32, f64)>,
+    /// Volume that the set stands for [m³].
+    volume: f64,
+    between: [Along; 2],
+}
+
+impl RegionStress {
+    /// - `set`: particles, ascending
+    /// - `between`: the stress on a plane with the first normal along the second, at the middle of each bond without load
+    pub fn new(bonded: &Bonded, set: &[u32], between: [Along; 2]) -> Self {
+        let inside = |i: &u32| set.binary_search(i).is_ok();
+        let (mut bonds, mut volume) = (Vec::new(), 0.0);
+        for (index, body) in (0..).zip(bonded.bodies()) {
+            for (bond, pair) in (0..).zip(body.bonds.pairs()) {
+                let ends = pair.iter().filter(|i| inside(i)).count();
+                if ends > 0 {
+                    bonds.push((index, bond, ends as f64));
+                }
+            }
+            let own = set.iter().filter(|&&i| body.range.contains(&(i as usize)));
+            volume +=
+                own.map(|&i| stress::sphere_volume(bonded.particles.radius[i as usize])).sum::<f64>() / body.fraction;
+        }
+        RegionStress { bonds, volume, between }
+    }
+
+    /// The component [Pa]; tension is positive.
+    pub(crate) fn value(&self, bonded: &Bonded) -> f64 {
+        let [normal, along] = &self.between;
+        let all = &bonded.particles;
+        let of = |&(body, bond, ends): &(u32, u32, f64)| {
+            let (bonds, bond) = (&bonded.bodies()[body as usize].bonds, bond as usize);
+            if !bonds.is_live(bond) {
+                return 0.0;
+            }
+            let [i, j] = bonds.pairs()[bond].map(|i| i as usize);
+            let virial = stress::virial(all.position[j] - all.position[i], -bonds.forces_of(bond, all).force);
+            let middle = (bonded.reference()[i] + bonded.reference()[j]) * 0.5;
+            ends * normal.at(&middle).dot(&(virial * along.at(&middle)))
+        };
+        self.bonds.iter().map(of).sum::<f64>() / self.volume
+    }
+}
+
+/// Mean strain of a set of nodes or particles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegionStrain {
+    population: Population,
+    gauge: StrainGauge,
+    /// Directions whose strain is measured.
+    between: [Vec3; 2],
+}
+
+impl RegionStrain {
+    /// None where the points do not span a volume, or the plane of both directions; particles for all measures but Cundall's.
+    ///
+    /// - `set`: points, ascending
+    /// - `between`: the change of the angle between two directions, halved, or of length along one, at the centre of the set
+    pub fn new(
+        scene: (&Bonded, &fractum_fem::Solid),
+        population: Population,
+        set: &[u32],
+        measure: StrainMeasure,
+        between: [Along; 2],
+    ) -> Option<Self> {
+        let (bonded, solid) = scene;
+        let place = |i: usize| match population {
+            Population::Nodes => solid.reference[i],
+            Population::Particles => bonded.reference()[i],
+        };
+        let gauge = StrainGauge::new(measure, set, place, |i| bonded.particles.radius[i])?;
+        let centre = set.iter().map(|&i| place(i as usize)).sum::<Vec3>() / set.len() as f64;
+        let between = between.map(|along| along.at(&centre));
+        let measured = |direction: &Vec3| gauge.normal.is_none_or(|normal| normal.dot(direction).abs() < 1e-6);
+        between.iter().all(measured).then_some(RegionStrain { population, gauge, between })
+    }
+
+    pub(crate) fn value(&self, scene: &Scene) -> f64 {
+        let dt = scene.clock.dt_before;
+        let all = &scene.bonded.particles;
+        let strain = match self.population {
+            Population::Nodes => {
+                self.gauge.strain(|i| scene.solid.displacement_before(i, dt), |_| Rotation::identity())
+            }
+            Population::Particles => self.gauge.strain(
+                |i| scene.bonded.displacement_before(i, dt),
+                |i| rotation_by(all.spin[i] * -dt) * all.orientation[i],
+            ),
+        };
+        self.between[0].dot(&(strain * self.between[1]))
+    }
+}
