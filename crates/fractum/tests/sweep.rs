@@ -64,7 +64,7 @@ fn a_run_that_was_interrupted_goes_on_by_the_same_command() {
     assert_eq!(whole.code, Some(0), "{}", whole.stderr);
     assert_eq!(summary(&place, "runs/1")["state_hash"], summary(&place, "whole")["state_hash"]);
     // A state of another case is none to go on from.
-    fs::write(place.path("case.toml"), format!("{BREAKING_BAR}# another text\n")).unwrap();
+    fs::write(place.path("case.toml"), BREAKING_BAR.replace("width = 0.1", "width = 0.2")).unwrap();
     let ended = place.fractum(&["sweep", "run", "runs.csv", "1"]);
     assert!(ended.code == Some(0) && ended.stderr.contains("starts anew"), "{}", ended.stderr);
 }

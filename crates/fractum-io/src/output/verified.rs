@@ -146,6 +146,7 @@ mod tests {
             "tolerance",
             "pass",
             "seconds",
+            "phases",
             "source",
         ];
         expected.sort_unstable();

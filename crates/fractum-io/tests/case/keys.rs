@@ -117,11 +117,11 @@ fn documented_defaults_are_the_defaults() {
         let plain = |case: &Case| {
             let mut case = case.clone();
             case.source.overrides.clear();
-            // places differ between what is written and what is not
-            format!("{case:?}")
-                .split("place: Place")
-                .map(|part| part.split_once('}').map_or(part, |p| p.1))
-                .collect::<String>()
+            // Places, and the hash of what is written, differ between what is written and what is not.
+            let text = format!("{case:?}");
+            let (before, after) = text.split_once("hash_but_end: ").expect("the hash of the source");
+            let text = before.to_owned() + after.trim_start_matches(|c: char| c.is_ascii_digit());
+            text.split("place: Place").map(|part| part.split_once('}').map_or(part, |p| p.1)).collect::<String>()
         };
         plain(a) == plain(b)
     };
