@@ -129,7 +129,9 @@ fn a_case_with_every_key_is_read_into_si() {
     let push_and_gas = ["N", "Pa"];
     let pieces = ["N", "m^3", "m/s", "m"];
     let cracks = ["m^2", "m", "m/s", "1", "1", "m/s"];
-    let all = [&expected[..], &about_an_axis, &front_speed, &push_and_gas, &pieces, &cracks].concat();
+    let strain_stress_and_heat = ["1", "Pa", "K", "J"];
+    let all = [&expected[..], &about_an_axis, &front_speed, &push_and_gas, &pieces, &cracks, &strain_stress_and_heat];
+    let all = all.concat();
     assert_eq!(units, all, "N/m is J/m^2");
     assert!(!case.probes[28].is_scalar(), "a slope is a history");
     let ProbeKind::Crack { measure, along, within, .. } = &case.probes[10].kind else { panic!() };
@@ -142,7 +144,7 @@ fn a_case_with_every_key_is_read_into_si() {
 
     assert_eq!(case.expect[0].bound, Bound::Near { value: 1e4, tolerance: 500.0, relative: Some(0.05) });
     assert_eq!(case.expect[2].bound, Bound::Between { above: Some(1e-4), below: Some(2e-3) });
-    assert_eq!(case.groups_used().len(), 2 + 5 + 6 + 1 + 8 + 2 + 3 + 1 + 3);
+    assert_eq!(case.groups_used().len(), 2 + 5 + 6 + 1 + 8 + 2 + 3 + 1 + 3 + 5);
 }
 
 #[test]
