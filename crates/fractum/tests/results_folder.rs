@@ -5,25 +5,7 @@ mod common;
 use std::fs;
 use std::process::Command;
 
-use common::{BREAKING_BAR, Workplace, checkpoints, files_below, run, signal, summary, wait_for_checkpoint};
-
-/// A bar that is pulled at rest until it has no equilibrium.
-const SNAPPING: &str = r#"fractum = 1
-mesh = { file = "bar.msh" }
-supports = [{ group = "x-", fix = "xyz" }, { group = "x+", displacement = { x = "0.06 mm*t/1 s" } }]
-solver = { kind = "static", control = "time", end = "1 s" }
-[materials.brittle]
-density = "2400 kg/m^3"
-young_modulus = "30 GPa"
-poisson_ratio = 0.2
-damage = { tensile_strength = "3 MPa", fracture_energy = "15 J/m^2" }
-[[bodies]]
-name = "bar"
-kind = "solid"
-group = "body"
-material = "brittle"
-strength_factor = "if(abs(x - 20 cm) < 3 cm, 0.5, 1.0)"
-"#;
+use common::{BREAKING_BAR, SNAP_BACK, Workplace, checkpoints, files_below, run, signal, summary, wait_for_checkpoint};
 
 #[test]
 fn results_are_replaced_only_where_the_user_says_so() {
@@ -126,7 +108,7 @@ fn rows_and_frames_of_a_run_with_a_later_end_go_on() {
 
 #[test]
 fn the_state_that_a_stopped_run_names_is_there() {
-    let place = Workplace::new(SNAPPING);
+    let place = Workplace::new(&SNAP_BACK.replace("kind = \"static\"", "kind = \"static\", control = \"time\""));
     let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet"]);
     assert_eq!(ended.code, Some(2), "{}", ended.stderr);
     let step = checkpoints(&place.path("out")).last().copied().unwrap();

@@ -4,26 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{BONDED_BAR, Workplace, history, run, summary};
-
-/// A brittle bar whose load factor runs back while its weak slab comes apart.
-const SNAP_BACK: &str = r#"fractum = 1
-mesh = { file = "bar.msh" }
-supports = [{ group = "x-", fix = "xyz" }, { group = "x+", displacement = { x = "0.06 mm*t/1 s" } }]
-solver = { kind = "static", end = "1 s" }
-probes = [{ name = "load", reaction = { group = "x+", along = "x" } }]
-[materials.brittle]
-density = "2400 kg/m^3"
-young_modulus = "30 GPa"
-poisson_ratio = 0.2
-damage = { tensile_strength = "3 MPa", fracture_energy = "15 J/m^2" }
-[[bodies]]
-name = "bar"
-kind = "solid"
-group = "body"
-material = "brittle"
-strength_factor = "if(abs(x - 20 cm) < 3 cm, 0.5, 1.0)"
-"#;
+use common::{BONDED_BAR, SNAP_BACK, Workplace, history, run, summary};
 
 /// Instants and files of the frames of a part, in the order of the index.
 fn frames(place: &Workplace, part: &str) -> Vec<(f64, String)> {

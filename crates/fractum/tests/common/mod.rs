@@ -108,6 +108,25 @@ line = { from = ["5 cm", "1 cm", "1 cm"], to = ["40 cm", "1 cm", "1 cm"], statio
 groups = ["x+"]
 "#;
 
+/// A brittle bar whose load factor runs back while its weak slab comes apart.
+pub(crate) const SNAP_BACK: &str = r#"fractum = 1
+mesh = { file = "bar.msh" }
+supports = [{ group = "x-", fix = "xyz" }, { group = "x+", displacement = { x = "0.06 mm*t/1 s" } }]
+solver = { kind = "static", end = "1 s" }
+probes = [{ name = "load", reaction = { group = "x+", along = "x" } }]
+[materials.brittle]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+damage = { tensile_strength = "3 MPa", fracture_energy = "15 J/m^2" }
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "brittle"
+strength_factor = "if(abs(x - 20 cm) < 3 cm, 0.5, 1.0)"
+"#;
+
 /// A bonded bar that is pulled apart from break to break.
 pub(crate) const BONDED_BAR: &str = r#"fractum = 1
 supports = [{ group = "bar.x-", fix = "x" }, { group = "bar.x+", displacement = { x = "6 um*t/1 s" } }]
