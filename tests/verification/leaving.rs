@@ -1,5 +1,7 @@
 //! Bonded bodies, loose particles and solids that meet facets leave the domain of a run.
 
+use std::sync::Arc;
+
 use fractum_dem::criterion::{BeamRankine, FractureCriterion};
 use fractum_dem::{BeamSection, CrackFaces, Particles};
 use fractum_fem::{Body, Elastic, ElementKind, Kinematics, Solid};
@@ -9,7 +11,7 @@ use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
     BondFracture, Bonded, BondedPart, ContactMaterial, ContactParameters, Contacts, Domain, ElasticMaterial,
-    EnergyKind, Loads, Scene, SolidSurface, Supports,
+    EnergyKind, Heat, HeatSettings, Loads, PackingConduction, Scene, SolidSurface, Supports, ThermalMaterial,
 };
 use fractum_tests::{noise, settings};
 
@@ -80,7 +82,7 @@ fn is_the_same_on_threads_and_after_resume(build: impl Fn() -> Scene + Sync) {
         pool.install(|| {
             let mut scene = build();
             run(&mut scene);
-            scene.state()
+            (scene.state(), scene.heat_state())
         })
     };
     let whole = state(1);
@@ -90,8 +92,9 @@ fn is_the_same_on_threads_and_after_resume(build: impl Fn() -> Scene + Sync) {
     }
     let mut second = build();
     second.restore(first.state());
+    second.restore_heat(first.heat_state());
     run(&mut second);
-    assert!(whole == second.state(), "resumed");
+    assert!(whole == (second.state(), second.heat_state()), "resumed");
     assert!(whole == state(2) && whole == state(7), "threads");
 }
 
@@ -142,24 +145,68 @@ fn pieces_of_a_broken_body_and_loose_particles_leave_one_by_one_and_meet_nothing
     is_the_same_on_threads_and_after_resume(build);
 }
 
+/// Cubes of 0.1 m with their places [m] and velocities [m/s] along z, and their facets.
+fn cubes(each: &[(&str, f64, f64)]) -> (Solid, Vec<Vec<[u32; 3]>>) {
+    let (mut nodes, mut bodies, mut facets) = (Vec::<Vec3>::new(), Vec::new(), Vec::new());
+    let mut speeds: Vec<f64> = Vec::new();
+    for &(name, at, velocity) in each {
+        let mesh = structured_box([3, 3, 2], Vec3::repeat(0.1), None);
+        let first = nodes.len() as u32;
+        let elements: Vec<[u32; 4]> = mesh.tetrahedra.iter().map(|e| e.map(|n| n + first)).collect();
+        facets.push(boundary_of_tetrahedra(&elements).iter().map(|f| f.nodes).collect::<Vec<_>>());
+        let elastic = Elastic { young_modulus: 1e9, poisson_ratio: 0.2, density: 2400.0 };
+        let body = Body::new(name, ElementKind::T4, elements, elastic);
+        bodies.push(Body { kinematics: Kinematics::Corotational, ..body });
+        nodes.extend(mesh.nodes.iter().map(|x| x + Vec3::z() * at));
+        speeds.resize(nodes.len(), velocity);
+    }
+    let mut solid = Solid::new(nodes, bodies).unwrap();
+    solid.velocity.iter_mut().zip(&speeds).for_each(|(v, speed)| v.z = *speed);
+    (solid, facets)
+}
+
+#[test]
+fn nothing_conducts_through_a_solid_that_has_left() {
+    let build = || {
+        let (mut solid, _) = cubes(&[("rest", -0.1, 0.0), ("flyer", 0.2, 60.0)]);
+        let debris = Debris::new(&solid, vec![SURFACE; 2]);
+        let thermal = ThermalMaterial { conductivity: 1e6, capacity: 1e3, expansion: 0.0 };
+        let heat = HeatSettings {
+            solids: vec![thermal; 2],
+            bonded: Vec::new(),
+            packing: PackingConduction::Table,
+            initial: Arc::new(|_, x| 300.0 + 1e3 * x.z),
+            stress_free: 300.0,
+            conditions: Vec::new(),
+            implicit: false,
+            step: None,
+            safety: 0.5,
+            longest: 1e-4,
+            alone: false,
+        };
+        let heat = Heat::new(&mut solid, &mut Bonded::default(), heat).unwrap();
+        let (loads, supports) = (Loads::new(Vec::new(), 0), Supports::new(Vec::new(), &solid.reference).unwrap());
+        Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(0.02, 1e-2))
+            .with_heat(heat, false)
+            .with_domain(Domain { min: Vec3::repeat(-0.3), max: Vec3::new(0.3, 0.3, 0.8) })
+    };
+    let mut scene = build();
+    while scene.left().pieces == 0 {
+        scene.step(false).unwrap();
+    }
+    let flyer = scene.solid.reference.len() / 2..scene.solid.reference.len();
+    let before = scene.heat().unwrap().of_nodes().to_vec();
+    run(&mut scene);
+    let after = scene.heat().unwrap().of_nodes();
+    assert!(scene.left().pieces == 1 && after[flyer.clone()] == before[flyer.clone()], "{:?}", scene.left());
+    assert!(after[..flyer.start] != before[..flyer.start]);
+    is_the_same_on_threads_and_after_resume(build);
+}
+
 #[test]
 fn a_solid_leaves_beside_others_that_rest_on_facets_of_each_other() {
     let build = || {
-        let (mut nodes, mut bodies, mut facets) = (Vec::<Vec3>::new(), Vec::new(), Vec::new());
-        for (name, at, velocity) in [("anvil", -0.1, 0.0), ("hammer", 1e-4, -1.0), ("flyer", 0.2, 60.0)] {
-            let mesh = structured_box([3, 3, 2], Vec3::repeat(0.1), None);
-            let first = nodes.len() as u32;
-            let elements: Vec<[u32; 4]> = mesh.tetrahedra.iter().map(|e| e.map(|n| n + first)).collect();
-            facets.push(boundary_of_tetrahedra(&elements).iter().map(|f| f.nodes).collect::<Vec<_>>());
-            let elastic = Elastic { young_modulus: 1e9, poisson_ratio: 0.2, density: 2400.0 };
-            let body =
-                Body { kinematics: Kinematics::Corotational, ..Body::new(name, ElementKind::T4, elements, elastic) };
-            bodies.push((body, mesh.nodes.len(), velocity));
-            nodes.extend(mesh.nodes.iter().map(|x| x + Vec3::z() * at));
-        }
-        let speeds: Vec<f64> = bodies.iter().flat_map(|(_, count, v)| std::iter::repeat_n(*v, *count)).collect();
-        let mut solid = Solid::new(nodes, bodies.into_iter().map(|(body, ..)| body).collect()).unwrap();
-        solid.velocity.iter_mut().zip(&speeds).for_each(|(v, speed)| v.z = *speed);
+        let (solid, facets) = cubes(&[("anvil", -0.1, 0.0), ("hammer", 1e-4, -1.0), ("flyer", 0.2, 60.0)]);
         let mut surface: Vec<u32> = facets.iter().flatten().flatten().copied().collect();
         surface.sort_unstable();
         surface.dedup();

@@ -112,6 +112,9 @@ impl Scene {
             removals.left.push(node as u32);
         }
         self.removals.left.elements += elements.len();
+        if !elements.is_empty() {
+            self.heat_loses_elements();
+        }
         self.books.left += energy;
         let born = self.debris.state().nodes.clone();
         self.debris.let_leave(&self.solid, leaves);
