@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fractum_dem::criterion::{BeamRankine, FractureCriterion};
-use fractum_dem::{BeamSection, CrackFaces, Particles};
+use fractum_dem::{BeamSection, CrackFaces, LocalBond, Particles};
 use fractum_fem::{Body, Elastic, ElementKind, Kinematics, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::structured_box;
@@ -124,6 +124,29 @@ fn an_elastic_bonded_flyer_leaves_with_its_mass_momentum_and_energy() {
 }
 
 #[test]
+fn a_body_of_local_bonds_that_is_torn_is_two_fragments_and_leaves_as_a_whole() {
+    let build = || {
+        let mut bar = row(Vec3::new(-0.1, 0.0, 0.0), 10, Vec3::y() * 20.0, 0.0);
+        (0..10).for_each(|i| bar.velocity[i].x = if i < 4 { -3.0 } else { 3.0 });
+        let law = LocalBond { tensile_strength: 2e6, shear_strength: 2e6, ..LocalBond::elastic(1e9, 0.2) };
+        let faces = CrackFaces { friction: 0.3, damping_ratio: 0.0 };
+        let fracture = Some(BondFracture { criterion: None, faces, volume: 1e-4 });
+        of_particles(vec![BondedPart { law: law.into(), fracture, ..part("bar", bar, true, None) }], 0.02)
+    };
+    let mut scene = build();
+    while scene.clock.time < 5e-3 {
+        scene.step(false).unwrap();
+    }
+    let fragments = scene.fragments();
+    let sizes: Vec<(usize, usize)> = fragments.iter().map(|piece| (piece.nodes.len(), piece.bonds)).collect();
+    assert_eq!((sizes, scene.counts().broken_bonds), (vec![(6, 5), (4, 3)], 1));
+    assert!(fragments[0].velocity.x > 0.0 && fragments[1].velocity.x < 0.0, "{fragments:?}");
+    run(&mut scene);
+    assert_eq!((scene.left().pieces, scene.fragments().len()), (1, 0));
+    is_the_same_on_threads_and_after_resume(build);
+}
+
+#[test]
 fn pieces_of_a_broken_body_and_loose_particles_leave_one_by_one_and_meet_nothing_afterwards() {
     let build = || {
         // Its ends fly apart; loose ones are shot through the place where the first piece comes to rest.
@@ -200,6 +223,33 @@ fn nothing_conducts_through_a_solid_that_has_left() {
     let after = scene.heat().unwrap().of_nodes();
     assert!(scene.left().pieces == 1 && after[flyer.clone()] == before[flyer.clone()], "{:?}", scene.left());
     assert!(after[..flyer.start] != before[..flyer.start]);
+    is_the_same_on_threads_and_after_resume(build);
+}
+
+#[test]
+fn a_solid_that_is_blind_to_tied_particles_does_not_meet_those_that_have_left() {
+    let build = || {
+        let (solid, facets) = cubes(&[("flyer", 0.2, 60.0)]);
+        // The first bead is on the way of the flyer, outside of the box; the second counts as tied to it.
+        let mut beads = row(Vec3::new(0.05, 0.05, 0.35), 2, Vec3::zeros(), 0.0);
+        beads.position[1] = Vec3::new(-0.2, 0.05, 0.0);
+        let surface = SolidSurface::new(&solid, 0, SURFACE, &facets[0]).unwrap();
+        let solids = vec![surface.without([1].into_iter(), &beads.radius)];
+        let bonded = Bonded::new(vec![part("beads", beads, false, None)]).unwrap();
+        let materials = vec![ContactMaterial { elastic: ELASTIC, density: 2400.0, surface: SURFACE }];
+        let contacts = Contacts::new(&bonded, materials, Vec::new(), solids, Vec::new());
+        let debris = Debris::new(&solid, vec![SURFACE]);
+        let (loads, supports) = (Loads::new(Vec::new(), 0), Supports::new(Vec::new(), &solid.reference).unwrap());
+        Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(4e-3, 1e-2))
+            .with_bonded(bonded)
+            .with_contacts(contacts, &[])
+            .with_domain(Domain { min: Vec3::repeat(-0.3), max: Vec3::repeat(0.33) })
+    };
+    let mut scene = build();
+    run(&mut scene);
+    let left = scene.left();
+    assert_eq!((left.pieces, left.elements), (2, scene.solid.body(0).elements.len()), "{left:?}");
+    assert!((left.momentum - Vec3::z() * 2.4 * 60.0).norm() < 1e-9, "{left:?}");
     is_the_same_on_threads_and_after_resume(build);
 }
 

@@ -50,7 +50,7 @@ impl Scene {
         self.books.left += energy;
         if !gone.is_empty() {
             gone.iter().for_each(|&i| self.removals.left.push(self.solid.reference.len() as u32 + i));
-            self.contacts.look_again();
+            self.contacts.look_again(&self.bonded.particles.radius);
         }
     }
 

@@ -389,6 +389,7 @@ impl Scene {
         self.ties.restore(&self.solid, &self.bonded.particles);
         if let Some(contacts) = state.contacts {
             self.contacts.restore(&self.solid, &self.debris, contacts);
+            self.contacts.look_again(&self.bonded.particles.radius);
             self.contacts.leave_out(state.left.nodes(self.solid.reference.len()));
         }
         for (ground, candidates) in self.shape_contacts.iter_mut().zip(state.shape_contacts) {

@@ -65,7 +65,12 @@ fn live_bonds(scene: &Scene, bodies: &[(i32, &BondedBody)]) -> Vec<LiveBond> {
             force: part.bonds.forces_of(bond, all).force,
             energy: part.bonds.energy_of(bond, all).total(),
         };
-        (0..part.bonds.len()).filter(|&bond| part.bonds.is_live(bond)).map(live).collect::<Vec<_>>()
+        // Nor are the bonds of what has left drawn.
+        let shown = |bond: &usize| {
+            let [first, _] = part.bonds.pairs()[*bond];
+            part.bonds.is_live(*bond) && !all.has_left(first as usize)
+        };
+        (0..part.bonds.len()).filter(shown).map(live).collect::<Vec<_>>()
     };
     bodies.iter().flat_map(of_body).collect()
 }

@@ -7,21 +7,13 @@ use super::Bonded;
 use crate::domain::{Domain, Left};
 
 impl Bonded {
-    /// The particles of each bond that holds.
-    pub(super) fn live_pairs(&self) -> impl Iterator<Item = [u32; 2]> + Clone {
-        self.bodies.iter().flat_map(|body| {
-            let live = (0..body.bonds.len()).filter(|&bond| body.bonds.is_live(bond));
-            live.map(|bond| body.bonds.pairs()[bond])
-        })
-    }
-
     /// Whether some particle that is still in the run is wholly outside a box.
     pub(crate) fn has_outside(&self, domain: &Domain) -> bool {
         let all = &self.particles;
         (0..all.len()).any(|i| !all.has_left(i) && domain.is_ball_outside(&all.position[i], all.radius[i]))
     }
 
-    /// Lets every piece leave that live bonds connect, that is wholly outside a box, that nothing holds, and that touches nothing.
+    /// Lets every piece leave that bonds connect, also those that have separated by their law and may close again, that is wholly outside a box, that nothing holds, and that touches nothing.
     /// Returns its energy of motion at tⁿ, ½ m v·(v + Δt a) as central differences conserve it [J], and its particles: what its bonds
     /// store stays in the energy of the bonds. To be called between the forces of tⁿ and the kick.
     ///
@@ -29,7 +21,7 @@ impl Bonded {
     /// - `dt` [s]: the step that led to tⁿ
     pub(crate) fn let_leave(&mut self, domain: &Domain, touching: &[u32], dt: f64, left: &mut Left) -> (f64, Vec<u32>) {
         let all = &self.particles;
-        let piece = connected(all.len(), self.live_pairs());
+        let piece = connected(all.len(), self.pairs_of(|body, bond| body.bonds.is_live(bond)));
         let mut stays = vec![false; all.len()];
         touching.iter().for_each(|&i| stays[piece[i as usize] as usize] = true);
         for i in 0..all.len() {

@@ -105,6 +105,12 @@ impl BondedBody {
         self.fracture.as_ref().map_or(&[], Fracture::cracks)
     }
 
+    /// Whether a bond holds: one that has separated by its law is live as a contact, but joins nothing.
+    pub fn is_joined(&self, bond: usize) -> bool {
+        let of_graph = |fracture: &Fracture| fracture.graph().is_live(bond as u32);
+        self.fracture.as_ref().map_or_else(|| self.bonds.is_live(bond), of_graph)
+    }
+
     /// Whether its bonds can break.
     pub fn can_break(&self) -> bool {
         self.fracture.is_some()

@@ -2,13 +2,26 @@
 
 use fractum_dem::{Piece, pieces};
 
-use super::Bonded;
+use super::{Bonded, BondedBody};
 use crate::fragment::Fragment;
 
 impl Bonded {
-    /// Pieces connected by live bonds that have not left the run, in the order of their first particles.
+    /// The particles of each bond of some kind.
+    ///
+    /// - `which`: whether it is a bond of a body
+    pub(super) fn pairs_of(
+        &self,
+        which: impl Fn(&BondedBody, usize) -> bool + Copy,
+    ) -> impl Iterator<Item = [u32; 2]> + Clone {
+        self.bodies.iter().flat_map(move |body| {
+            let own = (0..body.bonds.len()).filter(move |&bond| which(body, bond));
+            own.map(|bond| body.bonds.pairs()[bond])
+        })
+    }
+
+    /// Pieces connected by bonds that hold, which have not left the run, in the order of their first particles.
     pub fn fragments(&self) -> Vec<Fragment> {
-        let mut found = pieces(&self.particles, self.live_pairs(), |i| self.own_mass(i));
+        let mut found = pieces(&self.particles, self.pairs_of(BondedBody::is_joined), |i| self.own_mass(i));
         found.retain(|piece| !self.particles.has_left(piece.particles[0] as usize));
         let fragment = |piece: Piece| {
             let Piece { particles, bonds, mass, content, centroid, velocity, bounds } = piece;

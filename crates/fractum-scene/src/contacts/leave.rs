@@ -35,11 +35,13 @@ impl Contacts {
     }
 
     /// Has all particles looked for anew, since some have left.
-    pub(crate) fn look_again(&mut self) {
+    ///
+    /// - `radii`: of the particles; negative ones of those that have left [m]
+    pub(crate) fn look_again(&mut self, radii: &[f64]) {
         self.among.iter_mut().for_each(SphereContacts::look_again);
         self.debris.iter_mut().for_each(DebrisAmong::look_again);
         self.on_tools.iter_mut().for_each(|(contacts, _)| contacts.look_again());
-        self.solids.iter_mut().for_each(SolidSurface::look_again);
+        self.solids.iter_mut().for_each(|ground| ground.look_again(radii));
     }
 
     /// Takes nodes of solids out of all contact, of which none touches anything.

@@ -117,7 +117,11 @@ impl SolidSurface {
     }
 
     /// Has the next search look up all particles.
-    pub(super) fn look_again(&mut self) {
+    ///
+    /// - `radii`: of the particles; negative ones of those that have left [m]
+    pub(super) fn look_again(&mut self, radii: &[f64]) {
+        let gone = self.felt.iter_mut().zip(radii).filter(|(_, radius)| **radius < 0.0);
+        gone.for_each(|(felt, radius)| *felt = *radius);
         self.contacts.look_again();
     }
 

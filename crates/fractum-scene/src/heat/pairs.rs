@@ -192,7 +192,7 @@ impl Pairs {
         let mut bond = 0;
         for body in bonded.bodies() {
             for own in 0..body.bonds.len() {
-                let live = body.bonds.is_live(own);
+                let live = body.is_joined(own);
                 self.conductances[self.first_bond + bond] = if live { self.bonds[bond] } else { 0.0 };
                 bond += 1;
             }

@@ -168,7 +168,8 @@ fn size(scene: &Scene) -> f64 {
     }
     if count == 0 {
         let radius = &scene.bonded.particles.radius;
-        (length, count) = (2.0 * radius.iter().sum::<f64>(), radius.len());
+        // Those that have left have negative radii.
+        (length, count) = (2.0 * radius.iter().map(|radius| radius.abs()).sum::<f64>(), radius.len());
     }
     length / count as f64
 }
