@@ -1,6 +1,5 @@
 //! What a run leaves behind: history, fields, particles, pictures of numbers over time.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -105,7 +104,7 @@ pub(crate) struct RecordState {
     rows: u64,
     frames: u64,
     history: Written,
-    collection: Vec<(f64, u32, String, String)>,
+    collection: Collection,
     path: PathFrames,
     /// Time of each row [s].
     pub(crate) times: Vec<f64>,
@@ -124,7 +123,11 @@ impl RecordState {
         self.rows = next(self.times.last().copied(), output.history_every);
         // Along a path frames are not counted by time, and may be listed by steps.
         let along_path = self.path.frames() > 0;
-        let last = if along_path { self.times.last().copied() } else { self.collection.last().map(|entry| entry.0) };
+        let last = if along_path {
+            self.times.last().copied()
+        } else {
+            self.collection.entries.last().map(|entry| entry.time)
+        };
         self.frames = next(last, output.fields_every);
     }
 }
@@ -136,9 +139,10 @@ pub(crate) struct Recorder {
     ppv: Vec<PpvStations>,
     folder: PathBuf,
     history: History,
-    collection: Collection,
     writer: FrameWriter,
     state: RecordState,
+    /// Elements of each body that are in the list of removed ones.
+    noted: Vec<Vec<bool>>,
     grid: GridLayout,
     inputs: Vec<f64>,
     course: Course,
@@ -183,10 +187,9 @@ impl Recorder {
                 (History::create(&path, &columns)?, RecordState { series, peaks, ..RecordState::default() })
             }
         };
-        let mut collection = Collection::default();
-        for (time, part, name, file) in &state.collection {
-            collection.push(*time, *part, name.clone(), file.clone());
-        }
+        let elements = |body: usize| vec![false; scene.solid.alive(body).len()];
+        let mut noted: Vec<Vec<bool>> = (0..scene.solid.body_count()).map(elements).collect();
+        state.removed.iter().for_each(|&(body, element, _)| noted[body as usize][element as usize] = true);
         fractum_io::atomic::create_folder(&folder.join("fields"))?;
         Ok(Recorder {
             case,
@@ -194,10 +197,10 @@ impl Recorder {
             ppv,
             folder: folder.to_owned(),
             history,
-            collection,
             writer: FrameWriter::default(),
             grid,
             state,
+            noted,
             inputs: Vec::new(),
             course,
             tells_motion,
@@ -281,7 +284,8 @@ impl Recorder {
             self.state.series[index].push(value);
             row.push(value);
         }
-        if counts.removed_elements > self.state.removed.len() {
+        // Those that have left the domain are noted with the rest, and not counted.
+        if counts.removed_elements + scene.left().elements > self.state.removed.len() {
             self.note_removed(scene, time);
         }
         self.history.record(&row)?;
@@ -291,12 +295,12 @@ impl Recorder {
 
     /// Notes the elements that have been removed since the row before.
     fn note_removed(&mut self, scene: &Scene, time: f64) {
-        let known: BTreeSet<(u32, u32)> =
-            self.state.removed.iter().map(|&(body, element, _)| (body, element)).collect();
-        for body in 0..scene.solid.body_count() {
-            let gone = (0..).zip(scene.solid.alive(body)).filter(|(_, alive)| !**alive).map(|(element, _)| element);
-            let new = gone.map(|element: u32| (body as u32, element)).filter(|removed| !known.contains(removed));
-            self.state.removed.extend(new.map(|(body, element)| (body, element, time)));
+        for (body, noted) in self.noted.iter_mut().enumerate() {
+            for (element, (noted, alive)) in noted.iter_mut().zip(scene.solid.alive(body)).enumerate() {
+                if !*alive && !std::mem::replace(noted, true) {
+                    self.state.removed.push((body as u32, element as u32, time));
+                }
+            }
         }
     }
 
@@ -360,9 +364,6 @@ impl Recorder {
 
     /// Follows a run at rest after a step: how far it has come, and whether its load is the largest so far.
     pub(crate) fn follow(&mut self, scene: &Scene) -> Result<(), Failure> {
-        if !self.course.rests {
-            return Ok(());
-        }
         let ledger = scene.ledger();
         let [elastic, spent] = [ledger[EnergyKind::Elastic], ledger.spent()];
         self.state.path.advance(scene.clock.time, spent, elastic, self.case.output.fields_every);
@@ -391,10 +392,9 @@ impl Recorder {
             let path = self.folder.join(&file.0);
             path.parent().map_or(Ok(()), fractum_io::atomic::create_folder)?;
             files.push(file.1.at(&path));
-            self.collection.push(instant, part.0, part.1, file.0.clone());
-            self.state.collection.push((instant, part.0, part.1.to_owned(), file.0));
+            self.state.collection.push(instant, part.0, part.1, file.0);
         }
-        files.push(self.collection.pending(&self.folder.join("fields.pvd")));
+        files.push(self.state.collection.pending(&self.folder.join("fields.pvd")));
         if self.course.rests {
             self.state.path.begin_frame();
         }
@@ -412,10 +412,10 @@ impl Recorder {
     }
 
     /// Brings the rows and the last frame to the disk; the state that a checkpoint keeps.
-    pub(crate) fn sync(&mut self) -> Result<RecordState, Failure> {
+    pub(crate) fn sync(&mut self) -> Result<&RecordState, Failure> {
         self.finish_frame()?;
         self.state.history = self.history.sync()?;
-        Ok(self.state.clone())
+        Ok(&self.state)
     }
 
     /// Gives the history its final name.

@@ -6,6 +6,7 @@ mod messages;
 mod open;
 mod origin;
 
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -98,7 +99,8 @@ struct About {
 
 /// Why a run is over.
 enum End {
-    Finished,
+    /// With the reason, in words.
+    Finished(String),
     Interrupted,
     Failed(StepError),
 }
@@ -106,7 +108,7 @@ enum End {
 impl End {
     fn status(&self) -> Status {
         match self {
-            End::Finished => Status::Completed,
+            End::Finished(_) => Status::Completed,
             End::Interrupted => Status::Interrupted,
             End::Failed(_) => Status::Stopped,
         }
@@ -123,12 +125,12 @@ struct Saved {
 
 /// The whole state of a run: what a checkpoint holds.
 #[derive(Serialize, Deserialize)]
-struct RunState {
+struct RunState<'a> {
     /// End of the run when it was saved [s].
     end: f64,
     scene: SceneState,
     heat: Option<HeatState>,
-    record: RecordState,
+    record: Cow<'a, RecordState>,
     /// Stages that were still to come.
     later: usize,
     solver: SolverState,
@@ -184,7 +186,7 @@ impl Simulation {
             return Ok(());
         }
         let measure = self.recorder.row_is_due(self.scene.clock.time);
-        let before = self.solver.searches().then(|| (self.scene.state(), self.solver.state()));
+        let before = self.solver.rests().then(|| (self.scene.state(), self.solver.state()));
         match (self.solver.step(&mut self.scene, measure, &mut self.phases), before) {
             (Ok(advance), _) => {
                 self.recorder.watch(&self.scene);
@@ -218,8 +220,9 @@ impl Simulation {
                 self.end_stage(why)?;
             }
         }
-        if !self.is_over() && !self.solver.is_explicit() {
-            self.recorder.follow(&self.scene)?;
+        if !self.is_over() && self.solver.follows_path() {
+            let Simulation { recorder, scene, phases, .. } = self;
+            phases.timed(Part::Output, || recorder.follow(scene))?;
         }
         self.messages.tell_event()?;
         self.recorder.check_frame()?;
@@ -251,7 +254,7 @@ impl Simulation {
         if self.saved.is_none_or(|saved| saved.at.elapsed() >= every) {
             self.save()?;
         }
-        if self.recorder.frame_is_due(self.scene.clock.time, self.solver.is_explicit()) {
+        if self.recorder.frame_is_due(self.scene.clock.time, !self.solver.follows_path()) {
             let Simulation { recorder, scene, phases, .. } = self;
             phases.timed(Part::Output, || recorder.frame(scene))?;
         }
@@ -261,8 +264,7 @@ impl Simulation {
     /// Goes on with the next stage, if there is one.
     fn end_stage(&mut self, why: String) -> Result<(), Failure> {
         let Some((case, built)) = self.later.pop_front() else {
-            self.messages.ended = why;
-            self.end.get_or_insert(End::Finished);
+            self.end.get_or_insert(End::Finished(why));
             return Ok(());
         };
         let text = format!("t = {}: stage \"{}\"", quantity(self.time(), "s"), case.source.stage);
@@ -306,7 +308,7 @@ impl Simulation {
         let clock = scene.clock;
         let (end, later) = (self.end_of_run(), self.later.len());
         let heat = self.scene.heat_state();
-        let state = RunState { end, scene, heat, record: self.recorder.sync()?, later, solver };
+        let state = RunState { end, scene, heat, record: Cow::Borrowed(self.recorder.sync()?), later, solver };
         let header = Header { identity: self.about.identity.clone(), step: clock.step, time: clock.time };
         let file = checkpoint::save(&self.folder.join("checkpoint"), &header, &state, Compression::Fast)?;
         self.messages.log.line(format!("step {}: state saved in {}", clock.step, file.display()))?;
@@ -336,7 +338,7 @@ impl Simulation {
             broken_bonds: counts.broken_bonds as u64,
             particles: counts.particles as u64,
             load: self.load().map(|index| self.load_and_peak(index)),
-            at_rest: !self.solver.is_explicit() && !self.solver.moves(),
+            at_rest: self.solver.rests(),
         }
     }
 

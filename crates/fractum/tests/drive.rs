@@ -94,4 +94,5 @@ fn a_run_that_its_driver_ends_is_complete() {
     let hash = fractum_io::summary::hash_text(simulation.state_hash());
     let outcome = simulation.finish().unwrap();
     assert_eq!((outcome.summary.status, outcome.summary.hashes.state_hash), (Status::Completed, hash));
+    assert_eq!(outcome.summary.time.reason, "ended by the program that drives it");
 }

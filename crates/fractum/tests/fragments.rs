@@ -4,7 +4,10 @@ mod common;
 
 use std::fs;
 
-use common::{BREAKING_BAR, Workplace, run};
+use common::{BREAKING_BAR, Workplace, bar, history, mesh_bytes, run};
+use fractum_math::Vec3;
+use fractum_mesh::generate::structured_box;
+use fractum_mesh::{Group, Mesh, MshFormat};
 
 /// The breaking bar with a probe of the number of fragments.
 fn counted(output: &str) -> String {
@@ -36,4 +39,38 @@ fn a_body_in_single_nodes_is_warned_of() {
         "{}",
         ended.stderr
     );
+}
+
+/// The bar with a block of its own beyond its end.
+fn bar_and_chip() -> Mesh {
+    let (mut mesh, chip) = (bar(), structured_box([2, 3, 3], Vec3::new(0.1, 0.12, 0.12), None));
+    let (nodes, tags) = (mesh.nodes.len() as u32, (mesh.triangles.len() + mesh.tetrahedra.len()) as u64);
+    let before = mesh.tetrahedra.len() as u32;
+    mesh.nodes.extend(chip.nodes.iter().map(|x| x + Vec3::new(0.6, 0.0, 0.0)));
+    mesh.node_tags = (1..=mesh.nodes.len() as u64).collect();
+    mesh.tetrahedra.extend(chip.tetrahedra.iter().map(|element| element.map(|node| node + nodes)));
+    mesh.tetrahedron_tags.extend((1..).map(|tag| tags + tag).take(chip.tetrahedra.len()));
+    let tetrahedra = (before..mesh.tetrahedra.len() as u32).collect();
+    mesh.groups.push(Group { name: "chip".into(), dimension: 3, tag: 2, tetrahedra, ..Group::default() });
+    mesh
+}
+
+#[test]
+fn cracks_have_their_times_also_after_a_piece_has_left_the_domain() {
+    let chip = "[[bodies]]\nname = \"chip\"\nkind = \"solid\"\ngroup = \"chip\"\nmaterial = \"concrete\"\n\
+                kinematics = \"corotational\"\ninitial_velocity = { x = \"500 m/s\" }\n\n[[supports]]";
+    let case = BREAKING_BAR.replacen("[[supports]]", chip, 1);
+    let within = "end = \"end\"\ndomain = { min = [-1, -1, -1], max = [0.72, 1, 1] }";
+    let tables = [case.clone(), case.replace("end = \"end\"", within)].map(|case| {
+        let place = Workplace::with_mesh(&case, &mesh_bytes(&bar_and_chip(), MshFormat::V4_1Binary));
+        let summary = run(&place, "results", "2");
+        let rows = history(&place, "results", &["time", "removed_elements"]);
+        let text = fs::read_to_string(place.path("results/cracks.csv")).unwrap();
+        let times: Vec<String> =
+            text.lines().skip(1).map(|line| line.split(',').take(4).collect::<Vec<_>>().join(",")).collect();
+        (summary["domain"].clone(), rows, times)
+    });
+    let [(_, rows, whole), (left, _, cut)] = tables;
+    assert!(rows.len() > 50 && whole.len() > 20, "{rows:?}");
+    assert_eq!(cut, whole, "{left}");
 }

@@ -2,7 +2,11 @@
 
 mod common;
 
+use std::collections::BTreeSet;
+use std::fs;
+
 use common::{Workplace, history, run, summary};
+use fractum_io::vtk::read_collection;
 
 /// A clamped bar of elements and a free bonded box, both heated by 20 K.
 const HOT: &str = r#"fractum = 1
@@ -159,7 +163,7 @@ end = "2000 s"
 "#;
     let [before, after] = [HOT.find("[[heat.conditions]]"), HOT.find("[[probes]]")].map(Option::unwrap);
     let text = [&HOT[..before], steps, "\n", conditions, &HOT[after..]].concat();
-    text.replace("every = \"0.1 ms\"", "every = \"100 s\"")
+    text.replace("history = { every = \"0.1 ms\" }", "history = { every = \"100 s\" }\nfields = { every = \"500 s\" }")
         .replace("reaction = { group = \"x+\", along = \"-x\" }", "count = \"bonds\"")
 }
 
@@ -171,6 +175,12 @@ fn heat_alone_keeps_its_balance_by_explicit_and_implicit_steps() {
         let one = run(&place, "one", "1");
         let rows = history(&place, "one", &["time", "heat_stored", "heat_brought", "heat_residual"]);
         assert_eq!(rows.len(), 21, "{rows:?}");
+        let frames = read_collection(&place.path("one/fields.pvd")).unwrap().entries;
+        let solid: Vec<_> = frames.iter().filter(|entry| entry.name == "solid").collect();
+        let files: BTreeSet<&str> = solid.iter().map(|entry| entry.file.as_str()).collect();
+        let times: Vec<f64> = solid.iter().map(|entry| entry.time.round()).collect();
+        assert_eq!((times, files.len()), (vec![0.0, 500.0, 1000.0, 1500.0, 2000.0], 5));
+        assert_eq!(one["time"]["at_rest"], false);
         let last = &rows[20];
         assert!((last[0] - 2000.0).abs() < 1e-6 && last[1] > 4e5, "{last:?}");
         assert!(rows.iter().all(|row| row[3].abs() < 1e-10 * last[1]), "{rows:?}");
@@ -179,6 +189,14 @@ fn heat_alone_keeps_its_balance_by_explicit_and_implicit_steps() {
         let resumed = place.fractum(&["run", "case.toml", "-o", "two", "--threads", "1", "--resume", "--quiet"]);
         assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
         assert_eq!(summary(&place, "two")["state_hash"], one["state_hash"]);
+        // A run that ended earlier goes on to the later end.
+        let whole = fs::read_to_string(place.path("case.toml")).unwrap();
+        fs::write(place.path("case.toml"), whole.replace("end = \"2000 s\"", "end = \"1200 s\"")).unwrap();
+        run(&place, "longer", "2");
+        fs::write(place.path("case.toml"), whole).unwrap();
+        let longer = place.fractum(&["run", "case.toml", "-o", "longer", "--threads", "2", "--resume", "--quiet"]);
+        assert_eq!(longer.code, Some(0), "{}", longer.stderr);
+        assert_eq!(summary(&place, "longer")["state_hash"], one["state_hash"]);
         ends.push(last[1]);
     }
     assert!((ends[0] / ends[1] - 1.0).abs() < 5e-3, "{ends:?}");

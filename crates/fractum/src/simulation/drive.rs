@@ -40,8 +40,9 @@ impl Simulation {
     /// [`Failure::Write`] where the log cannot be written.
     pub fn stop(&mut self) -> Result<(), Failure> {
         if !self.is_over() {
-            self.messages.log.line("ended by the program that drives it")?;
-            self.end = Some(End::Finished);
+            let why = "ended by the program that drives it".to_owned();
+            self.messages.log.line(&why)?;
+            self.end = Some(End::Finished(why));
         }
         Ok(())
     }

@@ -36,12 +36,12 @@ impl Simulation {
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         let (status, state_hash) = (end.status(), self.state_hash());
         let reason = match &end {
-            End::Finished => std::mem::take(&mut self.messages.ended),
+            End::Finished(why) => why.clone(),
             End::Interrupted => "interrupted".to_owned(),
             End::Failed(error) => error.to_string(),
         };
         let clock = self.scene.clock;
-        if matches!(end, End::Finished) && self.saved.is_none_or(|saved| saved.step != clock.step) {
+        if matches!(end, End::Finished(_)) && self.saved.is_none_or(|saved| saved.step != clock.step) {
             // So that the run can be continued to a later end.
             self.save()?;
         }
@@ -61,7 +61,7 @@ impl Simulation {
             probes: summary::probes(&self.case, &self.recorder),
             ppv: self.recorder.attenuations(),
             fragment_sizes: summary::fragment_sizes(&self.scene.solid, &pieces),
-            time: summary::time(&clock, reason, !self.solver.is_explicit()),
+            time: summary::time(&clock, reason, self.solver.rests()),
             wall: summary::wall(self.started.elapsed(), &self.phases),
             ..summary::of_scene(&self.scene)
         };
@@ -104,7 +104,7 @@ impl Simulation {
         if !matches!(end, End::Interrupted) {
             phases.timed(Part::Output, || recorder.frame(scene))?;
         }
-        if matches!(end, End::Finished) && solver.moves() {
+        if matches!(end, End::Finished(_)) && solver.moves() {
             // The forces and energies of the last instant: one more step, of which nothing else is kept.
             let (time, dt) = (scene.clock.time, scene.clock.dt_after);
             if scene.step(true).is_ok() {

@@ -15,14 +15,12 @@ pub(super) struct Messages {
     /// What the last step brought, until it is told.
     pub(super) event: Option<String>,
     warned_of_balance: bool,
-    /// Why the run ended, once it has.
-    pub(super) ended: String,
 }
 
 impl Messages {
     pub(super) fn new(log: RunLog, quiet: bool) -> Self {
         let progress = Progress::on_stderr(quiet);
-        Messages { progress, log, warnings: Vec::new(), event: None, warned_of_balance: false, ended: String::new() }
+        Messages { progress, log, warnings: Vec::new(), event: None, warned_of_balance: false }
     }
 
     pub(super) fn tell(&mut self, text: &str) -> Result<(), Failure> {

@@ -113,9 +113,11 @@ impl Simulation {
         };
         if is_new && !simulation.solver.moves() {
             // A path begins where nothing acts.
-            let Simulation { recorder, scene, .. } = &mut simulation;
+            let Simulation { recorder, scene, solver, .. } = &mut simulation;
             recorder.row(scene, 0.0, 0.0, false)?;
-            recorder.follow(scene)?;
+            if solver.follows_path() {
+                recorder.follow(scene)?;
+            }
         }
         simulation.prepare_step()?;
         Ok(simulation)
@@ -123,7 +125,7 @@ impl Simulation {
 }
 
 /// The newest checkpoint of this case.
-fn find_checkpoint(folder: &Path, identity: &Identity) -> Result<Loaded<RunState>, Failure> {
+fn find_checkpoint(folder: &Path, identity: &Identity) -> Result<Loaded<RunState<'static>>, Failure> {
     let Some(loaded) = checkpoint::load_latest::<RunState>(&folder.join("checkpoint"), identity)? else {
         let text = format!("{}: no checkpoint to resume from; run without --resume", folder.display());
         return Err(Failure::input(text));
@@ -167,7 +169,7 @@ fn put_back(state: RunState, scene: &mut Scene, solver: &mut Solver, case: &Case
     scene.restore(state.scene);
     scene.restore_heat(state.heat);
     solver.restore(scene, state.solver);
-    let mut record = state.record;
+    let mut record = state.record.into_owned();
     if is_other {
         record.count_anew(&case.output);
     }

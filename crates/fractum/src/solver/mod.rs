@@ -87,7 +87,12 @@ impl Solver {
 
     /// Whether a run with another end can go on from this state.
     pub(crate) fn may_go_on(&self, state: &SolverState) -> bool {
-        matches!((self, state), (Solver::Explicit, SolverState::Explicit) | (Solver::Static(_), SolverState::Static(_)))
+        matches!(
+            (self, state),
+            (Solver::Explicit, SolverState::Explicit)
+                | (Solver::Static(_), SolverState::Static(_))
+                | (Solver::Heat, SolverState::Heat)
+        )
     }
 
     /// Goes on where a checkpoint of the same case stood; the scene has been put back.
@@ -123,6 +128,16 @@ impl Solver {
         matches!(self, Solver::Explicit)
     }
 
+    /// Whether its instants are load factors along a path of equilibria, unless it moves; else they are times.
+    pub(crate) fn follows_path(&self) -> bool {
+        matches!(self, Solver::Static(_) | Solver::BondedStatic(_))
+    }
+
+    /// Whether its time is a load factor, and its next step a search that may be interrupted.
+    pub(crate) fn rests(&self) -> bool {
+        self.follows_path() && !self.moves()
+    }
+
     /// Whether the scene moves.
     pub(crate) fn moves(&self) -> bool {
         match self {
@@ -130,11 +145,6 @@ impl Solver {
             Solver::Static(run) => run.moves(),
             Solver::BondedStatic(_) | Solver::Heat => false,
         }
-    }
-
-    /// Whether the next step is a search that may be interrupted.
-    pub(crate) fn searches(&self) -> bool {
-        !self.moves() && !matches!(self, Solver::Heat)
     }
 
     /// Brings the scene to the next instant.
