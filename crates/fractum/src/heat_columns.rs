@@ -2,10 +2,7 @@
 
 use fractum_scene::{Heat, HeatMeasure};
 
-/// Names and units.
-pub(crate) const COLUMNS: [(&str, &str); 3] = [("heat_stored", "J"), ("heat_brought", "J"), ("heat_residual", "J")];
-
-/// Their values.
+/// Values of the columns, in their order.
 pub(crate) fn values(heat: &Heat) -> [f64; 3] {
     let brought = [HeatMeasure::Held, HeatMeasure::Supplied, HeatMeasure::Convection];
     let brought = brought.map(|measure| heat.measure(measure)).iter().sum();

@@ -10,6 +10,8 @@ use fractum_io::memory;
 use fractum_mesh::{Mesh, read_msh};
 
 use crate::error::Failure;
+use crate::plots;
+use crate::record::{self, Course};
 use fractum_prepare::{BondedReport, Cache, check_memory, choose, facets, prepare_bodies};
 
 /// A case with its mesh and the scene made of both.
@@ -54,8 +56,10 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
         let built = build_scene(stage, &mesh, Vec::new(), facets(stage)?)?;
         Ok((stage.clone(), built))
     };
-    let later = case.later.iter().map(stage).collect::<Result<_, Diagnostics>>()?;
+    let later = case.later.iter().map(stage).collect::<Result<Vec<_>, Diagnostics>>()?;
     let choice = choose(&case, &mut built);
+    let course = Course::of(later.iter().map(|(_, built)| built).chain([&built]));
+    plots::check(&case, &record::columns(&case, &built.scene, course))?;
     Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, timings: made.timings, choice })
 }
 

@@ -59,6 +59,7 @@ mod left;
 mod path_frames;
 mod phases;
 pub mod plan;
+mod plots;
 mod record;
 mod record_bonded;
 pub mod report;

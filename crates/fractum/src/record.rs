@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fractum_io::atomic::Written;
 use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::{BuiltScene, PpvStations};
-use fractum_io::case::model::{Case, Output, ProbeExpression, ProbeInput, ProbeKind, Take};
+use fractum_io::case::model::{Case, HistoryColumns, Output, ProbeExpression, ProbeInput, ProbeKind, Take};
 use fractum_io::history::{Column, History, Table};
 use fractum_io::vtk::{Collection, FrameWriter};
 use fractum_scene::statics::{Control, NoEquilibrium};
@@ -20,16 +20,40 @@ use crate::left;
 use crate::path_frames::PathFrames;
 use crate::series::{index_of_max, interpolate, slope_of_window, speed, time_mean};
 
-/// Columns of the history before the probes: name and unit.
-fn ledger_columns(bonded: bool) -> Vec<(&'static str, &'static str)> {
-    let mut columns = vec![("time", "s"), ("dt", "s")];
-    columns.extend(balance().map(|kind| (kind.name(), "J")));
-    columns.extend([("residual", "J"), ("removed_elements", "1"), ("particles", "1")]);
-    if bonded {
-        columns.extend(parts_of_bonds().map(|kind| (kind.name(), "J")));
-        columns.push(("broken_bonds", "1"));
+/// A history whose first column orders its rows: the step where the load factor may run back, else the time.
+pub(crate) fn ordered(mut history: Table) -> Table {
+    let names: Vec<&str> = history.columns.iter().map(|column| column.name.as_str()).collect();
+    if let Some(step) = HistoryColumns::step(&names) {
+        history.columns[..=step].rotate_right(1);
+        history.values[..=step].rotate_right(1);
     }
-    columns
+    history
+}
+
+/// Columns of the history of a run.
+pub(crate) fn columns(case: &Case, scene: &Scene, course: Course) -> Vec<Column> {
+    let no_probes = no_probes(case, scene, course).list();
+    let of_probes = case.probes.iter().filter(|probe| !probe.is_scalar());
+    let of_probes = of_probes.map(|probe| {
+        // A probe may be called like another column: no two columns have one name.
+        let taken = no_probes.iter().any(|(name, _)| *name == probe.name.value);
+        let name = if taken { format!("probe.{}", probe.name.value) } else { probe.name.value.clone() };
+        Column::new(name, probe.unit.clone())
+    });
+    let of_probes: Vec<Column> = of_probes.collect();
+    no_probes.into_iter().map(|(name, unit)| Column::new(name, unit)).chain(of_probes).collect()
+}
+
+/// The columns that are no probes.
+fn no_probes(case: &Case, scene: &Scene, course: Course) -> HistoryColumns {
+    let hands_over = case.solver.statics.as_ref().is_some_and(|s| s.no_equilibrium == NoEquilibrium::Motion);
+    HistoryColumns {
+        particles: !scene.bonded.is_empty(),
+        domain: scene.domain().is_some(),
+        heat: scene.heat().is_some(),
+        turns_back: course.turns_back,
+        in_motion: hands_over || !case.later.is_empty(),
+    }
 }
 
 /// Entries of the ledger that count in its balance.
@@ -39,41 +63,6 @@ fn balance() -> impl Iterator<Item = EnergyKind> {
 
 fn parts_of_bonds() -> impl Iterator<Item = EnergyKind> {
     EnergyKind::ALL.into_iter().filter(|kind| kind.role() == EnergyRole::PartOfBonds)
-}
-
-/// Further column where the load factor may run back: it orders rows and frames.
-pub(crate) const STEP: (&str, &str) = ("step", "1");
-
-/// Further column where equilibrium may give way to motion: 1 while the scene moves.
-const IN_MOTION: (&str, &str) = ("in_motion", "1");
-
-/// How many columns of a history, which these names begin, belong to the ledger and not to probes.
-pub(crate) fn count_ledger_columns(names: &[&str]) -> usize {
-    if let [first, others @ ..] = names
-        && *first == STEP.0
-    {
-        return 1 + count_ledger_columns(others);
-    }
-    let known = ledger_columns(true);
-    let count = names.iter().zip(known).take_while(|(name, (column, _))| *name == column).count();
-    let count = if names.get(count) == Some(&left::COLUMNS[0].0) { count + left::COLUMNS.len() } else { count };
-    let heated = names.get(count) == Some(&heat_columns::COLUMNS[0].0);
-    let count = if heated { count + heat_columns::COLUMNS.len() } else { count };
-    let count = count + usize::from(names.get(count) == Some(&STEP.0));
-    count + usize::from(names.get(count) == Some(&IN_MOTION.0))
-}
-
-/// A history whose first column orders its rows: the step where the load factor may run back, else the time.
-pub(crate) fn ordered(mut history: Table) -> Table {
-    let step = {
-        let names: Vec<&str> = history.columns.iter().map(|column| column.name.as_str()).collect();
-        names[..count_ledger_columns(&names)].iter().position(|name| *name == STEP.0)
-    };
-    if let Some(step) = step {
-        history.columns[..=step].rotate_right(1);
-        history.values[..=step].rotate_right(1);
-    }
-    history
 }
 
 /// How a run proceeds.
@@ -161,23 +150,8 @@ impl Recorder {
         (folder, course): (&Path, Course),
         resumed: Option<RecordState>,
     ) -> Result<Self, Failure> {
-        let hands_over = case.solver.statics.as_ref().is_some_and(|s| s.no_equilibrium == NoEquilibrium::Motion);
-        let tells_motion = hands_over || !case.later.is_empty();
-        let columns: Vec<Column> = ledger_columns(!scene.bonded.is_empty())
-            .into_iter()
-            .chain(scene.domain().into_iter().flat_map(|_| left::COLUMNS))
-            .chain(scene.heat().into_iter().flat_map(|_| heat_columns::COLUMNS))
-            .chain(course.turns_back.then_some(STEP))
-            .chain(tells_motion.then_some(IN_MOTION))
-            .map(|(name, unit)| Column::new(name, unit))
-            .collect();
-        let of_probes = case.probes.iter().filter(|p| !p.is_scalar()).map(|p| {
-            // A probe may be called like a column of the ledger: no two columns have one name.
-            let taken = columns.iter().any(|column| column.name == p.name.value);
-            let name = if taken { format!("probe.{}", p.name.value) } else { p.name.value.clone() };
-            Column::new(name, p.unit.clone())
-        });
-        let columns: Vec<Column> = columns.iter().cloned().chain(of_probes).collect();
+        let tells_motion = no_probes(&case, scene, course).in_motion;
+        let columns = columns(&case, scene, course);
         let path = folder.join("history.csv");
         let (history, state) = match resumed {
             Some(state) => (History::resume(&path, &columns, state.history)?, state),
@@ -433,23 +407,4 @@ fn is_due(time: f64, index: u64, interval: f64) -> bool {
 /// The first output after `time`.
 fn next_index(time: f64, interval: f64) -> u64 {
     (time / interval * (1.0 + 1e-12)).floor() as u64 + 1
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_energy_that_a_scene_can_write_is_a_column() {
-        let columns = ledger_columns(true);
-        assert!(EnergyKind::ALL.into_iter().all(|kind| columns.contains(&(kind.name(), "J"))), "{columns:?}");
-        let names: Vec<&str> = columns.iter().map(|(name, _)| *name).chain(["load"]).collect();
-        assert_eq!(count_ledger_columns(&names), columns.len());
-        let unbonded = ledger_columns(false);
-        let names: Vec<&str> = unbonded.iter().map(|(name, _)| *name).chain([IN_MOTION.0, "load"]).collect();
-        assert_eq!(count_ledger_columns(&names), unbonded.len() + 1);
-        let left = left::COLUMNS.iter().map(|(name, _)| *name);
-        let names: Vec<&str> = unbonded.iter().map(|(name, _)| *name).chain(left).chain(["load"]).collect();
-        assert_eq!(count_ledger_columns(&names), unbonded.len() + left::COLUMNS.len());
-    }
 }

@@ -4,15 +4,19 @@ use std::fs;
 use std::path::Path;
 
 use fractum_io::ReadError;
+use fractum_io::case::model::HistoryColumns;
 use fractum_io::fragments;
 use fractum_io::history::{self, Column, Table};
+use fractum_io::number::quantity;
 use fractum_io::picture::{ColourMap, Scale};
+use fractum_io::plot::Level;
 use fractum_io::report::{self, ColourBar, Curve, EnergyColumns, Figure, ReportData};
 use fractum_io::summary::Summary;
 use fractum_scene::EnergyKind;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
+use crate::plots::PlotNote;
 
 /// File in the results folder with what the report needs beside summary, history and fragments.
 const NOTES: &str = "pictures/notes.json";
@@ -31,6 +35,9 @@ pub struct Notes {
     /// Materials and settings: what and its value.
     #[serde(default)]
     pub inputs: Vec<(String, String)>,
+    /// Plots of the user's own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plots: Vec<PlotNote>,
 }
 
 /// A picture in the folder `pictures`.
@@ -100,7 +107,7 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
     let cracks =
         ["removed_elements", "particles", "broken_bonds"].map(String::from).into_iter().filter(grows).collect();
     let data = ReportData {
-        curves: curves(&history),
+        curves: notes.plots.iter().map(|plot| own(plot, &history, &summary)).chain(curves(&history)).collect(),
         energy: Some(EnergyColumns {
             external: EnergyKind::External.name().into(),
             parts: EnergyKind::ALL.into_iter().filter(|kind| kind.sign() < 0).map(|kind| kind.name().into()).collect(),
@@ -137,7 +144,41 @@ fn figure(folder: &Path, note: &PictureNote) -> Option<Figure> {
 /// The columns of probes.
 fn probes(history: &Table) -> &[Column] {
     let names: Vec<&str> = history.columns.iter().map(|c| c.name.as_str()).collect();
-    &history.columns[crate::record::count_ledger_columns(&names)..]
+    &history.columns[HistoryColumns::count(&names)..]
+}
+
+/// The chart of a plot of the user's own. A probe that is one number is a level.
+fn own(plot: &PlotNote, history: &Table, summary: &Summary) -> Curve {
+    let column = |name: &str| {
+        // A probe that is called like another column has a column of another name.
+        let of_probe = format!("probe.{name}");
+        if summary.probes.contains_key(name) && history.column(&of_probe).is_some() {
+            of_probe
+        } else {
+            name.to_owned()
+        }
+    };
+    let is_column = |name: &&String| history.column(&column(name)).is_some();
+    let level = |name: &String| {
+        let probe = summary.probes.get(name)?;
+        let label = format!("{}: {}", name.replace('_', " "), quantity(probe.r#final, &probe.unit));
+        Some(Level { label, value: probe.r#final })
+    };
+    let y: Vec<String> = plot.y.iter().filter(is_column).map(|name| column(name)).collect();
+    let unit = y.first().and_then(|name| history.column(name)).map_or("-", |(_, unit)| unit);
+    let names = plot.y.iter().filter(is_column).map(|name| name.replace('_', " "));
+    let made = || format!("{} against {}", names.collect::<Vec<_>>().join(", "), plot.x.replace('_', " "));
+    Curve {
+        title: if plot.title.is_empty() { made() } else { plot.title.clone() },
+        x: column(&plot.x),
+        quantity: quantity_of(unit).0,
+        levels: plot.y.iter().filter(|name| !is_column(name)).filter_map(level).collect(),
+        labels: plot.labels.clone(),
+        logarithmic: plot.logarithmic,
+        reference: plot.reference.clone(),
+        y,
+        ..Curve::default()
+    }
 }
 
 /// The first force against the first displacement.

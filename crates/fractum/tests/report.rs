@@ -40,6 +40,107 @@ fn a_report_has_a_strip_over_time_inputs_scales_and_titles_by_quantity() {
     assert!(ended.stdout.contains(&format!("{frames} frames, colours are damage from 0 to 1")), "{}", ended.stdout);
 }
 
+/// Plots over the probes of the breaking bar: of its own columns, with a level, and with points from a file.
+const PLOTS: &str = r#"
+[[plots]]
+title = "Work and damage"
+x = "harmed"
+y = ["external", "damage"]
+x_label = "share of damaged elements"
+
+[[plots]]
+x = "time"
+y = ["load", "largest_load"]
+scale = "log-x"
+reference = { file = "measured.csv", y = 2, x_unit = "ms", y_unit = "kN", name = "measured <1>" }
+"#;
+
+#[test]
+fn plots_of_a_case_come_first_and_change_no_result() {
+    let workplace = Workplace::new(BREAKING_BAR);
+    let summary = |folder: &str| -> serde_json::Value {
+        serde_json::from_slice(&fs::read(workplace.path(folder).join("summary.json")).unwrap()).unwrap()
+    };
+    let run = |folder: &str, more: &[&str]| {
+        let ended = workplace.fractum(&[&["run", "case.toml", "-o", folder, "--quiet"], more].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        fs::read_to_string(workplace.path(folder).join("report.html")).unwrap()
+    };
+    let titles = |html: &str| -> Vec<String> {
+        let (_, curves) = html.split_once("<h2>Curves</h2>").unwrap();
+        let charts = curves.split("aria-label=\"").skip(1);
+        charts.map(|chart| chart.split_once('"').unwrap().0.to_owned()).collect()
+    };
+    let without = titles(&run("without", &[]));
+    fs::write(workplace.path("case.toml"), format!("{BREAKING_BAR}{PLOTS}")).unwrap();
+    fs::write(workplace.path("measured.csv"), "t [ms],note,F [kN]\n0.1,a,0.2\n0.2,b,4e3\n").unwrap();
+    let html = run("with", &[]);
+    let own = ["Work and damage", "load against time"].map(String::from);
+    assert_eq!(titles(&html), [&own[..], &without[..]].concat());
+    assert_eq!(summary("with")["state_hash"], summary("without")["state_hash"]);
+    let (_, curves) = html.split_once("<h2>Curves</h2>").unwrap();
+    let charts: Vec<&str> = curves.split("<svg").skip(1).collect();
+    assert!(
+        charts[0].contains(">share of damaged elements</text>") && charts[0].contains(">energy ["),
+        "{}",
+        charts[0]
+    );
+    // 4 MN is beyond all loads of the bar: the axis reaches it, where the unit is known.
+    let points = charts[1].matches("<circle").count();
+    assert!(
+        charts[1].contains("load [MN]") && charts[1].contains("measured &lt;1&gt;") && points >= 2,
+        "{}",
+        charts[1]
+    );
+    assert!(charts[1].contains("largest load: ") && charts[1].contains("stroke-dasharray"), "{}", charts[1]);
+    // The plots are kept in the folder, and a run goes on with others.
+    fs::remove_file(workplace.path("with/report.html")).unwrap();
+    assert_eq!(workplace.fractum(&["report", "with"]).code, Some(0));
+    assert!(html == fs::read_to_string(workplace.path("with/report.html")).unwrap());
+    fs::write(workplace.path("case.toml"), BREAKING_BAR).unwrap();
+    assert_eq!(titles(&run("with", &["--resume"])), without);
+}
+
+#[test]
+fn plots_of_what_is_not_there_are_refused() {
+    let refused = |old: &str, new: &str| {
+        assert!(PLOTS.contains(old), "{old}");
+        let workplace = Workplace::new(&format!("{BREAKING_BAR}{}", PLOTS.replacen(old, new, 1)));
+        fs::write(workplace.path("measured.csv"), "0.1,0.2,1\n0.2,0.3,2\n").unwrap();
+        let ended = workplace.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{new}: {}", ended.stdout);
+        ended.stderr
+    };
+    let cases = [
+        (
+            "\"harmed\"",
+            "\"harm\"",
+            "plots[0].x = \"harm\" is neither a probe nor a column of history.csv; did you mean \"harmed\"?",
+        ),
+        ("\"harmed\"", "\"zzz\"", "there are: load, largest_load"),
+        ("\"harmed\"", "\"largest_load\"", "which is one number at the end"),
+        (
+            "\"harmed\"",
+            "\"broken_bonds\"",
+            "a column that the history of this run does not have; it has time, dt, external",
+        ),
+        ("[\"external\", \"damage\"]", "[\"largest_load\"]", "names no column of the history"),
+        ("[\"external\", \"damage\"]", "\"external\"", "expected a list of names of probes or columns"),
+        ("\"log-x\"", "\"log\"", "did you mean \"log-x\"?"),
+        ("\"ms\"", "\"mm\"", "expected a unit of a time"),
+        (
+            "y = 2",
+            "y = 5",
+            "measured.csv:1:1: \"0.1,0.2,1\" has 3 columns; columns 0 and 5 are read, counted from 0; read for plots[1].reference.file",
+        ),
+        ("measured.csv", "absent.csv", "= \"absent.csv\" cannot be opened"),
+    ];
+    for (old, new, says) in cases {
+        let said = refused(old, new);
+        assert!(said.contains(says), "{new}: {said}");
+    }
+}
+
 #[test]
 fn a_movie_of_no_results_is_refused() {
     let workplace = Workplace::new(BREAKING_BAR);

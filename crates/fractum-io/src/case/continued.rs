@@ -1,4 +1,4 @@
-//! What a resumed run must find as it was: the values of the whole case but the end of its run.
+//! What a resumed run must find as it was: the values of the whole case but the end of its run and the plots of its report.
 
 use std::collections::BTreeSet;
 
@@ -6,13 +6,13 @@ use xxhash_rust::xxh3::Xxh3;
 
 use super::tree::{Entry, Node, Value, join};
 
-/// Hash of all values of a case without the end of its last solver, and without parameters that only this end uses. Places,
-/// comments and spaces play no part.
+/// Hash of all values of a case without the end of its last solver, without parameters that only this end uses, and without
+/// plots, which only the report shows. Places, comments and spaces play no part.
 pub(super) fn hash(root: &Node) -> u128 {
     let mut content = Content { end: path_of_end(root), ..Content::default() };
     let (parameters, others): (Vec<&Entry>, Vec<&Entry>) =
         entries(root).iter().partition(|entry| entry.name == "parameters");
-    for entry in others {
+    for entry in others.into_iter().filter(|entry| entry.name != "plots") {
         content.add(&entry.name, &entry.node);
     }
     // A parameter may use those above it.
@@ -102,7 +102,9 @@ mod tests {
     #[test]
     fn only_the_end_may_change() {
         let before = with(&[]);
-        assert_eq!(before, hash(&parse(&format!("# a remark\n{CASE}"), "case.toml").unwrap()), "a comment");
+        for same in [format!("# a remark\n{CASE}"), format!("{CASE}[[plots]]\nx = \"time\"\n")] {
+            assert_eq!(before, hash(&parse(&same, "case.toml").unwrap()), "{same}");
+        }
         for same in [("solver.end", "5 ms"), ("parameters.last", "7 ms")] {
             assert_eq!(before, with(&[same]), "{same:?}");
         }

@@ -174,6 +174,7 @@ fn documented_defaults_are_the_defaults() {
                 .replace("probes[].radial_cracks", "probes[29].radial_cracks")
                 .replace("probes[].damaged", "probes[30].damaged")
                 .replace("output.ppv[]", "output.ppv[0]")
+                .replace("plots[]", "plots[0]")
                 .replace("probes[]", "probes[14]")
                 .replace("supports[].elastic", "supports[5].elastic")
                 .replace("TIME_FUNCTION", function);

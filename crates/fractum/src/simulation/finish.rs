@@ -80,6 +80,7 @@ impl Simulation {
             warnings: self.messages.warnings,
             pictures: crate::gallery::draw(&self.scene, &self.folder),
             inputs: crate::inputs::table(&self.case),
+            plots: crate::plots::notes(&self.case),
         };
         self.recorder.finish()?;
         notes.pictures.extend(crate::strip::strip(&self.folder, peak));

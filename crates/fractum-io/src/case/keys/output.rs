@@ -2,7 +2,7 @@
 
 use super::{key, names};
 use crate::case::key_kind::{KeyDoc, KeyKind as K};
-use crate::case::model::Scaling;
+use crate::case::model::{PlotScale, Scaling};
 use crate::case::unit::Dimension as D;
 
 #[rustfmt::skip] // a table reads best with one row per line
@@ -32,6 +32,20 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("output.ppv[].line.to", K::Point(D::LENGTH), "required", "The last"),
     key("output.ppv[].line.stations", K::Integer, "required", "Their number, 1 to 10000"),
     key("output.ppv[].groups", K::Names, "[]", "Mesh groups, each of which is a station: the mean over its nodes"),
+    key("plots[]", K::Tables, "", "Charts of your own in the report"),
+    key("plots[].title", K::Text, "from the names", "Title of the chart"),
+    key("plots[].x", K::Text, "required", "Horizontal axis: a probe, or a column of history.csv such as time"),
+    key("plots[].y", K::Names, "required", "Vertical axis: probes and columns of history.csv, of one dimension; a probe that is one number is a dashed line"),
+    key("plots[].x_label", K::Text, "from the name", "What the horizontal axis says; its unit is added"),
+    key("plots[].y_label", K::Text, "from the names", "What the vertical axis says; its unit is added"),
+    key("plots[].scale", K::Choice(names::<PlotScale>), "\"linear\"", "Which axes are logarithmic; they leave out what is not above zero"),
+    key("plots[].reference", K::Table, "", "Points to compare with, such as a measurement, from a CSV file"),
+    key("plots[].reference.file", K::Text, "required", "The file, from the folder of the case: rows of columns; a first row of words and what follows # are skipped"),
+    key("plots[].reference.x", K::Integer, "0", "Its column for the horizontal axis, counted from 0"),
+    key("plots[].reference.y", K::Integer, "1", "Its column for the vertical axis, counted from 0"),
+    key("plots[].reference.x_unit", K::Unit(None), "SI", "Unit of the first, such as \"mm\""),
+    key("plots[].reference.y_unit", K::Unit(None), "SI", "Unit of the second, such as \"kN\""),
+    key("plots[].reference.name", K::Text, "\"reference\"", "What the legend says"),
     key("expect[]", K::Tables, "", "Reference values for `fractum verify`: value and tolerance, or above and below"),
     key("expect[].quantity", K::Text, "required", "A probe, or a path into summary.json such as energy.residual_max_relative"),
     key("expect[].value", K::AnyQuantity, "", "Reference value"),

@@ -3,10 +3,12 @@
 mod body;
 mod bonded;
 mod boundary;
+mod columns;
 mod gas;
 mod heat;
 mod loose;
 mod material;
+mod plot;
 mod ppv;
 mod probe;
 mod rigid;
@@ -24,10 +26,12 @@ pub use bonded::{
     ParticleSize,
 };
 pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
+pub use columns::HistoryColumns;
 pub use gas::{Gas, GasHole, GasLaw};
 pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Distribution, Material, Scatter};
+pub use plot::{Plot, PlotReference, PlotScale};
 pub use ppv::{Ppv, Scaling, StationLine};
 pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
 pub use rigid::{RigidBody, RigidShape};
@@ -149,6 +153,8 @@ pub struct Output {
     pub joined_below: f64,
     /// Peak particle velocity against distance.
     pub ppv: Vec<Ppv>,
+    /// Charts of the user's own in the report.
+    pub plots: Vec<Plot>,
 }
 
 /// A reference value of the case.

@@ -1,17 +1,17 @@
 //! `[in_situ]`: stress of the solids before the run.
 
+use super::names;
 use super::vectors::field;
+use crate::case::Diagnostic;
 use crate::case::model::InSitu;
 use crate::case::reader::Table;
-use crate::case::tree::Value;
-use crate::case::{Diagnostic, Spanned};
 
 const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
 
 /// Reads the stress; none where the case has none, nothing where it is wrong.
 pub(super) fn read(root: &Table<'_>) -> Option<Option<InSitu>> {
     let Some(table) = root.table("in_situ") else { return Some(None) };
-    let groups = groups(&table, "groups");
+    let groups = names::read(&table, "groups", "mesh groups");
     let mut complete = true;
     let stress = table.table("stress").map(|stress| {
         let components = COMPONENTS.map(|name| {
@@ -33,26 +33,4 @@ pub(super) fn read(root: &Table<'_>) -> Option<Option<InSitu>> {
     let place = table.place.clone();
     table.finish("here");
     Some(Some(InSitu { place, stress: stress.filter(|_| complete)?, groups: groups? }))
-}
-
-/// A list of names of mesh groups; empty where the key is absent.
-pub(super) fn groups(table: &Table<'_>, key: &str) -> Option<Vec<Spanned<String>>> {
-    let Some(node) = table.node(key) else { return Some(Vec::new()) };
-    let wrong = || {
-        let note = Diagnostic::error(&node.place, node.found());
-        table.reader.note(note.expected("a list of names of mesh groups"));
-    };
-    let Value::Array(items) = &node.value else {
-        wrong();
-        return None;
-    };
-    let mut groups = Vec::new();
-    for item in items {
-        let Value::Text(name) = &item.value else {
-            wrong();
-            return None;
-        };
-        groups.push(Spanned::new(name.clone(), item.place.clone()));
-    }
-    Some(groups)
 }

@@ -1,6 +1,6 @@
 //! `[[output.ppv]]`.
 
-use super::in_situ::groups;
+use super::names;
 use super::presence::optional;
 use super::vectors::{direction, point};
 use crate::case::Diagnostic;
@@ -33,7 +33,7 @@ fn ppv(table: Table<'_>) -> Option<Ppv> {
     }
     let scaling = table.choice("scaling").or(Scaling::SquareRoot);
     let line = optional(&table, "line", |_| line(&table));
-    let groups = groups(&table, "groups");
+    let groups = names::read(&table, "groups", "mesh groups");
     if line == Some(None) && groups.as_ref().is_some_and(Vec::is_empty) {
         let note = Diagnostic::error(&table.place, "has no station");
         table.reader.note(note.expected("a line, groups, or both"));

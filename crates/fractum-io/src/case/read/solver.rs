@@ -3,7 +3,7 @@
 use super::probes::ReadProbe;
 use super::vectors::{direction, point};
 use crate::case::model::{
-    Body, BodyKind, Control, Damping, FurtherFields, InitialOverlap, Opening, Output, Solver, SolverKind,
+    Body, BodyKind, Control, Damping, FurtherFields, InitialOverlap, Opening, Output, Plot, Solver, SolverKind,
     StaticOptions, StopWhen, TimeStep,
 };
 use crate::case::reader::Table;
@@ -213,7 +213,7 @@ const CHECKPOINT: f64 = 600.0;
 const JOINED_BELOW: f64 = 0.95;
 
 /// Reads what is written; `end` is that of the run, where it is known.
-pub(super) fn output(root: &Table<'_>, end: Option<f64>) -> Option<Output> {
+pub(super) fn output(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>>) -> Option<Output> {
     let table = root.table_or_empty("output");
     let mut further = FurtherFields::default();
     let mut every = |name: &'static str, longest: Option<f64>| {
@@ -254,5 +254,6 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>) -> Option<Output> {
         checkpoint_every: checkpoint.unwrap_or(CHECKPOINT),
         joined_below,
         ppv: ppv?,
+        plots: plots?,
     })
 }

@@ -187,15 +187,14 @@ impl Chart {
                 (x, y) = (LEFT, y + 17.0);
             }
             let colour = self.colour(index);
-            let (thickness, opacity) = if self.series[index].style == Style::Area { (9.0, 0.75) } else { (3.0, 1.0) };
-            let _ = writeln!(
-                svg,
-                "<rect x=\"{x:.1}\" y=\"{:.1}\" width=\"14\" height=\"{thickness}\" fill=\"{colour}\" \
-                 opacity=\"{opacity}\"/><text x=\"{:.1}\" y=\"{y:.1}\">{}</text>",
-                y - 4.0 - 0.5 * thickness,
-                x + 19.0,
-                escape(name)
-            );
+            let swatch = match self.series[index].style {
+                Style::Points => {
+                    format!("<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3.5\" fill=\"{colour}\"/>", x + 7.0, y - 4.0)
+                }
+                Style::Area => swatch(x, y, 9.0, 0.75, colour),
+                Style::Line | Style::Step | Style::Outline => swatch(x, y, 3.0, 1.0, colour),
+            };
+            let _ = writeln!(svg, "{swatch}<text x=\"{:.1}\" y=\"{y:.1}\">{}</text>", x + 19.0, escape(name));
             x += width + 8.0;
         }
         (svg, y - 36.0 + 20.0)
@@ -333,6 +332,14 @@ impl Chart {
             );
         }
     }
+}
+
+/// A bar in the legend, beside a text at `y`.
+fn swatch(x: f64, y: f64, thickness: f64, opacity: f64, colour: &str) -> String {
+    let top = y - 4.0 - 0.5 * thickness;
+    format!(
+        "<rect x=\"{x:.1}\" y=\"{top:.1}\" width=\"14\" height=\"{thickness}\" fill=\"{colour}\" opacity=\"{opacity}\"/>"
+    )
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::number::{quantity, reading_unit, significant};
 use crate::output::attenuation::Attenuation;
 use crate::output::fragments::Fragment;
 use crate::output::history::Table;
-use crate::output::plot::{Axis, Chart, Mark, Series, Style, stacked};
+use crate::output::plot::{Axis, Chart, Level, Mark, Series, Style, stacked};
 use crate::output::summary::FragmentSizes;
 
 /// One colour for each energy, the same in every report, in the order of the list of energies.
@@ -49,17 +49,37 @@ pub(super) fn curve(history: &Table, curve: &Curve) -> Option<Chart> {
     for name in &curve.y {
         columns.push((name, axis(history, name)?));
     }
-    let (_, (first, _)) = columns.first()?;
+    let (first_name, (first, _)) = columns.first()?;
     let label = if columns.len() == 1 { first.label.clone() } else { curve.quantity.clone() };
-    let y = Axis::new(label, first.unit.clone()).from_zero();
-    let mut chart = Chart { title: curve.title.clone(), x, y, levels: curve.levels.clone(), ..Chart::default() };
+    let y = Axis::new(label, first.unit.clone());
+    // Sizes of the units that people read.
+    let [of_x, of_y] =
+        [&curve.x, first_name].map(|name| history.column(name).map_or(1.0, |(_, unit)| reading_unit(unit).1));
+    let levels = curve.levels.iter().map(|level| Level { value: level.value / of_y, ..level.clone() }).collect();
+    let mut chart = Chart {
+        title: curve.title.clone(),
+        x: labelled(x, &curve.labels[0], curve.logarithmic[0]),
+        y: labelled(y, &curve.labels[1], curve.logarithmic[1]).from_zero(),
+        levels,
+        ..Chart::default()
+    };
     if curve.mark_peak {
         chart.marks.extend(columns.first().and_then(|(_, (axis, values))| peak(&abscissae, values, &axis.unit)));
     }
     for (name, (_, values)) in columns {
         chart.series.push(Series::new(words(name), abscissae.clone(), values, Style::Line));
     }
+    if let Some((name, points)) = &curve.reference {
+        let along = |axis: usize, size: f64| points.iter().map(|point| point[axis] / size).collect();
+        chart.series.push(Series::new(name, along(0, of_x), along(1, of_y), Style::Points));
+    }
     Some(chart)
+}
+
+/// The axis with another label, unless that is empty, and of another kind.
+fn labelled(axis: Axis, label: &str, logarithmic: bool) -> Axis {
+    let label = if label.is_empty() { axis.label.clone() } else { label.to_owned() };
+    Axis { label, logarithmic, ..axis }
 }
 
 /// The point of the largest absolute value.

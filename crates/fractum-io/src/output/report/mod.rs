@@ -73,6 +73,12 @@ pub struct Curve {
     pub mark_peak: bool,
     /// Values to compare with.
     pub levels: Vec<Level>,
+    /// What the axes say; empty for the names of the columns, or the quantity.
+    pub labels: [String; 2],
+    /// Which axes are logarithmic.
+    pub logarithmic: [bool; 2],
+    /// Points to compare with, in the units of the columns, under their name.
+    pub reference: Option<(String, Vec<[f64; 2]>)>,
 }
 
 /// Columns of the energy ledger.
