@@ -36,8 +36,12 @@ fn path_of_end(root: &Node) -> String {
     }
 }
 
-/// Keys whose text is for readers and uses no parameter.
-const PROSE: [&str; 4] = ["name", "title", "source", "note"];
+/// Whether the text at a path is for readers and uses no parameter. A name alone does not tell: `source` is a book of
+/// `[[expect]]`, and a function of time of `[[heat.conditions]]`.
+fn is_prose(path: &str) -> bool {
+    let of_expectation = path.starts_with("expect[") && (path.ends_with("].source") || path.ends_with("].note"));
+    path == "title" || path.ends_with("].name") || of_expectation
+}
 
 #[derive(Default)]
 struct Content {
@@ -64,8 +68,7 @@ impl Content {
             }
             Value::Text(text) => {
                 self.part(path, text.as_bytes());
-                let key = path.rsplit('.').next().unwrap_or_default();
-                if !PROSE.contains(&key) {
+                if !is_prose(path) {
                     let words = text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());
                     self.words.extend(words.map(str::to_owned));
                 }
@@ -91,7 +94,7 @@ mod tests {
     use super::*;
 
     const CASE: &str = "[parameters]\nlast = \"1 ms\"\ntwice = \"2*last\"\nload = \"3 N\"\n[solver]\nend = \"twice\"\n\
-        [[loads]]\nforce = { x = \"load*t\" }\n";
+        [[loads]]\nforce = { x = \"load*t\" }\n[[heat.conditions]]\nsource = \"1 W/m^3\"\n";
 
     fn with(changes: &[(&str, &str)]) -> u128 {
         let mut root = parse(CASE, "case.toml").unwrap();
@@ -114,9 +117,13 @@ mod tests {
         let named = ("loads[0].name", "the last");
         assert_eq!(with(&[named]), with(&[named, ("parameters.last", "7 ms")]), "a word of a name");
         // The end is used elsewhere.
-        let used = ("loads[0].force.x", "load*t/last");
-        assert_ne!(with(&[used]), with(&[used, ("parameters.last", "7 ms")]));
-        assert_eq!(with(&[used]), with(&[used, ("solver.end", "7 ms")]));
+        for used in [("loads[0].force.x", "load*t/last"), ("heat.conditions[0].source", "1 W/m^3*t/last")] {
+            assert_ne!(with(&[used]), with(&[used, ("parameters.last", "7 ms")]), "{used:?}");
+            assert_eq!(with(&[used]), with(&[used, ("solver.end", "7 ms")]), "{used:?}");
+        }
+        // A parameter may have the name of a key of prose.
+        let named = [("parameters.name", "2*last"), ("loads[0].force.x", "name*t")];
+        assert_ne!(with(&named), with(&[named[0], named[1], ("parameters.last", "7 ms")]));
     }
 
     #[test]
