@@ -3,6 +3,7 @@
 mod common;
 
 use std::fs;
+use std::path::Path;
 
 use common::{Workplace, mesh_bytes};
 use fractum_mesh::MshFormat;
@@ -85,7 +86,7 @@ fn twenty_mistakes_are_listed_and_the_others_counted() {
         let ended = Workplace::new(&case).fractum(&["check", "case.toml"]);
         assert_eq!((ended.code, ended.stderr.lines().count()), (Some(1), MOST_LINES), "{}", ended.stderr);
         let last = ended.stderr.lines().last().unwrap();
-        assert!(last.ends_with("30 further mistakes are not listed"), "{last}");
+        assert!(last.ends_with("30 further messages are not listed"), "{last}");
     }
 }
 
@@ -126,8 +127,11 @@ fn the_advice_is_what_an_open_choice_takes() {
         "\"1 kPa\"\n\n[solver]",
         "{ pulse = \"triangle\", peak = \"1 MPa\", duration = \"2 us\" }\n\n[solver]",
     );
+    let firing = slow.replace("group = \"y+\"\npressure = \"1 kPa\"", "firing = [[\"y+\", \"0.1 s\", \"slow\"]]");
+    let pulses = "[pulses]\nslow = { pulse = \"linear-exponential\", peak = \"1 MPa\", rise_time = \"0.2 s\", decay_time = \"0.2 s\" }\n";
+    let firing = format!("{firing}{pulses}");
     let mut taken = Vec::new();
-    for case in [slow.as_str(), CASE, pulse.as_str()] {
+    for case in [slow.as_str(), CASE, pulse.as_str(), firing.as_str()] {
         let plan = |case: &str| {
             let ended = Workplace::new(case).fractum(&["check", "case.toml"]);
             assert_eq!(ended.code, Some(0), "{}", ended.stderr);
@@ -140,5 +144,21 @@ fn the_advice_is_what_an_open_choice_takes() {
         assert_eq!(ends_early, case == CASE, "an end is proposed where the run is too short: {advice}");
         taken.push(open);
     }
-    assert_eq!(taken, ["static", "explicit", "explicit"]);
+    assert_eq!(taken, ["static", "explicit", "explicit", "explicit"]);
+}
+
+#[test]
+fn no_case_is_advised_to_take_a_solver_that_refuses_it() {
+    // With heat, and with a support that lets waves leave.
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let workplace = Workplace::new(CASE);
+    for case in ["heat/ring.toml", "kirsch-in-situ/pressurised.toml"] {
+        let path = cases.join(case);
+        let path = path.to_str().unwrap();
+        let ended = workplace.fractum(&["check", path]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        assert_eq!(chosen(&ended.stdout), "explicit", "{case}");
+        let refused = workplace.fractum(&["check", path, "--set", "solver.kind=static"]);
+        assert_eq!(refused.code, Some(1), "{}", refused.stdout);
+    }
 }

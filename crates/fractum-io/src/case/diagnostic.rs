@@ -103,16 +103,22 @@ pub struct Diagnostics(pub Vec<Diagnostic>);
 pub(crate) const MOST_LISTED: usize = 20;
 
 impl Diagnostics {
-    /// The first of many, with the count of the others.
+    /// The first of many, mistakes before warnings, with the count of the others. Warnings alone are all listed: the case
+    /// runs, and nothing of it is an error.
     pub(crate) fn of_many(mut diagnostics: Vec<Diagnostic>) -> Self {
+        let is_warning = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Warning;
+        if diagnostics.iter().all(is_warning) {
+            return Self(diagnostics);
+        }
         let more = diagnostics.len().saturating_sub(MOST_LISTED);
         let last = diagnostics.get(MOST_LISTED).and_then(|diagnostic| diagnostic.place.clone());
         if more > 1
             && let Some(place) = last
         {
+            diagnostics.sort_by_key(is_warning);
             diagnostics.truncate(MOST_LISTED);
             let whole = Place { line: 0, column: 0, key: String::new(), ..place };
-            diagnostics.push(Diagnostic::error(&whole, format!("{more} further mistakes are not listed")));
+            diagnostics.push(Diagnostic::error(&whole, format!("{more} further messages are not listed")));
         }
         Self(diagnostics)
     }
@@ -158,5 +164,29 @@ mod tests {
         let json = serde_json::to_value(Diagnostics(vec![diagnostic])).unwrap();
         assert_eq!(json[0]["severity"], "warning");
         assert_eq!(json[0]["place"]["line"], 14);
+    }
+
+    fn place(line: u32) -> Place {
+        Place { file: "case.toml".to_string(), line, column: 1, key: String::new() }
+    }
+
+    #[test]
+    fn warnings_alone_are_all_listed() {
+        let warnings: Vec<Diagnostic> = (1..=23).map(|line| Diagnostic::warning(&place(line), "is odd")).collect();
+        assert_eq!(Diagnostics::of_many(warnings.clone()).0, warnings);
+    }
+
+    #[test]
+    fn warnings_do_not_hide_mistakes() {
+        let mut many: Vec<Diagnostic> = (1..=30).map(|line| Diagnostic::warning(&place(line), "is odd")).collect();
+        let wrong = [31, 32].map(|line| Diagnostic::error(&place(line), "is wrong"));
+        many.extend(wrong.clone());
+        let listed = Diagnostics::of_many(many.clone()).0;
+        assert_eq!(listed[..2], wrong, "mistakes first");
+        assert_eq!(listed[2..MOST_LISTED], many[..18], "then warnings in the order of the file");
+        assert_eq!(listed[MOST_LISTED].found, "12 further messages are not listed");
+        assert_eq!(listed.len(), MOST_LISTED + 1);
+        // Few are left in their order.
+        assert_eq!(Diagnostics::of_many(many[20..].to_vec()).0, many[20..]);
     }
 }

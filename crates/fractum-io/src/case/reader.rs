@@ -12,7 +12,7 @@ use super::key_kind::KeyKind;
 use super::keys::{Unknown, describe};
 use super::tree::{Entry, Node, Value, join};
 use super::unit::Dimension;
-use super::{Choice, Diagnostic, Place, nearest};
+use super::{Choice, Diagnostic, Place, Severity, nearest};
 pub(super) use reading::Reading;
 use reading::State;
 
@@ -28,6 +28,8 @@ pub(super) struct Reader {
     /// Tables read from other files: name as written, contents.
     pub(super) tables: RefCell<Vec<(String, Vec<u8>)>>,
     diagnostics: RefCell<Vec<Diagnostic>>,
+    /// How many of them are errors.
+    mistakes: Cell<usize>,
     /// Paths of keys that were probably meant by unknown ones: these are not missing too.
     meant: RefCell<BTreeSet<String>>,
 }
@@ -48,12 +50,14 @@ impl Reader {
             parameters: RefCell::default(),
             tables: RefCell::default(),
             diagnostics: RefCell::default(),
+            mistakes: Cell::default(),
             meant: RefCell::default(),
         }
     }
 
     /// Notes a mistake or a doubt.
     pub(super) fn note(&self, diagnostic: Diagnostic) {
+        self.mistakes.set(self.mistakes.get() + usize::from(diagnostic.severity == Severity::Error));
         self.diagnostics.borrow_mut().push(diagnostic);
     }
 
@@ -72,7 +76,7 @@ impl Reader {
 
     /// Whether so much is wrong that suggestions help no more.
     pub(super) fn has_many_mistakes(&self) -> bool {
-        self.diagnostics.borrow().len() > MOST_LISTED
+        self.mistakes.get() > MOST_LISTED
     }
 
     /// Adds the nearest valid name to a mistake, or what the valid names are: `kind: a, b, c`.

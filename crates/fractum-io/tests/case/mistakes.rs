@@ -468,6 +468,17 @@ fn all_mistakes_are_reported_at_once_and_in_order() {
 }
 
 #[test]
+fn many_warnings_do_not_silence_the_suggestions_for_a_mistake() {
+    let material = |i: usize| format!("[materials.m{i}]\ndensity = 2.4\nyoung_modulus = 210e9\npoisson_ratio = 0.3\n");
+    let doubted: String = (0..25).map(material).collect();
+    let text = SMALL
+        .replace("[[bodies]]", &format!("{doubted}[[bodies]]"))
+        .replace("material = \"steel\"", "material = \"stel\"");
+    let found = mistakes(&text);
+    assert!(found.len() == 2 && found[0].ends_with("did you mean \"steel\"?"), "{found:#?}");
+}
+
+#[test]
 fn files_that_are_no_cases_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("case.toml");

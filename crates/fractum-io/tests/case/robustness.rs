@@ -68,7 +68,7 @@ fn huge_cases_are_read_in_seconds_right_or_wrong() {
     for entry in wrong {
         let mistakes = parse(&many(80_000, entry), &[]).unwrap_err().0;
         assert_eq!(mistakes.len(), 21, "the first twenty, and how many more");
-        assert!(mistakes[20].found.ends_with("further mistakes are not listed"), "{}", mistakes[20]);
+        assert!(mistakes[20].found.ends_with("further messages are not listed"), "{}", mistakes[20]);
     }
     let syntax = parse(&many(80_000, |i| format!("a{i} = = 1\n")), &[]).unwrap_err().0;
     assert_eq!(syntax.len(), 21);
