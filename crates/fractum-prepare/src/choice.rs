@@ -1,7 +1,6 @@
 //! Motion or equilibrium: what each would cost, for the plan of `fractum check`.
 
 use fractum_io::build::{BuiltScene, may_rest};
-use fractum_io::case::TimeFunction;
 use fractum_io::case::model::{Body, BodyKind, Case, Motion, SolverKind};
 use fractum_io::number::quantity;
 use fractum_scene::Scene;
@@ -127,16 +126,12 @@ fn evaluation(scene: &Scene) -> f64 {
 
 /// Why motion is meant, as far as the case file alone tells.
 fn inertia_counts(case: &Case) -> Option<&'static str> {
-    let pulse = |function: &TimeFunction| {
-        let kinds = matches!(function, TimeFunction::Triangle { .. } | TimeFunction::HalfSine { .. });
-        kinds || matches!(function, TimeFunction::DoubleExponential { .. })
-    };
-    let loads = case.loads.iter().any(|load| load.kind.functions().iter().any(|function| pulse(&function.value)));
+    let loads = case.loads.iter().any(|load| load.kind.functions().iter().any(|function| function.value.is_pulse()));
     let supports = case
         .supports
         .iter()
         .flat_map(|support| support.motion.iter().flatten())
-        .any(|motion| matches!(&motion.value, Motion::Velocity(of) | Motion::Displacement(of) if pulse(of)));
+        .any(|motion| matches!(&motion.value, Motion::Velocity(of) | Motion::Displacement(of) if of.is_pulse()));
     let moves = |body: &Body| matches!(&body.kind, BodyKind::Solid(solid) if solid.initial_velocity.iter().any(Option::is_some));
     if loads || supports {
         Some("a load is a pulse")
@@ -150,7 +145,11 @@ fn inertia_counts(case: &Case) -> Option<&'static str> {
 /// Why equilibrium is out of the question.
 fn motion_only(case: &Case, scene: &Scene) -> Option<&'static str> {
     let solid = &scene.solid;
-    if !case.bodies.iter().all(may_rest) {
+    if case.flows.gas.is_some() || case.flows.heat.is_some() {
+        Some("gas and the expansion by heat are for motion only")
+    } else if case.supports.iter().any(|support| support.surface.is_some()) {
+        Some("absorbing and elastic supports act in motion only")
+    } else if !case.bodies.iter().all(may_rest) {
         Some("solids beside particles, or beside rigid bodies that contact moves, are for motion only")
     } else if solid.not_secant().is_some() {
         Some("equilibrium is for small strains, open cracks and damage without delay")
