@@ -9,7 +9,9 @@ use std::fmt;
 
 use fractum_fem::{ElementKind, Formulation, Kinematics};
 use fractum_io::build::{BuiltScene, TieReport};
-use fractum_io::case::model::{Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SurfaceSupport};
+use fractum_io::case::model::{
+    Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SolverKind, SurfaceSupport,
+};
 use fractum_io::number::quantity;
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
@@ -39,11 +41,7 @@ pub struct Plan {
 
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, (topic, text)) in self.lines.iter().enumerate() {
-            let end = if index + 1 == self.lines.len() { "" } else { "\n" };
-            write!(f, "{topic:<12} {text}{end}")?;
-        }
-        Ok(())
+        f.write_str(&self.wrapped(usize::MAX, str::to_owned))
     }
 }
 
@@ -77,7 +75,11 @@ impl Plan {
             plan.add("stage", &case.source.stage);
         }
         plan.describe_conditions(case, mesh, scene);
-        plan.describe_physics(case, scene);
+        if built.conducts_alone {
+            plan.add("physics", "conduction of heat");
+        } else {
+            plan.describe_physics(case, scene);
+        }
         if let Some(choice) = choice {
             plan.add("choice", choice);
         }
@@ -208,7 +210,9 @@ impl Plan {
             let amount = quantity(of(GasMeasure::Mass), "kg") + ", " + &quantity(of(GasMeasure::Energy), "J");
             self.add("gas", format!("in {} holes: {amount} at the start", gas.hole_count()));
         }
-        self.describe_what_moves(case, scene);
+        if case.solver.kind != SolverKind::Heat {
+            self.describe_what_moves(case, scene);
+        }
     }
 
     /// What moves a scene without supports and loads.
@@ -233,58 +237,45 @@ impl Plan {
     }
 
     fn describe_physics(&mut self, case: &Case, scene: &Scene) {
-        let (mut on, mut off) = (vec!["elasticity"], Vec::new());
-        let mut choose = |active: bool, name: &'static str, short: &'static str| {
-            if active { on.push(name) } else { off.push(short) }
-        };
         let damage = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).damage.is_some());
-        choose(damage, "damage and removal of elements", "damage");
-        choose(damage, "discrete elements (from the first removal)", "discrete elements");
         let beams = |body: &BondedBody| body.bonds.beam().is_some();
         let bonded = || scene.bonded.bodies().iter().filter(|body| !body.bonds.is_empty());
-        choose(bonded().any(beams), "cohesive beams", "bonds");
-        if bonded().any(|body| !beams(body)) {
-            choose(true, "interfaces of the local law", "");
-        }
+        let breaks = scene.bonded.bodies().iter().any(BondedBody::can_break);
         let touched =
             (!scene.shape_contacts.is_empty() || scene.contacts.has_node_contacts()) && scene.solid.body_count() > 0;
         let balls = !scene.contacts.is_empty() && (damage || !scene.bonded.particles.is_empty());
-        if touched {
-            choose(true, "contact of solids with other bodies", "");
-        }
-        if balls {
-            choose(true, "contact of particles by Hertz' law", "");
-        }
-        if !(touched || balls) {
-            choose(false, "", "contact");
-        }
-        if scene.bonded.bodies().iter().any(BondedBody::can_break) {
-            choose(true, "breaking of bonds", "");
-        }
         let damping = case.damping;
         let viscous = damping.stiffness > 0.0 || damping.bulk_linear > 0.0 || damping.bulk_quadratic > 0.0;
         let on_nodes = damping.local > 0.0 || damping.mass > 0.0;
         let dissipation = damping.tchamwa_wielgosz.is_some();
-        if on_nodes {
-            choose(true, "damping on the nodes", "");
-        }
-        if viscous {
-            choose(true, "viscous stress", "");
-        }
-        if dissipation {
-            choose(true, "damping of the highest frequencies of particles", "");
-        }
-        if !(on_nodes || viscous || dissipation) {
-            choose(false, "", "damping");
-        }
         let turning = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).kinematics == Kinematics::Corotational);
-        choose(turning, "large rotations", "large rotations");
-        if !scene.ties.is_empty() {
-            on.push("ties of particles to facets");
-        }
-        self.add("physics", on.join(", "));
+        let on = [
+            (true, "elasticity"),
+            (damage, "damage and removal of elements"),
+            (damage, "discrete elements (from the first removal)"),
+            (bonded().any(beams), "cohesive beams"),
+            (bonded().any(|body| !beams(body)), "interfaces of the local law"),
+            (touched, "contact of solids with other bodies"),
+            (balls, "contact of particles by Hertz' law"),
+            (breaks, "breaking of bonds"),
+            (on_nodes, "damping on the nodes"),
+            (viscous, "viscous stress"),
+            (dissipation, "damping of the highest frequencies of particles"),
+            (turning, "large rotations"),
+            (!scene.ties.is_empty(), "ties of particles to facets"),
+        ];
+        let off = [
+            (!damage, "damage"),
+            (!damage, "discrete elements"),
+            (!bonded().any(beams), "bonds"),
+            (!(touched || balls), "contact"),
+            (!(on_nodes || viscous || dissipation), "damping"),
+            (!turning, "large rotations"),
+        ];
+        let [on, off] = [&on[..], &off[..]].map(names);
+        self.add("physics", on);
         if !off.is_empty() {
-            self.add("skipped", off.join(", "));
+            self.add("skipped", off);
         }
     }
 
@@ -374,6 +365,12 @@ impl Plan {
             ),
         );
     }
+}
+
+/// The names of what is so, as a list.
+fn names(all: &[(bool, &str)]) -> String {
+    let names: Vec<&str> = all.iter().filter(|(so, _)| *so).map(|(_, name)| *name).collect();
+    names.join(", ")
 }
 
 /// Time of the elements in a step [ns], their memory [B], and their number.

@@ -227,3 +227,50 @@ fn what_heat_cannot_do_is_told_with_its_remedy() {
         assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
     }
 }
+
+#[test]
+fn of_conduction_alone_nothing_is_asked_and_nothing_said_that_moves() {
+    let from = HOT.find("[damping]").unwrap();
+    let to = HOT.find("[[probes]]\nname = \"bar_temperature\"").unwrap();
+    let end = HOT.find("[[probes]]\nname = \"left\"").unwrap();
+    let body = HOT.find("[[bodies]]\nname = \"box\"").unwrap();
+    let supports = HOT.find("[[supports]]").unwrap();
+    let heat = HOT.find("[heat]").unwrap();
+    let source = HOT.rfind("[[heat.conditions]]").unwrap();
+    let alone = format!(
+        "{}{}[solver]\nkind = \"heat\"\nend = \"6 ms\"\n\n{}",
+        &HOT[..body],
+        &HOT[heat..source],
+        HOT[to..end].split("[[probes]]\nname = \"box").next().unwrap()
+    );
+    let ended = Workplace::new(&alone).fractum(&["check", "case.toml"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let physics: Vec<&str> = ended.stdout.lines().filter(|line| line.starts_with("physics")).collect();
+    assert_eq!(physics, ["physics      conduction of heat"]);
+    let says_too_much = |line: &&str| line.starts_with("load") || line.starts_with("skipped");
+    assert_eq!(ended.stdout.lines().find(says_too_much), None);
+    // What acts on motion alone is refused.
+    let moving = "initial_velocity = { x = \"1 m/s\" }\n";
+    let with = [
+        (format!("{alone}{}", &HOT[from..HOT.find("[solver]").unwrap()]), "damping.mass has no effect"),
+        (format!("{alone}[[loads]]\ngroup = \"y+\"\npressure = \"1 kPa\"\n"), "loads has no effect"),
+        (
+            alone.replace("group = \"body\"\nmaterial", &format!("{moving}group = \"body\"\nmaterial")),
+            "bodies[0].initial_velocity has no effect",
+        ),
+    ];
+    for (case, says) in &with {
+        let ended = Workplace::new(case).fractum(&["check", "case.toml"]);
+        assert_eq!((ended.code, ended.stderr.lines().count()), (Some(1), 1), "{}", ended.stderr);
+        let right = ended.stderr.contains(*says) && ended.stderr.contains("nothing moves; remove it");
+        assert!(right, "{says}: {}", ended.stderr);
+    }
+    // Supports may stay: they say where the body will be held once it moves.
+    let held = format!("{alone}{}", &HOT[supports..heat]);
+    assert_eq!(Workplace::new(&held).fractum(&["check", "case.toml"]).code, Some(0));
+    // A switch of the solver from the command line leaves what the file says.
+    let moved = with[0].0.replace("kind = \"heat\"", "kind = \"explicit\"");
+    let ended = Workplace::new(&moved).fractum(&["check", "case.toml", "--set", "solver.kind=heat"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stdout.contains("warning: damping.mass has no effect"), "{}", ended.stdout);
+}

@@ -7,7 +7,7 @@ use crate::case::model::{
     StaticOptions, StopWhen, TimeStep,
 };
 use crate::case::reader::Table;
-use crate::case::tree::Value;
+use crate::case::tree::{Entry, Value};
 use crate::case::{Choice, Diagnostic, Spanned};
 use fractum_dem::Batch;
 use fractum_scene::Domain;
@@ -18,20 +18,14 @@ pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>, staged: bool) -
     let table = root.table_or_empty("damping");
     let tchamwa_wielgosz = table.quantity("tchamwa_wielgosz").between(1.0, 2.0).given();
     let is = |key: &str, value: &str| {
-        root.peek("solver").is_some_and(|node| match &node.value {
-            Value::Table(entries) => entries.iter().any(|entry| {
-                entry.name == key && matches!(&entry.node.value, Value::Text(text) if text.as_str() == value)
-            }),
-            _ => false,
-        })
+        entry_of_solver(root, key)
+            .is_some_and(|entry| matches!(&entry.node.value, Value::Text(text) if text.as_str() == value))
     };
+    const ALL: [&str; 6] = ["local", "mass", "stiffness", "bulk_linear", "bulk_quadratic", "tchamwa_wielgosz"];
     if !staged && is("kind", "static") && !is("no_equilibrium", "motion") {
-        let switched = matches!(root.peek("solver").map(|node| &node.value), Some(Value::Table(entries))
-            if entries.iter().any(|entry| entry.name == "kind" && entry.node.place.is_override()));
-        for key in ["local", "mass", "stiffness", "bulk_linear", "bulk_quadratic", "tchamwa_wielgosz"] {
-            let why = "with solver.kind = \"static\", where nothing moves fast";
-            if switched { table.set_aside(key, why) } else { table.refuse(key, why) }
-        }
+        refuse_motion(root, &table, &ALL, "with solver.kind = \"static\", where nothing moves fast");
+    } else if is("kind", "heat") {
+        refuse_motion(root, &table, &ALL, WHILE_CONDUCTING);
     } else if bodies.is_some_and(|bodies| !bodies.iter().any(is_of_particles)) {
         table.refuse("tchamwa_wielgosz", "where no body is made of particles");
     }
@@ -45,6 +39,23 @@ pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>, staged: bool) -
     };
     table.finish("here");
     damping
+}
+
+/// Why what acts on motion has no effect on conduction alone.
+const WHILE_CONDUCTING: &str = "with solver.kind = \"heat\", where nothing moves";
+
+/// A key of the solver as it is written.
+fn entry_of_solver<'n>(root: &'n Table<'_>, key: &str) -> Option<&'n Entry> {
+    let Value::Table(entries) = &root.peek("solver")?.value else { return None };
+    entries.iter().find(|entry| entry.name == key)
+}
+
+/// Refuses keys of a table that act on motion; what the file says may stay where `--set` has chosen the solver.
+fn refuse_motion(root: &Table<'_>, table: &Table<'_>, keys: &[&str], why: &str) {
+    let switched = entry_of_solver(root, "kind").is_some_and(|kind| kind.node.place.is_override());
+    for key in keys {
+        if switched { table.set_aside(key, why) } else { table.refuse(key, why) }
+    }
 }
 
 /// Safety factor above which a run is close to the edge of stability.
@@ -63,6 +74,10 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     if kind == Some(SolverKind::Heat) {
         for key in ["step", "time_step", "initial_overlap", "domain", "balance_warning", "balance_stop"] {
             table.refuse(key, "with kind = \"heat\"");
+        }
+        refuse_motion(root, root, &["loads"], WHILE_CONDUCTING);
+        for body in root.tables("bodies") {
+            refuse_motion(root, &body, &["initial_velocity"], WHILE_CONDUCTING);
         }
     }
     let is_static = kind == Some(SolverKind::Static);
