@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fractum_io::build::{BuiltScene, build_scene, check_before_particles};
+use fractum_io::build::{BuiltScene, build_scene, check_before_particles, doubts};
 use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics, read_case};
 use fractum_io::memory;
@@ -51,12 +51,20 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
     check_memory(&case, &mesh)?;
     let made = prepare_bodies(&case, &mesh, cache)?;
     let mut built = build_scene(&case, &mesh, made.prepared, facets(&case)?)?;
-    built.warnings.extend(made.warnings);
     let stage = |stage: &Case| {
         let built = build_scene(stage, &mesh, Vec::new(), facets(stage)?)?;
         Ok((stage.clone(), built))
     };
     let later = case.later.iter().map(stage).collect::<Result<Vec<_>, Diagnostics>>()?;
+    for warning in later.iter().flat_map(|(_, built)| &built.warnings) {
+        // What concerns the bodies is found with every stage.
+        if !built.warnings.contains(warning) {
+            built.warnings.push(warning.clone());
+        }
+    }
+    built.warnings.extend(case.warnings().iter().cloned());
+    built.warnings.extend(doubts(&case, &mesh));
+    built.warnings.extend(made.warnings);
     let choice = choose(&case, &mut built);
     let course = Course::of(later.iter().map(|(_, built)| built).chain([&built]));
     plots::check(&case, &record::columns(&case, &built.scene, course))?;

@@ -145,3 +145,15 @@ fn wrong_stages_are_explained() {
     assert_eq!(planned.code, Some(0), "{}", planned.stderr);
     assert!(planned.stdout.contains("stage        release"), "{}", planned.stdout);
 }
+
+#[test]
+fn warnings_of_a_later_stage_are_told_once() {
+    // Above the stable step of 7.4 us, but less than twice: a doubt of the second stage alone.
+    let case = RELEASED.replace("step = \"2 us\"", "step = \"12 us\"");
+    let load = "[[loads]]\ngroup = \"y+\"\npressure = 8\n";
+    let ended = Workplace::new(&format!("{case}{load}")).fractum(&["check", "case.toml"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    for words in ["stages[1].solver.step = 12 µs is above the stable step", "loads[0].pressure is 8 Pa at most"] {
+        assert_eq!(ended.stdout.matches(words).count(), 1, "{words}: {}", ended.stdout);
+    }
+}

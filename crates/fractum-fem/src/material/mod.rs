@@ -80,4 +80,13 @@ impl DamageLaw {
             rate_time: 0.0,
         }
     }
+
+    /// Length of the process zone: E G_f/f_t² [m].
+    ///
+    /// - `young_modulus` E [Pa]
+    ///
+    /// Hillerborg, Modéer and Petersson (1976).
+    pub fn process_zone(&self, young_modulus: f64) -> f64 {
+        young_modulus * self.fracture_energy / self.tensile_strength.powi(2)
+    }
 }

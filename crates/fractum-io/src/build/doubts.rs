@@ -1,13 +1,15 @@
 //! Doubts about sizes: a mesh in millimetres that is read in metres, loads and motions of another unit than meant.
 
+use std::collections::HashSet;
 use std::f64::consts::LOG2_10;
+use std::{iter, mem};
 
 use fractum_math::Vec3;
 use fractum_math::elementary::log10;
 use fractum_mesh::Mesh;
 
 use crate::case::model::{BodyKind, Case, LoadKind, Motion, SolidBody};
-use crate::case::{Diagnostic, Spanned, TimeFunction};
+use crate::case::{Diagnostic, LONGEST_ZONE, Spanned, TimeFunction};
 use crate::number::{push_shortest, quantity};
 
 /// Largest extent of a body that is loaded as a specimen is [m]: a mesh beyond it is probably in millimetres.
@@ -16,8 +18,6 @@ const LARGE: f64 = 15.0;
 const SMALL: f64 = 5e-4;
 /// Length of the process zone over the extent of its body beyond which the body cannot crack.
 const ZONES: f64 = 500.0;
-/// Process zone that the reading of the case doubts by itself [m].
-const LONGEST_ZONE: f64 = 100.0;
 /// Strain at which solids crack, where the material does not tell [-].
 const STRAIN: f64 = 1e-4;
 /// Bits of the coordinates that the displacement at cracking needs: two of its decimal digits at least.
@@ -26,10 +26,11 @@ const BITS: f64 = 10.0;
 const ACCELERATION: f64 = 5e3;
 /// Pressure below which nothing happens to a solid [Pa].
 const PRESSURE: f64 = 10.0;
-/// Instants at which loads are looked at.
-const LOOKS: u32 = 50;
+/// Instants at which expressions of time are looked at.
+const LOOKS: u32 = 1000;
 
-/// Doubts about the sizes of a case and its mesh, coordinates in metres; none of them keeps the case from running.
+/// Doubts about the sizes of a case with all of its stages and about its mesh, coordinates in metres; none of them keeps the
+/// case from running.
 pub fn doubts(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     let bodies: Vec<(&SolidBody, f64)> = case
         .bodies
@@ -43,11 +44,32 @@ pub fn doubts(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     let mut doubts: Vec<Diagnostic> = doubt_of_unit(case, size).into_iter().collect();
     doubts.extend(doubt_of_origin(case, mesh, &bodies));
     doubts.extend(bodies.iter().filter_map(|(body, size)| doubt_of_zone(case, body, *size)));
-    doubts.extend(case.loads.iter().flat_map(|load| doubts_of_load(&load.kind, case.solver.end)));
+    let of_load = |(stage, during): (&Case, [f64; 2])| {
+        let loads = stage.loads.iter();
+        loads.flat_map(|load| doubts_of_load(&load.kind, during)).collect::<Vec<_>>()
+    };
+    doubts.extend(first_at_each_place(stages(case).flat_map(of_load)));
     if doubts.is_empty() && size > 0.0 {
-        doubts.extend(doubts_of_motion(case, size));
+        doubts.extend(first_at_each_place(
+            stages(case).flat_map(|(stage, during)| doubts_of_motion(stage, during, size)),
+        ));
     }
     doubts
+}
+
+/// The stages of a case, each with its begin and its end [s].
+fn stages(case: &Case) -> impl Iterator<Item = (&Case, [f64; 2])> {
+    let mut begin = 0.0;
+    iter::once(case).chain(&case.later).map(move |stage| {
+        let end = stage.solver.end;
+        (stage, [mem::replace(&mut begin, end), end])
+    })
+}
+
+/// What acts in several stages is doubted once.
+fn first_at_each_place(doubts: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
+    let mut places = HashSet::new();
+    doubts.filter(|doubt| places.insert(doubt.place.clone())).collect()
 }
 
 /// The largest side of the box around nodes [m].
@@ -61,7 +83,7 @@ fn extent(mesh: &Mesh, nodes: &[u32]) -> f64 {
 /// A mesh whose solids are as large, or as small, as if its unit were another one.
 ///
 /// - `size`: largest extent of a solid [m]
-pub(super) fn doubt_of_unit(case: &Case, size: f64) -> Option<Diagnostic> {
+fn doubt_of_unit(case: &Case, size: f64) -> Option<Diagnostic> {
     let source = case.mesh.as_ref()?;
     let found = format!("= \"{}\": its solids are {} large", source.file.value.display(), quantity(size, "m"));
     let note = Diagnostic::warning(&source.file.place, found);
@@ -85,13 +107,14 @@ fn is_of_the_field(case: &Case) -> bool {
         LoadKind::Pressure { pressure, .. } => pressure.value.is_pulse() || pressure.value.delay().is_some(),
         _ => false,
     };
-    case.flows.gas.is_some()
-        || case.in_situ.is_some()
-        || case.loads.iter().any(|load| heavy(&load.kind))
-        || case.supports.iter().any(|support| support.surface.is_some())
+    let of_stage = |stage: &Case| {
+        let loads = stage.loads.iter().any(|load| heavy(&load.kind));
+        loads || stage.supports.iter().any(|support| support.surface.is_some())
+    };
+    case.flows.gas.is_some() || case.in_situ.is_some() || stages(case).any(|(stage, _)| of_stage(stage))
 }
 
-/// A mesh so far from the origin that its coordinates have few bits left for displacements.
+/// Solids so far from the origin that their coordinates have few bits left for displacements.
 fn doubt_of_origin(case: &Case, mesh: &Mesh, bodies: &[(&SolidBody, f64)]) -> Option<Diagnostic> {
     let source = case.mesh.as_ref()?;
     let strain = |body: &SolidBody| {
@@ -100,13 +123,21 @@ fn doubt_of_origin(case: &Case, mesh: &Mesh, bodies: &[(&SolidBody, f64)]) -> Op
         damage.map_or(STRAIN, |damage| damage.value.law.tensile_strength / material.young_modulus)
     };
     let strain = bodies.iter().map(|(body, _)| strain(body)).fold(f64::INFINITY, f64::min).min(STRAIN);
-    let far = mesh.nodes.iter().map(|x| x.amax()).fold(0.0, f64::max);
-    let tetrahedra = mesh.tetrahedra.iter().flat_map(|[a, b, c, d]| [[a, b], [b, c], [c, d]]);
-    let triangles = mesh.triangles.iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let length = |[a, b]: [&u32; 2]| (mesh.nodes[*b as usize] - mesh.nodes[*a as usize]).norm();
-    let shortest = tetrahedra.chain(triangles).map(length).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+    let groups = || bodies.iter().flat_map(|(body, _)| mesh.group(&body.group.value));
+    let tetrahedra = groups().flat_map(|group| &group.tetrahedra).map(|&element| mesh.tetrahedra[element as usize]);
+    let triangles = groups().flat_map(|group| &group.triangles).map(|&element| mesh.triangles[element as usize]);
+    let edges = tetrahedra.flat_map(|[a, b, c, d]| [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]);
+    let edges = edges.chain(triangles.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]));
+    let (mut far, mut shortest) = (0.0, f64::INFINITY);
+    for [a, b] in edges.map(|edge| edge.map(|node| mesh.nodes[node as usize])) {
+        far = a.amax().max(b.amax()).max(far);
+        let length = (b - a).norm();
+        if length > 0.0 {
+            shortest = length.min(shortest);
+        }
+    }
     let bits = LOG2_10 * log10(strain * shortest / (far * f64::EPSILON));
-    if bodies.is_empty() || !bits.is_finite() || bits >= BITS {
+    if !bits.is_finite() || bits >= BITS {
         return None;
     }
     let found = format!(
@@ -124,8 +155,7 @@ fn doubt_of_origin(case: &Case, mesh: &Mesh, bodies: &[(&SolidBody, f64)]) -> Op
 fn doubt_of_zone(case: &Case, body: &SolidBody, size: f64) -> Option<Diagnostic> {
     let material = &case.materials[body.material];
     let damage = material.damage.as_ref()?;
-    let law = &damage.value.law;
-    let zone = material.young_modulus * law.fracture_energy / law.tensile_strength.powi(2);
+    let zone = damage.value.law.process_zone(material.young_modulus);
     if size == 0.0 || zone <= ZONES * size || zone > LONGEST_ZONE {
         return None;
     }
@@ -135,23 +165,52 @@ fn doubt_of_zone(case: &Case, body: &SolidBody, size: f64) -> Option<Diagnostic>
     Some(note.remedy("check tensile_strength, fracture_energy and mesh.unit; such a body yields without a crack"))
 }
 
-/// Largest absolute value of a function of time alone during the run.
-fn largest(function: &TimeFunction, end: f64) -> Option<f64> {
-    if function.depends_on_position() {
+/// A function of time alone between two instants: times [s] with values, which straight lines join. Nothing of pulses: they
+/// may be as short as they like.
+fn course(function: &TimeFunction, [begin, end]: [f64; 2]) -> Option<Vec<(f64, f64)>> {
+    if function.depends_on_position() || function.is_pulse() || function.delay().is_some() {
         return None;
     }
-    let at = |look: u32| function.value(end * f64::from(look) / f64::from(LOOKS), Vec3::zeros()).abs();
-    Some((0..=LOOKS).map(at).fold(0.0, f64::max))
+    let mut times = vec![begin, end];
+    match function {
+        TimeFunction::Ramp(points) | TimeFunction::SmoothRamp(points) => {
+            let during = points.iter().map(|(time, _)| *time).filter(|time| begin < *time && *time < end);
+            times.splice(1..1, during);
+        }
+        TimeFunction::Expression(field) if field.depends_on_time() => {
+            let between = (1..LOOKS).map(|look| begin + (end - begin) * f64::from(look) / f64::from(LOOKS));
+            times.splice(1..1, between);
+        }
+        _ => {}
+    }
+    Some(times.into_iter().map(|time| (time, function.value(time, Vec3::zeros()))).collect())
 }
 
-fn doubts_of_load(kind: &LoadKind, end: f64) -> Vec<Diagnostic> {
+/// Largest absolute value of a course.
+fn largest(course: &[(f64, f64)]) -> f64 {
+    course.iter().map(|(_, value)| value.abs()).fold(0.0, f64::max)
+}
+
+/// Largest distance from the start [m] on a course of velocities [m/s].
+fn farthest(course: &[(f64, f64)]) -> f64 {
+    let mut way = 0.0;
+    let steps = course.windows(2).map(|pair| 0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1));
+    steps.fold(0.0, |farthest, step| {
+        way += step;
+        f64::max(farthest, way.abs())
+    })
+}
+
+fn doubts_of_load(kind: &LoadKind, during: [f64; 2]) -> Vec<Diagnostic> {
     let doubt = |function: &Spanned<TimeFunction>| {
-        let value = largest(&function.value, end)?;
+        let value = largest(&course(&function.value, during)?);
+        // An expression may be larger between the instants at which it is looked at.
+        let is_bound = !matches!(&function.value, TimeFunction::Expression(field) if field.depends_on_time());
         let (unit, expected, remedy) = match kind {
             LoadKind::Gravity { .. } if value > ACCELERATION => {
                 ("m/s^2", "at most 5000 m/s^2 (the Earth has 9.81)", "did you mean mm/s^2?")
             }
-            LoadKind::Pressure { .. } | LoadKind::Traction { .. } if value > 0.0 && value < PRESSURE => {
+            LoadKind::Pressure { .. } | LoadKind::Traction { .. } if is_bound && value > 0.0 && value < PRESSURE => {
                 ("Pa", "10 Pa at least (the air has 100 kPa)", "did you mean MPa?")
             }
             _ => return None,
@@ -163,12 +222,11 @@ fn doubts_of_load(kind: &LoadKind, end: f64) -> Vec<Diagnostic> {
 }
 
 /// Motions of supports that would tear the body to many times its size.
-fn doubts_of_motion(case: &Case, size: f64) -> Vec<Diagnostic> {
-    let end = case.solver.end;
+fn doubts_of_motion(case: &Case, during: [f64; 2], size: f64) -> Vec<Diagnostic> {
     let doubt = |motion: &Spanned<Motion>| {
         let (way, unit) = match &motion.value {
-            Motion::Displacement(function) => (largest(function, end)?, "mm"),
-            Motion::Velocity(function) => (largest(function, end)? * end, "mm/s"),
+            Motion::Displacement(function) => (largest(&course(function, during)?), "mm"),
+            Motion::Velocity(function) => (farthest(&course(function, during)?), "mm/s"),
             Motion::Fixed => return None,
         };
         if way <= 2.0 * size {

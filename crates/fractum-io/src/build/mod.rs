@@ -66,7 +66,7 @@ pub struct BuiltScene {
     pub ties: Vec<TieReport>,
     /// Whether heat is conducted alone.
     pub conducts_alone: bool,
-    /// Doubts that do not keep the scene from running.
+    /// Doubts that building it has shown, which do not keep the scene from running; not those of [`doubts`] about the case.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -110,11 +110,7 @@ pub fn build_scene(
     context.check_before_particles();
     let built = context.build(prepared, facets);
     match built {
-        Some(mut built) if context.diagnostics.is_empty() => {
-            built.warnings.extend(context.case.warnings().iter().cloned());
-            built.warnings.extend(doubts(case, mesh));
-            Ok(built)
-        }
+        Some(built) if context.diagnostics.is_empty() => Ok(built),
         _ => Err(Diagnostics::of_many(context.diagnostics)),
     }
 }

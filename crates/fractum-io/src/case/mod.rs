@@ -65,3 +65,4 @@ pub use schema::schema;
 pub use time_function::{Field, TimeFunction};
 pub(crate) use tree::place_of;
 pub use unit::Dimension;
+pub(crate) use usual::LONGEST_ZONE;

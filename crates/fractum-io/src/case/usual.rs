@@ -18,27 +18,31 @@ pub(super) struct Usual {
     units: &'static [(&'static str, f64)],
 }
 
-/// Units of stress and modulus, the most common of E first.
-const MODULI: &[(&str, f64)] = &[("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0)];
-const STRENGTHS: &[(&str, f64)] = &[("MPa", 1e6), ("kPa", 1e3), ("GPa", 1e9), ("Pa", 1.0)];
-
 /// Young's modulus [Pa].
-pub(super) const YOUNG_MODULUS: Usual = Usual {
-    unit: "Pa",
-    range: (1e5, 1e13),
-    words: "100 kPa to 10 TPa (rubber has 1 MPa, concrete 30 GPa, diamond 1.2 TPa)",
-    common: (1e7, 1.3e12),
-    units: MODULI,
-};
+pub(super) const YOUNG_MODULUS: Usual = of_stress(
+    (1e5, 1e13),
+    "100 kPa to 10 TPa (rubber has 1 MPa, concrete 30 GPa, diamond 1.2 TPa)",
+    (1e7, 1.3e12),
+    &[("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0)],
+);
 
 /// Strength in tension, compression or shear [Pa].
-pub(super) const STRENGTH: Usual = Usual {
-    unit: "Pa",
-    range: (1e3, 1e11),
-    words: "1 kPa to 100 GPa (concrete has 3 MPa in tension, granite 10 MPa, steel 500 MPa)",
-    common: (1e5, 5e9),
-    units: STRENGTHS,
-};
+pub(super) const STRENGTH: Usual = of_stress(
+    (1e3, 1e11),
+    "1 kPa to 100 GPa (concrete has 3 MPa in tension, granite 10 MPa, steel 500 MPa)",
+    (1e5, 5e9),
+    &[("MPa", 1e6), ("kPa", 1e3), ("GPa", 1e9), ("Pa", 1.0)],
+);
+
+/// A modulus or a strength; the most common of its units is the first.
+const fn of_stress(
+    range: (f64, f64),
+    words: &'static str,
+    common: (f64, f64),
+    units: &'static [(&'static str, f64)],
+) -> Usual {
+    Usual { unit: "Pa", range, words, common, units }
+}
 
 /// Mass density [kg/m³].
 pub(super) const DENSITY: Usual = Usual {
@@ -57,6 +61,8 @@ pub(super) const FRACTURE_ENERGY: Usual = Usual {
     common: FRACTURE_ENERGIES,
     units: ENERGIES,
 };
+/// Longest process zone E G_f/f_t² of a solid [m]: a longer one tells a wrong unit.
+pub(crate) const LONGEST_ZONE: f64 = 100.0;
 const FRACTURE_ENERGIES: (f64, f64) = (1.0, 1e6);
 const ENERGIES: &[(&str, f64)] = &[("J/m^2", 1.0), ("N/mm", 1e3), ("kJ/m^2", 1e3)];
 

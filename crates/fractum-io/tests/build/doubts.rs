@@ -8,7 +8,7 @@ use fractum_io::build::doubts;
 use fractum_io::case::{Severity, parse_case, read_case};
 use fractum_math::Vec3;
 use fractum_mesh::generate::structured_box;
-use fractum_mesh::{Mesh, read_msh};
+use fractum_mesh::{Group, Mesh, read_msh};
 
 fn cases_below(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap().flatten() {
@@ -77,11 +77,16 @@ end = "1 ms"
 /// What is said of a bar with one text in place of another: warnings of the case, and doubts about a mesh of this length.
 fn said(old: &str, new: &str, length: f64, origin: f64) -> Vec<String> {
     assert!(BAR.contains(old), "{old}");
-    let case = parse_case(&BAR.replace(old, new), Path::new("case.toml"), &[]);
-    let case = case.unwrap_or_else(|errors| panic!("{errors}"));
     let mut mesh = structured_box([8, 3, 3], Vec3::new(length, 0.3 * length, 0.3 * length), None);
     mesh.nodes.iter_mut().for_each(|node| node.x += origin);
-    let all = case.warnings().iter().cloned().chain(doubts(&case, &mesh));
+    said_of(&BAR.replace(old, new), &mesh)
+}
+
+/// What is said of a case and its mesh.
+fn said_of(case: &str, mesh: &Mesh) -> Vec<String> {
+    let case = parse_case(case, Path::new("case.toml"), &[]);
+    let case = case.unwrap_or_else(|errors| panic!("{errors}"));
+    let all = case.warnings().iter().cloned().chain(doubts(&case, mesh));
     all.inspect(|doubt| assert_eq!(doubt.severity, Severity::Warning)).map(|doubt| doubt.to_string()).collect()
 }
 
@@ -136,4 +141,67 @@ fn loads_of_another_unit_are_told() {
     assert!(all.len() == 1 && all[0].contains("case.toml:19:17: ") && all[0].contains("mm/s^2?"), "{all:?}");
     let all = load("group = \"x-\"\npressure = 8");
     assert!(all.len() == 1 && all[0].contains("case.toml:20:12: ") && all[0].contains("is 8 Pa at most"), "{all:?}");
+}
+
+#[test]
+fn what_lasts_shorter_than_the_looks_of_a_long_run_is_not_doubted() {
+    let mesh = structured_box([8, 3, 3], Vec3::new(0.4, 0.12, 0.12), None);
+    let loaded = |support: &str, load: &str, end: &str| {
+        let case = BAR.replace("displacement = { x = \"0.1 mm * t / 1 ms\" }", support);
+        let solver = format!("[[loads]]\n{load}\n[solver]\nend = \"{end}\"");
+        said_of(&case.replace("[solver]\nend = \"1 ms\"", &solver), &mesh)
+    };
+    let pressure = |pressure: &str| loaded("fix = \"x\"", &format!("group = \"x-\"\npressure = {pressure}"), "1.5 s");
+    let pulse = "{ pulse = \"double-exponential\", peak = \"50 MPa\", rise_time = \"10 us\", decay_time = \"50 us\" }";
+    let bump = "{ ramp = [[\"0 s\", \"1 Pa\"], [\"10 us\", \"5 MPa\"], [\"20 us\", \"1 Pa\"]] }";
+    for right in [pulse, bump, "\"50 MPa*exp(-t/50 us)*t/10 us\""] {
+        assert_eq!(pressure(right), [""; 0], "{right}");
+    }
+    let small = "{ ramp = [[\"0 s\", \"0 Pa\"], [\"10 us\", \"8 Pa\"], [\"20 us\", \"0 Pa\"]] }";
+    let said = pressure(small);
+    assert!(said.len() == 1 && said[0].contains("is 8 Pa at most"), "{said:?}");
+    // Half a metre per second of the velocity is no way: it lasts 50 us, or swings.
+    let velocity = |velocity: &str| {
+        let support = format!("velocity = {{ x = {velocity} }}");
+        loaded(&support, "gravity = { y = \"-9.81 m/s^2\" }", "0.2 s")
+    };
+    let blow = "{ ramp = [[\"0 s\", \"10 m/s\"], [\"50 us\", \"10 m/s\"], [\"60 us\", \"0 m/s\"]] }";
+    for right in [blow, "\"10 m/s*sin(2*pi*t/10 ms)\""] {
+        assert_eq!(velocity(right), [""; 0], "{right}");
+    }
+    let there_and_back = "{ ramp = [[\"0 s\", \"20 m/s\"], [\"0.1 s\", \"20 m/s\"], [\"0.101 s\", \"-20 m/s\"]] }";
+    let said = velocity(there_and_back);
+    assert!(said.len() == 1 && said[0].contains("moves a body of 400 mm by 2 m"), "{said:?}");
+}
+
+#[test]
+fn loads_of_every_stage_are_doubted_once() {
+    let stages = "[[loads]]\ngroup = \"x-\"\npressure = 8\nstages = [\"b\"]\n\
+                  [[loads]]\ngroup = \"x-\"\npressure = 7\n\
+                  [[stages]]\nname = \"a\"\nsolver = { end = \"1 ms\" }\n[[stages]]\nname = \"b\"\nsolver = { end = \"2 ms\" }";
+    let said = said("[solver]\nend = \"1 ms\"", stages, 0.4, 0.0);
+    let about = |text: &str| said.iter().filter(|doubt| doubt.contains(text)).count();
+    assert_eq!((said.len(), about("is 8 Pa at most"), about("is 7 Pa at most")), (2, 1, 1), "{said:?}");
+}
+
+#[test]
+fn only_solids_are_looked_at_for_their_distance_from_the_origin_and_with_all_their_edges() {
+    let group = |name: &str, tetrahedra: Vec<u32>, points: Vec<u32>| {
+        let dimension = if points.is_empty() { 3 } else { 0 };
+        Group { name: name.into(), dimension, tag: 1, tetrahedra, points, ..Group::default() }
+    };
+    let mut mesh = Mesh {
+        // The short edge joins the first node and the third.
+        nodes: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1e-3, 0.0, 0.0], [0.0, 0.0, 1.0], [4e11, 0.0, 0.0]]
+            .map(Vec3::from)
+            .to_vec(),
+        tetrahedra: vec![[0, 1, 2, 3]],
+        points: vec![[4]],
+        groups: vec![group("body", vec![0], vec![]), group("target", vec![], vec![0])],
+        ..Mesh::default()
+    };
+    assert_eq!(said_of(BAR, &mesh), [""; 0], "the point far away belongs to no solid");
+    mesh.nodes.iter_mut().for_each(|node| node.y += 1e6);
+    let said = said_of(BAR, &mesh);
+    assert!(said.len() == 1 && said[0].contains("an edge of 1 mm"), "{said:?}");
 }

@@ -202,8 +202,7 @@ impl Plan {
         );
         if let Some(damage) = material.damage.as_ref().filter(|_| solid.damage) {
             let d = &damage.value;
-            let law = &d.law;
-            let zone = material.young_modulus * law.fracture_energy / (law.tensile_strength * law.tensile_strength);
+            let zone = d.law.process_zone(material.young_modulus);
             let (_, ratio) = scene.solid.length_report(index);
             self.add(
                 "",

@@ -1,8 +1,10 @@
 //! Ratios of the values of a material that tell a wrong unit where each value alone is possible.
 
+use fractum_fem::DamageLaw;
+
 use crate::case::model::{BondFailure, Damage};
 use crate::case::reader::Table;
-use crate::case::usual::{STRENGTH, YOUNG_MODULUS, energy_meant};
+use crate::case::usual::{LONGEST_ZONE, STRENGTH, YOUNG_MODULUS, energy_meant};
 use crate::case::{Diagnostic, Spanned};
 use crate::number::{quantity, significant};
 
@@ -10,7 +12,7 @@ use crate::number::{quantity, significant};
 const STRAIN: std::ops::RangeInclusive<f64> = 1e-7..=0.2;
 
 /// Length of the process zone E G_f/f_t² [m] of solids: ceramics have 0.1 mm, concrete 0.3 m.
-const ZONE: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
+const ZONE: std::ops::RangeInclusive<f64> = 1e-6..=LONGEST_ZONE;
 
 /// Warns of a strength that does not suit the modulus, and of a fracture energy that does not suit both.
 pub(super) fn doubt(
@@ -38,19 +40,20 @@ pub(super) fn doubt(
         }
     }
     let Some(law) = damage.map(|damage| &damage.value.law).filter(|_| !doubted) else { return };
-    let zone = |energy: f64| young * energy / law.tensile_strength.powi(2);
-    if ZONE.contains(&zone(law.fracture_energy)) {
+    let zone = law.process_zone(young);
+    if ZONE.contains(&zone) {
         return;
     }
     let place = material.place_below("damage.fracture_energy");
     let found = format!(
         "is {}, so that the process zone E Gf/ft^2 is {} long",
         quantity(law.fracture_energy, "J/m^2"),
-        quantity(zone(law.fracture_energy), "m")
+        quantity(zone, "m")
     );
     let note = Diagnostic::warning(&place, found).expected("1 um to 100 m (ceramics have 0.1 mm, concrete 0.3 m)");
     let meant = material.node_below("damage.fracture_energy");
-    let meant = meant.and_then(|node| energy_meant(node, |energy| ZONE.contains(&zone(energy))));
+    let suits = |fracture_energy: f64| ZONE.contains(&DamageLaw { fracture_energy, ..law.clone() }.process_zone(young));
+    let meant = meant.and_then(|node| energy_meant(node, suits));
     material.reader.note(match meant {
         Some(meant) => note.remedy(format!("did you mean \"{meant}\"?")),
         None => note.remedy("check the units of young_modulus, tensile_strength and fracture_energy"),
