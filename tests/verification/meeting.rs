@@ -10,10 +10,10 @@ use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
     Along, Bonded, BondedPart, ContactBody, ContactMaterial, ContactParameters, ContactProbe, Contacts, Drive,
-    ElasticMaterial, EnergyKind, FacetMesh, Form, Frame, Inertia, Loads, Probe, ProbedScene, RigidBody, Scene,
-    SceneSettings, SolidSurface, Supports, TimeStepSettings,
+    ElasticMaterial, EnergyKind, FacetMesh, FlatFaces, Form, Frame, Inertia, Loads, Probe, ProbedScene, RigidBody,
+    Scene, SceneSettings, Shape, SolidSurface, Supports, TimeStepSettings,
 };
-use fractum_tests::softening;
+use fractum_tests::{settings, softening};
 
 const SURFACE: ContactParameters = ContactParameters { friction: 0.4, damping_ratio: 0.05, rolling_friction: 0.0 };
 
@@ -274,4 +274,87 @@ fn the_force_from_a_rigid_body_that_meets_one_body_is_its_reaction() {
         assert!((force - reaction).abs() <= 1e-13 * largest, "{force} {reaction}");
     }
     assert!(largest > 0.0);
+}
+
+/// Radius of the particles of the cube with flat faces [m], and how far outside of them its faces are.
+const GRAIN: f64 = 0.01;
+const FACE: f64 = 0.08 * GRAIN;
+
+/// A bonded cube of 27 particles with flat faces whose middle is high above a rigid plane.
+fn flat_cube(velocity: Vec3, spin: Vec3) -> Scene {
+    let cells = || (0..27).map(|i| Vec3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) - Vec3::repeat(1.0));
+    let middle = Vec3::z() * 0.05;
+    let position: Vec<Vec3> = cells().map(|cell| middle + cell * (2.0 * GRAIN)).collect();
+    let mut particles = Particles::at_rest(position.clone(), vec![GRAIN; 27], 0.27).unwrap();
+    for i in 0..27 {
+        particles.velocity[i] = velocity + spin.cross(&(position[i] - middle));
+        particles.spin[i] = spin;
+    }
+    let near = |&[i, j]: &[u32; 2]| (position[i as usize] - position[j as usize]).norm() < 2.1 * GRAIN;
+    let part = BondedPart {
+        name: "cube".into(),
+        particles,
+        pairs: (0..27).flat_map(|j| (0..j).map(move |i| [i, j])).filter(near).collect(),
+        law: fractum_dem::BeamSection { radius: 0.6 * GRAIN, young_modulus: 1e9, poisson_ratio: 0.2 }.into(),
+        shares: Vec::new(),
+        density: 2400.0,
+        fraction: 0.6,
+        fracture: None,
+    };
+    let bonded = Bonded::new(vec![part]).unwrap();
+    let elastic = ElasticMaterial { young_modulus: 1e9, poisson_ratio: 0.2 };
+    let form = Form::Shape { shape: Shape::HalfSpace, hollow: false };
+    let plane = RigidBody::new("plane", form, Frame::at_rest(), ElasticMaterial::RIGID, SURFACE);
+    let materials = vec![ContactMaterial { elastic, density: 2400.0, surface: SURFACE }];
+    let mut contacts = Contacts::new(&bonded, materials, vec![plane], Vec::new(), Vec::new());
+    let shift = cells().map(|cell| cell * FACE).collect();
+    let faces = FlatFaces { young_modulus: 1e9, poisson_ratio: 0.2, shift };
+    assert_eq!(contacts.flatten(vec![Some(faces)], &bonded.particles), Vec::new());
+    let solid = Solid::new(Vec::new(), Vec::new()).unwrap();
+    let debris = Debris::new(&solid, Vec::new());
+    let (loads, supports) = (Loads::new(Vec::new(), 0), Supports::new(Vec::new(), &[]).unwrap());
+    let mut settings = settings(0.01, 1e-2);
+    // A particle hits a face for a few steps only.
+    settings.time_step.safety = 0.05;
+    Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
+        .with_bonded(bonded)
+        .with_contacts(contacts, &[])
+}
+
+#[test]
+fn a_body_with_flat_faces_gets_the_angular_momentum_that_the_plane_loses() {
+    let mut scene = flat_cube(Vec3::new(2.0, -1.0, -6.0), Vec3::new(30.0, -20.0, 10.0));
+    scene.step(true).unwrap();
+    let start = momenta(&scene);
+    let (mut impulse, mut hardest) = ((Vec3::zeros(), Vec3::zeros()), 0.0f64);
+    while !scene.is_finished() {
+        let dt = 0.5 * (scene.clock.dt_before + scene.clock.dt_after);
+        scene.step(scene.clock.step.is_multiple_of(10)).unwrap();
+        // The reference point of the plane is the origin.
+        let plane = &scene.contacts.rigid_bodies()[0];
+        impulse = (impulse.0 + plane.contact_force() * dt, impulse.1 + plane.contact_moment() * dt);
+        hardest = hardest.max(plane.contact_force().norm());
+    }
+    let end = momenta(&scene);
+    assert!(hardest > 100.0 && impulse.1.norm() > 1e-3, "{hardest} {impulse:?}");
+    assert!((end.0 - start.0 + impulse.0).norm() < 1e-11 * start.0.norm(), "{start:?} {end:?} {impulse:?}");
+    assert!((end.1 - start.1 + impulse.1).norm() < 1e-11 * impulse.1.norm(), "{start:?} {end:?} {impulse:?}");
+    assert!(scene.ledger().residual_max_relative < 1e-3, "{:?}", scene.ledger());
+}
+
+#[test]
+fn a_body_that_has_turned_over_is_felt_at_its_face() {
+    let mut scene = flat_cube(Vec3::zeros(), Vec3::zeros());
+    let turn = Rotation::from_scaled_axis(Vec3::x() * std::f64::consts::PI);
+    let particles = &mut scene.bonded.particles;
+    let height = 2.0 * GRAIN + GRAIN + 0.5 * FACE;
+    for i in 0..27 {
+        particles.position[i] = Vec3::z() * height + turn * (particles.position[i] - Vec3::z() * 0.05);
+        particles.orientation[i] = turn;
+    }
+    scene.step(false).unwrap();
+    let force = scene.contacts.rigid_bodies()[0].contact_force();
+    // Nine springs of 30 E R, half of the way to the face deep.
+    let expected = 9.0 * 30.0 * 1e9 * GRAIN * 0.5 * FACE;
+    assert!((force + Vec3::z() * expected).norm() < 1e-9 * expected, "{force:?} {expected}");
 }

@@ -84,7 +84,7 @@ impl Contacts {
         }
         for (index, (contacts, _)) in self.on_tools.iter().enumerate() {
             for touch in contacts.touches() {
-                let at = place(touch.sphere) + touch.offset;
+                let at = self.flat.places(&particles.position)[touch.sphere as usize] + touch.offset;
                 visit(at, [particle(touch.sphere), ContactBody::Rigid(index)], touch.force);
             }
         }

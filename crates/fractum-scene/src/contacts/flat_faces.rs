@@ -1,7 +1,7 @@
 //! Bonded bodies on rigid bodies: their faces are flat, and stiff beside the body.
 
-use fractum_contact::Spheres;
-use fractum_contact::law::{ContactParameters, Hertz};
+use fractum_contact::law::{ContactParameters, Hertz, HertzMemory};
+use fractum_contact::{Spheres, Touch};
 use fractum_dem::Particles;
 use fractum_math::Vec3;
 
@@ -22,27 +22,39 @@ pub struct FlatFaces {
     pub young_modulus: f64,
     /// Poisson's ratio of the body.
     pub poisson_ratio: f64,
-    /// How far each particle is from touching exactly the walls that it was packed against [m].
+    /// How far each particle is from touching exactly the walls that it was packed against, in its own axes [m].
     pub shift: Vec<Vec3>,
 }
 
-impl FlatFaces {
+/// How stiff the faces of a body are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FaceStiffness {
+    /// Young's modulus of the body [Pa].
+    young_modulus: f64,
+    /// Poisson's ratio of the body.
+    poisson_ratio: f64,
+}
+
+impl FaceStiffness {
     /// Normal and tangential stiffness of a particle of a radius [m], in N/m.
-    fn stiffness(&self, radius: f64) -> [f64; 2] {
+    fn of(&self, radius: f64) -> [f64; 2] {
         let normal = STIFFNESS * self.young_modulus * radius;
         [normal, normal / (2.0 * (1.0 + self.poisson_ratio))]
     }
 
     /// The contact of a particle of a radius [m] with a rigid body; both together move a mass [kg].
     pub(super) fn law(&self, radius: f64, surface: ContactParameters, mass: f64) -> Hertz {
-        Hertz::flat(self.stiffness(radius), surface, radius, mass)
+        Hertz::flat(self.of(radius), surface, radius, mass)
     }
 
     /// Squared frequency that contact with one face asks of the step [1/s²]: of the normal motion, or of rolling on the
-    /// tangential spring, (1/m + R²/I) k_t with I = 2/5 m R²; dampers make it harder to follow.
-    fn frequency_square(&self, radius: f64, mass: f64, damping_ratio: f64) -> f64 {
-        let [normal, tangential] = self.stiffness(radius);
-        let stiffest = normal.max(3.5 * tangential);
+    /// tangential spring, (1/m + (R + s)²/I) k_t with I = 2/5 m R²; dampers make it harder to follow.
+    ///
+    /// - `shift`: s, from the centre to where the face is felt [m]
+    fn frequency_square(&self, radius: f64, shift: f64, mass: f64, damping_ratio: f64) -> f64 {
+        let [normal, tangential] = self.of(radius);
+        let arm = 1.0 + shift / radius;
+        let stiffest = normal.max((1.0 + 2.5 * arm * arm) * tangential);
         stiffest / mass * ((1.0 + damping_ratio * damping_ratio).sqrt() + damping_ratio).powi(2)
     }
 }
@@ -51,30 +63,59 @@ impl FlatFaces {
 #[derive(Clone, Debug, Default)]
 pub(super) struct FlatBodies {
     /// Faces of each body of particles; empty where no body has any.
-    faces: Vec<Option<FlatFaces>>,
-    /// How far each particle is from where rigid bodies feel it, and where that is [m]; empty where nothing is flat.
+    faces: Vec<Option<FaceStiffness>>,
+    /// From each particle to where rigid bodies feel it, in its own axes [m]; this and what follows is empty where nothing is flat.
     shift: Vec<Vec3>,
-    shifted: Vec<Vec3>,
+    /// The same in the axes of space [m].
+    arm: Vec<Vec3>,
+    /// Where rigid bodies feel particles [m], and the velocity there [m/s].
+    place: Vec<Vec3>,
+    velocity: Vec<Vec3>,
     /// Squared frequency that flat faces ask of the step [1/s²].
     pub(super) frequency_square: f64,
 }
 
 impl FlatBodies {
     /// Faces of a body; none where its particles touch as spheres.
-    pub(super) fn of(&self, body: u16) -> Option<&FlatFaces> {
+    pub(super) fn of(&self, body: u16) -> Option<&FaceStiffness> {
         self.faces.get(usize::from(body)).and_then(Option::as_ref)
     }
 
-    /// Puts particles where rigid bodies feel them, where that is not at their centres.
-    pub(super) fn shift_particles(&mut self, position: &[Vec3]) {
-        for ((place, x), shift) in self.shifted.iter_mut().zip(position).zip(&self.shift) {
-            *place = x + shift;
+    /// Finds where rigid bodies feel particles: faces turn with their particles.
+    pub(super) fn locate(&mut self, particles: &Particles) {
+        let FlatBodies { shift, arm, place, velocity, .. } = self;
+        for (i, shift) in shift.iter().enumerate() {
+            if *shift != Vec3::zeros() {
+                arm[i] = particles.orientation[i] * shift;
+            }
+            place[i] = particles.position[i] + arm[i];
+            velocity[i] = particles.velocity[i] + particles.spin[i].cross(&arm[i]);
         }
     }
 
-    /// Where rigid bodies feel particles [m].
+    /// Particles as rigid bodies feel them.
+    pub(super) fn felt<'a>(&'a self, spheres: Spheres<'a>) -> Spheres<'a> {
+        if self.shift.is_empty() {
+            spheres
+        } else {
+            Spheres { position: &self.place, velocity: &self.velocity, ..spheres }
+        }
+    }
+
+    /// Where rigid bodies felt particles at the last step [m].
     pub(super) fn places<'a>(&'a self, position: &'a [Vec3]) -> &'a [Vec3] {
-        if self.shifted.is_empty() { position } else { &self.shifted }
+        if self.shift.is_empty() { position } else { &self.place }
+    }
+
+    /// Adds the moments about the centres of forces that act where rigid bodies feel particles.
+    pub(super) fn add_moments<'a>(&self, touches: impl Iterator<Item = &'a Touch<HertzMemory>>, moment: &mut [Vec3]) {
+        if self.shift.is_empty() {
+            return;
+        }
+        for touch in touches {
+            let i = touch.sphere as usize;
+            moment[i] += self.arm[i].cross(&touch.force);
+        }
     }
 }
 
@@ -90,22 +131,34 @@ impl Contacts {
         let alone = self.among.is_none() && self.solids.is_empty();
         let damping = self.rigid_bodies.iter().map(|rigid_body| rigid_body.surface.damping_ratio).fold(0.0, f64::max);
         let (mut shift, mut frequency_square) = (Vec::with_capacity(particles.len()), 0.0f64);
-        for (body, faces) in faces.iter().enumerate() {
+        let mut stiffness = Vec::with_capacity(faces.len());
+        for (body, faces) in faces.into_iter().enumerate() {
             let own = shift.len()..shift.len() + self.body.iter().filter(|&&of| usize::from(of) == body).count();
-            let Some(faces) = faces else {
+            let Some(FlatFaces { young_modulus, poisson_ratio, shift: of_body }) = faces else {
                 shift.resize(own.end, Vec3::zeros());
+                stiffness.push(None);
                 continue;
             };
-            shift.extend_from_slice(&faces.shift);
+            shift.extend(of_body);
             shift.resize(own.end, Vec3::zeros());
+            let faces = FaceStiffness { young_modulus, poisson_ratio };
             let ratio = 0.5 * (damping + self.materials[body].surface.damping_ratio);
-            let squares = own.map(|i| faces.frequency_square(particles.radius[i], particles.mass[i], ratio));
+            let (radius, mass) = (&particles.radius, &particles.mass);
+            let squares = own.map(|i| faces.frequency_square(radius[i], shift[i].norm(), mass[i], ratio));
             frequency_square = squares.fold(frequency_square, f64::max);
+            stiffness.push(Some(faces));
         }
         if alone {
             self.rayleigh_frequency = 0.0;
         }
-        self.flat = FlatBodies { faces, shift, shifted: particles.position.clone(), frequency_square };
+        self.flat = FlatBodies {
+            faces: stiffness,
+            arm: vec![Vec3::zeros(); shift.len()],
+            place: particles.position.clone(),
+            velocity: particles.velocity.clone(),
+            shift,
+            frequency_square,
+        };
         self.accept_on_rigid_bodies(particles, true)
     }
 
@@ -113,10 +166,10 @@ impl Contacts {
     ///
     /// - `flat`: only those of flat faces
     pub(super) fn accept_on_rigid_bodies(&mut self, particles: &Particles, flat: bool) -> Vec<Overlap> {
-        self.flat.shift_particles(&particles.position);
+        self.flat.locate(particles);
         let Contacts { body, rigid_bodies, on_tools, flat: bodies, .. } = self;
         let Particles { position, velocity, spin, radius, .. } = particles;
-        let spheres = Spheres { position: bodies.places(position), velocity, spin, radius };
+        let spheres = bodies.felt(Spheres { position, velocity, spin, radius });
         let is_flat = |i: u32| bodies.of(body[i as usize]).is_some();
         let mut deep = Vec::new();
         for (rigid_body, (contacts, _)) in rigid_bodies.iter().zip(on_tools) {

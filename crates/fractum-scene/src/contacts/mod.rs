@@ -226,7 +226,7 @@ impl Contacts {
     /// - `dt` [s]: the step that led here
     pub(crate) fn add_forces(&mut self, solid: &mut Solid, particles: &mut Particles, dt: f64) -> Work {
         let mut work = Work::default();
-        self.flat.shift_particles(&particles.position);
+        self.flat.locate(particles);
         let Particles { position, velocity, spin, radius, mass, force, moment, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
         if let Some(mut among) = self.among.take() {
@@ -236,7 +236,7 @@ impl Contacts {
         }
         let Contacts { body, rigid_bodies, on_tools, solids, flat, .. } = self;
         let body = &*body;
-        let felt = Spheres { position: flat.places(position), ..spheres };
+        let felt = flat.felt(spheres);
         for (rigid_body, (contacts, pairs)) in rigid_bodies.iter_mut().zip(on_tools) {
             let heavy = rigid_body.mass();
             let law = |i: u32, curvature: f64| {
@@ -252,6 +252,7 @@ impl Contacts {
             contacts.search(&ground, &felt);
             work += contacts.update(&ground, &felt, law, dt);
             contacts.add_to(force, moment);
+            flat.add_moments(contacts.touches(), moment);
             rigid_body.clear_forces();
             for touch in contacts.touches() {
                 let place = felt.position[touch.sphere as usize] + touch.offset;
