@@ -196,7 +196,7 @@ impl EdgeField {
     }
 
     /// Has removal look at every broken edge.
-    pub(crate) fn renew_fresh(&mut self) {
+    fn renew_fresh(&mut self) {
         let EdgeField { fresh, state, .. } = self;
         fresh.clear();
         fresh.extend((0..).zip(&*state).filter(|(_, edge)| edge.broken).map(|(index, _)| index));

@@ -44,9 +44,11 @@ impl StandardDamage {
     /// Edge histories from the stresses of the elements (`stress_of`, none for a removed one).
     pub(crate) fn update_edges(&mut self, dt: f64, stress_of: impl Fn(u32) -> Option<Sym3> + Sync) {
         let StandardDamage {
-            field: EdgeField { softens, state, strength, length, woken, .. }, elements_of_edge, ..
+            field: EdgeField { softens, state, strength, length, woken, fresh, .. },
+            elements_of_edge,
+            ..
         } = self;
-        let (broke, loaded) = state
+        let (broke, loaded): (Vec<u32>, bool) = state
             .par_iter_mut()
             .enumerate()
             .with_min_len(1024)
@@ -57,22 +59,27 @@ impl StandardDamage {
                     count += 1;
                 }
                 if count == 0 {
-                    return (false, false);
+                    return (None, false);
                 }
                 let mean = sum * (1.0 / f64::from(count));
                 if softens.criterion.surely_below(mean, edge.kappa) {
-                    return (false, false);
+                    return (None, false);
                 }
                 let was_broken = edge.broken;
                 let q = softens.criterion.equivalent_stress(mean);
                 softens.load(edge, q, strength[index], length[index], dt);
-                (edge.broken && !was_broken, true)
+                ((edge.broken && !was_broken).then_some(index as u32), true)
             })
-            .reduce(|| (false, false), |a, b| (a.0 || b.0, a.1 || b.1));
+            .fold(Default::default, |(mut broke, loaded): (Vec<u32>, bool), (own, own_loaded)| {
+                broke.extend(own);
+                (broke, loaded || own_loaded)
+            })
+            .reduce(Default::default, |(mut broke, loaded), (others, others_loaded)| {
+                broke.extend(others);
+                (broke, loaded || others_loaded)
+            });
         *woken |= loaded;
-        if broke {
-            self.field.renew_fresh();
-        }
+        fresh.extend(broke);
     }
 
     /// Damage of an element with these edges: the largest mean over the ways a crack cuts it; under a phase field, whose band is
