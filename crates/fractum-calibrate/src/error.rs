@@ -52,8 +52,8 @@ pub enum CalibrateError {
     },
     /// A strength in compression that the strength in tension does not allow.
     #[error(
-        "compressive strength {asked} Pa is out of reach: prisms of such bonds bear {reached:.4e} Pa at most beside this tensile \
-         strength; lower one or raise the other"
+        "compressive strength {asked} Pa is out of reach: prisms of such bonds bear {reached:.4e} Pa at the nearest beside this \
+         tensile strength; change one of the two"
     )]
     Compression {
         /// The asked strength [Pa].

@@ -54,8 +54,8 @@ fn checksum(kind: &str, key: u128, content: &[u8]) -> u128 {
     hasher.digest128()
 }
 
-/// Raised whenever packings or beams come out differently for the same numbers: older entries are then made anew.
-const METHOD: u32 = 3;
+/// Raised whenever packings, beams or strengths come out differently for the same numbers: older entries are then made anew.
+const METHOD: u32 = 4;
 
 /// Key of an entry: everything that decides what it holds, and the program that makes it.
 pub(crate) fn key(what: &impl serde::Serialize) -> u128 {

@@ -142,6 +142,16 @@ fn criteria_take_only_keys_that_belong_to_them() {
     }
 }
 
+#[test]
+fn a_strength_in_compression_that_is_not_given_is_not_calibrated() {
+    let lines = "tensile_strength = \"60 MPa\"\ncriterion = \"mohr-coulomb\"";
+    let place = Workplace::new(&BAR.replace("criterion_strength = \"60 MPa\"", lines));
+    let checked = place.fractum(&["check", "case.toml"]);
+    assert_eq!(checked.code, Some(0), "{}", checked.stderr);
+    let words = "strength in compression is not calibrated, as no compressive_strength is given";
+    assert!(checked.stdout.contains(words) && !checked.stdout.contains("prisms"), "{}", checked.stdout);
+}
+
 /// The bar at rest: the same case but for the solver and for velocities that only motion has.
 fn at_rest() -> String {
     let bar = BAR.replace("initial_velocity = { x = \"rate*x/length\" }\n", "");

@@ -45,19 +45,17 @@ impl Maker<'_> {
         let criterion = failure.criterion;
         let bonds = BondKind { micro, coordination, convention, dispersion };
         let strength_key = key(&StrengthKey { bonds, asked, criterion });
-        // Entries of slipping criteria by an earlier method bear the plain name.
-        let kind = if criterion.kind().slips { "slip-strength" } else { "strength" };
-        let kept = self.cache.find(kind, strength_key, |bytes| Some(f64::from_le_bytes(bytes.try_into().ok()?)));
+        let kept = self.cache.find("strength", strength_key, |bytes| Some(f64::from_le_bytes(bytes.try_into().ok()?)));
         let (factor, origin) = match kept.filter(|factor| factor.is_finite() && *factor > 0.0) {
             Some(factor) => (factor, Origin::Cached),
             None => {
                 let factor = strength_factor(&bonds, asked, criterion).map_err(|error| self.wrong(&error))?;
-                self.cache.keep(kind, strength_key, &factor.to_le_bytes());
+                self.cache.keep("strength", strength_key, &factor.to_le_bytes());
                 (factor, Origin::Made)
             }
         };
         let scaled = criterion.scaled(factor);
-        let Some(asked) = criterion.numbers().compressive_strength.filter(|_| criterion.kind().slips) else {
+        let Some(asked) = failure.compressive_strength.filter(|_| criterion.kind().slips) else {
             return Ok(FoundStrengths { criterion: scaled, origin, crushing: None });
         };
         let kept = self.cache.find("crushing", strength_key, |bytes| postcard::from_bytes::<Crushing>(bytes).ok());

@@ -242,11 +242,14 @@ fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
 fn compression_text(found: &FoundStrengths) -> Option<String> {
     let Some(crushing) = found.crushing else {
         let calibrated = found.origin != Origin::Given;
-        return calibrated.then(|| {
-            let kind = found.criterion.kind().name;
-            format!(
-                "strength in compression is not calibrated with criterion = \"{kind}\"; it is with \"mohr-coulomb\""
-            )
+        return calibrated.then(|| match found.criterion.kind() {
+            kind if kind.slips => {
+                "strength in compression is not calibrated, as no compressive_strength is given".into()
+            }
+            kind => format!(
+                "strength in compression is not calibrated with criterion = \"{}\"; it is with \"mohr-coulomb\"",
+                kind.name
+            ),
         });
     };
     Some(format!(

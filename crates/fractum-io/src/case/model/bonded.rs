@@ -181,6 +181,8 @@ pub struct BondFailure {
     /// Tensile strength of the material [Pa], > 0, to which the criterion's own strengths are found; `None` = the case gives
     /// those.
     pub tensile_strength: Option<f64>,
+    /// Strength in compression as the case gives it [Pa]; `None` = the criterion has its usual one, if any.
+    pub compressive_strength: Option<f64>,
 }
 
 choice!(EndMoments { "mean" => Mean, "largest" => Largest });

@@ -56,7 +56,11 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
     check_slip(&table, kind, &numbers);
     table.finish("here");
     let tensile_strength = strength?;
-    Some(BondFailure { criterion: (kind.make)(&numbers), tensile_strength: (!own).then_some(tensile_strength) })
+    Some(BondFailure {
+        criterion: (kind.make)(&numbers),
+        tensile_strength: (!own).then_some(tensile_strength),
+        compressive_strength: numbers.compressive_strength,
+    })
 }
 
 /// A body that slips in tension has no tensile strength of its own.
