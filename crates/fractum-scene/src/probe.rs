@@ -187,7 +187,8 @@ impl Probe {
                 }
             }
             Probe::Energy(kind) => scene.ledger().probe(*kind),
-            Probe::Count(kind) => probed.counts().of(*kind).unwrap_or_else(|| probed.fragments().len()) as f64,
+            Probe::Count(CountKind::Fragments) => probed.fragments().len() as f64,
+            Probe::Count(kind) => probed.counts().of(*kind) as f64,
             Probe::Stress { elements, between: [normal, along] } => {
                 let (mut sum, mut volume) = (0.0, 0.0);
                 for &(body, element) in elements {

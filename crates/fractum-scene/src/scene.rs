@@ -128,9 +128,9 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// One of them; none for fragments.
-    pub(crate) fn of(&self, kind: CountKind) -> Option<usize> {
-        Some(match kind {
+    /// One of them; fragments are not among them.
+    pub(crate) fn of(&self, kind: CountKind) -> usize {
+        match kind {
             CountKind::RemovedElements => self.removed_elements,
             CountKind::BrokenEdges => self.broken_edges,
             CountKind::DamagedEdges => self.damaged_edges,
@@ -138,8 +138,8 @@ impl Counts {
             CountKind::Contacts => self.contacts,
             CountKind::Bonds => self.bonds,
             CountKind::BrokenBonds => self.broken_bonds,
-            CountKind::Fragments => return None,
-        })
+            CountKind::Fragments => 0,
+        }
     }
 }
 
@@ -324,7 +324,10 @@ impl Scene {
 
     /// One count.
     pub fn count(&self, kind: CountKind) -> usize {
-        self.counts().of(kind).unwrap_or_else(|| self.fragments().len())
+        match kind {
+            CountKind::Fragments => self.fragments().len(),
+            kind => self.counts().of(kind),
+        }
     }
 
     /// Fragments of solids and bonded bodies, heaviest first: pieces of at least two nodes or particles, joined by edges
