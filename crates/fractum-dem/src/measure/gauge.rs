@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn spin_of_the_particles_is_strain_to_satake_alone() {
+    fn spin_of_the_particles_is_rotation_to_satake_alone() {
         let set: Vec<u32> = (0..343).collect();
         let (place, radius) = spheres(0.0);
         let spin = rotation_by(Vec3::new(0.0, 0.0, 1e-6));
