@@ -1,5 +1,5 @@
 use fractum_dem::{BeamSection, DemError, Lattice};
-use fractum_math::Vec3;
+use fractum_math::{Vec3, sphere_volume};
 use fractum_pack::{BondNetwork, Convention, Domain, Packing, bond, interior_fraction};
 
 use crate::CalibrateError;
@@ -88,7 +88,7 @@ impl Sample {
         use std::f64::consts::PI;
         let cuboid = || self.box_extents().map(|e| e.product());
         let cylinder = || self.cylinder_extents().map(|(l, r)| PI * r * r * l);
-        let sphere = || self.sphere_radius().map(|r| 4.0 / 3.0 * PI * r.powi(3));
+        let sphere = || self.sphere_radius().map(sphere_volume);
         cuboid().or_else(cylinder).or_else(sphere).unwrap_or_else(|| self.packing.domain.volume())
     }
 

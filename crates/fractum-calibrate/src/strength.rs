@@ -74,6 +74,16 @@ pub struct BondKind {
     pub dispersion: f64,
 }
 
+impl BondKind {
+    /// A packing with such bonds; its radii have their dispersion.
+    fn sample(&self, spec: PackSpec) -> Result<Sample, CalibrateError> {
+        let packing = pack(&PackSpec { dispersion: self.dispersion, ..spec })?;
+        let mut sample = Sample::new(packing, self.coordination, self.convention)?;
+        sample.set_micro(self.micro)?;
+        Ok(sample)
+    }
+}
+
 /// Particles of the boxes on which strengths are found, and how many of them are broken.
 const STRENGTH_BOXES: (usize, u64) = (5_000, 2);
 
@@ -86,10 +96,7 @@ pub fn strength_factor(bonds: &BondKind, asked: f64, criterion: FractureCriterio
     let (particles, packings) = STRENGTH_BOXES;
     let mut factor = 0.0;
     for seed in 1..=packings {
-        let spec = PackSpec::new(Domain::cuboid(1e-3, 1e-3, 1e-3), particles, seed);
-        let packing = pack(&PackSpec { dispersion: bonds.dispersion, ..spec })?;
-        let mut sample = Sample::new(packing, bonds.coordination, bonds.convention)?;
-        sample.set_micro(bonds.micro)?;
+        let sample = bonds.sample(PackSpec::new(Domain::cuboid(1e-3, 1e-3, 1e-3), particles, seed))?;
         factor += asked / pull(&sample, asked, criterion)?.strength / packings as f64;
     }
     Ok(factor)
@@ -125,13 +132,7 @@ pub struct Crushing {
 /// and breaking.
 pub fn crushing(bonds: &BondKind, asked: f64, criterion: FractureCriterion) -> Result<Crushing, CalibrateError> {
     let (particles, [x, y, z], packings) = PRISMS;
-    let prism = |seed: u64| {
-        let spec = PackSpec::new(Domain::cuboid(x, y, z), particles, seed);
-        let packing = pack(&PackSpec { dispersion: bonds.dispersion, ..spec })?;
-        let mut sample = Sample::new(packing, bonds.coordination, bonds.convention)?;
-        sample.set_micro(bonds.micro)?;
-        Ok(sample)
-    };
+    let prism = |seed: u64| bonds.sample(PackSpec::new(Domain::cuboid(x, y, z), particles, seed));
     let samples = (1..=packings).into_par_iter().map(prism).collect::<Result<Vec<Sample>, CalibrateError>>()?;
     let press = |strength: f64| {
         let criterion = criterion.with_compressive_strength(strength);

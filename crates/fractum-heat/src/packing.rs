@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fractum_math::Vec3;
+use fractum_math::{Vec3, sphere_volume};
 use fractum_sparse::{Preconditioner, SparseError};
 
 use crate::implicit::{matrix, solve};
@@ -62,7 +62,7 @@ impl PackedSphere {
 
     /// Volume that a sphere stands for [m³]; none without neighbours.
     pub fn volume(&self, radius: f64) -> Option<f64> {
-        (self.fraction > 0.0).then(|| 4.0 / 3.0 * PI * radius.powi(3) / self.fraction)
+        (self.fraction > 0.0).then(|| sphere_volume(radius) / self.fraction)
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! Vectors and matrices are nalgebra's; this crate adds what the mechanics needs on top: symmetric tensors in Voigt
 //! order xx yy zz xy yz zx with their principal values, ragged tables, connected parts, parallel sums whose result does
-//! not depend on the number of threads, the largest eigenvalue of an operator, and the account of a step's work.
+//! not depend on the number of threads, the largest eigenvalue of an operator, the volume of a sphere, and the account of a
+//! step's work.
 //!
 //! ```
 //! use fractum_math::{Sym3, Vec3};
@@ -19,6 +20,7 @@ mod negative_part;
 mod ragged;
 mod reduce;
 mod rotation;
+mod sphere;
 mod sym3;
 mod widest;
 mod work;
@@ -30,6 +32,7 @@ pub use negative_part::{negative_parts, outer_principal_values};
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};
 pub use rotation::{angle_between, rotation_between, rotation_by, rotation_vector};
+pub use sphere::sphere_volume;
 pub use sym3::Sym3;
 pub use work::{HalfSteps, Work};
 

@@ -1,5 +1,5 @@
-use fractum_math::Vec3;
 use fractum_math::elementary::{cbrt, exp};
+use fractum_math::{Vec3, sphere_volume};
 
 use crate::domain::Domain;
 use crate::neighbours::spatial_order;
@@ -156,7 +156,7 @@ fn plan(spec: &PackSpec) -> Result<(usize, f64), PackError> {
     let cube_mean = 1.0 + (0.5 * spec.dispersion).powi(2);
     // φ V_effective = N (4/3)π R³ ⟨ρ³⟩, where a layer at the walls is less dense.
     let filled = |r: f64| FRACTION_INSERTED * (volume - WALL_LAYER * 2.0 * r * area).max(0.1 * volume);
-    let sphere = |r: f64| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3) * cube_mean;
+    let sphere = |r: f64| sphere_volume(r) * cube_mean;
     let (count, radius) = match spec.size {
         PackSize::Count(count) => {
             let (mut low, mut high) = (0.0, cbrt(volume / count.max(1) as f64));

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use fractum_math::Vec3;
+use fractum_math::{Vec3, sphere_volume};
 use serde::{Deserialize, Serialize};
 
 use crate::surface::SurfaceData;
@@ -121,7 +121,7 @@ impl Domain {
         match self {
             Domain::Box { lower, upper } => (upper - lower).product(),
             Domain::Cylinder { length, radius, .. } => PI * radius * radius * length,
-            Domain::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
+            Domain::Sphere { radius, .. } => sphere_volume(*radius),
             Domain::Surface(surface) => surface.volume(),
         }
     }

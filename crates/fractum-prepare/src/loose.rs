@@ -4,7 +4,7 @@ use fractum_dem::{BeamSection, Particles};
 use fractum_io::build::{PreparedBody, PreparedFacets};
 use fractum_io::case::model::{BodyKind, Case, FileContent, LooseBody, LooseSource, Material, Region, RigidShape};
 use fractum_io::case::{Diagnostic, Diagnostics, Place};
-use fractum_math::Vec3;
+use fractum_math::{Vec3, sphere_volume};
 use fractum_pack::{cloud, read_stl};
 
 /// The particles of a loose body.
@@ -35,7 +35,7 @@ pub(crate) fn prepare(body: &LooseBody, material: &Material) -> Result<PreparedB
             (centres, radii, &region.place)
         }
     };
-    let volume: f64 = radius.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
+    let volume: f64 = radius.iter().map(|r| sphere_volume(*r)).sum();
     let wrong = |error: &dyn std::fmt::Display| Box::new(Diagnostic::error(place, format!(": {error}")));
     let particles = Particles::at_rest(position, radius, volume * material.density).map_err(|e| wrong(&e))?;
     // No bond uses it.

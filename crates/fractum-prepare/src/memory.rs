@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use fractum_io::case::model::{BodyKind, BondedBody, BondedShape, Case, LooseBody, LooseSource};
 use fractum_io::case::model::{PackingSource, ParticleSize, Region, SolidBody};
 use fractum_io::memory::{self, TooLarge};
+use fractum_math::sphere_volume;
 use fractum_mesh::Mesh;
 use fractum_pack::cloud_cells;
 
@@ -58,10 +59,10 @@ fn bonded(body: &BondedBody) -> f64 {
     let volume = match &shape.value {
         BondedShape::Box { size, .. } => size.product(),
         BondedShape::Cylinder { length, radius, .. } => PI * radius * radius * length,
-        BondedShape::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
+        BondedShape::Sphere { radius, .. } => sphere_volume(*radius),
         BondedShape::Group(_) | BondedShape::Stl { .. } => 0.0,
     };
-    FILLED * volume / (4.0 / 3.0 * PI * radius.powi(3))
+    FILLED * volume / sphere_volume(radius)
 }
 
 /// Particles of a cloud.

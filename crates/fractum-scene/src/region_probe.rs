@@ -1,7 +1,7 @@
 //! Mean stress and strain of a region of a body.
 
 use fractum_dem::{StrainGauge, StrainMeasure, stress};
-use fractum_math::{Rotation, Vec3, rotation_by};
+use fractum_math::{Rotation, Vec3, rotation_by, sphere_volume};
 
 use crate::bonded::Bonded;
 use crate::conditions::{Along, Points};
@@ -40,8 +40,7 @@ impl RegionStress {
                 }
             }
             let own = set.iter().filter(|&&i| body.range.contains(&(i as usize)));
-            volume +=
-                own.map(|&i| stress::sphere_volume(bonded.particles.radius[i as usize])).sum::<f64>() / body.fraction;
+            volume += own.map(|&i| sphere_volume(bonded.particles.radius[i as usize])).sum::<f64>() / body.fraction;
         }
         RegionStress { bonds, volume, between }
     }

@@ -1,5 +1,5 @@
 use fractum_dem::{Equilibrium, strain, stress};
-use fractum_math::{Sym3, Vec3};
+use fractum_math::{Sym3, Vec3, sphere_volume};
 use serde::Serialize;
 
 use crate::Sample;
@@ -26,7 +26,7 @@ impl Gauge {
         let virials = stress::particle_virials(position.len(), |visit| {
             sample.lattice.bond_forces(&rest.state, |i, j, force| visit(i, j, position[j] - position[i], force));
         });
-        let volume: Vec<f64> = sample.packing.radius.iter().map(|r| stress::sphere_volume(*r)).collect();
+        let volume: Vec<f64> = sample.packing.radius.iter().map(|r| sphere_volume(*r)).collect();
         let stress = stress::mean_stress(&virials, &volume, sample.fraction, set.iter().copied());
         let displacement = |i: usize| Vec3::new(rest.state[i][0], rest.state[i][1], rest.state[i][2]);
         let strain = strain::best_fit(set.iter().map(|&i| (position[i], displacement(i))))?;

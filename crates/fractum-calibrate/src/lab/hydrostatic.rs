@@ -1,4 +1,5 @@
 use fractum_dem::{Dof6, Equilibrium, LatticeSupports, Tolerance};
+use fractum_math::sphere_volume;
 use fractum_pack::Domain;
 use serde::Serialize;
 
@@ -49,7 +50,7 @@ pub fn hydrostatic(sample: &Sample, tolerance: Tolerance) -> Result<(Hydrostatic
                 (0..3).for_each(|axis| supports.set(i, axis, inward[axis]));
             }
             let rest = sample.lattice.solve(&supports, None, &affine, tolerance)?;
-            let volume = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+            let volume = sphere_volume(radius);
             (2.0 * rest.energy / (3.0 * STRAIN * volume), rest)
         }
         _ => return Err(CalibrateError::Shape { test: "hydrostatic compression", shape: "a box or a sphere" }),

@@ -1,6 +1,6 @@
 //! The search for bonds that must break, in a state at rest or in motion.
 
-use fractum_math::{Sym3, Vec3};
+use fractum_math::{Sym3, Vec3, sphere_volume};
 
 use super::criterion::{BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule};
 use crate::DemError;
@@ -74,7 +74,7 @@ impl FailureSearch {
             Rule::Stress(c) if c.without_voids() => 1.0,
             _ => fraction,
         };
-        let volume = radius.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).collect();
+        let volume = radius.iter().map(|r| sphere_volume(*r)).collect();
         let (stressed, listed) = match criterion.level() {
             None => (0, 0),
             Some(Level::Second) => (n, n),

@@ -26,11 +26,6 @@ pub fn virial(arm: Vec3, force: Vec3) -> Sym3 {
     Sym3::symmetric_part(&(arm * force.transpose())) * 0.5
 }
 
-/// Volume of a sphere [m³].
-pub fn sphere_volume(radius: f64) -> f64 {
-    4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
-}
-
 /// Mean stress [Pa] of a set of particles: their virials over ΣV/f_v.
 ///
 /// - `volume`: sphere volumes [m³]

@@ -4,6 +4,7 @@ use fractum_dem::Particles;
 use fractum_math::{Vec3, connected};
 
 use super::Bonded;
+use super::momentum::energy_of;
 use crate::domain::{Domain, Left};
 
 impl Bonded {
@@ -39,11 +40,11 @@ impl Bonded {
         let mut energy = 0.0;
         for &i in &leaves {
             let particle = i as usize;
-            let Particles { velocity, spin, force, moment, mass, inertia, .. } = &self.particles;
+            let Particles { velocity, spin, force, moment, mass, .. } = &self.particles;
             let (v, w, mass) = (velocity[particle], spin[particle], mass[particle]);
             // What resists the change of lengths books its own work.
             let viscous = self.viscous.get(particle).copied().unwrap_or_default();
-            energy += 0.5 * (mass * v.norm_squared() + inertia[particle] * w.norm_squared());
+            energy += energy_of(&self.particles, &[i]);
             energy += 0.5 * dt * ((force[particle] - viscous).dot(&v) + moment[particle].dot(&w));
             left.mass += mass;
             left.momentum += v * mass;

@@ -2,7 +2,7 @@ use fractum_math::elementary::{atan, cos, sin};
 use std::f64::consts::PI;
 
 use fractum_dem::{Dof6, stress};
-use fractum_math::Vec3;
+use fractum_math::{Vec3, sphere_volume};
 use serde::Serialize;
 
 use crate::Sample;
@@ -39,7 +39,7 @@ pub fn diameter(sample: &Sample, state: &[Dof6], load: f64) -> Vec<Diameter> {
     let virials = stress::particle_virials(position.len(), |visit| {
         sample.lattice.bond_forces(state, |i, j, force| visit(i, j, position[j] - position[i], force));
     });
-    let volume: Vec<f64> = sample.packing.radius.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).collect();
+    let volume: Vec<f64> = sample.packing.radius.iter().map(|r| sphere_volume(*r)).collect();
     let (lower, upper) = sample.packing.domain.bounds();
     let centre = (lower + upper) * 0.5;
     let pressure = load / (2.0 * HALF_ARC * radius * thickness);
