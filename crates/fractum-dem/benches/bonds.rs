@@ -5,7 +5,8 @@
 
 use fractum_dem::criterion::{FractureCriterion, Level, Principal};
 use fractum_dem::{
-    BeamSection, Bonds, CentralDifference, CrackFaces, Dof6, Fracture, Lattice, Occasion, ParticleDamping, Particles,
+    AnyBondLaw, BeamSection, Bonds, CentralDifference, CrackFaces, Dof6, Fracture, Lattice, LocalBond, Occasion,
+    ParticleDamping, Particles,
 };
 use fractum_math::Vec3;
 
@@ -48,10 +49,23 @@ fn body(side: usize) -> (Vec<Vec3>, Vec<[u32; 2]>) {
 /// 22³ = 10,648 and 47³ = 103,823 particles.
 #[divan::bench(args = [22, 47], sample_count = 20)]
 fn step(bencher: divan::Bencher, side: usize) {
+    if let Ok(section) = BeamSection::new(1e9, 0.3) {
+        step_under(bencher, side, section.into());
+    }
+}
+
+/// Interfaces of the local law that stay elastic, but must be looked at.
+#[divan::bench(args = [22, 47], sample_count = 20)]
+fn step_of_interfaces(bencher: divan::Bencher, side: usize) {
+    let strong = LocalBond { tensile_strength: 1e12, shear_strength: 1e12, ..LocalBond::elastic(1e9, 0.2) };
+    step_under(bencher, side, strong.into());
+}
+
+fn step_under(bencher: divan::Bencher, side: usize, law: AnyBondLaw) {
     let (position, pairs) = body(side);
-    let (Ok(section), n) = (BeamSection::new(1e9, 0.3), position.len()) else { return };
+    let n = position.len();
     let Ok(mut particles) = Particles::at_rest(position, vec![0.5; n], n as f64) else { return };
-    let Ok(mut bonds) = Bonds::new(&particles, &pairs, section) else { return };
+    let Ok(mut bonds) = Bonds::new(&particles, &pairs, law) else { return };
     let dt = bonds.stable_step(&particles, 0.7);
     let mut motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
     particles.velocity.iter_mut().enumerate().for_each(|(i, v)| v.x = 1e-3 * (i as f64).sin());

@@ -24,9 +24,13 @@ pub(super) struct Block<L: BondLaw> {
     pub(super) count: usize,
     /// First bond of the block.
     pub(super) first_bond: u32,
+    /// Number of bonds of the block.
+    pub(super) bonds: usize,
     /// Bonds of the block, from its first, that have separated by their law and were not taken.
     pub(super) separated: Vec<u32>,
     pub(super) groups: Vec<Group<L>>,
+    /// Memory of the bonds of each group, which most steps do not touch.
+    pub(super) memory: Vec<[L::Memory; WIDTH]>,
     /// Particles of other blocks that this block's bonds reach, ascending.
     pub(super) partners: Vec<u32>,
     /// Sums of forces and moments: own particles, then partners.
@@ -50,7 +54,7 @@ pub(super) struct Group<L: BondLaw> {
     pub(super) inverse: [f64; WIDTH],
     pub(super) live: [f64; WIDTH],
     own: [L::Parameters; WIDTH],
-    pub(super) memory: [L::Memory; WIDTH],
+    pub(super) recent: L::Recent<WIDTH>,
 }
 
 /// Bonds as they were made.
@@ -73,7 +77,7 @@ impl<L: BondLaw> Block<L> {
             let slot = if own(i) { i as usize - start } else { count + partners.binary_search(&i).unwrap_or_default() };
             slot as u32
         };
-        let groups = bonds
+        let groups: Vec<Group<L>> = bonds
             .clone()
             .step_by(WIDTH)
             .map(|begin| {
@@ -87,14 +91,28 @@ impl<L: BondLaw> Block<L> {
                     inverse: lane(&|b| 1.0 / length[b]),
                     live: std::array::from_fn(|k| if begin + k < bonds.end { 1.0 } else { 0.0 }),
                     own: std::array::from_fn(|k| parameters[bond(k)]),
-                    memory: [L::Memory::default(); WIDTH],
+                    recent: L::Recent::default(),
                 }
             })
             .collect();
         let sums = vec![[0.0; 6]; count + partners.len()];
         let (virials, virial_bounds, incoming) = (Vec::new(), Vec::new(), Vec::new());
-        let (first_bond, separated) = (bonds.start as u32, Vec::new());
-        Block { start, count, first_bond, separated, groups, partners, sums, virials, virial_bounds, incoming }
+        let (first_bond, bonds, separated) = (bonds.start as u32, bonds.len(), Vec::new());
+        let memory = vec![[L::Memory::default(); WIDTH]; groups.len()];
+        Block {
+            start,
+            count,
+            first_bond,
+            bonds,
+            separated,
+            groups,
+            memory,
+            partners,
+            sums,
+            virials,
+            virial_bounds,
+            incoming,
+        }
     }
 
     /// Sums what is wanted of the bonds.
@@ -105,7 +123,7 @@ impl<L: BondLaw> Block<L> {
         law: &L,
     ) {
         debug_assert!(self.start + self.count <= position.len());
-        let Block { groups, separated, sums, virials, virial_bounds, .. } = self;
+        let Block { groups, memory, separated, sums, virials, virial_bounds, .. } = self;
         if FORCES {
             sums.fill([0.0; 6]);
         }
@@ -120,11 +138,11 @@ impl<L: BondLaw> Block<L> {
         if DETAIL == BOUNDS {
             virial_bounds.fill([0.0; 2]);
         }
-        for (index, group) in groups.iter_mut().enumerate() {
+        for (index, (group, memory)) in groups.iter_mut().zip(memory).enumerate() {
             let bonds = group.lanes(position, orientation);
-            let before = group.separated();
-            let forces = law.forces(&bonds, &group.own, &mut group.memory);
-            let fresh = group.separated() & !before;
+            let before = L::separated(&group.recent);
+            let forces = law.forces(&bonds, &group.own, &mut group.recent, memory);
+            let fresh = L::separated(&group.recent) & !before;
             if fresh != 0 {
                 let lanes = (0..WIDTH).filter(|lane| fresh >> lane & 1 == 1);
                 separated.extend(lanes.map(|lane| (index * WIDTH + lane) as u32));
@@ -143,16 +161,6 @@ impl<L: BondLaw> Block<L> {
 }
 
 impl<L: BondLaw> Group<L> {
-    /// Bonds that have separated by their law, as bits.
-    #[inline(always)]
-    fn separated(&self) -> u32 {
-        if !L::SEPARATES {
-            return 0;
-        }
-        let bit = |k: usize| u32::from(L::separation(&self.memory[k]).is_some()) << k;
-        (0..WIDTH).fold(0, |bits, k| bits | bit(k))
-    }
-
     /// The bonds at the present positions and orientations.
     #[inline(always)]
     fn lanes(&self, position: &[Vec3], orientation: &[Rotation]) -> BondLanes<WIDTH> {

@@ -128,9 +128,16 @@ impl<L: BondLaw> BondNetwork<L> {
     }
 
     /// What a bond remembers.
-    pub fn memory_of(&self, bond: usize) -> &L::Memory {
+    pub fn memory_of(&self, bond: usize) -> L::Memory {
         let [block, group, lane] = self.index[bond].map(|i| i as usize);
-        &self.blocks[block].groups[group].memory[lane]
+        let block = &self.blocks[block];
+        L::recall(&block.groups[group].recent, &block.memory[group], lane)
+    }
+
+    /// What a bond remembers apart from what is recent.
+    fn lasting_memory(&self, bond: usize) -> &L::Memory {
+        let [block, group, lane] = self.index[bond].map(|i| i as usize);
+        &self.blocks[block].memory[group][lane]
     }
 
     /// What all bonds remember, for a checkpoint; nothing where the law has no memory.
@@ -138,13 +145,15 @@ impl<L: BondLaw> BondNetwork<L> {
         if size_of::<L::Memory>() == 0 {
             return Vec::new();
         }
-        (0..self.len()).map(|bond| *self.memory_of(bond)).collect()
+        (0..self.len()).map(|bond| self.memory_of(bond)).collect()
     }
 
     /// Puts a saved memory back into bonds made from the same case.
     pub fn restore_memory(&mut self, saved: &[L::Memory]) {
         for (&[block, group, lane], memory) in self.index.iter().zip(saved) {
-            self.blocks[block as usize].groups[group as usize].memory[lane as usize] = *memory;
+            let Block { groups, memory: own, .. } = &mut self.blocks[block as usize];
+            let group = group as usize;
+            L::remember(*memory, lane as usize, &mut groups[group].recent, &mut own[group]);
         }
     }
 
@@ -153,8 +162,14 @@ impl<L: BondLaw> BondNetwork<L> {
         if size_of::<L::Memory>() == 0 {
             return 0.0;
         }
-        let of = |bond: usize| self.law.dissipated(self.length[bond], &self.own[bond], self.memory_of(bond));
-        fractum_math::sum_chunks(self.len(), of)
+        let of = |block: &Block<L>| {
+            let bonds = block.first_bond as usize..self.len();
+            let memories = bonds.zip(block.memory.as_flattened()).take(block.bonds);
+            memories
+                .fold(0.0, |sum, (bond, memory)| sum + self.law.dissipated(self.length[bond], &self.own[bond], memory))
+        };
+        let parts: Vec<f64> = self.blocks.par_iter().map(of).collect();
+        parts.iter().sum()
     }
 
     /// Bonds that have separated by the law since the last call, ascending, with the way they did.
@@ -163,7 +178,7 @@ impl<L: BondLaw> BondNetwork<L> {
         for block in &mut self.blocks {
             for bond in block.separated.drain(..) {
                 let (group, lane) = (bond as usize / WIDTH, bond as usize % WIDTH);
-                if let Some(how) = L::separation(&block.groups[group].memory[lane]) {
+                if let Some(how) = L::separation(&block.memory[group][lane]) {
                     out.push((block.first_bond + bond, how));
                 }
             }
@@ -194,7 +209,7 @@ impl<L: BondLaw> BondNetwork<L> {
                 let gap = position[j] - position[i];
                 let length = gap.norm();
                 let strain = length / self.length[bond] - 1.0;
-                if !self.live[bond] || !self.law.touches(strain, self.memory_of(bond)) {
+                if !self.live[bond] || !self.law.touches(strain, self.lasting_memory(bond)) {
                     continue;
                 }
                 let mass = self.reduced_mass(bond, particles);
@@ -281,6 +296,7 @@ impl<L: BondLaw> BondNetwork<L> {
     }
 
     /// A bond with its particles' present state.
+    #[inline]
     fn pair(&self, bond: usize, particles: &Particles) -> BondedPair {
         let ends = self.pairs[bond].map(|i| i as usize);
         BondedPair {
@@ -298,13 +314,14 @@ impl<L: BondLaw> BondNetwork<L> {
 
     /// Force of a live bond on its second particle and the moments on both.
     pub fn forces_of(&self, bond: usize, particles: &Particles) -> BondForces {
-        let mut memory = [*self.memory_of(bond)];
-        self.law.forces(&self.pair(bond, particles).lanes(), &[self.own[bond]], &mut memory).into()
+        let (mut recent, mut memory) = (L::Recent::default(), [L::Memory::default()]);
+        L::remember(self.memory_of(bond), 0, &mut recent, &mut memory);
+        self.law.forces(&self.pair(bond, particles).lanes(), &[self.own[bond]], &mut recent, &mut memory).into()
     }
 
     /// Energy that a bond, live or not, would give back, by parts [J].
     pub fn energy_of(&self, bond: usize, particles: &Particles) -> BondEnergy {
-        self.law.energy(&self.pair(bond, particles), &self.own[bond], self.memory_of(bond))
+        self.law.energy(&self.pair(bond, particles), &self.own[bond], self.lasting_memory(bond))
     }
 
     /// Energy that all live bonds would give back, by parts [J].

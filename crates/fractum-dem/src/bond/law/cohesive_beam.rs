@@ -75,12 +75,13 @@ impl BeamSection {
 /// The beam as a bond of discrete elements: André, Iordanoff, Charles and Néauport, *Comput. Methods Appl. Mech. Eng.*
 /// 213–216 (2012) 113–125; forces after Jebahi et al. (2015), 2.4.1, with the signs corrected.
 pub fn cohesive_beam(pair: &BondedPair, section: &BeamSection) -> BondForces {
-    section.forces(&pair.lanes(), &[()], &mut [()]).into()
+    section.forces(&pair.lanes(), &[()], &mut (), &mut [()]).into()
 }
 
 impl BondLaw for BeamSection {
     type Parameters = ();
     type Memory = ();
+    type Recent<const W: usize> = ();
 
     fn check(&self) -> Result<(), DemError> {
         BeamSection::check(self)
@@ -89,7 +90,7 @@ impl BondLaw for BeamSection {
     fn parameters(&self, _: f64, _: [f64; 2], _: f64) {}
 
     #[inline(always)]
-    fn forces<const W: usize>(&self, bonds: &BondLanes<W>, _: &[(); W], _: &mut [(); W]) -> ForceLanes<W> {
+    fn forces<const W: usize>(&self, bonds: &BondLanes<W>, _: &[(); W], _: &mut (), _: &mut [(); W]) -> ForceLanes<W> {
         let BondLanes { gap, turns, axis, inverse, live } = *bonds;
         let stiffness = inverse * live;
         let axial = stiffness * Lanes::splat(self.axial());

@@ -6,7 +6,7 @@ mod local;
 mod softening_spring;
 
 pub use cohesive_beam::{BeamSection, cohesive_beam, cohesive_beam_energy};
-pub use local::{Crushing, Interface, InterfaceFailure, InterfaceMemory, LocalBond, Separation};
+pub use local::{Crushing, Interface, InterfaceFailure, InterfaceMemory, LocalBond, RecentStrains, Separation};
 
 use std::fmt::Debug;
 
@@ -28,8 +28,9 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// What a bond remembers from step to step, zero when it is made; `()` for an elastic one.
     type Memory: Copy + Debug + Default + PartialEq + Send + Sync + Serialize + DeserializeOwned;
 
-    /// Whether bonds separate by the law itself, see [`BondLaw::separation`].
-    const SEPARATES: bool = false;
+    /// Part of the memory of `W` bonds that every step reads or writes, beside forces; the rest is only touched where something happens to
+    /// a bond. `()` where the whole memory is read at every step.
+    type Recent<const W: usize>: Copy + Debug + Default + Send + Sync;
 
     /// Refuses numbers that make no bond.
     ///
@@ -49,13 +50,34 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
         &self,
         bonds: &BondLanes<W>,
         own: &[Self::Parameters; W],
+        recent: &mut Self::Recent<W>,
         memory: &mut [Self::Memory; W],
     ) -> ForceLanes<W>;
 
-    /// Energy that a bond would give back [J]; its derivative at fixed memory is the force.
+    /// The memory of one of `W` bonds with its recent part.
+    fn recall<const W: usize>(_: &Self::Recent<W>, memory: &[Self::Memory; W], lane: usize) -> Self::Memory {
+        memory[lane]
+    }
+
+    /// Puts the memory of one of `W` bonds back.
+    fn remember<const W: usize>(
+        saved: Self::Memory,
+        lane: usize,
+        _: &mut Self::Recent<W>,
+        memory: &mut [Self::Memory; W],
+    ) {
+        memory[lane] = saved;
+    }
+
+    /// Which of `W` bonds have separated by the law, as bits; see [`BondLaw::separation`].
+    fn separated<const W: usize>(_: &Self::Recent<W>) -> u32 {
+        0
+    }
+
+    /// Energy that a bond would give back [J]; its derivative at fixed memory is the force. It does not need the recent part of the memory.
     fn energy(&self, pair: &BondedPair, own: &Self::Parameters, memory: &Self::Memory) -> BondEnergy;
 
-    /// Energy that a bond has dissipated so far [J]; never decreases.
+    /// Energy that a bond has dissipated so far [J]; never decreases. It does not need the recent part of the memory.
     fn dissipated(&self, length: f64, own: &Self::Parameters, memory: &Self::Memory) -> f64;
 
     /// Stiffness of a bond without load, which no later state exceeds.

@@ -77,9 +77,35 @@ impl InterfaceMemory {
     pub(super) fn is_separated(&self) -> bool {
         self.damage[0] >= 1.0
     }
+}
 
-    pub(super) fn keep(&mut self, normal: f64, [x, y, z]: [f64; 3]) {
-        self.last = [normal, x, y, z];
+/// What every step reads and writes of interfaces side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct RecentStrains<const W: usize> {
+    /// Normal strain and shear strain of the last step.
+    pub(super) last: [[f64; W]; 4],
+    /// Interfaces that something other than elastic strain has happened to, as bits.
+    pub(super) inelastic: u32,
+    /// Interfaces that have separated, as bits.
+    pub(super) separated: u32,
+}
+
+impl<const W: usize> Default for RecentStrains<W> {
+    fn default() -> Self {
+        RecentStrains { last: [[0.0; W]; 4], inelastic: 0, separated: 0 }
+    }
+}
+
+impl<const W: usize> RecentStrains<W> {
+    pub(super) fn recall(&self, memory: &InterfaceMemory, lane: usize) -> InterfaceMemory {
+        InterfaceMemory { last: self.last.map(|of| of[lane]), ..*memory }
+    }
+
+    pub(super) fn remember(&mut self, memory: &InterfaceMemory, lane: usize) {
+        (0..4).for_each(|k| self.last[k][lane] = memory.last[k]);
+        let set = |bits: u32, on: bool| bits & !(1 << lane) | u32::from(on) << lane;
+        self.inelastic = set(self.inelastic, !memory.is_whole());
+        self.separated = set(self.separated, memory.separation.is_some());
     }
 }
 
@@ -136,17 +162,24 @@ impl LocalBond {
         strain + self.plastic_strain(memory) < 0.0
     }
 
-    /// Whether an interface that is whole stays so at these strains.
+    /// Interfaces, as bits, that stay whole at these strains if they are.
     #[inline(always)]
-    pub(super) fn stays_whole(&self, normal: f64, shear_square: f64) -> bool {
-        let (stress, modulus) = (self.young_modulus * normal, self.shear_modulus());
-        let strength = self.shear_strength + self.internal_friction * (-stress).max(0.0);
-        let inside = stress <= self.tensile_strength && -stress <= self.crushing.stress[0];
-        let shear = modulus * modulus * shear_square;
-        let apart = inside && shear <= strength * strength && self.is_cohesive();
-        // Under pressure both criteria are one.
-        let together = self.failure == InterfaceFailure::Uncoupled || stress <= 0.0;
-        apart && (together || (stress / self.tensile_strength).powi(2) + shear / (strength * strength) <= 1.0)
+    pub(super) fn stay_whole<const W: usize>(&self, normal: &[f64; W], shear_square: &[f64; W]) -> u32 {
+        if !self.is_cohesive() {
+            return 0;
+        }
+        let modulus = self.shear_modulus();
+        let (square, coupled) = (modulus * modulus, self.failure == InterfaceFailure::Coupled);
+        let whole = |k: usize| {
+            let stress = self.young_modulus * normal[k];
+            let strength = self.shear_strength + self.internal_friction * (-stress).max(0.0);
+            let (shear, most) = (square * shear_square[k], strength * strength);
+            let apart = (stress <= self.tensile_strength) & (-stress <= self.crushing.stress[0]) & (shear <= most);
+            // Under pressure both criteria are one.
+            let together = || stress <= 0.0 || (stress / self.tensile_strength).powi(2) + shear / most <= 1.0;
+            apart && (!coupled || together())
+        };
+        (0..W).fold(0, |bits, k| bits | u32::from(whole(k)) << k)
     }
 
     /// Stresses at the present strains (normal, and a vector across), and the slip; carries the memory on.

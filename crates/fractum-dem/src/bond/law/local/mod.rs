@@ -4,7 +4,7 @@ mod interface;
 #[cfg(test)]
 mod tests;
 
-pub use interface::{Crushing, InterfaceFailure, InterfaceMemory, Separation};
+pub use interface::{Crushing, InterfaceFailure, InterfaceMemory, RecentStrains, Separation};
 
 use super::{BondEnergy, BondLanes, BondLaw, BondStiffness, BondedPair, ForceLanes, Turn};
 use crate::DemError;
@@ -91,12 +91,13 @@ impl<const W: usize> Kinematics<W> {
         let force = sub(scale(self.direction, -pull), scale(across, self.along * length * self.over));
         let missing = scale(cross(self.shear, across), length);
         let rest = Lanes::splat(1.0) - arm;
-        let moment = |k: usize, share: Lanes<W>| add(scale(cross(self.arms[k], across), length), scale(missing, share));
-        ForceLanes { force, moment: [moment(0, arm), moment(1, rest)] }
+        let [first, second] = self.arms.map(|arm| scale(cross(arm, across), length));
+        ForceLanes { force, moment: [add(first, scale(missing, arm)), add(second, scale(missing, rest))] }
     }
 }
 
 /// Slips in the axes of the first particles, as they lie across the bonds now.
+#[inline]
 fn turned_slips<const W: usize>((w, u): Turn<W>, slips: Vector<W>, direction: Vector<W>) -> Vector<W> {
     let slips = rotate(w, u, slips);
     sub(slips, scale(direction, dot(direction, slips)))
@@ -136,46 +137,67 @@ impl LocalBond {
         self.tensile_strength.is_finite() || self.shear_strength.is_finite()
     }
 
-    /// Stresses of bonds of which one at least is not, or does not stay, whole.
+    /// Stresses of some interfaces, as bits, that are not, or do not stay, whole, in the place of the elastic ones.
     #[inline(never)]
     fn inelastic<const W: usize>(
         &self,
-        bonds: &BondLanes<W>,
+        (which, (w, u)): (u32, Turn<W>),
         at: &Kinematics<W>,
+        recent: &mut RecentStrains<W>,
         memory: &mut [InterfaceMemory; W],
-    ) -> (Lanes<W>, Vector<W>) {
+        (stress, across): (&mut Lanes<W>, &mut Vector<W>),
+    ) {
         let slips = [0, 1, 2].map(|a| Lanes(std::array::from_fn(|k| memory[k].slip[a])));
-        let mut slips = turned_slips(bonds.turns[0], slips, at.direction);
-        let (mut stress, mut across, mut moved) = ([0.0; W], [[0.0; W]; 3], [false; W]);
-        for k in 0..W {
-            if bonds.live.0[k] == 0.0 {
-                continue;
-            }
+        let mut slips = turned_slips((w, u), slips, at.direction);
+        let mut moved = 0u32;
+        for k in (0..W).filter(|k| which >> k & 1 == 1) {
             let (shear, slip) = (at.shear.map(|s| s.0[k]), slips.map(|s| s.0[k]));
+            memory[k] = recent.recall(&memory[k], k);
             let (normal_stress, shear_stress, new) = self.stress(at.normal.0[k], shear, slip, &mut memory[k]);
-            stress[k] = normal_stress;
-            moved[k] = new != slip;
+            recent.remember(&memory[k], k);
+            stress.0[k] = normal_stress;
+            moved |= u32::from(new != slip) << k;
             for a in 0..3 {
-                across[a][k] = shear_stress[a];
+                across[a].0[k] = shear_stress[a];
                 slips[a].0[k] = new[a];
             }
         }
-        if moved.contains(&true) {
-            let (w, u) = bonds.turns[0];
+        if moved != 0 {
             let back = rotate(w, u.map(|u| -u), slips);
-            for k in (0..W).filter(|&k| moved[k]) {
+            for k in (0..W).filter(|k| moved >> k & 1 == 1) {
                 memory[k].slip = back.map(|b| b.0[k]);
             }
         }
-        (Lanes(stress), across.map(Lanes))
     }
 }
 
 impl BondLaw for LocalBond {
     type Parameters = Interface;
     type Memory = InterfaceMemory;
+    type Recent<const W: usize> = RecentStrains<W>;
 
-    const SEPARATES: bool = true;
+    fn recall<const W: usize>(
+        recent: &RecentStrains<W>,
+        memory: &[InterfaceMemory; W],
+        lane: usize,
+    ) -> InterfaceMemory {
+        recent.recall(&memory[lane], lane)
+    }
+
+    fn remember<const W: usize>(
+        saved: InterfaceMemory,
+        lane: usize,
+        recent: &mut RecentStrains<W>,
+        memory: &mut [InterfaceMemory; W],
+    ) {
+        recent.remember(&saved, lane);
+        memory[lane] = saved;
+    }
+
+    #[inline(always)]
+    fn separated<const W: usize>(recent: &RecentStrains<W>) -> u32 {
+        recent.separated
+    }
 
     fn check(&self) -> Result<(), DemError> {
         let wrong = |what, value, expected| Err(DemError::BadCriterion { what, value, expected });
@@ -220,20 +242,19 @@ impl BondLaw for LocalBond {
         &self,
         bonds: &BondLanes<W>,
         own: &[Interface; W],
+        recent: &mut RecentStrains<W>,
         memory: &mut [InterfaceMemory; W],
     ) -> ForceLanes<W> {
         let at = Kinematics::of(bonds, own);
-        let square = dot(at.shear, at.shear);
-        let whole = |k: usize| memory[k].is_whole() && self.stays_whole(at.normal.0[k], square.0[k]);
-        let (stress, across) = if (0..W).all(whole) {
-            let (young, shear) = (Lanes::splat(self.young_modulus), Lanes::splat(self.shear_modulus()));
-            (at.normal * young, scale(at.shear, shear))
-        } else {
-            self.inelastic(bonds, &at, memory)
-        };
-        for k in (0..W).filter(|&k| bonds.live.0[k] != 0.0) {
-            memory[k].keep(at.normal.0[k], at.shear.map(|s| s.0[k]));
+        let mut stress = at.normal * Lanes::splat(self.young_modulus);
+        let mut across = scale(at.shear, Lanes::splat(self.shear_modulus()));
+        let whole = self.stay_whole(&at.normal.0, &dot(at.shear, at.shear).0) & !recent.inelastic;
+        let live = (0..W).fold(0, |bits, k| bits | u32::from(bonds.live.0[k] != 0.0) << k);
+        let which = live & !whole;
+        if which != 0 {
+            self.inelastic((which, bonds.turns[0]), &at, recent, memory, (&mut stress, &mut across));
         }
+        recent.last = [at.normal.0, at.shear[0].0, at.shear[1].0, at.shear[2].0];
         let area = Lanes(own.map(|own| own.area)) * bonds.live;
         let arm = Lanes(own.map(|own| own.arm));
         at.forces(stress * area, scale(across, area), bonds.inverse.recip(), arm)
@@ -242,8 +263,11 @@ impl BondLaw for LocalBond {
     fn energy(&self, pair: &BondedPair, own: &Interface, memory: &InterfaceMemory) -> BondEnergy {
         let lanes = pair.lanes();
         let at = Kinematics::of(&lanes, &[*own]);
-        let slip = turned_slips(lanes.turns[0], memory.slip.map(|s| Lanes([s])), at.direction);
-        let [along, across] = self.stored(at.normal.0[0], at.shear.map(|s| s.0[0]), slip.map(|s| s.0[0]), memory);
+        let slip = match memory.is_whole() {
+            true => memory.slip,
+            false => turned_slips(lanes.turns[0], memory.slip.map(|s| Lanes([s])), at.direction).map(|s| s.0[0]),
+        };
+        let [along, across] = self.stored(at.normal.0[0], at.shear.map(|s| s.0[0]), slip, memory);
         let volume = own.area * pair.length;
         BondEnergy { tension: along * volume, bending: across * volume, torsion: 0.0 }
     }
