@@ -67,6 +67,11 @@ pub fn quantity(value: f64, unit: &str) -> String {
     if prefixed.unit.is_empty() || value.is_nan() { number } else { format!("{number} {}", prefixed.unit) }
 }
 
+/// An instant in words: `load factor 0.5` at rest, `12 ms` in motion.
+pub fn instant_text(time: f64, at_rest: bool) -> String {
+    if at_rest && time.is_finite() { format!("load factor {}", significant(time, 4)) } else { quantity(time, "s") }
+}
+
 /// A share in per cent with three significant digits: `5 %`.
 pub fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 3))

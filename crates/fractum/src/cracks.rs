@@ -41,10 +41,10 @@ pub fn write_table<'a>(
     );
     for (body, c) in cracks {
         let ([i, j], x, n) = (c.pair, c.position, c.normal);
-        if let Some(body) = body {
-            text += &format!("\"{body}\",");
-        }
         // Writing into a string has no way to fail.
+        if let Some(body) = body {
+            let _ = write!(text, "{},", quoted(body));
+        }
         let _ = write!(text, "{},{i},{j},{},{:e},", c.bond, c.event, c.time);
         if let Some((_, factor)) = columns.load {
             let _ = write!(text, "{:e},", c.load * factor);
@@ -111,7 +111,8 @@ pub fn write_polygons<'a>(
     }
     let cells = PolyCells::Hexagons(&hexagons);
     let data = PolyData { points: &points, cells, point_data: &point_data, cell_data: &cell_data, time: None };
-    data.write(path, Compression::default()).map_err(|e| Failure::Output(e.into()))
+    let file = data.pending(Compression::default()).map_err(|e| Failure::Output(e.into()))?;
+    Ok(file.write(path)?)
 }
 
 /// Corners of a regular hexagon of the area of a crack, across its normal. With side a, the area is 3√3/2 a².
@@ -130,7 +131,6 @@ fn hexagon(crack: &Crack) -> [Vec3; 6] {
 /// # Errors
 /// Fields that do not fit together.
 pub(crate) fn facets_file(
-    path: &Path,
     solid: &Solid,
     crack: &CrackSurface,
     history: Option<&FacetHistory>,
@@ -155,7 +155,7 @@ pub(crate) fn facets_file(
     }
     let point_data = [Field::vector("displacement", &displacement)];
     let data = PolyData { points: &points, cells, point_data: &point_data, cell_data: &cell_data, time: None };
-    data.pending(path, Compression::default()).map_err(|e| Failure::Output(e.into()))
+    data.pending(Compression::default()).map_err(|e| Failure::Output(e.into()))
 }
 
 /// What is known of every facet of a crack at the end of a run.

@@ -2,17 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use fractum_io::picture::{ColourMap, Image, Paint, Picture, Spheres, Surface, View, animation, robust_range};
+use fractum_io::picture::{ColourMap, Image, View, animation, robust_range};
 use fractum_io::vtk::{Arrays, Collection, read_collection};
 use fractum_io::{ReadError, atomic};
 use fractum_math::Vec3;
 use fractum_mesh::topology::boundary_of_tetrahedra;
 
 use crate::error::Failure;
-use crate::gallery::{ATTACHED, GREY, PARTICLE, SHOWN_DISPLACEMENT, extent, view_of};
-
-/// Broken bonds of a particle that show in full colour.
-const LOST_BONDS: f64 = 5.0;
+use crate::population::Population;
+use crate::sight::{Balls, Colours, LOST_BONDS, Sight, Triangles, corners, magnification, shown_radius, view_of};
 
 /// What the colours of frames stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,31 +21,73 @@ enum Shown {
     Displacement,
 }
 
-/// What is to be seen of one instant.
-#[derive(Default)]
-struct Frame {
-    points: Vec<[f64; 3]>,
-    facets: Vec<[u32; 3]>,
-    values: Vec<f64>,
-    /// Particles, with whether elements hold them.
-    particles: (Vec<[f64; 3]>, Vec<f64>),
-    bonded: (Vec<[f64; 3]>, Vec<f64>),
-    bonded_values: Vec<f64>,
-    rigid: (Vec<[f64; 3]>, Vec<[u32; 3]>),
+impl Shown {
+    /// The array with the values of a population; none where they are lengths of displacements, or it is grey.
+    fn array(self, population: Population) -> Option<&'static str> {
+        match (population, self) {
+            (Population::Solid, Shown::Damage) => Some("damage"),
+            (Population::Solid, _) => Some("first_principal_stress"),
+            (Population::Bonded, Shown::BrokenBonds) => Some("broken_bonds"),
+            _ => None,
+        }
+    }
 }
 
-/// The frames of a run, with one view and one range of colours for all of them.
+/// The frames of a run: the files that pictures show, instant by instant.
+pub(crate) struct FrameIndex(Vec<Vec<(Population, PathBuf)>>);
+
+impl FrameIndex {
+    /// Reads the index of a results folder.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for a folder without frames.
+    pub(crate) fn open(folder: &Path) -> Result<Self, Failure> {
+        let collection = read_collection(&folder.join("fields.pvd")).map_err(|error| refused(&error))?;
+        let instants = instants(folder, &collection);
+        if instants.is_empty() {
+            return Err(Failure::input(format!("{}: no frames; set output.fields of the case", folder.display())));
+        }
+        Ok(FrameIndex(instants))
+    }
+
+    /// Number of instants.
+    pub(crate) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Simulated time of an instant [s], which its place in the index need not be: that may be a step.
+    pub(crate) fn time(&self, index: usize) -> f64 {
+        let read = |(_, path): &(Population, PathBuf)| {
+            Arrays::read(path, &["TimeValue"]).ok()?.get("TimeValue").first().copied()
+        };
+        self.0[index].iter().find_map(read).unwrap_or(f64::NAN)
+    }
+
+    /// What shows most in the last frame.
+    fn shown(&self) -> Result<Shown, Failure> {
+        let mut shown = Shown::Displacement;
+        for (population, path) in self.0.last().into_iter().flatten() {
+            let some = |field: &str| -> Result<bool, Failure> {
+                Ok(read(path, &[field])?.get(field).iter().any(|&value| value > 0.0))
+            };
+            match population {
+                Population::Solid => return Ok(if some("damage")? { Shown::Damage } else { Shown::Stress }),
+                Population::Bonded if some("broken_bonds")? => shown = Shown::BrokenBonds,
+                _ => {}
+            }
+        }
+        Ok(shown)
+    }
+}
+
+/// Frames with one view and one range of colours for all of them.
 pub(crate) struct Frames {
-    folder: PathBuf,
-    /// Files of each instant: name of the part, path.
-    instants: Vec<Vec<(String, PathBuf)>>,
-    /// Simulated time of each instant [s].
-    pub(crate) times: Vec<f64>,
+    index: FrameIndex,
     shown: Shown,
     /// Values at the ends of the colours.
     pub(crate) range: (f64, f64),
-    scale: f64,
-    corners: ([f64; 3], [f64; 3]),
+    /// How much larger displacements are drawn than they are.
+    pub(crate) scale: f64,
     view: View,
 }
 
@@ -55,39 +95,62 @@ fn refused(error: &ReadError) -> Failure {
     Failure::input(format!("{error}; name the results folder of a run"))
 }
 
+fn read(path: &Path, wanted: &[&str]) -> Result<Arrays, Failure> {
+    Arrays::read(path, wanted).map_err(|error| refused(&error))
+}
+
+fn lengths(vectors: &[[f64; 3]]) -> impl Iterator<Item = f64> + '_ {
+    vectors.iter().map(|u| Vec3::from(*u).norm())
+}
+
 impl Frames {
-    /// Looks through the frames of a folder.
+    /// Looks through the frames that are to be drawn, for colours, magnification and view.
     ///
     /// # Errors
-    /// [`Failure::Input`] for a folder without frames, or with damaged ones.
-    pub(crate) fn open(folder: &Path) -> Result<Self, Failure> {
-        let collection = read_collection(&folder.join("fields.pvd")).map_err(|error| refused(&error))?;
-        let instants = instants(folder, &collection);
-        let Some(last) = instants.last() else {
-            return Err(Failure::input(format!("{}: no frames; set output.fields of the case", folder.display())));
-        };
-        let mut frames = Frames {
-            folder: folder.to_owned(),
-            shown: shown(last)?,
-            instants,
-            times: Vec::new(),
-            range: (0.0, 1.0),
-            scale: 1.0,
-            corners: ([0.0; 3], [0.0; 3]),
-            view: View::default(),
-        };
-        frames.survey()?;
-        Ok(frames)
-    }
-
-    /// Folder of the results.
-    pub(crate) fn folder(&self) -> &Path {
-        &self.folder
-    }
-
-    /// Number of instants.
-    pub(crate) fn len(&self) -> usize {
-        self.instants.len()
+    /// [`Failure::Input`] for damaged frames.
+    pub(crate) fn survey(index: FrameIndex, wanted: &[usize]) -> Result<Self, Failure> {
+        let shown = index.shown()?;
+        let mut start: Vec<Vec3> = Vec::new();
+        for (_, path) in index.0[0].iter().filter(|(population, _)| population.is_body()) {
+            start.extend(read(path, &["Points"])?.vectors("Points").into_iter().map(Vec3::from));
+        }
+        let (mut largest, mut ranges): (f64, Vec<f64>) = (0.0, Vec::new());
+        let instants = wanted.iter().map(|&instant| &index.0[instant]);
+        for (population, path) in instants.flatten().filter(|(population, _)| population.is_body()) {
+            let field = if shown == Shown::Stress { shown.array(*population) } else { None };
+            let arrays = read(path, &["displacement", "attached", field.unwrap_or_default()])?;
+            let displacement = arrays.vectors("displacement");
+            // Nodes that no element holds may fly far.
+            let attached = arrays.get("attached");
+            let held = |i: usize| attached.get(i).is_none_or(|&held| held > 0.0);
+            let moved = lengths(&displacement).enumerate().filter(|(i, _)| held(*i)).map(|(_, length)| length);
+            largest = moved.fold(largest, f64::max);
+            let values: Vec<f64> = match (shown, field) {
+                (_, Some(field)) => arrays.get(field).to_vec(),
+                (Shown::Displacement, None) => lengths(&displacement).collect(),
+                _ => Vec::new(),
+            };
+            if !values.is_empty() {
+                let (low, high) = robust_range(&values);
+                ranges.extend([low, high]);
+            }
+        }
+        let [low, high] = corners(start.iter());
+        let size = high - low;
+        // Room for what moves.
+        let room = 0.1 * size.norm() + largest.min(0.3 * size.norm());
+        let room = room * Vec3::new(1.0, 1.0, if size.z > 0.0 { 1.0 } else { 0.0 });
+        Ok(Frames {
+            shown,
+            range: match shown {
+                Shown::Damage => (0.0, 1.0),
+                Shown::BrokenBonds => (0.0, LOST_BONDS),
+                _ => fractum_io::picture::range(&ranges),
+            },
+            scale: magnification(size.norm(), largest),
+            view: View { frame: Some(((low - room).into(), (high + room).into())), ..view_of(size) },
+            index,
+        })
     }
 
     /// Name and SI unit of what the colours stand for.
@@ -105,181 +168,102 @@ impl Frames {
         if matches!(self.shown, Shown::Damage | Shown::BrokenBonds) { ColourMap::Damage } else { ColourMap::Viridis }
     }
 
-    /// How much larger displacements are drawn than they are.
-    pub(crate) fn magnification(&self) -> f64 {
-        self.scale
-    }
-
-    /// Times, colours, magnification and view, from all frames.
-    fn survey(&mut self) -> Result<(), Failure> {
-        let mut largest: f64 = 0.0;
-        let mut ranges: Vec<f64> = Vec::new();
-        // What is at its present place only cannot be magnified with the rest.
-        let mut magnified = true;
-        let mut all: Vec<Vec3> = Vec::new();
-        for (index, files) in self.instants.iter().enumerate() {
-            let mut time = f64::NAN;
-            for (name, path) in files {
-                let arrays = Arrays::read(path).map_err(|error| refused(&error))?;
-                time = arrays.get("TimeValue").first().copied().unwrap_or(time);
-                let displacement = arrays.vectors("displacement");
-                let points = arrays.vectors("Points");
-                let is_body =
-                    ["solid", "discrete elements", "bonded particles", "loose particles"].contains(&name.as_str());
-                magnified &= !is_body || displacement.len() == points.len();
-                let length = |u: &[f64; 3]| Vec3::from(*u).norm();
-                // Nodes that no element holds may fly far.
-                let attached = arrays.get("attached");
-                let held = |i: usize| attached.get(i).is_none_or(|&held| held > 0.0);
-                let moved = displacement.iter().enumerate().filter(|(i, _)| held(*i)).map(|(_, u)| length(u));
-                largest = moved.fold(largest, f64::max);
-                if index == 0 && is_body {
-                    all.extend(points.iter().map(|x| Vec3::from(*x)));
-                }
-                let values: Vec<f64> = match (self.shown, name.as_str()) {
-                    (Shown::Stress, "solid") => arrays.get("first_principal_stress").to_vec(),
-                    (Shown::Displacement, "bonded particles" | "loose particles") => {
-                        displacement.iter().map(length).collect()
-                    }
-                    _ => Vec::new(),
-                };
-                if !values.is_empty() {
-                    let (low, high) = robust_range(&values);
-                    ranges.extend([low, high]);
-                }
-            }
-            self.times.push(time);
-        }
-        let size = extent(&all).norm();
-        if magnified && largest > 0.0 {
-            self.scale = (SHOWN_DISPLACEMENT * size / largest).max(1.0);
-        }
-        self.range = match self.shown {
-            Shown::Damage => (0.0, 1.0),
-            Shown::BrokenBonds => (0.0, LOST_BONDS),
-            _ => fractum_io::picture::range(&ranges),
-        };
-        self.view = view_of(&all);
-        let (low, high) = all
-            .iter()
-            .fold((Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)), |(l, h), x| (l.inf(x), h.sup(x)));
-        // Room for what moves.
-        let room = (0.1 * size + largest.min(0.3 * size)) * Vec3::new(1.0, 1.0, if high.z > low.z { 1.0 } else { 0.0 });
-        self.corners = ((low - room).into(), (high + room).into());
-        Ok(())
-    }
-
-    fn load(&self, index: usize) -> Result<Frame, Failure> {
-        let mut frame = Frame::default();
-        for (name, path) in &self.instants[index] {
-            let arrays = Arrays::read(path).map_err(|error| refused(&error))?;
+    /// What is to be seen of an instant, and the values of facets and particles.
+    fn load(&self, instant: usize) -> Result<(Sight, [Vec<f64>; 2]), Failure> {
+        let (mut sight, mut facets, mut balls) = (Sight::default(), Vec::new(), Vec::new());
+        for (population, path) in &self.index.0[instant] {
+            let field = self.shown.array(*population);
+            let of_population: &[&str] = match population {
+                Population::Solid => &["connectivity", "offsets"],
+                Population::Rigid => &["connectivity", "offsets", "drawn"],
+                _ => &["radius", "attached"],
+            };
+            let wanted = [&["Points", "displacement", field.unwrap_or_default()], of_population].concat();
+            let arrays = read(path, &wanted)?;
             let displacement = arrays.vectors("displacement");
             let mut points = arrays.vectors("Points");
+            let scale = if population.is_body() { self.scale } else { 1.0 };
             for (x, u) in points.iter_mut().zip(&displacement) {
-                (0..3).for_each(|a| x[a] += self.scale * u[a]);
+                (0..3).for_each(|a| x[a] += scale * u[a]);
             }
-            match name.as_str() {
-                "solid" => self.add_solid(&mut frame, &arrays, points),
-                "discrete elements" => {
-                    let attached = arrays.get("attached");
-                    let shrink =
-                        |i: usize| if attached.get(i).is_some_and(|&held| held > 0.0) { ATTACHED } else { 1.0 };
-                    let radii = arrays.get("radius").iter().enumerate().map(|(i, r)| r * shrink(i)).collect();
-                    frame.particles = (points, radii);
+            match population {
+                Population::Solid => {
+                    (sight.skin, facets) = skin(&arrays, points, arrays.get(field.unwrap_or_default()));
                 }
-                "bonded particles" | "loose particles" => {
+                Population::Debris => {
+                    let attached = arrays.get("attached");
+                    let is_attached = |i: usize| attached.get(i).is_some_and(|&held| held > 0.0);
+                    let radii = arrays.get("radius").iter().enumerate();
+                    let radii = radii.map(|(i, &radius)| shown_radius(radius, is_attached(i))).collect();
+                    sight.debris = Balls { centres: points, radii };
+                }
+                Population::Rigid => {
+                    let drawn = arrays.get("drawn");
+                    let triangles = arrays.cells::<3>().into_iter().enumerate();
+                    let triangles = triangles.filter(|(i, _)| drawn.get(*i).is_none_or(|&drawn| drawn > 0.0));
+                    sight.rigid = Triangles { points, triangles: triangles.map(|(_, nodes)| nodes).collect() };
+                }
+                _ => {
                     let mut values: Vec<f64> = match self.shown {
-                        Shown::BrokenBonds => arrays.get("broken_bonds").to_vec(),
-                        _ => displacement.iter().map(|u| Vec3::from(*u).norm()).collect(),
+                        Shown::Displacement => lengths(&displacement).collect(),
+                        _ => field.map_or(&[][..], |field| arrays.get(field)).to_vec(),
                     };
                     // Loose particles have no bonds that could break.
                     values.resize(points.len(), 0.0);
-                    frame.bonded_values.extend(values);
-                    frame.bonded.0.extend(points);
-                    frame.bonded.1.extend(arrays.get("radius"));
+                    balls.extend(values);
+                    sight.balls.centres.extend(points);
+                    sight.balls.radii.extend(arrays.get("radius"));
                 }
-                name if name.contains("rigid") => frame.rigid = (points, arrays.cells::<3>()),
-                _ => {}
             }
         }
-        Ok(frame)
-    }
-
-    fn add_solid(&self, frame: &mut Frame, arrays: &Arrays, points: Vec<[f64; 3]>) {
-        let field = if self.shown == Shown::Damage { "damage" } else { "first_principal_stress" };
-        let values = arrays.get(field);
-        let tetrahedra = arrays.cells::<4>();
-        if tetrahedra.is_empty() {
-            (frame.facets, frame.values) = (arrays.cells::<3>(), values.to_vec());
-        } else {
-            for facet in boundary_of_tetrahedra(&tetrahedra) {
-                frame.facets.push(facet.nodes);
-                frame.values.push(values.get(facet.element as usize).copied().unwrap_or(0.0));
-            }
-        }
-        frame.points = points;
+        Ok((sight, [facets, balls]))
     }
 
     /// Draws an instant.
     ///
     /// # Errors
     /// [`Failure::Input`] for a damaged frame or a size of picture that is out of range.
-    pub(crate) fn draw(&self, index: usize, width: usize, height: usize) -> Result<Image, Failure> {
-        let frame = self.load(index)?;
-        let fits = frame.values.len() == frame.facets.len() && !frame.values.is_empty();
-        let paint = if fits { Paint::Facets(&frame.values) } else { Paint::Plain(GREY) };
-        let solid = Surface { points: &frame.points, triangles: &frame.facets, paint, mesh_lines: false };
-        let rigid =
-            Surface { points: &frame.rigid.0, triangles: &frame.rigid.1, paint: Paint::Plain(GREY), mesh_lines: false };
-        let coloured = matches!(self.shown, Shown::BrokenBonds | Shown::Displacement);
-        let inner = if coloured && !frame.bonded_values.is_empty() {
-            Paint::Nodes(&frame.bonded_values)
-        } else {
-            Paint::Plain(GREY)
-        };
-        let picture = Picture {
-            surfaces: &[solid, rigid],
-            spheres: &[
-                Spheres { centres: &frame.particles.0, radii: &frame.particles.1, paint: Paint::Plain(PARTICLE) },
-                Spheres { centres: &frame.bonded.0, radii: &frame.bonded.1, paint: inner },
-            ],
-            map: self.map(),
-            range: self.range,
-            clip: None,
-        };
-        let view = View { width, height, frame: Some(self.corners), ..self.view };
-        Ok(picture.render(&view)?)
+    pub(crate) fn draw(&self, instant: usize, width: usize, height: usize) -> Result<Image, Failure> {
+        let (sight, [mut facets, mut balls]) = self.load(instant)?;
+        if facets.len() != sight.skin.triangles.len() {
+            facets.clear();
+        }
+        if !matches!(self.shown, Shown::BrokenBonds | Shown::Displacement) {
+            balls.clear();
+        }
+        let colours = Colours { facets: &facets, balls: &balls, map: self.map(), range: self.range };
+        Ok(sight.draw(colours, &View { width, height, ..self.view }, false)?.0)
     }
 }
 
-/// Files by instants: those of one time that follow each other.
-fn instants(folder: &Path, collection: &Collection) -> Vec<Vec<(String, PathBuf)>> {
-    let mut instants: Vec<(f64, Vec<(String, PathBuf)>)> = Vec::new();
+/// The surface of the elements, and the values of its facets.
+fn skin(arrays: &Arrays, points: Vec<[f64; 3]>, values: &[f64]) -> (Triangles, Vec<f64>) {
+    let tetrahedra = arrays.cells::<4>();
+    if tetrahedra.is_empty() {
+        return (Triangles { points, triangles: arrays.cells::<3>() }, values.to_vec());
+    }
+    let facets = boundary_of_tetrahedra(&tetrahedra);
+    let of = |element: u32| values.get(element as usize).copied().unwrap_or(0.0);
+    let values = facets.iter().map(|facet| of(facet.element)).collect();
+    (Triangles { points, triangles: facets.into_iter().map(|facet| facet.nodes).collect() }, values)
+}
+
+/// Files that pictures show, by instants: those of one time that follow each other.
+fn instants(folder: &Path, collection: &Collection) -> Vec<Vec<(Population, PathBuf)>> {
+    let mut instants: Vec<(f64, Vec<(Population, PathBuf)>)> = Vec::new();
     for entry in &collection.entries {
-        let file = (entry.name.clone(), folder.join(&entry.file));
+        let Some(population) = Population::named(&entry.name).filter(|population| population.is_drawn()) else {
+            continue;
+        };
+        let file = (population, folder.join(&entry.file));
         match instants.last_mut() {
-            Some((time, files)) if *time == entry.time && files.iter().all(|(name, _)| *name != file.0) => {
+            Some((time, files)) if *time == entry.time && files.iter().all(|(known, _)| *known != population) => {
                 files.push(file);
             }
             _ => instants.push((entry.time, vec![file])),
         }
     }
     instants.into_iter().map(|(_, files)| files).collect()
-}
-
-/// What shows most in the last frame.
-fn shown(files: &[(String, PathBuf)]) -> Result<Shown, Failure> {
-    let mut shown = Shown::Displacement;
-    for (name, path) in files {
-        let arrays = Arrays::read(path).map_err(|error| refused(&error))?;
-        let some = |field: &str| arrays.get(field).iter().any(|&value| value > 0.0);
-        match name.as_str() {
-            "solid" => return Ok(if some("damage") { Shown::Damage } else { Shown::Stress }),
-            "bonded particles" if some("broken_bonds") => shown = Shown::BrokenBonds,
-            _ => {}
-        }
-    }
-    Ok(shown)
 }
 
 /// How a movie is made.
@@ -312,9 +296,11 @@ pub struct Movie {
 /// [`Failure::Input`] for a folder without frames or a size out of range; [`Failure::Write`].
 pub fn movie(folder: &Path, output: &Path, settings: MovieSettings) -> Result<Movie, Failure> {
     let MovieSettings { width, height, rate } = settings;
-    let frames = Frames::open(folder)?;
-    let draw = |index: usize| frames.draw(index, width, height);
-    atomic::write(output, &animation([width, height], frames.len(), rate, draw)?)?;
+    let index = FrameIndex::open(folder)?;
+    let all: Vec<usize> = (0..index.len()).collect();
+    let frames = Frames::survey(index, &all)?;
+    let draw = |instant: usize| frames.draw(instant, width, height);
+    atomic::write(output, &animation([width, height], all.len(), rate, draw)?)?;
     let (label, unit) = frames.label();
-    Ok(Movie { frames: frames.len(), label, unit, range: frames.range })
+    Ok(Movie { frames: all.len(), label, unit, range: frames.range })
 }

@@ -1,7 +1,5 @@
 //! Frames: what ParaView shows of one instant, a file per population.
 
-use std::path::Path;
-
 use fractum_io::Compression;
 use fractum_io::case::model::{BodyKind, Case, FurtherFields};
 use fractum_io::vtk::{CellBlock, CellKind, Field, PendingFile, PolyCells, PolyData, UnstructuredGrid, Values};
@@ -12,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::cracks;
 use crate::error::Failure;
 use crate::gas_cells;
+use crate::population::Population;
 use crate::record_bonded::ParticleFiles;
 use crate::rigid_surface::RigidSurfaces;
 
@@ -22,36 +21,7 @@ pub(crate) struct Frame {
     pub(crate) instant: f64,
     /// Steps done.
     pub(crate) step: u64,
-    parts: Vec<(Part, PendingFile)>,
-}
-
-/// A population that is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum Part {
-    Solid,
-    Debris,
-    Bonded,
-    Loose,
-    Bonds,
-    Cracks,
-    Gas,
-    Rigid,
-}
-
-impl Part {
-    /// Its number in the collection, its name, and its file up to the number of the frame, with the ending.
-    fn names(self) -> (u32, &'static str, [&'static str; 2]) {
-        match self {
-            Part::Solid => (0, "solid", ["fields/solid", "vtu"]),
-            Part::Debris => (1, "discrete elements", ["particles/particles", "vtp"]),
-            Part::Bonded => (2, "bonded particles", ["particles/bonded", "vtp"]),
-            Part::Loose => (6, "loose particles", ["particles/loose", "vtp"]),
-            Part::Bonds => (3, "bonds", ["bonds/bonds", "vtp"]),
-            Part::Cracks => (4, "cracks", ["cracks/cracks", "vtp"]),
-            Part::Gas => (5, "gas", ["gas/gas", "vtu"]),
-            Part::Rigid => (7, "rigid bodies", ["rigid/rigid", "vtp"]),
-        }
-    }
+    parts: Vec<(Population, PendingFile)>,
 }
 
 impl Frame {
@@ -61,33 +31,30 @@ impl Frame {
     pub(crate) fn of(scene: &Scene, grid: &GridLayout, instant: f64) -> Result<Self, Failure> {
         let mut parts = Vec::new();
         if !scene.solid.reference.is_empty() {
-            parts.push((Part::Solid, solid_file(scene, grid)?));
+            parts.push((Population::Solid, solid_file(scene, grid)?));
         }
         if !scene.debris.is_empty() {
-            parts.push((Part::Debris, particles_file(scene)?));
+            parts.push((Population::Debris, particles_file(scene)?));
         }
         let ParticleFiles { bonded, loose, bonds } = ParticleFiles::of(scene)?;
-        let particles = [(Part::Bonded, bonded), (Part::Loose, loose), (Part::Bonds, bonds)];
-        parts.extend(particles.into_iter().filter_map(|(part, file)| Some((part, file?))));
+        let particles = [(Population::Bonded, bonded), (Population::Loose, loose), (Population::Bonds, bonds)];
+        parts.extend(particles.into_iter().filter_map(|(population, file)| Some((population, file?))));
         if !grid.rigid.is_empty() {
-            parts.push((Part::Rigid, grid.rigid.file(scene)?));
+            parts.push((Population::Rigid, grid.rigid.file(scene)?));
         }
         if let Some(gas) = scene.gas().filter(|gas| gas.cells().nth(gas.hole_count()).is_some()) {
-            parts.push((Part::Gas, gas_cells::file(Path::new(""), scene, gas)?));
+            parts.push((Population::Gas, gas_cells::file(scene, gas)?));
         }
         let crack = scene.solid.crack_surface();
         if !crack.facets.is_empty() {
-            parts.push((Part::Cracks, cracks::facets_file(Path::new(""), &scene.solid, &crack, None)?));
+            parts.push((Population::Cracks, cracks::facets_file(&scene.solid, &crack, None)?));
         }
         Ok(Frame { instant, step: scene.clock.step, parts })
     }
 
-    /// Number and name of each part in the collection; name of its file, as that of frame `number`, and the file.
-    pub(crate) fn files(self, number: u64) -> impl Iterator<Item = ((u32, &'static str), (String, PendingFile))> {
-        self.parts.into_iter().map(move |(part, file)| {
-            let (index, name, [path, ending]) = part.names();
-            ((index, name), (format!("{path}-{number:05}.{ending}"), file))
-        })
+    /// The files, as those of frame `number`: population, name from the results folder, and file.
+    pub(crate) fn files(self, number: u64) -> impl Iterator<Item = (Population, String, PendingFile)> {
+        self.parts.into_iter().map(move |(population, file)| (population, population.file(number), file))
     }
 }
 
@@ -170,10 +137,10 @@ fn solid_file(scene: &Scene, grid: &GridLayout) -> Result<PendingFile, Failure> 
         points: &points,
         cells: &cells,
         point_data: &point_data,
-        cell_data: &elements.fields(grid.further, solid.has_phase_fields()),
+        cell_data: &elements.fields(grid.further),
         time: Some(scene.clock.time),
     };
-    grid.pending(Path::new(""), Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    grid.pending(Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }
 
 /// What is known of the elements that are left, body after body. Seven digits are plenty for looking at it, and halve what is
@@ -196,6 +163,7 @@ struct ElementFields {
 impl ElementFields {
     fn of(scene: &Scene, grid: &GridLayout) -> Self {
         let solid = &scene.solid;
+        let phase_field = solid.has_phase_fields();
         let mut fields = ElementFields::default();
         for (body, (kind, nodes)) in grid.bodies.iter().enumerate() {
             let corners = kind.nodes();
@@ -210,7 +178,7 @@ impl ElementFields {
                 fields.add_stress(stress, grid.further.principal);
                 fields.strain.extend(strains.get(element).map(|strain| strain.0.map(|e| e as f32)));
                 fields.damage.push(damage as f32);
-                fields.phase.push(phases.as_ref().map_or(0.0, |phases| phases[element] as f32));
+                fields.phase.extend(phase_field.then(|| phases.as_ref().map_or(0.0, |phases| phases[element] as f32)));
                 fields.body.push(body as i32);
                 fields.material.push(grid.materials[body]);
             }
@@ -232,7 +200,7 @@ impl ElementFields {
         }
     }
 
-    fn fields(&self, further: FurtherFields, phase: bool) -> Vec<Field<'_>> {
+    fn fields(&self, further: FurtherFields) -> Vec<Field<'_>> {
         let mut fields = vec![
             tensor("stress", &self.stress),
             scalar("first_principal_stress", &self.first),
@@ -249,7 +217,7 @@ impl ElementFields {
         if further.strain {
             fields.push(tensor("strain", &self.strain));
         }
-        if phase {
+        if !self.phase.is_empty() {
             fields.push(scalar("d", &self.phase));
         }
         fields
@@ -268,7 +236,8 @@ fn vector<'a>(name: &'a str, values: &'a [[f32; 3]]) -> Field<'a> {
     Field { name, components: 3, values: Values::F32(values.as_flattened()) }
 }
 
-fn tensor<'a>(name: &'a str, values: &'a [[f32; 6]]) -> Field<'a> {
+/// A symmetric tensor in single precision: xx yy zz xy yz zx.
+pub(crate) fn tensor<'a>(name: &'a str, values: &'a [[f32; 6]]) -> Field<'a> {
     Field { name, components: 6, values: Values::F32(values.as_flattened()) }
 }
 
@@ -303,5 +272,5 @@ fn particles_file(scene: &Scene) -> Result<PendingFile, Failure> {
         cell_data: &[],
         time: Some(scene.clock.time),
     };
-    data.pending(Path::new(""), Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    data.pending(Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }

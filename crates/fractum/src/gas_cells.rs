@@ -1,7 +1,5 @@
 //! The gas in cracks as cells for ParaView.
 
-use std::path::Path;
-
 use fractum_io::Compression;
 use fractum_io::vtk::{CellBlock, CellKind, Field, PendingFile, UnstructuredGrid};
 use fractum_scene::{Gas, GasCell, Scene};
@@ -13,7 +11,7 @@ use crate::error::Failure;
 ///
 /// # Errors
 /// Arrays that do not fit together.
-pub(crate) fn file(path: &Path, scene: &Scene, gas: &Gas) -> Result<PendingFile, Failure> {
+pub(crate) fn file(scene: &Scene, gas: &Gas) -> Result<PendingFile, Failure> {
     let solid = &scene.solid;
     let cells: Vec<(usize, u32, GasCell)> =
         gas.cells().filter_map(|cell| cell.element.map(|(body, element)| (body, element, cell))).collect();
@@ -45,5 +43,5 @@ pub(crate) fn file(path: &Path, scene: &Scene, gas: &Gas) -> Result<PendingFile,
         ],
         time: Some(scene.clock.time),
     };
-    grid.pending(path, Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    grid.pending(Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }

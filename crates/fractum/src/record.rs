@@ -362,13 +362,12 @@ impl Recorder {
     fn write(&mut self, frame: Frame) -> Result<(), Failure> {
         let number = if self.course.rests { self.state.path.frames() } else { self.state.frames };
         let (mut files, instant) = (Vec::new(), frame.instant);
-        for (part, file) in frame.files(number) {
-            let path = self.folder.join(&file.0);
-            path.parent().map_or(Ok(()), fractum_io::atomic::create_folder)?;
-            files.push(file.1.at(&path));
-            self.state.collection.push(instant, part.0, part.1, file.0);
+        for (population, name, file) in frame.files(number) {
+            fractum_io::atomic::create_folder(&self.folder.join(population.folder()))?;
+            files.push((self.folder.join(&name), file));
+            self.state.collection.push(instant, population.number(), population.name(), name);
         }
-        files.push(self.state.collection.pending(&self.folder.join("fields.pvd")));
+        files.push((self.folder.join("fields.pvd"), self.state.collection.pending()));
         if self.course.rests {
             self.state.path.begin_frame();
         }

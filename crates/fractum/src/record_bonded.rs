@@ -2,16 +2,15 @@
 //!
 //! Points are where particles were at the start; the field `displacement` moves them to the present, as it does the nodes of solids.
 
-use std::path::Path;
-
 use fractum_dem::stress::particle_virials;
 use fractum_io::Compression;
-use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData, Values};
+use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData};
 use fractum_math::{Sym3, Vec3, rotation_vector};
 use fractum_scene::{BondedBody, Scene};
 
 use crate::cracks::lost_bonds;
 use crate::error::Failure;
+use crate::frames::tensor;
 
 fn vectors<'a>(of: impl Iterator<Item = Vec3> + 'a) -> Vec<[f64; 3]> {
     of.map(Into::into).collect()
@@ -109,7 +108,6 @@ fn particles_file(
     // What has left is not drawn.
     let radius: Vec<f64> = shown().map(|i| all.radius[i].max(0.0)).collect();
     let mass = scalar(&all.mass);
-    let lost = scalar(&lost_bonds(all.len(), bodies.iter().flat_map(|(_, body)| body.cracks())));
     let mut point_data = vec![
         Field::scalar("radius", &radius),
         Field::scalar("mass", &mass),
@@ -119,17 +117,13 @@ fn particles_file(
         Field::vector("spin", &spin),
         Field::integer("body", &body),
     ];
-    let strain: Vec<[f32; 6]> = match stress {
-        Some(_) => {
-            let all = bonded.strains();
-            shown().map(|i| all[i].0.map(|e| e as f32)).collect()
-        }
-        None => Vec::new(),
-    };
-    if let Some(stress) = stress {
-        point_data.push(Field { name: "strain", components: 6, values: Values::F32(strain.as_flattened()) });
-        point_data.push(Field::scalar("broken_bonds", &lost));
-        point_data.push(Field { name: "stress", components: 6, values: Values::F32(stress.as_flattened()) });
+    let of_bonds = stress.map(|stress| {
+        let strains = bonded.strains();
+        let strain: Vec<[f32; 6]> = shown().map(|i| strains[i].0.map(|e| e as f32)).collect();
+        (strain, scalar(&lost_bonds(all.len(), bodies.iter().flat_map(|(_, body)| body.cracks()))), stress)
+    });
+    if let Some((strain, lost, stress)) = &of_bonds {
+        point_data.extend([tensor("strain", strain), Field::scalar("broken_bonds", lost), tensor("stress", stress)]);
     }
     let temperature = scene.heat().map(|heat| scalar(heat.of_particles()));
     point_data.extend(temperature.as_ref().map(|temperature| Field::scalar("temperature", temperature)));
@@ -140,7 +134,7 @@ fn particles_file(
         cell_data: &[],
         time: Some(scene.clock.time),
     };
-    data.pending(Path::new(""), Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    data.pending(Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }
 
 /// Bonds that hold as lines between the centres of their particles, with their axial force and elastic energy.
@@ -171,5 +165,5 @@ fn bonds_file(scene: &Scene, bodies: &[(i32, &BondedBody)], bonds: &[LiveBond]) 
         ],
         time: Some(scene.clock.time),
     };
-    data.pending(Path::new(""), Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    data.pending(Compression::Fast).map_err(|e| Failure::Output(e.into()))
 }

@@ -1,7 +1,6 @@
 //! Surfaces of rigid bodies as triangles, to look at.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use std::path::Path;
 
 use fractum_io::Compression;
 use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData};
@@ -10,11 +9,14 @@ use fractum_math::elementary::{cos, sin};
 use fractum_scene::{Form, Frame, RigidBody, Scene, Shape};
 
 use crate::error::Failure;
+use crate::sight::{Triangles, corners, extent};
 
 /// Triangles around a cylinder or sphere.
 const AROUND: u32 = 32;
 /// Side of a plane over the size of what the scene holds besides.
 const PLANE: f64 = 2.0;
+/// Size of a rigid body over that of what it may act on above which pictures leave it out.
+const LARGEST_DRAWN: f64 = 2.0;
 
 /// The rigid bodies of a scene, as they lie at its start.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +27,8 @@ pub(crate) struct RigidSurfaces {
     triangles: Vec<[u32; 3]>,
     /// Body of each triangle.
     body: Vec<i32>,
+    /// Whether pictures show the body of each triangle.
+    drawn: Vec<u8>,
 }
 
 impl RigidSurfaces {
@@ -32,10 +36,12 @@ impl RigidSurfaces {
     pub(crate) fn new(scene: &Scene) -> Self {
         let mut surfaces = RigidSurfaces::default();
         let mut before = 0;
+        let size = extent(deformable(scene)).norm();
         for (index, body) in (0..).zip(scene.contacts.rigid_bodies()) {
             let (points, triangles) = surface_of(body, scene);
             surfaces.triangles.extend(triangles.iter().map(|nodes| nodes.map(|node| node + before)));
             surfaces.body.extend(triangles.iter().map(|_| index));
+            surfaces.drawn.extend(triangles.iter().map(|_| u8::from(is_drawn(body, &points, size))));
             before += points.len() as u32;
             surfaces.bodies.push(points.into_iter().map(|x| (x, in_space(&body.frame, &x))).collect());
         }
@@ -60,25 +66,44 @@ impl RigidSurfaces {
             points: &points,
             cells: PolyCells::Triangles(&self.triangles),
             point_data: &[Field::vector("displacement", &displacement)],
-            cell_data: &[Field::integer("body", &self.body)],
+            cell_data: &[Field::integer("body", &self.body), Field::flag("drawn", &self.drawn)],
             time: Some(scene.clock.time),
         };
-        data.pending(Path::new(""), Compression::Fast).map_err(|e| Failure::Output(e.into()))
+        data.pending(Compression::Fast).map_err(|e| Failure::Output(e.into()))
     }
 }
 
-/// Triangles in space.
-pub(crate) struct Triangles {
-    /// Corners [m].
-    pub(crate) points: Vec<[f64; 3]>,
-    /// Points of each triangle.
-    pub(crate) triangles: Vec<[u32; 3]>,
+/// The surfaces that pictures show, where they are now.
+pub(crate) fn drawn_surfaces(scene: &Scene) -> Triangles {
+    let size = extent(deformable(scene)).norm();
+    let mut all = Triangles::default();
+    for body in scene.contacts.rigid_bodies() {
+        let (points, triangles) = surface_of(body, scene);
+        if is_drawn(body, &points, size) {
+            let before = all.points.len() as u32;
+            all.triangles.extend(triangles.iter().map(|nodes| nodes.map(|node| node + before)));
+            all.points.extend(points.iter().map(|x| <[f64; 3]>::from(in_space(&body.frame, x))));
+        }
+    }
+    all
 }
 
-/// Where a rigid body is now.
-pub(crate) fn outline(body: &RigidBody, scene: &Scene) -> Triangles {
-    let (points, triangles) = surface_of(body, scene);
-    Triangles { points: points.iter().map(|x| in_space(&body.frame, x).into()).collect(), triangles }
+/// Whether pictures show a rigid body: containers would hide their content, planes have no end, and beside what is much larger
+/// the rest would be small.
+///
+/// - `points`: of its surface, in its own axes
+/// - `size`: of what is not rigid [m]
+fn is_drawn(body: &RigidBody, points: &[Vec3], size: f64) -> bool {
+    let is_closed = match &body.form {
+        Form::Shape { shape, hollow } => !hollow && *shape != Shape::HalfSpace,
+        Form::Mesh { .. } => true,
+    };
+    is_closed && extent(points.iter()).norm() < LARGEST_DRAWN * size
+}
+
+/// Nodes and particles where they were at the start.
+fn deformable(scene: &Scene) -> impl Iterator<Item = &Vec3> {
+    scene.solid.reference.iter().chain(scene.bonded.reference())
 }
 
 fn in_space(frame: &Frame, x: &Vec3) -> Vec3 {
@@ -148,12 +173,10 @@ fn turned(profile: &[(f64, f64)]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 
 /// A square of the plane, below the middle of everything else.
 fn plane(frame: &Frame, scene: &Scene) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let all = || scene.solid.reference.iter().chain(scene.bonded.reference());
-    let limit = |f: fn(f64, f64) -> f64, from: f64| all().fold(Vec3::repeat(from), |limit, x| limit.zip_map(x, f));
-    let (low, high) = (limit(f64::min, f64::INFINITY), limit(f64::max, f64::NEG_INFINITY));
-    if all().next().is_none() {
+    if deformable(scene).next().is_none() {
         return (Vec::new(), Vec::new());
     }
+    let [low, high] = corners(deformable(scene));
     let half = 0.5 * PLANE * (high - low).norm();
     let middle = frame.to_body(&(0.5 * (low + high)));
     let corner = |x: f64, y: f64| Vec3::new(middle.x + x * half, middle.y + y * half, 0.0);

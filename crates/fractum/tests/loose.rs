@@ -2,7 +2,9 @@
 
 mod common;
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::Path;
 
 use common::{Workplace, files_below, run, summary};
 
@@ -228,4 +230,26 @@ fn what_overlaps_at_the_start_is_told_and_may_be_kept() {
     };
     assert_eq!(largest("kept", "keep"), [0.0, 0.0]);
     assert!(largest("pushed", "push").iter().all(|energy| *energy > 0.0));
+}
+
+/// Share of the pixels of a picture that have a colour.
+fn coloured(path: &Path) -> f64 {
+    let mut reader = png::Decoder::new(BufReader::new(File::open(path).unwrap())).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let frame = reader.next_frame(&mut pixels).unwrap();
+    assert_eq!(frame.color_type, png::ColorType::Rgb);
+    let is_coloured = |rgb: &&[u8]| rgb.iter().max().unwrap() - rgb.iter().min().unwrap() > 40;
+    pixels.chunks_exact(3).filter(is_coloured).count() as f64 / (pixels.len() / 3) as f64
+}
+
+#[test]
+fn pictures_over_time_show_what_is_in_a_container() {
+    let place = place(HEAP);
+    run(&place, "one", "2");
+    let pictures = files_below(&place.path("one/pictures"), ".png");
+    let strip = || pictures.iter().filter(|path| path.file_name().unwrap().to_string_lossy().starts_with("strip"));
+    assert!(strip().count() > 1 && pictures.len() > strip().count(), "{pictures:?}");
+    for picture in strip() {
+        assert!(coloured(picture) > 0.02, "{}: {}", picture.display(), coloured(picture));
+    }
 }

@@ -27,10 +27,21 @@ fn results_are_replaced_only_where_the_user_says_so() {
     assert_eq!(place.fractum(&["run", "case.toml", "-o", "out", "--quiet"]).code, Some(1));
     let both = place.fractum(&["run", "case.toml", "-o", "out", "--overwrite", "--resume"]);
     assert_eq!(both.code, Some(1), "{}", both.stderr);
-    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet", "--overwrite", "--set", "end=0.1 ms"]);
+    assert_eq!(place.fractum(&["movie", "out", "--width", "40", "--height", "30"]).code, Some(0));
+    fs::rename(place.path("case.toml"), place.path("shorter.toml")).unwrap();
+    fs::write(place.path("out/pictures/sketch.svg"), "<svg/>").unwrap();
+    let strip = || {
+        let pictures = files_below(&place.path("out/pictures"), ".png");
+        pictures.iter().filter(|path| path.to_string_lossy().contains("strip-")).count()
+    };
+    assert!(strip() > 3);
+    let ended = place.fractum(&["run", "shorter.toml", "-o", "out", "--quiet", "--overwrite", "--set", "end=0.1 ms"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     assert_eq!(summary(&place, "out")["status"], "completed");
-    // Nothing of the longer run is left.
+    // Nothing of the longer run is left, and what is not of a run stays.
+    assert!(!place.path("out/movie.png").exists() && strip() < 3);
+    assert_eq!(files_below(&place.path("out/input"), ""), [place.path("out/input/shorter.toml")]);
+    assert!(place.path("out/pictures/sketch.svg").exists());
     let listed = fs::read_to_string(place.path("out/fields.pvd")).unwrap();
     for path in files_below(&place.path("out"), ".vtu") {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();

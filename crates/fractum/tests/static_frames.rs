@@ -5,15 +5,12 @@ mod common;
 use std::fs;
 
 use common::{BONDED_BAR, SNAP_BACK, Workplace, history, run, summary};
+use fractum_io::vtk::read_collection;
 
 /// Instants and files of the frames of a part, in the order of the index.
 fn frames(place: &Workplace, part: &str) -> Vec<(f64, String)> {
-    let listed = fs::read_to_string(place.path("out/fields.pvd")).unwrap();
-    let value =
-        |line: &str, key: &str| line.split(&format!(" {key}=\"")).nth(1).unwrap().split('"').next().unwrap().to_owned();
-    let of_part = |line: &&str| line.contains("<DataSet ") && value(line, "name") == part;
-    let frame = |line: &str| (value(line, "timestep").parse().unwrap(), value(line, "file"));
-    listed.lines().filter(of_part).map(frame).collect()
+    let listed = read_collection(&place.path("out/fields.pvd")).unwrap().entries;
+    listed.into_iter().filter(|entry| entry.name == part).map(|entry| (entry.time, entry.file)).collect()
 }
 
 /// A number in the head of a VTK file.
@@ -42,6 +39,10 @@ fn check_path(place: &Workplace, part: &str) -> Vec<(f64, String)> {
     assert_eq!(frames.last().unwrap().0, rows.last().unwrap()[0], "{part}: the last state");
     let page = fs::read_to_string(place.path("out/report.html")).unwrap();
     assert!(page.contains("load factor") && !page.contains("simulated"), "{part}");
+    let notes = fs::read_to_string(place.path("out/pictures/notes.json")).unwrap();
+    let notes: serde_json::Value = serde_json::from_str(&notes).unwrap();
+    let titles = || notes["pictures"].as_array().unwrap().iter().map(|picture| picture["title"].as_str().unwrap());
+    assert!(titles().count() > 2 && titles().all(|title| title.contains("load factor ")), "{part}: {notes}");
     frames
 }
 

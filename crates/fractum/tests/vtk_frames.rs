@@ -1,49 +1,56 @@
 //! Frames have one frame of reference: points where everything was at the start, moved by `displacement`.
 
 mod common;
-#[allow(dead_code)] // the reader that the tests of the writers use
-#[path = "../../fractum-io/src/output/vtk/decode.rs"]
-mod decode;
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 
 use common::{BONDED_BAR, BREAKING_BAR, Workplace, files_below, run, summary};
-use decode::{Decoded, decode};
+use fractum_io::vtk::Arrays;
 
-/// The last frame of a part.
-fn last(place: &Workplace, folder: &str, name: &str) -> Decoded {
+/// Where points were at the start, and how far they have moved.
+const PLACES: [&str; 2] = ["Points", "displacement"];
+
+/// Arrays of a file, by name.
+fn read(path: &Path, names: &[&str]) -> Arrays {
+    let arrays = Arrays::read(path, names).unwrap();
+    assert!(names.iter().all(|name| !arrays.get(name).is_empty()), "{names:?} of {}", path.display());
+    arrays
+}
+
+/// Arrays of the last frame of a part, by name.
+fn last(place: &Workplace, folder: &str, stem: &str, names: &[&str]) -> Arrays {
     let files = files_below(&place.path("out").join(folder), "");
-    let file = files.iter().rfind(|file| file.file_name().unwrap().to_string_lossy().starts_with(name));
-    decode(&fs::read(file.unwrap_or_else(|| panic!("no {name}"))).unwrap())
+    let file = files.iter().rfind(|file| file.file_name().unwrap().to_string_lossy().starts_with(stem));
+    read(file.unwrap_or_else(|| panic!("no {stem}")), names)
 }
 
-fn vectors(file: &Decoded, name: &str) -> Vec<[f64; 3]> {
-    file.f64(name).chunks_exact(3).map(|vector| vector.try_into().unwrap()).collect()
+fn vectors(file: &Arrays, name: &str) -> Vec<[f64; 3]> {
+    tuples(file, name)
 }
 
-fn singles<const N: usize>(file: &Decoded, name: &str) -> Vec<[f64; N]> {
-    let values = file.bytes(name).chunks_exact(4).map(|bytes| f64::from(f32::from_ne_bytes(bytes.try_into().unwrap())));
-    values.collect::<Vec<f64>>().chunks_exact(N).map(|part| part.try_into().unwrap()).collect()
+fn tuples<const N: usize>(file: &Arrays, name: &str) -> Vec<[f64; N]> {
+    file.get(name).chunks_exact(N).map(|vector| vector.try_into().unwrap()).collect()
 }
 
 #[test]
 fn solids_discrete_elements_and_cracks_are_moved_by_one_field() {
     let place = Workplace::new(BREAKING_BAR);
     run(&place, "out", "2");
-    let solid = last(&place, "fields", "solid");
+    let solid = last(&place, "fields", "solid", &PLACES);
     let bits = |x: &[f64; 3]| x.map(f64::to_bits);
     let nodes: BTreeMap<[u64; 3], [f64; 3]> =
         vectors(&solid, "Points").iter().map(bits).zip(vectors(&solid, "displacement")).collect();
     for (folder, name) in [("particles", "particles"), ("cracks", "cracks")] {
-        let part = last(&place, folder, name);
+        let part = last(&place, folder, name, &PLACES);
         let (points, displacement) = (vectors(&part, "Points"), vectors(&part, "displacement"));
         assert!(!points.is_empty(), "{name}");
         for (point, moved) in points.iter().zip(displacement) {
             assert_eq!(nodes.get(&bits(point)), Some(&moved), "{name} at {point:?}");
         }
     }
-    let floor = last(&place, "rigid", "rigid");
+    let floor = last(&place, "rigid", "rigid", &PLACES);
     assert!(vectors(&floor, "Points").iter().all(|point| (point[1] + 5e-6).abs() < 1e-12), "the plane");
     let listed = fs::read_to_string(place.path("out/fields.pvd")).unwrap();
     for name in ["solid", "discrete elements", "rigid bodies", "cracks"] {
@@ -76,10 +83,9 @@ fn facets_of_cracks_say_when_they_opened_and_whose_they_are() {
     let facing: f64 = rows.iter().map(|row| number(row, 10) * number(row, 7).abs()).sum();
     let area: f64 = rows.iter().map(|row| number(row, 10)).sum();
     assert!(facing > 0.5 * area, "{facing} of {area}");
-    let file = decode(&fs::read(place.path("out/cracks.vtp")).unwrap());
-    assert_eq!(file.f64("time").len(), rows.len());
-    assert_eq!(file.i32("fragment").len(), rows.len());
-    assert_eq!(file.f64("opening").len(), rows.len());
+    let names = ["time", "fragment", "opening"];
+    let file = read(&place.path("out/cracks.vtp"), &names);
+    assert!(names.iter().all(|name| file.get(name).len() == rows.len()));
 }
 
 #[test]
@@ -91,12 +97,23 @@ fn further_fields_are_written_where_they_are_asked_for() {
     set.iter().for_each(|set| arguments.extend(["--set", set]));
     let ended = place.fractum(&arguments);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    let solid = last(&place, "fields", "solid");
-    let stress: Vec<[f64; 6]> = singles(&solid, "stress");
+    let arrays = [
+        "stress",
+        "principal_stresses",
+        "principal_direction_1",
+        "principal_direction_3",
+        "von_mises_stress",
+        "strain",
+        "reaction",
+        "fragment",
+        "material",
+    ];
+    let solid = last(&place, "fields", "solid", &arrays);
+    let stress: Vec<[f64; 6]> = tuples(&solid, "stress");
     let largest = stress.iter().flatten().fold(0.0, |m: f64, s| m.max(s.abs()));
-    let principal: Vec<[f64; 3]> = singles(&solid, "principal_stresses");
-    let direction: Vec<[f64; 3]> = singles(&solid, "principal_direction_1");
-    let von_mises: Vec<[f64; 1]> = singles(&solid, "von_mises_stress");
+    let principal: Vec<[f64; 3]> = vectors(&solid, "principal_stresses");
+    let direction: Vec<[f64; 3]> = vectors(&solid, "principal_direction_1");
+    let von_mises: Vec<[f64; 1]> = tuples(&solid, "von_mises_stress");
     for (((s, p), n), v) in stress.iter().zip(&principal).zip(&direction).zip(&von_mises) {
         // The stress vector across the first direction is the first principal stress along it.
         let [xx, yy, zz, xy, yz, zx] = *s;
@@ -109,32 +126,33 @@ fn further_fields_are_written_where_they_are_asked_for() {
         let expected = (0.5 * ((a - b).powi(2) + (b - c).powi(2) + (c - a).powi(2))).sqrt();
         assert!((v[0] - expected).abs() < 1e-5 * largest, "{v:?} {expected}");
     }
-    assert_eq!(singles::<3>(&solid, "principal_direction_3").len(), stress.len());
-    assert_eq!(singles::<6>(&solid, "strain").len(), stress.len());
-    let reaction: Vec<[f64; 3]> = singles(&solid, "reaction");
-    assert_eq!(reaction.len(), solid.i32("fragment").len());
+    assert_eq!(tuples::<3>(&solid, "principal_direction_3").len(), stress.len());
+    assert_eq!(tuples::<6>(&solid, "strain").len(), stress.len());
+    let reaction: Vec<[f64; 3]> = vectors(&solid, "reaction");
+    assert_eq!(reaction.len(), solid.get("fragment").len());
     assert!(reaction.iter().any(|force| force[0] != 0.0) && reaction.iter().all(|force| force[1] == 0.0));
-    assert!(solid.i32("material").iter().all(|&material| material == 0));
-    assert!(solid.i32("fragment").contains(&1));
+    assert!(solid.get("material").iter().all(|&material| material == 0.0));
+    assert!(solid.get("fragment").contains(&1.0));
 }
 
 #[test]
 fn bonds_and_broken_bonds_lie_where_their_particles_were() {
     let place = Workplace::new(BONDED_BAR);
     run(&place, "out", "2");
-    let [particles, bonds] = [last(&place, "particles", "bonded"), last(&place, "bonds", "bonds")];
+    let particles = last(&place, "particles", "bonded", &["Points", "displacement", "radius", "stress"]);
+    let bonds = last(&place, "bonds", "bonds", &PLACES);
     for name in ["Points", "displacement"] {
-        assert_eq!(particles.f64(name), bonds.f64(name), "{name}");
+        assert_eq!(particles.get(name), bonds.get(name), "{name}");
     }
     // As large as the box that was packed, wherever the halves have gone.
-    let (points, radius) = (vectors(&particles, "Points"), particles.f64("radius"));
+    let (points, radius) = (vectors(&particles, "Points"), particles.get("radius"));
     for (axis, size) in [2e-3, 1e-3, 1e-3].into_iter().enumerate() {
         let extent = |f: fn(f64, f64) -> f64, from: f64| points.iter().map(|point| point[axis]).fold(from, f);
         let length = extent(f64::max, f64::NEG_INFINITY) - extent(f64::min, f64::INFINITY);
         assert!(length > 0.8 * size && length < size, "{axis}: {length}");
     }
-    let facets = decode(&fs::read(place.path("out/cracks.vtp")).unwrap());
-    let (corners, area) = (vectors(&facets, "Points"), facets.f64("area"));
+    let facets = read(&place.path("out/cracks.vtp"), &["Points", "area", "normal", "opening"]);
+    let (corners, area) = (vectors(&facets, "Points"), facets.get("area"));
     assert_eq!(corners.len(), 6 * area.len());
     for (hexagon, (area, normal)) in corners.chunks(6).zip(area.iter().zip(vectors(&facets, "normal"))) {
         let mean: [f64; 3] = std::array::from_fn(|axis| hexagon.iter().map(|x| x[axis]).sum::<f64>() / 6.0);
@@ -151,7 +169,7 @@ fn bonds_and_broken_bonds_lie_where_their_particles_were() {
         }
     }
     // The halves part along x: what broke last stands open.
-    assert!(facets.f64("opening").iter().any(|&opening| opening > 0.0));
-    let stress: Vec<[f64; 6]> = singles(&particles, "stress");
+    assert!(facets.get("opening").iter().any(|&opening| opening > 0.0));
+    let stress: Vec<[f64; 6]> = tuples(&particles, "stress");
     assert_eq!(stress.len(), radius.len());
 }

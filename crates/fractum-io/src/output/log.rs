@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crate::error::WriteError;
-use crate::number::{quantity, significant};
+use crate::number::{instant_text, quantity, significant};
 
 /// `run.log`: plain lines, appended as they come, under its final name from the start, so that it can be watched and
 /// tells what happened if the run was killed.
@@ -97,11 +97,8 @@ impl Snapshot {
             let [load, peak] = load.map(|load| quantity(load, "N"));
             words.push(format!("load {load} (peak {peak})"));
         }
-        words.push(if self.at_rest {
-            format!("load factor {}", significant(self.time, 4))
-        } else {
-            format!("t {}", quantity(self.time, "s"))
-        });
+        let instant = instant_text(self.time, self.at_rest);
+        words.push(if self.at_rest { instant } else { format!("t {instant}") });
         words.push(format!("step {}", self.step));
         let counts =
             [(self.broken_edges, "broken edges"), (self.broken_bonds, "broken bonds"), (self.particles, "particles")];

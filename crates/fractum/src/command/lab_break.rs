@@ -372,7 +372,6 @@ fn write_fragments(path: &Path, mut pieces: Vec<Piece>, density: f64) -> Result<
 /// Files for ParaView, and the picture.
 fn fields(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Failure> {
     let outcome = &broken.outcome;
-    let trouble = |error: fractum_io::vtk::VtkError| Failure::Output(error.into());
     let points: Vec<[f64; 3]> = sample.packing.position.iter().map(|x| (*x).into()).collect();
     cracks::write_polygons(&folder.join("broken.vtp"), outcome.cracks.iter(), None)?;
     let parts = outcome.graph.parts();
@@ -380,7 +379,7 @@ fn fields(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Fa
     let lost = cracks::lost_bonds(points.len(), outcome.cracks.iter());
     let displacement = |state: &[Dof6]| state.iter().map(|u| [u[0], u[1], u[2]]).collect::<Vec<[f64; 3]>>();
     let (first, last) = (displacement(&outcome.first_state), displacement(&outcome.last_state));
-    PolyData {
+    let data = PolyData {
         points: &points,
         cells: PolyCells::Points,
         point_data: &[
@@ -392,9 +391,9 @@ fn fields(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Fa
         ],
         cell_data: &[],
         time: None,
-    }
-    .write(&folder.join("particles.vtp"), Compression::default())
-    .map_err(trouble)?;
+    };
+    let file = data.pending(Compression::default()).map_err(|error| Failure::Output(error.into()))?;
+    file.write(&folder.join("particles.vtp"))?;
     picture(&folder.join("picture.png"), sample, &points, &lost)
 }
 

@@ -14,8 +14,10 @@ use fractum_scene::{BondedBody, Scene, fragment_size};
 use super::{End, Outcome, Saved, Simulation};
 use crate::cracks::{self, Columns, FacetHistory};
 use crate::error::Failure;
+use crate::gallery;
 use crate::phases::Part;
-use crate::report::{self, Notes};
+use crate::report::{self, Notes, PictureNote};
+use crate::strip::strip;
 use crate::summary;
 
 impl Simulation {
@@ -53,6 +55,7 @@ impl Simulation {
         self.warn_of_merged_bands()?;
         write_cracks(&self.scene, &self.folder, &self.recorder.state().removed)?;
         self.phases.timed(Part::Output, || self.recorder.finish_frame())?;
+        let pictures = self.draw();
         let mut summary = Summary {
             title: self.case.source.title.clone(),
             status,
@@ -72,18 +75,16 @@ impl Simulation {
         summary.write(&self.folder.join("summary.json"))?;
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
-        let peak = self.time_of_peak();
         let load = self.load().map(|index| self.case.probes[index].name.value.clone());
-        let mut notes = Notes {
+        let notes = Notes {
             case_file: self.case.source.path.display().to_string(),
             plan: self.about.plan.wrapped(PLAN_WIDTH, str::to_owned),
             warnings: self.messages.warnings,
-            pictures: crate::gallery::draw(&self.scene, &self.folder),
+            pictures,
             inputs: crate::inputs::table(&self.case),
             plots: crate::plots::notes(&self.case),
         };
         self.recorder.finish()?;
-        notes.pictures.extend(crate::strip::strip(&self.folder, peak));
         report::keep(&self.folder, &notes)?;
         report::write(&self.folder)?;
         match end {
@@ -97,6 +98,17 @@ impl Simulation {
             }
             _ => Ok(Outcome { summary, folder: self.folder, load }),
         }
+    }
+
+    /// The pictures of the end, and those over time from the frames.
+    fn draw(&mut self) -> Vec<PictureNote> {
+        let (peak, at_rest) = (self.time_of_peak(), self.solver.rests());
+        let Simulation { scene, folder, phases, .. } = self;
+        phases.timed(Part::Output, || {
+            let mut pictures = gallery::draw(scene, folder, at_rest);
+            pictures.extend(strip(folder, peak, at_rest));
+            pictures
+        })
     }
 
     /// The frame of the last instant, and its row.
@@ -152,8 +164,8 @@ fn write_cracks(scene: &Scene, folder: &Path, removed: &[(u32, u32, f64)]) -> Re
     };
     let name = if bonds { "cracks-solids" } else { "cracks" };
     cracks::write_facets(&folder.join(format!("{name}.csv")), &scene.solid, &crack, &history)?;
-    let file = cracks::facets_file(&folder.join(format!("{name}.vtp")), &scene.solid, &crack, Some(&history))?;
-    Ok(file.write()?)
+    let file = cracks::facets_file(&scene.solid, &crack, Some(&history))?;
+    Ok(file.write(&folder.join(format!("{name}.vtp")))?)
 }
 
 impl Simulation {

@@ -22,6 +22,7 @@ use crate::input::{Input, load};
 use crate::interrupt::UnderWay;
 use crate::phases::Phases;
 use crate::plan::Plan;
+use crate::population::Population;
 use crate::record::{Course, RecordState, Recorder};
 use crate::solver::Solver;
 use crate::tell;
@@ -212,8 +213,8 @@ fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
     Ok(log)
 }
 
-/// Files of a run, beside its frames and states.
-const RESULTS: [&str; 11] = [
+/// Files of a run, beside its frames, pictures, states and the text of its case.
+const RESULTS: [&str; 12] = [
     "summary.json",
     "history.csv",
     "fields.pvd",
@@ -224,11 +225,12 @@ const RESULTS: [&str; 11] = [
     "cracks-solids.vtp",
     "ppv.csv",
     "report.html",
+    "movie.png",
     "pictures/notes.json",
 ];
 
 /// A run that starts anew leaves nothing of an earlier one that could be taken for its own: no state to resume from, no
-/// frames. Files of other kinds in these folders are the user's, and stay.
+/// frames, no pictures, no case. Files of other kinds in these folders are the user's, and stay.
 fn discard_results(folder: &Path) -> Result<(), Failure> {
     let checkpoints = folder.join("checkpoint");
     match std::fs::remove_dir_all(&checkpoints) {
@@ -240,10 +242,12 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
     for path in RESULTS.map(|name| folder.join(name)).into_iter().filter(|path| path.is_file()) {
         std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
     }
-    for frames in ["fields", "particles", "bonds", "cracks", "gas", "rigid"] {
-        let Ok(entries) = std::fs::read_dir(folder.join(frames)) else { continue };
+    let frames =
+        Population::ALL.iter().flat_map(|population| [(population.folder(), "vtu"), (population.folder(), "vtp")]);
+    for (name, ending) in frames.chain([("pictures", "png"), ("input", "toml")]) {
+        let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
         for path in entries.flatten().map(|entry| entry.path()) {
-            if path.extension().is_some_and(|e| e == "vtu" || e == "vtp") {
+            if path.extension().is_some_and(|own| own == ending) {
                 std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
             }
         }

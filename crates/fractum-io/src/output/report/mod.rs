@@ -13,7 +13,7 @@ pub use figure::ColourBar;
 
 use crate::atomic;
 use crate::error::WriteError;
-use crate::number::{grouped, percent, quantity, significant};
+use crate::number::{grouped, instant_text, percent, quantity, significant};
 use crate::output::fragments::Fragment;
 use crate::output::history::Table;
 use crate::output::log::duration;
@@ -164,8 +164,7 @@ fn heading(data: &ReportData) -> Markup {
             p {
                 span class={ "status " (status) } { (status) }
                 @if !data.case_file.is_empty() { (data.case_file) " · " }
-                @if time.at_rest { "load factor " (significant(time.end, 4)) " after " }
-                @else { (quantity(time.end, "s")) " simulated in " }
+                (instant_text(time.end, time.at_rest)) @if time.at_rest { " after " } @else { " simulated in " }
                 (grouped(&time.steps.to_string())) " steps · "
                 (duration(wall.total)) " on " (threads) @if *threads == 1 { " thread" } @else { " threads" }
                 " · fractum " (fractum)
@@ -285,7 +284,7 @@ fn probes(summary: &Summary) -> Markup {
                         tr {
                             td { (words(name)) }
                             td.number { (shown(probe.max)) }
-                            td.number { (quantity(probe.time_of_max, "s")) }
+                            td.number { (instant_text(probe.time_of_max, summary.time.at_rest)) }
                             td.number { (shown(probe.min)) }
                             td.number { (shown(probe.r#final)) }
                         }

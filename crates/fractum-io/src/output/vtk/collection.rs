@@ -1,7 +1,5 @@
 //! PVD: which file shows which part at which time.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::frame_writer::PendingFile;
@@ -49,9 +47,9 @@ impl Collection {
         text
     }
 
-    /// The collection at `path`, to be written once its files are.
-    pub fn pending(&self, path: &Path) -> PendingFile {
-        PendingFile::of_text(path, self.to_xml())
+    /// The file, to be written once its files are.
+    pub fn pending(&self) -> PendingFile {
+        PendingFile::of_text(self.to_xml())
     }
 }
 

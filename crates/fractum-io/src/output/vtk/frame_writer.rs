@@ -13,10 +13,7 @@ use crate::error::WriteError;
 
 /// A file of which everything is known, but which is neither compressed nor written yet.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct PendingFile {
-    path: PathBuf,
-    content: Content,
-}
+pub struct PendingFile(Content);
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 enum Content {
@@ -25,28 +22,22 @@ enum Content {
 }
 
 impl PendingFile {
-    pub(super) fn of_document(path: &Path, document: Document<'_>, compression: Compression) -> Self {
-        PendingFile { path: path.to_path_buf(), content: Content::Document(document.into_owned(), compression) }
+    pub(super) fn of_document(document: Document<'_>, compression: Compression) -> Self {
+        PendingFile(Content::Document(document.into_owned(), compression))
     }
 
-    pub(super) fn of_text(path: &Path, text: String) -> Self {
-        PendingFile { path: path.to_path_buf(), content: Content::Text(text) }
+    pub(super) fn of_text(text: String) -> Self {
+        PendingFile(Content::Text(text))
     }
 
-    /// The same file under another name.
-    #[must_use]
-    pub fn at(self, path: &Path) -> Self {
-        PendingFile { path: path.to_path_buf(), ..self }
-    }
-
-    /// Writes the file.
+    /// Writes the file at `path`.
     ///
     /// # Errors
     /// [`WriteError`].
-    pub fn write(&self) -> Result<(), WriteError> {
-        match &self.content {
-            Content::Document(document, compression) => atomic::write(&self.path, &document.to_bytes(*compression)),
-            Content::Text(text) => atomic::write(&self.path, text.as_bytes()),
+    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
+        match &self.0 {
+            Content::Document(document, compression) => atomic::write(path, &document.to_bytes(*compression)),
+            Content::Text(text) => atomic::write(path, text.as_bytes()),
         }
     }
 }
@@ -58,15 +49,15 @@ pub struct FrameWriter {
 }
 
 impl FrameWriter {
-    /// Begins to write the files of a frame, one after the other, once the frame before is written.
+    /// Begins to write the files of a frame at their paths, one after the other, once the frame before is written.
     ///
     /// # Errors
     /// [`WriteError`] of the frame before; of this one where there is no thread for it.
-    pub fn begin(&mut self, frame: Vec<PendingFile>) -> Result<(), WriteError> {
+    pub fn begin(&mut self, frame: Vec<(PathBuf, PendingFile)>) -> Result<(), WriteError> {
         self.finish()?;
         let frame = Arc::new(frame);
         let own = Arc::clone(&frame);
-        let write = |frame: &[PendingFile]| frame.iter().try_for_each(PendingFile::write);
+        let write = |frame: &[(PathBuf, PendingFile)]| frame.iter().try_for_each(|(path, file)| file.write(path));
         match thread::Builder::new().name("frames".into()).spawn(move || write(&own)) {
             Ok(thread) => self.under_way = Some(thread),
             // A system without a thread to spare: the run waits for its frame.
@@ -107,7 +98,7 @@ mod tests {
     use crate::vtk::{Collection, Field, PolyCells, PolyData};
     use std::fs;
 
-    fn cloud(points: &[[f64; 3]], path: &Path) -> (PendingFile, Vec<u8>) {
+    fn cloud(points: &[[f64; 3]], path: &Path) -> ((PathBuf, PendingFile), Vec<u8>) {
         let data = PolyData {
             points,
             cells: PolyCells::Points,
@@ -115,7 +106,7 @@ mod tests {
             cell_data: &[],
             time: Some(0.5),
         };
-        (data.pending(path, Compression::Fast).unwrap(), data.to_bytes(Compression::Fast).unwrap())
+        ((path.to_owned(), data.pending(Compression::Fast).unwrap()), data.to_bytes(Compression::Fast).unwrap())
     }
 
     #[test]
@@ -129,7 +120,7 @@ mod tests {
             let (pending, bytes) = cloud(&points, &path);
             let mut collection = Collection::default();
             collection.push(0.5, 0, "cloud", format!("{frame}.vtp"));
-            writer.begin(vec![pending, collection.pending(&folder.path().join("fields.pvd"))]).unwrap();
+            writer.begin(vec![pending, (folder.path().join("fields.pvd"), collection.pending())]).unwrap();
             points.iter_mut().for_each(|point| point[2] += 1.0);
             expected.push((path, bytes));
         }

@@ -1,7 +1,6 @@
 //! VTU: elements of a body with what is known at their nodes and in them.
 
 use std::borrow::Cow;
-use std::path::Path;
 
 use super::document::Document;
 use super::frame_writer::PendingFile;
@@ -74,12 +73,12 @@ impl UnstructuredGrid<'_> {
         Ok(self.document()?.to_bytes(compression))
     }
 
-    /// The file at `path`, to be written later; all of its content is of now.
+    /// The file, to be written later; all of its content is of now.
     ///
     /// # Errors
     /// As [`to_bytes`](Self::to_bytes).
-    pub fn pending(&self, path: &Path, compression: Compression) -> Result<PendingFile, VtkError> {
-        Ok(PendingFile::of_document(path, self.document()?, compression))
+    pub fn pending(&self, compression: Compression) -> Result<PendingFile, VtkError> {
+        Ok(PendingFile::of_document(self.document()?, compression))
     }
 
     fn document(&self) -> Result<Document<'_>, VtkError> {

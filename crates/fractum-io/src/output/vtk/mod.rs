@@ -36,7 +36,6 @@ pub use poly::{PolyCells, PolyData};
 pub use read::{Arrays, read_collection};
 
 pub use crate::compress::Compression;
-use crate::error::WriteError;
 
 /// Why arrays cannot become a VTK file.
 #[derive(Debug, thiserror::Error)]
@@ -67,9 +66,6 @@ pub enum VtkError {
         /// How many there are.
         points: usize,
     },
-    /// The file could not be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
 }
 
 /// The values of a field, component by component and point by point (or cell by cell).

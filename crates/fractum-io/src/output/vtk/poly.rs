@@ -1,11 +1,8 @@
 //! VTP: particles as points with a radius, bonds as lines, facets as triangles.
 
-use std::path::Path;
-
 use super::document::Document;
 use super::frame_writer::PendingFile;
 use super::{Compression, Field, VtkError, check_points};
-use crate::atomic;
 
 /// The cells of a VTP; one kind per file.
 #[derive(Clone, Copy, Debug)]
@@ -44,12 +41,12 @@ impl PolyData<'_> {
         Ok(self.document()?.to_bytes(compression))
     }
 
-    /// The file at `path`, to be written later; all of its content is of now.
+    /// The file, to be written later; all of its content is of now.
     ///
     /// # Errors
     /// As [`to_bytes`](Self::to_bytes).
-    pub fn pending(&self, path: &Path, compression: Compression) -> Result<PendingFile, VtkError> {
-        Ok(PendingFile::of_document(path, self.document()?, compression))
+    pub fn pending(&self, compression: Compression) -> Result<PendingFile, VtkError> {
+        Ok(PendingFile::of_document(self.document()?, compression))
     }
 
     fn document(&self) -> Result<Document<'_>, VtkError> {
@@ -89,14 +86,6 @@ impl PolyData<'_> {
         document.fields("CellData", cell_data);
         document.text("    </Piece>\n");
         Ok(document)
-    }
-
-    /// Writes the file at `path`.
-    ///
-    /// # Errors
-    /// As [`to_bytes`](Self::to_bytes), and where the file cannot be written.
-    pub fn write(&self, path: &Path, compression: Compression) -> Result<(), VtkError> {
-        Ok(atomic::write(path, &self.to_bytes(compression)?)?)
     }
 }
 

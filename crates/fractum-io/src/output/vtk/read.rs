@@ -4,8 +4,8 @@
 //! damaged or from elsewhere is an error, and no size that it states is believed before the bytes are there.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::io::{self, Read};
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::collection::{Collection, Entry};
@@ -19,13 +19,13 @@ const LARGEST: usize = 1 << 32;
 pub struct Arrays(BTreeMap<String, Vec<f64>>);
 
 impl Arrays {
-    /// Reads a file.
+    /// Reads the arrays of these names, and nothing else of a file; what is not there is left out.
     ///
     /// # Errors
     /// [`ReadError`]: no such file, or none that this program wrote.
-    pub fn read(path: &Path) -> Result<Self, ReadError> {
-        let file = fs::read(path).map_err(|error| refused(path, error))?;
-        decode(&file).map(Arrays).ok_or_else(|| damaged(path))
+    pub fn read(path: &Path, wanted: &[&str]) -> Result<Self, ReadError> {
+        let mut file = BufReader::new(File::open(path).map_err(|error| refused(path, error))?);
+        decode(&mut file, wanted).map(Arrays).ok_or_else(|| damaged(path))
     }
 
     /// The numbers of an array; none of one that is not there.
@@ -84,20 +84,33 @@ fn refused(path: &Path, source: io::Error) -> ReadError {
     ReadError::Refused { path: path.to_owned(), source }
 }
 
-fn decode(file: &[u8]) -> Option<BTreeMap<String, Vec<f64>>> {
-    let start = find(file, b"<AppendedData")?;
-    let xml = std::str::from_utf8(&file[..start]).ok()?;
-    let data = &file[start + find(&file[start..], b"_")? + 1..];
+fn decode(file: &mut (impl BufRead + Seek), wanted: &[&str]) -> Option<BTreeMap<String, Vec<f64>>> {
+    let xml = head(file)?;
+    let begin = file.stream_position().ok()?;
     let compressed = xml.contains("compressor=\"vtkZLibDataCompressor\"");
     let mut arrays = BTreeMap::new();
     for tag in xml.split('<').filter(|tag| tag.starts_with("DataArray")) {
         let attributes = attributes(tag);
-        let offset: usize = attributes.get("offset")?.parse().ok()?;
-        let stored = data.get(offset..)?;
-        let bytes = if compressed { inflate(stored)? } else { plain(stored)?.to_vec() };
-        arrays.insert((*attributes.get("Name")?).to_owned(), numbers(attributes.get("type")?, &bytes)?);
+        let name = *attributes.get("Name")?;
+        if !wanted.contains(&name) {
+            continue;
+        }
+        let offset: u64 = attributes.get("offset")?.parse().ok()?;
+        file.seek(SeekFrom::Start(begin.checked_add(offset)?)).ok()?;
+        let bytes = if compressed { inflate(file)? } else { plain(file)? };
+        arrays.insert(name.to_owned(), numbers(attributes.get("type")?, &bytes)?);
     }
     Some(arrays)
+}
+
+/// The text before the arrays; leaves the file where they begin.
+fn head(file: &mut impl BufRead) -> Option<String> {
+    let mut text = Vec::new();
+    while !text.ends_with(b"<AppendedData encoding=\"raw\">") {
+        file.read_until(b'>', &mut text).ok().filter(|&read| read > 0)?;
+    }
+    file.read_until(b'_', &mut text).ok()?;
+    text.ends_with(b"_").then(|| String::from_utf8(text).ok())?
 }
 
 fn attributes(tag: &str) -> BTreeMap<&str, &str> {
@@ -127,30 +140,34 @@ fn numbers(kind: &str, bytes: &[u8]) -> Option<Vec<f64>> {
     })
 }
 
-fn number(data: &[u8], index: usize) -> Option<usize> {
-    let bytes = data.get(8 * index..8 * index + 8)?;
-    usize::try_from(u64::from_ne_bytes(bytes.try_into().ok()?)).ok()
+fn number(file: &mut impl Read) -> Option<usize> {
+    let mut bytes = [0; 8];
+    file.read_exact(&mut bytes).ok()?;
+    usize::try_from(u64::from_ne_bytes(bytes)).ok()
 }
 
-fn plain(data: &[u8]) -> Option<&[u8]> {
-    data.get(8..)?.get(..number(data, 0)?)
-}
-
-fn inflate(data: &[u8]) -> Option<Vec<u8>> {
-    let blocks = number(data, 0)?;
-    let mut position = blocks.checked_add(3)?.checked_mul(8)?;
+/// The next bytes, which grow only as far as the file has them.
+fn take(file: &mut impl Read, length: usize) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
-    for block in 0..blocks {
-        let end = position.checked_add(number(data, 3 + block)?)?;
+    file.take(length as u64).read_to_end(&mut bytes).ok()?;
+    (bytes.len() == length).then_some(bytes)
+}
+
+fn plain(file: &mut impl Read) -> Option<Vec<u8>> {
+    let length = number(file)?;
+    take(file, length)
+}
+
+fn inflate(file: &mut impl Read) -> Option<Vec<u8>> {
+    let (blocks, _size, _partial) = (number(file)?, number(file)?, number(file)?);
+    let sizes = take(file, blocks.checked_mul(8)?)?;
+    let mut bytes = Vec::new();
+    for size in sizes.chunks_exact(8) {
+        let block = take(file, number(&mut &size[..])?)?;
         let room = LARGEST.checked_sub(bytes.len())? as u64;
-        flate2::read::ZlibDecoder::new(data.get(position..end)?).take(room).read_to_end(&mut bytes).ok()?;
-        position = end;
+        flate2::read::ZlibDecoder::new(&block[..]).take(room).read_to_end(&mut bytes).ok()?;
     }
     Some(bytes)
-}
-
-fn find(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
-    bytes.windows(pattern.len()).position(|window| window == pattern)
 }
 
 #[cfg(test)]
@@ -176,14 +193,19 @@ mod tests {
         for compression in [Compression::Fast, Compression::None] {
             let bytes = data.to_bytes(compression).unwrap();
             fs::write(&path, &bytes).unwrap();
-            let arrays = Arrays::read(&path).unwrap();
+            let all = ["Points", "radius", "connectivity", "offsets", "TimeValue", "absent"];
+            let arrays = Arrays::read(&path, &all).unwrap();
             assert_eq!((arrays.vectors("Points"), arrays.get("radius")), (points.clone(), &radius[..]));
             assert_eq!((arrays.cells::<3>(), arrays.get("TimeValue")), (triangles.clone(), &[0.5][..]));
             assert!(arrays.cells::<4>().is_empty() && arrays.get("absent").is_empty());
             for part in [0, 10, bytes.len() / 3, bytes.len() / 2] {
                 fs::write(&path, &bytes[..part]).unwrap();
-                assert!(Arrays::read(&path).is_err(), "{part}");
+                assert!(Arrays::read(&path, &all).is_err(), "{part}");
             }
+            // The arrays that nobody wants are not looked at.
+            fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+            let time = Arrays::read(&path, &["TimeValue"]).unwrap();
+            assert_eq!((time.get("TimeValue"), time.get("Points")), (&[0.5][..], &[][..]));
         }
     }
 

@@ -11,7 +11,7 @@ pub(super) fn unit_of(name: &str) -> Option<&'static str> {
         "area" => "m^2",
         "time" | "TimeValue" => "s",
         "stress" | "first_principal_stress" | "von_mises_stress" | "principal_stresses" | "pressure" => "Pa",
-        "reaction" | "axial_force" => "N",
+        "reaction" | "axial_force" | "load" => "N",
         "elastic_energy" | "energy" => "J",
         "temperature" => "K",
         "density" => "kg/m^3",
