@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{Workplace, files_below, history, run};
+use common::{Workplace, files_below, history, resumed, run};
 use fractum_pack::{Domain, PackSpec, pack};
 
 const BAR: &str = r#"fractum = 1
@@ -104,10 +104,7 @@ fn a_bonded_body_runs_from_its_material_alone() {
     let second = log(&place, "2");
     assert!(second.contains("packing from the cache") && second.contains("beams from the cache"), "{second}");
 
-    // From the last checkpoint to the end again.
-    let resumed = place.fractum(&["run", "case.toml", "-o", "2", "--threads", "1", "--resume", "--quiet"]);
-    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
-    let resumed = common::summary(&place, "2");
+    let resumed = resumed(&place, "2");
     assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&summary["state_hash"], &summary["energy"]));
     let rows = |folder: &str| fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
     assert!(rows("one") == rows("2"));
@@ -210,9 +207,7 @@ fn the_scheme_of_tchamwa_and_wielgosz_damps_a_front_and_closes_the_balance() {
             return [energy("damping"), energy("external")];
         }
         // A checkpoint holds the forces of the step before.
-        let resumed = place.fractum(&["run", "case.toml", "-o", "out", "--threads", "1", "--resume", "--quiet"]);
-        assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
-        assert_eq!(common::summary(&place, "out")["state_hash"], summary["state_hash"]);
+        assert_eq!(resumed(&place, "out")["state_hash"], summary["state_hash"]);
         [energy("damping"), energy("external")]
     };
     // Without damping, only the half step before the start loses the rounding of the forces at rest.

@@ -5,10 +5,10 @@ mod common;
 use std::collections::BTreeSet;
 use std::fs;
 
-use common::{Workplace, history, run, summary};
+use common::{Workplace, history, resumed, run, summary};
 use fractum_io::vtk::read_collection;
 
-/// A clamped bar of elements and a free bonded box, both heated by 20 K.
+/// A clamped bar of elements and a free bonded box, both heated by 15 K.
 const HOT: &str = r#"fractum = 1
 title = "A clamped bar and a free box get hot"
 
@@ -136,9 +136,7 @@ fn clamped_bodies_are_pressed_and_free_ones_grow_with_the_same_bits_on_any_threa
         let other = run(&place, threads, threads);
         assert_eq!((&other["state_hash"], &other["energy"]), (&one["state_hash"], &one["energy"]), "{threads} threads");
     }
-    let resumed = place.fractum(&["run", "case.toml", "-o", "2", "--threads", "1", "--resume", "--quiet"]);
-    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
-    let resumed = summary(&place, "2");
+    let resumed = resumed(&place, "2");
     assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
 }
 
@@ -186,9 +184,7 @@ fn heat_alone_keeps_its_balance_by_explicit_and_implicit_steps() {
         assert!(rows.iter().all(|row| row[3].abs() < 1e-10 * last[1]), "{rows:?}");
         let two = run(&place, "two", "2");
         assert_eq!(two["state_hash"], one["state_hash"]);
-        let resumed = place.fractum(&["run", "case.toml", "-o", "two", "--threads", "1", "--resume", "--quiet"]);
-        assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
-        assert_eq!(summary(&place, "two")["state_hash"], one["state_hash"]);
+        assert_eq!(resumed(&place, "two")["state_hash"], one["state_hash"]);
         // A run that ended earlier goes on to the later end.
         let whole = fs::read_to_string(place.path("case.toml")).unwrap();
         fs::write(place.path("case.toml"), whole.replace("end = \"2000 s\"", "end = \"1200 s\"")).unwrap();

@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
 
-use common::{Workplace, files_below, run, summary};
+use common::{Workplace, files_below, resumed, run, summary};
 
 /// Beads fall on a floor within walls; a free plate presses on them, and a driven paddle stirs.
 const HEAP: &str = r#"fractum = 1
@@ -92,7 +92,7 @@ count = "contacts"
 [output]
 history = { every = "1 ms" }
 fields = { every = "50 ms" }
-checkpoint = { every = "20 ms" }
+checkpoint = { every = "1 ms" }
 "#;
 
 /// A thin upright wedge about the axis, closed.
@@ -136,9 +136,7 @@ fn a_heap_runs_with_the_same_bits_on_any_threads_and_after_a_checkpoint() {
     assert!(listed.contains("name=\"loose particles\"") && !listed.contains("name=\"bonded"), "{listed}");
     let two = run(&place, "two", "2");
     assert_eq!((&two["state_hash"], &two["probes"]), (&one["state_hash"], &one["probes"]));
-    let resumed = place.fractum(&["run", "case.toml", "-o", "two", "--threads", "1", "--resume", "--quiet"]);
-    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
-    let resumed = summary(&place, "two");
+    let resumed = resumed(&place, "two");
     assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
 }
 

@@ -5,8 +5,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::Workplace;
-use serde_json::Value;
+use common::{Workplace, resumed, run};
 
 const BAR: &str = r#"fractum = 1
 title = "A bar with a bonded middle"
@@ -64,12 +63,6 @@ fn place(case: &str) -> Workplace {
     place
 }
 
-fn run(place: &Workplace, folder: &str, extra: &[&str]) -> Value {
-    let ended = place.fractum(&[&["run", "case.toml", "-o", folder, "--quiet"], extra].concat());
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    serde_json::from_str(&fs::read_to_string(place.path(folder).join("summary.json")).unwrap()).unwrap()
-}
-
 #[test]
 fn one_key_bonds_a_body_in_part_and_the_run_has_one_result() {
     let place = place(BAR);
@@ -79,15 +72,15 @@ fn one_key_bonds_a_body_in_part_and_the_run_has_one_result() {
     for words in ["bar: 781 standard tetrahedra", "mass 40 mg", "800 bonded particles", "tie          core to bar: "] {
         assert!(checked.stdout.contains(words), "{words}: {}", checked.stdout);
     }
-    let one = run(&place, "one", &["--threads", "1"]);
+    let one = run(&place, "one", "1");
     assert_eq!(one["counts"]["fragments"].as_u64(), Some(1));
     assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-4, "{}", one["energy"]);
     assert!(one["probes"]["load"]["max"].as_f64().unwrap() > 1.0);
     for threads in ["2", "7"] {
-        let other = run(&place, threads, &["--threads", threads]);
+        let other = run(&place, threads, threads);
         assert_eq!((&other["state_hash"], &other["probes"]), (&one["state_hash"], &one["probes"]), "{threads}");
     }
-    let resumed = run(&place, "2", &["--threads", "1", "--resume"]);
+    let resumed = resumed(&place, "2");
     assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
 }
 

@@ -236,6 +236,19 @@ pub(crate) fn run(place: &Workplace, folder: &str, threads: &str) -> Value {
     summary(place, folder)
 }
 
+/// Resumes a run from its middle with one thread, as if its last state had been lost; its summary.
+pub(crate) fn resumed(place: &Workplace, folder: &str) -> Value {
+    let results = place.path(folder);
+    let (steps, files) = (checkpoints(&results), files_below(&results.join("checkpoint"), ".fck"));
+    assert!(steps.len() > 1 && steps[0] > 0, "the state before the last is to be one in mid-run: {steps:?}");
+    fs::remove_file(files.last().unwrap()).unwrap();
+    // The summary that is read must be the one that the resumed run writes.
+    fs::remove_file(results.join("summary.json")).unwrap();
+    let ended = place.fractum(&["run", "case.toml", "-o", folder, "--threads", "1", "--resume", "--quiet"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    summary(place, folder)
+}
+
 /// The summary in a results folder.
 pub(crate) fn summary(place: &Workplace, folder: &str) -> Value {
     serde_json::from_str(&fs::read_to_string(place.path(folder).join("summary.json")).unwrap()).unwrap()
