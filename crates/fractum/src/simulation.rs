@@ -32,6 +32,7 @@ use crate::record::{RecordState, Recorder};
 use crate::series::index_of_max;
 use crate::solver::{Measured, Solver, SolverState};
 use messages::Messages;
+pub(crate) use open::open_folder;
 pub use origin::for_shell;
 
 /// How a case is run.

@@ -5,14 +5,19 @@ use std::path::{Path, PathBuf};
 
 use fractum_io::atomic;
 use fractum_io::case::read_case;
-use fractum_io::study::list::{Listed, cell, keys, read};
+use fractum_io::history::quoted;
+use fractum_io::study::list::{Listed, keys, read};
 use fractum_io::summary::{Status, Summary, hash_text};
 use serde_json::Value;
 
 use crate::error::{ExitCode, Failure};
 use crate::run::run;
-use crate::simulation::Options;
+use crate::simulation::{Options, open_folder};
 use crate::tell;
+
+/// File beside the results of a run with the hash of its case. A state by itself does not tell the end of the run that it is of,
+/// since `--resume` may go on to another one.
+const CASE: &str = "case-hash.txt";
 
 /// Where a list keeps the results of its runs: `runs/` beside `runs.csv`.
 pub fn results_folder(list: &Path) -> PathBuf {
@@ -44,17 +49,27 @@ pub fn find(list: &Path, wanted: &str) -> Result<Listed, Failure> {
 pub fn run_one(listed: &Listed, folder: &Path, options: &Options, anew: bool) -> Result<Status, Failure> {
     let place = folder.join(&listed.name);
     let case = read_case(&listed.case, &listed.overrides)?;
+    let hash = hash_text(case.hash());
     let summary = Summary::read(&place.join("summary.json")).ok();
-    let own = summary.filter(|summary| summary.hashes.case_hash == hash_text(case.hash()) && !anew);
+    let own = summary.filter(|summary| summary.hashes.case_hash == hash && !anew);
     if own.as_ref().is_some_and(|summary| summary.status == Status::Completed) {
         tell!("run {} has finished before: {}", listed.name, place.display());
         return Ok(Status::Completed);
     }
-    let resume = !anew && has_state(&place);
+    let same = std::fs::read_to_string(place.join(CASE)).is_ok_and(|kept| kept == hash);
+    let resume = !anew && same && has_state(&place);
+    if !resume {
+        if !anew && has_state(&place) {
+            tell!("{}: a state of another case; run {} starts anew", place.display(), listed.name);
+        }
+        // Without its states first: a run that does not come to its own must not leave them under this hash.
+        drop(open_folder(&place, true)?);
+        atomic::write(&place.join(CASE), hash.as_bytes())?;
+    }
     let overrides = listed.overrides.clone();
     let options = Options { output: Some(place), overrides, resume, overwrite: !resume, ..options.clone() };
     match run(&listed.case, &options) {
-        // The state is that of another case or program.
+        // The state is that of another mesh or program.
         Err(failure @ Failure::Checkpoint(_)) if resume && failure.exit_code() == ExitCode::Input => {
             tell!("{failure}; run {} starts anew", listed.name);
             run(&listed.case, &Options { resume: false, overwrite: true, ..options })
@@ -86,12 +101,12 @@ pub fn collect(list: &Path, folder: &Path, table: &Path) -> Result<(usize, usize
     let keys = keys(&runs);
     let header: Vec<&str> =
         ["run", "case"].into_iter().chain(keys.iter().copied()).chain(columns.iter().copied()).collect();
-    let mut lines = vec![header.into_iter().map(cell).collect::<Vec<_>>().join(",")];
+    let mut lines = vec![header.into_iter().map(quoted).collect::<Vec<_>>().join(",")];
     let find = |pairs: &[(String, String)], name: &str| {
-        cell(pairs.iter().rev().find(|(key, _)| key == name).map_or("", |(_, value)| value))
+        quoted(pairs.iter().rev().find(|(key, _)| key == name).map_or("", |(_, value)| value))
     };
     for (run, row) in runs.iter().zip(&rows) {
-        let mut cells = vec![cell(&run.name), cell(&run.case.to_string_lossy())];
+        let mut cells = vec![quoted(&run.name), quoted(&run.case.to_string_lossy())];
         cells.extend(keys.iter().map(|key| find(&run.overrides, key)));
         cells.extend(columns.iter().map(|name| find(row, name)));
         lines.push(cells.join(","));

@@ -67,4 +67,22 @@ fn a_run_that_was_interrupted_goes_on_by_the_same_command() {
     fs::write(place.path("case.toml"), BREAKING_BAR.replace("width = 0.1", "width = 0.2")).unwrap();
     let ended = place.fractum(&["sweep", "run", "runs.csv", "1"]);
     assert!(ended.code == Some(0) && ended.stderr.contains("starts anew"), "{}", ended.stderr);
+    let whole = place.fractum(&["run", "case.toml", "--set", "end=0.3 ms", "-o", "whole", "--overwrite"]);
+    assert_eq!(whole.code, Some(0), "{}", whole.stderr);
+    assert_eq!(summary(&place, "runs/1")["state_hash"], summary(&place, "whole")["state_hash"]);
+}
+
+#[test]
+fn a_run_of_the_same_name_with_another_end_is_another_run() {
+    let place = Workplace::new(BREAKING_BAR);
+    for end in ["10.3 us", "20 us", "5 us"] {
+        let set = format!("end={end}");
+        let listed = place.fractum(&["sweep", "list", "case.toml", "--set", &set]);
+        assert_eq!(listed.code, Some(0), "{}", listed.stderr);
+        let ended = place.fractum(&["sweep", "run", "runs.csv", "1"]);
+        assert_eq!(ended.code, Some(0), "{end}: {}", ended.stderr);
+        let direct = place.fractum(&["run", "case.toml", "--set", &set, "-o", "direct", "--overwrite"]);
+        assert_eq!(direct.code, Some(0), "{}", direct.stderr);
+        assert_eq!(summary(&place, "runs/1")["state_hash"], summary(&place, "direct")["state_hash"], "{end}");
+    }
 }

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 use super::plan::Study;
 use crate::case::{Diagnostic, Diagnostics, Place};
+use crate::output::history::quoted;
 
 /// A run of a list.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,13 +45,13 @@ pub fn of_study(study: &Study) -> Vec<Listed> {
 /// The file that lists these runs.
 pub fn to_csv(runs: &[Listed]) -> String {
     let keys = keys(runs);
-    let mut lines = vec![FIRST.iter().copied().chain(keys.iter().copied()).map(cell).collect::<Vec<_>>().join(",")];
+    let mut lines = vec![FIRST.iter().copied().chain(keys.iter().copied()).map(quoted).collect::<Vec<_>>().join(",")];
     for run in runs {
         let case = run.case.to_string_lossy();
-        let mut cells = vec![cell(&run.name), cell(&case)];
+        let mut cells = vec![quoted(&run.name), quoted(&case)];
         // The last of several values counts, as it does on the command line.
         let value = |key: &str| run.overrides.iter().rev().find(|(name, _)| name == key).map_or("", |(_, value)| value);
-        cells.extend(keys.iter().map(|key| cell(value(key))));
+        cells.extend(keys.iter().map(|key| quoted(value(key))));
         lines.push(cells.join(","));
     }
     lines.join("\n") + "\n"
@@ -108,15 +109,6 @@ pub fn read(path: &Path) -> Result<Vec<Listed>, Diagnostics> {
 fn is_name(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_alphanumeric() || ['.', '-', '_'].contains(&c);
     name.starts_with(|c: char| c.is_ascii_alphanumeric()) && name.chars().all(plain)
-}
-
-/// A value as a cell, in quotes where it needs them.
-pub fn cell(value: &str) -> String {
-    if value.contains([',', '"', '\n', '\r']) || value.trim() != value {
-        format!("\"{}\"", value.replace('"', "\"\""))
-    } else {
-        value.to_owned()
-    }
 }
 
 /// The rows of a CSV file with the lines on which they begin, without empty ones; the line of a quote that is not closed.

@@ -200,7 +200,7 @@ fn folder_of(case: &Path, options: &Options) -> Result<PathBuf, Failure> {
 /// Makes the results folder and opens its log.
 ///
 /// - `anew`: without the results of an earlier run
-fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
+pub(crate) fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
     create_folder(folder)?;
     create_folder(&folder.join("pictures"))?;
     let path = folder.join("run.log");
