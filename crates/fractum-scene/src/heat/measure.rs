@@ -19,18 +19,6 @@ pub enum HeatMeasure {
     ExpansionWork,
 }
 
-impl HeatMeasure {
-    /// Every measure with its name.
-    pub const NAMES: [(&'static str, HeatMeasure); 6] = [
-        ("stored", HeatMeasure::Stored),
-        ("held", HeatMeasure::Held),
-        ("supplied", HeatMeasure::Supplied),
-        ("convection", HeatMeasure::Convection),
-        ("residual", HeatMeasure::Residual),
-        ("expansion_work", HeatMeasure::ExpansionWork),
-    ];
-}
-
 /// Which temperature of a set of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TemperatureTake {
