@@ -16,8 +16,8 @@ const MOST: usize = 10_000;
 #[derive(Default)]
 pub struct ImplicitHeat {
     prepared: Option<Prepared>,
-    /// Iterations of conjugate gradients so far.
-    pub iterations: u64,
+    /// Systems prepared so far.
+    preparations: u64,
 }
 
 struct Prepared {
@@ -46,15 +46,14 @@ impl ImplicitHeat {
         let prepared = match self.prepared.take().filter(|prepared| prepared.dt == dt) {
             Some(prepared) => prepared,
             None => {
+                self.preparations += 1;
                 let own = |i: usize| network.capacity()[i] + dt * exchange[i];
                 let matrix = matrix(network, dt, own, held);
                 Prepared { dt, preconditioner: Preconditioner::new(&matrix, None)?, matrix }
             }
         };
         let Prepared { matrix, preconditioner, .. } = self.prepared.insert(prepared);
-        let (change, iterations) = solve(matrix, preconditioner, right)?;
-        self.iterations += iterations as u64;
-        Ok(change)
+        solve(matrix, preconditioner, right)
     }
 }
 
@@ -75,23 +74,19 @@ pub(crate) fn matrix(network: &HeatNetwork, factor: f64, own: impl Fn(usize) -> 
     matrix
 }
 
-/// Solution, and the iterations it took.
+/// The solution.
 pub(crate) fn solve(
     matrix: &BlockMatrix<1>,
     preconditioner: &mut Preconditioner<1>,
     right: &[[f64; 1]],
-) -> Result<(Vec<[f64; 1]>, usize), SparseError> {
+) -> Result<Vec<[f64; 1]>, SparseError> {
     let mut x = vec![[0.0]; right.len()];
     let done = conjugate_gradients(matrix, right, &mut x, preconditioner, TOLERANCE, MOST);
-    if done.residual <= ACCEPTED {
-        Ok((x, done.iterations))
-    } else {
-        Err(SparseError::Stalled { iterations: done.iterations })
-    }
+    if done.residual <= ACCEPTED { Ok(x) } else { Err(SparseError::Stalled { iterations: done.iterations }) }
 }
 
 impl std::fmt::Debug for ImplicitHeat {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "ImplicitHeat({} iterations)", self.iterations)
+        write!(f, "ImplicitHeat({} systems prepared)", self.preparations)
     }
 }

@@ -11,18 +11,11 @@ pub struct HeatLedger {
     pub supplied: f64,
     /// Brought by convection.
     pub convection: f64,
-    /// All heat that passed from or to the outside, whatever its sign, or moved inside where that is more.
-    pub turnover: f64,
 }
 
 impl HeatLedger {
     /// What is missing [J].
     pub fn residual(&self) -> f64 {
         self.held + self.supplied + self.convection - self.stored
-    }
-
-    /// Residual over all heat that has moved; 0 before any has.
-    pub fn relative_residual(&self) -> f64 {
-        if self.turnover > 0.0 { self.residual().abs() / self.turnover } else { 0.0 }
     }
 }

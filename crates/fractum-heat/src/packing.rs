@@ -90,7 +90,7 @@ pub fn effective_conductivity(
     network.flows(&temperature, &mut flow);
     let right: Vec<[f64; 1]> = flow.iter().zip(&held).map(|(f, held)| [if *held { 0.0 } else { *f }]).collect();
     let matrix = matrix(network, 1.0, |_| 0.0, &held);
-    let (change, _) = solve(&matrix, &mut Preconditioner::new(&matrix, None)?, &right)?;
+    let change = solve(&matrix, &mut Preconditioner::new(&matrix, None)?, &right)?;
     temperature.iter_mut().zip(change).for_each(|(t, [change])| *t += change);
     let dissipated = |(pair, &[i, j]): (usize, &[u32; 2])| {
         network.conductance(pair) * (temperature[i as usize] - temperature[j as usize]).powi(2)

@@ -162,6 +162,7 @@ end = "2000 s"
     let [before, after] = [HOT.find("[[heat.conditions]]"), HOT.find("[[probes]]")].map(Option::unwrap);
     let text = [&HOT[..before], steps, "\n", conditions, &HOT[after..]].concat();
     text.replace("history = { every = \"0.1 ms\" }", "history = { every = \"100 s\" }\nfields = { every = \"500 s\" }")
+        .replace("every = \"5 ms\"", "every = \"50 ms\"")
         .replace("reaction = { group = \"x+\", along = \"-x\" }", "count = \"bonds\"")
 }
 

@@ -14,12 +14,14 @@ impl Heat {
         if self.stale || self.pairs.has_lost_bonds(bonded) {
             self.find_conductances(solid, bonded);
         }
-        let span = time - self.field.time();
+        let start = self.field.time();
+        let span = time - start;
         let count = (span / self.step * (1.0 - SAME_TIME)).ceil().max(1.0) as u64;
-        for _ in 0..count {
+        for step in 1..=count {
             match &mut self.solver {
                 Some(solver) => {
-                    self.field.step_implicitly(solver, span / count as f64).map_err(|error| error.to_string())?;
+                    let to = if step == count { time } else { start + span * (step as f64 / count as f64) };
+                    self.field.step_implicitly(solver, to).map_err(|error| error.to_string())?;
                 }
                 None => self.field.step(span / count as f64),
             }
