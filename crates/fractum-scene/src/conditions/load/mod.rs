@@ -134,9 +134,11 @@ impl Loads {
         self.cracks = Some(cracks);
     }
 
-    /// Goes on after the loads of the stage before: its gas is that of this stage too.
+    /// Goes on after the loads of the stage before: its gas is that of this stage too, and so are the forces of who drives the
+    /// scene, which act until they are set anew.
     pub(crate) fn follow(&mut self, before: Loads, solid: &Solid) {
         self.open_cracks(solid);
+        self.given = before.given;
         self.gas = before.gas.or(self.gas.take());
     }
 
@@ -218,5 +220,25 @@ impl Loads {
             power += gravity.dot(&points.momentum(&mut self.partial));
         }
         power
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fractum_fem::{Body, Elastic, ElementKind};
+
+    use super::*;
+
+    #[test]
+    fn forces_from_outside_act_in_the_stage_that_follows_too() {
+        let nodes = vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+        let elastic = Elastic { density: 1.0, young_modulus: 1.0, poisson_ratio: 0.0 };
+        let solid = Solid::new(nodes, vec![Body::new("body", ElementKind::T4, vec![[0, 1, 2, 3]], elastic)]).unwrap();
+        let given = vec![(2, Vec3::x())];
+        let mut before = Loads::new(Vec::new(), 4);
+        before.given().clone_from(&given);
+        let mut next = Loads::new(Vec::new(), 4);
+        next.follow(before, &solid);
+        assert_eq!(*next.given(), given);
     }
 }
