@@ -185,6 +185,18 @@ impl Solid {
         })
     }
 
+    /// Shares what elements of bodies have equally among their corners; what every node has of it then.
+    pub fn lumped(&self, elements: impl Iterator<Item = (usize, u32, f64)>) -> Vec<f64> {
+        let mut nodes = vec![0.0; self.reference.len()];
+        for (body, element, value) in elements {
+            let own = &self.bodies[body].body;
+            let corners = own.shape.node_count();
+            let share = value / corners as f64;
+            own.elements[element as usize][..corners].iter().for_each(|&node| nodes[node as usize] += share);
+        }
+        nodes
+    }
+
     /// Volume of an element without load [m³].
     pub fn element_volume(&self, body: usize, element: u32) -> f64 {
         Geometry { body: &self.bodies[body].body, nodes: &self.reference }.element(element as usize).0
@@ -194,8 +206,12 @@ impl Solid {
 impl Block {
     /// Elastic strain of one cell at the present displacements.
     pub(crate) fn strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
-        let strain = kernel::strain(&self.cells.gradient(cell, |node| displacement[node]), kinematics);
-        self.cells.elastic_strain(cell, strain)
+        self.cells.elastic_strain(cell, self.total_strain_of(cell, kinematics, displacement))
+    }
+
+    /// Strain of one cell at the present displacements, whether stress or temperature makes it.
+    pub(crate) fn total_strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
+        kernel::strain(&self.cells.gradient(cell, |node| displacement[node]), kinematics)
     }
 
     /// Stress of one cell with its damage [Pa].

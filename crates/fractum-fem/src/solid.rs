@@ -273,12 +273,12 @@ impl Solid {
         self.means(model, |cell| self.cell_field(model, cell))
     }
 
-    /// Strain of every element of a body [-]: the mean over its edges where it is smoothed.
+    /// Strain of every element of a body [-], that of thermal expansion included: the mean over its edges where it is smoothed.
     pub fn element_strains(&self, index: usize) -> Vec<Sym3> {
         let model = &self.bodies[index];
         let strain = |&(block, cell): &(u32, u32)| {
             let (block, kinematics) = (&self.blocks[block as usize], model.body.kinematics);
-            (block.strain_of(cell as usize, kinematics, &self.displacement), 0.0)
+            (block.total_strain_of(cell as usize, kinematics, &self.displacement), 0.0)
         };
         self.means(model, strain).into_iter().map(|(strain, _)| strain).collect()
     }

@@ -3,9 +3,9 @@
 use std::collections::HashSet;
 
 use fractum_math::Vec3;
-use fractum_scene::{Heat, HeatCondition, HeatSettings, Population, Probe, Scene, SceneError, ThermalMaterial};
+use fractum_scene::{Heat, HeatCondition, HeatSettings, Population, Probe, Scene, ThermalMaterial};
 
-use super::bodies::Numbering;
+use super::bodies::{Numbering, Part};
 use super::conditions::{LoadedPoints, Surface};
 use super::{Context, function};
 use crate::case::model::{self, BodyKind, HeatKind, HeatScheme, ProbeKind, SolverKind};
@@ -16,14 +16,20 @@ const STEPS: f64 = 1000.0;
 
 impl Context<'_> {
     /// The scene with the heat of the case, if it has any.
-    pub(super) fn with_heat(&mut self, mut scene: Scene, numbering: &Numbering, surface: &Surface) -> Option<Scene> {
+    pub(super) fn with_heat(
+        &mut self,
+        mut scene: Scene,
+        parts: &[Part],
+        numbering: &Numbering,
+        surface: &Surface,
+    ) -> Option<Scene> {
         let case = self.case;
         let Some(heat) = &case.flows.heat else { return Some(scene) };
         let (solids, bonded) = self.thermal_materials(heat)?;
         let mut conditions = Vec::new();
         let mut held = HashSet::new();
         for condition in &heat.conditions {
-            let condition_of_points = self.heat_condition(condition, &scene, numbering, surface)?;
+            let condition_of_points = self.heat_condition(condition, &scene, parts, numbering, surface)?;
             if let HeatCondition::Temperature { points, .. } = &condition_of_points
                 && !points.iter().all(|&point| held.insert(point))
             {
@@ -61,13 +67,8 @@ impl Context<'_> {
                 self.check_heat_step(heat, &made);
                 Some(scene.with_heat(made, alone))
             }
-            Err(error @ SceneError::PackingConduction { .. }) => {
-                self.error(&heat.place, format!(": {error}"), "");
-                None
-            }
             Err(error) => {
-                let place = self.whole_case();
-                self.error(&place, format!(": {error}"), "");
+                self.error(&heat.place, format!(": {error}"), "");
                 None
             }
         }
@@ -111,11 +112,13 @@ impl Context<'_> {
         Some((solids, bonded))
     }
 
-    /// A condition on nodes or particles; particles come after all nodes.
+    /// A condition on nodes or particles; particles come after all nodes. A source is one of elements, which share their volume
+    /// among their nodes: those beside them that only have nodes of theirs are not heated.
     fn heat_condition(
         &mut self,
         condition: &model::HeatCondition,
         scene: &Scene,
+        parts: &[Part],
         numbering: &Numbering,
         surface: &Surface,
     ) -> Option<HeatCondition> {
@@ -129,21 +132,26 @@ impl Context<'_> {
         let value = function(&kind.function().value);
         let weighted = match kind {
             HeatKind::Temperature(_) => {
-                let points = match (&on.group, of_particles) {
-                    (Some(group), true) => self.selected_particles(on, group, &scene.bonded),
+                let points = match &on.group {
+                    Some(group) if of_particles => self.selected_particles(on, group, &scene.bonded),
                     _ => self.selected_nodes(on, numbering),
                 };
                 return Some(HeatCondition::Temperature { points: points.iter().map(|i| i + first).collect(), value });
             }
             HeatKind::Power(_) => self.shares(on, &points),
-            HeatKind::Source(_) => {
-                let own = match (&on.group, of_particles) {
-                    (Some(group), true) => self.selected_particles(on, group, &scene.bonded),
-                    _ => self.selected_nodes(on, numbering),
-                };
-                let volumes = if of_particles { volumes_of_particles(scene) } else { volumes_of_nodes(scene) };
-                own.into_iter().map(|i| (i, volumes[i as usize])).collect()
-            }
+            HeatKind::Source(_) => match &on.group {
+                Some(group) if of_particles => {
+                    let volumes = volumes_of_particles(scene);
+                    let own = self.selected_particles(on, group, &scene.bonded);
+                    own.into_iter().map(|i| (i, volumes[i as usize])).collect()
+                }
+                _ => {
+                    let elements = self.selected_elements(on, parts, &scene.solid).into_iter();
+                    let volume = |(body, element)| (body, element, scene.solid.element_volume(body, element));
+                    let volumes = scene.solid.lumped(elements.map(volume));
+                    (0..).zip(volumes).filter(|(_, volume)| *volume > 0.0).collect()
+                }
+            },
             HeatKind::Flux(_) | HeatKind::Convection { .. } => match (area, of_particles) {
                 (Some(area), true) => self.shares(on, &points).into_iter().map(|(i, s)| (i, s * area.value)).collect(),
                 (None, false) => surface.areas(&self.selected_facets(on, numbering, surface)),
@@ -189,21 +197,6 @@ impl Context<'_> {
             self.error(&step.place, found, "a lower one, none, or scheme = \"implicit\"");
         }
     }
-}
-
-/// Volume that belongs to every node [m³].
-fn volumes_of_nodes(scene: &Scene) -> Vec<f64> {
-    let solid = &scene.solid;
-    let mut volumes = vec![0.0; solid.reference.len()];
-    for body in 0..solid.body_count() {
-        let own = solid.body(body);
-        let corners = own.shape.node_count();
-        for (element, nodes) in (0..).zip(&own.elements) {
-            let share = solid.element_volume(body, element) / corners as f64;
-            nodes[..corners].iter().for_each(|&node| volumes[node as usize] += share);
-        }
-    }
-    volumes
 }
 
 /// Volume of the continuum that belongs to every particle [m³].

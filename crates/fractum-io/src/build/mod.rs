@@ -163,7 +163,7 @@ impl<'a> Context<'a> {
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
         let scene =
             self.with_contacts(scene, &parts, &boundary_of_parts, &surface_nodes, rigid_bodies, &tied, &mut warnings)?;
-        let scene = self.with_heat(scene, &numbering, &surface)?;
+        let scene = self.with_heat(scene, &parts, &numbering, &surface)?;
         let scene = self.made_ready(scene, &probes, &mut warnings)?;
         Some(BuiltScene {
             statics: statics.filter(|_| self.is_held(&scene)),

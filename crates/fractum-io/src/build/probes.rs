@@ -163,7 +163,7 @@ impl Context<'_> {
     }
 
     /// Elements of a group, or of all bodies, that a selection means; an error if there are none.
-    fn selected_elements(&mut self, on: &Selection, parts: &[Part], solid: &Solid) -> Vec<(usize, u32)> {
+    pub(super) fn selected_elements(&mut self, on: &Selection, parts: &[Part], solid: &Solid) -> Vec<(usize, u32)> {
         let mut elements = self.elements_of_or_all(on.group.as_ref(), parts, solid);
         let Some(within) = &on.within else { return elements };
         let named = elements.len();

@@ -5,6 +5,7 @@ mod blast;
 mod contact_force;
 mod doubts;
 mod gas;
+mod heat;
 mod selection;
 mod sides;
 

@@ -1,5 +1,7 @@
 //! Who conducts heat to whom: edges of elements, and bonds.
 
+use std::fmt::Display;
+
 use fractum_fem::Solid;
 use fractum_heat::{HeatNetwork, PackedSphere, effective_conductivity};
 use fractum_math::Vec3;
@@ -23,7 +25,7 @@ pub enum PackingConduction {
 pub struct PackingReport {
     /// Name of the body.
     pub name: String,
-    /// Conductivity by the table over that of the material.
+    /// Conductivity by the table over that of the material; NaN where it was not found.
     pub conductivity: f64,
     /// Heat capacity by the table over that of its mass.
     pub capacity: f64,
@@ -126,13 +128,10 @@ impl Pairs {
         let network = HeatNetwork::new(capacity.clone(), &local, &conductances);
         let places = &bonded.reference()[range.clone()];
         let mean = particles.radius[range.clone()].iter().sum::<f64>() / range.len() as f64;
-        let lambda =
-            effective_conductivity(&network, places, longest_axis(places), 2.0 * mean, total / body.density).map_err(
-                |error| SceneError::PackingConduction { body: body.name.clone(), reason: error.to_string() },
-            )?;
-        let conducts = lambda / material.conductivity;
-        let corrected = packing == PackingConduction::Measured;
-        if corrected && conducts > 0.0 && heavy > 0.0 {
+        let found = effective_conductivity(&network, places, longest_axis(places), 2.0 * mean, total / body.density);
+        let conducts = ratio_of_packing(packing, &body.name, found.map(|lambda| lambda / material.conductivity))?;
+        let corrected = packing == PackingConduction::Measured && conducts > 0.0 && heavy > 0.0;
+        if corrected {
             conductances.iter_mut().for_each(|g| *g /= conducts);
             capacity.iter_mut().for_each(|c| *c /= heavy);
         }
@@ -157,16 +156,12 @@ impl Pairs {
 
     /// Heat capacities of nodes and particles [J/K].
     pub(super) fn capacity(&self, solid: &Solid, bonded: &Bonded) -> Vec<f64> {
-        let mut capacity = vec![0.0; solid.reference.len()];
-        for (body, material) in self.solids.iter().enumerate() {
-            let own = solid.body(body);
-            let corners = own.shape.node_count();
-            for (element, nodes) in (0..).zip(&own.elements) {
-                let mass = own.elastic.density * solid.element_volume(body, element);
-                let share = material.capacity * mass / corners as f64;
-                nodes[..corners].iter().for_each(|&node| capacity[node as usize] += share);
-            }
-        }
+        let of_body = |(body, material): (usize, &ThermalMaterial)| {
+            let (own, per_mass) = (solid.body(body), material.capacity);
+            let mass = move |element: u32| own.elastic.density * solid.element_volume(body, element);
+            (0..own.elements.len() as u32).map(move |element| (body, element, per_mass * mass(element)))
+        };
+        let mut capacity = solid.lumped(self.solids.iter().enumerate().flat_map(of_body));
         debug_assert_eq!(self.particles.len(), bonded.particles.len());
         capacity.extend(&self.particles);
         capacity
@@ -201,6 +196,21 @@ impl Pairs {
     }
 }
 
+/// The conductivity of a packing over that of its material, NaN where it was not found but is told only.
+fn ratio_of_packing(
+    packing: PackingConduction,
+    body: &str,
+    found: Result<f64, impl Display>,
+) -> Result<f64, SceneError> {
+    match (found, packing) {
+        (Ok(ratio), _) => Ok(ratio),
+        (Err(_), PackingConduction::Table) => Ok(f64::NAN),
+        (Err(error), PackingConduction::Measured) => {
+            Err(SceneError::PackingConduction { body: body.to_owned(), reason: error.to_string() })
+        }
+    }
+}
+
 /// The axis along which places reach farthest.
 fn longest_axis(places: &[Vec3]) -> usize {
     let extent = |axis: usize| {
@@ -208,4 +218,17 @@ fn longest_axis(places: &[Vec3]) -> usize {
         along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
     };
     (1..3).fold(0, |longest, axis| if extent(axis) > extent(longest) { axis } else { longest })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_does_without_the_conductivity_of_the_packing() {
+        let [table, measured] = [PackingConduction::Table, PackingConduction::Measured]
+            .map(|packing| ratio_of_packing(packing, "box", Err("not solved")));
+        assert!(table.unwrap().is_nan());
+        assert!(measured.unwrap_err().to_string().contains("body box: the conductivity of its packing was not found"));
+    }
 }

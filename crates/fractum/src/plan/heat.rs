@@ -14,9 +14,11 @@ impl Plan {
         self.add("heat", format!("{points} points, {pairs} pairs that conduct"));
         for PackingReport { name, conductivity, capacity, corrected } in heat.packings() {
             let end = if *corrected { "; both corrected to those of the material" } else { "" };
-            let text = format!(
-                "{name}: by the table {conductivity:.3} of the conductivity, {capacity:.3} of the heat capacity"
-            );
+            let share = match conductivity.is_nan() {
+                true => "conductivity not found".to_owned(),
+                false => format!("{conductivity:.3} of the conductivity"),
+            };
+            let text = format!("{name}: by the table {share}, {capacity:.3} of the heat capacity");
             self.add("", text + end);
         }
         for condition in &own.conditions {

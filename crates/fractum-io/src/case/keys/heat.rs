@@ -20,7 +20,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("heat.step", K::Quantity(D::TIME), "solver.safety times the stable step; where bodies expand in motion a twentieth of that; at most a thousandth of the run", "Step of conduction, > 0; required with scheme = \"implicit\""),
     key("heat.packing", K::Choice(names::<PackingConduction>), "\"measured\"", "How particles conduct: by the published table, times what gives the body the conductivity and the heat capacity of its material; or by the table alone"),
     key("heat.conditions[]", K::Tables, "", "What heats and cools; surfaces without a condition are insulated"),
-    key("heat.conditions[].group", K::Text, "", "Mesh group of nodes (temperature, power, source) or facets (flux, convection), or set of particles; required without `where`"),
+    key("heat.conditions[].group", K::Text, "", "Mesh group of nodes (temperature, power), elements (source) or facets (flux, convection), or set of particles; required without `where`"),
     key("heat.conditions[].where", K::Condition, "", "Which of them, by their positions at the start; without `group`: which of all solid bodies"),
     key("heat.conditions[].area", K::Quantity(D::AREA), "", "Particles with flux or convection, required there: area of the surface that they stand for, > 0"),
     key("heat.conditions[].temperature", K::TimeFunction(D::TEMPERATURE), "", "Prescribed temperature"),

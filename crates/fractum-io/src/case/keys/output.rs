@@ -11,7 +11,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("output.fields", K::Table, "", "Fields for ParaView"),
     key("output.fields.every", K::Quantity(D::TIME), "1/50 of the run", "Time between fields, > 0; on a path of equilibria the way of the load factor, forth and back, and there are further ones as damage grows"),
     key("output.fields.principal", K::Flag, "false", "Write the three principal stresses of elements, each with its direction"),
-    key("output.fields.strain", K::Flag, "false", "Write the strain of elements"),
+    key("output.fields.strain", K::Flag, "false", "Write the strain of elements, thermal strain included"),
     key("output.fields.reaction", K::Flag, "false", "Write the forces of supports on nodes"),
     key("output.fields.fragment", K::Flag, "false", "Write the number of the fragment that each node belongs to, as in fragments.csv; 0 for single nodes"),
     key("output.history", K::Table, "", "Rows of history.csv"),

@@ -50,7 +50,7 @@ choice!(PackingConduction { "measured" => Measured, "table" => Table });
 /// What heats or cools a set of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatCondition {
-    /// Its nodes, facets or particles.
+    /// Its nodes, elements, facets or particles.
     pub on: Selection,
     /// Area of the surface that particles stand for [m²], > 0.
     pub area: Option<Spanned<f64>>,
@@ -83,7 +83,8 @@ impl HeatKind {
     pub fn group_use(&self) -> GroupUse {
         match self {
             HeatKind::Flux(_) | HeatKind::Convection { .. } => GroupUse::Facets,
-            HeatKind::Temperature(_) | HeatKind::Power(_) | HeatKind::Source(_) => GroupUse::Support,
+            HeatKind::Source(_) => GroupUse::ProbeElements,
+            HeatKind::Temperature(_) | HeatKind::Power(_) => GroupUse::Support,
         }
     }
 
