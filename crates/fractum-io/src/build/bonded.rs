@@ -174,16 +174,7 @@ impl Context<'_> {
 
     /// A probe of particles; none where it names a mesh group, or measures something else.
     pub(super) fn particle_probe(&mut self, kind: &ProbeKind, bonded: &Bonded, solid: &Solid) -> Option<Probe> {
-        let on = match kind {
-            ProbeKind::Reaction { on, .. }
-            | ProbeKind::Displacement { on, .. }
-            | ProbeKind::Velocity { on, .. }
-            | ProbeKind::Stress { on, .. }
-            | ProbeKind::Strain { on, .. }
-            | ProbeKind::Rotation { on, .. }
-            | ProbeKind::Temperature { on, .. } => on,
-            _ => return None,
-        };
+        let on = kind.on()?;
         let group = on.group.as_ref().filter(|_| self.names_particles(on))?;
         let particles = self.selected_particles(on, group, bonded);
         if let ProbeKind::Temperature { take, .. } = kind {

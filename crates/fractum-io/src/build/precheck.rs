@@ -100,16 +100,7 @@ impl Context<'_> {
                 None => {}
             }
         }
-        named.extend(case.probes.iter().filter_map(|probe| match &probe.kind {
-            ProbeKind::Reaction { on, .. }
-            | ProbeKind::Displacement { on, .. }
-            | ProbeKind::Velocity { on, .. }
-            | ProbeKind::Stress { on, .. }
-            | ProbeKind::Strain { on, .. }
-            | ProbeKind::Rotation { on, .. }
-            | ProbeKind::Temperature { on, .. } => Some(on),
-            _ => None,
-        }));
+        named.extend(case.probes.iter().filter_map(|probe| probe.kind.on()));
         named.extend(case.flows.heat.iter().flat_map(|heat| &heat.conditions).map(|condition| &condition.on));
         let groups = named.into_iter().filter_map(|on| on.group.as_ref());
         let groups = groups.chain(case.ties.iter().map(|tie| &tie.bonded));

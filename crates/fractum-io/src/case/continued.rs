@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use xxhash_rust::xxh3::Xxh3;
 
+use super::hash::add;
 use super::tree::{Entry, Node, Value, join};
 
 /// Hash of all values of a case without the end of its last solver, without parameters that only this end uses, and without
@@ -79,12 +80,10 @@ impl Content {
         }
     }
 
-    /// A path with its value; both with their lengths, so that they cannot run into one another.
+    /// A path with its value.
     fn part(&mut self, path: &str, value: &[u8]) {
-        for bytes in [path.as_bytes(), value] {
-            self.hasher.update(&(bytes.len() as u64).to_le_bytes());
-            self.hasher.update(bytes);
-        }
+        add(&mut self.hasher, path.as_bytes());
+        add(&mut self.hasher, value);
     }
 }
 

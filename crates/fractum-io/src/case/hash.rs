@@ -10,20 +10,13 @@ impl Case {
     pub fn hash(&self) -> u128 {
         let source = &self.source;
         let mut hasher = Xxh3::new();
-        let mut add = |part: &[u8]| {
-            hasher.update(&(part.len() as u64).to_le_bytes()); // so that parts cannot run into one another
-            hasher.update(part);
-        };
-        add(source.text.as_bytes());
-        add(&(source.overrides.len() as u64).to_le_bytes());
+        add(&mut hasher, source.text.as_bytes());
+        add(&mut hasher, &(source.overrides.len() as u64).to_le_bytes());
         for (name, value) in &source.overrides {
-            add(name.as_bytes());
-            add(value.as_bytes());
+            add(&mut hasher, name.as_bytes());
+            add(&mut hasher, value.as_bytes());
         }
-        for (name, content) in &source.tables {
-            add(name.as_bytes());
-            add(content);
-        }
+        self.add_tables(&mut hasher);
         hasher.digest128()
     }
 
@@ -32,17 +25,26 @@ impl Case {
     pub fn hash_but_end(&self) -> u128 {
         let mut hasher = Xxh3::new();
         hasher.update(&self.source.hash_but_end.to_le_bytes());
-        for (name, content) in &self.source.tables {
-            for part in [name.as_bytes(), content] {
-                hasher.update(&(part.len() as u64).to_le_bytes());
-                hasher.update(part);
-            }
-        }
+        self.add_tables(&mut hasher);
         hasher.digest128()
+    }
+
+    /// Adds the tables read from other files.
+    fn add_tables(&self, hasher: &mut Xxh3) {
+        for (name, content) in &self.source.tables {
+            add(hasher, name.as_bytes());
+            add(hasher, content);
+        }
     }
 
     /// End of the last stage, or of the only one [s].
     pub fn end(&self) -> f64 {
         self.later.last().unwrap_or(self).solver.end
     }
+}
+
+/// Adds a part with its length, so that parts cannot run into one another.
+pub(super) fn add(hasher: &mut Xxh3, part: &[u8]) {
+    hasher.update(&(part.len() as u64).to_le_bytes());
+    hasher.update(part);
 }

@@ -304,19 +304,15 @@ impl Case {
         let holes = holes.map(|group| (group, GroupUse::Facets));
         let heated = heat.iter().flat_map(|heat| &heat.conditions);
         let heated = heated.filter_map(|own| Some((own.on.group.as_ref()?, own.kind.group_use())));
-        let probes = self.probes.iter().filter_map(|probe| match &probe.kind {
-            ProbeKind::Reaction { on, .. }
-            | ProbeKind::Displacement { on, .. }
-            | ProbeKind::Velocity { on, .. }
-            | ProbeKind::Load { on, .. }
-            | ProbeKind::Fragment { on, .. }
-            | ProbeKind::Temperature { on, .. }
-            | ProbeKind::Strain { on, .. }
-            | ProbeKind::Rotation { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::ProbeNodes)),
-            ProbeKind::Surface { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::Facets)),
-            ProbeKind::Stress { on, .. } => on.group.as_ref().map(|group| (group, GroupUse::ProbeElements)),
-            ProbeKind::Damaged { group: Some(group), .. } => Some((group, GroupUse::ProbeElements)),
-            _ => None,
+        let probes = self.probes.iter().filter_map(|probe| {
+            let (on, group_use) = match &probe.kind {
+                ProbeKind::Damaged { group, .. } => return Some((group.as_ref()?, GroupUse::ProbeElements)),
+                ProbeKind::Surface { on, .. } => (on, GroupUse::Facets),
+                ProbeKind::Stress { on, .. } => (on, GroupUse::ProbeElements),
+                ProbeKind::Load { on, .. } | ProbeKind::Fragment { on, .. } => (on, GroupUse::ProbeNodes),
+                kind => (kind.on()?, GroupUse::ProbeNodes),
+            };
+            Some((on.group.as_ref()?, group_use))
         });
         let stations = self.output.ppv.iter().flat_map(|ppv| ppv.groups.iter().chain([&ppv.hole]));
         let stations = stations.map(|group| (group, GroupUse::ProbeNodes));

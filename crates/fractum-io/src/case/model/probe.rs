@@ -189,6 +189,22 @@ pub enum ProbeKind {
     Expression(ProbeExpression),
 }
 
+impl ProbeKind {
+    /// The nodes, elements or particles that it measures; nothing for what only nodes or facets of solids have, or no points.
+    pub fn on(&self) -> Option<&Selection> {
+        match self {
+            Self::Reaction { on, .. }
+            | Self::Displacement { on, .. }
+            | Self::Velocity { on, .. }
+            | Self::Rotation { on, .. }
+            | Self::Stress { on, .. }
+            | Self::Strain { on, .. }
+            | Self::Temperature { on, .. } => Some(on),
+            _ => None,
+        }
+    }
+}
+
 /// An expression of other probes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbeExpression {
