@@ -8,7 +8,7 @@ use fractum_mesh::generate::{Jitter, plane_mesh, structured_box};
 use fractum_mesh::{Group, Mesh};
 
 use super::draw::Draw;
-use super::scenes::{Elastic, RandomScene, footer, header, number};
+use super::scenes::{Elastic, RandomScene, footer, number, random_header};
 
 /// Name of such scenes in the table.
 pub const BLAST: &str = "blast";
@@ -37,7 +37,7 @@ pub(super) fn blast(draw: &mut Draw) -> RandomScene {
     let strength = draw.decades(1e6, 2e7);
     let toughness = strength * strength / material.young_modulus * edge * draw.decades(3.0, 100.0);
     let criterion = draw.one_of(&["rankine", "mohr-coulomb"]);
-    let mut case = header(BLAST, true) + &material.text();
+    let mut case = random_header(BLAST, true) + &material.text();
     case += &format!(
         "[materials.stuff.damage]\ncriterion = \"{criterion}\"\ntensile_strength = \"{} Pa\"\nfracture_energy = \"{} J/m^2\"\n\
          unilateral = {}\n",

@@ -85,9 +85,15 @@ impl Elastic {
     }
 }
 
-pub(super) fn header(kind: &str, mesh: bool) -> String {
+/// Begin of a random scene.
+pub(super) fn random_header(kind: &str, mesh: bool) -> String {
+    header(&format!("Random scene: {kind}"), mesh)
+}
+
+/// Begin of a case, with a mesh or without.
+pub(super) fn header(title: &str, mesh: bool) -> String {
     let mesh = if mesh { "[mesh]\nfile = \"mesh.msh\"\n\n" } else { "" };
-    format!("fractum = 1\ntitle = \"Random scene: {kind}\"\n\n{mesh}")
+    format!("fractum = 1\ntitle = \"{title}\"\n\n{mesh}")
 }
 
 pub(super) fn footer(kind: &str, end: f64, safety: f64) -> String {
@@ -114,7 +120,7 @@ fn solid(draw: &mut Draw, kind: &'static str) -> RandomScene {
     };
     let damaged = kind != "elastic solid" && (kind != "rigid body" || draw.chance(0.5));
     let strain = draw.decades(1e-6, 1e-3);
-    let mut case = header(kind, true) + &material.text();
+    let mut case = random_header(kind, true) + &material.text();
     if impact || kind == "rigid body" {
         let contact = [("friction", 0.0, 0.8), ("damping_ratio", 0.0, 0.5)]
             .map(|(key, low, high)| format!("{key} = {}", number(draw.between(low, high))));
@@ -207,7 +213,7 @@ fn loose(draw: &mut Draw) -> RandomScene {
     let [side, friction, restitution] = [draw.between(8.0, 14.0), draw.between(0.0, 0.8), draw.between(0.2, 1.0)];
     let contact = format!("contact = {{ friction = {}, restitution = {} }}\n", number(friction), number(restitution));
     let length = |factor: f64| format!("\"{} m\"", number(factor * radius));
-    let case = header("particles", false)
+    let case = random_header("particles", false)
         + &material.text()
         + &contact
         + &format!(
@@ -235,7 +241,7 @@ fn beads_on_solid(draw: &mut Draw) -> RandomScene {
     let mesh = structured_box([4, 4, 3], Vec3::new(side, side, 0.5 * side) * radius, None);
     let contact = format!("contact = {{ friction = {}, restitution = {} }}\n", number(friction), number(restitution));
     let length = |factor: f64| format!("\"{} m\"", number(factor * radius));
-    let case = header("beads on solid", true)
+    let case = random_header("beads on solid", true)
         + &material.text()
         + &contact
         + &format!(
@@ -263,7 +269,7 @@ fn tied(draw: &mut Draw) -> RandomScene {
     let speed = draw.decades(1e-6, 1e-3) * draw.between(-1.0, 1.0) * material.wave_speed();
     let kinematics = draw.one_of(&["small", "corotational"]);
     let length = |factor: f64| format!("\"{} m\"", number(factor * side));
-    let case = header("tied", true)
+    let case = random_header("tied", true)
         + &material.text()
         + &format!(
             "\n[[bodies]]\nname = \"block\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stuff\"\n\
@@ -292,7 +298,7 @@ fn bonded(draw: &mut Draw, kind: &'static str) -> RandomScene {
     let at_rest = kind == "bonded at rest";
     let breaking = kind == "breaking bonded" || at_rest && draw.chance(0.5);
     let strain = draw.decades(1e-5, 1e-3);
-    let mut case = header(kind, false) + &material.text();
+    let mut case = random_header(kind, false) + &material.text();
     if breaking {
         let strength = number(material.young_modulus * strain);
         case += &format!("[materials.stuff.fracture]\ntensile_strength = \"{strength} Pa\"\n");

@@ -5,6 +5,8 @@ use fractum_math::elementary::{cos, sin};
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_mesh::{Group, Mesh};
 
+use super::scenes::header;
+
 /// A scene in motion whose largest stable step is measured.
 pub(super) struct Situation {
     /// What is special about it.
@@ -21,6 +23,7 @@ pub(super) struct Situation {
     pub(super) steps: u64,
 }
 
+const TITLE: &str = "Stable step";
 /// Steps of scenes without contact: a mode at 1.01 of the stable step has grown by e¹⁷⁰ then.
 const STEPS: u64 = 600;
 /// Steps of scenes with contact.
@@ -40,10 +43,6 @@ pub(super) fn situations() -> Vec<Situation> {
     all
 }
 
-fn head(text: &str) -> String {
-    format!("fractum = 1\ntitle = \"Stable step\"\n\n{text}")
-}
-
 /// A block of 1 x 1 x 1 m, or a square of 1 x 1 m.
 fn block(plane: bool, jitter: f64) -> Mesh {
     let jitter = (jitter > 0.0).then_some(Jitter { fraction: jitter, seed: 7 });
@@ -55,15 +54,13 @@ fn block(plane: bool, jitter: f64) -> Mesh {
 }
 
 /// Velocities that differ from node to node, and so excite all modes.
-fn shaken(speed: f64) -> String {
+fn shaken(speed: f64, plane: bool) -> String {
+    let axes: &[(&str, f64)] = if plane { &[("x", 0.1), ("y", 2.3)] } else { &[("x", 0.1), ("y", 2.3), ("z", 4.1)] };
+    let across = if plane { "" } else { " + 6007*z" };
     let component =
-        |axis: &str, phase: f64| format!("{axis} = \"{speed} m/s*sin((9871*x + 7919*y + 6007*z)/1 m + {phase})\"");
-    format!("initial_velocity = {{ {}, {}, {} }}\n", component("x", 0.1), component("y", 2.3), component("z", 4.1))
-}
-
-fn shaken_in_plane(speed: f64) -> String {
-    let component = |axis: &str, phase: f64| format!("{axis} = \"{speed} m/s*sin((9871*x + 7919*y)/1 m + {phase})\"");
-    format!("initial_velocity = {{ {}, {} }}\n", component("x", 0.1), component("y", 2.3))
+        |(axis, phase): &(&str, f64)| format!("{axis} = \"{speed} m/s*sin((9871*x + 7919*y{across})/1 m + {phase})\"");
+    let components: Vec<String> = axes.iter().map(component).collect();
+    format!("initial_velocity = {{ {} }}\n", components.join(", "))
 }
 
 fn body(keys: &str) -> String {
@@ -76,8 +73,8 @@ fn solver(keys: &str) -> String {
 }
 
 fn solid(name: &str, material: &str, keys: &str, rest: &str, mesh: Mesh, speed: f64) -> Situation {
-    let shaken = if mesh.tetrahedra.is_empty() { shaken_in_plane(speed) } else { shaken(speed) };
-    let case = head("[mesh]\nfile = \"mesh.msh\"\n\n") + STUFF + material + &body(&(shaken + keys)) + rest;
+    let shaken = shaken(speed, mesh.tetrahedra.is_empty());
+    let case = header(TITLE, true) + STUFF + material + &body(&(shaken + keys)) + rest;
     let case = if rest.contains("[solver]") { case } else { case + &solver("") };
     Situation { name: name.to_owned(), case, mesh: Some(mesh), beads: None, speed, steps: STEPS }
 }
@@ -118,7 +115,7 @@ fn shapes() -> Vec<Situation> {
     let cover = format!(
         "\n[materials.soft]\ndensity = \"1000 kg/m^3\"\nyoung_modulus = \"1 kPa\"\npoisson_ratio = 0.3\n\
          \n[[bodies]]\nname = \"cover\"\nkind = \"solid\"\ngroup = \"cover\"\nmaterial = \"soft\"\n{}{keys}",
-        shaken(1e-3)
+        shaken(1e-3, false)
     );
     vec![
         solid("irregular elements", "", keys, "", block(false, 0.15), 1e-3),
@@ -178,7 +175,7 @@ fn damage() -> Vec<Situation> {
 fn contact() -> Vec<Situation> {
     let wall = "\n[[bodies]]\nname = \"wall\"\nkind = \"rigid\"\nshape = \"plane\"\npoint = [\"0 m\", \"0 m\", \"0 m\"]\nnormal = \"x\"\n";
     let thrown = |name: &str, plane: bool, keys: &str, speed: f64| {
-        let case = head("[mesh]\nfile = \"mesh.msh\"\n\n")
+        let case = header(TITLE, true)
             + STUFF
             + &body(&format!("initial_velocity = {{ x = \"-{speed} m/s\" }}\n{keys}"))
             + wall
@@ -211,13 +208,14 @@ fn particles() -> Vec<Situation> {
             "\n[[bodies]]\nname = \"walls\"\nkind = \"rigid\"\nshape = \"box\"\ninside = true\n\
              point = [\"0 m\", \"0 m\", \"0 m\"]\nsize = [\"1 m\", \"1 m\", \"1 m\"]\n\
              \n[[bodies]]\nname = \"beads\"\nkind = \"particles\"\nmaterial = \"stuff\"\n{radius}{}",
-            shaken(1.0)
+            shaken(1.0, false)
         )
     };
     let cloud = "shape = \"box\"\nsize = [\"1 m\", \"1 m\", \"1 m\"]\nparticle_radius = \"0.1 m\"\n";
     let loose = |name: &str, beads: Option<String>| {
         let bodies = box_of(if beads.is_some() { "file = \"beads.csv\"\n" } else { cloud });
-        let case = head("") + STUFF + "contact = { friction = 0.5, restitution = 0.9 }\n" + &bodies + &solver("");
+        let case =
+            header(TITLE, false) + STUFF + "contact = { friction = 0.5, restitution = 0.9 }\n" + &bodies + &solver("");
         Situation { name: name.to_owned(), case, mesh: None, beads, speed: 1.0, steps: STEPS_WITH_CONTACT }
     };
     let mut unequal = String::from("0.5,0.5,0.4,0.3\n");
@@ -227,13 +225,13 @@ fn particles() -> Vec<Situation> {
         unequal += &format!("{x},{y},{},0.003\n", 0.75 + 0.005 * f64::from(number));
     }
     let bonded = |name: &str, material: &str, keys: &str, rest: &str, speed: f64| {
-        let case = head("")
+        let case = header(TITLE, false)
             + STUFF
             + material
             + &format!(
                 "\n[[bodies]]\nname = \"block\"\nkind = \"bonded\"\nmaterial = \"stuff\"\nshape = \"box\"\n\
                  size = [\"1 m\", \"1 m\", \"1 m\"]\nparticles = 200\ncoordination = 8\n{keys}{}",
-                shaken(speed)
+                shaken(speed, false)
             )
             + rest;
         let case = if rest.contains("[solver]") { case } else { case + &solver("") };

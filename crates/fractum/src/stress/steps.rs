@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use fractum_io::atomic;
+use fractum_io::{WriteError, atomic};
 use fractum_scene::{Scene, StepError};
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +23,8 @@ const BLOWN_UP: f64 = 1e3;
 const STEPS_BETWEEN_LOOKS: u64 = 20;
 /// The factor that runs take by default.
 const PICKED: f64 = 0.8;
+/// Folder of the scene under way, below that of the table.
+const SCENE: &str = "scene";
 /// A change of the limit that is told.
 const CHANGE: f64 = 0.02;
 
@@ -64,6 +66,8 @@ pub fn steps(settings: &Settings, baseline: Option<&Path>) -> Result<Vec<Limit>,
         atomic::write(&settings.output.join("steps.json"), &serde_json::to_vec_pretty(&limits).unwrap_or_default())?;
         atomic::write(&settings.output.join("steps.md"), table(&limits).as_bytes())?;
     }
+    // A folder that stays is no harm.
+    let _ = fs::remove_dir_all(settings.output.join(SCENE));
     for change in before.iter().flat_map(|before| changes(before, &limits)) {
         say!("{change}");
     }
@@ -116,7 +120,11 @@ fn table(limits: &[Limit]) -> String {
 
 /// Finds the limit of a scene by bisection.
 fn limit(situation: &Situation, settings: &Settings) -> Result<Limit, Failure> {
-    let folder = settings.output.join("scene");
+    let folder = settings.output.join(SCENE);
+    // Nothing of the scene before.
+    if folder.exists() {
+        fs::remove_dir_all(&folder).map_err(|error| WriteError::new(&folder, error))?;
+    }
     atomic::create_folder(&folder)?;
     let case = folder.join("case.toml");
     atomic::write(&case, situation.case.as_bytes())?;
@@ -146,8 +154,6 @@ fn limit(situation: &Situation, settings: &Settings) -> Result<Limit, Failure> {
             Some(reason) => (unstable, beyond) = (middle, reason),
         }
     }
-    // A folder that stays is no harm.
-    let _ = fs::remove_dir_all(&folder);
     Ok(Limit { scene, stable_to: stable, beyond })
 }
 
@@ -193,6 +199,10 @@ mod tests {
         let cache = fractum_prepare::Cache::new(None);
         let settings =
             Settings { scenes: 0, blasts: false, seed: 1, output: output.path().to_owned(), threads: Some(1), cache };
+        // A scene before it has left what this one has not.
+        let left = output.path().join(SCENE).join("beads.csv");
+        atomic::create_folder(&output.path().join(SCENE)).expect("a folder");
+        fs::write(&left, "0,0,0,1").expect("a file");
         for situation in situations() {
             if !["tetrahedra, smoothed, small, power-iteration", "elastic support"].contains(&situation.name.as_str()) {
                 continue;
@@ -200,6 +210,7 @@ mod tests {
             let found = limit(&situation, &settings).expect("a scene that runs");
             // The frequency is found within the 2 % that are added to it, and the limit within 0.011.
             assert!((0.97..1.04).contains(&found.stable_to) && found.holds(), "{found:?}");
+            assert!(!left.exists(), "particles of another scene");
         }
     }
 
