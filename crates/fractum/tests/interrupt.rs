@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Child, Command};
+use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -91,6 +91,22 @@ fn reading_ends_by_a_signal() {
     make_pipe(&place.path("bar.msh"));
     ends_by(&place, &["check", "case.toml"], "TERM");
     ends_by(&place, &["mesh", "info", "bar.msh"], "INT");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_program_whose_path_is_no_text_tells_how_to_go_on() {
+    use std::os::unix::ffi::OsStrExt;
+    use std::os::unix::process::CommandExt;
+    let place = Workplace::new(BREAKING_BAR);
+    let mut command = place.command(&["run", "case.toml", "-o", "out", "--set", "end=1000 s", "--quiet"]);
+    command.arg0(std::ffi::OsStr::from_bytes(b"fract\xffum")).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut run = command.spawn().unwrap();
+    wait_for_checkpoint(&mut run, &place.path("out"), 0);
+    signal(&run, "INT");
+    assert_eq!(end_of(&mut run), Some(130));
+    let told = std::io::read_to_string(run.stderr.take().unwrap()).unwrap();
+    assert!(told.contains("go on with: ") && told.contains(" run case.toml"), "{told}");
 }
 
 #[test]

@@ -422,7 +422,15 @@ fn an_interval_beyond_all_time_is_never_over() {
 #[test]
 fn a_wrong_option_is_wrong_input() {
     let workplace = Workplace::new(SMALL);
-    for arguments in [&["run", "case.toml", "--thread", "2"][..], &["run"], &["walk"], &[]] {
+    let steps = ["verify", "--stress", "--steps"];
+    for arguments in [
+        &["run", "case.toml", "--thread", "2"][..],
+        &["run"],
+        &["walk"],
+        &[],
+        &[&steps[..], &["--seed", "2"]].concat(),
+        &[&steps[..], &["--scenes", "2"]].concat(),
+    ] {
         let ended = workplace.fractum(arguments);
         assert_eq!(ended.code, Some(1), "{arguments:?}: {ended:?}");
     }

@@ -18,7 +18,7 @@ Exit codes:
 
 Environment:
   FRACTUM_CACHE  folder for packings and calibrated bonds (empty: none)
-  NO_COLOR       set to anything: no colours";
+  NO_COLOR       not empty: no colours";
 
 /// Of `fractum run`.
 pub(super) const RUN: &str = "\

@@ -87,7 +87,7 @@ enum Command {
         #[arg(long, requires = "stress")]
         blasts: bool,
         /// The largest stable step of every kind of scene instead of random ones.
-        #[arg(long, requires = "stress", conflicts_with = "blasts")]
+        #[arg(long, requires = "stress", conflicts_with_all = ["blasts", "scenes", "seed"])]
         steps: bool,
         /// With --steps: a steps.json of before, to tell what has changed.
         #[arg(long, requires = "steps")]
@@ -282,7 +282,8 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
     };
     let Outcome { summary, folder, load } = fractum::run(&run.case, &options)?;
     if summary.status == Status::Interrupted {
-        let program = std::env::args().next().unwrap_or_else(|| "fractum".to_owned());
+        let program =
+            std::env::args_os().next().map_or_else(|| "fractum".into(), |name| name.to_string_lossy().into_owned());
         let resume = Options { resume: true, overwrite: false, ..options };
         tell!("interrupted; state saved, go on with: {}", resume.command(&program, &run.case, &folder));
         return Ok(ExitCode::Interrupted);
