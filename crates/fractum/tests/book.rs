@@ -1,8 +1,12 @@
 //! The book: its commands run, its links lead somewhere, and its contents list every page.
 
+mod common;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use common::files_below;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the repository")
@@ -10,16 +14,8 @@ fn root() -> PathBuf {
 
 /// All Markdown files below a folder.
 fn pages(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).expect("a folder of pages") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            found.extend(pages(&path));
-        } else if path.extension().is_some_and(|ending| ending == "md") {
-            found.push(path);
-        }
-    }
-    found.sort();
+    let found = files_below(folder, ".md");
+    assert!(!found.is_empty(), "no pages in {}", folder.display());
     found
 }
 
