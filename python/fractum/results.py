@@ -88,8 +88,8 @@ class Results:
     def fields(self, time=None):
         """The frame that is nearest to a time [s], the last one without a time.
 
-        Returns a dictionary: name of the part (`"solid"`, `"particles"`, `"bonded particles"`, `"bonds"`, ...) to a
-        `Frame`. `Frame.to_meshio()` and `Frame.to_pyvista()` hand it to these libraries.
+        Returns a dictionary: name of the part (`"solid"`, `"discrete elements"`, `"bonded particles"`,
+        `"loose particles"`, `"rigid bodies"`, `"bonds"`, `"cracks"`, `"gas"`) to a `Frame`. `Frame.to_meshio()` and `Frame.to_pyvista()` hand it to these libraries.
         """
         if not self._frames:
             raise FileNotFoundError(f"{self.folder}: no frames; output.fields of the case says when they are written")

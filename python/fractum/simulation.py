@@ -105,15 +105,12 @@ class _Load:
 
     def __init__(self, function, count):
         self.function = function
-        self.shape = (count, 3)
+        self.forces = np.empty((count, 3))
 
     def __call__(self, time, position, velocity):
-        forces = self.function(time, _array(position, 3), _array(velocity, 3))
-        forces = np.asarray(forces, dtype="f8")
-        if forces.shape != self.shape:
-            # A single force acts on every point.
-            forces = np.broadcast_to(forces, self.shape)
-        return forces.tobytes()
+        # A single force acts on every point.
+        self.forces[...] = self.function(time, _array(position, 3), _array(velocity, 3))
+        return self.forces.tobytes()
 
 
 class Simulation:

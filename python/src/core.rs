@@ -65,7 +65,7 @@ fn no_array(py: Python<'_>, name: &str) -> PyErr {
 }
 
 impl Core {
-    /// Does something with the simulation, on whatever thread.
+    /// Does something with the simulation where Python's lock is free.
     fn look<T>(&self, act: impl FnOnce(&mut Simulation) -> Result<T, Failure>) -> PyResult<T> {
         let mut simulation = self.simulation.lock().unwrap_or_else(PoisonError::into_inner);
         let finished = || Failure::input("the simulation has been finished");
@@ -74,7 +74,8 @@ impl Core {
         ended.map_err(|failure| Python::attach(|py| raise(py, &failure)))
     }
 
-    /// As [`Core::look`], where Python's lock is held and exceptions may come.
+    /// As [`Core::look`] where Python's lock is held. What it does must not wait for other threads: one of them may wait for
+    /// the simulation.
     fn with<T>(&self, py: Python<'_>, act: impl FnOnce(&mut Simulation) -> PyResult<T>) -> PyResult<T> {
         let mut simulation = self.simulation.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         simulation.as_mut().map_or_else(|| Err(wrong(py, "the simulation has been finished")), act)
@@ -84,12 +85,7 @@ impl Core {
         self.with(py, |simulation| act(simulation.scene()))
     }
 
-    /// Whether a step is still to be made before a time [s].
-    fn is_before(&self, until: f64) -> PyResult<bool> {
-        self.look(|run| Ok(!run.is_over() && run.time() < until))
-    }
-
-    /// Makes a step unless the time has come [s]; whether there may be another one.
+    /// Makes a step unless the time has come [s], with Python's lock free; whether there may be another one.
     fn advance(&self, until: f64) -> PyResult<bool> {
         self.look(|run| {
             if run.is_over() || run.time() >= until {
@@ -121,7 +117,7 @@ impl Core {
                 Population::Particles => on_particles.extend(pushed),
             }
         }
-        self.look(|run| run.set_forces(&on_nodes, &on_particles))
+        self.with(py, |run| run.set_forces(&on_nodes, &on_particles).map_err(|failure| raise(py, &failure)))
     }
 
     /// Time [s], positions [m] and velocities [m/s] of points.
@@ -197,23 +193,38 @@ impl Core {
             ));
         }
         let every = every.max(1);
-        let work = || -> PyResult<bool> {
+        // Attached once: Python sets up much for a thread that it sees for the first time.
+        let with_functions = |py: Python<'_>| -> PyResult<()> {
             for done in 1..=count {
-                if !loads.is_empty() && self.is_before(until)? {
-                    Python::attach(|py| self.push(py, &loads))?;
+                if !loads.is_empty() && self.with(py, |run| Ok(!run.is_over() && run.time() < until))? {
+                    self.push(py, &loads)?;
                 }
-                if !self.advance(until)? {
+                if !py.detach(|| self.advance(until))? {
                     break;
                 }
-                if let Some(stop) = stop.as_ref().filter(|_| done.is_multiple_of(every)) {
-                    Python::attach(|py| if stop.call0(py)?.is_truthy(py)? { self.stop(py) } else { Ok(()) })?;
+                if let Some(stop) = stop.as_ref().filter(|_| done.is_multiple_of(every))
+                    && stop.call0(py)?.is_truthy(py)?
+                {
+                    self.stop(py)?;
                 }
             }
-            self.look(|run| Ok(!run.is_over()))
+            Ok(())
+        };
+        let work = || -> PyResult<()> {
+            if loads.is_empty() && stop.is_none() {
+                for _ in 0..count {
+                    if !self.advance(until)? {
+                        break;
+                    }
+                }
+                return Ok(());
+            }
+            Python::attach(with_functions)
         };
         let ended = watch(py, &self.pool, work);
         self.stepping.store(false, Ordering::Release);
-        ended?
+        ended??;
+        self.with(py, |run| Ok(!run.is_over()))
     }
 
     /// Ends the run as if its end were reached.
@@ -377,25 +388,23 @@ impl Core {
 
     /// An array over the elements of a solid body.
     fn elements<'py>(&self, py: Python<'py>, body: usize, name: &str) -> PyResult<Bound<'py, PyBytes>> {
-        self.with_scene(py, |scene| {
-            let solid = &scene.solid;
-            if body >= solid.body_count() {
-                return Err(wrong(py, format!("no solid body {body}")));
-            }
-            let fields = || self.pool.install(|| solid.element_fields(body));
-            match name {
-                "alive" => Ok(flags(py, solid.alive(body).iter().copied())),
-                "damage" => {
-                    let fields = fields();
-                    numbers(py, fields.len(), |i| [fields[i].1])
+        let computed = matches!(name, "damage" | "stress");
+        let (alive, fields) = py.detach(|| {
+            self.look(|run| {
+                let solid = &run.scene().solid;
+                if body >= solid.body_count() {
+                    return Err(Failure::input(format!("no solid body {body}")));
                 }
-                "stress" => {
-                    let fields = fields();
-                    numbers(py, fields.len(), |i| fields[i].0.0)
-                }
-                _ => Err(no_array(py, name)),
-            }
-        })
+                let fields = if computed { solid.element_fields(body) } else { Vec::new() };
+                Ok((solid.alive(body).to_vec(), fields))
+            })
+        })?;
+        match name {
+            "alive" => Ok(flags(py, alive.into_iter())),
+            "damage" => numbers(py, fields.len(), |i| [fields[i].1]),
+            "stress" => numbers(py, fields.len(), |i| fields[i].0.0),
+            _ => Err(no_array(py, name)),
+        }
     }
 
     /// Keeps points that a load pushes; their number among such sets.

@@ -116,7 +116,7 @@ def test_the_state_is_that_of_the_results(breaking, tmp_path):
     assert (solid.point_data["attached"] == attached).all()
     assert solid.cell_data["damage"] == pytest.approx(state["damage"], rel=1e-6)
     assert solid.cell_data["stress"] == pytest.approx(state["stress"], rel=1e-6, abs=1.0)
-    assert parts["particles"].point_data["radius"] == pytest.approx(spheres[1])
+    assert parts["discrete elements"].point_data["radius"] == pytest.approx(spheres[1])
     history = simulation.results.history
     assert list(history["load"])[: len(load)] == list(load) and list(history["time"])[: len(times)] == list(times)
     fragments = simulation.results.fragments
@@ -177,8 +177,9 @@ def test_a_simulation_may_be_looked_at_from_another_thread(breaking, tmp_path):
     with fractum.Simulation(breaking, output=tmp_path / "out", threads=1) as simulation:
         worker = threading.Thread(target=simulation.run)
         worker.start()
-        seen = []
+        seen, body = [], simulation.bodies["bar"]
         while worker.is_alive():
             seen.append(simulation.time)
+            assert body.damage.max() <= 1.0
         worker.join()
         assert simulation.is_over and seen == sorted(seen)

@@ -10,6 +10,9 @@ use crate::output::expectation::{Comparison, Expectation};
 /// Ratio of neighbouring sizes from which an order of convergence can be read off.
 const DISTINCT: f64 = 1.15;
 
+/// Relative errors below this are of rounding and have no order.
+const ROUNDING: f64 = 1e-8;
+
 /// What an axis of a family varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Varies {
@@ -299,14 +302,14 @@ fn reference<'a>(run: &'a Run, quantity: &str) -> Option<&'a Expectation> {
     run.measured()?.expect.iter().find(|line| line.quantity == quantity)
 }
 
-/// The order of one quantity; none where an error is zero or changes its sign, or is no share of a reference.
+/// The order of one quantity; none where an error is of rounding or changes its sign, or is no share of a reference.
 fn order(runs: &[&Run], sizes: &[f64], quantity: &str) -> Option<f64> {
     let lines: Option<Vec<&Expectation>> = runs.iter().map(|run| reference(run, quantity)).collect();
     let lines = lines?;
     let side = lines.first()?.error.signum();
     let usable = lines
         .iter()
-        .all(|line| line.comparison == Comparison::Relative && line.error.is_finite() && line.error * side > 0.0);
+        .all(|line| line.comparison == Comparison::Relative && line.error.is_finite() && line.error * side > ROUNDING);
     let points: Vec<[f64; 2]> =
         sizes.iter().zip(&lines).map(|(size, line)| [ln(*size), ln(line.error.abs())]).collect();
     usable.then(|| line_through(&points).slope)
@@ -341,6 +344,7 @@ mod tests {
             runs.push(run(&at(mesh, "square"), size, 1e-3 * size * size, 1.0));
             runs.push(run(&at(mesh, "line"), size, -2e-3 * size, 1.0));
             runs.push(run(&at(mesh, "swings"), size, 1e-3 * (size - 1.5), 1.0));
+            runs.push(run(&at(mesh, "exact"), size, 1e-12 * size, 1.0));
         }
         let families = families(&runs);
         let family = &families[0];

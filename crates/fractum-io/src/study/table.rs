@@ -144,10 +144,9 @@ pub fn findings(families: &[Family<'_>], within: Option<f64>) -> Vec<String> {
         };
         for order in family.orders() {
             let (label, name, power) = (of(&order.label), column(&order.quantity), significant(order.order, 2));
-            lines.push(format!(
-                "{label}: the error of {name} falls with size to the power {power}, from {} sizes",
-                order.sizes
-            ));
+            let falls = format!("falls with size to the power {power}");
+            let falls = if order.order > 0.0 { &falls } else { "does not fall with size" };
+            lines.push(format!("{label}: the error of {name} {falls}, from {} sizes", order.sizes));
         }
         for scatter in family.scatters() {
             let [mean, deviation] = [scatter.mean, scatter.deviation].map(|value| quantity(value, &scatter.unit));
