@@ -280,7 +280,7 @@ impl<'a> Family<'a> {
     /// The cheapest run whose relative errors are all within `share`, and which meets its other references.
     pub fn cheapest(&self, share: f64) -> Option<(&'a Run, &'a Measured)> {
         let finished = self.runs.iter().filter_map(|run| Some((*run, run.measured()?)));
-        let good = finished.filter(|(_, measured)| measured.worst().is_some() && measured.is_within(share));
+        let good = finished.filter(|(_, measured)| measured.is_within(share));
         good.min_by(|a, b| a.1.seconds().total_cmp(&b.1.seconds()))
     }
 
@@ -291,8 +291,7 @@ impl<'a> Family<'a> {
             return None;
         }
         let good = |verdict: &Verdict<'_>| {
-            verdict.unfinished == 0
-                && verdict.measured().all(|measured| measured.worst().is_some() && measured.is_within(share))
+            verdict.unfinished == 0 && verdict.measured().all(|measured| measured.is_within(share))
         };
         verdicts.into_iter().filter(good).min_by(|a, b| a.seconds().total_cmp(&b.seconds()))
     }

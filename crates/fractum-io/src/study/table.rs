@@ -164,12 +164,19 @@ pub fn findings(families: &[Family<'_>], within: Option<f64>) -> Vec<String> {
 }
 
 fn cheapest(family: &Family<'_>, share: f64) -> Vec<String> {
-    let percent = percent(share);
+    // References may all be absolute ones or limits, of which no share can be asked.
+    let relative = family.runs.iter().filter_map(|run| run.measured()).any(|measured| measured.worst().is_some());
+    let (goal, missed) = if relative {
+        let percent = percent(share);
+        (percent.clone(), format!("is within {percent} and meets all other references"))
+    } else {
+        ("all references".into(), "meets all references".into())
+    };
     let Some((run, measured)) = family.cheapest(share) else {
-        return vec![format!("{}: no run is within {percent} and meets all other references", family.label)];
+        return vec![format!("{}: no run {missed}", family.label)];
     };
     let mut lines = vec![format!(
-        "{}: for {percent} take {}, it costs {}",
+        "{}: for {goal} take {}, it costs {}",
         family.label,
         family.full_name(run),
         seconds(measured.seconds())
@@ -177,13 +184,13 @@ fn cheapest(family: &Family<'_>, share: f64) -> Vec<String> {
     if settings_of(family).is_some() {
         lines.push(match family.cheapest_setting(share) {
             Some(verdict) => format!(
-                "{}: for {percent} in all {} cases take {}, it costs {}",
+                "{}: for {goal} in all {} cases take {}, it costs {}",
                 family.label,
                 verdict.finished.len(),
                 verdict.label,
                 seconds(verdict.seconds())
             ),
-            None => format!("{}: no setting is within {percent} in all cases", family.label),
+            None => format!("{}: no setting {missed} in all cases", family.label),
         });
     }
     lines
