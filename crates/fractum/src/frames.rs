@@ -11,7 +11,7 @@ use crate::cracks;
 use crate::error::Failure;
 use crate::gas_cells;
 use crate::population::Population;
-use crate::record_bonded::ParticleFiles;
+use crate::record_bonded::{ParticleFiles, tensor};
 use crate::rigid_surface::RigidSurfaces;
 
 /// The files of one instant, not written yet.
@@ -234,11 +234,6 @@ fn scalar<'a>(name: &'a str, values: &'a [f32]) -> Field<'a> {
 
 fn vector<'a>(name: &'a str, values: &'a [[f32; 3]]) -> Field<'a> {
     Field { name, components: 3, values: Values::F32(values.as_flattened()) }
-}
-
-/// A symmetric tensor in single precision: xx yy zz xy yz zx.
-pub(crate) fn tensor<'a>(name: &'a str, values: &'a [[f32; 6]]) -> Field<'a> {
-    Field { name, components: 6, values: Values::F32(values.as_flattened()) }
 }
 
 /// Discrete elements as vertices with their radius.

@@ -4,13 +4,12 @@
 
 use fractum_dem::stress::particle_virials;
 use fractum_io::Compression;
-use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData};
+use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData, Values};
 use fractum_math::{Sym3, Vec3, rotation_vector};
 use fractum_scene::{BondedBody, Scene};
 
 use crate::cracks::lost_bonds;
 use crate::error::Failure;
-use crate::frames::tensor;
 
 fn vectors<'a>(of: impl Iterator<Item = Vec3> + 'a) -> Vec<[f64; 3]> {
     of.map(Into::into).collect()
@@ -135,6 +134,11 @@ fn particles_file(
         time: Some(scene.clock.time),
     };
     data.pending(Compression::Fast).map_err(|e| Failure::Output(e.into()))
+}
+
+/// A symmetric tensor in single precision: xx yy zz xy yz zx.
+pub(crate) fn tensor<'a>(name: &'a str, values: &'a [[f32; 6]]) -> Field<'a> {
+    Field { name, components: 6, values: Values::F32(values.as_flattened()) }
 }
 
 /// Bonds that hold as lines between the centres of their particles, with their axial force and elastic energy.
