@@ -52,6 +52,7 @@
 //! ```
 
 mod bond;
+mod cells;
 mod error;
 mod fracture;
 mod measure;

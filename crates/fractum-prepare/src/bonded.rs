@@ -158,7 +158,7 @@ impl Maker<'_> {
         if self.arrangement() == Arrangement::Random {
             all.warnings.extend(self.check_packing(&packing, packing_from)?);
         }
-        if self.bonded.law == BondLawKind::Local {
+        if self.bonded.law != BondLawKind::CohesiveBeam {
             return self.make_interfaces(packing, packing_from, region, all);
         }
         let material = self.material();

@@ -31,11 +31,35 @@ fn interfaces_separate_with_the_same_bits_on_any_threads_and_after_a_checkpoint(
 }
 
 #[test]
+fn interfaces_beside_the_mean_strain_separate_with_the_same_bits_on_any_threads_and_after_a_checkpoint() {
+    let left_out = ["softening", "crushing"];
+    let kept = BLOCK.lines().filter(|line| !left_out.iter().any(|word| line.contains(word)));
+    let text = kept.collect::<Vec<_>>().join("\n").replace("bond = \"local\"", "bond = \"local-nonlocal\"");
+    let place = Workplace::new(&text.replace("every = \"20 us\"", "every = \"1 ms\""));
+    let one = run(&place, "one", "1");
+    assert!(one["counts"]["broken_bonds"].as_u64().unwrap() > 50, "{}", one["counts"]);
+    let energy = |name: &str| one["energy"][name].as_f64().unwrap();
+    assert!(energy("damage") > 0.01 * energy("external").abs(), "{}", one["energy"]);
+    // What breaks still pulls for half a step that nothing books: an error that falls with the step.
+    assert!(energy("residual_max_relative") < 1e-2, "{}", one["energy"]);
+    for threads in ["2", "7"] {
+        let other = run(&place, threads, threads);
+        assert_eq!((&other["state_hash"], &other["energy"]), (&one["state_hash"], &one["energy"]), "{threads} threads");
+    }
+    let resumed = place.fractum(&["run", "case.toml", "-o", "2", "--threads", "1", "--resume", "--quiet"]);
+    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+    let resumed = summary(&place, "2");
+    assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
+}
+
+#[test]
 fn tables_that_the_law_of_a_body_does_not_read_are_refused() {
     let beams = BLOCK.replace("bond = \"local\"\n", "");
     let both = BLOCK.replace("[[bodies]]", "[materials.cement.fracture]\ntensile_strength = 1e6\n[[bodies]]");
     let regular = BLOCK.replace("particles = 600", "particles = 600\narrangement = \"cartesian\"");
+    let corrected = BLOCK.replace("bond = \"local\"", "bond = \"local-nonlocal\"");
     for (text, words) in [
+        (corrected, "softens or crushes, which bond = \"local-nonlocal\" does not know"),
         (beams, "has no effect on body bonds with bond = \"cohesive-beam\""),
         (both, "give the strengths in the table interface"),
         (regular, "particle_radius"),

@@ -6,6 +6,7 @@ use fractum_math::{Rotation, Vec3};
 
 use super::lanes::{Lanes, Vector, dot};
 use super::law::{BondLanes, BondLaw, ForceLanes};
+use super::mean_strain::MeanStrain;
 
 /// Bonds computed side by side.
 pub(super) const WIDTH: usize = 8;
@@ -28,6 +29,8 @@ pub(super) struct Block<L: BondLaw> {
     pub(super) bonds: usize,
     /// Bonds of the block, from its first, that have separated by their law and were not taken.
     pub(super) separated: Vec<u32>,
+    /// Bonds that fail under the mean strain of their particles at this instant.
+    pub(super) failing: Vec<u32>,
     pub(super) groups: Vec<Group<L>>,
     /// Memory of the bonds of each group, which most steps do not touch.
     pub(super) memory: Vec<[L::Memory; WIDTH]>,
@@ -105,6 +108,7 @@ impl<L: BondLaw> Block<L> {
             first_bond,
             bonds,
             separated,
+            failing: Vec::new(),
             groups,
             memory,
             partners,
@@ -155,6 +159,33 @@ impl<L: BondLaw> Block<L> {
             }
             if DETAIL == VIRIALS {
                 add_virials(&group.slots, &bonds.gap, &forces.force, virials);
+            }
+        }
+    }
+}
+
+impl<L: BondLaw> Block<L> {
+    /// Sums the forces of bonds beside the mean strain of their particles, and what they add to the stresses of these, in the place of virials.
+    pub(super) fn sum_deviations(&mut self, position: &[Vec3], orientation: &[Rotation], law: &L, field: &MeanStrain) {
+        let Block { groups, memory, first_bond, failing, sums, virials, .. } = self;
+        sums.fill([0.0; 6]);
+        virials.clear();
+        virials.resize(sums.len(), [0.0; 6]);
+        for (index, (group, memory)) in groups.iter_mut().zip(memory).enumerate() {
+            let bonds = group.lanes(position, orientation);
+            let strains: [_; WIDTH] = std::array::from_fn(|k| field.between([group.first[k], group.second[k]]).0);
+            let mean = std::array::from_fn(|c| Lanes(std::array::from_fn(|k| strains[k][c])));
+            let found = law.deviating_forces(&bonds, mean, &group.own, &mut group.recent, memory);
+            if found.failing != 0 {
+                let lanes = (0..WIDTH).filter(|lane| found.failing >> lane & 1 == 1);
+                failing.extend(lanes.map(|lane| *first_bond + (index * WIDTH + lane) as u32));
+            }
+            add_forces(&group.slots, &found.forces, sums);
+            for k in 0..WIDTH {
+                for end in &group.slots {
+                    let sum = &mut virials[end[k] as usize];
+                    (0..6).for_each(|c| sum[c] += found.share[c].0[k]);
+                }
             }
         }
     }

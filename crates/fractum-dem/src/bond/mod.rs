@@ -5,7 +5,9 @@ mod graph;
 mod kinds;
 pub mod lanes;
 mod law;
+mod mean_strain;
 mod network;
+mod nonlocal;
 
 pub(crate) use graph::check_pairs;
 pub use graph::{BondGraph, HalfEdge, Parts};

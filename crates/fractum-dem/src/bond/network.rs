@@ -7,11 +7,12 @@ use rayon::prelude::*;
 use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, WIDTH};
 use super::graph::{BondGraph, check_pairs};
 use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
+use super::mean_strain::MeanStrain;
 use crate::DemError;
 use crate::particles::Particles;
 
 /// Particles whose bonds form one block of parallel work.
-const BLOCK: usize = 2048;
+pub(super) const BLOCK: usize = 2048;
 
 /// The bonds of a body under one law, ready for many time steps.
 ///
@@ -20,15 +21,19 @@ const BLOCK: usize = 2048;
 /// is computed once, and the result has the same bits for any number of threads.
 #[derive(Clone, Debug)]
 pub struct BondNetwork<L: BondLaw> {
-    law: L,
-    pairs: Vec<[u32; 2]>,
+    pub(super) law: L,
+    pub(super) pairs: Vec<[u32; 2]>,
     axis: Vec<Vec3>,
-    length: Vec<f64>,
-    own: Vec<L::Parameters>,
+    pub(super) length: Vec<f64>,
+    pub(super) own: Vec<L::Parameters>,
     live: Vec<bool>,
-    blocks: Vec<Block<L>>,
+    pub(super) blocks: Vec<Block<L>>,
     /// Block, group in the block and lane of each bond.
-    index: Vec<[u32; 3]>,
+    pub(super) index: Vec<[u32; 3]>,
+    /// Mean strains of the particles, where the law knows them.
+    pub(super) mean: Option<MeanStrain>,
+    /// Scratch: bonds that fail under them.
+    pub(super) failing: Vec<u32>,
 }
 
 impl<L: BondLaw> BondNetwork<L> {
@@ -85,7 +90,8 @@ impl<L: BondLaw> BondNetwork<L> {
         }
         blocks.iter_mut().zip(incoming).for_each(|(block, list)| block.incoming = list);
         let live = vec![true; pairs.len()];
-        Ok(BondNetwork { law, pairs, axis, length, own, live, blocks, index })
+        let mean = law.mean_elasticity().map(|elasticity| MeanStrain::new(particles, &pairs, elasticity));
+        Ok(BondNetwork { law, pairs, axis, length, own, live, blocks, index, mean, failing: Vec::new() })
     }
 
     /// Number of bonds, broken ones included.
@@ -135,7 +141,7 @@ impl<L: BondLaw> BondNetwork<L> {
     }
 
     /// What a bond remembers apart from what is recent.
-    fn lasting_memory(&self, bond: usize) -> &L::Memory {
+    pub(super) fn lasting_memory(&self, bond: usize) -> &L::Memory {
         let [block, group, lane] = self.index[bond].map(|i| i as usize);
         &self.blocks[block].memory[group][lane]
     }
@@ -150,11 +156,18 @@ impl<L: BondLaw> BondNetwork<L> {
 
     /// Puts a saved memory back into bonds made from the same case.
     pub fn restore_memory(&mut self, saved: &[L::Memory]) {
-        for (&[block, group, lane], memory) in self.index.iter().zip(saved) {
-            let Block { groups, memory: own, .. } = &mut self.blocks[block as usize];
-            let group = group as usize;
-            L::remember(*memory, lane as usize, &mut groups[group].recent, &mut own[group]);
+        for (bond, memory) in saved.iter().enumerate().take(self.len()) {
+            self.put_memory(bond, *memory);
+            if let (Some(mean), Some(_)) = (&mut self.mean, L::separation(memory)) {
+                self.pairs[bond].iter().for_each(|&i| mean.release(i as usize));
+            }
         }
+    }
+
+    pub(super) fn put_memory(&mut self, bond: usize, memory: L::Memory) {
+        let [block, group, lane] = self.index[bond].map(|i| i as usize);
+        let Block { groups, memory: own, .. } = &mut self.blocks[block];
+        L::remember(memory, lane, &mut groups[group].recent, &mut own[group]);
     }
 
     /// Energy that all bonds have dissipated so far, broken ones included [J].
@@ -276,9 +289,18 @@ impl<L: BondLaw> BondNetwork<L> {
     }
 
     fn add_forces_of<const DETAIL: u8>(&mut self, particles: &mut Particles) {
+        if self.mean.is_some() {
+            return self.add_deviating_forces(particles);
+        }
         let law = self.law;
-        let Particles { position, orientation, force, moment, .. } = particles;
+        let Particles { position, orientation, .. } = &*particles;
         self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<true, DETAIL>(position, orientation, &law));
+        self.add_sums(particles);
+    }
+
+    /// Adds the sums of the blocks to the forces and moments of their particles.
+    pub(super) fn add_sums(&self, particles: &mut Particles) {
+        let Particles { force, moment, .. } = particles;
         let blocks = &self.blocks;
         let owned = force.par_chunks_mut(BLOCK).zip(moment.par_chunks_mut(BLOCK));
         owned.zip(blocks).for_each(|((force, moment), block)| {
@@ -297,7 +319,7 @@ impl<L: BondLaw> BondNetwork<L> {
 
     /// A bond with its particles' present state.
     #[inline]
-    fn pair(&self, bond: usize, particles: &Particles) -> BondedPair {
+    pub(super) fn pair(&self, bond: usize, particles: &Particles) -> BondedPair {
         let ends = self.pairs[bond].map(|i| i as usize);
         BondedPair {
             position: ends.map(|i| particles.position[i]),
@@ -314,6 +336,9 @@ impl<L: BondLaw> BondNetwork<L> {
 
     /// Force of a live bond on its second particle and the moments on both.
     pub fn forces_of(&self, bond: usize, particles: &Particles) -> BondForces {
+        if let Some(forces) = self.traction_of(bond, particles) {
+            return forces;
+        }
         let (mut recent, mut memory) = (L::Recent::default(), [L::Memory::default()]);
         L::remember(self.memory_of(bond), 0, &mut recent, &mut memory);
         self.law.forces(&self.pair(bond, particles).lanes(), &[self.own[bond]], &mut recent, &mut memory).into()
@@ -321,7 +346,11 @@ impl<L: BondLaw> BondNetwork<L> {
 
     /// Energy that a bond, live or not, would give back, by parts [J].
     pub fn energy_of(&self, bond: usize, particles: &Particles) -> BondEnergy {
-        self.law.energy(&self.pair(bond, particles), &self.own[bond], self.lasting_memory(bond))
+        let (pair, own, memory) = (self.pair(bond, particles), &self.own[bond], self.lasting_memory(bond));
+        match &self.mean {
+            None => self.law.energy(&pair, own, memory),
+            Some(mean) => self.law.deviating_energy(&pair, mean.between(self.pairs[bond]), own, memory),
+        }
     }
 
     /// Energy that all live bonds would give back, by parts [J].
@@ -333,7 +362,11 @@ impl<L: BondLaw> BondNetwork<L> {
             .into_par_iter()
             .map(|c| chunk(c * BLOCK..((c + 1) * BLOCK).min(self.len())))
             .collect();
-        parts.into_iter().fold(BondEnergy::default(), BondEnergy::add)
+        let bonds = parts.into_iter().fold(BondEnergy::default(), BondEnergy::add);
+        match &self.mean {
+            None => bonds,
+            Some(mean) => BondEnergy { tension: bonds.tension + mean.energy(), ..bonds },
+        }
     }
 
     /// A time step that is certainly stable, 2/ω with a bound on ω from the assembled stiffness, times `safety`
@@ -360,7 +393,10 @@ impl<L: BondLaw> BondNetwork<L> {
                 2.0 * scaled.symmetric_eigenvalues().max()
             })
             .collect();
-        let largest = omega2.into_iter().fold(0.0, f64::max);
+        let mut largest = omega2.into_iter().fold(0.0, f64::max);
+        if self.mean.is_some() {
+            largest = largest.max(self.measured_frequency(particles).powi(2));
+        }
         if largest > 0.0 { safety * 2.0 / largest.sqrt() } else { f64::INFINITY }
     }
 }

@@ -2,8 +2,8 @@
 
 use fractum_math::{Mat3, Rotation, Sym3, Vec3};
 
-use super::cells::Tessellation;
 use super::strain::{fit_moments, small_part_of_stretch};
+use crate::cells::{Tessellation, corner_areas};
 
 /// How the strain of a set of particles is defined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -56,7 +56,7 @@ impl StrainGauge {
             return Some(StrainGauge { points: points.collect(), normal });
         }
         let radius: Vec<f64> = set.iter().map(|&i| radius(i as usize)).collect();
-        let cells = Tessellation::new(&centre, &radius);
+        let cells = Tessellation::new(&centre, &radius, 0);
         if measure == StrainMeasure::Bagi {
             let weights = space_cells(&cells.tetrahedra, &centre)?;
             return Some(StrainGauge { points: set.iter().zip(weights).map(still).collect(), normal: None });
@@ -106,14 +106,9 @@ fn turned(rotation: &Rotation, arm: &Mat3) -> Mat3 {
 fn space_cells(tetrahedra: &[[u32; 4]], centre: &[Vec3]) -> Option<Vec<Vec3>> {
     let (mut weights, mut volume) = (vec![Vec3::zeros(); centre.len()], 0.0);
     for corners in tetrahedra {
-        let [a, b, c, d] = corners.map(|i| centre[i as usize]);
-        let [x, y, z] = [b - a, c - a, d - a];
-        let sixth = x.dot(&y.cross(&z)) / 6.0;
-        // Volume times the gradient of each shape function, with the sign of the order of the corners.
-        let own = [y.cross(&z), z.cross(&x), x.cross(&y)].map(|area| area * (sixth.signum() / 6.0));
-        let shares = [-(own[0] + own[1] + own[2]), own[0], own[1], own[2]];
+        let (shares, own) = corner_areas(corners.map(|i| centre[i as usize]));
         corners.iter().zip(shares).for_each(|(&i, share)| weights[i as usize] += share);
-        volume += sixth.abs();
+        volume += own;
     }
     (volume > 0.0).then(|| weights.into_iter().map(|weight| weight / volume).collect())
 }

@@ -1,6 +1,5 @@
 //! Macroscopic quantities of a bonded body: stress, strain, the shape of its cracks, its fragments.
 
-mod cells;
 pub mod crack_shape;
 mod fragment;
 mod gauge;

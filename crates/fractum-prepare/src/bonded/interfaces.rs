@@ -6,7 +6,7 @@ use fractum_calibrate::{CalibrateError, Sample};
 use fractum_dem::{CrackFaces, LocalBond, Particles};
 use fractum_io::build::PreparedBody;
 use fractum_io::case::Diagnostic;
-use fractum_io::case::model::{InterfaceArea, Interfaces, Material};
+use fractum_io::case::model::{BondLawKind, InterfaceArea, Interfaces, Material};
 use fractum_pack::Packing;
 use fractum_scene::BondFracture;
 
@@ -41,7 +41,11 @@ impl Maker<'_> {
         sample.fraction = arrangement.fraction().unwrap_or(sample.fraction);
         let replaced = region.map_or_else(Vec::new, |region| region.elements);
         let material = self.material();
-        let (body, interfaces) = with_interfaces(&sample, material, replaced).map_err(|e| self.wrong(&e))?;
+        // Regular arrangements fill space to their very faces, which are not flat.
+        let of_body = || arrangement.fraction().unwrap_or(sample.packing.sphere_volume() / sample.measured_volume());
+        let beside_mean = (self.bonded.law == BondLawKind::LocalNonlocal).then(of_body);
+        let made = with_interfaces(&sample, material, replaced, beside_mean);
+        let (body, interfaces) = made.map_err(|e| self.wrong(&e))?;
         let mass = body.particles.mass.iter().sum();
         all.reports.push(self.report(&sample, mass, packing_from, Joints::Interfaces(interfaces)));
         all.prepared.push(body);
@@ -51,18 +55,22 @@ impl Maker<'_> {
 
 /// A bonded packing with interfaces, ready to move, and what there is to say of it.
 ///
+/// - `beside_mean`: volume of the spheres over that of the body, where interfaces resist deviations from the mean strain of their particles only
+///
 /// # Errors
 /// Particles without mass.
 fn with_interfaces(
     sample: &Sample,
     material: &Material,
     replaced: Vec<u32>,
+    beside_mean: Option<f64>,
 ) -> Result<(PreparedBody, InterfaceReport), CalibrateError> {
-    let own = material.interfaces.as_ref().map(|own| own.value).unwrap_or_else(|| Interfaces {
+    let mut own = material.interfaces.as_ref().map(|own| own.value).unwrap_or_else(|| Interfaces {
         area: InterfaceArea::Cells,
         law: LocalBond::elastic(material.young_modulus, material.poisson_ratio),
     });
     let volume = sample.measured_volume();
+    own.law.mean_strain = beside_mean;
     let (position, radius) = (sample.packing.position.clone(), sample.packing.radius.clone());
     let particles = Particles::at_rest(position, radius, material.density * volume)?;
     let shares = shares(sample, own.area);

@@ -152,6 +152,12 @@ impl Plan {
             "",
             format!("{share}, E = {}, Poisson's ratio {}", quantity(law.young_modulus, "Pa"), law.poisson_ratio),
         );
+        if law.mean_strain.is_some() {
+            self.add(
+                "",
+                "they resist what goes beyond the mean strain of particles, which follows Hooke's law".to_owned(),
+            );
+        }
         if !law.can_fail() {
             self.add("", "interfaces hold for ever: their strengths are unlimited".to_owned());
             return;

@@ -10,7 +10,7 @@ pub use local::{Crushing, Interface, InterfaceFailure, InterfaceMemory, LocalBon
 
 use std::fmt::Debug;
 
-use fractum_math::{Rotation, Vec3};
+use fractum_math::{Rotation, Sym3, Vec3};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -106,6 +106,58 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
         0.0
     }
 
+    /// Hooke's law of the mean strains of particles, where bonds resist only what goes beyond these.
+    fn mean_elasticity(&self) -> Option<MeanElasticity> {
+        None
+    }
+
+    /// [`BondLaw::forces`] of bonds under a law with [`BondLaw::mean_elasticity`].
+    ///
+    /// - `mean`: mean of the strains of both particles, in Voigt order, in the axes of the undeformed body
+    fn deviating_forces<const W: usize>(
+        &self,
+        bonds: &BondLanes<W>,
+        _mean: [Lanes<W>; 6],
+        own: &[Self::Parameters; W],
+        recent: &mut Self::Recent<W>,
+        memory: &mut [Self::Memory; W],
+    ) -> DeviatingForces<W> {
+        let none = [Lanes::splat(0.0); 6];
+        DeviatingForces { forces: self.forces(bonds, own, recent, memory), share: none, failing: 0 }
+    }
+
+    /// [`BondLaw::energy`] of a bond that has not separated, under a law with [`BondLaw::mean_elasticity`].
+    fn deviating_energy(
+        &self,
+        pair: &BondedPair,
+        _mean: Sym3,
+        own: &Self::Parameters,
+        memory: &Self::Memory,
+    ) -> BondEnergy {
+        self.energy(pair, own, memory)
+    }
+
+    /// What a bond transmits that has not separated, with the stress of the mean strain; none where that is not known.
+    fn traction(&self, _pair: &BondedPair, _mean: Sym3, _own: &Self::Parameters) -> Option<BondForces> {
+        None
+    }
+
+    /// The memory of a bond that fails now.
+    fn failed(&self, _pair: &BondedPair, _mean: Sym3, _own: &Self::Parameters) -> Self::Memory {
+        Self::Memory::default()
+    }
+
+    /// A memory that has dissipated an energy more [J].
+    fn with_dissipated(
+        &self,
+        memory: Self::Memory,
+        _energy: f64,
+        _length: f64,
+        _own: &Self::Parameters,
+    ) -> Self::Memory {
+        memory
+    }
+
     /// Whether the particles of a bond act on each other at a change of length over l₀.
     fn touches(&self, _strain: f64, _: &Self::Memory) -> bool {
         true
@@ -137,6 +189,36 @@ pub struct ForceLanes<const W: usize> {
     pub force: Vector<W>,
     /// Moments on the first and on the second particles [N m].
     pub moment: [Vector<W>; 2],
+}
+
+/// Hooke's law of the mean strains of particles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeanElasticity {
+    /// Lamé's λ [Pa].
+    pub lame: f64,
+    /// Shear modulus G [Pa].
+    pub shear_modulus: f64,
+    /// Volume of the spheres over that of the body, > 0.
+    pub fraction: f64,
+}
+
+impl MeanElasticity {
+    /// λ tr(E) I + 2 G E [Pa].
+    #[inline]
+    pub fn stress(&self, strain: Sym3) -> Sym3 {
+        Sym3::isotropic(self.lame * strain.trace()) + strain * (2.0 * self.shear_modulus)
+    }
+}
+
+/// What `W` bonds do that resist deviations from the mean strain of their particles.
+#[derive(Clone, Copy)]
+pub struct DeviatingForces<const W: usize> {
+    /// Forces and moments.
+    pub forces: ForceLanes<W>,
+    /// Half of their stress times volume, in Voigt order [J]: the same for both particles.
+    pub share: [Lanes<W>; 6],
+    /// Bonds that fail, as bits.
+    pub failing: u32,
 }
 
 /// What a bond does to its two particles.

@@ -130,9 +130,11 @@ pub enum BondLawKind {
     CohesiveBeam,
     /// Interfaces of the local constitutive law, whose numbers are those of the material.
     Local,
+    /// The same, beside the mean strain of particles, which follows Hooke's law.
+    LocalNonlocal,
 }
 
-choice!(BondLawKind { "cohesive-beam" => CohesiveBeam, "local" => Local });
+choice!(BondLawKind { "cohesive-beam" => CohesiveBeam, "local" => Local, "local-nonlocal" => LocalNonlocal });
 
 /// Interfaces between the particles of a material.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,6 +9,7 @@ use crate::case::model::{
 use crate::case::reader::Table;
 use crate::case::unit::Dimension;
 use crate::case::{Choice, Diagnostic, Field, Place, Spanned};
+use fractum_dem::{Crushing, LocalBond};
 use fractum_math::Vec3;
 use fractum_pack::{Arrangement, Convention};
 
@@ -87,7 +88,37 @@ fn law(table: &Table<'_>, here: Option<&Material>) -> BondLawKind {
     if let Some(own) = &here.fracture {
         refuse(&own.place, "give the strengths in the table interface");
     }
+    if law == BondLawKind::LocalNonlocal {
+        refuse_beside_mean_strain(table, here);
+    }
     law
+}
+
+/// What interfaces beside the mean strain of their particles do not know.
+fn refuse_beside_mean_strain(table: &Table<'_>, here: &Material) {
+    let note = |place: &Place, found: &str, remedy: &str| {
+        let found = format!("{found}, which bond = \"local-nonlocal\" does not know");
+        table.reader.note(Diagnostic::error(place, found).remedy(remedy));
+    };
+    if let Some(own) = &here.interfaces {
+        let law = &own.value.law;
+        if law.softening != [f64::INFINITY; 2] || law.crushing != Crushing::NONE {
+            note(
+                &own.place,
+                "softens or crushes",
+                "leave tension_softening, shear_softening, crushing_stress and crushing_ratio out, or take bond = \"local\"",
+            );
+        }
+        if law.tensile_strength == 0.0 || law.shear_strength == 0.0 {
+            note(&own.place, "has no strength", "strengths above zero, or bond = \"local\"");
+        }
+    }
+    if let Some(own) = here.thermal.as_ref().filter(|own| own.value.expansion != 0.0) {
+        note(&own.place, "expands", "leave expansion out, or take bond = \"local\"");
+    }
+    if here.poisson_ratio > LocalBond::LARGEST_POISSON_RATIO {
+        note(&here.name.place, "has a Poisson's ratio above 0.49", "a smaller poisson_ratio, or bond = \"local\"");
+    }
 }
 
 fn packing(table: &Table<'_>) -> Option<PackingSource> {

@@ -251,6 +251,15 @@ impl LocalBond {
         }
     }
 
+    /// The memory of an interface that was whole and separates at once, and rubs where it is closed.
+    ///
+    /// - `last`: normal strain and shear strain; `shear`: that in the axes of the first particle
+    pub(super) fn separated_memory(&self, how: Separation, last: [f64; 4], shear: [f64; 3]) -> InterfaceMemory {
+        let compression = self.young_modulus * (-last[0]).max(0.0);
+        let slip = self.slipped(shear, [0.0; 3], compression);
+        InterfaceMemory { damage: [1.0; 2], slip, last, separation: Some(how), ..InterfaceMemory::default() }
+    }
+
     /// Slip of the failed part under Coulomb's law.
     fn slipped(&self, shear: [f64; 3], slip: [f64; 3], compression: f64) -> [f64; 3] {
         let most = self.friction * compression;

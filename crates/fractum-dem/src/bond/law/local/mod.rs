@@ -1,12 +1,18 @@
 //! The local constitutive bond: an interface of its own area between two particles, with cohesion and friction.
 
+mod deviation;
 mod interface;
 #[cfg(test)]
 mod tests;
 
 pub use interface::{Crushing, InterfaceFailure, InterfaceMemory, RecentStrains, Separation};
 
-use super::{BondEnergy, BondLanes, BondLaw, BondStiffness, BondedPair, ForceLanes, Turn};
+use fractum_math::Sym3;
+
+use super::{
+    BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, DeviatingForces, ForceLanes, MeanElasticity,
+    Turn,
+};
 use crate::DemError;
 use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, scale, sub};
 
@@ -44,6 +50,9 @@ pub struct LocalBond {
     pub crushing: Crushing,
     /// Local viscous damping ξ ≥ 0 of the normal motion.
     pub damping_ratio: f64,
+    /// Volume of the spheres over that of the body where interfaces resist deviations from the mean strain of their particles, which follows
+    /// Hooke's law: `bond = "local-nonlocal"`. Such interfaces are brittle, and elastic in compression.
+    pub mean_strain: Option<f64>,
 }
 
 /// What an interface has of its own.
@@ -104,6 +113,9 @@ fn turned_slips<const W: usize>((w, u): Turn<W>, slips: Vector<W>, direction: Ve
 }
 
 impl LocalBond {
+    /// Largest Poisson's ratio with [`LocalBond::mean_strain`]: beyond it steps become very short.
+    pub const LARGEST_POISSON_RATIO: f64 = 0.49;
+
     /// An elastic interface that holds for ever.
     pub fn elastic(young_modulus: f64, poisson_ratio: f64) -> Self {
         LocalBond {
@@ -117,7 +129,14 @@ impl LocalBond {
             failure: InterfaceFailure::default(),
             crushing: Crushing::NONE,
             damping_ratio: 0.0,
+            mean_strain: None,
         }
+    }
+
+    /// λ = E ν/((1 + ν)(1 − 2ν)) [Pa].
+    #[inline]
+    fn lame(&self) -> f64 {
+        self.young_modulus * self.poisson_ratio / ((1.0 + self.poisson_ratio) * (1.0 - 2.0 * self.poisson_ratio))
     }
 
     /// G = E/(2(1 + ν)) [Pa].
@@ -220,6 +239,29 @@ impl BondLaw for LocalBond {
         if let Some(value) = self.softening.into_iter().find(|h| h.is_nan() || *h <= 0.0) {
             return wrong("softening", value, "a slope above zero");
         }
+        if let Some(fraction) = self.mean_strain {
+            if !(fraction > 0.0 && fraction.is_finite()) {
+                return wrong("solid fraction of the body", fraction, "a number above zero");
+            }
+            if self.poisson_ratio > Self::LARGEST_POISSON_RATIO {
+                return wrong(
+                    "Poisson's ratio",
+                    self.poisson_ratio,
+                    "at most 0.49 with bonds that follow the mean strain",
+                );
+            }
+            if !(self.tensile_strength > 0.0 && self.shear_strength > 0.0) {
+                let least = self.tensile_strength.min(self.shear_strength);
+                return wrong("strength", least, "above zero with bonds that follow the mean strain");
+            }
+            if self.softening != [f64::INFINITY; 2] || self.crushing != Crushing::NONE {
+                return wrong(
+                    "softening",
+                    self.softening[0],
+                    "brittle and elastic in compression where bonds follow the mean strain",
+                );
+            }
+        }
         let Crushing { stress, ratio } = self.crushing;
         if let Some(value) = ratio.into_iter().find(|ratio| !(ratio.is_finite() && *ratio >= 1.0)) {
             return wrong("ratio of moduli in compression", value, "a finite number, 1 or more");
@@ -281,6 +323,41 @@ impl BondLaw for LocalBond {
         // The longer arm at both ends: a bound where the interface is not in the middle.
         let bending = across * (own.arm.max(1.0 - own.arm) * length).powi(2);
         BondStiffness { axial: self.young_modulus * own.area / length, bending, carry_over: bending, twist: 0.0 }
+    }
+
+    fn mean_elasticity(&self) -> Option<MeanElasticity> {
+        let of = |fraction| MeanElasticity { lame: self.lame(), shear_modulus: self.shear_modulus(), fraction };
+        self.mean_strain.map(of)
+    }
+
+    #[inline(always)]
+    fn deviating_forces<const W: usize>(
+        &self,
+        bonds: &BondLanes<W>,
+        mean: [Lanes<W>; 6],
+        own: &[Interface; W],
+        recent: &mut RecentStrains<W>,
+        memory: &mut [InterfaceMemory; W],
+    ) -> DeviatingForces<W> {
+        self.deviating(bonds, mean, own, recent, memory)
+    }
+
+    fn deviating_energy(&self, pair: &BondedPair, mean: Sym3, own: &Interface, memory: &InterfaceMemory) -> BondEnergy {
+        if memory.is_whole() { self.deviating_energy_of(pair, mean, own) } else { self.energy(pair, own, memory) }
+    }
+
+    fn traction(&self, pair: &BondedPair, mean: Sym3, own: &Interface) -> Option<BondForces> {
+        Some(self.traction_of(pair, mean, own))
+    }
+
+    fn failed(&self, pair: &BondedPair, mean: Sym3, own: &Interface) -> InterfaceMemory {
+        self.failed_memory(pair, mean, own)
+    }
+
+    fn with_dissipated(&self, memory: InterfaceMemory, energy: f64, length: f64, own: &Interface) -> InterfaceMemory {
+        let mut memory = memory;
+        memory.dissipated += energy / (own.area * length);
+        memory
     }
 
     fn face_stiffness(&self, rest: f64) -> [f64; 2] {

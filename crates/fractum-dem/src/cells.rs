@@ -17,22 +17,24 @@ const SIDES: usize = 6;
 /// Faces between the Dirichlet cells of spheres, and the tetrahedra of the centres whose cells meet in a point: the generalised
 /// Dirichlet and Delaunay tessellations by the distance |x − xᵢ|² − rᵢ².
 #[derive(Default)]
-pub(super) struct Tessellation {
+pub(crate) struct Tessellation {
     /// Spheres of each face between two cells that is closed, and its area vector from the first to the second [m²].
-    pub(super) faces: Vec<([u32; 2], Vec3)>,
+    pub(crate) faces: Vec<([u32; 2], Vec3)>,
     /// Centres of each space cell.
-    pub(super) tetrahedra: Vec<[u32; 4]>,
+    pub(crate) tetrahedra: Vec<[u32; 4]>,
 }
 
 impl Tessellation {
     /// - `centre` [m], `radius` [m] > 0
-    pub(super) fn new(centre: &[Vec3], radius: &[f64]) -> Self {
+    /// - `salt`: chooses one of the tessellations of an arrangement that has several
+    pub(crate) fn new(centre: &[Vec3], radius: &[f64], salt: u32) -> Self {
         let reach = REACH * radius.iter().fold(0.0, |most: f64, r| most.max(*r));
         let pairs = close_pairs(centre, radius, reach);
         let near = Ragged::inverse(centre.len(), pairs.iter().map(|pair| pair.as_slice()));
         let power = |i: u32| {
             // A hash: a shift linear in the number would leave rows of spheres as they are.
-            let mixed = (i ^ i >> 15).wrapping_add(1).wrapping_mul(0x2c1b_3c6d);
+            let mixed =
+                (i ^ i >> 15).wrapping_add(1).wrapping_add(salt.wrapping_mul(0x9e37_79b9)).wrapping_mul(0x2c1b_3c6d);
             let mixed = (mixed ^ mixed >> 12).wrapping_mul(0x297a_2d39);
             let scatter = f64::from(mixed ^ mixed >> 15) / f64::from(u32::MAX);
             radius[i as usize].powi(2) * (1.0 + SHIFT * scatter)
@@ -59,6 +61,15 @@ impl Tessellation {
         }
         all
     }
+}
+
+/// Volume of a tetrahedron times the gradients of its four shape functions [m²], and the volume [m³].
+pub(crate) fn corner_areas([a, b, c, d]: [Vec3; 4]) -> ([Vec3; 4], f64) {
+    let [x, y, z] = [b - a, c - a, d - a];
+    let sixth = x.dot(&y.cross(&z)) / 6.0;
+    // With the sign of the order of the corners.
+    let own = [y.cross(&z), z.cross(&x), x.cross(&y)].map(|area| area * (sixth.signum() / 6.0));
+    ([-(own[0] + own[1] + own[2]), own[0], own[1], own[2]], sixth.abs())
 }
 
 fn other([first, second]: [u32; 2], own: u32) -> u32 {
@@ -169,7 +180,7 @@ mod tests {
     fn cells_of_a_cubic_arrangement_are_cubes_and_its_space_cells_fill_it() {
         let centre: Vec<Vec3> =
             (0..125).map(|i| Vec3::new((i % 5) as f64, (i / 5 % 5) as f64, (i / 25) as f64) * 2.0).collect();
-        let found = Tessellation::new(&centre, &[1.0; 125]);
+        let found = Tessellation::new(&centre, &[1.0; 125], 0);
         let volume = |&[a, b, c, d]: &[u32; 4]| {
             let [a, b, c, d] = [a, b, c, d].map(|i| centre[i as usize]);
             ((b - a).cross(&(c - a)).dot(&(d - a)) / 6.0).abs()

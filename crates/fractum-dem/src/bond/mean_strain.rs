@@ -1,0 +1,249 @@
+//! Mean strain of particles over the space cells about them, and the energy of Hooke's law that goes with it.
+
+use fractum_math::{Mat3, Sym3, Vec3, sphere_volume};
+use rayon::prelude::*;
+
+use super::graph::BondGraph;
+use super::law::MeanElasticity;
+use crate::cells::{Tessellation, corner_areas};
+use crate::particles::Particles;
+
+/// Tessellations whose mean a regular arrangement takes: where more than four spheres meet in a point each is one of many.
+const TESSELLATIONS: u32 = 12;
+
+/// Weights of particles in the mean displacement gradients of others, row by row.
+#[derive(Clone, Debug)]
+struct Weights {
+    offsets: Vec<u32>,
+    /// Particle and weight [1/m].
+    entries: Vec<(u32, Vec3)>,
+}
+
+impl Weights {
+    /// Rows from entries (row, column, weight), which are summed in their order.
+    fn new(count: usize, mut entries: Vec<(u32, u32, Vec3)>) -> Self {
+        entries.sort_by_key(|&(row, column, _)| (row, column));
+        let mut merged: Vec<(u32, u32, Vec3)> = Vec::new();
+        for (row, column, weight) in entries {
+            match merged.last_mut() {
+                Some(last) if (last.0, last.1) == (row, column) => last.2 += weight,
+                _ => merged.push((row, column, weight)),
+            }
+        }
+        let mut offsets = vec![0u32; count + 1];
+        merged.iter().for_each(|entry| offsets[entry.0 as usize + 1] += 1);
+        (0..count).for_each(|row| offsets[row + 1] += offsets[row]);
+        Weights { offsets, entries: merged.into_iter().map(|(_, column, weight)| (column, weight)).collect() }
+    }
+
+    fn row(&self, row: usize) -> &[(u32, Vec3)] {
+        &self.entries[self.offsets[row] as usize..self.offsets[row + 1] as usize]
+    }
+
+    fn transposed(&self) -> Self {
+        let rows = self.offsets.len() - 1;
+        let entries =
+            (0..rows).flat_map(|row| self.row(row).iter().map(move |&(column, weight)| (column, row as u32, weight)));
+        Weights::new(rows, entries.collect())
+    }
+}
+
+/// The mean deformation gradient F of every particle, that of the Delaunay cells of the centres that meet there weighted with their
+/// volumes (displacements are linear in a cell), the Green strain E = ½(FᵀF − I), and the energy ½ V E : C : E of Hooke's law.
+///
+/// Uniform strain comes out as it is, and particles inside, whose volume V is a quarter of their cells', are then free of force: the sum of the areas of cells
+/// that face a particle inside is zero. Particles at the border and one bond further in have the rest of the volume of the body in proportion to their own.
+/// Arrangements with many tessellations have the mean of some. A particle that has lost a bond has no mean strain any more.
+///
+/// Space cells: Bagi, *Mech. Mater.* 22 (1996) 165–177; means over the cells of a node as in nodal integration (Puso and Solberg, *Int. J. Numer.
+/// Methods Eng.* 67 (2006) 841–867).
+#[derive(Clone, Debug)]
+pub(super) struct MeanStrain {
+    elasticity: MeanElasticity,
+    reference: Vec<Vec3>,
+    rows: Weights,
+    columns: Weights,
+    /// V of each particle [m³].
+    volume: Vec<f64>,
+    /// Bonds of each particle, broken ones included.
+    pub(super) graph: BondGraph,
+    /// Particles that have a mean strain.
+    intact: Vec<bool>,
+    gradient: Vec<Mat3>,
+    strain: Vec<Sym3>,
+    /// Stress of bonds over their volumes, summed [J].
+    deviation: Vec<[f64; 6]>,
+    /// V times the first Piola–Kirchhoff stress [J].
+    stress: Vec<Mat3>,
+}
+
+/// Cells of one or more tessellations of particles.
+struct Cells {
+    entries: Vec<(u32, u32, Vec3)>,
+    /// A quarter of the volumes of the cells of each particle.
+    volume: Vec<f64>,
+    /// Particles on faces that belong to one cell only.
+    border: Vec<bool>,
+}
+
+/// Volumes of particles: those of their cells inside; the rest of the body in proportion to `share` at its border and one bond further in.
+fn volumes(cells: &Cells, share: &[f64], pairs: &[[usize; 2]]) -> Vec<f64> {
+    let mut outer = cells.border.clone();
+    for &[i, j] in pairs {
+        outer[i] |= cells.border[j];
+        outer[j] |= cells.border[i];
+    }
+    let (mut rest, mut of_outer) = (0.0, 0.0);
+    for (k, &outer) in outer.iter().enumerate() {
+        rest += share[k] - if outer { 0.0 } else { cells.volume[k] };
+        of_outer += if outer { share[k] } else { 0.0 };
+    }
+    let scale = if of_outer > 0.0 { (rest / of_outer).max(0.0) } else { 0.0 };
+    (0..share.len()).map(|k| if outer[k] { share[k] * scale } else { cells.volume[k] }).collect()
+}
+
+impl Cells {
+    fn new(centre: &[Vec3], radius: &[f64]) -> Self {
+        let make = |salt: u32| Tessellation::new(centre, radius, salt).tetrahedra;
+        let first = make(0);
+        let second = make(1);
+        let all = match first == second {
+            true => vec![first],
+            false => [first, second].into_iter().chain((2..TESSELLATIONS).map(make)).collect(),
+        };
+        let share = 1.0 / all.len() as f64;
+        let count = centre.len();
+        let mut cells = Cells { entries: Vec::new(), volume: vec![0.0; count], border: vec![false; count] };
+        for tetrahedra in &all {
+            cells.add(centre, tetrahedra, share);
+        }
+        cells
+    }
+
+    fn add(&mut self, centre: &[Vec3], tetrahedra: &[[u32; 4]], share: f64) {
+        let mut faces: Vec<[u32; 3]> = Vec::with_capacity(4 * tetrahedra.len());
+        for corners in tetrahedra {
+            let (areas, volume) = corner_areas(corners.map(|i| centre[i as usize]));
+            for (k, &i) in corners.iter().enumerate() {
+                self.volume[i as usize] += 0.25 * share * volume;
+                self.entries.extend(corners.iter().zip(areas).map(|(&j, area)| (i, j, area * (0.25 * share))));
+                let mut face = [1, 2, 3].map(|step| corners[(k + step) % 4]);
+                face.sort_unstable();
+                faces.push(face);
+            }
+        }
+        faces.sort_unstable();
+        for same in faces.chunk_by(|a, b| a == b).filter(|same| same.len() == 1) {
+            same[0].iter().for_each(|&i| self.border[i as usize] = true);
+        }
+    }
+}
+
+impl MeanStrain {
+    /// Cells of the particles that bonds join, at their present positions.
+    pub(super) fn new(particles: &Particles, pairs: &[[u32; 2]], elasticity: MeanElasticity) -> Self {
+        let count = particles.len();
+        let mut bonded: Vec<u32> = pairs.as_flattened().to_vec();
+        bonded.sort_unstable();
+        bonded.dedup();
+        let of = |values: &[Vec3]| bonded.iter().map(|&i| values[i as usize]).collect::<Vec<_>>();
+        let radius: Vec<f64> = bonded.iter().map(|&i| particles.radius[i as usize]).collect();
+        let cells = Cells::new(&of(&particles.position), &radius);
+        let share: Vec<f64> = radius.iter().map(|r| sphere_volume(*r) / elasticity.fraction).collect();
+        let place = |i: u32| bonded.binary_search(&i).unwrap_or_default();
+        let own = volumes(&cells, &share, &pairs.iter().map(|pair| pair.map(place)).collect::<Vec<_>>());
+        let (mut volume, mut intact) = (vec![0.0; count], vec![false; count]);
+        for (k, &i) in bonded.iter().enumerate() {
+            volume[i as usize] = own[k];
+            intact[i as usize] = cells.volume[k] > 0.0;
+        }
+        let global = |&(row, column, area): &(u32, u32, Vec3)| {
+            (bonded[row as usize], bonded[column as usize], area / cells.volume[row as usize])
+        };
+        let rows = Weights::new(count, cells.entries.iter().map(global).collect());
+        MeanStrain {
+            elasticity,
+            reference: particles.position.clone(),
+            columns: rows.transposed(),
+            rows,
+            volume,
+            graph: BondGraph::new(count, pairs),
+            intact,
+            gradient: vec![Mat3::identity(); count],
+            strain: vec![Sym3::ZERO; count],
+            deviation: vec![[0.0; 6]; count],
+            stress: vec![Mat3::zeros(); count],
+        }
+    }
+
+    /// Strains at these positions [m].
+    pub(super) fn find_strains(&mut self, position: &[Vec3]) {
+        let MeanStrain { reference, rows, intact, gradient, strain, .. } = self;
+        gradient.par_iter_mut().zip(strain.par_iter_mut()).enumerate().with_min_len(256).for_each(
+            |(i, (own, strain))| {
+                if !intact[i] {
+                    return;
+                }
+                let moved = |j: u32| position[j as usize] - reference[j as usize];
+                let sum =
+                    rows.row(i).iter().fold(Mat3::zeros(), |sum, &(j, weight)| sum + moved(j) * weight.transpose());
+                *own = Mat3::identity() + sum;
+                *strain = Sym3::symmetric_part(&(sum + sum.transpose() * sum * 0.5));
+            },
+        );
+    }
+
+    /// Mean of the strains of two particles.
+    #[inline(always)]
+    pub(super) fn between(&self, [i, j]: [u32; 2]) -> Sym3 {
+        let (a, b) = (self.strain[i as usize].0, self.strain[j as usize].0);
+        Sym3(std::array::from_fn(|k| 0.5 * (a[k] + b[k])))
+    }
+
+    /// Energy of the mean strain of a particle [J].
+    pub(super) fn energy_of(&self, particle: usize) -> f64 {
+        let strain = self.strain[particle];
+        0.5 * self.volume[particle] * self.elasticity.stress(strain).dot(strain)
+    }
+
+    /// Energy of all mean strains [J].
+    pub(super) fn energy(&self) -> f64 {
+        fractum_math::sum_chunks(self.strain.len(), |i| self.energy_of(i))
+    }
+
+    /// Adds the forces of the mean strains.
+    ///
+    /// - `gather`: sums of the stresses of the bonds of particles `start..` over their volumes [J]
+    pub(super) fn add_forces(
+        &mut self,
+        block: usize,
+        gather: impl Fn(usize, &mut [[f64; 6]]) + Sync,
+        force: &mut [Vec3],
+    ) {
+        let MeanStrain { elasticity, columns, volume, intact, gradient, strain, deviation, stress, .. } = self;
+        let parts = deviation.par_chunks_mut(block).zip(stress.par_chunks_mut(block));
+        parts.enumerate().for_each(|(number, (deviation, stress))| {
+            gather(number, deviation);
+            for (k, stress) in stress.iter_mut().enumerate() {
+                let i = number * block + k;
+                *stress = match intact[i] {
+                    true => {
+                        let own = elasticity.stress(strain[i]) * volume[i] - Sym3(deviation[k]);
+                        gradient[i] * own.to_matrix()
+                    }
+                    false => Mat3::zeros(),
+                };
+            }
+        });
+        force.par_iter_mut().enumerate().with_min_len(256).for_each(|(j, force)| {
+            *force = columns.row(j).iter().fold(*force, |sum, &(i, weight)| sum - stress[i as usize] * weight);
+        });
+    }
+
+    /// Takes the mean strain of a particle away for ever.
+    pub(super) fn release(&mut self, particle: usize) {
+        self.intact[particle] = false;
+        self.gradient[particle] = Mat3::identity();
+        self.strain[particle] = Sym3::ZERO;
+    }
+}
