@@ -9,6 +9,14 @@ use common::{Workplace, resumed, run};
 /// A block that is crushed between two faces.
 const BLOCK: &str = include_str!("../../../cases/cement/block.toml");
 
+fn assert_same_on_threads_and_after_a_checkpoint(place: &Workplace, one: &serde_json::Value) {
+    let state = |run: &serde_json::Value| (run["state_hash"].clone(), run["energy"].clone());
+    for threads in ["2", "7"] {
+        assert_eq!(state(&run(place, threads, threads)), state(one), "{threads} threads");
+    }
+    assert_eq!(state(&resumed(place, "2")), state(one), "resumed");
+}
+
 #[test]
 fn interfaces_separate_with_the_same_bits_on_any_threads_and_after_a_checkpoint() {
     let place = Workplace::new(BLOCK);
@@ -21,12 +29,7 @@ fn interfaces_separate_with_the_same_bits_on_any_threads_and_after_a_checkpoint(
     let table = fs::read_to_string(place.path("one/cracks.csv")).unwrap();
     assert_eq!(table.lines().count() as u64, broken + 1);
     assert!(table.contains("shear") && table.contains("tension"));
-    for threads in ["2", "7"] {
-        let other = run(&place, threads, threads);
-        assert_eq!((&other["state_hash"], &other["energy"]), (&one["state_hash"], &one["energy"]), "{threads} threads");
-    }
-    let resumed = resumed(&place, "2");
-    assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
+    assert_same_on_threads_and_after_a_checkpoint(&place, &one);
     assert_eq!(fs::read_to_string(place.path("2/cracks.csv")).unwrap(), table);
 }
 
@@ -42,14 +45,7 @@ fn interfaces_beside_the_mean_strain_separate_with_the_same_bits_on_any_threads_
     assert!(energy("damage") > 0.01 * energy("external").abs(), "{}", one["energy"]);
     // What breaks still pulls for half a step that nothing books: an error that falls with the step.
     assert!(energy("residual_max_relative") < 1e-2, "{}", one["energy"]);
-    for threads in ["2", "7"] {
-        let other = run(&place, threads, threads);
-        assert_eq!((&other["state_hash"], &other["energy"]), (&one["state_hash"], &one["energy"]), "{threads} threads");
-    }
-    let resumed = place.fractum(&["run", "case.toml", "-o", "2", "--threads", "1", "--resume", "--quiet"]);
-    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
-    let resumed = summary(&place, "2");
-    assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
+    assert_same_on_threads_and_after_a_checkpoint(&place, &one);
 }
 
 #[test]
