@@ -124,7 +124,7 @@ mod tests {
     use super::*;
     use crate::bond::{BondNetwork, LocalBond};
     use crate::particles::{CentralDifference, ParticleDamping};
-    use fractum_math::{Mat3, Rotation, Sym3, Vec3};
+    use fractum_math::{Rotation, Sym3};
 
     const YOUNG: f64 = 1e9;
     const POISSON: f64 = 0.3;
