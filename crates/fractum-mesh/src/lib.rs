@@ -1,6 +1,7 @@
-//! Meshes for fractum: the Gmsh reader and writer, and what is derived from nodes and elements alone.
+//! Meshes for fractum: readers of Gmsh and Abaqus files, a writer of Gmsh files, and what is derived from nodes and elements alone.
 //!
 //! - [`read_msh`] and [`write_msh`]: MSH 2.2 and 4.1, ASCII and binary, from bytes and to any writer
+//! - [`read_inp`]: Abaqus input files; [`read_mesh`] takes either by its first bytes
 //! - [`Mesh`]: points, lines, triangles, quadrilaterals and tetrahedra with named [`Group`]s
 //! - [`topology`]: edges, facets, outward boundary, elements of a node
 //! - [`quality`]: volumes, altitudes, radius ratios, dihedral angles
@@ -25,13 +26,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod abaqus;
 pub mod generate;
 mod gmsh;
 mod mesh;
 pub mod quality;
 pub mod renumber;
+mod tagged;
 pub mod topology;
 
+pub use abaqus::read_inp;
 pub use fractum_math::Vec3;
-pub use gmsh::{MeshError, MshFormat, Place, Problem, read_msh, write_msh};
+pub use gmsh::{MshFormat, read_msh, write_msh};
 pub use mesh::{Group, Mesh};
+pub use tagged::{MeshError, Place, Problem};
+
+/// Reads a mesh, a Gmsh file or an Abaqus input file by its first bytes.
+///
+/// # Errors
+/// As [`read_msh`] and [`read_inp`].
+pub fn read_mesh(bytes: &[u8]) -> Result<Mesh, MeshError> {
+    let begins = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    if begins.starts_with(b"*") { read_inp(bytes) } else { read_msh(bytes) }
+}

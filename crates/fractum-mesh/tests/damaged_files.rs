@@ -1,9 +1,9 @@
 //! Files damaged at random are read into a sound mesh or refused; nothing panics or runs away.
 
-use fractum_mesh::{Mesh, MshFormat, quality, read_msh, write_msh};
+use fractum_mesh::{Mesh, MshFormat, quality, read_mesh, read_msh, write_msh};
 use proptest::prelude::*;
 
-const FILES: [&str; 14] = [
+const FILES: [&str; 17] = [
     "all-22-ascii",
     "boxes-22-binary",
     "boxes-41-ascii",
@@ -18,10 +18,14 @@ const FILES: [&str; 14] = [
     "sparse-41-ascii",
     "storage-22-big",
     "storage-41-big-4",
+    "box.inp",
+    "part.inp",
+    "plane.inp",
 ];
 
 fn bytes_of(file: usize) -> Vec<u8> {
-    let path = format!("{}/tests/data/{}.msh", env!("CARGO_MANIFEST_DIR"), FILES[file]);
+    let ending = if FILES[file].ends_with(".inp") { "" } else { ".msh" };
+    let path = format!("{}/tests/data/{}{ending}", env!("CARGO_MANIFEST_DIR"), FILES[file]);
     std::fs::read(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
@@ -71,6 +75,10 @@ fn damage() -> impl Strategy<Value = Damage> {
         "0x10",
         "+5",
         "-0",
+        "*ELSET, ELSET=part\n1, 18446744073709551615, 1",
+        "*NSET, NSET=a, GENERATE\n0, 18446744073709551615, 0\n*NSET, NSET=left\na, a,\n",
+        "**",
+        ",",
     ]);
     prop_oneof![
         (0.0..1.0, any::<u8>()).prop_map(|(at, value)| Damage::Byte(at, value)),
@@ -158,7 +166,7 @@ fn check(mesh: &Mesh) {
 
 /// Reads; what is accepted is sound and survives being written, unless its groups cannot be written.
 fn read_or_refuse(bytes: &[u8]) {
-    let mut mesh = match read_msh(bytes) {
+    let mut mesh = match read_mesh(bytes) {
         Ok(mesh) => mesh,
         Err(error) => {
             let text = error.to_string();
@@ -201,9 +209,19 @@ proptest! {
             b"$MeshFormat\n4.1 1 4\n\0\0\0\x01\n$EndMeshFormat\n$Entities\n",
             b"$MeshFormat\n2.2 1 8\n\x01\0\0\0\n$EndMeshFormat\n$Nodes\n0\n$EndNodes\n$Elements\n7\n",
             b"",
+            b"*NODE\n1,0,0\n*ELEMENT, TYPE=C3D10, ELSET=a\n",
         ]),
         noise in prop::collection::vec(any::<u8>(), 0..300),
     ) {
         read_or_refuse(&[header, &noise].concat());
+    }
+}
+
+#[test]
+fn every_beginning_of_a_file_is_read_soundly_or_refused() {
+    for file in 0..FILES.len() {
+        let bytes = bytes_of(file);
+        let step = bytes.len() / 200 + 1;
+        (0..bytes.len()).step_by(step).for_each(|end| read_or_refuse(&bytes[..end]));
     }
 }

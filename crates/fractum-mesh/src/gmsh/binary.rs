@@ -1,5 +1,5 @@
-use super::cursor::{Cursor, What};
-use super::error::Fault;
+use crate::tagged::cursor::{Cursor, What};
+use crate::tagged::error::Fault;
 
 /// How numbers are stored in a binary file. Integers take four bytes and reals eight everywhere; MSH 4.1 counts and
 /// tags take a word.

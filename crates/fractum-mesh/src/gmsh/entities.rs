@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::binary::Layout;
-use super::cursor::{Cursor, Record, What};
-use super::error::Fault;
+use crate::tagged::cursor::{Cursor, Record, What};
+use crate::tagged::error::Fault;
 
 /// Physical tags by dimension and entity tag.
 pub(super) type Entities = BTreeMap<(u8, i32), Vec<i32>>;

@@ -1,6 +1,6 @@
-use super::cursor::{Cursor, What, quote};
-use super::error::Fault;
-use super::raw::PhysicalName;
+use crate::tagged::cursor::{Cursor, What, quote};
+use crate::tagged::error::Fault;
+use crate::tagged::raw::PhysicalName;
 
 /// Reads `$PhysicalNames` up to and with its end: text in every version, even of binary files.
 pub(super) fn read(cursor: &mut Cursor) -> Result<Vec<PhysicalName>, Fault> {

@@ -1,12 +1,12 @@
 use std::collections::BTreeMap;
 
-use super::assemble::assemble;
 use super::binary::Layout;
-use super::cursor::{Cursor, What, list, quote};
-use super::error::{Fault, MeshError, Problem};
-use super::raw::Raw;
 use super::{entities, names, v2, v4};
 use crate::Mesh;
+use crate::tagged::assemble;
+use crate::tagged::cursor::{Cursor, What, list, quote};
+use crate::tagged::error::{Fault, MeshError, Problem};
+use crate::tagged::raw::Raw;
 
 /// Reads a Gmsh mesh: MSH 2.2 or 4.1, ASCII or binary of either byte order.
 ///

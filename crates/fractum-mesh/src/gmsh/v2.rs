@@ -3,10 +3,10 @@
 use fractum_math::Vec3;
 
 use super::binary::Layout;
-use super::cursor::{Cursor, What};
-use super::element_type::ElementType;
-use super::error::Fault;
-use super::raw::{Membership, Raw, Records};
+use crate::tagged::cursor::{Cursor, What};
+use crate::tagged::element_type::ElementType;
+use crate::tagged::error::Fault;
+use crate::tagged::raw::{Membership, Raw, Records};
 
 /// Reads `$Nodes`, or `$ParametricNodes` whose lines end with an entity and up to two parameters.
 pub(super) fn read_nodes(

@@ -3,11 +3,11 @@
 use fractum_math::Vec3;
 
 use super::binary::Layout;
-use super::cursor::{Cursor, What};
-use super::element_type::ElementType;
-use super::error::Fault;
-use super::raw::{Membership, Raw, Records};
 use super::v2::element_type;
+use crate::tagged::cursor::{Cursor, What};
+use crate::tagged::element_type::ElementType;
+use crate::tagged::error::Fault;
+use crate::tagged::raw::{Membership, Raw, Records};
 
 /// Reads `$Nodes`.
 pub(super) fn read_nodes(cursor: &mut Cursor, layout: Option<Layout>, raw: &mut Raw) -> Result<(), Fault> {

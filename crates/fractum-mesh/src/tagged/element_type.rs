@@ -1,6 +1,6 @@
 /// The shape of an element, whatever its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     Point,
     Line,
     Triangle,
@@ -13,14 +13,14 @@ pub(super) enum Shape {
 
 /// A Gmsh element type with a fixed number of nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct ElementType {
-    pub(super) shape: Shape,
+pub(crate) struct ElementType {
+    pub(crate) shape: Shape,
     /// Nodes per element in the file; the corners come first.
-    pub(super) nodes: usize,
+    pub(crate) nodes: usize,
 }
 
 impl Shape {
-    pub(super) fn dimension(self) -> u8 {
+    pub(crate) fn dimension(self) -> u8 {
         match self {
             Shape::Point => 0,
             Shape::Line => 1,
@@ -30,7 +30,7 @@ impl Shape {
     }
 
     /// Corner nodes kept by the reader; none for the shapes that fractum does not hold.
-    pub(super) fn corners(self) -> usize {
+    pub(crate) fn corners(self) -> usize {
         match self {
             Shape::Point => 1,
             Shape::Line => 2,
@@ -40,7 +40,7 @@ impl Shape {
         }
     }
 
-    pub(super) fn singular(self) -> &'static str {
+    pub(crate) fn singular(self) -> &'static str {
         match self {
             Shape::Point => "point",
             Shape::Line => "line",
@@ -53,7 +53,7 @@ impl Shape {
         }
     }
 
-    pub(super) fn plural(self) -> &'static str {
+    pub(crate) fn plural(self) -> &'static str {
         match self {
             Shape::Point => "points",
             Shape::Line => "lines",
@@ -67,14 +67,14 @@ impl Shape {
     }
 
     /// `1 prism`, `12 prisms`.
-    pub(super) fn counted(self, count: usize) -> String {
+    pub(crate) fn counted(self, count: usize) -> String {
         format!("{count} {}", if count == 1 { self.singular() } else { self.plural() })
     }
 }
 
 impl ElementType {
     /// The type with that Gmsh number; none for polygons, enriched elements and numbers that Gmsh does not use.
-    pub(super) fn from_code(code: u64) -> Option<ElementType> {
+    pub(crate) fn from_code(code: u64) -> Option<ElementType> {
         let (shape, nodes) = match code {
             15 => (Shape::Point, 1),
             1 => (Shape::Line, 2),
@@ -121,12 +121,12 @@ impl ElementType {
     }
 
     /// Whether the element has nodes besides its corners.
-    pub(super) fn has_mid_nodes(self) -> bool {
+    pub(crate) fn has_mid_nodes(self) -> bool {
         self.nodes > self.shape.corners() && self.shape.corners() > 0
     }
 
     /// What to say about a number that [`ElementType::from_code`] does not know.
-    pub(super) fn name_of_unknown(code: i64) -> String {
+    pub(crate) fn name_of_unknown(code: i64) -> String {
         match code {
             34 | 69 => format!("element type {code} (polygon)"),
             35 => format!("element type {code} (polyhedron)"),

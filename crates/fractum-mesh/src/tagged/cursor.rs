@@ -4,14 +4,14 @@ use super::error::Fault;
 
 /// Names a record in a message: `node 3 of 14`. Formatting waits until there is something to say.
 #[derive(Clone, Copy)]
-pub(super) struct What {
-    pub(super) noun: &'static str,
-    pub(super) index: usize,
-    pub(super) count: usize,
+pub(crate) struct What {
+    pub(crate) noun: &'static str,
+    pub(crate) index: usize,
+    pub(crate) count: usize,
 }
 
 impl What {
-    pub(super) fn one(noun: &'static str) -> Self {
+    pub(crate) fn one(noun: &'static str) -> Self {
         What { noun, index: 0, count: 1 }
     }
 }
@@ -27,22 +27,22 @@ impl fmt::Display for What {
 
 /// A position in the bytes of a file, read as lines or as raw blocks.
 #[derive(Clone)]
-pub(super) struct Cursor<'a> {
-    pub(super) bytes: &'a [u8],
-    pub(super) at: usize,
+pub(crate) struct Cursor<'a> {
+    pub(crate) bytes: &'a [u8],
+    pub(crate) at: usize,
 }
 
 impl<'a> Cursor<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
         Cursor { bytes, at: 0 }
     }
 
-    pub(super) fn remaining(&self) -> usize {
+    pub(crate) fn remaining(&self) -> usize {
         self.bytes.len() - self.at
     }
 
     /// The next line that is not blank, without the blanks around it, and where it starts.
-    pub(super) fn line(&mut self) -> Option<(usize, &'a [u8])> {
+    pub(crate) fn line(&mut self) -> Option<(usize, &'a [u8])> {
         while self.at < self.bytes.len() {
             let start = self.at;
             let rest = &self.bytes[start..];
@@ -57,7 +57,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The next line that is not blank as fields; a `$` line or the end of the file is not a record.
-    pub(super) fn record(&mut self, what: What) -> Result<Record<'a>, Fault> {
+    pub(crate) fn record(&mut self, what: What) -> Result<Record<'a>, Fault> {
         match self.line() {
             None => Err(Fault::truncated(self.bytes.len(), what.to_string())),
             Some((at, line)) if line[0] == b'$' => Err(Fault::unexpected(at, quote(line), what.to_string())),
@@ -66,7 +66,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The next `count` bytes.
-    pub(super) fn take(&mut self, count: usize, what: What) -> Result<&'a [u8], Fault> {
+    pub(crate) fn take(&mut self, count: usize, what: What) -> Result<&'a [u8], Fault> {
         if count > self.remaining() {
             let expected = format!("{what} ({count} bytes, {} left)", self.remaining());
             return Err(Fault::truncated(self.at, expected));
@@ -77,7 +77,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// `count` records of `size` bytes each; a count that the rest of the file cannot hold is an error.
-    pub(super) fn take_records(&mut self, count: u64, size: usize, what: What) -> Result<&'a [u8], Fault> {
+    pub(crate) fn take_records(&mut self, count: u64, size: usize, what: What) -> Result<&'a [u8], Fault> {
         match usize::try_from(count).ok().and_then(|count| count.checked_mul(size)) {
             Some(length) if length <= self.remaining() => self.take(length, what),
             _ => {
@@ -88,12 +88,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// Room for `count` items of which each takes at least `size` bytes of the file.
-    pub(super) fn capacity(&self, count: u64, size: usize) -> usize {
+    pub(crate) fn capacity(&self, count: u64, size: usize) -> usize {
         (self.remaining() / size).min(usize::try_from(count).unwrap_or(usize::MAX))
     }
 
     /// The line `$EndNAME` that closes a section.
-    pub(super) fn end_section(&mut self, name: &str) -> Result<(), Fault> {
+    pub(crate) fn end_section(&mut self, name: &str) -> Result<(), Fault> {
         let expected = || format!("$End{name}");
         match self.line() {
             None => Err(Fault::truncated(self.bytes.len(), expected())),
@@ -107,7 +107,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Skips to behind the line `$EndNAME`, through text or binary data.
-    pub(super) fn skip_section(&mut self, name: &str) -> Result<(), Fault> {
+    pub(crate) fn skip_section(&mut self, name: &str) -> Result<(), Fault> {
         let end = [b"$End", name.as_bytes()].concat();
         let mut from = self.at;
         while let Some(step) = self.bytes[from..].iter().position(|&byte| byte == b'$') {
@@ -124,7 +124,7 @@ impl<'a> Cursor<'a> {
 }
 
 /// The fields of one line, taken from the left.
-pub(super) struct Record<'a> {
+pub(crate) struct Record<'a> {
     rest: &'a [u8],
     at: usize,
     what: What,
@@ -132,12 +132,12 @@ pub(super) struct Record<'a> {
 
 impl<'a> Record<'a> {
     /// Where the next field starts.
-    pub(super) fn at(&self) -> usize {
+    pub(crate) fn at(&self) -> usize {
         self.at
     }
 
     /// What is left of the line.
-    pub(super) fn rest(&self) -> &'a [u8] {
+    pub(crate) fn rest(&self) -> &'a [u8] {
         self.rest
     }
 
@@ -164,7 +164,7 @@ impl<'a> Record<'a> {
     }
 
     /// A whole number of either sign.
-    pub(super) fn integer(&mut self, expected: &'static str) -> Result<i64, Fault> {
+    pub(crate) fn integer(&mut self, expected: &'static str) -> Result<i64, Fault> {
         let (at, field) = self.field(expected)?;
         let (negative, digits) = match field {
             [b'-', digits @ ..] => (true, digits),
@@ -177,7 +177,7 @@ impl<'a> Record<'a> {
     }
 
     /// A 32 bit whole number of either sign.
-    pub(super) fn integer32(&mut self, expected: &'static str) -> Result<i32, Fault> {
+    pub(crate) fn integer32(&mut self, expected: &'static str) -> Result<i32, Fault> {
         self.skip_blanks();
         let (at, rest) = (self.at, self.rest);
         let value = self.integer(expected)?;
@@ -188,13 +188,13 @@ impl<'a> Record<'a> {
     }
 
     /// A whole number of at least 0.
-    pub(super) fn unsigned(&mut self, expected: &'static str) -> Result<u64, Fault> {
+    pub(crate) fn unsigned(&mut self, expected: &'static str) -> Result<u64, Fault> {
         let (at, field) = self.field(expected)?;
         parse_digits(field).ok_or_else(|| self.wrong(at, field, expected, "a whole number of at least 0"))
     }
 
     /// A finite real number.
-    pub(super) fn real(&mut self, expected: &'static str) -> Result<f64, Fault> {
+    pub(crate) fn real(&mut self, expected: &'static str) -> Result<f64, Fault> {
         let (at, field) = self.field(expected)?;
         std::str::from_utf8(field)
             .ok()
@@ -204,7 +204,7 @@ impl<'a> Record<'a> {
     }
 
     /// Ensures that nothing is left on the line.
-    pub(super) fn end(mut self) -> Result<(), Fault> {
+    pub(crate) fn end(mut self) -> Result<(), Fault> {
         self.skip_blanks();
         match self.rest {
             [] => Ok(()),
@@ -230,7 +230,7 @@ fn parse_digits(digits: &[u8]) -> Option<u64> {
 }
 
 /// Bytes of the file as a short, printable quotation.
-pub(super) fn quote(bytes: &[u8]) -> String {
+pub(crate) fn quote(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let shown = &bytes[..bytes.len().min(LONGEST)];
     let text: String = String::from_utf8_lossy(shown)
@@ -241,7 +241,7 @@ pub(super) fn quote(bytes: &[u8]) -> String {
 }
 
 /// The first few of many.
-pub(super) fn list(items: &[String]) -> String {
+pub(crate) fn list(items: &[String]) -> String {
     const SHOWN: usize = 8;
     let more = if items.len() > SHOWN { format!(" and {} more", items.len() - SHOWN) } else { String::new() };
     format!("{}{more}", items[..items.len().min(SHOWN)].join(", "))

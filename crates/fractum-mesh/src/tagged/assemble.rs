@@ -11,7 +11,7 @@ use super::{groups, shape_check};
 use crate::Mesh;
 
 /// Checks a raw mesh against itself and builds the mesh of it.
-pub(super) fn assemble(mut raw: Raw, bytes: &[u8]) -> Result<Mesh, Fault> {
+pub(crate) fn assemble(mut raw: Raw, bytes: &[u8]) -> Result<Mesh, Fault> {
     if raw.element_tags.is_empty() {
         return Err(Fault::truncated(bytes.len(), NO_ELEMENTS));
     }

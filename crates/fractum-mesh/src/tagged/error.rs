@@ -73,30 +73,30 @@ pub enum Problem {
 
 /// A [`Problem`] at a byte offset, before it is known whether the user counts in lines.
 #[derive(Debug)]
-pub(super) struct Fault {
-    pub(super) at: usize,
-    pub(super) problem: Problem,
+pub(crate) struct Fault {
+    pub(crate) at: usize,
+    pub(crate) problem: Problem,
 }
 
 impl Fault {
-    pub(super) fn unexpected(at: usize, found: impl Into<String>, expected: impl Into<String>) -> Self {
+    pub(crate) fn unexpected(at: usize, found: impl Into<String>, expected: impl Into<String>) -> Self {
         Fault { at, problem: Problem::Unexpected { found: found.into(), expected: expected.into() } }
     }
 
-    pub(super) fn truncated(at: usize, expected: impl Into<String>) -> Self {
+    pub(crate) fn truncated(at: usize, expected: impl Into<String>) -> Self {
         Fault { at, problem: Problem::Truncated { expected: expected.into() } }
     }
 
-    pub(super) fn inconsistent(at: usize, message: impl Into<String>) -> Self {
+    pub(crate) fn inconsistent(at: usize, message: impl Into<String>) -> Self {
         Fault { at, problem: Problem::Inconsistent(message.into()) }
     }
 
-    pub(super) fn unsupported(at: usize, message: impl Into<String>) -> Self {
+    pub(crate) fn unsupported(at: usize, message: impl Into<String>) -> Self {
         Fault { at, problem: Problem::Unsupported(message.into()) }
     }
 
     /// Turns the offset into what the user counts in.
-    pub(super) fn into_error(self, bytes: &[u8], binary: bool) -> MeshError {
+    pub(crate) fn into_error(self, bytes: &[u8], binary: bool) -> MeshError {
         let at = self.at.min(bytes.len());
         let place = if binary {
             Place::Byte(at)

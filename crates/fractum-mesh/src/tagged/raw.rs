@@ -7,44 +7,44 @@ use super::element_type::ElementType;
 
 /// A mesh as the file tells it: tags instead of indices, nothing cross-checked, and where each record lies.
 #[derive(Default)]
-pub(super) struct Raw {
-    pub(super) names: Vec<PhysicalName>,
+pub(crate) struct Raw {
+    pub(crate) names: Vec<PhysicalName>,
     /// Physical tags of each entity, by dimension and entity tag; none where the file has no such section.
-    pub(super) entities: Option<BTreeMap<(u8, i32), Vec<i32>>>,
-    pub(super) node_tags: Vec<u64>,
-    pub(super) nodes: Vec<Vec3>,
+    pub(crate) entities: Option<BTreeMap<(u8, i32), Vec<i32>>>,
+    pub(crate) node_tags: Vec<u64>,
+    pub(crate) nodes: Vec<Vec3>,
     /// First node and records of each block of nodes.
-    pub(super) node_blocks: Vec<(usize, Records)>,
-    pub(super) element_tags: Vec<u64>,
+    pub(crate) node_blocks: Vec<(usize, Records)>,
+    pub(crate) element_tags: Vec<u64>,
     /// Node tags of the corners, element after element; nothing for shapes that are not held.
-    pub(super) corners: Vec<u64>,
-    pub(super) runs: Vec<Run>,
-    pub(super) notices: Vec<String>,
+    pub(crate) corners: Vec<u64>,
+    pub(crate) runs: Vec<Run>,
+    pub(crate) notices: Vec<String>,
 }
 
 /// A line of `$PhysicalNames`.
-pub(super) struct PhysicalName {
-    pub(super) dimension: u8,
-    pub(super) tag: i32,
-    pub(super) name: String,
-    pub(super) at: usize,
+pub(crate) struct PhysicalName {
+    pub(crate) dimension: u8,
+    pub(crate) tag: i32,
+    pub(crate) name: String,
+    pub(crate) at: usize,
 }
 
 /// Consecutive elements of one type and one membership.
-pub(super) struct Run {
-    pub(super) kind: ElementType,
-    pub(super) membership: Membership,
-    pub(super) count: usize,
+pub(crate) struct Run {
+    pub(crate) kind: ElementType,
+    pub(crate) membership: Membership,
+    pub(crate) count: usize,
     /// Index of the first element in [`Raw::element_tags`].
-    pub(super) first: usize,
+    pub(crate) first: usize,
     /// Index of its first corner in [`Raw::corners`].
-    pub(super) first_corner: usize,
-    pub(super) records: Records,
+    pub(crate) first_corner: usize,
+    pub(crate) records: Records,
 }
 
 /// How a run tells its physical groups.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Membership {
+pub(crate) enum Membership {
     /// MSH 2.2: the physical tag itself without sign, 0 for none.
     Physical(i32),
     /// MSH 4.1: the entity that lists them.
@@ -53,14 +53,14 @@ pub(super) enum Membership {
 
 /// Where equal records lie: every `stride` bytes, or one to a line when the stride is 0.
 #[derive(Clone, Copy)]
-pub(super) struct Records {
-    pub(super) at: usize,
-    pub(super) stride: usize,
+pub(crate) struct Records {
+    pub(crate) at: usize,
+    pub(crate) stride: usize,
 }
 
 impl Records {
     /// Offset of a record.
-    pub(super) fn locate(self, bytes: &[u8], index: usize) -> usize {
+    pub(crate) fn locate(self, bytes: &[u8], index: usize) -> usize {
         if self.stride > 0 {
             return self.at + index * self.stride;
         }
@@ -75,7 +75,7 @@ impl Records {
 
 impl Raw {
     /// Physical tags of a run, without sign.
-    pub(super) fn physical_tags<'a>(&'a self, run: &'a Run) -> &'a [i32] {
+    pub(crate) fn physical_tags<'a>(&'a self, run: &'a Run) -> &'a [i32] {
         match &run.membership {
             Membership::Physical(0) => &[],
             Membership::Physical(tag) => std::slice::from_ref(tag),
@@ -87,7 +87,7 @@ impl Raw {
     }
 
     /// Appends to the last run where it continues, or starts a new one.
-    pub(super) fn extend_runs(&mut self, kind: ElementType, membership: Membership, records: Records) {
+    pub(crate) fn extend_runs(&mut self, kind: ElementType, membership: Membership, records: Records) {
         if let Some(run) = self.runs.last_mut()
             && run.kind == kind
             && run.membership == membership
@@ -101,7 +101,7 @@ impl Raw {
     }
 
     /// Starts a run whose elements are about to be appended.
-    pub(super) fn push_run(&mut self, kind: ElementType, membership: Membership, count: usize, records: Records) {
+    pub(crate) fn push_run(&mut self, kind: ElementType, membership: Membership, count: usize, records: Records) {
         let (first, first_corner) = (self.element_tags.len(), self.corners.len());
         self.runs.push(Run { kind, membership, count, first, first_corner, records });
     }

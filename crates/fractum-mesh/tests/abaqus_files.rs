@@ -1,0 +1,120 @@
+//! Abaqus input files as programs write them, and those that are refused.
+
+use fractum_mesh::{Mesh, Vec3, read_inp, read_mesh};
+
+fn bytes_of(name: &str) -> Vec<u8> {
+    let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// Positions of the nodes of a group, in a fixed order.
+fn places(mesh: &Mesh, group: &str) -> Vec<[i64; 3]> {
+    let place = |x: &Vec3| [x.x, x.y, x.z].map(|x| (1e6 * x).round() as i64);
+    let mut places: Vec<_> = mesh.group_nodes(group).iter().map(|&node| place(&mesh.nodes[node as usize])).collect();
+    places.sort_unstable();
+    places
+}
+
+#[test]
+fn a_file_of_gmsh_has_the_groups_of_its_mesh() {
+    let [inp, msh] = ["box.inp", "box-inp.msh"].map(|name| read_mesh(&bytes_of(name)).unwrap());
+    assert_eq!((inp.tetrahedra.len(), inp.nodes.len()), (msh.tetrahedra.len(), msh.nodes.len()));
+    // Gmsh writes no blanks into names of sets.
+    for (of_inp, of_msh) in [("part", "part"), ("left", "left"), ("right_side", "right side")] {
+        let count = |mesh: &Mesh, name: &str| {
+            mesh.group(name).iter().map(|group| (group.dimension, group.element_count())).collect::<Vec<_>>()
+        };
+        assert_eq!(count(&inp, of_inp), count(&msh, of_msh), "{of_inp}");
+        assert_eq!(places(&inp, of_inp), places(&msh, of_msh), "{of_inp}");
+        // The set of nodes of the same name, under a name of its own.
+        assert_eq!(places(&inp, &format!("{of_inp}-nodes")), places(&msh, of_msh), "{of_inp}");
+    }
+    assert!(inp.notices.iter().any(|notice| notice.contains("called \"left-nodes\"")), "{:?}", inp.notices);
+}
+
+#[test]
+fn a_part_with_its_instance_has_sets_and_surfaces() {
+    let mesh = read_inp(&bytes_of("part.inp")).unwrap();
+    assert_eq!((mesh.nodes.len(), mesh.tetrahedra.len(), mesh.tetrahedron_tags.as_slice()), (5, 2, &[1, 7][..]));
+    assert_eq!(mesh.group_names(), ["Set-1-nodes", "Fixed end", "Surf-1", "Set-1", "whole"]);
+    for name in ["Set-1", "whole"] {
+        assert_eq!(mesh.group(name)[0].tetrahedra, [0, 1], "{name}");
+    }
+    // Face 3 of 2 3 4 5 is 3 5 4; face 1 of 1 2 3 4 is 1 2 3.
+    let facets: Vec<[u64; 3]> = mesh.group("Surf-1")[0]
+        .triangles
+        .iter()
+        .map(|&facet| {
+            let mut nodes = mesh.triangles[facet as usize].map(|node| mesh.node_tags[node as usize]);
+            nodes.sort_unstable();
+            nodes
+        })
+        .collect();
+    assert_eq!(facets, [[3, 4, 5], [1, 2, 3]]);
+    assert_eq!(places(&mesh, "Fixed end"), [[0, 0, 0], [0, 0, 1_000_000], [0, 1_000_000, 0]]);
+    assert_eq!(mesh.nodes[4], Vec3::new(1.0, 1.0, 1.0));
+}
+
+#[test]
+fn plane_elements_have_edges_and_lose_their_mid_nodes() {
+    let mesh = read_inp(&bytes_of("plane.inp")).unwrap();
+    assert_eq!((mesh.triangles.len(), mesh.group("plate")[0].triangles.len()), (2, 2));
+    assert_eq!(places(&mesh, "top"), [[0, 2_000_000, 0], [2_000_000, 2_000_000, 0]]);
+    assert_eq!(mesh.group("top")[0].lines.len(), 1);
+    assert_eq!(mesh.group_nodes("base").len(), 3, "a node of a set is kept, though no element has it");
+    for said in ["1 of type SPRINGA", "2 triangles of higher order", "clockwise", "\"springs\""] {
+        assert!(mesh.notices.iter().any(|notice| notice.contains(said)), "{said}: {:?}", mesh.notices);
+    }
+}
+
+#[test]
+fn what_cannot_be_used_is_refused_with_its_line_and_the_remedy() {
+    let flat = "*NODE\n1,0,0\n2,1,0\n3,0,1\n";
+    let triangle = "*ELEMENT, TYPE=S3\n1,1,2,3\n";
+    let after = |more: &str| format!("{flat}{triangle}{more}");
+    let cases = [
+        ("*HEADING\nnothing\n".to_owned(), "line 3: the file ends here; expected at least one *ELEMENT"),
+        (
+            format!("{flat}*ELEMENT, TYPE=C3D8R\n"),
+            "line 5: *ELEMENT gives elements of type C3D8R, which are hexahedra; mesh with tetrahedra",
+        ),
+        (format!("{flat}*ELEMENT\n1,1,2,3\n"), "line 5: found *ELEMENT without TYPE; expected TYPE=NAME on that line"),
+        (
+            format!("{flat}*ELEMENT, TYPE=S3\n1,1,2\n"),
+            "line 6: found `1, 1, 2`; expected an element of type S3: label and 3 nodes",
+        ),
+        (
+            format!("{flat}*ELEMENT, TYPE=S3\n1,1,2,9\n"),
+            "line 6: element 1 names node 9, which the file does not define",
+        ),
+        (format!("{flat}*ELEMENT, TYPE=S3\n1,1,2,x\n"), "line 6: found `1, 1, 2, x`"),
+        ("*NODE\n1,0,zero\n".to_owned(), "line 2: found `1, 0, zero`; expected a node"),
+        ("*NODE, SYSTEM=C\n".to_owned(), "line 1: *NODE gives coordinates about an axis"),
+        (
+            after("*ELSET, ELSET=a\nb\n"),
+            "line 8: found `b` in set \"a\"; expected a label, or the name of a set that is defined above",
+        ),
+        (after("*ELSET, ELSET=a, GENERATE\n1\n"), "line 8: found `1`; expected first, last and step"),
+        (after("*SURFACE, NAME=s\n1, S4\n"), "line 7: surface \"s\" takes face `S4` of element 1, a triangle"),
+        (after("*PART, NAME=a\n*PART, NAME=b\n"), "line 8: *PART gives a second part; export one part"),
+        (after("*INSTANCE, NAME=a\n1, 0, 0\n"), "line 8: found `1, 0, 0`, by which an instance is moved or turned"),
+        (after("*INCLUDE, INPUT=nodes.inp\n"), "line 7: *INCLUDE gives a further file; put its lines here"),
+        (after("*ELEMENT, TYPE=S3\n1,2,3,1\n2,1,2,3\n1,3,2,1\n"), ""),
+    ];
+    for (text, says) in cases {
+        match read_mesh(text.as_bytes()) {
+            Ok(_) => assert_eq!(says, "", "{text}"),
+            Err(error) => assert!(!says.is_empty() && error.to_string().starts_with(says), "{error}\n{text}"),
+        }
+    }
+}
+
+#[test]
+fn sets_that_multiply_are_refused() {
+    let mut text = "*NODE\n1,0,0\n2,1,0\n3,0,1\n*ELEMENT, TYPE=S3\n1,1,2,3\n*NSET, NSET=s0\n1,2,3\n".to_owned();
+    for set in 1..100 {
+        text += &format!("*NSET, NSET=s{set}\ns{}, s{}\n", set - 1, set - 1);
+    }
+    let error = read_inp(text.as_bytes()).unwrap_err().to_string();
+    assert!(error.contains("have more than 192 members in all"), "{error}");
+}
