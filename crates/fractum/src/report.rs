@@ -102,8 +102,8 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
         read => read.map_err(|e| missing("fragments.csv", &e))?,
     };
     let pictures = notes.pictures.iter().filter_map(|note| figure(folder, note)).collect();
-    // Bonds are columns where there are some; what never grew says nothing.
-    let grows = |name: &String| history.column(name).is_some_and(|(values, _)| values.iter().any(|&count| count > 0.0));
+    // Bonds are columns where there are some; what never changed, as the particles of a bonded body, says nothing.
+    let grows = |name: &String| history.column(name).is_some_and(|(values, _)| values.iter().any(|n| *n != values[0]));
     let cracks =
         ["removed_elements", "particles", "broken_bonds"].map(String::from).into_iter().filter(grows).collect();
     let data = ReportData {
@@ -204,7 +204,7 @@ fn curves(history: &Table) -> Vec<Curve> {
         for y in of_like_size(names, |name| largest(history, name)) {
             let (one, several) = quantity_of(unit);
             let title = match &y[..] {
-                [only] => only.replace('_', " "),
+                [only] => only.strip_prefix("probe.").unwrap_or(only).replace('_', " "),
                 _ => several,
             };
             let x = history.columns[0].name.clone();

@@ -1,5 +1,6 @@
 //! What pictures show of one instant, whether the scene itself or one of its frames says it.
 
+use fractum_io::number::significant;
 use fractum_io::picture::{ColourMap, Image, Paint, Picture, PictureError, Scale, Spheres, Surface, View};
 use fractum_math::Vec3;
 
@@ -116,7 +117,7 @@ pub(crate) fn magnification(size: f64, largest: f64) -> f64 {
 
 /// The magnification in words, after the instant.
 pub(crate) fn magnified(scale: f64) -> String {
-    if scale > 1.0 { format!(", displacements x {scale:.0}") } else { String::new() }
+    if scale < 1.05 { String::new() } else { format!(", displacements x {}", significant(scale, 2)) }
 }
 
 /// Lowest and highest coordinates.

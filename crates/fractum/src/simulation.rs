@@ -17,7 +17,7 @@ use fractum_io::build::BuiltScene;
 use fractum_io::case::Case;
 use fractum_io::checkpoint::{self, Header, Identity};
 use fractum_io::log::Snapshot;
-use fractum_io::number::{percent, quantity};
+use fractum_io::number::{instant_text, percent, quantity};
 use fractum_io::origin::Origin;
 use fractum_io::summary::{Status, Summary};
 use fractum_prepare::Cache;
@@ -281,12 +281,18 @@ impl Simulation {
         Ok(())
     }
 
+    /// An instant in words.
+    fn instant(&self, time: f64) -> String {
+        let at_rest = self.solver.rests();
+        format!("{}{}", if at_rest { "" } else { "t = " }, instant_text(time, at_rest))
+    }
+
     /// Why there is no further step.
     fn last_step(&self) -> String {
         let (time, end) = (self.time(), self.case.solver.end);
         match time >= end * (1.0 - 1e-9) {
-            true => format!("t = {} is the end of the run", quantity(end, "s")),
-            false => format!("last step at t = {}, before its end at {}", quantity(time, "s"), quantity(end, "s")),
+            true => format!("{} is the end of the run", self.instant(end)),
+            false => format!("last step at {}, before its end at {}", self.instant(time), self.instant(end)),
         }
     }
 
@@ -298,7 +304,7 @@ impl Simulation {
         let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let fallen = largest > 0.0 && time >= stop.after && values.last().is_some_and(|&v| v < stop.below * largest);
         let (name, part) = (&self.case.probes[stop.probe].name.value, percent(stop.below));
-        fallen.then(|| format!("{name} fell below {part} of its largest value at t = {}", quantity(time, "s")))
+        fallen.then(|| format!("{name} fell below {part} of its largest value at {}", self.instant(time)))
     }
 
     fn save(&mut self) -> Result<(), Failure> {

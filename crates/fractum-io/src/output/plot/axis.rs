@@ -131,6 +131,9 @@ impl Scale {
     }
 }
 
+/// Decimals of a tick that fit beside an axis.
+const MOST_DECIMALS: usize = 4;
+
 /// Ticks at multiples of 1, 2 or 5 times a power of ten, with as many decimals as they need.
 pub(crate) fn linear_ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
     let rough = (high - low) / count.max(1) as f64;
@@ -152,7 +155,7 @@ pub(crate) fn linear_ticks(low: f64, high: f64, count: usize) -> Vec<(f64, Strin
             let value = multiple as f64 * step;
             let label = if multiple == 0 {
                 "0".into()
-            } else if decimals > 6 || value.abs() >= 1e7 {
+            } else if decimals > MOST_DECIMALS || value.abs() >= 1e7 {
                 crate::number::significant(value, 6)
             } else {
                 grouped(&format!("{value:.decimals$}"))
@@ -178,6 +181,8 @@ mod tests {
         assert_eq!(labels(&Axis::new("time", "s"), &[0.0, 1e-3]), ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(labels(&Axis::new("edges", "-"), &[0.0, 19_000.0])[1..3], ["5000", "10\u{202f}000"]);
         assert_eq!(labels(&Axis::new("u", "m"), &[-0.003, 0.003]), ["-2", "0", "2"]);
+        // An area takes no prefix.
+        assert_eq!(labels(&Axis::new("cracks", "m^2"), &[0.0, 4e-6])[1..3], ["1e-6", "2e-6"]);
     }
 
     #[test]

@@ -37,9 +37,9 @@ fn time(history: &Table) -> Option<(Axis, Vec<f64>)> {
     axis(history, &history.columns.first()?.name)
 }
 
-/// `broken_edges` as `broken edges`.
+/// `broken_edges` as `broken edges`; of a probe that is called like another column its own name.
 pub(super) fn words(name: &str) -> String {
-    name.replace('_', " ")
+    name.strip_prefix("probe.").unwrap_or(name).replace('_', " ")
 }
 
 /// A chart of `curve`; `None` if a column is missing.
@@ -59,7 +59,7 @@ pub(super) fn curve(history: &Table, curve: &Curve) -> Option<Chart> {
     let mut chart = Chart {
         title: curve.title.clone(),
         x: labelled(x, &curve.labels[0], curve.logarithmic[0]),
-        y: labelled(y, &curve.labels[1], curve.logarithmic[1]).from_zero(),
+        y: Axis { from_zero: first.unit != "K", ..labelled(y, &curve.labels[1], curve.logarithmic[1]) },
         levels,
         ..Chart::default()
     };

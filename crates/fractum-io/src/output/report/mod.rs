@@ -6,7 +6,7 @@ mod overlay;
 
 use std::path::Path;
 
-use fractum_scene::{EnergyKind, EnergyRole};
+use fractum_scene::EnergyKind;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 pub use figure::ColourBar;
@@ -186,7 +186,7 @@ fn expectations(summary: &Summary) -> Markup {
     html! {
         @if !summary.expect.is_empty() {
             section.keep {
-                h2 { "Against the references" }
+                h2 { "Comparison with references" }
                 div.scroll { table {
                     tr {
                         th { "Quantity" } th.number { "Result" } th.number { "Expected" } th.number { "Off by" }
@@ -330,11 +330,11 @@ fn fragments(fragments: &[Fragment]) -> Markup {
 fn energies(summary: &Summary) -> Markup {
     let energy = &summary.energy;
     let counts = &summary.counts;
-    // The work stands even when it is zero; other zeros are what is not part of the run.
+    // The work of the loads stands even when it is zero; other zeros are what is not part of the run.
     let ledger = EnergyKind::ALL.map(|kind| (kind, energy.entries[kind as usize]));
     let largest = ledger.iter().map(|(_, value)| value.abs()).fold(0.0, f64::max);
     let ledger = ledger.map(|(kind, value)| (kind, or_zero(value, largest)));
-    let ledger = ledger.iter().filter(|(kind, value)| *value != 0.0 || kind.role() == EnergyRole::Supplied);
+    let ledger = ledger.iter().filter(|(kind, value)| *value != 0.0 || *kind == EnergyKind::External);
     let sizes = [
         ("Nodes", counts.nodes),
         ("Elements", counts.elements),
@@ -362,8 +362,11 @@ fn energies(summary: &Summary) -> Markup {
                     @for (name, count) in sizes.iter().filter(|(_, count)| *count > 0) {
                         tr { td { (name) } td.number { (grouped(&count.to_string())) } }
                     }
-                    tr { td { "Last time step" } td.number { (quantity(summary.time.dt, "s")) } }
-                    tr { td { "Smallest time step" } td.number { (quantity(summary.time.dt_min, "s")) } }
+                    // At rest the load factor has steps of its own.
+                    @if !summary.time.at_rest {
+                        tr { td { "Last time step" } td.number { (quantity(summary.time.dt, "s")) } }
+                        tr { td { "Smallest time step" } td.number { (quantity(summary.time.dt_min, "s")) } }
+                    }
                 }
             }
         }
@@ -382,7 +385,7 @@ fn wall(summary: &Summary) -> Markup {
     html! {
         @if largest > 0.0 {
             section.keep {
-                h2 { "Time on the clock" }
+                h2 { "Run time" }
                 table {
                     @for (name, seconds) in &phases {
                         tr {
@@ -487,7 +490,8 @@ mod tests {
     fn an_empty_run_makes_a_page_without_empty_sections() {
         let html = to_html(&ReportData::default());
         assert!(html.contains("Untitled") && html.ends_with("</html>"));
-        for section in ["Warnings", "Against the references", "Pictures", "Curves", "Probes", "Fragments</h2>", "Plan"]
+        for section in
+            ["Warnings", "Comparison with references", "Pictures", "Curves", "Probes", "Fragments</h2>", "Plan"]
         {
             assert!(!html.contains(section), "{section}");
         }
