@@ -4,7 +4,7 @@
 //! - [`read_inp`]: Abaqus input files; [`read_mesh`] takes either by its first bytes
 //! - [`Mesh`]: points, lines, triangles, quadrilaterals and tetrahedra with named [`Group`]s
 //! - [`topology`]: edges, facets, outward boundary, elements of a node
-//! - [`quality`]: volumes, altitudes, radius ratios, dihedral angles
+//! - [`quality`]: volumes, altitudes, lengths of edges, radius ratios, dihedral angles; [`hints`] says what to mend
 //! - [`renumber`]: orders that keep neighbours close in memory
 //! - [`generate`]: structured boxes and rectangles for tests and benches
 //!
@@ -29,6 +29,7 @@
 mod abaqus;
 pub mod generate;
 mod gmsh;
+mod hints;
 mod mesh;
 pub mod quality;
 pub mod renumber;
@@ -38,6 +39,7 @@ pub mod topology;
 pub use abaqus::read_inp;
 pub use fractum_math::Vec3;
 pub use gmsh::{MshFormat, read_msh, write_msh};
+pub use hints::hints;
 pub use mesh::{Group, Mesh};
 pub use tagged::{MeshError, Place, Problem};
 

@@ -120,6 +120,28 @@ pub struct Summary {
     pub largest_angle: Extreme,
 }
 
+/// Lengths of edges, in the unit of the nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lengths {
+    /// The shortest.
+    pub shortest: f64,
+    /// The mean.
+    pub mean: f64,
+    /// The longest.
+    pub longest: f64,
+}
+
+/// Lengths of edges between pairs of nodes; none for an empty set.
+///
+/// # Panics
+/// If an edge names a node that is not there.
+pub fn lengths(nodes: &[Vec3], edges: &[[u32; 2]]) -> Option<Lengths> {
+    let length = |[a, b]: &[u32; 2]| (nodes[*b as usize] - nodes[*a as usize]).norm();
+    let extreme = |of: fn(f64, f64) -> f64| edges.iter().map(length).reduce(of);
+    let mean = edges.iter().map(length).sum::<f64>() / edges.len() as f64;
+    Some(Lengths { shortest: extreme(f64::min)?, mean, longest: extreme(f64::max)? })
+}
+
 /// Summarizes tetrahedra; none for an empty set. The same bits for any number of threads.
 ///
 /// # Panics
@@ -241,6 +263,16 @@ mod tests {
         assert!(close(summary.total_size, 12.0) && close(summary.shortest_altitude.value, 1.0 / SQRT_2));
         assert_eq!(summary.smallest.element, 0);
         assert!(summarize_triangles(&mesh.nodes, &[]).is_none());
+    }
+
+    #[test]
+    fn lengths_of_a_structured_mesh_are_those_of_sides_and_diagonals() {
+        let mesh = structured_rectangle([2, 1], [2.0, 1.0], None);
+        let found = lengths(&mesh.nodes, &crate::topology::edges_of_triangles(&mesh.triangles).nodes).unwrap();
+        // Seven sides and two diagonals.
+        assert!(close(found.shortest, 1.0) && close(found.longest, SQRT_2), "{found:?}");
+        assert!(close(found.mean, (7.0 + 2.0 * SQRT_2) / 9.0), "{found:?}");
+        assert_eq!(lengths(&mesh.nodes, &[]), None);
     }
 
     #[test]

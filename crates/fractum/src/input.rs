@@ -7,7 +7,7 @@ use fractum_io::build::{BuiltScene, build_scene, check_before_particles, doubts}
 use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics, read_case};
 use fractum_io::memory;
-use fractum_mesh::{Mesh, read_msh};
+use fractum_mesh::Mesh;
 
 use crate::error::Failure;
 use crate::plots;
@@ -99,7 +99,8 @@ fn read_mesh(source: &MeshSource) -> Result<(Mesh, u128), Failure> {
         };
         fail(format!("= \"{}\": cannot read the mesh: {error}", file.value.display()), remedy)
     })?;
-    let mut mesh = read_msh(&bytes).map_err(|error| fail(format!(": {}: {error}", file.value.display()), ""))?;
+    let mut mesh =
+        fractum_mesh::read_mesh(&bytes).map_err(|error| fail(format!(": {}: {error}", file.value.display()), ""))?;
     if source.unit != 1.0 {
         mesh.nodes.iter_mut().for_each(|node| *node *= source.unit);
     }

@@ -4,34 +4,13 @@ use std::collections::BTreeMap;
 
 use fractum_math::Vec3;
 
-use super::assembly;
 use super::deck::{self, Keyword, Line};
 use super::element;
 use super::sets::{Sets, label};
-use crate::Mesh;
 use crate::tagged::cursor::Cursor;
 use crate::tagged::element_type::{ElementType, Shape};
-use crate::tagged::error::{Fault, MeshError, Problem};
-use crate::tagged::{assemble, raw::Records};
-
-/// Reads an Abaqus input file: nodes, elements, sets and surfaces of one part, at most one instance of it.
-///
-/// - `bytes`: the whole file
-///
-/// Element sets and surfaces of element faces become groups of elements, node sets groups of points. A name that a set of
-/// another kind has already gets `-surface` or `-nodes` behind it. Elements of higher order are read with their corners only;
-/// springs, masses and the like are left out. [`Mesh::notices`] tells what was done.
-///
-/// # Errors
-/// With the line, for malformed lines, several parts, moved instances, further files, hexahedra and their like, and everything
-/// that [`crate::read_msh`] refuses too.
-pub fn read_inp(bytes: &[u8]) -> Result<Mesh, MeshError> {
-    let read = || {
-        let deck = Deck::read(bytes)?;
-        assemble(assembly::raw(deck, bytes)?, bytes)
-    };
-    read().map_err(|fault| fault.into_error(bytes, false))
-}
+use crate::tagged::error::{Fault, Problem};
+use crate::tagged::raw::Records;
 
 /// What a file defines.
 #[derive(Default)]
@@ -86,7 +65,7 @@ enum Block {
 }
 
 impl Deck {
-    fn read(bytes: &[u8]) -> Result<Self, Fault> {
+    pub(super) fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let mut cursor = Cursor::new(bytes);
         let mut deck = Deck::default();
         let mut block = Block::Other;

@@ -102,7 +102,15 @@ fn read_layout(cursor: &mut Cursor, version: Version, data_size: u64, at: usize)
 fn hint_for(line: &[u8]) -> &'static str {
     if line == b"$NOD" {
         "; this is MSH version 1, convert with: gmsh in.msh -save -format msh41 -o out.msh"
-    } else if line.starts_with(b"solid") || line.starts_with(b"# vtk") || line.starts_with(b"<") {
+    } else if line.starts_with(b"(") {
+        "; this is an Ansys mesh, convert with: meshio convert --input-format ansys --output-format gmsh22 IN.msh OUT.msh, \
+         or export an Abaqus .inp with its sets"
+    } else if line.starts_with(b"<") {
+        "; convert a .vtu with: meshio convert --output-format gmsh22 IN.vtu OUT.msh; its cell array gmsh:physical makes the groups"
+    } else if [&b"solid"[..], b"# vtk", b"\x89HDF", b"-1", b"BEGIN BULK", b"CEND", b"SOL "]
+        .iter()
+        .any(|start| line.starts_with(start))
+    {
         "; convert with: gmsh FILE -save -format msh41 -o out.msh"
     } else {
         ""

@@ -33,10 +33,10 @@ impl fmt::Display for Place {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Problem {
     /// No bytes, or blank lines only.
-    #[error("the file is empty; expected a Gmsh mesh (.msh)")]
+    #[error("the file is empty; expected a Gmsh mesh (.msh) or an Abaqus input file (.inp)")]
     Empty,
     /// The file is something else.
-    #[error("found {found}; expected $MeshFormat, the first line of a Gmsh mesh{hint}")]
+    #[error("found {found}; expected $MeshFormat, the first line of a Gmsh mesh, or an Abaqus input file{hint}")]
     NotGmsh {
         /// Start of the file.
         found: String,

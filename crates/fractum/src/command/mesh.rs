@@ -1,31 +1,35 @@
 //! `fractum mesh info` and `fractum mesh convert`.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Subcommand, ValueEnum};
 use fractum::{ExitCode, Failure, say};
-use fractum_io::case::printable;
-use fractum_mesh::{Group, Mesh, MshFormat, read_msh, write_msh};
-use serde_json::{Value, json};
+use fractum_io::case::read_case;
+use fractum_mesh::{Mesh, MshFormat, read_mesh, write_msh};
+
+use super::mesh_info::{self, Demand};
+use super::mesh_vtu;
 
 #[derive(Subcommand)]
 pub(crate) enum MeshCommand {
-    /// Count elements, list the groups and judge the quality.
+    /// Count elements, list the groups, lengths of edges and quality, and say what to mend.
     Info {
-        /// MSH 2.2 or 4.1, text or binary.
+        /// Gmsh (.msh, 2.2 or 4.1) or Abaqus (.inp).
         file: PathBuf,
+        /// Case whose materials say how short edges must be, in the unit that it gives the mesh.
+        #[arg(long)]
+        case: Option<PathBuf>,
     },
-    /// Write a mesh in another format.
+    /// Write a mesh in another format: Gmsh (.msh), or VTK for ParaView (.vtu).
     Convert {
-        /// MSH 2.2 or 4.1, text or binary.
+        /// Gmsh (.msh, 2.2 or 4.1) or Abaqus (.inp).
         file: PathBuf,
-        /// File to write.
+        /// File to write; its ending is the format.
         output: PathBuf,
-        /// Format of the output.
-        #[arg(long, value_enum, default_value = "msh41-binary")]
-        to: Target,
+        /// Version and encoding of a .msh; msh41-binary if absent.
+        #[arg(long, value_enum)]
+        to: Option<Target>,
     },
 }
 
@@ -51,65 +55,40 @@ impl From<Target> for MshFormat {
 /// - `json`: the information as one JSON value
 pub(crate) fn execute(command: MeshCommand, json: bool) -> Result<ExitCode, Failure> {
     match command {
-        MeshCommand::Info { file } if json => say!("{}", json_info(&file, &read(&file)?)),
-        MeshCommand::Info { file } => info(&file, &read(&file)?),
-        MeshCommand::Convert { file, output, to } => {
+        MeshCommand::Info { file, case } => {
             let mesh = read(&file)?;
-            fractum_io::atomic::write_with(&output, |out| write_msh(&mesh, to.into(), out))?;
+            let demand = case.map(|case| read_case(&case, &[])).transpose()?.map(|case| Demand::of(&case));
+            if json {
+                say!("{}", mesh_info::json(&file, &mesh, demand.as_ref()));
+            } else {
+                say!("{}", mesh_info::text(&file, &mesh, demand.as_ref()));
+            }
         }
+        MeshCommand::Convert { file, output, to } => convert(&file, &output, to)?,
     }
     Ok(ExitCode::Done)
+}
+
+fn convert(file: &Path, output: &Path, to: Option<Target>) -> Result<(), Failure> {
+    let wrong = |text: &str| Err(Failure::input(format!("{}: {text}", output.display())));
+    let ending = output.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    match (ending.as_str(), to) {
+        ("msh", to) => {
+            let mesh = read(file)?;
+            let format = to.unwrap_or(Target::Msh41Binary).into();
+            Ok(fractum_io::atomic::write_with(output, |out| write_msh(&mesh, format, out))?)
+        }
+        ("vtu", None) => Ok(fractum_io::atomic::write(output, &mesh_vtu::bytes(&read(file)?)?)?),
+        ("vtu", Some(_)) => wrong("--to is for files that end in .msh; leave it out"),
+        _ => wrong(
+            "ends in neither .msh nor .vtu, the formats that are written; for others write a .msh with --to msh22, then: \
+             meshio convert part.msh part.ENDING",
+        ),
+    }
 }
 
 fn read(file: &Path) -> Result<Mesh, Failure> {
     let bytes =
         fs::read(file).map_err(|error| Failure::input(format!("{}: cannot read the mesh: {error}", file.display())))?;
-    read_msh(&bytes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
-}
-
-/// Kinds of elements with their numbers.
-fn element_counts(mesh: &Mesh) -> [(&'static str, usize); 5] {
-    [
-        ("points", mesh.points.len()),
-        ("lines", mesh.lines.len()),
-        ("triangles", mesh.triangles.len()),
-        ("quadrilaterals", mesh.quads.len()),
-        ("tetrahedra", mesh.tetrahedra.len()),
-    ]
-}
-
-fn json_info(file: &Path, mesh: &Mesh) -> Value {
-    let (low, high) = mesh.bounding_box();
-    let group = |group: &Group| json!({ "name": group.name, "dimension": group.dimension, "tag": group.tag, "elements": group.element_count() });
-    json!({
-        "file": file.display().to_string(),
-        "nodes": mesh.nodes.len(),
-        "elements": BTreeMap::from(element_counts(mesh)),
-        "lower": low.as_slice(),
-        "upper": high.as_slice(),
-        "groups": mesh.groups.iter().map(group).collect::<Vec<_>>(),
-        "notices": mesh.notices,
-    })
-}
-
-/// Names of groups come from the mesh: no terminal must obey them.
-fn info(file: &Path, mesh: &Mesh) {
-    say!("{}: {} nodes", printable(&file.display().to_string()), mesh.nodes.len());
-    for (name, count) in element_counts(mesh).iter().filter(|(_, count)| *count > 0) {
-        say!("  {count:>9} {name}");
-    }
-    let (low, high) = mesh.bounding_box();
-    say!("  x {:e} .. {:e}, y {:e} .. {:e}, z {:e} .. {:e}", low.x, high.x, low.y, high.y, low.z, high.z);
-    for group in &mesh.groups {
-        say!(
-            "  group \"{}\" (dimension {}, tag {}): {} elements",
-            printable(&group.name),
-            group.dimension,
-            group.tag,
-            group.element_count()
-        );
-    }
-    for notice in &mesh.notices {
-        say!("  {}", printable(&notice.to_string()));
-    }
+    read_mesh(&bytes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
 }

@@ -8,6 +8,8 @@ mod lab_break;
 mod lab_strength;
 mod manual;
 mod mesh;
+mod mesh_info;
+mod mesh_vtu;
 mod movie;
 mod new;
 mod pack;

@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fractum::Failure;
 use fractum_io::case::{Choice, Dimension, parse_quantity};
-use fractum_mesh::read_msh;
+use fractum_mesh::read_mesh;
 use fractum_pack::{ClosedSurface, Domain, PackError, PackSize, PackSpec, Packing, pack, pack_certified, read_stl};
 
 /// The shape to fill and the particles to fill it with.
@@ -125,7 +125,7 @@ impl ShapeArguments {
 /// The closed surface of a group.
 fn group_surface(file: &Path, group: Option<&str>) -> Result<ClosedSurface, Failure> {
     let wrong = |what: String| Failure::input(format!("{}: {what}", file.display()));
-    let mesh = read_msh(&read(file)?).map_err(|error| wrong(error.to_string()))?;
+    let mesh = read_mesh(&read(file)?).map_err(|error| wrong(error.to_string()))?;
     if let Some(name) = group.filter(|name| mesh.group(name).is_empty()) {
         return Err(wrong(format!("no group \"{name}\"; groups here: {}", mesh.group_names().join(", "))));
     }

@@ -15,6 +15,8 @@ pub enum CellKind {
     Line,
     /// T3.
     Triangle,
+    /// Four corners in a surface.
+    Quadrilateral,
     /// T4.
     Tetrahedron,
 }
@@ -26,7 +28,7 @@ impl CellKind {
             Self::Vertex => 1,
             Self::Line => 2,
             Self::Triangle => 3,
-            Self::Tetrahedron => 4,
+            Self::Quadrilateral | Self::Tetrahedron => 4,
         }
     }
 
@@ -35,6 +37,7 @@ impl CellKind {
             Self::Vertex => 1,
             Self::Line => 3,
             Self::Triangle => 5,
+            Self::Quadrilateral => 9,
             Self::Tetrahedron => 10,
         }
     }

@@ -1,0 +1,177 @@
+//! What a mesh holds, how good it is, and what a material needs of it.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+use fractum_io::case::Case;
+use fractum_io::case::printable;
+use fractum_io::number::{grouped, quantity, significant};
+use fractum_mesh::quality::{self, Lengths, Summary};
+use fractum_mesh::{Group, Mesh, topology};
+use serde_json::{Value, json};
+
+/// Part of the process zone that edges must not exceed for an accurate peak load.
+const ACCURATE: f64 = 0.1;
+/// Process zones that an element must not exceed, with exponential softening.
+const MOST: f64 = 2.0;
+
+/// What a case asks of its mesh.
+pub(super) struct Demand {
+    /// Length of the unit of the mesh [m].
+    unit: f64,
+    /// Materials that crack, each with its process zone E G_f/f_t² [m].
+    zones: Vec<(String, f64)>,
+}
+
+impl Demand {
+    pub(super) fn of(case: &Case) -> Self {
+        let zone = |material: &fractum_io::case::model::Material| {
+            let law = &material.damage.as_ref()?.value.law;
+            Some((material.name.value.clone(), law.process_zone(material.young_modulus)))
+        };
+        Demand {
+            unit: case.mesh.as_ref().map_or(1.0, |mesh| mesh.unit),
+            zones: case.materials.iter().filter_map(zone).collect(),
+        }
+    }
+}
+
+/// The elements that solids are made of: tetrahedra, or where there are none triangles.
+struct Solids {
+    what: &'static str,
+    lengths: Lengths,
+    summary: Summary,
+}
+
+impl Solids {
+    fn of(mesh: &Mesh) -> Option<Self> {
+        if mesh.tetrahedra.is_empty() {
+            let edges = topology::edges_of_triangles(&mesh.triangles).nodes;
+            let lengths = quality::lengths(&mesh.nodes, &edges)?;
+            let summary = quality::summarize_triangles(&mesh.nodes, &mesh.triangles)?;
+            return Some(Solids { what: "triangles", lengths, summary });
+        }
+        let edges = topology::edges_of_tetrahedra(&mesh.tetrahedra).nodes;
+        let lengths = quality::lengths(&mesh.nodes, &edges)?;
+        let summary = quality::summarize_tetrahedra(&mesh.nodes, &mesh.tetrahedra)?;
+        Some(Solids { what: "tetrahedra", lengths, summary })
+    }
+}
+
+/// Kinds of elements with their numbers.
+fn element_counts(mesh: &Mesh) -> [(&'static str, usize); 5] {
+    [
+        ("points", mesh.points.len()),
+        ("lines", mesh.lines.len()),
+        ("triangles", mesh.triangles.len()),
+        ("quadrilaterals", mesh.quads.len()),
+        ("tetrahedra", mesh.tetrahedra.len()),
+    ]
+}
+
+/// All of it as one JSON value.
+pub(super) fn json(file: &Path, mesh: &Mesh, demand: Option<&Demand>) -> Value {
+    let (low, high) = mesh.bounding_box();
+    let group = |group: &Group| json!({ "name": group.name, "dimension": group.dimension, "tag": group.tag, "elements": group.element_count() });
+    let mut value = json!({
+        "file": file.display().to_string(),
+        "nodes": mesh.nodes.len(),
+        "elements": BTreeMap::from(element_counts(mesh)),
+        "lower": low.as_slice(),
+        "upper": high.as_slice(),
+        "groups": mesh.groups.iter().map(group).collect::<Vec<_>>(),
+        "notices": mesh.notices,
+        "hints": fractum_mesh::hints(mesh),
+    });
+    if let Some(Solids { lengths, summary, .. }) = Solids::of(mesh) {
+        value["edges"] = json!({ "shortest": lengths.shortest, "mean": lengths.mean, "longest": lengths.longest });
+        value["quality"] = json!({
+            "mean_radius_ratio": summary.mean_radius_ratio,
+            "worst_radius_ratio": summary.worst_radius_ratio.value,
+            "smallest_angle": summary.smallest_angle.value,
+            "largest_angle": summary.largest_angle.value,
+            "shortest_altitude": summary.shortest_altitude.value,
+        });
+    }
+    if let Some(demand) = demand {
+        let zone = |(name, zone): &(String, f64)| (name.clone(), json!(zone));
+        value["process_zones"] = Value::Object(demand.zones.iter().map(zone).collect());
+    }
+    value
+}
+
+/// All of it in lines. Names of groups come from the mesh: no terminal must obey them.
+pub(super) fn text(file: &Path, mesh: &Mesh, demand: Option<&Demand>) -> String {
+    let count = |count: usize| grouped(&count.to_string());
+    let mut text = format!("{}: {} nodes", printable(&file.display().to_string()), count(mesh.nodes.len()));
+    for (name, number) in element_counts(mesh).into_iter().filter(|(_, count)| *count > 0) {
+        let _ = write!(text, "\n  {:>9} {name}", count(number));
+    }
+    // A mesh has no unit of its own.
+    let unit = demand.map(|demand| demand.unit);
+    let length = |value: f64| unit.map_or_else(|| significant(value, 4), |unit| quantity(unit * value, "m"));
+    let (low, high) = mesh.bounding_box();
+    let extent = |axis: usize| format!("{} to {}", length(low[axis]), length(high[axis]));
+    let _ = write!(text, "\n  x {}, y {}, z {}", extent(0), extent(1), extent(2));
+    for group in &mesh.groups {
+        let (name, dimension, tag) = (printable(&group.name), group.dimension, group.tag);
+        let elements = count(group.element_count());
+        let _ = write!(text, "\n  group \"{name}\" (dimension {dimension}, tag {tag}): {elements} elements");
+    }
+    if let Some(solids) = Solids::of(mesh) {
+        text += &quality_lines(&solids, &length);
+        demand.iter().for_each(|demand| text += &zone_lines(&solids, demand));
+    }
+    for notice in &mesh.notices {
+        let _ = write!(text, "\n  {}", printable(notice));
+    }
+    for hint in fractum_mesh::hints(mesh) {
+        let _ = write!(text, "\n  hint: {}", printable(&hint));
+    }
+    text
+}
+
+fn quality_lines(solids: &Solids, length: &dyn Fn(f64) -> String) -> String {
+    let Solids { what, lengths, summary } = solids;
+    let degrees = |angle: f64| significant(angle.to_degrees(), 2);
+    format!(
+        "\n  edges of {what}: {} to {}, mean {}\
+         \n  quality: radius ratio {} on average, {} at worst (1 is equilateral, 0 flat); angles {} to {} deg\
+         \n  shortest altitude {}, which limits the time step",
+        length(lengths.shortest),
+        length(lengths.longest),
+        length(lengths.mean),
+        significant(summary.mean_radius_ratio, 2),
+        significant(summary.worst_radius_ratio.value, 2),
+        degrees(summary.smallest_angle.value),
+        degrees(summary.largest_angle.value),
+        length(summary.shortest_altitude.value),
+    )
+}
+
+/// Edges beside what each material needs.
+fn zone_lines(solids: &Solids, demand: &Demand) -> String {
+    let [shortest, longest] = [solids.lengths.shortest, solids.lengths.longest].map(|length| demand.unit * length);
+    let line = |(name, zone): &(String, f64)| {
+        let [accurate, most] = [ACCURATE * zone, MOST * zone];
+        let verdict = match (shortest, longest) {
+            (_, longest) if longest <= accurate => "fine everywhere",
+            (shortest, longest) if shortest <= accurate && longest <= most => {
+                "fine where edges are short, coarse elsewhere"
+            }
+            (shortest, _) if shortest <= accurate => {
+                "fine where edges are short; long ones cannot crack (damage_where)"
+            }
+            (shortest, _) if shortest <= most => "coarse: the peak load will be too high; refine where cracks go",
+            _ => "too coarse to crack: refine where cracks go",
+        };
+        let [zone, most, accurate] = [*zone, most, accurate].map(|length| quantity(length, "m"));
+        format!(
+            "\n  {}: process zone E Gf/ft\u{b2} = {zone}; where cracks go, edges below {most}, for an accurate peak load below \
+             {accurate}: {verdict}",
+            printable(name)
+        )
+    };
+    demand.zones.iter().map(line).collect()
+}

@@ -1,0 +1,108 @@
+//! Meshes of other programs: what is read, written, refused and told.
+
+mod common;
+
+use std::fmt::Write;
+use std::fs;
+
+use common::{BREAKING_BAR, Workplace, bar};
+use fractum_mesh::{Mesh, read_msh};
+
+/// A mesh as an Abaqus input file, its groups as sets of elements.
+fn abaqus(mesh: &Mesh) -> String {
+    let mut text = String::from("*HEADING\nbar\n*NODE\n");
+    for (tag, x) in mesh.node_tags.iter().zip(&mesh.nodes) {
+        let _ = writeln!(text, "{tag}, {:?}, {:?}, {:?}", x.x, x.y, x.z);
+    }
+    let nodes = |element: &[u32]| {
+        element.iter().map(|&node| mesh.node_tags[node as usize].to_string()).collect::<Vec<_>>().join(", ")
+    };
+    text += "*ELEMENT, TYPE=S3\n";
+    for (tag, element) in mesh.triangle_tags.iter().zip(&mesh.triangles) {
+        let _ = writeln!(text, "{tag}, {}", nodes(element));
+    }
+    text += "*ELEMENT, TYPE=C3D4\n";
+    for (tag, element) in mesh.tetrahedron_tags.iter().zip(&mesh.tetrahedra) {
+        let _ = writeln!(text, "{tag}, {}", nodes(element));
+    }
+    for group in &mesh.groups {
+        let _ = writeln!(text, "*ELSET, ELSET=\"{}\"", group.name);
+        let of_triangles = group.triangles.iter().map(|&index| mesh.triangle_tags[index as usize]);
+        let of_tetrahedra = group.tetrahedra.iter().map(|&index| mesh.tetrahedron_tags[index as usize]);
+        of_triangles.chain(of_tetrahedra).for_each(|tag| {
+            let _ = writeln!(text, "{tag},");
+        });
+    }
+    text
+}
+
+#[test]
+fn a_case_on_an_abaqus_file_has_the_bits_of_that_on_a_gmsh_file() {
+    let workplace = Workplace::new(BREAKING_BAR);
+    fs::write(workplace.path("bar.inp"), abaqus(&bar())).unwrap();
+    fs::write(workplace.path("abaqus.toml"), BREAKING_BAR.replace("bar.msh", "bar.inp")).unwrap();
+    let hash = |case: &str| {
+        let ended = workplace.fractum(&["run", case, "-o", case.trim_end_matches(".toml"), "--quiet"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let summary = fs::read(workplace.path(case.trim_end_matches(".toml")).join("summary.json")).unwrap();
+        serde_json::from_slice::<serde_json::Value>(&summary).unwrap()["state_hash"].clone()
+    };
+    assert_eq!(hash("abaqus.toml"), hash("case.toml"));
+}
+
+#[test]
+fn the_ending_of_the_output_is_its_format() {
+    let workplace = Workplace::new(BREAKING_BAR);
+    fs::write(workplace.path("bar.inp"), abaqus(&bar())).unwrap();
+    let convert = |arguments: &[&str]| workplace.fractum(&[&["mesh", "convert"], arguments].concat());
+    for output in [&["a.msh"][..], &["b.MSH", "--to", "msh22"]] {
+        assert_eq!(convert(&[&["bar.inp"], output].concat()).code, Some(0));
+        let mesh = read_msh(&fs::read(workplace.path(output[0])).unwrap()).unwrap();
+        let known = bar();
+        assert_eq!((&mesh.tetrahedra, mesh.group_names()), (&known.tetrahedra, known.group_names()));
+    }
+    assert_eq!(convert(&["bar.inp", "bar.vtu"]).code, Some(0));
+    let vtu = fs::read(workplace.path("bar.vtu")).unwrap();
+    let head = String::from_utf8_lossy(&vtu[..2000]);
+    for part in ["UnstructuredGrid", "Name=\"gmsh:physical\"", "Name=\"x- (2d)\"", "Name=\"body (3d)\""] {
+        assert!(head.contains(part), "{part}: {head}");
+    }
+    for (output, says) in [
+        (&["bar.stl"][..], "bar.stl: ends in neither .msh nor .vtu"),
+        (&["bar"], "bar: ends in neither .msh nor .vtu"),
+        (&["b.vtu", "--to", "msh22"], "--to is for files that end in .msh"),
+    ] {
+        let ended = convert(&[&["bar.inp"], output].concat());
+        assert!(ended.code == Some(1) && ended.stderr.contains(says), "{}", ended.stderr);
+        assert!(!workplace.path(output[0]).exists());
+    }
+    let ended = convert(&["bar.vtu", "c.msh"]);
+    assert!(ended.stderr.contains("meshio convert --output-format gmsh22"), "{}", ended.stderr);
+}
+
+#[test]
+fn information_on_a_mesh_is_in_the_unit_of_the_case_and_beside_its_material() {
+    let workplace = Workplace::new(BREAKING_BAR);
+    let info = |more: &[&str]| {
+        let ended = workplace.fractum(&[&["mesh", "info", "bar.msh"], more].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        ended.stdout
+    };
+    let plain = info(&[]);
+    assert!(plain.contains("edges of tetrahedra: 0.04 to ") && !plain.contains("process zone"), "{plain}");
+    let beside = info(&["--case", "case.toml"]);
+    // 30 GPa x 100 J/m2 / (3 MPa)2; twice and a tenth of that.
+    for part in
+        ["edges of tetrahedra: 40 mm to ", "E Gf/ft\u{b2} = 333.3 mm", "below 666.7 mm", "below 33.33 mm: coarse"]
+    {
+        assert!(beside.contains(part), "{part}: {beside}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&info(&["--case", "case.toml", "--format", "json"])).unwrap();
+    assert!((json["process_zones"]["concrete"].as_f64().unwrap() * 3.0 - 1.0).abs() < 1e-12, "{json}");
+    assert!(json["edges"]["shortest"].as_f64().unwrap() > 0.039 && json["hints"].as_array().unwrap().is_empty());
+    let mut mesh = bar();
+    mesh.groups.clear();
+    let without = Workplace::with_mesh("", &common::mesh_bytes(&mesh, fractum_mesh::MshFormat::V2_2Ascii));
+    let said = without.fractum(&["mesh", "info", "bar.msh"]).stdout;
+    assert!(said.contains("hint: no groups: a case names bodies"), "{said}");
+}
