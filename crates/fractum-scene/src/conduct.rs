@@ -5,6 +5,7 @@ use crate::error::StepError;
 use crate::heat::{Heat, HeatState};
 use crate::scene::Scene;
 use crate::stable_step::equal_steps;
+use crate::step::Phase;
 
 impl Scene {
     /// The same scene with heat, before its first step.
@@ -61,7 +62,9 @@ impl Scene {
 
     /// Conducts heat for the step that follows, where its own step is due; returns the work of the expansion at the present
     /// stresses [J].
-    pub(crate) fn conduct(&mut self, dt: f64) -> Result<f64, StepError> {
+    ///
+    /// - `passed`: is told what was done before, and the conduction
+    pub(crate) fn conduct(&mut self, dt: f64, passed: &mut impl FnMut(Phase)) -> Result<f64, StepError> {
         let (step, time) = (self.clock.step, self.clock.time);
         let (target, end) = (time + dt, self.settings.time_step.end);
         let Scene { optional, solid, bonded, .. } = self;
@@ -69,8 +72,11 @@ impl Scene {
         if !heat.is_due(target + dt) && target < end * (1.0 - 1e-9) {
             return Ok(0.0);
         }
+        passed(Phase::Motion);
         heat.conduct_to(target, solid, bonded).map_err(|reason| StepError::Heat { step, time, reason })?;
-        Ok(heat.expand(solid, bonded))
+        let work = heat.expand(solid, bonded);
+        passed(Phase::Heat);
+        Ok(work)
     }
 
     /// Nothing conducts through elements that have left.

@@ -28,15 +28,23 @@ pub struct StepReport {
     pub particles_born: usize,
 }
 
-/// A part of the step, for those who time it.
+/// A part of the step, for those who time it. A step passes those alone that its scene has work for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Phase {
     /// Internal forces, damage included.
     Solid,
+    /// Temperatures, and the strains that follow them.
+    Heat,
     /// Forces of the bonds, and the loads on their particles.
     Bonds,
+    /// Search for overloaded bonds, and their breaking.
+    Fracture,
     /// Contact of particles and rigid bodies, search included.
     Contact,
+    /// Forces that tied particles hand to solids.
+    Ties,
+    /// Gas in holes and cracks.
+    Gas,
     /// Loads, supports and the motion of the nodes.
     Motion,
     /// Removal of elements and birth of particles.
@@ -54,7 +62,7 @@ impl Scene {
         self.step_observed(measure, |_| {})
     }
 
-    /// [`Scene::step`], telling `passed` when a phase is over.
+    /// [`Scene::step`], telling `passed` when a phase is over. A phase that the scene has no work for is not passed.
     ///
     /// # Errors
     /// As [`Scene::step`].
@@ -65,28 +73,40 @@ impl Scene {
         // Nothing has moved before.
         let elapsed = if first { 0.0 } else { dt_before };
 
-        self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
-        self.refuse_inverted_elements()?;
-        passed(Phase::Solid);
+        if self.solid.body_count() > 0 {
+            self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
+            self.refuse_inverted_elements()?;
+            passed(Phase::Solid);
+        }
         let (bonded_load, faces) = self.add_bond_forces(time, elapsed, dt_before, measure);
-        if !self.bonded.is_empty() {
+        if self.bonded.has_bonds() {
             passed(Phase::Bonds);
         }
-        self.finish_expansion();
+        if self.optional.heat.is_some() {
+            self.finish_expansion();
+            passed(Phase::Heat);
+        }
         let contact = self.add_contact_forces(elapsed, faces);
         if measure {
             self.sum_watched_contacts();
         }
-        self.ties.pass_on(&mut self.solid, &mut self.bonded.particles);
-        passed(Phase::Contact);
+        if self.may_touch() {
+            passed(Phase::Contact);
+        }
+        self.pass_on_ties(&mut passed);
         let load = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
-        self.loads.add_gas_forces(&mut self.solid, time, elapsed);
+        if self.loads.gas().is_some() {
+            passed(Phase::Motion);
+            self.loads.add_gas_forces(&mut self.solid, time, elapsed);
+            passed(Phase::Gas);
+        }
         let absorbed = self.add_surface_support_forces(first);
         let given = if first { self.start_half_a_step_early(dt_before) } else { 0.0 };
         self.let_left_rest();
         self.let_particles_leave(dt_before);
         let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
-        let expansion = self.conduct(dt_after)?;
+        let expansion = self.conduct(dt_after, &mut passed)?;
+        self.break_bonds(measure || step_changes, &mut passed);
         let mut work = self.advance(measure || step_changes); // vⁿ⁺½, uⁿ⁺¹
         work.after.external += expansion;
         work.before.external += load;
@@ -111,14 +131,16 @@ impl Scene {
         passed(Phase::Motion);
 
         let report = self.release_cut_elements(dt_after);
-        passed(Phase::Transition);
+        if self.solid.has_damage() {
+            passed(Phase::Transition);
+        }
         self.debris.search(&self.solid);
         self.let_pieces_leave(dt_after);
         if !self.debris.is_empty() {
             let renew = self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS);
             self.update_contact_frequency(report.removed > 0, renew);
+            passed(Phase::Contact);
         }
-        passed(Phase::Contact);
         let dt = self.next_dt(time + dt_after);
         self.clock.advance(dt);
         Ok(report)
@@ -186,12 +208,33 @@ impl Scene {
         surface_supports.absorb(solid, supports.held(), [clock.dt_before, dt_kick], first)
     }
 
+    /// Breaks the bonds that are overloaded at tⁿ, where there are any that can break.
+    fn break_bonds(&mut self, measure: bool, passed: &mut impl FnMut(Phase)) {
+        if self.bonded.can_break() {
+            passed(Phase::Motion);
+            self.bonded.break_overloaded(self.clock.step, self.clock.time, measure);
+            passed(Phase::Fracture);
+        }
+    }
+
+    /// Hands the forces of tied particles to the solids, where there are any.
+    fn pass_on_ties(&mut self, passed: &mut impl FnMut(Phase)) {
+        if !self.ties.is_empty() {
+            self.ties.pass_on(&mut self.solid, &mut self.bonded.particles);
+            passed(Phase::Ties);
+        }
+    }
+
+    /// Whether there is anything that could touch: particles, discrete elements, rigid bodies, or solids apart.
+    fn may_touch(&self) -> bool {
+        !self.contacts.is_empty() || self.has_contacts()
+    }
+
     fn move_bonded(&mut self, time: f64, dt_before: f64, dt_after: f64, measure: bool) -> HalfSteps {
         if self.bonded.is_empty() {
             return HalfSteps::default();
         }
-        let Scene { bonded, ties, solid, settings, clock, .. } = self;
-        bonded.break_overloaded(clock.step, time, measure);
+        let Scene { bonded, ties, solid, settings, .. } = self;
         let follow = |particles: &mut Particles| ties.follow(solid, particles);
         bonded.advance(time, dt_before, dt_after, settings.damping, measure, follow)
     }

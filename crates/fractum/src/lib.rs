@@ -56,6 +56,7 @@ mod input;
 mod inputs;
 mod interrupt;
 mod left;
+mod needs;
 mod path_frames;
 mod phases;
 pub mod plan;

@@ -99,7 +99,7 @@ impl Plan {
             Some(settings) => self.describe_statics(scene, settings),
             None if built.bonded_statics.is_some() => {
                 let unknowns = 6 * scene.bonded.particles.len() - scene.bonded.held_count();
-                let breaks = scene.bonded.bodies().iter().any(BondedBody::can_break);
+                let breaks = scene.bonded.can_break();
                 let path = if breaks { "from break to break" } else { "in one solution, since no bond can break" };
                 let end = quantity(case.solver.end, "s");
                 self.add("equilibrium", format!("{unknowns} unknowns, {path}, to t = {end}"));
@@ -240,7 +240,7 @@ impl Plan {
         let damage = (0..scene.solid.body_count()).any(|b| scene.solid.body(b).damage.is_some());
         let beams = |body: &BondedBody| body.bonds.beam().is_some();
         let bonded = || scene.bonded.bodies().iter().filter(|body| !body.bonds.is_empty());
-        let breaks = scene.bonded.bodies().iter().any(BondedBody::can_break);
+        let breaks = scene.bonded.can_break();
         let touched =
             (!scene.shape_contacts.is_empty() || scene.contacts.has_node_contacts()) && scene.solid.body_count() > 0;
         let balls = !scene.contacts.is_empty() && (damage || !scene.bonded.particles.is_empty());

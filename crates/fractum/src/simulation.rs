@@ -317,7 +317,9 @@ impl Simulation {
         let heat = self.scene.heat_state();
         let state = RunState { end, scene, heat, record: Cow::Borrowed(self.recorder.sync()?), later, solver };
         let header = Header { identity: self.about.identity.clone(), step: clock.step, time: clock.time };
-        let file = checkpoint::save(&self.folder.join("checkpoint"), &header, &state, Compression::Fast)?;
+        let folder = self.folder.join("checkpoint");
+        let write = || checkpoint::save(&folder, &header, &state, Compression::Fast);
+        let file = self.phases.timed(Part::Output, write)?;
         self.messages.log.line(format!("step {}: state saved in {}", clock.step, file.display()))?;
         self.saved = Some(Saved { at: Instant::now(), step: clock.step, time: clock.time });
         Ok(())

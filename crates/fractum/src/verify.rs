@@ -12,6 +12,7 @@ use fractum_io::summary::Status;
 use fractum_io::verified::{self, Verified};
 
 use crate::error::Failure;
+use crate::needs::needs;
 use crate::run::run;
 use crate::simulation::Options;
 use crate::{say, tell};
@@ -35,7 +36,7 @@ pub struct Selection {
 }
 
 /// Runs the selected cases that expect something, prints the table and writes it after every case into `verify.json` and
-/// `verify.md`, with the shares of the parts of each run in `phases.md`; the lines of the table.
+/// `verify.md`, with the shares of the parts of each run beside those that the case needs in `phases.md`; the lines of the table.
 ///
 /// # Errors
 /// [`Failure::Input`] if nothing is selected, [`Failure::Write`] if the table cannot be written. A case that fails to
@@ -82,7 +83,7 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
         let started = Instant::now();
         let outcome = run(&path, &options);
         let seconds = started.elapsed().as_secs_f64();
-        let first = lines.len();
+        let (first, needs) = (lines.len(), needs(&case));
         match outcome {
             Ok(outcome) if outcome.summary.status == Status::Interrupted => return Err(Failure::Interrupted),
             Ok(outcome) => {
@@ -92,13 +93,14 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
                     expectation,
                     seconds,
                     phases: phases.clone(),
+                    needs: needs.clone(),
                 }));
             }
             Err(error) => {
                 tell!("{name}: {error}");
                 let expectation =
                     Expectation { quantity: "run".into(), source: error.to_string(), ..Expectation::default() };
-                lines.push(Verified { case: name.clone(), expectation, seconds, phases: BTreeMap::new() });
+                lines.push(Verified { case: name.clone(), expectation, seconds, phases: BTreeMap::new(), needs });
             }
         }
         lines[first..].iter().for_each(print_line);

@@ -31,8 +31,8 @@ use fractum_mesh::Mesh;
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::StaticSettings;
 use fractum_scene::{
-    BondedBody, BondedStaticSettings, FlatFaces, Loads, Probe, Scene, SceneError, SceneSettings, Supports,
-    SurfaceSupports, TimeStepSettings,
+    BondedStaticSettings, FlatFaces, Loads, Probe, Scene, SceneError, SceneSettings, Supports, SurfaceSupports,
+    TimeStepSettings,
 };
 
 use bodies::{Numbering, Part};
@@ -143,7 +143,7 @@ impl<'a> Context<'a> {
         let statics = self.statics(&solid, &numbering);
         let ties = self.ties(&solid, &bonded, &taken, &parts, &numbering, &boundary_of_parts);
         // Facets under tied particles matter to what breaks off only.
-        let breaks = bonded.bodies().iter().any(BondedBody::can_break);
+        let breaks = bonded.can_break();
         let touched = |facet: &[u32; 3]| breaks || !ties.covered.contains(&ties::sorted(*facet));
         boundary_of_parts.iter_mut().for_each(|facets| facets.retain(touched));
         self.condition_particles(&mut bonded, &ties.attachments, &mut warnings);

@@ -1,6 +1,6 @@
 //! The gallery against its references: `verify.json` for scripts, `verify.md` for people, `phases.md` with what took the time.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -26,6 +26,9 @@ pub struct Verified {
     /// Time on the clock by part of the run [s], as in `summary.json`.
     #[serde(default)]
     pub phases: BTreeMap<String, f64>,
+    /// Parts that the physics of the case needs, for `phases.md`.
+    #[serde(skip)]
+    pub needs: BTreeSet<String>,
 }
 
 impl Verified {
@@ -45,22 +48,25 @@ pub fn write(folder: &Path, lines: &[Verified]) -> Result<(), WriteError> {
     atomic::write(&folder.join("verify.md"), table(lines).as_bytes())
 }
 
-/// Case by case the share of every part of the run in per cent; a dash where a part has not run at all. Setting up is what no part has.
+/// Case by case the share of every part of the run in per cent; a dash where a part has not run at all, and a star at one that has run
+/// though the physics of the case does not need it. Setting up is what no part has.
 fn phases(lines: &[Verified]) -> String {
-    let names: Vec<&str> = lines
-        .iter()
-        .find(|line| !line.phases.is_empty())
-        .map_or(Vec::new(), |line| line.phases.keys().map(String::as_str).collect());
-    let mut text =
-        format!("| case | seconds | {} | set up |\n|---|---|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
+    let names: BTreeSet<&str> = lines.iter().flat_map(|line| line.phases.keys().map(String::as_str)).collect();
+    let head: String = names.iter().map(|name| format!(" {name} |")).collect();
+    let rule = "---|".repeat(names.len());
+    let mut text = format!("| case | needs | seconds |{head} set up |\n|---|---|---|{rule}---|\n");
     for case in lines.chunk_by(|a, b| a.case == b.case) {
-        let Verified { case, seconds, phases, .. } = &case[0];
+        let Verified { case, seconds, phases, needs, .. } = &case[0];
+        let needed: Vec<&str> = needs.iter().map(String::as_str).collect();
         // Writing into a string has no way to fail.
-        let _ = write!(text, "| {case} | {seconds:.2} |");
+        let _ = write!(text, "| {case} | {} | {seconds:.2} |", needed.join(", "));
         for name in &names {
             let _ = match phases.get(*name) {
-                Some(time) if *time > 0.0 => write!(text, " {:.1} |", 100.0 * time / seconds),
-                _ => write!(text, " - |"),
+                Some(time) => {
+                    let mark = if needs.contains(*name) { "" } else { " *" };
+                    write!(text, " {:.1}{mark} |", 100.0 * time / seconds)
+                }
+                None => write!(text, " - |"),
             };
         }
         let rest = seconds - phases.values().sum::<f64>();
@@ -105,15 +111,18 @@ mod tests {
             case: case.into(),
             expectation: Expectation::hold("peak", "Pa", value, bound, "exact"),
             seconds: 2.0,
-            phases: [("contact".to_owned(), 0.0), ("solid".to_owned(), 1.5)].into(),
+            phases: [("motion".to_owned(), 0.1), ("solid".to_owned(), 1.5)].into(),
+            needs: ["solid".to_owned()].into(),
         }
     }
 
     #[test]
     fn shares_of_parts_are_told_case_by_case() {
-        let table = phases(&[line("bar/a", 1.0), line("bar/a", 1.2), line("bar/b", 1.0)]);
-        let head = "| case | seconds | contact | solid | set up |\n|---|---|---|---|---|\n";
-        assert_eq!(table, format!("{head}| bar/a | 2.00 | - | 75.0 | 25.0 |\n| bar/b | 2.00 | - | 75.0 | 25.0 |\n"));
+        let other = Verified { phases: [("solid".to_owned(), 2.0)].into(), ..line("bar/b", 1.0) };
+        let table = phases(&[line("bar/a", 1.0), line("bar/a", 1.2), other]);
+        let head = "| case | needs | seconds | motion | solid | set up |\n|---|---|---|---|---|---|\n";
+        let rows = "| bar/a | solid | 2.00 | 5.0 * | 75.0 | 20.0 |\n| bar/b | solid | 2.00 | - | 100.0 | 0.0 |\n";
+        assert_eq!(table, format!("{head}{rows}"));
     }
 
     #[test]
@@ -130,7 +139,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let bound = Bound::Near { value: 1.0, tolerance: 0.1, relative: Some(0.1) };
         let expectation = Expectation::hold("stress", "Pa", 1.0, bound, "exact");
-        let line = Verified { case: "patch".into(), expectation, seconds: 2.0, phases: BTreeMap::new() };
+        let line = Verified { case: "patch".into(), expectation, seconds: 2.0, ..Verified::default() };
         write(folder.path(), &[line]).unwrap();
         let path = folder.path().join("verify.json");
         let lines: serde_json::Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();

@@ -1,4 +1,4 @@
-//! Pieces of bonded bodies as fragments of a scene.
+//! What joins bonded bodies, and their pieces as fragments of a scene.
 
 use fractum_dem::{Piece, pieces};
 
@@ -6,6 +6,16 @@ use super::{Bonded, BondedBody};
 use crate::fragment::Fragment;
 
 impl Bonded {
+    /// Whether any body has bonds; loose particles have none.
+    pub fn has_bonds(&self) -> bool {
+        self.bodies.iter().any(|body| !body.bonds.is_empty())
+    }
+
+    /// Whether bonds of any body may break.
+    pub fn can_break(&self) -> bool {
+        self.bodies.iter().any(BondedBody::can_break)
+    }
+
     /// The particles of each bond of some kind.
     ///
     /// - `which`: whether it is a bond of a body

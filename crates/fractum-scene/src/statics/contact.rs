@@ -175,7 +175,7 @@ impl Scene {
     }
 
     /// Whether anything can touch at equilibrium.
-    pub(super) fn has_contacts(&self) -> bool {
+    pub(crate) fn has_contacts(&self) -> bool {
         !(self.shape_contacts.is_empty() && self.debris.is_empty())
     }
 

@@ -9,7 +9,7 @@ use fractum_io::attenuation;
 use fractum_io::fragments::{self, Fragment};
 use fractum_io::number::quantity;
 use fractum_io::summary::{Hashes, Summary, hash_text};
-use fractum_scene::{BondedBody, Scene, fragment_size};
+use fractum_scene::{Scene, fragment_size};
 
 use super::{End, Outcome, Saved, Simulation};
 use crate::cracks::{self, Columns, FacetHistory};
@@ -146,7 +146,7 @@ fn write_broken_bonds(scene: &Scene, folder: &Path) -> Result<(), Failure> {
 ///
 /// - `removed`: body, element and time of what was removed
 fn write_cracks(scene: &Scene, folder: &Path, removed: &[(u32, u32, f64)]) -> Result<(), Failure> {
-    let bonds = scene.bonded.bodies().iter().any(BondedBody::can_break);
+    let bonds = scene.bonded.can_break();
     if bonds {
         write_broken_bonds(scene, folder)?;
     }

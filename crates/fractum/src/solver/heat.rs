@@ -8,7 +8,7 @@ use crate::phases::{Part, Phases};
 /// Conducts heat over one step; where the present instant is to be measured, that alone.
 pub(super) fn step(scene: &mut Scene, measure: bool, phases: &mut Phases) -> Result<Advance, StepError> {
     if !measure {
-        phases.timed(Part::Solid, || scene.conduct_alone())?;
+        phases.timed(Part::Heat, || scene.conduct_alone())?;
         if !scene.is_finished() {
             return Ok(Advance::default());
         }
