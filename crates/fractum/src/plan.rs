@@ -83,17 +83,20 @@ impl Plan {
         if let Some(choice) = choice {
             plan.add("choice", choice);
         }
-        plan.describe_solver(case, built);
+        plan.describe_solver(case, built, case.solver.end);
         plan.describe_heat(case, scene);
+        let mut start = case.solver.end;
         for (case, built) in later {
             plan.add("stage", &case.source.stage);
             plan.describe_conditions(case, mesh, &built.scene);
-            plan.describe_solver(case, built);
+            plan.describe_solver(case, built, case.solver.end - start);
+            start = case.solver.end;
         }
         plan
     }
 
-    fn describe_solver(&mut self, case: &Case, built: &BuiltScene) {
+    /// - `span`: time from the end of the stage before to that of this one [s]
+    fn describe_solver(&mut self, case: &Case, built: &BuiltScene, span: f64) {
         let scene = &built.scene;
         match &built.statics {
             Some(settings) => self.describe_statics(scene, settings),
@@ -106,8 +109,8 @@ impl Plan {
             }
             None if built.conducts_alone => {}
             None => {
-                self.describe_time(case, scene);
-                self.describe_size(case, scene);
+                self.describe_time(case, scene, span);
+                self.describe_size(case, scene, span);
             }
         }
     }
@@ -279,7 +282,7 @@ impl Plan {
         }
     }
 
-    fn describe_time(&mut self, case: &Case, scene: &Scene) {
+    fn describe_time(&mut self, case: &Case, scene: &Scene, span: f64) {
         let governing = match scene.governing_element() {
             Some(stable) => {
                 let (body, element) = stable.governing;
@@ -297,7 +300,7 @@ impl Plan {
                 quantity(scene.stable_dt(), "s")
             ),
         );
-        let steps = (case.solver.end / scene.clock.dt_after).ceil();
+        let steps = (span / scene.clock.dt_after).ceil();
         self.add("steps", format!("{steps} to t = {}", quantity(case.solver.end, "s")));
     }
 
@@ -334,7 +337,7 @@ impl Plan {
         }
     }
 
-    fn describe_size(&mut self, case: &Case, scene: &Scene) {
+    fn describe_size(&mut self, case: &Case, scene: &Scene, span: f64) {
         let (mut nanoseconds, mut bytes, elements) = elements_cost(scene);
         let bonds = scene.counts().bonds as f64;
         nanoseconds += COST_OF_BOND * bonds;
@@ -343,9 +346,9 @@ impl Plan {
             bytes += MEMORY_OF_DEBRIS * scene.solid.reference.len() as f64;
         }
         let output = 60.0 * elements as f64 + 60.0 * scene.bonded.particles.len() as f64 + 20.0 * bonds;
-        let steps = case.solver.end / scene.clock.dt_after;
-        let frames = (case.solver.end / case.output.fields_every).ceil() + 1.0;
-        let rows = (case.solver.end / case.output.history_every).ceil();
+        let steps = span / scene.clock.dt_after;
+        let frames = (span / case.output.fields_every).ceil() + 1.0;
+        let rows = (span / case.output.history_every).ceil();
         let threads = rayon::current_num_threads() as f64;
         // A frame is held until it is written.
         bytes += MEMORY_OF_PROGRAM + output;
