@@ -163,7 +163,16 @@ impl<'a> Family<'a> {
 
     /// The whole name of a run in its family.
     pub fn full_name(&self, run: &Run) -> String {
-        let name = self.name(run, &[Varies::Case, Varies::Setting, Varies::Seed]);
+        self.name_or_label(run, &[Varies::Case, Varies::Setting, Varies::Seed])
+    }
+
+    /// As [`Self::full_name`] for what holds with every seed.
+    pub fn name_for_any_seed(&self, run: &Run) -> String {
+        self.name_or_label(run, &[Varies::Case, Varies::Setting])
+    }
+
+    fn name_or_label(&self, run: &Run, kinds: &[Varies]) -> String {
+        let name = self.name(run, kinds);
         if name.is_empty() { self.label.to_owned() } else { name }
     }
 
@@ -277,10 +286,14 @@ impl<'a> Family<'a> {
         (of_others > 0.0).then(|| time / of_others)
     }
 
-    /// The cheapest run whose relative errors are all within `share`, and which meets its other references.
+    /// The cheapest run whose relative errors are all within `share`, and which meets its other references, with every seed.
     pub fn cheapest(&self, share: f64) -> Option<(&'a Run, &'a Measured)> {
         let finished = self.runs.iter().filter_map(|run| Some((*run, run.measured()?)));
-        let good = finished.filter(|(_, measured)| measured.is_within(share));
+        let within = |run: &Run| run.measured().is_some_and(|measured| measured.is_within(share));
+        let good = finished.filter(|(run, _)| {
+            let name = self.name_for_any_seed(run);
+            self.runs.iter().filter(|other| self.name_for_any_seed(other) == name).all(|other| within(other))
+        });
         good.min_by(|a, b| a.1.seconds().total_cmp(&b.1.seconds()))
     }
 
@@ -364,6 +377,20 @@ mod tests {
         let scatters = families[0].scatters();
         assert_eq!((scatters.len(), scatters[0].seeds), (2, 3));
         assert!((scatters[0].mean - 11.0).abs() < 1e-12 && (scatters[0].deviation - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn one_good_seed_is_not_enough() {
+        let at = |count, seed| [("bodies[0].particles", count), ("bodies[0].seed", seed)];
+        let runs = [
+            run(&at("1000", "1"), 1.0, 0.05, 1.0),
+            run(&at("1000", "2"), 1.0, 0.001, 1.0),
+            run(&at("3000", "1"), 1.0, 0.01, 3.0),
+            run(&at("3000", "2"), 1.0, -0.01, 3.5),
+        ];
+        let families = families(&runs);
+        let (cheapest, _) = families[0].cheapest(0.02).unwrap();
+        assert_eq!(families[0].name_for_any_seed(cheapest), "particles 3000");
     }
 
     #[test]

@@ -178,7 +178,7 @@ fn cheapest(family: &Family<'_>, share: f64) -> Vec<String> {
     let mut lines = vec![format!(
         "{}: for {goal} take {}, it costs {}",
         family.label,
-        family.full_name(run),
+        family.name_for_any_seed(run),
         seconds(measured.seconds())
     )];
     if settings_of(family).is_some() {
