@@ -21,32 +21,45 @@ const DIRECTIONS: [[f64; 2]; 8] = [
     [-0.924, 0.383],
 ];
 
+/// Two samples on opposite sides, where a hollow is felt.
+struct Pair {
+    /// Columns and rows from the sample in the middle.
+    one: [isize; 2],
+    other: [isize; 2],
+    /// Distance in depth that counts at most.
+    limit: f64,
+}
+
+/// Samples that are felt around each one, at two distances.
+fn hollow_pairs(reach: f64) -> Vec<Pair> {
+    let pair = |[x, y]: [f64; 2], share: f64| {
+        let limit = share * reach;
+        let place = |sign: f64| [x, y].map(|along| (sign * limit * along).floor() as isize);
+        Pair { one: place(1.0), other: place(-1.0), limit }
+    };
+    DIRECTIONS.iter().flat_map(|&direction| [0.3, 1.0].map(|share| pair(direction, share))).collect()
+}
+
 /// Darkens hollows and draws outlines; a pixel has `factor` × `factor` samples.
 pub(super) fn shade(canvas: &mut Canvas, factor: usize) {
     let Canvas { width, height, ref depth, .. } = *canvas;
     let size = width.min(height) as f64;
     let reach = REACH * size;
-    let at = |column: f64, row: f64| -> f64 {
-        let inside = column >= 0.0 && row >= 0.0 && column < width as f64 && row < height as f64;
+    let at = |column: isize, row: isize| -> f64 {
+        let inside = column >= 0 && row >= 0 && column < width as isize && row < height as isize;
         if inside { depth[row as usize * width + column as usize] } else { f64::INFINITY }
     };
+    let pairs = hollow_pairs(reach);
     // On a plane, what one side is nearer the other is farther: only hollows count.
-    let hollow = |column: usize, row: usize, own: f64| -> f64 {
-        let mut sum = 0.0;
-        for [x, y] in DIRECTIONS {
-            for share in [0.3, 1.0] {
-                let (dx, dy, limit) = (share * reach * x, share * reach * y, share * reach);
-                let (column, row) = (column as f64, row as f64);
-                let nearer = |depth: f64| (own - depth).clamp(-limit, limit);
-                let pair = nearer(at(column + dx, row + dy)) + nearer(at(column - dx, row - dy));
-                sum += (pair / limit).max(0.0);
-            }
-        }
-        sum / (2 * DIRECTIONS.len()) as f64
+    let hollow = |column: isize, row: isize, own: f64| -> f64 {
+        let feel = |&Pair { one: [x, y], other: [u, v], limit }: &Pair| {
+            let nearer = |depth: f64| (own - depth).clamp(-limit, limit);
+            ((nearer(at(column + x, row + y)) + nearer(at(column + u, row + v))) / limit).max(0.0)
+        };
+        pairs.iter().map(feel).sum::<f64>() / pairs.len() as f64
     };
-    let outline = |column: usize, row: usize, own: f64| -> bool {
-        let (column, row) = (column as f64, row as f64);
-        let steps = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
+    let outline = |column: isize, row: isize, own: f64| -> bool {
+        let steps = [(1, 0), (-1, 0), (0, 1), (0, -1)];
         // The slope is taken out: a steep face is not an edge.
         steps.iter().any(|(x, y)| {
             let (next, before) = (at(column + x, row + y), at(column - x, row - y));
@@ -63,12 +76,13 @@ pub(super) fn shade(canvas: &mut Canvas, factor: usize) {
             if nearest.is_infinite() {
                 continue;
             }
-            let shadow = 1.0 - 0.6 * hollow(first + factor / 2, pixel_row * factor + factor / 2, nearest).min(1.0);
+            let middle = [first + factor / 2, pixel_row * factor + factor / 2].map(|place| place as isize);
+            let shadow = 1.0 - 0.6 * hollow(middle[0], middle[1], nearest).min(1.0);
             for (dy, column) in samples() {
                 let row = pixel_row * factor + dy;
                 let own = depth[row * width + column];
                 if own.is_finite() {
-                    let dark = if outline(column, row, own) { 0.45 * shadow } else { shadow };
+                    let dark = if outline(column as isize, row as isize, own) { 0.45 * shadow } else { shadow };
                     let colour = &mut colours[dy * width + column];
                     *colour = colour.map(|channel| (f64::from(channel) * dark) as u8);
                 }
