@@ -100,7 +100,7 @@ heat = "expansion_work"
 
 [output]
 history = { every = "0.1 ms" }
-checkpoint = { every = "5 ms" }
+checkpoint = { every = "2 ms" }
 "#;
 
 /// The table that bodies need to conduct.
@@ -162,7 +162,7 @@ end = "2000 s"
     let [before, after] = [HOT.find("[[heat.conditions]]"), HOT.find("[[probes]]")].map(Option::unwrap);
     let text = [&HOT[..before], steps, "\n", conditions, &HOT[after..]].concat();
     text.replace("history = { every = \"0.1 ms\" }", "history = { every = \"100 s\" }\nfields = { every = \"500 s\" }")
-        .replace("every = \"5 ms\"", "every = \"50 ms\"")
+        .replace("every = \"2 ms\"", "every = \"1 ms\"")
         .replace("reaction = { group = \"x+\", along = \"-x\" }", "count = \"bonds\"")
 }
 
