@@ -86,6 +86,8 @@ def test_ctrl_c_saves_the_state_and_other_runs_may_follow(breaking, tmp_path):
     script = f"""
         import os, signal, threading, time
         import fractum
+        # A shell starts what runs in the background with Ctrl-C ignored.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         case, out = {str(breaking)!r}, {str(tmp_path / "out")!r}
         long = {{"solver.end": "3 ms"}}
         def interrupt():
