@@ -57,6 +57,11 @@ fn in_no_group(mesh: &Mesh) -> Option<String> {
 
 /// Facets of a group that are no part of the boundary of the body.
 fn inner_facets(mesh: &Mesh, group: &Group) -> Option<String> {
+    // The boundary of a whole mesh is dear.
+    let facets = if mesh.tetrahedra.is_empty() { &group.lines } else { &group.triangles };
+    if facets.is_empty() {
+        return None;
+    }
     let sorted = |mut nodes: Vec<u32>| {
         nodes.sort_unstable();
         nodes

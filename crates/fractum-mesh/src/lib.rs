@@ -48,6 +48,6 @@ pub use tagged::{MeshError, Place, Problem};
 /// # Errors
 /// As [`read_msh`] and [`read_inp`].
 pub fn read_mesh(bytes: &[u8]) -> Result<Mesh, MeshError> {
-    let begins = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let begins = bytes.strip_prefix(tagged::cursor::BYTE_ORDER_MARK).unwrap_or(bytes).trim_ascii_start();
     if begins.starts_with(b"*") { read_inp(bytes) } else { read_msh(bytes) }
 }

@@ -99,6 +99,17 @@ fn what_cannot_be_used_is_refused_with_its_line_and_the_remedy() {
         (after("*PART, NAME=a\n*PART, NAME=b\n"), "line 8: *PART gives a second part; export one part"),
         (after("*INSTANCE, NAME=a\n1, 0, 0\n"), "line 8: found `1, 0, 0`, by which an instance is moved or turned"),
         (after("*INCLUDE, INPUT=nodes.inp\n"), "line 7: *INCLUDE gives a further file; put its lines here"),
+        (
+            after("*NSET, NSET=Set-1\n1\n*END PART\n*ASSEMBLY, NAME=a\n*NSET, NSET=set-1, INSTANCE=i\n2\n"),
+            "line 11: set \"set-1\" of the assembly has the name of one of the part; rename one of them",
+        ),
+        (
+            after("*ASSEMBLY, NAME=a\n*NODE\n1, 0, 0\n"),
+            "line 8: *NODE gives nodes of the assembly, such as reference points",
+        ),
+        (format!("\u{feff}{flat}{triangle}"), ""),
+        (format!("{flat}*ELEMENT, TYPE=S3,\n** corners\nELSET=e\n1,1,2,3\n*ELSET, ELSET=f\ne\n"), ""),
+        (after("*END PART,\n*ELSET, ELSET=a\nb\n"), "line 9: found `b` in set \"a\""),
         (after("*ELEMENT, TYPE=S3\n1,2,3,1\n2,1,2,3\n1,3,2,1\n"), ""),
     ];
     for (text, says) in cases {

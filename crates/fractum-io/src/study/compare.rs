@@ -251,16 +251,22 @@ impl<'a> Family<'a> {
         found
     }
 
-    /// Every setting over all cases and seeds.
-    pub fn verdicts(&self) -> Vec<Verdict<'a>> {
+    /// Runs of one name, in the order of the first of each.
+    fn grouped(&self, name: impl Fn(&Run) -> String) -> Vec<(String, Vec<&'a Run>)> {
         let mut groups: Vec<(String, Vec<&'a Run>)> = Vec::new();
         for run in &self.runs {
-            let label = self.name(run, &[Varies::Setting]);
-            match groups.iter_mut().find(|group| group.0 == label) {
+            let name = name(run);
+            match groups.iter_mut().find(|group| group.0 == name) {
                 Some(group) => group.1.push(run),
-                None => groups.push((label, vec![run])),
+                None => groups.push((name, vec![run])),
             }
         }
+        groups
+    }
+
+    /// Every setting over all cases and seeds.
+    pub fn verdicts(&self) -> Vec<Verdict<'a>> {
+        let groups = self.grouped(|run| self.name(run, &[Varies::Setting]));
         let first = groups.first().map_or_else(Vec::new, |(_, runs)| runs.clone());
         let verdict = |(label, runs): (String, Vec<&'a Run>)| {
             let all = runs.len();
@@ -286,15 +292,17 @@ impl<'a> Family<'a> {
         (of_others > 0.0).then(|| time / of_others)
     }
 
-    /// The cheapest run whose relative errors are all within `share`, and which meets its other references, with every seed.
+    /// The cheapest run whose relative errors are all within `share`, and which meets its other references, with every seed:
+    /// of its seeds the one that took longest.
     pub fn cheapest(&self, share: f64) -> Option<(&'a Run, &'a Measured)> {
-        let finished = self.runs.iter().filter_map(|run| Some((*run, run.measured()?)));
-        let within = |run: &Run| run.measured().is_some_and(|measured| measured.is_within(share));
-        let good = finished.filter(|(run, _)| {
-            let name = self.name_for_any_seed(run);
-            self.runs.iter().filter(|other| self.name_for_any_seed(other) == name).all(|other| within(other))
-        });
-        good.min_by(|a, b| a.1.seconds().total_cmp(&b.1.seconds()))
+        let groups = self.grouped(|run| self.name_for_any_seed(run));
+        let by_time = |a: &(&Run, &Measured), b: &(&Run, &Measured)| a.1.seconds().total_cmp(&b.1.seconds());
+        let dearest = |(_, runs): (String, Vec<&'a Run>)| {
+            let measured: Option<Vec<_>> = runs.into_iter().map(|run| Some((run, run.measured()?))).collect();
+            let good = measured.filter(|runs| runs.iter().all(|(_, measured)| measured.is_within(share)))?;
+            good.into_iter().max_by(by_time)
+        };
+        groups.into_iter().filter_map(dearest).min_by(by_time)
     }
 
     /// The cheapest setting of several whose runs are all within `share`.
@@ -389,8 +397,8 @@ mod tests {
             run(&at("3000", "2"), 1.0, -0.01, 3.5),
         ];
         let families = families(&runs);
-        let (cheapest, _) = families[0].cheapest(0.02).unwrap();
-        assert_eq!(families[0].name_for_any_seed(cheapest), "particles 3000");
+        let (cheapest, measured) = families[0].cheapest(0.02).unwrap();
+        assert_eq!((families[0].name_for_any_seed(cheapest).as_str(), measured.seconds()), ("particles 3000", 3.5));
     }
 
     #[test]

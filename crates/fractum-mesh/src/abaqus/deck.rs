@@ -44,9 +44,17 @@ pub(super) fn next<'a>(cursor: &mut Cursor<'a>) -> Result<Option<Line<'a>>, Faul
         };
         let mut parts: Vec<&str> = fields(keyword);
         // A keyword goes on in the next line after a comma.
-        while parts.last().is_some_and(|last| last.is_empty())
-            && let Some((at, more)) = cursor.line()
-        {
+        while parts.last().is_some_and(|last| last.is_empty()) {
+            let before = cursor.at;
+            let Some((at, more)) = cursor.line() else { break };
+            if more.starts_with(b"**") {
+                continue;
+            }
+            if more.starts_with(b"*") {
+                // The comma was one too many.
+                cursor.at = before;
+                break;
+            }
             parts.pop();
             parts.extend(fields(self::text(at, more)?));
         }

@@ -29,6 +29,8 @@ pub(super) struct Deck {
     pub(super) left_out: BTreeMap<String, usize>,
     parts: usize,
     instances: usize,
+    /// Whether the lines are those of the assembly.
+    in_assembly: bool,
 }
 
 pub(super) struct Element {
@@ -67,6 +69,7 @@ enum Block {
 impl Deck {
     pub(super) fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let mut cursor = Cursor::new(bytes);
+        cursor.skip_byte_order_mark();
         let mut deck = Deck::default();
         let mut block = Block::Other;
         while let Some(line) = deck::next(&mut cursor)? {
@@ -85,11 +88,17 @@ impl Deck {
     fn open(&mut self, keyword: &Keyword) -> Result<Block, Fault> {
         let internal = keyword.get("INTERNAL").is_some();
         Ok(match keyword.name.as_str() {
+            "NODE" if self.in_assembly => {
+                let found = "nodes of the assembly, such as reference points";
+                return Err(unsupported(keyword, found, "export one flat file without parts"));
+            }
             "NODE" => {
                 if keyword.get("SYSTEM").is_some_and(|system| !system.eq_ignore_ascii_case("R")) {
                     return Err(unsupported(keyword, "coordinates about an axis", "write rectangular ones"));
                 }
-                Block::Nodes { set: keyword.get("NSET").map(|name| self.node_sets.open(name, keyword.at, internal)) }
+                let set =
+                    keyword.get("NSET").map(|name| self.node_sets.open(name, keyword.at, internal, self.in_assembly));
+                Block::Nodes { set: set.transpose()? }
             }
             "ELEMENT" => {
                 let name = keyword.require("TYPE")?.to_uppercase();
@@ -98,15 +107,15 @@ impl Deck {
                     let found = format!("elements of type {name}, which are {}", kind.shape.plural());
                     return Err(unsupported(keyword, &found, "mesh with tetrahedra (C3D4, C3D10)"));
                 }
-                let set = keyword.get("ELSET").map(|name| self.element_sets.open(name, keyword.at, internal));
-                Block::Elements { kind, name, set }
+                let open = |name| self.element_sets.open(name, keyword.at, internal, self.in_assembly);
+                Block::Elements { kind, name, set: keyword.get("ELSET").map(open).transpose()? }
             }
             "NSET" | "ELSET" => {
                 let of_nodes = keyword.name == "NSET";
                 let name = keyword.require(&keyword.name)?;
                 let sets = if of_nodes { &mut self.node_sets } else { &mut self.element_sets };
                 let generate = keyword.get("GENERATE").is_some();
-                Block::Set { of_nodes, set: sets.open(name, keyword.at, internal), generate }
+                Block::Set { of_nodes, set: sets.open(name, keyword.at, internal, self.in_assembly)?, generate }
             }
             "SURFACE" => self.open_surface(keyword, internal)?,
             "PART" => {
@@ -127,6 +136,10 @@ impl Deck {
                 }
                 Block::Instance
             }
+            "ASSEMBLY" | "ENDASSEMBLY" => {
+                self.in_assembly = keyword.name == "ASSEMBLY";
+                Block::Other
+            }
             "INCLUDE" => return Err(unsupported(keyword, "a further file", "put its lines here")),
             "SYSTEM" => return Err(unsupported(keyword, "another system of coordinates", "export without it")),
             _ => Block::Other,
@@ -141,7 +154,7 @@ impl Deck {
                 self.surfaces.push(Surface { name: name.to_owned(), at: keyword.at, internal, faces: Vec::new() });
                 Block::Surface(self.surfaces.len() - 1)
             }
-            "NODE" => Block::SurfaceOfNodes(self.node_sets.open(name, keyword.at, internal)),
+            "NODE" => Block::SurfaceOfNodes(self.node_sets.open(name, keyword.at, internal, self.in_assembly)?),
             // Analytical ones are no part of the mesh.
             _ => Block::Other,
         })

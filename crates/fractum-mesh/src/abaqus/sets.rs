@@ -22,6 +22,8 @@ pub(super) struct Set {
     pub(super) at: usize,
     /// Whether the program that wrote the file made it for itself.
     pub(super) internal: bool,
+    /// Whether it is one of the assembly, not of the part.
+    of_assembly: bool,
     items: Vec<Item>,
 }
 
@@ -37,13 +39,18 @@ enum Item {
 
 impl Sets {
     /// Number of the set of that name, made where there is none.
-    pub(super) fn open(&mut self, name: &str, at: usize, internal: bool) -> usize {
+    ///
+    /// Sets of the part and of the assembly may have one name and differ; as groups they would be one.
+    pub(super) fn open(&mut self, name: &str, at: usize, internal: bool, of_assembly: bool) -> Result<usize, Fault> {
         let next = self.list.len();
         let number = *self.by_name.entry(name.to_uppercase()).or_insert(next);
         if number == next {
-            self.list.push(Set { name: name.to_owned(), at, internal, items: Vec::new() });
+            self.list.push(Set { name: name.to_owned(), at, internal, of_assembly, items: Vec::new() });
+        } else if self.list[number].of_assembly != of_assembly {
+            let message = format!("set \"{name}\" of the assembly has the name of one of the part; rename one of them");
+            return Err(Fault::unsupported(at, message));
         }
-        number
+        Ok(number)
     }
 
     /// Number of the set of that name; a name may begin with that of its instance and a point.

@@ -47,9 +47,7 @@ struct Format {
 
 /// Reads `$MeshFormat` up to and with its end.
 fn read_format(cursor: &mut Cursor) -> Result<Format, Fault> {
-    if cursor.bytes.starts_with(b"\xef\xbb\xbf") {
-        cursor.at = 3; // byte order mark of UTF-8
-    }
+    cursor.skip_byte_order_mark();
     let Some((mut at, mut line)) = cursor.line() else { return Err(Fault { at: 0, problem: Problem::Empty }) };
     while line == b"$Comments" {
         cursor.skip_section("Comments")?;

@@ -2,6 +2,9 @@ use std::fmt;
 
 use super::error::Fault;
 
+/// The mark that some programs write at the start of a file in UTF-8.
+pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Names a record in a message: `node 3 of 14`. Formatting waits until there is something to say.
 #[derive(Clone, Copy)]
 pub(crate) struct What {
@@ -35,6 +38,13 @@ pub(crate) struct Cursor<'a> {
 impl<'a> Cursor<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
         Cursor { bytes, at: 0 }
+    }
+
+    /// Passes the mark that some programs write at the start of a file in UTF-8.
+    pub(crate) fn skip_byte_order_mark(&mut self) {
+        if self.bytes[self.at..].starts_with(BYTE_ORDER_MARK) {
+            self.at += BYTE_ORDER_MARK.len();
+        }
     }
 
     pub(crate) fn remaining(&self) -> usize {
