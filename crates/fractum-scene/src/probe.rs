@@ -39,7 +39,7 @@ pub enum Probe {
         /// The stress on a plane with the first normal along the second, at the middle of the element without load.
         between: [Along; 2],
     },
-    /// Virial stress of particles [Pa].
+    /// Virial stress of particles [Pa], at the places that the step ends with: a step after strains of the same row.
     ParticleStress(RegionStress),
     /// Mean strain of nodes or particles.
     Strain(RegionStrain),

@@ -11,8 +11,9 @@ use crate::particles::{Particles, turned};
 /// Products of the Lanczos process.
 const LANCZOS_STEPS: usize = 48;
 
-/// Displacement by which stiffness is measured, over the shortest bond.
-const PROBE: f64 = 1e-9;
+/// Displacement by which stiffness is measured, over the shortest bond: far above the rounding of places far from the origin, far below
+/// what fails.
+const PROBE: f64 = 1e-6;
 
 impl<L: BondLaw> BondNetwork<L> {
     /// Adds the forces of the bonds and of the mean strains, and separates what fails under them; the forces of this instant are those of

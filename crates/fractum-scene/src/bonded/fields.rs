@@ -12,7 +12,7 @@ impl Bonded {
         let mut sums = vec![[Mat3::zeros(); 2]; self.particles.len()];
         let displacement = |i: usize| self.particles.position[i] - self.reference[i];
         for body in &self.bodies {
-            for (_, pair) in body.bonds.pairs().iter().enumerate().filter(|(bond, _)| body.bonds.is_live(*bond)) {
+            for (_, pair) in body.bonds.pairs().iter().enumerate().filter(|(bond, _)| body.is_joined(*bond)) {
                 let [i, j] = pair.map(|i| i as usize);
                 let way = self.reference[j] - self.reference[i];
                 let parts = [way * way.transpose(), (displacement(j) - displacement(i)) * way.transpose()];

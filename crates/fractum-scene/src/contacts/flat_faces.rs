@@ -85,11 +85,12 @@ impl FlatBodies {
     pub(super) fn locate(&mut self, particles: &Particles) {
         let FlatBodies { shift, arm, place, velocity, .. } = self;
         for (i, shift) in shift.iter().enumerate() {
+            (place[i], velocity[i]) = (particles.position[i], particles.velocity[i]);
             if *shift != Vec3::zeros() {
                 arm[i] = particles.orientation[i] * shift;
+                place[i] += arm[i];
+                velocity[i] += particles.spin[i].cross(&arm[i]);
             }
-            place[i] = particles.position[i] + arm[i];
-            velocity[i] = particles.velocity[i] + particles.spin[i].cross(&arm[i]);
         }
     }
 
