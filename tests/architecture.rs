@@ -300,6 +300,26 @@ fn sizes_are_measured_as_they_are_written() {
     assert_eq!(extents(code), [("A".to_owned(), "type", 2), ("f".to_owned(), "function", 5)]);
 }
 
+/// Cargo finds no tests in the folders of the two large test programs by itself: a file that is no module would never be compiled.
+#[test]
+fn every_test_file_belongs_to_a_test_program() {
+    let folders = [(crates().join("fractum/tests"), "program"), (crates().join("../tests/verification"), "main")];
+    for (folder, program) in folders {
+        let modules = fs::read_to_string(folder.join(program).with_extension("rs")).unwrap();
+        let files = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+        let names = files.filter(|path| path.extension().is_some_and(|e| e == "rs"));
+        let names: Vec<String> = names.map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+        assert!(names.len() > 5, "{}", folder.display());
+        for name in names.iter().filter(|name| ![program, "no_allocation"].contains(&name.as_str())) {
+            assert!(
+                modules.contains(&format!("\nmod {name};\n")),
+                "{program}.rs of {} lacks mod {name};",
+                folder.display()
+            );
+        }
+    }
+}
+
 #[test]
 fn modules_name_each_other_in_no_circle() {
     let mut found = Vec::new();

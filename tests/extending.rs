@@ -169,7 +169,7 @@ fn the_compiler_takes_all_steps_of_the_document() {
     };
     cargo(&["check", "--workspace", "--tests"]);
     if std::env::var("FRACTUM_EXTEND").is_ok_and(|value| value == "run") {
-        cargo(&["test", "--release", "--workspace", "--test", "case", "--test", "scene", "--test", "statics"]);
+        cargo(&["test", "--release", "--workspace", "--test", "case", "--test", "verification"]);
         for part in ["fractum-dem", "fractum-fem", "fractum-scene"] {
             cargo(&["test", "--release", "--lib", "-p", part]);
         }

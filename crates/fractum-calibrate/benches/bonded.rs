@@ -1,5 +1,8 @@
 //! Bonded packings: one tension solve, and explicit steps, on the threads given by `RAYON_NUM_THREADS`.
 
+#[path = "../../../tests/calibration.rs"]
+mod calibration;
+
 use fractum_calibrate::{Micro, Sample, lab};
 use fractum_dem::{Bonds, CentralDifference, ParticleDamping, Particles, Tolerance};
 use fractum_pack::{Convention, Domain, PackSpec, pack};
@@ -23,9 +26,9 @@ fn tension_solve_10000(bencher: divan::Bencher) {
         .bench_local(|| sample.as_ref().and_then(|s| lab::tension(s, 0, None, Tolerance::default()).ok()).map(|t| t.0));
 }
 
-#[divan::bench(args = [10_000, 100_000], sample_count = 50)]
-fn explicit_step(bencher: divan::Bencher, count: usize) {
-    let Some(sample) = sample(count) else { return };
+#[divan::bench(sample_count = 50)]
+fn explicit_step_10000(bencher: divan::Bencher) {
+    let Some(sample) = sample(10_000) else { return };
     let Sample { packing, network, lattice, .. } = sample;
     let Ok(mut particles) = Particles::at_rest(packing.position, packing.radius, 2500.0 * 8e-9) else { return };
     let Ok(mut bonds) = Bonds::new(&particles, &network.pairs, lattice.section()) else { return };

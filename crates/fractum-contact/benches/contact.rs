@@ -1,5 +1,8 @@
 //! Search and laws of sphere contacts: `cargo bench -p fractum-contact`.
 
+#[path = "../../../tests/calibration.rs"]
+mod calibration;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use fractum_contact::law::{

@@ -3,6 +3,9 @@
 //! The body is a jittered cubic lattice in Morton-like order with about five bonds per particle (coordination 10),
 //! as a packing gives it.
 
+#[path = "../../../tests/calibration.rs"]
+mod calibration;
+
 use fractum_dem::criterion::{FractureCriterion, Level, Principal};
 use fractum_dem::{
     AnyBondLaw, BeamSection, Bonds, CentralDifference, CrackFaces, Dof6, Fracture, Lattice, LocalBond, Occasion,

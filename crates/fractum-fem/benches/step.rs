@@ -3,6 +3,9 @@
 //! `cargo bench -p fractum-fem` prints items (elements) per second on meshes of 56,000 and 511,000 tetrahedra, one in
 //! the cache and one larger than it.
 
+#[path = "../../../tests/calibration.rs"]
+mod calibration;
+
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as run_benches};
 use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, LocalDamping, Solid};

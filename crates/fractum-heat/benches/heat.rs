@@ -1,5 +1,8 @@
 //! Conduction, per pair and step: `cargo bench -p fractum-heat`.
 
+#[path = "../../../tests/calibration.rs"]
+mod calibration;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use fractum_heat::{HeatField, HeatNetwork};

@@ -1,6 +1,10 @@
-//! Reading and writing per node and element, and what is derived from a mesh, on one core unless said otherwise.
+//! Reading and writing per node and element, and what is derived from a mesh, on the threads given by
+//! `RAYON_NUM_THREADS`.
 //!
 //! The mesh is a jittered box of 504,000 tetrahedra and 91,125 nodes; rates count nodes and elements.
+
+#[path = "../../../tests/calibration.rs"]
+mod calibration;
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use fractum_mesh::generate::{Jitter, structured_box};
@@ -58,54 +62,50 @@ fn write(bencher: Bencher, format: MshFormat) {
     bencher.counter(items(&mesh)).bench(|| written(black_box(&mesh), format));
 }
 
-#[divan::bench(args = [1, 2], sample_count = 10)]
-fn edges_scattered(bencher: Bencher, threads: usize) {
-    let (mesh, pool) = (scattered(), pool(threads));
+#[divan::bench(sample_count = 10)]
+fn edges_scattered(bencher: Bencher) {
+    let mesh = scattered();
     let count = ItemsCount::new(mesh.tetrahedra.len());
-    bencher.counter(count).bench(|| pool.install(|| topology::edges_of_tetrahedra(&mesh.tetrahedra)));
+    bencher.counter(count).bench(|| topology::edges_of_tetrahedra(&mesh.tetrahedra));
 }
 
-#[divan::bench(args = [1, 2], sample_count = 10)]
-fn edges_renumbered(bencher: Bencher, threads: usize) {
-    let ((mesh, _), pool) = (renumber::renumber_along_hilbert_curve(&mesh()), pool(threads));
+#[divan::bench(sample_count = 10)]
+fn edges_renumbered(bencher: Bencher) {
+    let (mesh, _) = renumber::renumber_along_hilbert_curve(&mesh());
     let count = ItemsCount::new(mesh.tetrahedra.len());
-    bencher.counter(count).bench(|| pool.install(|| topology::edges_of_tetrahedra(&mesh.tetrahedra)));
+    bencher.counter(count).bench(|| topology::edges_of_tetrahedra(&mesh.tetrahedra));
 }
 
-#[divan::bench(args = [1, 2], sample_count = 10)]
-fn boundary(bencher: Bencher, threads: usize) {
-    let (mesh, pool) = (mesh(), pool(threads));
+#[divan::bench(sample_count = 10)]
+fn boundary(bencher: Bencher) {
+    let mesh = mesh();
     let count = ItemsCount::new(mesh.tetrahedra.len());
-    bencher.counter(count).bench(|| pool.install(|| topology::boundary_of_tetrahedra(&mesh.tetrahedra)));
+    bencher.counter(count).bench(|| topology::boundary_of_tetrahedra(&mesh.tetrahedra));
 }
 
-#[divan::bench(args = [1, 2], sample_count = 10)]
-fn facets(bencher: Bencher, threads: usize) {
-    let (mesh, pool) = (mesh(), pool(threads));
+#[divan::bench(sample_count = 10)]
+fn facets(bencher: Bencher) {
+    let mesh = mesh();
     let count = ItemsCount::new(mesh.tetrahedra.len());
-    bencher.counter(count).bench(|| pool.install(|| topology::facets_of_tetrahedra(&mesh.tetrahedra)));
+    bencher.counter(count).bench(|| topology::facets_of_tetrahedra(&mesh.tetrahedra));
 }
 
-#[divan::bench(args = [1, 2], sample_count = 10)]
-fn hilbert_order(bencher: Bencher, threads: usize) {
-    let (mesh, pool) = (mesh(), pool(threads));
+#[divan::bench(sample_count = 10)]
+fn hilbert_order(bencher: Bencher) {
+    let mesh = mesh();
     let count = ItemsCount::new(mesh.nodes.len());
-    bencher.counter(count).bench(|| pool.install(|| renumber::hilbert_order(&mesh.nodes)));
+    bencher.counter(count).bench(|| renumber::hilbert_order(&mesh.nodes));
 }
 
-#[divan::bench(args = [1, 2], sample_count = 10)]
-fn renumber_mesh(bencher: Bencher, threads: usize) {
-    let (mesh, pool) = (scattered(), pool(threads));
-    bencher.counter(items(&mesh)).bench(|| pool.install(|| renumber::renumber_along_hilbert_curve(&mesh)));
+#[divan::bench(sample_count = 10)]
+fn renumber_mesh(bencher: Bencher) {
+    let mesh = scattered();
+    bencher.counter(items(&mesh)).bench(|| renumber::renumber_along_hilbert_curve(&mesh));
 }
 
-#[divan::bench(args = [1, 2], sample_count = 10)]
-fn quality_summary(bencher: Bencher, threads: usize) {
-    let (mesh, pool) = (mesh(), pool(threads));
+#[divan::bench(sample_count = 10)]
+fn quality_summary(bencher: Bencher) {
+    let mesh = mesh();
     let count = ItemsCount::new(mesh.tetrahedra.len());
-    bencher.counter(count).bench(|| pool.install(|| quality::summarize_tetrahedra(&mesh.nodes, &mesh.tetrahedra)));
-}
-
-fn pool(threads: usize) -> rayon::ThreadPool {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool")
+    bencher.counter(count).bench(|| quality::summarize_tetrahedra(&mesh.nodes, &mesh.tetrahedra));
 }

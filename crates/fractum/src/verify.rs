@@ -3,8 +3,11 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
+use fractum_io::case::model::Case;
 use fractum_io::case::read_case;
 use fractum_io::expectation::Expectation;
 use fractum_io::number::quantity;
@@ -29,10 +32,20 @@ pub struct Selection {
     pub quick: bool,
     /// Folder for results, `verify.json` and `verify.md`.
     pub output: PathBuf,
+    /// Cases that run at the same time.
+    pub jobs: usize,
     /// Threads per case; all cores if none is given.
     pub threads: Option<usize>,
     /// Where packings and beams of bonded bodies are kept.
     pub cache: Cache,
+}
+
+/// What has come out so far.
+struct Done {
+    /// Lines of each case, in the order of the cases.
+    lines: Vec<Vec<Verified>>,
+    /// What ended the verification before its end.
+    wrong: Option<Failure>,
 }
 
 /// Runs the selected cases that expect something, prints the table and writes it after every case into `verify.json` and
@@ -42,20 +55,10 @@ pub struct Selection {
 /// [`Failure::Input`] if nothing is selected, [`Failure::Write`] if the table cannot be written. A case that fails to
 /// run is a line that does not pass.
 pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
-    let mut cases = Vec::new();
-    find_cases(&selection.cases, &mut cases).map_err(|error| {
-        Failure::input(format!(
-            "{}: cannot list the cases: {error}; name the folder with --cases",
-            selection.cases.display()
-        ))
-    })?;
-    cases.sort();
-    let name_of =
-        |path: &Path| path.strip_prefix(&selection.cases).unwrap_or(path).with_extension("").display().to_string();
-    cases.retain(|path| {
-        selection.names.is_empty() || selection.names.iter().any(|n| name_of(path).contains(n.as_str()))
-    });
-    let mut lines = Vec::new();
+    let cases = selected(selection)?;
+    if cases.is_empty() {
+        return Err(Failure::input(format!("{}: no case with [[expect]] matches", selection.cases.display())));
+    }
     say!(
         "{:<36} {:<30} {:>14} {:>22} {:>10}  {:<5} {:>8}",
         "case",
@@ -66,53 +69,103 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
         "pass",
         "seconds"
     );
-    for path in cases {
-        let name = name_of(&path);
-        let case = read_case(&path, &[])?;
-        if case.expect.is_empty() || selection.quick && !case.source.verify_quick {
-            continue;
-        }
-        let options = Options {
-            output: Some(selection.output.join(&name)),
-            threads: selection.threads,
-            quiet: true,
-            overwrite: true,
-            cache: selection.cache.clone(),
-            ..Options::default()
-        };
-        let started = Instant::now();
-        let outcome = run(&path, &options);
-        let seconds = started.elapsed().as_secs_f64();
-        let (first, needs) = (lines.len(), needs(&case));
-        match outcome {
-            Ok(outcome) if outcome.summary.status == Status::Interrupted => return Err(Failure::Interrupted),
-            Ok(outcome) => {
-                let phases = outcome.summary.wall.phases;
-                lines.extend(outcome.summary.expect.into_iter().map(|expectation| Verified {
-                    case: name.clone(),
-                    expectation,
-                    seconds,
-                    phases: phases.clone(),
-                    needs: needs.clone(),
-                }));
-            }
-            Err(error) => {
-                tell!("{name}: {error}");
-                let expectation =
-                    Expectation { quantity: "run".into(), source: error.to_string(), ..Expectation::default() };
-                lines.push(Verified { case: name.clone(), expectation, seconds, phases: BTreeMap::new(), needs });
+    fractum_io::atomic::create_folder(&selection.output)?;
+    let done = Mutex::new(Done { lines: vec![Vec::new(); cases.len()], wrong: None });
+    // A worker that panicked has left the lines of whole cases.
+    let lock = || done.lock().unwrap_or_else(PoisonError::into_inner);
+    let next = AtomicUsize::new(0);
+    let work = || {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some((path, case)) = cases.get(index).filter(|_| lock().wrong.is_none()) else { return };
+            let lines = verified(selection, path, case);
+            let mut done = lock();
+            let written = lines.and_then(|lines| {
+                lines.iter().for_each(print_line);
+                done.lines[index] = lines;
+                Ok(verified::write(&selection.output, &done.lines.concat())?)
+            });
+            if let Err(failure) = written {
+                done.wrong.get_or_insert(failure);
             }
         }
-        lines[first..].iter().for_each(print_line);
-        fractum_io::atomic::create_folder(&selection.output)?;
-        verified::write(&selection.output, &lines)?;
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..selection.jobs.clamp(1, cases.len()) {
+            scope.spawn(work);
+        }
+    });
+    let Done { lines, wrong } = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    if let Some(failure) = wrong {
+        return Err(failure);
     }
-    if lines.is_empty() {
-        return Err(Failure::input(format!("{}: no case with [[expect]] matches", selection.cases.display())));
-    }
+    let lines = lines.concat();
     let passed = lines.iter().filter(|line| line.expectation.pass).count();
     say!("{passed} of {} passed; {}", lines.len(), selection.output.join("verify.md").display());
     Ok(lines)
+}
+
+/// The selected cases that expect something, in the order of their names.
+fn selected(selection: &Selection) -> Result<Vec<(PathBuf, Case)>, Failure> {
+    let mut paths = Vec::new();
+    find_cases(&selection.cases, &mut paths).map_err(|error| {
+        Failure::input(format!(
+            "{}: cannot list the cases: {error}; name the folder with --cases",
+            selection.cases.display()
+        ))
+    })?;
+    paths.sort();
+    paths.retain(|path| {
+        let name = selection.name_of(path);
+        selection.names.is_empty() || selection.names.iter().any(|n| name.contains(n.as_str()))
+    });
+    let mut cases = Vec::new();
+    for path in paths {
+        let case = read_case(&path, &[])?;
+        if !case.expect.is_empty() && (case.source.verify_quick || !selection.quick) {
+            cases.push((path, case));
+        }
+    }
+    Ok(cases)
+}
+
+impl Selection {
+    fn name_of(&self, path: &Path) -> String {
+        path.strip_prefix(&self.cases).unwrap_or(path).with_extension("").display().to_string()
+    }
+}
+
+/// Runs a case: a line for each of its expectations, or one that says why it did not run.
+fn verified(selection: &Selection, path: &Path, case: &Case) -> Result<Vec<Verified>, Failure> {
+    let name = selection.name_of(path);
+    let options = Options {
+        output: Some(selection.output.join(&name)),
+        threads: selection.threads,
+        quiet: true,
+        overwrite: true,
+        cache: selection.cache.clone(),
+        ..Options::default()
+    };
+    let started = Instant::now();
+    let outcome = run(path, &options);
+    let (seconds, needs) = (started.elapsed().as_secs_f64(), needs(case));
+    let (expectations, phases) = match outcome {
+        Ok(outcome) if outcome.summary.status == Status::Interrupted => return Err(Failure::Interrupted),
+        Ok(outcome) => (outcome.summary.expect, outcome.summary.wall.phases),
+        Err(error) => {
+            tell!("{name}: {error}");
+            let failed = Expectation { quantity: "run".into(), source: error.to_string(), ..Expectation::default() };
+            (vec![failed], BTreeMap::new())
+        }
+    };
+    let line = |expectation| Verified {
+        case: name.clone(),
+        expectation,
+        seconds,
+        phases: phases.clone(),
+        needs: needs.clone(),
+    };
+    Ok(expectations.into_iter().map(line).collect())
 }
 
 fn print_line(line: &Verified) {

@@ -1,10 +1,8 @@
 //! A case with a bonded body, as its user meets it: no mesh, everything from a material and a shape.
 
-mod common;
-
 use std::fs;
 
-use common::{Workplace, files_below, history, resumed, run};
+use crate::common::{Workplace, files_below, history, resumed, run};
 use fractum_pack::{Domain, PackSpec, pack};
 
 const BAR: &str = r#"fractum = 1
@@ -202,7 +200,7 @@ fn the_scheme_of_tchamwa_and_wielgosz_damps_a_front_and_closes_the_balance() {
         assert!(energy("residual_max_relative") < 1e-4, "{damping}: {}", summary["energy"]);
         if damping.is_empty() {
             // The half step before the start is booked there; nothing comes after it.
-            let rows = common::history(&place, "out", &["damping"]);
+            let rows = crate::common::history(&place, "out", &["damping"]);
             assert!(rows.len() > 2 && rows[1..].iter().all(|row| row == &rows[1]), "{rows:?}");
             return [energy("damping"), energy("external")];
         }

@@ -1,12 +1,10 @@
 //! The book: its commands run, its links lead somewhere, and its contents list every page.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use common::files_below;
+use crate::common::files_below;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the repository")

@@ -1,10 +1,8 @@
 //! Bonded bodies that break, as their user meets them.
 
-mod common;
-
 use std::fs;
 
-use common::{Workplace, resumed, run, summary};
+use crate::common::{Workplace, resumed, run, summary};
 use serde_json::Value;
 
 /// A bar that is pulled apart fast, from the state of uniform motion.

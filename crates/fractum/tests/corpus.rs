@@ -1,11 +1,9 @@
 //! A corpus of wrong inputs: `fractum check` names the line at fault and the remedy.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{Workplace, mesh_bytes};
+use crate::common::{Workplace, mesh_bytes};
 use fractum_mesh::MshFormat;
 
 const CASE: &str = include_str!("wrong/case.toml");
@@ -64,7 +62,7 @@ fn wrong_inputs_are_answered_on_their_line_with_the_remedy() {
 #[test]
 fn what_is_no_case_says_what_it_is() {
     let workplace = Workplace::new(CASE);
-    fs::write(workplace.path("text.msh"), mesh_bytes(&common::bar(), MshFormat::V4_1Ascii)).unwrap();
+    fs::write(workplace.path("text.msh"), mesh_bytes(&crate::common::bar(), MshFormat::V4_1Ascii)).unwrap();
     let files = [("bar.msh", "is a Gmsh mesh"), ("text.msh", "is a Gmsh mesh"), (".", "is a folder")];
     for (file, says) in files {
         let ended = workplace.fractum(&["check", file]);

@@ -1,8 +1,6 @@
 //! Simulations that a program drives: forces that it sets, and an end that it chooses.
 
-mod common;
-
-use common::Workplace;
+use crate::common::Workplace;
 use fractum::{Options, Simulation};
 use fractum_io::summary::Status;
 use fractum_math::Vec3;

@@ -1,8 +1,6 @@
 //! Quasi-static runs as their user starts them: path and opening control, crack probes, the advice of `check`.
 
-mod common;
-
-use common::{Workplace, history, run};
+use crate::common::{Workplace, history, run};
 
 /// A bar with a weak slab in its middle, pulled apart at equilibrium.
 const BAR: &str = r#"fractum = 1

@@ -1,10 +1,8 @@
 //! One count of fragments in the probe, the summary, the table and the history.
 
-mod common;
-
 use std::fs;
 
-use common::{BREAKING_BAR, Workplace, bar, history, mesh_bytes, run};
+use crate::common::{BREAKING_BAR, Workplace, bar, history, mesh_bytes, run};
 use fractum_math::Vec3;
 use fractum_mesh::generate::structured_box;
 use fractum_mesh::{Group, Mesh, MshFormat};

@@ -12,7 +12,8 @@ fn quick_cases_meet_their_references() {
         names: Vec::new(),
         quick: true,
         output: output.path().to_owned(),
-        threads: None,
+        jobs: 2,
+        threads: Some(1),
         cache: fractum_prepare::Cache::new(Some(output.path().join("cache"))),
     };
     let lines = verify(&selection).unwrap();

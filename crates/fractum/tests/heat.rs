@@ -1,11 +1,9 @@
 //! Heat, as its user meets it.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::fs;
 
-use common::{Workplace, history, resumed, run, summary};
+use crate::common::{Workplace, history, resumed, run, summary};
 use fractum_io::vtk::read_collection;
 
 /// A clamped bar of elements and a free bonded box, both heated by 15 K.

@@ -1,10 +1,8 @@
 //! Bonded bodies of interfaces, as their user meets them.
 
-mod common;
-
 use std::fs;
 
-use common::{Workplace, resumed, run};
+use crate::common::{Workplace, resumed, run};
 
 /// A block that is crushed between two faces.
 const BLOCK: &str = include_str!("../../../cases/cement/block.toml");

@@ -1,14 +1,12 @@
 //! Ctrl-C and SIGTERM end the program soon, whatever it is doing, and leave nothing half written.
 
-mod common;
-
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use common::{BREAKING_BAR, Workplace, checkpoints, files_below, signal, wait_for_checkpoint};
+use crate::common::{BREAKING_BAR, Workplace, checkpoints, files_below, signal, wait_for_checkpoint};
 
 /// What must end within a second has this long on a busy machine.
 const SOON: Duration = Duration::from_secs(15);

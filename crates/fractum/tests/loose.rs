@@ -1,12 +1,10 @@
 //! Loose particles and rigid bodies, as their user meets them.
 
-mod common;
-
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
 
-use common::{Workplace, files_below, resumed, run, summary};
+use crate::common::{Workplace, files_below, resumed, run, summary};
 
 /// Beads fall on a floor within walls; a free plate presses on them, and a driven paddle stirs.
 const HEAP: &str = r#"fractum = 1

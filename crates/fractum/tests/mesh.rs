@@ -1,11 +1,9 @@
 //! Meshes of other programs: what is read, written, refused and told.
 
-mod common;
-
 use std::fmt::Write;
 use std::fs;
 
-use common::{BREAKING_BAR, Workplace, bar};
+use crate::common::{BREAKING_BAR, Workplace, bar};
 use fractum_mesh::{Mesh, read_msh};
 
 /// A mesh as an Abaqus input file, its groups as sets of elements.
@@ -102,7 +100,7 @@ fn information_on_a_mesh_is_in_the_unit_of_the_case_and_beside_its_material() {
     assert!(json["edges"]["shortest"].as_f64().unwrap() > 0.039 && json["hints"].as_array().unwrap().is_empty());
     let mut mesh = bar();
     mesh.groups.clear();
-    let without = Workplace::with_mesh("", &common::mesh_bytes(&mesh, fractum_mesh::MshFormat::V2_2Ascii));
+    let without = Workplace::with_mesh("", &crate::common::mesh_bytes(&mesh, fractum_mesh::MshFormat::V2_2Ascii));
     let said = without.fractum(&["mesh", "info", "bar.msh"]).stdout;
     assert!(said.contains("hint: no groups: a case names bodies"), "{said}");
 }

@@ -1,8 +1,6 @@
 //! `fractum new`: what it writes can be checked and run as it stands.
 
-mod common;
-
-use common::{Workplace, summary};
+use crate::common::{Workplace, summary};
 
 const NAMES: [&str; 7] = ["plate", "bracket", "brazilian", "beam", "bonded-ucs", "impact", "blast"];
 

@@ -1,11 +1,9 @@
 //! No part of a run that its scene does not need: `summary.json` names those that ran.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{BONDED_BAR, BREAKING_BAR, Workplace, run};
+use crate::common::{BONDED_BAR, BREAKING_BAR, Workplace, run};
 
 const SOLID: &str = r#"fractum = 1
 mesh = { file = "bar.msh" }

@@ -1,11 +1,9 @@
 //! The same bits on every processor: the C library chooses its functions by instruction set, and nothing of it reaches a state.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{BREAKING_BAR, Workplace, summary};
+use crate::common::{BREAKING_BAR, Workplace, summary};
 
 /// Hides AVX2 and FMA from the C library.
 const OLDER_PROCESSOR: &str = "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable";

@@ -1,10 +1,8 @@
 //! The report and the movie of a run.
 
-mod common;
-
 use std::fs;
 
-use common::{BREAKING_BAR, Workplace};
+use crate::common::{BREAKING_BAR, Workplace};
 
 /// How often some bytes occur.
 fn count(bytes: &[u8], pattern: &[u8]) -> usize {

@@ -1,11 +1,11 @@
 //! A results folder is not overwritten unasked, says where it came from, and lets a run be continued.
 
-mod common;
-
 use std::fs;
 use std::process::Command;
 
-use common::{BREAKING_BAR, SNAP_BACK, Workplace, checkpoints, files_below, run, signal, summary, wait_for_checkpoint};
+use crate::common::{
+    BREAKING_BAR, SNAP_BACK, Workplace, checkpoints, files_below, run, signal, summary, wait_for_checkpoint,
+};
 
 #[test]
 fn results_are_replaced_only_where_the_user_says_so() {
@@ -90,7 +90,7 @@ fn a_finished_run_goes_on_to_a_later_end() {
     // All rows of the shorter run but the one that its last instant got for its end.
     let (kept, _) = before.trim_end().rsplit_once('\n').unwrap();
     assert!(rows().starts_with(kept) && rows().len() > 2 * kept.len());
-    let times = common::history(&place, "out", &["time"]);
+    let times = crate::common::history(&place, "out", &["time"]);
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
     assert!(long["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-4, "{}", long["energy"]);
     let early = place.fractum(&["run", "case.toml", "-o", "out", "--resume", "--set", "end=0.2 ms"]);
@@ -106,14 +106,14 @@ fn rows_and_frames_of_a_run_with_a_later_end_go_on() {
         let ended = place.fractum(&[&["run", "case.toml", "-o", "out", "--quiet"], extra].concat());
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         let listed = fs::read_to_string(place.path("out/fields.pvd")).unwrap();
-        let rows = common::history(&place, "out", &["time"]);
+        let rows = crate::common::history(&place, "out", &["time"]);
         (rows.len(), listed.matches("name=\"solid\"").count())
     };
     let (rows, frames) = run(&["--set", "end=0.2 ms"]);
     let (more_rows, more_frames) = run(&["--resume", "--set", "end=0.4 ms"]);
     // A 50th and a 1000th of the run, which is now twice as long; rows are those of steps.
     assert!(more_rows > rows && more_frames > frames + 20, "{rows} {more_rows} {frames} {more_frames}");
-    let times = common::history(&place, "out", &["time"]);
+    let times = crate::common::history(&place, "out", &["time"]);
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
 }
 
@@ -124,7 +124,7 @@ fn the_state_that_a_stopped_run_names_is_there() {
     assert_eq!(ended.code, Some(2), "{}", ended.stderr);
     let step = checkpoints(&place.path("out")).last().copied().unwrap();
     assert!(ended.stderr.contains(&format!("last good state saved in out: step {step}, t = ")), "{}", ended.stderr);
-    let steps = common::history(&place, "out", &["time"]).len() as u64;
+    let steps = crate::common::history(&place, "out", &["time"]).len() as u64;
     assert!(step > 0 && step <= steps, "the last equilibrium, {step} of {steps}");
     let summary = summary(&place, "out");
     assert_eq!(summary["time"]["steps"].as_u64(), Some(step));

@@ -1,13 +1,11 @@
 //! A run that is killed, interrupted or spread over other threads gives the same bits as one that is not.
 
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
-use common::{BREAKING_BAR, Workplace, checkpoints, files_below, signal, wait_for_checkpoint};
+use crate::common::{BREAKING_BAR, Workplace, checkpoints, files_below, signal, wait_for_checkpoint};
 use serde_json::Value;
 
 /// Everything of a results folder that must not depend on how the run went.
@@ -236,9 +234,9 @@ fn a_bad_checkpoint_is_refused_with_its_reason() {
     let ended = place.fractum(&["run", "case.toml", "-o", "done", "--quiet", "--resume", "--set", "solver.safety=0.7"]);
     assert_eq!(ended.code, Some(1), "{}", ended.stderr);
     assert!(ended.stderr.contains("another case"), "{}", ended.stderr);
-    let mut mesh = common::bar();
+    let mut mesh = crate::common::bar();
     mesh.nodes[0].x += 1e-6;
-    fs::write(place.path("bar.msh"), common::mesh_bytes(&mesh, fractum_mesh::MshFormat::V4_1Binary)).unwrap();
+    fs::write(place.path("bar.msh"), crate::common::mesh_bytes(&mesh, fractum_mesh::MshFormat::V4_1Binary)).unwrap();
     let ended = place.fractum(&["run", "case.toml", "-o", "done", "--quiet", "--resume"]);
     assert_eq!(ended.code, Some(1), "{}", ended.stderr);
     assert!(ended.stderr.contains("another mesh"), "{}", ended.stderr);

@@ -1,10 +1,8 @@
 //! Stages: a bar pulled at rest, then released.
 
-mod common;
-
 use std::fs;
 
-use common::{Workplace, checkpoints, history, mesh_bytes, run, signal, summary, wait_for_checkpoint};
+use crate::common::{Workplace, checkpoints, history, mesh_bytes, run, signal, summary, wait_for_checkpoint};
 use fractum_math::Vec3;
 use fractum_mesh::MshFormat;
 use fractum_mesh::generate::structured_box;

@@ -1,10 +1,8 @@
 //! Frames and rows of runs at rest follow their path, which may turn back.
 
-mod common;
-
 use std::fs;
 
-use common::{BONDED_BAR, SNAP_BACK, Workplace, history, run, summary};
+use crate::common::{BONDED_BAR, SNAP_BACK, Workplace, history, run, summary};
 use fractum_io::vtk::read_collection;
 
 /// Instants and files of the frames of a part, in the order of the index.

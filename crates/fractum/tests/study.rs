@@ -1,10 +1,8 @@
 //! Studies as their user starts them: the product of what is varied, runs that are kept, interruption, mistakes.
 
-mod common;
-
 use std::fs;
 
-use common::{BREAKING_BAR, Workplace, signal};
+use crate::common::{BREAKING_BAR, Workplace, signal};
 use serde_json::Value;
 
 /// A bar without lateral strain stretched by a fraction of its length: its load is E A times that.
@@ -131,9 +129,9 @@ fn an_interrupted_study_keeps_what_has_finished_and_goes_on() {
     // The second run has begun once its folder has a state.
     let under_way = || {
         let folders = fs::read_dir(place.path("out/runs")).map_or(0, Iterator::count);
-        folders == 2 && common::files_below(&place.path("out/runs"), "study-run.json").len() == 1
+        folders == 2 && crate::common::files_below(&place.path("out/runs"), "study-run.json").len() == 1
     };
-    while !(under_way() && common::files_below(&place.path("out/runs"), ".fck").len() > 1)
+    while !(under_way() && crate::common::files_below(&place.path("out/runs"), ".fck").len() > 1)
         && run.try_wait().unwrap().is_none()
     {
         std::thread::sleep(std::time::Duration::from_millis(5));

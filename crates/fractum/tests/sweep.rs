@@ -1,10 +1,8 @@
 //! Lists of runs as a job scheduler works through them: one at a time, by number, and one table at the end.
 
-mod common;
-
 use std::fs;
 
-use common::{BREAKING_BAR, Workplace, signal, summary, wait_for_checkpoint};
+use crate::common::{BREAKING_BAR, Workplace, signal, summary, wait_for_checkpoint};
 
 /// Rows of a table without quotes, column by column of its header.
 fn table(place: &Workplace, path: &str) -> (Vec<String>, Vec<Vec<String>>) {

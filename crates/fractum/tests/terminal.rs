@@ -1,8 +1,6 @@
 //! What a user sees in the terminal: help, completions, manual pages, the plan, and how a run ends.
 
-mod common;
-
-use common::{Workplace, files_below};
+use crate::common::{Workplace, files_below};
 
 const CASE: &str = include_str!("wrong/case.toml");
 
@@ -52,7 +50,7 @@ fn the_last_lines_show_the_peak_and_why_the_run_ended() {
     assert!(last[2].starts_with("peak ") && last[2].contains("load ") && last[2].contains(" N at t = "), "{last:?}");
     assert!(last[1].starts_with("end ") && last[1].ends_with("t = 20 µs is the end of the run"), "{last:?}");
     assert!(last[0].starts_with("results in "), "{last:?}");
-    let summary = common::summary(&workplace, "out");
+    let summary = crate::common::summary(&workplace, "out");
     assert_eq!(summary["time"]["reason"], "t = 20 µs is the end of the run");
     assert!(!ended.stdout.contains('\x1b') && !ended.stderr.contains('\x1b'), "no colours in a pipe");
     let shown = ended.stderr.lines().find(|line| line.contains("ETA")).unwrap();

@@ -1,11 +1,9 @@
 //! A body that is solid here and bonded there, as its user meets it.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{Workplace, resumed, run};
+use crate::common::{Workplace, resumed, run};
 
 const BAR: &str = r#"fractum = 1
 title = "A bar with a bonded middle"

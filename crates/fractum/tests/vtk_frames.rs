@@ -1,12 +1,10 @@
 //! Frames have one frame of reference: points where everything was at the start, moved by `displacement`.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use common::{BONDED_BAR, BREAKING_BAR, Workplace, files_below, run, summary};
+use crate::common::{BONDED_BAR, BREAKING_BAR, Workplace, files_below, run, summary};
 use fractum_io::vtk::Arrays;
 
 /// Where points were at the start, and how far they have moved.

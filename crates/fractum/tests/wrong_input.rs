@@ -1,12 +1,10 @@
 //! Wrong input: the exit code, one message a mistake with its place, no panic, no half-written file.
 
-mod common;
-
 use std::f64::consts::PI;
 use std::fs;
 use std::path::PathBuf;
 
-use common::{BREAKING_BAR, Ended, Workplace, bar, files_below, mesh_bytes};
+use crate::common::{BREAKING_BAR, Ended, Workplace, bar, files_below, mesh_bytes};
 use fractum_mesh::{Mesh, MshFormat};
 use serde_json::Value;
 

@@ -79,6 +79,9 @@ enum Command {
         /// Folder for results, verify.json and verify.md.
         #[arg(short, long, default_value = "results/verify")]
         output: PathBuf,
+        /// Cases of the gallery at the same time; with --threads 1 one per core is fastest.
+        #[arg(long, default_value_t = 1, value_parser = thread_count, conflicts_with = "stress")]
+        jobs: usize,
         /// Threads per case; all cores by default.
         #[arg(long, value_parser = thread_count)]
         threads: Option<usize>,
@@ -201,8 +204,8 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
             let settings = fractum::stress::Settings { scenes, blasts, seed, output, threads, cache: cache() };
             if steps { measure_steps(&settings, baseline.as_deref()) } else { run_random_scenes(&settings) }
         }
-        Command::Verify { names, quick, cases, output, threads, .. } => {
-            let selection = fractum::verify::Selection { cases, names, quick, output, threads, cache: cache() };
+        Command::Verify { names, quick, cases, output, jobs, threads, .. } => {
+            let selection = fractum::verify::Selection { cases, names, quick, output, jobs, threads, cache: cache() };
             fractum::verify::verify(&selection).and_then(|lines| {
                 match lines.iter().filter(|l| !l.expectation.pass).count() {
                     0 => Ok(ExitCode::Done),

@@ -1,7 +1,5 @@
 //! A folder with a small mesh and a case, and the program as its user starts it.
 
-#![allow(dead_code)] // each test file uses its own part
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};

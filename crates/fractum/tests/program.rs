@@ -1,0 +1,32 @@
+//! The program as its user starts it. One test program, since each costs seconds to compile and link: a new file is a line here.
+
+mod common;
+
+mod bonded;
+mod book;
+mod breaking;
+mod corpus;
+mod drive;
+mod equilibrium;
+mod fragments;
+mod gallery;
+mod heat;
+mod interfaces;
+mod interrupt;
+mod loose;
+mod mesh;
+mod new;
+mod parts;
+mod processor;
+mod report;
+mod results_folder;
+mod resume;
+mod stages;
+mod static_frames;
+mod stress;
+mod study;
+mod sweep;
+mod terminal;
+mod tied;
+mod vtk_frames;
+mod wrong_input;
