@@ -70,7 +70,7 @@ impl BeamRankine {
         let area = std::f64::consts::PI * r * r;
         let [first, second] = load.bending;
         let moment = match self.moments {
-            EndMoments::Mean => 0.5 * (first + second).norm(),
+            EndMoments::Mean => 0.5 * (first - second).norm(),
             EndMoments::Largest => first.norm_squared().max(second.norm_squared()).sqrt(),
         };
         // I = S r²/4, I₀ = S r²/2.
@@ -97,7 +97,12 @@ mod tests {
         // Uniform bending: opposite moments on the two ends.
         let bend = BondLoad { bending: [Vec3::y() * 2.0, Vec3::y() * -2.0], ..none };
         assert!((beam.ratio(&bend) - 2.0 * 0.5 / i).abs() < 1e-12);
-        assert_eq!(BeamRankine { moments: EndMoments::Mean, ..beam }.ratio(&bend), 0.0);
+        let mean = BeamRankine { moments: EndMoments::Mean, ..beam };
+        assert!((mean.ratio(&bend) - 2.0 * 0.5 / i).abs() < 1e-12);
+        // Ends that shift across each other: the moment runs from -M to M.
+        let shift = BondLoad { bending: [Vec3::y() * 2.0; 2], ..none };
+        assert_eq!(mean.ratio(&shift), 0.0);
+        assert!((beam.ratio(&shift) - 2.0 * 0.5 / i).abs() < 1e-12);
         assert_eq!(
             [pull, bend, twist].map(|l| beam.mode(&l)),
             [BreakMode::Tension, BreakMode::Bending, BreakMode::Torsion]

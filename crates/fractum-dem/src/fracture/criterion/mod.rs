@@ -95,10 +95,11 @@ impl Level {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EndMoments {
-    /// M = ½ |M₁ + M₂|, as printed: it is blind to uniform bending, in which the moments on the two ends are opposite.
+    /// The mean along the beam, which is the moment at its middle: ½ |M₁ − M₂| of the moments M₁ and M₂ on the two ends.
+    /// Uniform bending, in which these are opposite, counts in full; ends that shift across each other do not count.
     #[default]
     Mean,
-    /// M = max(|M₁|, |M₂|): the largest in the beam.
+    /// The largest in the beam: max(|M₁|, |M₂|).
     Largest,
 }
 
