@@ -59,6 +59,24 @@ pub enum DemError {
         /// The valid range.
         expected: &'static str,
     },
+    /// Space cells that are too large for the body of their particles.
+    #[error(
+        "the space cells of the particles inside fill {inside:.4e} m3 of {body:.4e} m3, which leaves no volume for its surface: particles are too large for its holes and notches; give it more of them"
+    )]
+    NoVolume {
+        /// Volume of the cells of the particles inside [m³].
+        inside: f64,
+        /// Volume of the body [m³].
+        body: f64,
+    },
+    /// A criterion on the stress of particles whose bonds sum none.
+    #[error(
+        "criterion {criterion} needs the virials of particles, which bonds beside the mean strain do not sum; let such bonds separate by their own strengths"
+    )]
+    NoVirials {
+        /// Name of the criterion.
+        criterion: &'static str,
+    },
     /// Bonds at rest that are no beams.
     #[error("bodies at rest need bonds that are cohesive beams; these are of another law")]
     NoLattice,

@@ -42,6 +42,8 @@ pub(super) struct Block<L: BondLaw> {
     pub(super) virials: Vec<[f64; 6]>,
     /// Sums of bounds of the virials, where they are wanted.
     pub(super) virial_bounds: Vec<[f64; 2]>,
+    /// Sums of what bonds add to the stresses of mean strains, where there are any [J].
+    pub(super) shares: Vec<[f64; 6]>,
     /// Sums that other blocks hold for particles of this one: (block, slot, own particle).
     pub(super) incoming: Vec<(u32, u32, u32)>,
 }
@@ -99,7 +101,7 @@ impl<L: BondLaw> Block<L> {
             })
             .collect();
         let sums = vec![[0.0; 6]; count + partners.len()];
-        let (virials, virial_bounds, incoming) = (Vec::new(), Vec::new(), Vec::new());
+        let (virials, virial_bounds, shares, incoming) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (first_bond, bonds, separated) = (bonds.start as u32, bonds.len(), Vec::new());
         let memory = vec![[L::Memory::default(); WIDTH]; groups.len()];
         Block {
@@ -115,6 +117,7 @@ impl<L: BondLaw> Block<L> {
             sums,
             virials,
             virial_bounds,
+            shares,
             incoming,
         }
     }
@@ -165,12 +168,13 @@ impl<L: BondLaw> Block<L> {
 }
 
 impl<L: BondLaw> Block<L> {
-    /// Sums the forces of bonds beside the mean strain of their particles, and what they add to the stresses of these, in the place of virials.
+    /// Sums the forces of bonds beside the mean strain of their particles, and what they add to the stresses of these; lists the bonds that fail.
     pub(super) fn sum_deviations(&mut self, position: &[Vec3], orientation: &[Rotation], law: &L, field: &MeanStrain) {
-        let Block { groups, memory, first_bond, failing, sums, virials, .. } = self;
+        let Block { groups, memory, first_bond, failing, sums, shares, .. } = self;
+        failing.clear();
         sums.fill([0.0; 6]);
-        virials.clear();
-        virials.resize(sums.len(), [0.0; 6]);
+        shares.clear();
+        shares.resize(sums.len(), [0.0; 6]);
         for (index, (group, memory)) in groups.iter_mut().zip(memory).enumerate() {
             let bonds = group.lanes(position, orientation);
             let strains: [_; WIDTH] = std::array::from_fn(|k| field.between([group.first[k], group.second[k]]).0);
@@ -183,7 +187,7 @@ impl<L: BondLaw> Block<L> {
             add_forces(&group.slots, &found.forces, sums);
             for k in 0..WIDTH {
                 for end in &group.slots {
-                    let sum = &mut virials[end[k] as usize];
+                    let sum = &mut shares[end[k] as usize];
                     (0..6).for_each(|c| sum[c] += found.share[c].0[k]);
                 }
             }

@@ -181,6 +181,16 @@ impl Bonds {
         each!(self, network => network.find_virials(particles));
     }
 
+    /// See [`BondNetwork::book_last_work`].
+    pub fn book_last_work(&mut self, particles: &Particles, dt: f64) {
+        each!(self, network => network.book_last_work(particles, dt));
+    }
+
+    /// Whether forces come with virials, which those of bonds beside the mean strain of particles do not.
+    pub fn has_virials(&self) -> bool {
+        each!(self, network => network.law().mean_elasticity().is_none())
+    }
+
     /// See [`BondNetwork::virial_bounds`].
     pub fn virial_bounds(&self, out: &mut [[f64; 2]]) {
         each!(self, network => network.virial_bounds(out));

@@ -1,15 +1,15 @@
 //! Mean strain of particles over the space cells about them, and the energy of Hooke's law that goes with it.
 
+use std::cmp::Ordering;
+
 use fractum_math::{Mat3, Sym3, Vec3, sphere_volume};
 use rayon::prelude::*;
 
 use super::graph::BondGraph;
 use super::law::MeanElasticity;
-use crate::cells::{Tessellation, corner_areas};
+use super::space_cells::SpaceCells;
+use crate::DemError;
 use crate::particles::Particles;
-
-/// Tessellations whose mean a regular arrangement takes: where more than four spheres meet in a point each is one of many.
-const TESSELLATIONS: u32 = 12;
 
 /// Weights of particles in the mean displacement gradients of others, row by row.
 #[derive(Clone, Debug)]
@@ -53,7 +53,10 @@ impl Weights {
 ///
 /// Uniform strain comes out as it is, and particles inside, whose volume V is a quarter of their cells', are then free of force: the sum of the areas of cells
 /// that face a particle inside is zero. Particles at the border and one bond further in have the rest of the volume of the body in proportion to their own.
-/// Arrangements with many tessellations have the mean of some. A particle that has lost a bond has no mean strain any more.
+/// Arrangements with many tessellations have the mean of some.
+///
+/// A mean strain never joins what bonds do not: cells across a notch or a hole are left out, and a particle has no mean strain any more once it has
+/// lost a bond, or two of the particles of its cells have lost the bond between them. Parts that have come apart so exert no force on each other.
 ///
 /// Space cells: Bagi, *Mech. Mater.* 22 (1996) 165–177; means over the cells of a node as in nodal integration (Puso and Solberg, *Int. J. Numer.
 /// Methods Eng.* 67 (2006) 841–867).
@@ -77,81 +80,36 @@ pub(super) struct MeanStrain {
     stress: Vec<Mat3>,
 }
 
-/// Cells of one or more tessellations of particles.
-struct Cells {
-    entries: Vec<(u32, u32, Vec3)>,
-    /// A quarter of the volumes of the cells of each particle.
-    volume: Vec<f64>,
-    /// Particles on faces that belong to one cell only.
-    border: Vec<bool>,
-}
-
-/// Volumes of particles: those of their cells inside; the rest of the body in proportion to `share` at its border and one bond further in.
-fn volumes(cells: &Cells, share: &[f64], pairs: &[[usize; 2]]) -> Vec<f64> {
-    let mut outer = cells.border.clone();
-    for &[i, j] in pairs {
-        outer[i] |= cells.border[j];
-        outer[j] |= cells.border[i];
-    }
-    let (mut rest, mut of_outer) = (0.0, 0.0);
-    for (k, &outer) in outer.iter().enumerate() {
-        rest += share[k] - if outer { 0.0 } else { cells.volume[k] };
-        of_outer += if outer { share[k] } else { 0.0 };
-    }
-    let scale = if of_outer > 0.0 { (rest / of_outer).max(0.0) } else { 0.0 };
-    (0..share.len()).map(|k| if outer[k] { share[k] * scale } else { cells.volume[k] }).collect()
-}
-
-impl Cells {
-    fn new(centre: &[Vec3], radius: &[f64]) -> Self {
-        let make = |salt: u32| Tessellation::new(centre, radius, salt).tetrahedra;
-        let first = make(0);
-        let second = make(1);
-        let all = match first == second {
-            true => vec![first],
-            false => [first, second].into_iter().chain((2..TESSELLATIONS).map(make)).collect(),
-        };
-        let share = 1.0 / all.len() as f64;
-        let count = centre.len();
-        let mut cells = Cells { entries: Vec::new(), volume: vec![0.0; count], border: vec![false; count] };
-        for tetrahedra in &all {
-            cells.add(centre, tetrahedra, share);
-        }
-        cells
-    }
-
-    fn add(&mut self, centre: &[Vec3], tetrahedra: &[[u32; 4]], share: f64) {
-        let mut faces: Vec<[u32; 3]> = Vec::with_capacity(4 * tetrahedra.len());
-        for corners in tetrahedra {
-            let (areas, volume) = corner_areas(corners.map(|i| centre[i as usize]));
-            for (k, &i) in corners.iter().enumerate() {
-                self.volume[i as usize] += 0.25 * share * volume;
-                self.entries.extend(corners.iter().zip(areas).map(|(&j, area)| (i, j, area * (0.25 * share))));
-                let mut face = [1, 2, 3].map(|step| corners[(k + step) % 4]);
-                face.sort_unstable();
-                faces.push(face);
-            }
-        }
-        faces.sort_unstable();
-        for same in faces.chunk_by(|a, b| a == b).filter(|same| same.len() == 1) {
-            same[0].iter().for_each(|&i| self.border[i as usize] = true);
-        }
-    }
+/// Bonds that separate under mean strains, and what they do last.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Separating {
+    /// Those of this instant, while the work of their last half step is not booked.
+    pub(super) failed: Vec<u32>,
+    /// Forces [N] and moments [N m] on the particles without them, less those that act at this instant.
+    pub(super) force: Vec<Vec3>,
+    pub(super) moment: Vec<Vec3>,
+    /// Scratch: particles that lose their mean strain with a bond, and the bonds whose energy this changes.
+    pub(super) particles: Vec<u32>,
+    pub(super) bonds: Vec<u32>,
 }
 
 impl MeanStrain {
     /// Cells of the particles that bonds join, at their present positions.
-    pub(super) fn new(particles: &Particles, pairs: &[[u32; 2]], elasticity: MeanElasticity) -> Self {
+    ///
+    /// # Errors
+    /// [`DemError::NoVolume`] if the cells of the particles inside fill the whole body.
+    pub(super) fn new(particles: &Particles, pairs: &[[u32; 2]], elasticity: MeanElasticity) -> Result<Self, DemError> {
         let count = particles.len();
         let mut bonded: Vec<u32> = pairs.as_flattened().to_vec();
         bonded.sort_unstable();
         bonded.dedup();
         let of = |values: &[Vec3]| bonded.iter().map(|&i| values[i as usize]).collect::<Vec<_>>();
         let radius: Vec<f64> = bonded.iter().map(|&i| particles.radius[i as usize]).collect();
-        let cells = Cells::new(&of(&particles.position), &radius);
+        let number = |i: u32| bonded.binary_search(&i).unwrap_or_default() as u32;
+        let joined = BondGraph::new(bonded.len(), &pairs.iter().map(|pair| pair.map(number)).collect::<Vec<_>>());
+        let cells = SpaceCells::new(&of(&particles.position), &radius, &joined);
         let share: Vec<f64> = radius.iter().map(|r| sphere_volume(*r) / elasticity.fraction).collect();
-        let place = |i: u32| bonded.binary_search(&i).unwrap_or_default();
-        let own = volumes(&cells, &share, &pairs.iter().map(|pair| pair.map(place)).collect::<Vec<_>>());
+        let own = cells.volumes(&share, &joined)?;
         let (mut volume, mut intact) = (vec![0.0; count], vec![false; count]);
         for (k, &i) in bonded.iter().enumerate() {
             volume[i as usize] = own[k];
@@ -161,7 +119,7 @@ impl MeanStrain {
             (bonded[row as usize], bonded[column as usize], area / cells.volume[row as usize])
         };
         let rows = Weights::new(count, cells.entries.iter().map(global).collect());
-        MeanStrain {
+        Ok(MeanStrain {
             elasticity,
             reference: particles.position.clone(),
             columns: rows.transposed(),
@@ -173,7 +131,7 @@ impl MeanStrain {
             strain: vec![Sym3::ZERO; count],
             deviation: vec![[0.0; 6]; count],
             stress: vec![Mat3::zeros(); count],
-        }
+        })
     }
 
     /// Strains at these positions [m].
@@ -211,16 +169,11 @@ impl MeanStrain {
         fractum_math::sum_chunks(self.strain.len(), |i| self.energy_of(i))
     }
 
-    /// Adds the forces of the mean strains.
+    /// Finds the stresses of the mean strains.
     ///
     /// - `gather`: sums of the stresses of the bonds of particles `start..` over their volumes [J]
-    pub(super) fn add_forces(
-        &mut self,
-        block: usize,
-        gather: impl Fn(usize, &mut [[f64; 6]]) + Sync,
-        force: &mut [Vec3],
-    ) {
-        let MeanStrain { elasticity, columns, volume, intact, gradient, strain, deviation, stress, .. } = self;
+    pub(super) fn find_stresses(&mut self, block: usize, gather: impl Fn(usize, &mut [[f64; 6]]) + Sync) {
+        let MeanStrain { elasticity, volume, intact, gradient, strain, deviation, stress, .. } = self;
         let parts = deviation.par_chunks_mut(block).zip(stress.par_chunks_mut(block));
         parts.enumerate().for_each(|(number, (deviation, stress))| {
             gather(number, deviation);
@@ -235,15 +188,42 @@ impl MeanStrain {
                 };
             }
         });
+    }
+
+    /// Adds the forces of these stresses [N].
+    pub(super) fn add_forces(&self, force: &mut [Vec3]) {
+        let MeanStrain { columns, stress, .. } = self;
         force.par_iter_mut().enumerate().with_min_len(256).for_each(|(j, force)| {
             *force = columns.row(j).iter().fold(*force, |sum, &(i, weight)| sum - stress[i as usize] * weight);
         });
     }
 
-    /// Takes the mean strain of a particle away for ever.
-    pub(super) fn release(&mut self, particle: usize) {
-        self.intact[particle] = false;
-        self.gradient[particle] = Mat3::identity();
-        self.strain[particle] = Sym3::ZERO;
+    /// The particles that lose their mean strain when the bond of two particles separates, ascending: these, and those whose cells have both.
+    pub(super) fn spanning(&self, ends: [u32; 2], out: &mut Vec<u32>) {
+        out.clear();
+        let [mut first, mut second] = ends.map(|end| self.columns.row(end as usize));
+        while let ([a, ..], [b, ..]) = (first, second) {
+            match a.0.cmp(&b.0) {
+                Ordering::Less => first = &first[1..],
+                Ordering::Greater => second = &second[1..],
+                Ordering::Equal => {
+                    out.push(a.0);
+                    (first, second) = (&first[1..], &second[1..]);
+                }
+            }
+        }
+        out.extend(ends);
+        out.sort_unstable();
+        out.dedup();
+        out.retain(|&i| self.intact[i as usize]);
+    }
+
+    /// Takes the mean strain of particles away for ever.
+    pub(super) fn release(&mut self, particles: &[u32]) {
+        for i in particles.iter().map(|&i| i as usize) {
+            self.intact[i] = false;
+            self.gradient[i] = Mat3::identity();
+            self.strain[i] = Sym3::ZERO;
+        }
     }
 }

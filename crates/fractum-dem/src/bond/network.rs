@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, WIDTH};
 use super::graph::{BondGraph, check_pairs};
 use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
-use super::mean_strain::MeanStrain;
+use super::mean_strain::{MeanStrain, Separating};
 use crate::DemError;
 use crate::particles::Particles;
 
@@ -32,8 +32,8 @@ pub struct BondNetwork<L: BondLaw> {
     pub(super) index: Vec<[u32; 3]>,
     /// Mean strains of the particles, where the law knows them.
     pub(super) mean: Option<MeanStrain>,
-    /// Scratch: bonds that fail under them.
-    pub(super) failing: Vec<u32>,
+    /// What separates under them.
+    pub(super) separating: Separating,
 }
 
 impl<L: BondLaw> BondNetwork<L> {
@@ -90,8 +90,12 @@ impl<L: BondLaw> BondNetwork<L> {
         }
         blocks.iter_mut().zip(incoming).for_each(|(block, list)| block.incoming = list);
         let live = vec![true; pairs.len()];
-        let mean = law.mean_elasticity().map(|elasticity| MeanStrain::new(particles, &pairs, elasticity));
-        Ok(BondNetwork { law, pairs, axis, length, own, live, blocks, index, mean, failing: Vec::new() })
+        let mean = match law.mean_elasticity() {
+            Some(elasticity) => Some(MeanStrain::new(particles, &pairs, elasticity)?),
+            None => None,
+        };
+        let separating = Separating::default();
+        Ok(BondNetwork { law, pairs, axis, length, own, live, blocks, index, mean, separating })
     }
 
     /// Number of bonds, broken ones included.
@@ -158,8 +162,8 @@ impl<L: BondLaw> BondNetwork<L> {
     pub fn restore_memory(&mut self, saved: &[L::Memory]) {
         for (bond, memory) in saved.iter().enumerate().take(self.len()) {
             self.put_memory(bond, *memory);
-            if let (Some(mean), Some(_)) = (&mut self.mean, L::separation(memory)) {
-                self.pairs[bond].iter().for_each(|&i| mean.release(i as usize));
+            if L::separation(memory).is_some() {
+                self.release_about(bond);
             }
         }
     }
@@ -295,12 +299,11 @@ impl<L: BondLaw> BondNetwork<L> {
         let law = self.law;
         let Particles { position, orientation, .. } = &*particles;
         self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<true, DETAIL>(position, orientation, &law));
-        self.add_sums(particles);
+        self.add_sums(&mut particles.force, &mut particles.moment);
     }
 
     /// Adds the sums of the blocks to the forces and moments of their particles.
-    pub(super) fn add_sums(&self, particles: &mut Particles) {
-        let Particles { force, moment, .. } = particles;
+    pub(super) fn add_sums(&self, force: &mut [Vec3], moment: &mut [Vec3]) {
         let blocks = &self.blocks;
         let owned = force.par_chunks_mut(BLOCK).zip(moment.par_chunks_mut(BLOCK));
         owned.zip(blocks).for_each(|((force, moment), block)| {

@@ -101,7 +101,7 @@ impl Fracture {
     /// - `volume`: of the body [m³]
     ///
     /// # Errors
-    /// An impossible criterion.
+    /// An impossible criterion; one on the stress of particles, where bonds sum no virials.
     pub fn new(
         bonds: &Bonds,
         particles: &Particles,
@@ -110,6 +110,9 @@ impl Fracture {
         fraction: f64,
         volume: f64,
     ) -> Result<Self, DemError> {
+        if criterion.level().is_some() && !bonds.has_virials() {
+            return Err(DemError::NoVirials { criterion: criterion.kind().name });
+        }
         let graph = BondGraph::new(particles.len(), bonds.pairs());
         let search = FailureSearch::new(criterion, &graph, &particles.radius, fraction)?;
         let area = facet_area(volume, &particles.position, bonds.pairs());
@@ -352,7 +355,7 @@ impl Fracture {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bond::BeamSection;
+    use crate::bond::{BeamSection, LocalBond};
     use crate::fracture::criterion::{BeamRankine, Level, Principal};
     use crate::particles::{CentralDifference, ParticleDamping};
 
@@ -425,6 +428,18 @@ mod tests {
             assert_eq!((fracture.cracks().len(), jump), (1, 0.0));
             assert!(drift < 2e-4, "{length}: {drift}");
         }
+    }
+
+    #[test]
+    fn a_criterion_of_stress_is_refused_where_bonds_sum_no_virials() {
+        let (particles, _) = pair(1.0);
+        let faces = CrackFaces { friction: 0.5, damping_ratio: 0.0 };
+        let law = LocalBond { mean_strain: Some(0.6), ..LocalBond::elastic(1e4, 0.3) };
+        let bonds = Bonds::new(&particles, &[[0, 1]], law).unwrap();
+        let of = |criterion| Fracture::new(&bonds, &particles, criterion, faces, 0.6, 1.0);
+        let stress = Principal { tensile_strength: 1.0, compressive_strength: None, level: Level::Own };
+        assert!(matches!(of(FractureCriterion::Principal(stress)), Err(DemError::NoVirials { .. })));
+        assert!(of(beam(1.0)).is_ok());
     }
 
     #[test]

@@ -87,14 +87,11 @@ pub struct BondedBody {
     pub(crate) closest: Option<Closest>,
     /// All bonds, where they resist the change of their length.
     viscous: Option<BondGraph>,
+    /// Bound on the highest frequency [rad/s]: 2/ω is the step that is stable without a safety factor.
+    bound: f64,
 }
 
 impl BondedBody {
-    /// Bound on the highest frequency [rad/s]: 2/ω is the step that is stable without a safety factor.
-    fn bound(&self, particles: &Particles) -> f64 {
-        2.0 / self.bonds.stable_step(particles, 1.0)
-    }
-
     /// Bonds that have broken.
     pub fn broken(&self) -> usize {
         self.cracks().len()
@@ -194,6 +191,7 @@ impl Bonded {
             if resists {
                 all.viscous.resize(all.particles.len(), Vec3::zeros());
             }
+            let bound = 2.0 / bonds.stable_step(&all.particles, 1.0);
             all.bodies.push(BondedBody {
                 name,
                 range,
@@ -204,23 +202,24 @@ impl Bonded {
                 fracture,
                 closest: None,
                 viscous,
+                bound,
             });
         }
-        all.frequency = all.bodies.iter().map(|body| body.bound(&all.particles)).fold(0.0, f64::max);
+        all.frequency = all.bodies.iter().map(|body| body.bound).fold(0.0, f64::max);
         all.partial = vec![HalfSteps::default(); all.particles.block_count()];
         Ok(all)
     }
 
-    /// Finds the highest frequency of the bonds as they are by the Lanczos process, in the place of its bound. Bodies that
-    /// can break keep the bound: where crack faces meet within a step, the balance pays for every step's length.
+    /// Finds the highest frequency of beams as they are by the Lanczos process, in the place of its bound. Other bonds keep theirs, and so do bodies
+    /// that can break: where crack faces meet within a step, the balance pays for every step's length.
     ///
     /// # Errors
     /// Beams that are none, which [`Bonded::new`] refuses.
     pub fn find_frequency(&mut self) -> Result<(), SceneError> {
         let mut highest: f64 = 0.0;
         for body in self.bodies.iter().filter(|body| !body.bonds.is_empty()) {
-            highest = highest.max(if body.can_break() {
-                body.bound(&self.particles)
+            highest = highest.max(if body.can_break() || body.bonds.beam().is_none() {
+                body.bound
             } else {
                 highest_frequency(&body.bonds, &self.particles, body.range.clone())?
             });
@@ -440,8 +439,9 @@ impl Bonded {
         work.before.kinetic -= counted_twice;
         work.after.kinetic -= counted_twice;
         follow(points.particles);
-        for fracture in bodies.iter_mut().filter_map(|body| body.fracture.as_mut()) {
-            fracture.book_last_work(points.particles, dt_after);
+        for body in bodies.iter_mut() {
+            body.bonds.book_last_work(points.particles, dt_after);
+            body.fracture.iter_mut().for_each(|fracture| fracture.book_last_work(points.particles, dt_after));
         }
         work.after.damping -= 0.5 * dt_after * viscous_power(points.particles, viscous);
         work.after.external += 0.5 * dt_after * loads.power(&points);

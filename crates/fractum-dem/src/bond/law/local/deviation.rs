@@ -141,7 +141,6 @@ impl LocalBond {
         let by_shear = dot(shear, shear).0[0].sqrt() / self.shear_strength > tension;
         let how = if by_shear { Separation::Shear } else { Separation::Tension };
         let local = back(lanes.turns[0], at.at.shear).map(|s| s.0[0]);
-        let last = [at.at.normal.0[0], at.at.shear[0].0[0], at.at.shear[1].0[0], at.at.shear[2].0[0]];
-        self.separated_memory(how, last, local)
+        self.separated_memory(how, at.at.normal.0[0], local)
     }
 }

@@ -59,8 +59,8 @@ pub struct InterfaceMemory {
     damage: [f64; 2],
     /// Strain by which the failed part has slipped, in axes that turn with the first particle.
     pub(super) slip: [f64; 3],
-    /// Normal strain and shear strain of the last step.
-    last: [f64; 4],
+    /// Normal strain and shear strain of the last step; the latter in axes that turn with the first particle where the interface is not whole.
+    pub(super) last: [f64; 4],
     /// Energy dissipated so far, per volume of the bond [J/m³].
     pub(super) dissipated: f64,
     /// How it separated; never where it had no strength from the start.
@@ -98,7 +98,8 @@ impl<const W: usize> Default for RecentStrains<W> {
 
 impl<const W: usize> RecentStrains<W> {
     pub(super) fn recall(&self, memory: &InterfaceMemory, lane: usize) -> InterfaceMemory {
-        InterfaceMemory { last: self.last.map(|of| of[lane]), ..*memory }
+        let last = if self.inelastic >> lane & 1 == 1 { memory.last } else { self.last.map(|of| of[lane]) };
+        InterfaceMemory { last, ..*memory }
     }
 
     pub(super) fn remember(&mut self, memory: &InterfaceMemory, lane: usize) {
@@ -184,12 +185,12 @@ impl LocalBond {
 
     /// Stresses at the present strains (normal, and a vector across), and the slip; carries the memory on.
     ///
-    /// - `slip`: that of the memory in the axes of `shear`
+    /// - `slip`, `from`: slip and last shear strain of the memory in the axes of `shear`
     pub(super) fn stress(
         &self,
         normal: f64,
         shear: [f64; 3],
-        slip: [f64; 3],
+        [slip, from]: [[f64; 3]; 2],
         memory: &mut InterfaceMemory,
     ) -> (f64, [f64; 3], [f64; 3]) {
         let before = *memory;
@@ -207,8 +208,7 @@ impl LocalBond {
         let (old, new) = (times(slip, before.damage[1]), times(new_slip, failed));
         let across = times(minus(shear, new), modulus);
         // Work by the trapezoid of the stresses less what is stored: that of the slip, then that along the normal.
-        let [last, sx, sy, sz] = before.last;
-        let sum = [shear[0] + sx, shear[1] + sy, shear[2] + sz];
+        let (last, sum) = (before.last[0], std::array::from_fn(|k| shear[k] + from[k]));
         memory.dissipated += 0.5 * modulus * (dot(minus(new, old), sum) - dot(new, new_slip) + dot(old, slip));
         if memory.crushed != before.crushed || memory.damage[0] != before.damage[0] {
             let [old_stress, old_energy] = self.normal(last, &before);
@@ -253,10 +253,11 @@ impl LocalBond {
 
     /// The memory of an interface that was whole and separates at once, and rubs where it is closed.
     ///
-    /// - `last`: normal strain and shear strain; `shear`: that in the axes of the first particle
-    pub(super) fn separated_memory(&self, how: Separation, last: [f64; 4], shear: [f64; 3]) -> InterfaceMemory {
-        let compression = self.young_modulus * (-last[0]).max(0.0);
+    /// - `normal`, `shear`: normal strain, and shear strain in the axes of the first particle
+    pub(super) fn separated_memory(&self, how: Separation, normal: f64, shear: [f64; 3]) -> InterfaceMemory {
+        let compression = self.young_modulus * (-normal).max(0.0);
         let slip = self.slipped(shear, [0.0; 3], compression);
+        let last = [normal, shear[0], shear[1], shear[2]];
         InterfaceMemory { damage: [1.0; 2], slip, last, separation: Some(how), ..InterfaceMemory::default() }
     }
 

@@ -94,14 +94,14 @@ impl<const W: usize> Kinematics<W> {
         Kinematics { direction: n, over, normal: length * inverse - Lanes::splat(1.0), shear, arms, along }
     }
 
-    /// Forces of a normal stress and a stress across, times areas. Moments carry what makes angular momentum exact.
+    /// Forces of a normal stress and a stress across, times areas, as derivatives of an energy of the strains and of slips that turn with the first
+    /// particles, which so take the moment of a stress that is not along its strain.
     #[inline(always)]
-    fn forces(&self, pull: Lanes<W>, across: Vector<W>, length: Lanes<W>, arm: Lanes<W>) -> ForceLanes<W> {
+    fn forces(&self, pull: Lanes<W>, across: Vector<W>, length: Lanes<W>) -> ForceLanes<W> {
         let force = sub(scale(self.direction, -pull), scale(across, self.along * length * self.over));
         let missing = scale(cross(self.shear, across), length);
-        let rest = Lanes::splat(1.0) - arm;
         let [first, second] = self.arms.map(|arm| scale(cross(arm, across), length));
-        ForceLanes { force, moment: [add(first, scale(missing, arm)), add(second, scale(missing, rest))] }
+        ForceLanes { force, moment: [add(first, missing), second] }
     }
 }
 
@@ -166,13 +166,22 @@ impl LocalBond {
         memory: &mut [InterfaceMemory; W],
         (stress, across): (&mut Lanes<W>, &mut Vector<W>),
     ) {
-        let slips = [0, 1, 2].map(|a| Lanes(std::array::from_fn(|k| memory[k].slip[a])));
-        let mut slips = turned_slips((w, u), slips, at.direction);
+        let gather = |of: &dyn Fn(&InterfaceMemory) -> [f64; 3]| {
+            let of = |a: usize| Lanes(std::array::from_fn(|k| of(&memory[k])[a]));
+            [of(0), of(1), of(2)]
+        };
+        let mut slips = turned_slips((w, u), gather(&|memory| memory.slip), at.direction);
+        let lasts = rotate(w, u, gather(&|memory| [memory.last[1], memory.last[2], memory.last[3]]));
+        let shears = rotate(w, u.map(|u| -u), at.shear);
         let mut moved = 0u32;
         for k in (0..W).filter(|k| which >> k & 1 == 1) {
             let (shear, slip) = (at.shear.map(|s| s.0[k]), slips.map(|s| s.0[k]));
+            let turns = recent.inelastic >> k & 1 == 1;
             memory[k] = recent.recall(&memory[k], k);
-            let (normal_stress, shear_stress, new) = self.stress(at.normal.0[k], shear, slip, &mut memory[k]);
+            let last = [1, 2, 3].map(|a| if turns { lasts[a - 1].0[k] } else { memory[k].last[a] });
+            let (normal_stress, shear_stress, new) = self.stress(at.normal.0[k], shear, [slip, last], &mut memory[k]);
+            let [x, y, z] = shears.map(|s| s.0[k]);
+            memory[k].last = [at.normal.0[k], x, y, z];
             recent.remember(&memory[k], k);
             stress.0[k] = normal_stress;
             moved |= u32::from(new != slip) << k;
@@ -298,8 +307,7 @@ impl BondLaw for LocalBond {
         }
         recent.last = [at.normal.0, at.shear[0].0, at.shear[1].0, at.shear[2].0];
         let area = Lanes(own.map(|own| own.area)) * bonds.live;
-        let arm = Lanes(own.map(|own| own.arm));
-        at.forces(stress * area, scale(across, area), bonds.inverse.recip(), arm)
+        at.forces(stress * area, scale(across, area), bonds.inverse.recip())
     }
 
     fn energy(&self, pair: &BondedPair, own: &Interface, memory: &InterfaceMemory) -> BondEnergy {

@@ -235,6 +235,37 @@ fn viscous_forces_oppose_the_change_of_length_with_the_constant_of_the_source() 
     assert!((bonds.viscous_time(&particles) / (viscosity / stiffness) - 1.0).abs() < 1e-12);
 }
 
+#[test]
+fn what_a_pair_that_rubs_turns_and_twists_does_is_stored_or_dissipated() {
+    let (mut particles, mut bonds) = pair(law());
+    let steps = 4000;
+    let (mut work, mut before): (f64, Option<Particles>) = (0.0, None);
+    let mut start = f64::NAN;
+    for step in 0..=steps {
+        let t = f64::from(step) / f64::from(steps);
+        place(&mut particles, -2e-4, 0.3 * t);
+        let whole = Rotation::from_scaled_axis(Vec3::new(0.3, 2.0, -1.0) * t);
+        particles.position[1] = whole * particles.position[1];
+        particles.orientation[1] = Rotation::from_scaled_axis(axis() * t) * particles.orientation[1];
+        particles.orientation.iter_mut().for_each(|q| *q = whole * *q);
+        particles.clear_forces();
+        bonds.add_forces(&mut particles);
+        if let Some(before) = &before {
+            for i in 0..2 {
+                let turn = (particles.orientation[i] * before.orientation[i].inverse()).scaled_axis();
+                work += 0.5 * (particles.force[i] + before.force[i]).dot(&(particles.position[i] - before.position[i]));
+                work += 0.5 * (particles.moment[i] + before.moment[i]).dot(&turn);
+            }
+        } else {
+            start = bonds.energy(&particles).total();
+        }
+        before = Some(particles.clone());
+    }
+    let dissipated = bonds.dissipated();
+    let left = work + bonds.energy(&particles).total() - start + dissipated;
+    assert!(dissipated > 0.0 && left.abs() < 2e-4 * dissipated, "{left} {dissipated}");
+}
+
 const UNIT: std::ops::Range<f64> = -1.0..1.0;
 
 proptest! {
