@@ -25,6 +25,8 @@ use crate::watch::{pool, watch};
 pub(crate) struct Core {
     simulation: Mutex<Option<Simulation>>,
     pool: ThreadPool,
+    /// As many threads for what is computed from a state between steps.
+    looks: ThreadPool,
     numbering: Numbering,
     /// Whether a step is under way.
     stepping: AtomicBool,
@@ -159,7 +161,7 @@ impl Core {
     ) -> PyResult<Self> {
         let (resume, overwrite) = begin;
         let options = Options { output, threads, overrides: set, resume, overwrite, quiet, cache: cache_of_user() };
-        let pool = pool(py, threads)?;
+        let (pool, looks) = (pool(py, threads)?, pool(py, threads)?);
         let opened = watch(py, &pool, || {
             let started = Instant::now();
             let input = load(&case, &options.overrides, &options.cache)?;
@@ -168,7 +170,7 @@ impl Core {
         })?;
         let (simulation, numbering) = opened.map_err(|failure| raise(py, &failure))?;
         let simulation = Mutex::new(Some(simulation));
-        Ok(Core { simulation, pool, numbering, stepping: AtomicBool::new(false), points: Vec::new() })
+        Ok(Core { simulation, pool, looks, numbering, stepping: AtomicBool::new(false), points: Vec::new() })
     }
 
     /// Steps at most `count` times and not beyond `until` [s]; whether the run goes on.
@@ -395,8 +397,10 @@ impl Core {
                 if body >= solid.body_count() {
                     return Err(Failure::input(format!("no solid body {body}")));
                 }
-                let fields = if computed { solid.element_fields(body) } else { Vec::new() };
-                Ok((solid.alive(body).to_vec(), fields))
+                // On threads of their own: those of the steps may wait for what holds the simulation here.
+                let fields = if computed { self.looks.install(|| solid.element_fields(body)) } else { Vec::new() };
+                let alive = if computed { Vec::new() } else { solid.alive(body).to_vec() };
+                Ok((alive, fields))
             })
         })?;
         match name {

@@ -72,6 +72,11 @@ pub fn instant_text(time: f64, at_rest: bool) -> String {
     if at_rest && time.is_finite() { format!("load factor {}", significant(time, 4)) } else { quantity(time, "s") }
 }
 
+/// As [`instant_text`], where a bare time would not say what it is: `t = 5 ms`.
+pub fn at_instant(time: f64, at_rest: bool) -> String {
+    format!("{}{}", if at_rest { "" } else { "t = " }, instant_text(time, at_rest))
+}
+
 /// A share in per cent with three significant digits: `5 %`.
 pub fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 3))

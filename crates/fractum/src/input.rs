@@ -48,6 +48,7 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
         None => (Mesh::default(), 0),
     };
     check_before_particles(&case, &mesh)?;
+    plots::check(&case, &record::possible_columns(&case))?;
     check_memory(&case, &mesh)?;
     let made = prepare_bodies(&case, &mesh, cache)?;
     let mut built = build_scene(&case, &mesh, made.prepared, facets(&case)?)?;

@@ -12,7 +12,7 @@ use fractum_io::build::{BuiltScene, TieReport};
 use fractum_io::case::model::{
     Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SolverKind, SurfaceSupport,
 };
-use fractum_io::number::quantity;
+use fractum_io::number::{instant_text, quantity};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
@@ -104,8 +104,8 @@ impl Plan {
                 let unknowns = 6 * scene.bonded.particles.len() - scene.bonded.held_count();
                 let breaks = scene.bonded.can_break();
                 let path = if breaks { "from break to break" } else { "in one solution, since no bond can break" };
-                let end = quantity(case.solver.end, "s");
-                self.add("equilibrium", format!("{unknowns} unknowns, {path}, to t = {end}"));
+                let end = instant_text(case.solver.end, true);
+                self.add("equilibrium", format!("{unknowns} unknowns, {path}, to {end}"));
             }
             None if built.conducts_alone => {}
             None => {
@@ -315,7 +315,7 @@ impl Plan {
                 format!("along the path of equilibrium, a crack opening by {step} per step, to {end}")
             }
         };
-        self.add("equilibrium", format!("{unknowns} unknowns, {control}, to t = {}", quantity(settings.end, "s")));
+        self.add("equilibrium", format!("{unknowns} unknowns, {control}, to {}", instant_text(settings.end, true)));
         if scene.solid.has_damage() {
             self.add("contact", "crack faces that close press on each other, without friction");
         }

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use fractum_io::atomic::Written;
 use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::{BuiltScene, PpvStations};
-use fractum_io::case::model::{Case, HistoryColumns, Output, ProbeExpression, ProbeInput, ProbeKind, Take};
+use fractum_io::case::model::{
+    Body, BodyKind, Case, HistoryColumns, Output, ProbeExpression, ProbeInput, ProbeKind, SolverKind, Take,
+};
 use fractum_io::history::{Column, History, Table};
 use fractum_io::vtk::{Collection, FrameWriter};
 use fractum_scene::statics::{Control, NoEquilibrium};
@@ -32,7 +34,26 @@ pub(crate) fn ordered(mut history: Table) -> Table {
 
 /// Columns of the history of a run.
 pub(crate) fn columns(case: &Case, scene: &Scene, course: Course) -> Vec<Column> {
-    let no_probes = no_probes(case, scene, course).list();
+    with_probes(case, no_probes(case, scene, course))
+}
+
+/// Columns that the history of a case may have: which solver `kind = "auto"` takes is not known before there are particles.
+pub(crate) fn possible_columns(case: &Case) -> Vec<Column> {
+    let mut stages = case.later.iter().chain([case]);
+    let is_particles = |body: &Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
+    let columns = HistoryColumns {
+        particles: case.bodies.iter().any(is_particles),
+        domain: stages.clone().any(|stage| stage.solver.domain.is_some()),
+        heat: case.flows.heat.is_some(),
+        turns_back: stages.any(|stage| matches!(stage.solver.kind, SolverKind::Static | SolverKind::Auto)),
+        in_motion: both_rests_and_moves(case),
+    };
+    with_probes(case, columns)
+}
+
+/// The columns of a history, then those of its probes.
+fn with_probes(case: &Case, no_probes: HistoryColumns) -> Vec<Column> {
+    let no_probes = no_probes.list();
     let of_probes = case.probes.iter().filter(|probe| !probe.is_scalar());
     let of_probes = of_probes.map(|probe| {
         // A probe may be called like another column: no two columns have one name.
@@ -46,14 +67,19 @@ pub(crate) fn columns(case: &Case, scene: &Scene, course: Course) -> Vec<Column>
 
 /// The columns that are no probes.
 fn no_probes(case: &Case, scene: &Scene, course: Course) -> HistoryColumns {
-    let hands_over = case.solver.statics.as_ref().is_some_and(|s| s.no_equilibrium == NoEquilibrium::Motion);
     HistoryColumns {
         particles: !scene.bonded.is_empty(),
         domain: scene.domain().is_some(),
         heat: scene.heat().is_some(),
         turns_back: course.turns_back,
-        in_motion: hands_over || !case.later.is_empty(),
+        in_motion: both_rests_and_moves(case),
     }
+}
+
+/// Whether a run may be at rest and in motion.
+fn both_rests_and_moves(case: &Case) -> bool {
+    let hands_over = case.solver.statics.as_ref().is_some_and(|s| s.no_equilibrium == NoEquilibrium::Motion);
+    hands_over || !case.later.is_empty()
 }
 
 /// Entries of the ledger that count in its balance.

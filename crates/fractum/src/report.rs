@@ -149,28 +149,27 @@ fn probes(history: &Table) -> &[Column] {
 
 /// The chart of a plot of the user's own. A probe that is one number is a level.
 fn own(plot: &PlotNote, history: &Table, summary: &Summary) -> Curve {
-    let column = |name: &str| {
-        // A probe that is called like another column has a column of another name.
+    let column = |name: &String| {
+        // A probe that is called like another column has a column of another name, or none if it is one number.
         let of_probe = format!("probe.{name}");
-        if summary.probes.contains_key(name) && history.column(&of_probe).is_some() {
-            of_probe
-        } else {
-            name.to_owned()
-        }
+        let is_own = |column: &&Column| [name, &of_probe].contains(&&column.name);
+        let own = || probes(history).iter().find(is_own).map(|column| column.name.clone());
+        let other = || history.column(name).map(|_| name.clone());
+        if summary.probes.contains_key(name) { own() } else { other() }
     };
-    let is_column = |name: &&String| history.column(&column(name)).is_some();
+    let is_column = |name: &&String| column(name).is_some();
     let level = |name: &String| {
         let probe = summary.probes.get(name)?;
         let label = format!("{}: {}", name.replace('_', " "), quantity(probe.r#final, &probe.unit));
         Some(Level { label, value: probe.r#final })
     };
-    let y: Vec<String> = plot.y.iter().filter(is_column).map(|name| column(name)).collect();
+    let y: Vec<String> = plot.y.iter().filter_map(column).collect();
     let unit = y.first().and_then(|name| history.column(name)).map_or("-", |(_, unit)| unit);
     let names = plot.y.iter().filter(is_column).map(|name| name.replace('_', " "));
     let made = || format!("{} against {}", names.collect::<Vec<_>>().join(", "), plot.x.replace('_', " "));
     Curve {
         title: if plot.title.is_empty() { made() } else { plot.title.clone() },
-        x: column(&plot.x),
+        x: column(&plot.x).unwrap_or_default(),
         quantity: quantity_of(unit).0,
         levels: plot.y.iter().filter(|name| !is_column(name)).filter_map(level).collect(),
         labels: plot.labels.clone(),

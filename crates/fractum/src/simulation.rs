@@ -17,7 +17,7 @@ use fractum_io::build::BuiltScene;
 use fractum_io::case::Case;
 use fractum_io::checkpoint::{self, Header, Identity};
 use fractum_io::log::Snapshot;
-use fractum_io::number::{instant_text, percent, quantity};
+use fractum_io::number::{at_instant, percent};
 use fractum_io::origin::Origin;
 use fractum_io::summary::{Status, Summary};
 use fractum_prepare::Cache;
@@ -32,8 +32,8 @@ use crate::record::{RecordState, Recorder};
 use crate::series::index_of_max;
 use crate::solver::{Measured, Solver, SolverState};
 use messages::Messages;
-pub(crate) use open::open_folder;
 pub use origin::for_shell;
+pub(crate) use origin::kept_hash;
 
 /// How a case is run.
 #[derive(Clone, Debug, Default)]
@@ -216,7 +216,7 @@ impl Simulation {
         if let Some(Measured { time, dt, in_motion }) = self.measured.take() {
             let Simulation { recorder, scene, phases, .. } = self;
             phases.timed(Part::Output, || recorder.row(scene, time, dt, in_motion))?;
-            self.messages.warn_of_balance(&self.scene, self.case.solver.balance_warning)?;
+            self.messages.warn_of_balance(&self.scene, self.case.solver.balance_warning, self.solver.rests())?;
             if let Some(why) = self.falls_below() {
                 self.end_stage(why)?;
             }
@@ -268,7 +268,7 @@ impl Simulation {
             self.end.get_or_insert(End::Finished(why));
             return Ok(());
         };
-        let text = format!("t = {}: stage \"{}\"", quantity(self.time(), "s"), case.source.stage);
+        let text = format!("{}: stage \"{}\"", self.instant(self.time()), case.source.stage);
         self.messages.tell(&text)?;
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         let was_moving = self.solver.moves();
@@ -283,8 +283,7 @@ impl Simulation {
 
     /// An instant in words.
     fn instant(&self, time: f64) -> String {
-        let at_rest = self.solver.rests();
-        format!("{}{}", if at_rest { "" } else { "t = " }, instant_text(time, at_rest))
+        at_instant(time, self.solver.rests())
     }
 
     /// Why there is no further step.

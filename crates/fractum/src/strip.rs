@@ -9,6 +9,9 @@ use crate::frame_pictures::{FrameIndex, Frames};
 use crate::report::PictureNote;
 use crate::sight::magnified;
 
+/// How the names of the pictures of the strip begin.
+pub(crate) const STRIP_FILE: &str = "strip-";
+
 /// Width and height of the pictures of the strip [pixels].
 const STRIP: [usize; 2] = [460, 390];
 /// Pictures of the strip, with that at the peak.
@@ -31,7 +34,7 @@ pub(crate) fn strip(folder: &Path, peak: Option<f64>, at_rest: bool) -> Vec<Pict
     let Ok(frames) = Frames::survey(index, &wanted) else { return Vec::new() };
     let (label, unit) = frames.label();
     let note = |instant: usize| {
-        let file = format!("strip-{instant:05}.png");
+        let file = format!("{STRIP_FILE}{instant:05}.png");
         let image = frames.draw(instant, STRIP[0], STRIP[1]).ok()?;
         image.write(&folder.join("pictures").join(&file)).ok()?;
         let peak = if Some(instant) == at_peak { " (nearest to the peak)" } else { "" };

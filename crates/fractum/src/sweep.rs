@@ -12,12 +12,8 @@ use serde_json::Value;
 
 use crate::error::{ExitCode, Failure};
 use crate::run::run;
-use crate::simulation::{Options, open_folder};
+use crate::simulation::{Options, kept_hash};
 use crate::tell;
-
-/// File beside the results of a run with the hash of its case. A state by itself does not tell the end of the run that it is of,
-/// since `--resume` may go on to another one.
-const CASE: &str = "case-hash.txt";
 
 /// Where a list keeps the results of its runs: `runs/` beside `runs.csv`.
 pub fn results_folder(list: &Path) -> PathBuf {
@@ -56,15 +52,10 @@ pub fn run_one(listed: &Listed, folder: &Path, options: &Options, anew: bool) ->
         tell!("run {} has finished before: {}", listed.name, place.display());
         return Ok(Status::Completed);
     }
-    let same = std::fs::read_to_string(place.join(CASE)).is_ok_and(|kept| kept == hash);
-    let resume = !anew && same && has_state(&place);
-    if !resume {
-        if !anew && has_state(&place) {
-            tell!("{}: a state of another case; run {} starts anew", place.display(), listed.name);
-        }
-        // Without its states first: a run that does not come to its own must not leave them under this hash.
-        drop(open_folder(&place, true)?);
-        atomic::write(&place.join(CASE), hash.as_bytes())?;
+    // A state by itself does not tell whether it was reached with the end of this case.
+    let resume = !anew && has_state(&place) && kept_hash(&place) == Some(hash);
+    if !resume && !anew && has_state(&place) {
+        tell!("{}: a state of another case; run {} starts anew", place.display(), listed.name);
     }
     let overrides = listed.overrides.clone();
     let options = Options { output: Some(place), overrides, resume, overwrite: !resume, ..options.clone() };

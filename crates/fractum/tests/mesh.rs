@@ -98,6 +98,14 @@ fn information_on_a_mesh_is_in_the_unit_of_the_case_and_beside_its_material() {
     let json: serde_json::Value = serde_json::from_str(&info(&["--case", "case.toml", "--format", "json"])).unwrap();
     assert!((json["process_zones"]["concrete"].as_f64().unwrap() * 3.0 - 1.0).abs() < 1e-12, "{json}");
     assert!(json["edges"]["shortest"].as_f64().unwrap() > 0.039 && json["hints"].as_array().unwrap().is_empty());
+    // The same file as one in mm, and a softening whose first line is steep.
+    let small = BREAKING_BAR.replace("file = \"bar.msh\"", "file = \"bar.msh\"\nunit = \"mm\"");
+    let bilinear = "fracture_energy = \"100 J/m^2\"\nsoftening = \"bilinear\"";
+    fs::write(workplace.path("small.toml"), small.replace("fracture_energy = \"100 J/m^2\"", bilinear)).unwrap();
+    let small = info(&["--case", "small.toml"]);
+    assert!(small.contains("edges of tetrahedra: 40 \u{b5}m to ") && small.contains("edges below 400 mm"), "{small}");
+    let json: serde_json::Value = serde_json::from_str(&info(&["--case", "small.toml", "--format", "json"])).unwrap();
+    assert!((json["edges"]["shortest"].as_f64().unwrap() - 4e-5).abs() < 1e-6, "{json}");
     let mut mesh = bar();
     mesh.groups.clear();
     let without = Workplace::with_mesh("", &crate::common::mesh_bytes(&mesh, fractum_mesh::MshFormat::V2_2Ascii));

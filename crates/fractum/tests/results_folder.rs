@@ -29,7 +29,9 @@ fn results_are_replaced_only_where_the_user_says_so() {
     assert_eq!(both.code, Some(1), "{}", both.stderr);
     assert_eq!(place.fractum(&["movie", "out", "--width", "40", "--height", "30"]).code, Some(0));
     fs::rename(place.path("case.toml"), place.path("shorter.toml")).unwrap();
-    fs::write(place.path("out/pictures/sketch.svg"), "<svg/>").unwrap();
+    let of_the_user =
+        ["pictures/sketch.svg", "pictures/photo.png", "input/other.toml"].map(|name| place.path("out").join(name));
+    of_the_user.iter().for_each(|path| fs::write(path, "own").unwrap());
     let strip = || {
         let pictures = files_below(&place.path("out/pictures"), ".png");
         pictures.iter().filter(|path| path.to_string_lossy().contains("strip-")).count()
@@ -40,12 +42,27 @@ fn results_are_replaced_only_where_the_user_says_so() {
     assert_eq!(summary(&place, "out")["status"], "completed");
     // Nothing of the longer run is left, and what is not of a run stays.
     assert!(!place.path("out/movie.png").exists() && strip() < 3);
-    assert_eq!(files_below(&place.path("out/input"), ""), [place.path("out/input/shorter.toml")]);
-    assert!(place.path("out/pictures/sketch.svg").exists());
+    assert!(!place.path("out/input/case.toml").exists() && place.path("out/input/shorter.toml").exists());
+    assert!(of_the_user.iter().all(|path| path.exists()));
     let listed = fs::read_to_string(place.path("out/fields.pvd")).unwrap();
     for path in files_below(&place.path("out"), ".vtu") {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         assert!(listed.contains(&name), "{name}");
+    }
+}
+
+#[test]
+fn files_of_the_user_stay_where_no_run_has_been() {
+    let place = Workplace::new(BREAKING_BAR);
+    let names = ["input/other.toml", "pictures/damage.png", "movie.png", "solid/mine.vtu"];
+    for path in names.map(|name| place.path(name)) {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, "own").unwrap();
+    }
+    let ended = place.fractum(&["run", "case.toml", "-o", ".", "--quiet", "--set", "end=1 us"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    for name in ["input/other.toml", "movie.png", "solid/mine.vtu"] {
+        assert_eq!(fs::read_to_string(place.path(name)).unwrap(), "own", "{name}");
     }
 }
 
@@ -123,7 +140,11 @@ fn the_state_that_a_stopped_run_names_is_there() {
     let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet"]);
     assert_eq!(ended.code, Some(2), "{}", ended.stderr);
     let step = checkpoints(&place.path("out")).last().copied().unwrap();
-    assert!(ended.stderr.contains(&format!("last good state saved in out: step {step}, t = ")), "{}", ended.stderr);
+    assert!(
+        ended.stderr.contains(&format!("last good state saved in out: step {step}, load factor ")),
+        "{}",
+        ended.stderr
+    );
     let steps = crate::common::history(&place, "out", &["time"]).len() as u64;
     assert!(step > 0 && step <= steps, "the last equilibrium, {step} of {steps}");
     let summary = summary(&place, "out");

@@ -84,3 +84,32 @@ fn a_run_of_the_same_name_with_another_end_is_another_run() {
         assert_eq!(summary(&place, "runs/1")["state_hash"], summary(&place, "direct")["state_hash"], "{end}");
     }
 }
+
+#[test]
+fn results_stay_until_the_case_of_a_run_is_read() {
+    let place = Workplace::new(BREAKING_BAR);
+    let listed = place.fractum(&["sweep", "list", "case.toml", "--set", "end=10 us"]);
+    assert_eq!(listed.code, Some(0), "{}", listed.stderr);
+    assert_eq!(place.fractum(&["sweep", "run", "runs.csv", "1"]).code, Some(0));
+    let before = summary(&place, "runs/1");
+    fs::rename(place.path("bar.msh"), place.path("away.msh")).unwrap();
+    let ended = place.fractum(&["sweep", "run", "runs.csv", "1", "--anew"]);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    assert_eq!(summary(&place, "runs/1"), before);
+}
+
+#[test]
+fn a_run_that_went_on_to_another_end_by_hand_starts_anew() {
+    let place = Workplace::new(BREAKING_BAR);
+    let set = ["--set", "end=20 us", "--set", "output.checkpoint.every=1 ms"];
+    let listed = place.fractum(&[&["sweep", "list", "case.toml"][..], &set].concat());
+    assert_eq!(listed.code, Some(0), "{}", listed.stderr);
+    assert_eq!(place.fractum(&["sweep", "run", "runs.csv", "1"]).code, Some(0));
+    let later =
+        ["run", "case.toml", "-o", "runs/1", "--resume", "--set", "end=30 us", "--set", "output.checkpoint.every=1 ms"];
+    let ended = place.fractum(&later);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = place.fractum(&["sweep", "run", "runs.csv", "1"]);
+    assert!(ended.code == Some(0) && ended.stderr.contains("starts anew"), "{}", ended.stderr);
+    assert_eq!(summary(&place, "runs/1")["time"]["end"], 20e-6);
+}

@@ -13,22 +13,31 @@ use serde_json::{Value, json};
 
 /// Part of the process zone that edges must not exceed for an accurate peak load.
 const ACCURATE: f64 = 0.1;
-/// Process zones that an element must not exceed, with exponential softening.
-const MOST: f64 = 2.0;
 
 /// What a case asks of its mesh.
 pub(super) struct Demand {
     /// Length of the unit of the mesh [m].
     unit: f64,
-    /// Materials that crack, each with its process zone E G_f/f_t² [m].
-    zones: Vec<(String, f64)>,
+    /// Materials that crack.
+    zones: Vec<Zone>,
+}
+
+/// What a material that cracks asks for.
+struct Zone {
+    material: String,
+    /// Process zone E G_f/f_t² [m].
+    length: f64,
+    /// Characteristic length of an element that its softening allows [m].
+    most: f64,
 }
 
 impl Demand {
     pub(super) fn of(case: &Case) -> Self {
         let zone = |material: &fractum_io::case::model::Material| {
             let law = &material.damage.as_ref()?.value.law;
-            Some((material.name.value.clone(), law.process_zone(material.young_modulus)))
+            let (modulus, material) = (material.young_modulus, material.name.value.clone());
+            let most = law.softening.largest_length(modulus, law.tensile_strength, law.fracture_energy);
+            Some(Zone { material, length: law.process_zone(modulus), most })
         };
         Demand {
             unit: case.mesh.as_ref().map_or(1.0, |mesh| mesh.unit),
@@ -72,30 +81,32 @@ fn element_counts(mesh: &Mesh) -> [(&'static str, usize); 5] {
 
 /// All of it as one JSON value.
 pub(super) fn json(file: &Path, mesh: &Mesh, demand: Option<&Demand>) -> Value {
+    let unit = demand.map_or(1.0, |demand| demand.unit);
     let (low, high) = mesh.bounding_box();
     let group = |group: &Group| json!({ "name": group.name, "dimension": group.dimension, "tag": group.tag, "elements": group.element_count() });
     let mut value = json!({
         "file": file.display().to_string(),
         "nodes": mesh.nodes.len(),
         "elements": BTreeMap::from(element_counts(mesh)),
-        "lower": low.as_slice(),
-        "upper": high.as_slice(),
+        "lower": (low * unit).as_slice(),
+        "upper": (high * unit).as_slice(),
         "groups": mesh.groups.iter().map(group).collect::<Vec<_>>(),
         "notices": mesh.notices,
         "hints": fractum_mesh::hints(mesh),
     });
     if let Some(Solids { lengths, summary, .. }) = Solids::of(mesh) {
-        value["edges"] = json!({ "shortest": lengths.shortest, "mean": lengths.mean, "longest": lengths.longest });
+        let [shortest, mean, longest] = [lengths.shortest, lengths.mean, lengths.longest].map(|length| unit * length);
+        value["edges"] = json!({ "shortest": shortest, "mean": mean, "longest": longest });
         value["quality"] = json!({
             "mean_radius_ratio": summary.mean_radius_ratio,
             "worst_radius_ratio": summary.worst_radius_ratio.value,
             "smallest_angle": summary.smallest_angle.value,
             "largest_angle": summary.largest_angle.value,
-            "shortest_altitude": summary.shortest_altitude.value,
+            "shortest_altitude": unit * summary.shortest_altitude.value,
         });
     }
     if let Some(demand) = demand {
-        let zone = |(name, zone): &(String, f64)| (name.clone(), json!(zone));
+        let zone = |zone: &Zone| (zone.material.clone(), json!(zone.length));
         value["process_zones"] = Value::Object(demand.zones.iter().map(zone).collect());
     }
     value
@@ -153,8 +164,8 @@ fn quality_lines(solids: &Solids, length: &dyn Fn(f64) -> String) -> String {
 /// Edges beside what each material needs.
 fn zone_lines(solids: &Solids, demand: &Demand) -> String {
     let [shortest, longest] = [solids.lengths.shortest, solids.lengths.longest].map(|length| demand.unit * length);
-    let line = |(name, zone): &(String, f64)| {
-        let [accurate, most] = [ACCURATE * zone, MOST * zone];
+    let line = |&Zone { ref material, length, most }: &Zone| {
+        let accurate = ACCURATE * length;
         let verdict = match (shortest, longest) {
             (_, longest) if longest <= accurate => "fine everywhere",
             (shortest, longest) if shortest <= accurate && longest <= most => {
@@ -166,11 +177,11 @@ fn zone_lines(solids: &Solids, demand: &Demand) -> String {
             (shortest, _) if shortest <= most => "coarse: the peak load will be too high; refine where cracks go",
             _ => "too coarse to crack: refine where cracks go",
         };
-        let [zone, most, accurate] = [*zone, most, accurate].map(|length| quantity(length, "m"));
+        let [zone, most, accurate] = [length, most, accurate].map(|length| quantity(length, "m"));
         format!(
             "\n  {}: process zone E Gf/ft\u{b2} = {zone}; where cracks go, edges below {most}, for an accurate peak load below \
              {accurate}: {verdict}",
-            printable(name)
+            printable(material)
         )
     };
     demand.zones.iter().map(line).collect()

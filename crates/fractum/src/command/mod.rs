@@ -298,7 +298,7 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
             say!("{name:<28} {}", fractum_io::number::quantity(probe.r#final, &probe.unit));
         }
         for body in &summary.fracture {
-            say!("{:<28} {}", body.body, fracture_text(body));
+            say!("{:<28} {}", body.body, fracture_text(body, summary.time.at_rest));
         }
         for expect in &summary.expect {
             let (verdict, tone) =
@@ -308,7 +308,7 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
             say!("{:<28} {value}, {verdict}: {} ({})", expect.quantity, expect.required(), expect.source);
         }
         if let Some((name, probe)) = load.as_ref().and_then(|name| summary.probes.get_key_value(name)) {
-            say!("{:<28} {}", "peak", peak_text(name, probe));
+            say!("{:<28} {}", "peak", peak_text(name, probe, summary.time.at_rest));
         }
         say!("{:<28} {}", "end", summary.time.reason);
         say!("results in {}", folder.display());
@@ -317,26 +317,30 @@ fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
 }
 
 /// The largest absolute value of the load, in words.
-fn peak_text(name: &str, probe: &Probe) -> String {
-    use fractum_io::number::quantity;
+///
+/// - `at_rest`: whether instants are load factors
+fn peak_text(name: &str, probe: &Probe, at_rest: bool) -> String {
+    use fractum_io::number::{at_instant, quantity};
     if probe.min.abs() > probe.max.abs() {
         return format!("{name} {}", quantity(probe.min, &probe.unit));
     }
-    format!("{name} {} at t = {}", quantity(probe.max, &probe.unit), quantity(probe.time_of_max, "s"))
+    format!("{name} {} at {}", quantity(probe.max, &probe.unit), at_instant(probe.time_of_max, at_rest))
 }
 
 /// What became of the bonds of a body, in words.
-fn fracture_text(body: &Fracture) -> String {
-    use fractum_io::number::quantity;
+///
+/// - `at_rest`: whether instants are load factors
+fn fracture_text(body: &Fracture, at_rest: bool) -> String {
+    use fractum_io::number::{at_instant, quantity};
     if body.broken_bonds > 0 {
-        let (first, area) = (quantity(body.first_break, "s"), quantity(body.crack_area, "m^2"));
+        let (first, area) = (at_instant(body.first_break, at_rest), quantity(body.crack_area, "m^2"));
         return format!("{} bonds broke, the first at {first}; they stand for {area}", body.broken_bonds);
     }
     match body.largest_at {
         Some([x, y, z]) => format!(
-            "no bond broke; the largest load was {:.1} % of the strength, at ({x:.3e}, {y:.3e}, {z:.3e}) m, t = {}",
+            "no bond broke; the largest load was {:.1} % of the strength, at ({x:.3e}, {y:.3e}, {z:.3e}) m, {}",
             100.0 * body.largest_ratio,
-            quantity(body.largest_time, "s")
+            at_instant(body.largest_time, at_rest)
         ),
         None => "no bond broke: nothing bore any load".to_owned(),
     }

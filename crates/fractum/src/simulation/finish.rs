@@ -7,7 +7,7 @@ use std::path::Path;
 use fractum_fem::{CrackFacet, Solid};
 use fractum_io::attenuation;
 use fractum_io::fragments::{self, Fragment};
-use fractum_io::number::quantity;
+use fractum_io::number::at_instant;
 use fractum_io::summary::{Hashes, Summary, hash_text};
 use fractum_scene::{Scene, fragment_size};
 
@@ -87,12 +87,13 @@ impl Simulation {
         self.recorder.finish()?;
         report::keep(&self.folder, &notes)?;
         report::write(&self.folder)?;
+        let at_rest = self.solver.rests();
         match end {
             End::Failed(error) => {
                 self.messages.log.line(&error)?;
                 let folder = self.folder.display();
                 let saved = self.saved.map_or(format!("{folder}"), |Saved { step, time, .. }| {
-                    format!("{folder}: step {step}, t = {}", quantity(time, "s"))
+                    format!("{folder}: step {step}, {}", at_instant(time, at_rest))
                 });
                 Err(Failure::Stopped { error, saved })
             }

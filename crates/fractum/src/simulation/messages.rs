@@ -3,6 +3,7 @@
 use std::io::Stderr;
 
 use fractum_io::log::{Progress, RunLog};
+use fractum_io::number::at_instant;
 use fractum_scene::Scene;
 
 use crate::error::Failure;
@@ -39,15 +40,14 @@ impl Messages {
     }
 
     /// - `allowed`: relative residual of the energy balance above which to warn, once in a run
-    pub(super) fn warn_of_balance(&mut self, scene: &Scene, allowed: f64) -> Result<(), Failure> {
+    /// - `at_rest`: whether the time is a load factor
+    pub(super) fn warn_of_balance(&mut self, scene: &Scene, allowed: f64, at_rest: bool) -> Result<(), Failure> {
         let relative = scene.ledger().relative_residual();
         if self.warned_of_balance || relative <= allowed {
             return Ok(());
         }
         self.warned_of_balance = true;
-        let time = scene.clock.time;
-        self.warn(format!(
-            "warning: t = {time:.4e} s: the energy balance is off by {relative:.1e} of the energy put in"
-        ))
+        let instant = at_instant(scene.clock.time, at_rest);
+        self.warn(format!("warning: {instant}: the energy balance is off by {relative:.1e} of the energy put in"))
     }
 }

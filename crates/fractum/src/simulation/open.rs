@@ -10,11 +10,11 @@ use fractum_io::atomic::create_folder;
 use fractum_io::case::{Case, Diagnostic, Diagnostics};
 use fractum_io::checkpoint::{self, Identity, Loaded};
 use fractum_io::log::RunLog;
-use fractum_io::number::quantity;
+use fractum_io::number::{at_instant, instant_text};
 use fractum_scene::Scene;
 
 use super::messages::Messages;
-use super::origin::{keep_case, origin};
+use super::origin::{forget_case, keep_case, origin};
 use super::{About, Options, RunState, Simulation};
 use crate::error::Failure;
 use crate::frames::GridLayout;
@@ -25,6 +25,7 @@ use crate::plan::Plan;
 use crate::population::Population;
 use crate::record::{Course, RecordState, Recorder};
 use crate::solver::Solver;
+use crate::strip::STRIP_FILE;
 use crate::tell;
 use crate::terminal::{Stream, Tone, toned};
 
@@ -86,7 +87,7 @@ impl Simulation {
         let resumed = loaded.map(put_back).transpose()?;
         let is_new = resumed.is_none();
         let mut messages = Messages::new(open_folder(&folder, is_new)?, options.quiet);
-        keep_case(&case, &folder)?;
+        keep_case(&case, &folder, is_new)?;
         let threads = rayon::current_num_threads();
         let version = env!("CARGO_PKG_VERSION");
         messages.log.line(format!("fractum {version} on {threads} threads: {}", path.display()))?;
@@ -143,16 +144,17 @@ fn find_checkpoint(folder: &Path, identity: &Identity) -> Result<Loaded<RunState
 /// [`Failure::Input`] where the case ends before that.
 fn goes_on(case: &Case, loaded: &Loaded<RunState>) -> Result<String, Failure> {
     let (time, end) = (loaded.header.time, case.end());
-    let (reached, ends) = (quantity(time, "s"), quantity(end, "s"));
+    let at_rest = loaded.state.solver.rests();
+    let [reached, ends] = [time, end].map(|time| at_instant(time, at_rest));
+    let [bare, before] = [end, loaded.state.end].map(|time| instant_text(time, at_rest));
     if end < time && end < loaded.state.end {
         let place = &case.later.last().unwrap_or(case).solver.end_place;
-        let found = format!("= {ends}: the saved run has reached t = {reached}");
+        let found = format!("= {bare}: the saved run has reached {reached}");
         let error = Diagnostic::error(place, found).remedy("choose a later end, or start again with --overwrite");
         return Err(Failure::Input(Diagnostics(vec![error])));
     }
-    let before = loaded.state.end;
-    let was = if before == end { String::new() } else { format!(" instead of {}", quantity(before, "s")) };
-    Ok(format!("goes on from step {}, t = {reached}, to t = {ends}{was}", loaded.header.step))
+    let was = if loaded.state.end == end { String::new() } else { format!(" instead of {before}") };
+    Ok(format!("goes on from step {}, {reached}, to {ends}{was}", loaded.header.step))
 }
 
 /// Puts a saved state back into a scene and its solver; what was recorded by then.
@@ -186,9 +188,7 @@ fn folder_of(case: &Path, options: &Options) -> Result<PathBuf, Failure> {
     if options.resume || options.overwrite {
         return Ok(folder);
     }
-    let holds = |name: &str| folder.join(name).is_file();
-    let states = std::fs::read_dir(folder.join("checkpoint")).into_iter().flatten().flatten();
-    if !holds("summary.json") && !holds("history.csv") && states.count() == 0 {
+    if !holds_results(&folder) {
         return Ok(folder);
     }
     Err(Failure::input(format!(
@@ -197,24 +197,34 @@ fn folder_of(case: &Path, options: &Options) -> Result<PathBuf, Failure> {
     )))
 }
 
+/// Whether a folder holds results of a run, or a state to go on from.
+fn holds_results(folder: &Path) -> bool {
+    let states = || std::fs::read_dir(folder.join("checkpoint")).into_iter().flatten().flatten();
+    ["summary.json", "history.csv"].iter().any(|name| folder.join(name).is_file()) || states().count() > 0
+}
+
 /// Makes the results folder and opens its log.
 ///
 /// - `anew`: without the results of an earlier run
-pub(crate) fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
+fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
     create_folder(folder)?;
     create_folder(&folder.join("pictures"))?;
     let path = folder.join("run.log");
     if !anew {
         return Ok(RunLog::resume(&path)?);
     }
+    // A run that was killed early has left no more than its log and some pictures and frames.
+    let held = path.is_file() || holds_results(folder);
     // The log is locked first: the results of a run under way stay as they are.
     let log = RunLog::create(&path)?;
-    discard_results(folder)?;
+    if held {
+        discard_results(folder)?;
+    }
     Ok(log)
 }
 
-/// Files of a run, beside its frames, pictures, states and the text of its case.
-const RESULTS: [&str; 12] = [
+/// Files of a run, beside its frames, the pictures over time, its states and the text of its case.
+const RESULTS: [&str; 16] = [
     "summary.json",
     "history.csv",
     "fields.pvd",
@@ -227,10 +237,14 @@ const RESULTS: [&str; 12] = [
     "report.html",
     "movie.png",
     "pictures/notes.json",
+    "pictures/damage.png",
+    "pictures/stress.png",
+    "pictures/particles.png",
+    "pictures/broken_bonds.png",
 ];
 
 /// A run that starts anew leaves nothing of an earlier one that could be taken for its own: no state to resume from, no
-/// frames, no pictures, no case. Files of other kinds in these folders are the user's, and stay.
+/// frames, no pictures, no case. Other files in these folders are the user's, and stay.
 fn discard_results(folder: &Path) -> Result<(), Failure> {
     let checkpoints = folder.join("checkpoint");
     match std::fs::remove_dir_all(&checkpoints) {
@@ -243,16 +257,17 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
         std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
     }
     let frames =
-        Population::ALL.iter().flat_map(|population| [(population.folder(), "vtu"), (population.folder(), "vtp")]);
-    for (name, ending) in frames.chain([("pictures", "png"), ("input", "toml")]) {
+        Population::ALL.iter().flat_map(|population| [".vtu", ".vtp"].map(|end| (population.folder(), "", end)));
+    for (name, start, end) in frames.chain([("pictures", STRIP_FILE, ".png")]) {
         let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
         for path in entries.flatten().map(|entry| entry.path()) {
-            if path.extension().is_some_and(|own| own == ending) {
+            let own = path.file_name().and_then(|own| own.to_str());
+            if own.is_some_and(|own| own.starts_with(start) && own.ends_with(end)) {
                 std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
             }
         }
     }
-    Ok(())
+    forget_case(folder)
 }
 
 /// Version of the program as far as the layout of its state goes.

@@ -1,8 +1,10 @@
 //! Where results come from, and the command that makes or continues them.
 
+use std::fs;
 use std::path::Path;
 use std::time::SystemTime;
 
+use fractum_io::WriteError;
 use fractum_io::atomic;
 use fractum_io::case::Case;
 use fractum_io::origin::{InputFile, Origin, utc};
@@ -51,15 +53,50 @@ pub(super) fn origin(case: &Case, mesh_hash: u128, options: &Options, results: &
     }
 }
 
-/// Keeps the text of the case in the folder `input` of the results.
+/// Folder in the results with the text of the case.
+const INPUT: &str = "input";
+
+/// File beside that text: hash of the case, or [`MIXED`], and the name of the text.
+const HASH: &str = "case-hash.txt";
+
+/// In place of a hash where a run has gone on from a state of another end.
+const MIXED: &str = "mixed";
+
+/// Keeps the text of the case in the folder `input` of the results, and its hash.
+///
+/// - `is_new`: whether the run starts with it; one that goes on may have begun with another end
 ///
 /// # Errors
 /// [`Failure::Write`].
-pub(super) fn keep_case(case: &Case, results: &Path) -> Result<(), Failure> {
-    let folder = results.join("input");
+pub(super) fn keep_case(case: &Case, results: &Path, is_new: bool) -> Result<(), Failure> {
+    let hash = hash_text(case.hash());
+    let is_own = is_new || kept_hash(results).as_ref() == Some(&hash);
+    let folder = results.join(INPUT);
     atomic::create_folder(&folder)?;
-    let name = case.source.path.file_name().map_or("case.toml".into(), |name| name.to_owned());
-    Ok(atomic::write(&folder.join(name), case.source.text.as_bytes())?)
+    let name = case.source.path.file_name().map_or("case.toml".into(), |name| name.to_string_lossy());
+    let line = format!("{} {name}\n", if is_own { &hash } else { MIXED });
+    atomic::write(&folder.join(HASH), line.as_bytes())?;
+    Ok(atomic::write(&folder.join(&*name), case.source.text.as_bytes())?)
+}
+
+/// Hash of the case, its end included, that all results in a folder are of.
+pub(crate) fn kept_hash(results: &Path) -> Option<String> {
+    let line = fs::read_to_string(results.join(INPUT).join(HASH)).ok()?;
+    line.split_once(' ').map(|(hash, _)| hash.to_owned())
+}
+
+/// Removes what [`keep_case`] has kept.
+///
+/// # Errors
+/// [`Failure::Write`].
+pub(super) fn forget_case(results: &Path) -> Result<(), Failure> {
+    let folder = results.join(INPUT);
+    let Ok(line) = fs::read_to_string(folder.join(HASH)) else { return Ok(()) };
+    let name = line.split_once(' ').and_then(|(_, name)| Path::new(name.trim_end()).file_name());
+    for path in name.into_iter().chain([HASH.as_ref()]).map(|name| folder.join(name)).filter(|path| path.is_file()) {
+        fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]

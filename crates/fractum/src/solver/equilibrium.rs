@@ -19,6 +19,13 @@ pub(crate) struct EquilibriumState {
     periods: f64,
 }
 
+impl EquilibriumState {
+    /// Whether the next step is one of motion.
+    pub(super) fn moves(&self) -> bool {
+        matches!(self.phase, Phase::Moving(_))
+    }
+}
+
 /// What the next step is.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 enum Phase {

@@ -35,6 +35,17 @@ pub(crate) enum SolverState {
     Heat,
 }
 
+impl SolverState {
+    /// As [`Solver::rests`].
+    pub(crate) fn rests(&self) -> bool {
+        match self {
+            SolverState::Explicit | SolverState::Heat => false,
+            SolverState::Static(state) => !state.moves(),
+            SolverState::BondedStatic(_) => true,
+        }
+    }
+}
+
 /// An instant at which the ledger was measured: a row of the history.
 pub(crate) struct Measured {
     /// Time [s].
