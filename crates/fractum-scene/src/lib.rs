@@ -18,6 +18,7 @@ mod error;
 mod facet;
 mod fragment;
 mod gas;
+mod gauges;
 mod heat;
 mod leave;
 mod ledger;
@@ -49,6 +50,7 @@ pub use fractum_gas::{Amount, EquationOfState, Jwl, NobleAbel, PerfectGas, SlitF
 pub use fractum_heat::HeatCondition;
 pub use fragment::{Fragment, solid_pieces};
 pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, HoleEnds, SymmetryPlanes};
+pub use gauges::{Extensometer, GaugeGrid, GaugeReading};
 pub use heat::{
     Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
 };

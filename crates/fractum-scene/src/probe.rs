@@ -11,6 +11,7 @@ use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
 use crate::damaged::DamagedPart;
 use crate::fragment::Fragment;
 use crate::gas::GasMeasure;
+use crate::gauges::Extensometer;
 use crate::heat::{HeatMeasure, TemperatureTake};
 use crate::ledger::EnergyProbe;
 use crate::piece_probe::{FragmentMeasure, SurfaceMeasure, measure_fragment, measure_surface, passing_size};
@@ -43,6 +44,8 @@ pub enum Probe {
     ParticleStress(RegionStress),
     /// Mean strain of nodes or particles.
     Strain(RegionStrain),
+    /// Elongation between two places over their distance [-].
+    Extensometer(Extensometer),
     /// Linear momentum along a direction [kg m/s].
     Momentum(Vec3),
     /// Angular momentum about the origin along a direction [kg m²/s].
@@ -201,6 +204,7 @@ impl Probe {
             }
             Probe::ParticleStress(probe) => probe.value(&scene.bonded),
             Probe::Strain(probe) => probe.value(scene),
+            Probe::Extensometer(probe) => probe.value(scene),
             Probe::Momentum(direction) => {
                 let nodes = (0..solid.mass.len()).map(|i| solid.mass[i] * solid.velocity[i].dot(direction));
                 let rigid_bodies: Vec3 =

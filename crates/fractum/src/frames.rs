@@ -1,6 +1,7 @@
 //! Frames: what ParaView shows of one instant, a file per population.
 
 use fractum_io::Compression;
+use fractum_io::build::BuiltGauges;
 use fractum_io::case::model::{BodyKind, Case, FurtherFields};
 use fractum_io::vtk::{CellBlock, CellKind, Field, PendingFile, PolyCells, PolyData, UnstructuredGrid, Values};
 use fractum_math::Sym3;
@@ -10,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::cracks;
 use crate::error::Failure;
 use crate::gas_cells;
+use crate::gauge_tables;
 use crate::population::Population;
 use crate::record_bonded::{ParticleFiles, tensor};
 use crate::rigid_surface::RigidSurfaces;
@@ -22,6 +24,8 @@ pub(crate) struct Frame {
     /// Steps done.
     pub(crate) step: u64,
     parts: Vec<(Population, PendingFile)>,
+    /// Tables of gauges under their names.
+    tables: Vec<(String, PendingFile)>,
 }
 
 impl Frame {
@@ -49,7 +53,14 @@ impl Frame {
         if !crack.facets.is_empty() {
             parts.push((Population::Cracks, cracks::facets_file(&scene.solid, &crack, None)?));
         }
-        Ok(Frame { instant, step: scene.clock.step, parts })
+        let tables = grid.gauges.iter().map(|gauges| (gauges.name.clone(), gauge_tables::file(scene, &gauges.grid)));
+        Ok(Frame { instant, step: scene.clock.step, parts, tables: tables.collect() })
+    }
+
+    /// Takes the tables out, as those of frame `number`: name from the results folder, and file.
+    pub(crate) fn take_tables(&mut self, number: u64) -> Vec<(String, PendingFile)> {
+        let tables = std::mem::take(&mut self.tables).into_iter();
+        tables.map(|(name, file)| (format!("{}/{name}-{number:05}.csv", gauge_tables::FOLDER), file)).collect()
     }
 
     /// The files, as those of frame `number`: population, name from the results folder, and file.
@@ -58,7 +69,7 @@ impl Frame {
     }
 }
 
-/// What stays the same in all frames: the mesh of the solids in the order of the file, and the surfaces of rigid bodies.
+/// What stays the same in all frames: the mesh of the solids in the order of the file, the surfaces of rigid bodies, and gauges.
 pub(crate) struct GridLayout {
     file_order: Vec<u32>,
     /// Connectivity of each body in the order of `file_order`.
@@ -66,11 +77,12 @@ pub(crate) struct GridLayout {
     /// Number of the material of each body in the case, from 0.
     materials: Vec<i32>,
     rigid: RigidSurfaces,
+    gauges: Vec<BuiltGauges>,
     further: FurtherFields,
 }
 
 impl GridLayout {
-    pub(crate) fn new(scene: &Scene, file_order: &[u32], case: &Case) -> Self {
+    pub(crate) fn new(scene: &Scene, file_order: &[u32], gauges: Vec<BuiltGauges>, case: &Case) -> Self {
         let mut place = vec![0u32; file_order.len()];
         for (file, &node) in (0..).zip(file_order) {
             place[node as usize] = file;
@@ -94,6 +106,7 @@ impl GridLayout {
             bodies,
             materials: (0..scene.solid.body_count()).map(material).collect(),
             rigid: RigidSurfaces::new(scene),
+            gauges,
             further: case.output.fields,
         }
     }

@@ -51,6 +51,7 @@ mod frame_pictures;
 mod frames;
 mod gallery;
 mod gas_cells;
+mod gauge_tables;
 mod heat_columns;
 mod input;
 mod inputs;

@@ -1,6 +1,7 @@
 //! What a run will do: bodies, physics on and skipped, time step, size, time.
 
 mod bodies;
+mod gauges;
 mod heat;
 mod rows;
 mod wrap;
@@ -85,6 +86,7 @@ impl Plan {
         }
         plan.describe_solver(case, built, case.solver.end);
         plan.describe_heat(case, scene);
+        plan.describe_gauges(case, &built.gauges);
         let mut start = case.solver.end;
         for (case, built) in later {
             plan.add("stage", &case.source.stage);

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
 use crate::frames::{Frame, GridLayout};
+use crate::gauge_tables;
 use crate::heat_columns;
 use crate::left;
 use crate::path_frames::PathFrames;
@@ -385,9 +386,13 @@ impl Recorder {
         Frame::of(scene, &self.grid, instant)
     }
 
-    fn write(&mut self, frame: Frame) -> Result<(), Failure> {
+    fn write(&mut self, mut frame: Frame) -> Result<(), Failure> {
         let number = if self.course.rests { self.state.path.frames() } else { self.state.frames };
         let (mut files, instant) = (Vec::new(), frame.instant);
+        for (name, file) in frame.take_tables(number) {
+            fractum_io::atomic::create_folder(&self.folder.join(gauge_tables::FOLDER))?;
+            files.push((self.folder.join(&name), file));
+        }
         for (population, name, file) in frame.files(number) {
             fractum_io::atomic::create_folder(&self.folder.join(population.folder()))?;
             files.push((self.folder.join(&name), file));

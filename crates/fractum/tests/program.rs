@@ -10,6 +10,7 @@ mod drive;
 mod equilibrium;
 mod fragments;
 mod gallery;
+mod gauges;
 mod heat;
 mod interfaces;
 mod interrupt;

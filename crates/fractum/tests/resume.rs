@@ -30,7 +30,8 @@ impl Results {
         let mut frames = vec![PathBuf::from("fields.pvd"), PathBuf::from("fragments.csv")];
         let below = |suffix| files_below(folder, suffix);
         let relative = |path: PathBuf| path.strip_prefix(folder).unwrap().to_owned();
-        frames.extend(below(".vtu").into_iter().chain(below(".vtp")).map(relative));
+        let tables = files_below(&folder.join("gauges"), ".csv");
+        frames.extend(below(".vtu").into_iter().chain(below(".vtp")).chain(tables).map(relative));
         let frames = frames.into_iter().map(|name| (name.clone(), fs::read(folder.join(&name)).unwrap())).collect();
         Results { state_hash, history: text("history.csv"), frames, summary }
     }

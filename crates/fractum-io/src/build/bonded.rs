@@ -196,8 +196,8 @@ impl Context<'_> {
             ProbeKind::Stress { between, .. } => {
                 return Some(Probe::ParticleStress(RegionStress::new(bonded, &particles, *between)));
             }
-            ProbeKind::Strain { measure, between, .. } => {
-                return self.strain((bonded, solid), Population::Particles, &particles, on, *measure, *between);
+            ProbeKind::Strain { .. } | ProbeKind::Extensometer { .. } => {
+                return self.strain_probe(kind, (bonded, solid), Population::Particles, &particles);
             }
             _ => return None,
         };

@@ -7,6 +7,7 @@ mod conditions;
 mod contacts;
 mod doubts;
 mod gas;
+mod gauges;
 mod heat;
 mod in_situ;
 mod ppv;
@@ -19,6 +20,7 @@ mod ties;
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
 pub use doubts::doubts;
+pub use gauges::BuiltGauges;
 pub use ppv::PpvStations;
 pub use statics::may_rest;
 pub use ties::TieReport;
@@ -54,6 +56,8 @@ pub struct BuiltScene {
     pub probes: Vec<Option<Probe>>,
     /// Stations at which the largest velocity is kept.
     pub ppv: Vec<PpvStations>,
+    /// Grids of places with displacement and strain.
+    pub gauges: Vec<BuiltGauges>,
     /// Nodes of the mesh in the scene's numbering, or `u32::MAX` for nodes of no solid body.
     pub scene_node: Vec<u32>,
     /// Nodes of the scene in the order of the mesh file: outputs follow it.
@@ -150,6 +154,7 @@ impl<'a> Context<'a> {
         let bonded_statics = self.bonded_statics(&bonded);
         let probes = self.probes(&parts, &numbering, &surface, &solid, &supports, &bonded);
         let ppv = self.ppv_stations(&numbering, &solid);
+        let gauges = self.gauges(&numbering, &solid, &bonded);
         self.without_mistakes()?;
         let surfaces = parts.iter().map(|part| self.case.materials[part.body.material].contact).collect();
         let debris = Debris::new(&solid, surfaces);
@@ -171,6 +176,7 @@ impl<'a> Context<'a> {
             bonded_statics,
             probes,
             ppv,
+            gauges,
             file_order: numbering.file_order(),
             scene_node: numbering.scene_node,
             elements: parts.into_iter().map(|part| part.elements).collect(),

@@ -101,6 +101,7 @@ impl Context<'_> {
             }
         }
         named.extend(case.probes.iter().filter_map(|probe| probe.kind.on()));
+        named.extend(case.output.gauges.iter().map(|gauges| &gauges.on));
         named.extend(case.flows.heat.iter().flat_map(|heat| &heat.conditions).map(|condition| &condition.on));
         let groups = named.into_iter().filter_map(|on| on.group.as_ref());
         let groups = groups.chain(case.ties.iter().map(|tie| &tie.bonded));

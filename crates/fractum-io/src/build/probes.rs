@@ -82,9 +82,9 @@ impl Context<'_> {
             ProbeKind::Stress { on, between } => {
                 Probe::Stress { elements: self.selected_elements(on, parts, solid), between: *between }
             }
-            ProbeKind::Strain { on, measure, between } => {
+            ProbeKind::Strain { on, .. } | ProbeKind::Extensometer { on, .. } => {
                 let nodes = self.selected_nodes(on, numbering);
-                self.strain((bonded, solid), Population::Nodes, &nodes, on, *measure, *between)?
+                self.strain_probe(kind, (bonded, solid), Population::Nodes, &nodes)?
             }
             ProbeKind::ContactForce { on, from, along } => {
                 let body = |name: &str| self.contact_body(name, solid, bonded);
@@ -187,8 +187,27 @@ impl Context<'_> {
         group.map_or_else(all, |group| self.elements_of(group, parts))
     }
 
+    /// A probe of the strain of nodes or particles, or of the elongation between two of them; none of other kinds.
+    pub(super) fn strain_probe(
+        &mut self,
+        kind: &ProbeKind,
+        scene: (&Bonded, &Solid),
+        population: Population,
+        points: &[u32],
+    ) -> Option<Probe> {
+        match kind {
+            ProbeKind::Strain { on, measure, between } => {
+                self.strain(scene, population, points, on, *measure, *between)
+            }
+            ProbeKind::Extensometer { on, ends, foot } => {
+                self.extensometer(scene, (population, points), on, (*ends, *foot))
+            }
+            _ => None,
+        }
+    }
+
     /// The strain of nodes or particles; an error if they do not span what is measured.
-    pub(super) fn strain(
+    fn strain(
         &mut self,
         scene: (&Bonded, &Solid),
         population: Population,

@@ -18,6 +18,7 @@ use super::origin::{forget_case, keep_case, origin};
 use super::{About, Options, RunState, Simulation};
 use crate::error::Failure;
 use crate::frames::GridLayout;
+use crate::gauge_tables;
 use crate::input::{Input, load};
 use crate::interrupt::UnderWay;
 use crate::phases::Phases;
@@ -82,7 +83,7 @@ impl Simulation {
             (stage, probes) = (Arc::new(next), built.probes);
         }
         // Rigid bodies are drawn from where they lie at the start.
-        let grid = GridLayout::new(&scene, &built.file_order, &case);
+        let grid = GridLayout::new(&scene, &built.file_order, built.gauges, &case);
         let put_back = |Loaded { state, .. }: Loaded<RunState>| put_back(state, &mut scene, &mut solver, &case);
         let resumed = loaded.map(put_back).transpose()?;
         let is_new = resumed.is_none();
@@ -258,7 +259,7 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
     }
     let frames =
         Population::ALL.iter().flat_map(|population| [".vtu", ".vtp"].map(|end| (population.folder(), "", end)));
-    for (name, start, end) in frames.chain([("pictures", STRIP_FILE, ".png")]) {
+    for (name, start, end) in frames.chain([("pictures", STRIP_FILE, ".png"), (gauge_tables::FOLDER, "", ".csv")]) {
         let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
         for path in entries.flatten().map(|entry| entry.path()) {
             let own = path.file_name().and_then(|own| own.to_str());

@@ -104,6 +104,14 @@ name = "from the end"
 hole = "x-"
 line = { from = ["5 cm", "1 cm", "1 cm"], to = ["40 cm", "1 cm", "1 cm"], stations = 5 }
 groups = ["x+"]
+
+[[output.gauges]]
+name = "whole"
+group = "body"
+from = [0, 0, 0]
+to = ["40 cm", "12 cm", "0 cm"]
+spacing = "5 cm"
+length = "12 cm"
 "#;
 
 /// A brittle bar whose load factor runs back while its weak slab comes apart.

@@ -5,6 +5,7 @@ mod bonded;
 mod boundary;
 mod columns;
 mod gas;
+mod gauges;
 mod heat;
 mod loose;
 mod material;
@@ -28,6 +29,7 @@ pub use bonded::{
 pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
 pub use columns::HistoryColumns;
 pub use gas::{Gas, GasHole, GasLaw};
+pub use gauges::Gauges;
 pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Distribution, Material, Scatter};
@@ -153,6 +155,8 @@ pub struct Output {
     pub joined_below: f64,
     /// Peak particle velocity against distance.
     pub ppv: Vec<Ppv>,
+    /// Grids of places with displacement and strain.
+    pub gauges: Vec<Gauges>,
     /// Charts of the user's own in the report.
     pub plots: Vec<Plot>,
 }
@@ -316,11 +320,14 @@ impl Case {
         });
         let stations = self.output.ppv.iter().flat_map(|ppv| ppv.groups.iter().chain([&ppv.hole]));
         let stations = stations.map(|group| (group, GroupUse::ProbeNodes));
+        let gauges = self.output.gauges.iter().filter_map(|gauges| gauges.on.group.as_ref());
+        let gauges = gauges.map(|group| (group, GroupUse::ProbeNodes));
         let opening = self.solver.statics.as_ref().and_then(|statics| statics.opening.as_ref());
         let openings = opening.into_iter().flat_map(|o| [&o.group, &o.against]).map(|g| (g, GroupUse::ProbeNodes));
         let of_mesh =
             |group: &&Spanned<String>| self.particle_group(&group.value).is_none() && self.tool(&group.value).is_none();
-        let named = supports.chain(loads).chain(holes).chain(heated).chain(probes).filter(|(group, _)| of_mesh(group));
+        let named = supports.chain(loads).chain(holes).chain(heated).chain(probes).chain(gauges);
+        let named = named.filter(|(group, _)| of_mesh(group));
         bodies.chain(ties).chain(named).chain(in_situ).chain(openings).chain(stations).collect()
     }
 }

@@ -88,6 +88,15 @@ pub enum ProbeKind {
         /// The two directions of the component.
         between: [Along; 2],
     },
+    /// Elongation between two places over their distance [-].
+    Extensometer {
+        /// The points.
+        on: Selection,
+        /// Places of its feet without load [m].
+        ends: [Vec3; 2],
+        /// Diameter of its feet [m]; the nearest point if absent.
+        foot: Option<f64>,
+    },
     /// Sum of the loads on nodes [N].
     Load {
         /// On these nodes.
@@ -199,6 +208,7 @@ impl ProbeKind {
             | Self::Rotation { on, .. }
             | Self::Stress { on, .. }
             | Self::Strain { on, .. }
+            | Self::Extensometer { on, .. }
             | Self::Temperature { on, .. } => Some(on),
             _ => None,
         }

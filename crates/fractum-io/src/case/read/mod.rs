@@ -7,6 +7,7 @@ mod expect;
 mod firing;
 mod fracture;
 mod gas;
+mod gauges;
 mod heat;
 mod in_situ;
 mod interface;

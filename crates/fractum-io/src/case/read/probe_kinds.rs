@@ -57,6 +57,7 @@ pub(super) fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKin
             let (on, between, measure) = stress_or_strain(table.table(key)?, measure)?;
             (ProbeKind::Strain { on, measure, between }, Dimension::NONE)
         }
+        "extensometer" => extensometer(table)?,
         "load" => on_along().map(|(on, along)| (ProbeKind::Load { on, along }, Dimension::FORCE))?,
         "surface" => {
             let inner = table.table(key)?;
@@ -94,6 +95,15 @@ pub(super) fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKin
             (ProbeKind::CrackArea, Dimension::AREA)
         }
     })
+}
+
+fn extensometer(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("extensometer")?;
+    let on = selection(&inner);
+    let [from, to] = ["from", "to"].map(|key| point(&inner, key).required());
+    let foot = optional(&inner, "foot", |key| inner.quantity(key).positive().given());
+    inner.finish("here");
+    Some((ProbeKind::Extensometer { on: on?, ends: [from?, to?], foot: foot? }, Dimension::NONE))
 }
 
 /// The key `along`: a direction, or "radial" or "tangential" with the axis `about`.

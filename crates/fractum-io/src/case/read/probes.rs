@@ -82,6 +82,7 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
         "contact_force",
         "stress",
         "strain",
+        "extensometer",
         "load",
         "surface",
         "fragment",

@@ -260,6 +260,7 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>
     let joined_below = fragments.quantity("joined_below").between(0.0, 1.0).or(JOINED_BELOW);
     fragments.finish("here");
     let ppv = super::ppv::read(&table);
+    let gauges = super::gauges::read(&table);
     table.finish("here");
     let end = end?;
     Some(Output {
@@ -269,6 +270,7 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>
         checkpoint_every: checkpoint.unwrap_or(CHECKPOINT),
         joined_below,
         ppv: ppv?,
+        gauges: gauges?,
         plots: plots?,
     })
 }

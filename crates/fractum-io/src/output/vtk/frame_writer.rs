@@ -26,7 +26,8 @@ impl PendingFile {
         PendingFile(Content::Document(document.into_owned(), compression))
     }
 
-    pub(super) fn of_text(text: String) -> Self {
+    /// A file of text.
+    pub fn of_text(text: String) -> Self {
         PendingFile(Content::Text(text))
     }
 
