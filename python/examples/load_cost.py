@@ -1,7 +1,8 @@
 """What a load written in Python costs: 50,400 tetrahedra pulled at one side, by the case and by a function.
 
 The simulations with and without the function take turns every few steps, each on one thread. Printed is the median over
-the turns of the ratio of processor times.
+the turns of the ratio of processor times. On all nodes a second function returns forces that it has ready: what is left is the
+call itself, which hands positions and velocities over and takes forces back.
 
 python3 python/examples/load_cost.py [FOLDER]
 """
@@ -51,6 +52,13 @@ def on_all(simulation):
     simulation.add_load(function, nodes=np.arange(len(mass)))
 
 
+def call_alone(simulation):
+    """The same call, with positions and velocities, whose forces cost no arithmetic."""
+    nodes = np.arange(len(simulation.nodes.mass))
+    forces = np.zeros((len(nodes), 3))
+    simulation.add_load(lambda time, position, velocity: forces, nodes=nodes)
+
+
 def main(folder, cells=(21, 20, 20), steps=10, rounds=60):
     folder.mkdir(parents=True, exist_ok=True)
     write_box(folder / "box.msh", cells, size=(1.05, 1.0, 1.0))
@@ -59,7 +67,7 @@ def main(folder, cells=(21, 20, 20), steps=10, rounds=60):
         text = CASE.replace("FORMULATION", formulation)
         (folder / "case.toml").write_text(text.replace("[materials", PULL + "[materials"))
         (folder / "bare.toml").write_text(text)
-        ways = {"case": ("case", None), "side": ("bare", on_side), "all nodes": ("bare", on_all)}
+        ways = {"case": ("case", None), "side": ("bare", on_side), "all nodes": ("bare", on_all), "all nodes, call alone": ("bare", call_alone)}
         runs = {}
         for way, (name, add) in ways.items():
             runs[way] = fractum.Simulation(folder / f"{name}.toml", output=folder / "results" / way, threads=1, overwrite=True)
@@ -67,7 +75,7 @@ def main(folder, cells=(21, 20, 20), steps=10, rounds=60):
                 add(runs[way])
         turns = [{way: seconds(run, steps) for way, run in runs.items()} for _ in range(rounds)]
         own = median(turn["case"] for turn in turns) / steps
-        for way in ("side", "all nodes"):
+        for way in list(ways)[1:]:
             cost = median(turn[way] / turn["case"] for turn in turns) - 1.0
             found[formulation, way] = cost
             print(f"{formulation}, function on {way}: {100 * cost:+.1f} % of {1e3 * own:.2f} ms")

@@ -36,4 +36,4 @@ def test_read_results(tmp_path, capsys):
 
 def test_load_cost(tmp_path):
     found = load_cost.main(tmp_path, cells=(4, 4, 4), steps=5, rounds=1)
-    assert len(found) == 4 and all(np.isfinite(cost) for cost in found.values())
+    assert len(found) == 6 and all(np.isfinite(cost) for cost in found.values())
