@@ -1,7 +1,7 @@
-//! Meshes for fractum: readers of Gmsh and Abaqus files, a writer of Gmsh files, and what is derived from nodes and elements alone.
+//! Meshes for fractum: readers of Gmsh, Abaqus and VTK files, a writer of Gmsh files, and what is derived from nodes and elements alone.
 //!
 //! - [`read_msh`] and [`write_msh`]: MSH 2.2 and 4.1, ASCII and binary, from bytes and to any writer
-//! - [`read_inp`]: Abaqus input files; [`read_mesh`] takes either by its first bytes
+//! - [`read_inp`]: Abaqus input files; [`read_vtu`]: grids of VTK; [`read_mesh`] chooses by the first bytes
 //! - [`Mesh`]: points, lines, triangles, quadrilaterals and tetrahedra with named [`Group`]s
 //! - [`topology`]: edges, facets, outward boundary, elements of a node
 //! - [`quality`]: volumes, altitudes, lengths of edges, radius ratios, dihedral angles; [`hints`] says what to mend
@@ -35,6 +35,7 @@ pub mod quality;
 pub mod renumber;
 mod tagged;
 pub mod topology;
+mod vtk;
 
 pub use abaqus::read_inp;
 pub use fractum_math::Vec3;
@@ -42,12 +43,17 @@ pub use gmsh::{MshFormat, read_msh, write_msh};
 pub use hints::hints;
 pub use mesh::{Group, Mesh};
 pub use tagged::{MeshError, Place, Problem};
+pub use vtk::read_vtu;
 
-/// Reads a mesh, a Gmsh file or an Abaqus input file by its first bytes.
+/// Reads a mesh: a Gmsh file, an Abaqus input file or a grid of VTK, by its first bytes.
 ///
 /// # Errors
-/// As [`read_msh`] and [`read_inp`].
+/// As [`read_msh`], [`read_inp`] and [`read_vtu`].
 pub fn read_mesh(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let begins = bytes.strip_prefix(tagged::cursor::BYTE_ORDER_MARK).unwrap_or(bytes).trim_ascii_start();
-    if begins.starts_with(b"*") { read_inp(bytes) } else { read_msh(bytes) }
+    match begins.first() {
+        Some(b'*') => read_inp(bytes),
+        Some(b'<') => read_vtu(bytes),
+        _ => read_msh(bytes),
+    }
 }

@@ -3,7 +3,7 @@
 use fractum_mesh::{Mesh, MshFormat, quality, read_mesh, read_msh, write_msh};
 use proptest::prelude::*;
 
-const FILES: [&str; 17] = [
+const FILES: [&str; 20] = [
     "all-22-ascii",
     "boxes-22-binary",
     "boxes-41-ascii",
@@ -21,10 +21,13 @@ const FILES: [&str; 17] = [
     "box.inp",
     "part.inp",
     "plane.inp",
+    "grid-ascii.vtu",
+    "grid-inline-zlib.vtu",
+    "grid-appended-raw.vtu",
 ];
 
 fn bytes_of(file: usize) -> Vec<u8> {
-    let ending = if FILES[file].ends_with(".inp") { "" } else { ".msh" };
+    let ending = if FILES[file].contains('.') { "" } else { ".msh" };
     let path = format!("{}/tests/data/{}{ending}", env!("CARGO_MANIFEST_DIR"), FILES[file]);
     std::fs::read(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }

@@ -74,8 +74,35 @@ fn the_ending_of_the_output_is_its_format() {
         assert!(ended.code == Some(1) && ended.stderr.contains(says), "{}", ended.stderr);
         assert!(!workplace.path(output[0]).exists());
     }
-    let ended = convert(&["bar.vtu", "c.msh"]);
-    assert!(ended.stderr.contains("meshio convert --output-format gmsh22"), "{}", ended.stderr);
+}
+
+#[test]
+fn a_mesh_comes_back_from_vtu_with_its_groups() {
+    let workplace = Workplace::new(BREAKING_BAR);
+    for (from, to) in [("bar.msh", "bar.vtu"), ("bar.vtu", "back.msh")] {
+        let ended = workplace.fractum(&["mesh", "convert", from, to]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    }
+    let known = bar();
+    for file in ["bar.vtu", "back.msh"] {
+        let mesh = fractum_mesh::read_mesh(&fs::read(workplace.path(file)).unwrap()).unwrap();
+        assert_eq!(
+            (&mesh.nodes, &mesh.triangles, &mesh.tetrahedra),
+            (&known.nodes, &known.triangles, &known.tetrahedra)
+        );
+        assert_eq!(mesh.groups.len(), known.groups.len());
+        for group in &known.groups {
+            let [found] = mesh.group(&group.name)[..] else { panic!("{file}: group {}", group.name) };
+            assert_eq!(
+                (found.dimension, &found.triangles, &found.tetrahedra),
+                (group.dimension, &group.triangles, &group.tetrahedra)
+            );
+        }
+    }
+    // A case reads it too.
+    fs::write(workplace.path("grid.toml"), BREAKING_BAR.replace("bar.msh", "bar.vtu")).unwrap();
+    let checked = workplace.fractum(&["check", "grid.toml"]);
+    assert_eq!(checked.code, Some(0), "{}", checked.stderr);
 }
 
 #[test]

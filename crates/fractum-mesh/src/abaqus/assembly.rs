@@ -1,16 +1,17 @@
 //! From what a file defines to a raw mesh whose groups are its sets.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use fractum_math::Ragged;
 
 use super::element::{self, Face};
 use super::read::{Deck, Faced, Surface};
 use super::sets::Sets;
+use crate::tagged::builder::Builder;
 use crate::tagged::cursor::list;
 use crate::tagged::element_type::{ElementType, Shape};
 use crate::tagged::error::Fault;
-use crate::tagged::raw::{Membership, PhysicalName, Raw, Records};
+use crate::tagged::raw::Raw;
 
 /// The raw mesh, checked as far as only this format needs it.
 pub(super) fn raw(mut deck: Deck, bytes: &[u8]) -> Result<Raw, Fault> {
@@ -59,51 +60,12 @@ fn notices(deck: &Deck) -> Vec<String> {
     if left_out.is_empty() { Vec::new() } else { vec![format!("elements left out: {}", list(&left_out))] }
 }
 
-#[derive(Default)]
-struct Builder {
-    raw: Raw,
-    /// Groups so far: name, and the place of what defines it.
-    groups: Vec<(String, usize)>,
-    taken: BTreeSet<String>,
-    /// Number of the entity of a dimension that has exactly these groups.
-    entities: BTreeMap<(u8, Vec<i32>), i32>,
-    /// Dimensions in which a group has elements.
-    dimensions: BTreeSet<(u8, i32)>,
-    highest_tag: u64,
-}
-
 impl Builder {
     /// Tags of the groups of sets; none of internal ones.
     ///
     /// - `ending`: what a name gets where another kind of set has it
     fn groups(&mut self, sets: &Sets, ending: &str) -> Vec<Option<i32>> {
         sets.list.iter().map(|set| (!set.internal).then(|| self.group(&set.name, set.at, ending))).collect()
-    }
-
-    fn group(&mut self, name: &str, at: usize, ending: &str) -> i32 {
-        let mut own = name.replace('"', "'");
-        while !self.taken.insert(own.to_uppercase()) {
-            let other = format!("{own}{}", if ending.is_empty() { "-2" } else { ending });
-            self.raw.notices.push(format!("\"{own}\" is the name of several sets: called \"{other}\""));
-            own = other;
-        }
-        self.groups.push((own, at));
-        self.groups.len() as i32
-    }
-
-    /// The membership of what lies in these groups.
-    fn membership(&mut self, dimension: u8, groups: Vec<i32>) -> Membership {
-        self.dimensions.extend(groups.iter().map(|&group| (dimension, group)));
-        let next = self.entities.len() as i32 + 1;
-        Membership::Entity(*self.entities.entry((dimension, groups)).or_insert(next))
-    }
-
-    fn push(&mut self, kind: ElementType, groups: Vec<i32>, at: usize, tag: u64, corners: &[u64]) {
-        let membership = self.membership(kind.shape.dimension(), groups);
-        self.raw.push_run(kind, membership, 1, Records { at, stride: 0 });
-        self.raw.element_tags.push(tag);
-        self.raw.corners.extend_from_slice(corners);
-        self.highest_tag = self.highest_tag.max(tag);
     }
 
     fn add_elements(&mut self, deck: &Deck, sets: &[Vec<u32>], groups: &[Option<i32>]) {
@@ -159,7 +121,7 @@ impl Builder {
                 };
                 if known.insert(corners.clone()) {
                     let kind = ElementType { shape, nodes: corners.len() };
-                    self.push(kind, vec![group], surface.at, self.highest_tag.saturating_add(1), &corners);
+                    self.push(kind, vec![group], surface.at, self.next_tag(), &corners);
                 }
             }
         }
@@ -175,28 +137,7 @@ impl Builder {
             let Some(first) = own.first() else { continue };
             let at = sets.list[*first as usize].at;
             let groups = own.iter().filter_map(|&set| groups[set as usize]).collect();
-            self.push(kind, groups, at, self.highest_tag.saturating_add(1), &[self.raw.node_tags[node]]);
+            self.push(kind, groups, at, self.next_tag(), &[self.raw.node_tags[node]]);
         }
-    }
-
-    fn finish(mut self, bytes: &[u8]) -> Result<Raw, Fault> {
-        if self.highest_tag == u64::MAX {
-            return Err(Fault::unsupported(bytes.len(), format!("element label {} is too large", u64::MAX)));
-        }
-        let name = |&(dimension, tag): &(u8, i32)| {
-            let (name, at) = &self.groups[tag as usize - 1];
-            PhysicalName { dimension, tag, name: name.clone(), at: *at }
-        };
-        self.raw.names = self.dimensions.iter().map(name).collect();
-        let filled: BTreeSet<i32> = self.dimensions.iter().map(|(_, tag)| *tag).collect();
-        let is_empty = |(_, tag): &(&(String, usize), i32)| !filled.contains(tag);
-        let empty: Vec<String> =
-            self.groups.iter().zip(1..).filter(is_empty).map(|((name, _), _)| format!("\"{name}\"")).collect();
-        if !empty.is_empty() {
-            self.raw.notices.push(format!("sets without elements or nodes of the mesh: {}", list(&empty)));
-        }
-        let entities = self.entities.into_iter().map(|((dimension, groups), tag)| ((dimension, tag), groups));
-        self.raw.entities = Some(entities.collect());
-        Ok(self.raw)
     }
 }

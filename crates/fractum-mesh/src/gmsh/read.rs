@@ -103,8 +103,6 @@ fn hint_for(line: &[u8]) -> &'static str {
     } else if line.starts_with(b"(") {
         "; this is an Ansys mesh, convert with: meshio convert --input-format ansys --output-format gmsh22 IN.msh OUT.msh, \
          or export an Abaqus .inp with its sets"
-    } else if line.starts_with(b"<") {
-        "; convert a .vtu with: meshio convert --output-format gmsh22 IN.vtu OUT.msh; its cell array gmsh:physical makes the groups"
     } else if [&b"solid"[..], b"# vtk", b"\x89HDF", b"-1", b"BEGIN BULK", b"CEND", b"SOL "]
         .iter()
         .any(|start| line.starts_with(start))

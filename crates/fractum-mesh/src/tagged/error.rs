@@ -33,10 +33,12 @@ impl fmt::Display for Place {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Problem {
     /// No bytes, or blank lines only.
-    #[error("the file is empty; expected a Gmsh mesh (.msh) or an Abaqus input file (.inp)")]
+    #[error("the file is empty; expected a Gmsh mesh (.msh), an Abaqus input file (.inp) or a VTK grid (.vtu)")]
     Empty,
     /// The file is something else.
-    #[error("found {found}; expected $MeshFormat, the first line of a Gmsh mesh, or an Abaqus input file{hint}")]
+    #[error(
+        "found {found}; expected a Gmsh mesh, which begins with $MeshFormat, an Abaqus input file or a VTK grid (.vtu){hint}"
+    )]
     NotGmsh {
         /// Start of the file.
         found: String,

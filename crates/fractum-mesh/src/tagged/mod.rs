@@ -3,6 +3,7 @@
 //! The readers of formats make a [`raw::Raw`]; [`assemble()`] checks it against itself and turns tags into indices.
 
 mod assemble;
+pub(crate) mod builder;
 pub(crate) mod cursor;
 pub(crate) mod element_type;
 pub(crate) mod error;

@@ -15,7 +15,7 @@ use super::mesh_vtu;
 pub(crate) enum MeshCommand {
     /// Count elements, list the groups, lengths of edges and quality, and say what to mend.
     Info {
-        /// Gmsh (.msh, 2.2 or 4.1) or Abaqus (.inp).
+        /// Gmsh (.msh, 2.2 or 4.1), Abaqus (.inp) or VTK (.vtu).
         file: PathBuf,
         /// Case whose materials say how short edges must be, in the unit that it gives the mesh.
         #[arg(long)]
@@ -23,7 +23,7 @@ pub(crate) enum MeshCommand {
     },
     /// Write a mesh in another format: Gmsh (.msh), or VTK for ParaView (.vtu).
     Convert {
-        /// Gmsh (.msh, 2.2 or 4.1) or Abaqus (.inp).
+        /// Gmsh (.msh, 2.2 or 4.1), Abaqus (.inp) or VTK (.vtu).
         file: PathBuf,
         /// File to write; its ending is the format.
         output: PathBuf,
