@@ -17,6 +17,7 @@ use crate::sight::{Balls, Colours, LOST_BONDS, Sight, Triangles, corners, magnif
 enum Shown {
     Damage,
     Stress,
+    Temperature,
     BrokenBonds,
     Displacement,
 }
@@ -26,6 +27,7 @@ impl Shown {
     fn array(self, population: Population) -> Option<&'static str> {
         match (population, self) {
             (Population::Solid, Shown::Damage) => Some("damage"),
+            (Population::Solid | Population::Bonded | Population::Loose, Shown::Temperature) => Some("temperature"),
             (Population::Solid, _) => Some("first_principal_stress"),
             (Population::Bonded, Shown::BrokenBonds) => Some("broken_bonds"),
             _ => None,
@@ -71,8 +73,11 @@ impl FrameIndex {
                 Ok(read(path, &[field])?.get(field).iter().any(|&value| value > 0.0))
             };
             match population {
-                Population::Solid => return Ok(if some("damage")? { Shown::Damage } else { Shown::Stress }),
+                Population::Solid if some("damage")? => return Ok(Shown::Damage),
+                Population::Solid if some("temperature")? => return Ok(Shown::Temperature),
+                Population::Solid => return Ok(Shown::Stress),
                 Population::Bonded if some("broken_bonds")? => shown = Shown::BrokenBonds,
+                _ if shown == Shown::Displacement && some("temperature")? => shown = Shown::Temperature,
                 _ => {}
             }
         }
@@ -117,7 +122,8 @@ impl Frames {
         let (mut largest, mut ranges): (f64, Vec<f64>) = (0.0, Vec::new());
         let instants = wanted.iter().map(|&instant| &index.0[instant]);
         for (population, path) in instants.flatten().filter(|(population, _)| population.is_body()) {
-            let field = if shown == Shown::Stress { shown.array(*population) } else { None };
+            let measured = matches!(shown, Shown::Stress | Shown::Temperature);
+            let field = if measured { shown.array(*population) } else { None };
             let arrays = read(path, &["displacement", "attached", field.unwrap_or_default()])?;
             let displacement = arrays.vectors("displacement");
             // Nodes that no element holds may fly far.
@@ -158,6 +164,7 @@ impl Frames {
         match self.shown {
             Shown::Damage => ("damage", "1"),
             Shown::Stress => ("first principal stress", "Pa"),
+            Shown::Temperature => ("temperature", "K"),
             Shown::BrokenBonds => ("broken bonds", "1"),
             Shown::Displacement => ("displacement", "m"),
         }
@@ -188,7 +195,11 @@ impl Frames {
             }
             match population {
                 Population::Solid => {
-                    (sight.skin, facets) = skin(&arrays, points, arrays.get(field.unwrap_or_default()));
+                    let values = arrays.get(field.unwrap_or_default());
+                    (sight.skin, facets) = skin(&arrays, points, values);
+                    if self.shown == Shown::Temperature {
+                        facets = sight.skin.means(values);
+                    }
                 }
                 Population::Debris => {
                     let attached = arrays.get("attached");
@@ -228,7 +239,7 @@ impl Frames {
         if facets.len() != sight.skin.triangles.len() {
             facets.clear();
         }
-        if !matches!(self.shown, Shown::BrokenBonds | Shown::Displacement) {
+        if matches!(self.shown, Shown::Damage | Shown::Stress) {
             balls.clear();
         }
         let colours = Colours { facets: &facets, balls: &balls, map: self.map(), range: self.range };

@@ -1,4 +1,4 @@
-//! Pictures of a scene: its surface with the particles, coloured by damage and by stress.
+//! Pictures of a scene: its surface with the particles, coloured by damage, stress and temperature.
 
 use std::path::Path;
 
@@ -66,7 +66,7 @@ impl Studio<'_> {
             pixels_per_metre: Some(scale.pixels_per_metre),
             axes: scale.axes,
             size: [self.view.width, self.view.height],
-            in_strip: false,
+            ..PictureNote::default()
         })
     }
 }
@@ -111,12 +111,19 @@ pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool) -> Vec<PictureNo
         let field = Field { facets: damage, damage: true, ..none };
         notes.extend(studio.draw("damage.png", "Damage and discrete elements", field));
     }
-    if !stress.is_empty() {
+    // Heat alone leaves bodies as they are.
+    let acts = |values: &[f64]| !values.is_empty() && (scene.heat().is_none() || values.iter().any(|&x| x != 0.0));
+    if acts(stress) {
         let field = Field { label: "first principal stress", unit: "Pa", facets: stress, ..none };
         notes.extend(studio.draw("stress.png", "First principal stress", field));
     }
-    if !moved.is_empty() {
-        let length: Vec<f64> = moved.iter().map(|u| u.norm()).collect();
+    if let Some(heat) = scene.heat() {
+        let facets = studio.sight.skin.means(heat.of_nodes());
+        let field = Field { label: "temperature", unit: "K", facets: &facets, balls: heat.of_particles(), ..none };
+        notes.extend(studio.draw("temperature.png", "Temperature", field));
+    }
+    let length: Vec<f64> = moved.iter().map(|u| u.norm()).collect();
+    if acts(&length) {
         let field = Field { label: "displacement", unit: "m", balls: &length, ..none };
         notes.extend(studio.draw("particles.png", "Displacement of particles", field));
     }

@@ -124,19 +124,13 @@ impl Plan {
     fn describe_mesh(&mut self, source: &MeshSource, mesh: &Mesh) {
         let (low, high) = mesh.bounding_box();
         let size = high - low;
-        self.add(
-            "mesh",
-            format!(
-                "{}: {} nodes, {} tetrahedra, {} triangles, {} x {} x {}",
-                source.file.value.display(),
-                mesh.nodes.len(),
-                mesh.tetrahedra.len(),
-                mesh.triangles.len(),
-                quantity(size.x, "m"),
-                quantity(size.y, "m"),
-                quantity(size.z, "m")
-            ),
-        );
+        let counts =
+            [(mesh.nodes.len(), "nodes"), (mesh.tetrahedra.len(), "tetrahedra"), (mesh.triangles.len(), "triangles")];
+        let counted = counts.iter().filter(|(count, _)| *count > 0).map(|(count, name)| format!("{count} {name}"));
+        let lengths = if size.z > 0.0 { 3 } else { 2 };
+        let lengths: Vec<String> = size.iter().take(lengths).map(|&length| quantity(length, "m")).collect();
+        let (counted, lengths) = (counted.collect::<Vec<_>>().join(", "), lengths.join(" x "));
+        self.add("mesh", format!("{}: {counted}, {lengths}", source.file.value.display()));
         for notice in &mesh.notices {
             self.add("", notice.clone());
         }
@@ -351,7 +345,8 @@ impl Plan {
         let steps = span / scene.clock.dt_after;
         let frames = (span / case.output.fields_every).ceil() + 1.0;
         let rows = (span / case.output.history_every).ceil();
-        let threads = rayon::current_num_threads() as f64;
+        let count = rayon::current_num_threads();
+        let threads = count as f64;
         // A frame is held until it is written.
         bytes += MEMORY_OF_PROGRAM + output;
         self.add(
@@ -365,8 +360,9 @@ impl Plan {
         self.add(
             "wall time",
             format!(
-                "about {} on {threads} threads, without output",
-                quantity(1e-9 * nanoseconds * steps / threads, "s")
+                "about {} on {count} thread{}, without output",
+                quantity(1e-9 * nanoseconds * steps / threads, "s"),
+                if count == 1 { "" } else { "s" }
             ),
         );
     }

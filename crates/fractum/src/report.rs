@@ -67,6 +67,9 @@ pub struct PictureNote {
     /// Whether it is one of the strip over time.
     #[serde(default)]
     pub in_strip: bool,
+    /// How displacements are drawn, where the title does not say it.
+    #[serde(default)]
+    pub magnified: String,
 }
 
 /// Keeps the notes of a run in its folder.
@@ -138,7 +141,8 @@ fn figure(folder: &Path, note: &PictureNote) -> Option<Figure> {
     let map = if note.damage { ColourMap::Damage } else { ColourMap::Viridis };
     let colours = ColourBar { label: note.label.clone(), unit: note.unit.clone(), map, range: note.range };
     let scale = note.pixels_per_metre.map(|pixels_per_metre| (Scale { pixels_per_metre, axes: note.axes }, note.size));
-    Some(Figure { title: note.title.clone(), png, colours: Some(colours), scale, in_strip: note.in_strip })
+    let PictureNote { title, magnified, in_strip, .. } = note.clone();
+    Some(Figure { title, png, colours: Some(colours), scale, in_strip, magnified })
 }
 
 /// The columns of probes.

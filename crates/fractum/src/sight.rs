@@ -31,6 +31,14 @@ pub(crate) struct Triangles {
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
+impl Triangles {
+    /// The mean of the values of the corners, triangle by triangle; values that are not there count as 0.
+    pub(crate) fn means(&self, of_points: &[f64]) -> Vec<f64> {
+        let value = |&point: &u32| of_points.get(point as usize).copied().unwrap_or(0.0);
+        self.triangles.iter().map(|corners| corners.iter().map(value).sum::<f64>() / 3.0).collect()
+    }
+}
+
 /// Balls in space.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Balls {
@@ -117,7 +125,7 @@ pub(crate) fn magnification(size: f64, largest: f64) -> f64 {
 
 /// The magnification in words, after the instant.
 pub(crate) fn magnified(scale: f64) -> String {
-    if scale < 1.05 { String::new() } else { format!(", displacements x {}", significant(scale, 2)) }
+    if scale < 1.05 { String::new() } else { format!(", displacements ×\u{a0}{}", significant(scale, 2)) }
 }
 
 /// Lowest and highest coordinates.

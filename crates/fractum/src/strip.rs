@@ -40,7 +40,8 @@ pub(crate) fn strip(folder: &Path, peak: Option<f64>, at_rest: bool) -> Vec<Pict
         let peak = if Some(instant) == at_peak { " (nearest to the peak)" } else { "" };
         Some(PictureNote {
             file,
-            title: format!("{}{peak}{}", instant_text(times[instant], at_rest), magnified(frames.scale)),
+            title: format!("{}{peak}", instant_text(times[instant], at_rest)),
+            magnified: magnified(frames.scale),
             label: label.to_owned(),
             unit: unit.to_owned(),
             damage: frames.map() == ColourMap::Damage,

@@ -170,6 +170,9 @@ fn heat_alone_keeps_its_balance_by_explicit_and_implicit_steps() {
     for steps in ["step = \"2 s\"", "scheme = \"implicit\"\nstep = \"2 s\""] {
         let place = Workplace::new(&alone(steps));
         let one = run(&place, "one", "1");
+        assert!(
+            place.path("one/pictures/temperature.png").is_file() && !place.path("one/pictures/stress.png").exists()
+        );
         let rows = history(&place, "one", &["time", "heat_stored", "heat_brought", "heat_residual"]);
         assert_eq!(rows.len(), 21, "{rows:?}");
         let frames = read_collection(&place.path("one/fields.pvd")).unwrap().entries;

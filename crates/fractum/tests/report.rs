@@ -15,7 +15,7 @@ fn a_report_has_a_strip_over_time_inputs_scales_and_titles_by_quantity() {
     let ended = workplace.fractum(&["run", "case.toml", "-o", "out", "--quiet"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let html = fs::read_to_string(workplace.path("out/report.html")).unwrap();
-    for part in ["<h2>Over time</h2>", "(nearest to the peak)", "<h2>Inputs</h2>", "tensile strength 3 MPa"] {
+    for part in ["<h2>Over time", "(nearest to the peak)", "<h2>Inputs</h2>", "tensile strength 3 MPa"] {
         assert!(html.contains(part), "{part} is missing");
     }
     // The scale bar, an axis, and why the run ended.

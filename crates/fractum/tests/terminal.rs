@@ -1,6 +1,6 @@
 //! What a user sees in the terminal: help, completions, manual pages, the plan, and how a run ends.
 
-use crate::common::{Workplace, files_below};
+use crate::common::{BONDED_BAR, SNAP_BACK, Workplace, files_below};
 
 const CASE: &str = include_str!("wrong/case.toml");
 
@@ -61,4 +61,14 @@ fn the_last_lines_show_the_peak_and_why_the_run_ended() {
     let fallen = fallen.replace("end = \"20 us\"", stop);
     let ended = Workplace::new(&fallen).fractum(&["run", "case.toml", "-o", "out"]);
     assert!(ended.stdout.contains("load fell below 50 % of its largest value at t = "), "{ended:?}");
+}
+
+#[test]
+fn runs_at_rest_name_load_factors_instead_of_times() {
+    for (case, words) in [(SNAP_BACK, " N at load factor "), (BONDED_BAR, " bonds broke (crack area ")] {
+        let ended = Workplace::new(case).fractum(&["run", "case.toml", "-o", "out"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let said: Vec<&str> = ended.stdout.lines().filter(|line| line.contains(words)).collect();
+        assert!(!said.is_empty() && said.iter().all(|line| !line.contains("t = ")), "{words}: {}", ended.stdout);
+    }
 }

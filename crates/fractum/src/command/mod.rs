@@ -331,10 +331,11 @@ fn peak_text(name: &str, probe: &Probe, at_rest: bool) -> String {
 ///
 /// - `at_rest`: whether instants are load factors
 fn fracture_text(body: &Fracture, at_rest: bool) -> String {
-    use fractum_io::number::{at_instant, quantity};
+    use fractum_io::number::{at_instant, grouped, quantity};
     if body.broken_bonds > 0 {
         let (first, area) = (at_instant(body.first_break, at_rest), quantity(body.crack_area, "m^2"));
-        return format!("{} bonds broke, the first at {first}; they stand for {area}", body.broken_bonds);
+        let bonds = grouped(&body.broken_bonds.to_string());
+        return format!("{bonds} bonds broke (crack area {area}), the first at {first}");
     }
     match body.largest_at {
         Some([x, y, z]) => format!(

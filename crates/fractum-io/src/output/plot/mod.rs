@@ -27,7 +27,7 @@ use crate::output::markup::escape;
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 340.0;
-const LEFT: f64 = 66.0;
+const LEFT: f64 = 74.0;
 const RIGHT: f64 = 18.0;
 const BOTTOM: f64 = 46.0;
 /// Colours of the series, tellable with most kinds of colour blindness.

@@ -91,7 +91,7 @@ fn peak(x: &[f64], y: &[f64], unit: &str) -> Option<Mark> {
 }
 
 /// The energy ledger over time: what the work went into, on top of each other, and the work as a line above. Where a
-/// part is negative, lines.
+/// part is negative, lines. None where there is no energy, as in heat alone.
 pub(super) fn energy(history: &Table, columns: &EnergyColumns) -> Option<Chart> {
     let (x, times) = time(history)?;
     let (work, unit) = history.column(&columns.external)?;
@@ -102,6 +102,9 @@ pub(super) fn energy(history: &Table, columns: &EnergyColumns) -> Option<Chart> 
         if values.iter().any(|&value| value != 0.0) {
             parts.push((words(name), values));
         }
+    }
+    if parts.is_empty() && work.iter().all(|&value| value == 0.0) {
+        return None;
     }
     let largest = parts.iter().flat_map(|(_, values)| *values).fold(0.0, |a: f64, &b| a.max(b.abs()));
     let negative = parts.iter().flat_map(|(_, values)| *values).any(|&value| value < -0.01 * largest);

@@ -103,6 +103,8 @@ pub struct Figure {
     pub scale: Option<(Scale, [usize; 2])>,
     /// Whether it is one of a strip over time.
     pub in_strip: bool,
+    /// How displacements are drawn, behind the heading of a strip.
+    pub magnified: String,
 }
 
 /// Writes the report at `path`.
@@ -238,7 +240,7 @@ fn strip(pictures: &[Figure]) -> Markup {
     html! {
         @if !strip.is_empty() {
             section {
-                h2 { "Over time" }
+                h2 { "Over time" (strip[0].magnified) }
                 div.strip {
                     @for Figure { title, png, .. } in &strip {
                         figure { figcaption { (title) } img src=(figure::data_address(png)) alt=(title); }
