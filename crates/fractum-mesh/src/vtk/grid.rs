@@ -67,7 +67,7 @@ impl Groups {
             return Ok(members);
         }
         let find = |name: &&str| document.arrays.iter().find(|a| a.section == Section::CellData && a.name == **name);
-        let Some(parts) = PARTS.iter().find_map(|name| find(&name)).filter(|array| array.is_whole()) else {
+        let Some(parts) = PARTS.iter().find_map(find).filter(|array| array.is_whole()) else {
             return Ok(members);
         };
         let numbers = document.wholes(parts, document.cells.saturating_mul(parts.components))?;
