@@ -91,13 +91,8 @@ fn violent_fracture_closes_its_balance() {
                     finish(&mut scene);
                     let (ledger, removed) = (scene.ledger(), scene.counts().removed_elements);
                     let residual = ledger.residual_max_relative;
-                    // An edge that opens or closes stores no square of its strain, which central differences conserve to some order only.
-                    let allowed = if unilateral && name == "torn" { 1.5e-3 } else { 1e-3 };
                     println!("{name} {kind:?} {kinematics:?} {unilateral}: {residual:.1e}, {removed} removed");
-                    assert!(
-                        removed > 0 && residual < allowed,
-                        "{name} {kind:?} {kinematics:?} {unilateral}: {ledger:?}"
-                    );
+                    assert!(removed > 0 && residual < 1e-3, "{name} {kind:?} {kinematics:?} {unilateral}: {ledger:?}");
                 }
             }
         }

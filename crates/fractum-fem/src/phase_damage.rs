@@ -55,7 +55,7 @@ impl Solid {
                 cells.state[cell].kappa = cells.state[cell].kappa.max(own.seen);
                 let growth = cells.soften(cell, law.damage(own.drive.a1, d));
                 if let Some(dissipated) = dissipated {
-                    *dissipated += own.work * growth;
+                    *dissipated += own.taken.by(growth);
                 }
             });
             let mut reached = Vec::new();
@@ -113,6 +113,7 @@ impl Solid {
         let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
         let compliance = 0.5 / model.body.elastic.young_modulus;
         field.active.par_iter_mut().with_min_len(AT_LEAST).for_each(|own| {
+            let rebuilt = std::mem::take(&mut own.rebuilt);
             if let Some(standard) = &model.standard {
                 let kappa = standard.field.state[own.edge as usize].kappa;
                 let volume = self.edge_volume(model, own.edge);
@@ -130,7 +131,8 @@ impl Solid {
             let kappa = state.kappa.max(own.seen);
             own.drive = Drive { volume, energy: kappa * kappa * compliance, ..own.drive };
             let before = if state.damage == 0.0 { step.strain_before(&block.cells, cell) } else { state.strain };
-            own.work = softens.taken(softens.opening_stress(strain), before) * volume;
+            let damage = if rebuilt { 0.0 } else { state.damage };
+            own.taken = softens.taken(damage, [before, strain], [stress, softens.closed_stress(strain)]).of(volume);
         });
     }
 
@@ -245,12 +247,12 @@ impl Solid {
     }
 
     /// Puts the saved phase field of a body back, for the elements that are there.
-    pub(crate) fn restore_phase(&mut self, body: usize, state: &[(u32, [f64; 2])]) {
+    pub(crate) fn restore_phase(&mut self, body: usize, state: &[(u32, [f64; 2], bool)]) {
         let Some(mut field) = self.bodies[body].phase.take() else { return };
         field.clear();
-        for &(edge, values) in state {
+        for &(edge, values, rebuilt) in state {
             self.activate(body, &mut field, &[edge]);
-            field.restore_last(values);
+            field.restore_last(values, rebuilt);
         }
         self.bodies[body].phase = Some(field);
     }

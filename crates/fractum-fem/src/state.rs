@@ -16,8 +16,9 @@ pub struct BodyState {
     pub edges: Vec<EdgeDamage>,
     /// Damage and last effective stress of elements (standard formulation with damage).
     pub elements: Vec<(f64, Sym3)>,
-    /// Active edges of a phase field, each with d and d of the step before; empty without one.
-    pub phase: Vec<(u32, [f64; 2])>,
+    /// Active edges of a phase field, each with d, d of the step before, and whether elements have left it since the last forces; empty
+    /// without one.
+    pub phase: Vec<(u32, [f64; 2], bool)>,
 }
 
 /// What changes in a solid during a run.

@@ -20,6 +20,7 @@ use rayon::prelude::*;
 
 use crate::body::{Body, BodyEdges, DamageZone, ElementKind, Formulation};
 use crate::cell::Geometry;
+use crate::damage::Taken;
 use crate::error::SolidError;
 use crate::material::Degradation;
 use laplacian::Rows;
@@ -90,16 +91,18 @@ pub(crate) struct Drive {
 pub(crate) struct ActiveEdge {
     pub(crate) edge: u32,
     pub(crate) drive: Drive,
-    /// Equivalent stress now [Pa], and energy that damage from 0 to 1 would dissipate in this step [J]; zero in the standard formulation, which
+    /// Equivalent stress now [Pa], and what the step takes as damage grows [J]; zero in the standard formulation, which
     /// keeps the one and books the other itself.
     pub(crate) seen: f64,
-    pub(crate) work: f64,
+    pub(crate) taken: Taken,
     /// d at the end of the step before, and of the one before that.
     old: f64,
     before: f64,
     next: f64,
     /// Its neighbours are active.
     spread: bool,
+    /// Elements around it have left since the last forces, so that the stress of what is left did not act at the start of the step.
+    pub(crate) rebuilt: bool,
 }
 
 /// The phase field of a body.
@@ -134,11 +137,12 @@ impl PhaseField {
             edge,
             drive: Drive { a1, ..Drive::default() },
             seen: 0.0,
-            work: 0.0,
+            taken: Taken::default(),
             old: 0.0,
             before: 0.0,
             next: 0.0,
             spread: false,
+            rebuilt: false,
         });
     }
 
@@ -151,14 +155,15 @@ impl PhaseField {
     /// Takes the share of removed elements out of the rows of these edges.
     pub(crate) fn refresh(&mut self, patch: &Patch<'_>, edges: &[u32]) {
         for &edge in edges.iter().filter(|&&edge| self.slot[edge as usize] != Self::ASLEEP) {
-            let around = patch.elements_of_edge.row(edge as usize);
-            self.rows.refresh(self.slot[edge as usize] as usize, &patch.geometry, patch.edges, around, patch.alive);
+            let (around, slot) = (patch.elements_of_edge.row(edge as usize), self.slot[edge as usize] as usize);
+            self.active[slot].rebuilt = true;
+            self.rows.refresh(slot, &patch.geometry, patch.edges, around, patch.alive);
         }
     }
 
-    /// Active edges, each with d and d of the step before.
-    pub(crate) fn state(&self) -> impl Iterator<Item = (u32, [f64; 2])> + '_ {
-        self.active.iter().map(|active| (active.edge, [active.old, active.before]))
+    /// Active edges, each with d, d of the step before, and whether elements have left it since the last forces.
+    pub(crate) fn state(&self) -> impl Iterator<Item = (u32, [f64; 2], bool)> + '_ {
+        self.active.iter().map(|active| (active.edge, [active.old, active.before], active.rebuilt))
     }
 
     /// Nothing is active any more.
@@ -170,9 +175,9 @@ impl PhaseField {
     }
 
     /// Gives the edge that became active last its saved values.
-    pub(crate) fn restore_last(&mut self, [old, before]: [f64; 2]) {
+    pub(crate) fn restore_last(&mut self, [old, before]: [f64; 2], rebuilt: bool) {
         let Some(last) = self.active.last_mut() else { return };
-        (last.old, last.before) = (old, before);
+        (last.old, last.before, last.rebuilt) = (old, before, rebuilt);
         self.value[last.edge as usize] = old;
     }
 
