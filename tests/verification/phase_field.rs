@@ -99,9 +99,9 @@ fn violent_fracture_closes_its_balance() {
     }
 }
 
-/// What opening and closing edges lose is an error of the time step and of nothing else.
+/// Damage takes what opening and closing edges lose while they soften, whatever the time step.
 #[test]
-fn the_error_of_closing_edges_goes_with_the_time_step() {
+fn edges_that_close_keep_their_balance_at_any_step() {
     let error = |safety: f64| {
         let solid = block((ElementKind::T4, Formulation::Smoothed), 100.0, |body| {
             body.damage.as_mut().unwrap().law.unilateral = true;
@@ -114,7 +114,7 @@ fn the_error_of_closing_edges_goes_with_the_time_step() {
     };
     let [whole, half] = [0.8, 0.4].map(error);
     println!("{whole:.1e} {half:.1e}");
-    assert!(half < 3e-4 && half < 0.25 * whole, "{whole:e} {half:e}");
+    assert!(whole < 2e-4 && half < 2e-4, "{whole:e} {half:e}");
 }
 
 #[test]
