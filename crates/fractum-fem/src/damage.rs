@@ -10,6 +10,7 @@ use crate::body::{DamageZone, Kinematics};
 use crate::hooke::Hooke;
 use crate::kernel::{self, CellLaw, FOUR};
 use crate::material::{Criterion, DamageLaw, Softening};
+use crate::taken::Taken;
 use crate::threshold::Threshold;
 
 /// History of one edge.
@@ -138,31 +139,6 @@ impl Softens {
         edge.damage = before.max(1.0 - strength / edge.kappa * chi);
         edge.broken = edge.broken || chi <= self.residual;
         edge.damage - before
-    }
-}
-
-/// What a step takes of an edge whose damage grows [J], or of its volume [J/m³].
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Taken {
-    /// Part that goes with the growth of damage.
-    per_damage: f64,
-    /// Where cracks close, what those take that close or open within the step.
-    switched: Option<f64>,
-}
-
-impl Taken {
-    /// Energy for this growth of damage. A crack that closes or opens may bring energy, never damage.
-    pub(crate) fn by(self, growth: f64) -> f64 {
-        let taken = self.per_damage * growth;
-        match self.switched {
-            Some(switched) if growth > 0.0 => (taken + switched).max(0.0),
-            _ => taken,
-        }
-    }
-
-    /// The same of a volume [m³].
-    pub(crate) fn of(self, volume: f64) -> Self {
-        Taken { per_damage: self.per_damage * volume, switched: self.switched.map(|switched| switched * volume) }
     }
 }
 

@@ -51,6 +51,7 @@ mod separation;
 mod solid;
 mod standard;
 mod state;
+mod taken;
 mod thermal_strain;
 mod threshold;
 mod time_step;

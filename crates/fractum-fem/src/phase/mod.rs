@@ -20,9 +20,9 @@ use rayon::prelude::*;
 
 use crate::body::{Body, BodyEdges, DamageZone, ElementKind, Formulation};
 use crate::cell::Geometry;
-use crate::damage::Taken;
 use crate::error::SolidError;
 use crate::material::Degradation;
+use crate::taken::Taken;
 use laplacian::Rows;
 
 /// Value from which on the neighbours of an edge are active.
