@@ -2,7 +2,10 @@
 //!
 //! A result is written under `NAME.part` beside its final name, brought to the disk, and renamed. Whoever reads the
 //! results folder during a run, or after the machine lost power, finds complete files under their names; what still
-//! ends in `.part` is unfinished. A file that grows with the run ([`GrowingFile`]) keeps the `.part` until the run ends.
+//! ends in `.part` is unfinished. Files that are made together wait for the disk together ([`Group`]). A file that grows
+//! with the run ([`GrowingFile`]) keeps the `.part` until the run ends.
+
+mod group;
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -10,6 +13,8 @@ use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+
+pub use group::Group;
 
 use crate::error::WriteError;
 
@@ -182,11 +187,13 @@ pub(crate) fn unfinished_name(path: &Path) -> PathBuf {
 /// Renames and, where the system can, brings the folder's entry to the disk: else a power failure undoes the rename.
 fn rename(from: &Path, to: &Path) -> io::Result<()> {
     fs::rename(from, to)?;
+    sync_folder(to.parent().unwrap_or(Path::new("")))
+}
+
+/// Brings the entries of a folder to the disk, where the system can.
+fn sync_folder(folder: &Path) -> io::Result<()> {
     #[cfg(unix)]
-    {
-        let folder = to.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        File::open(folder)?.sync_all()?;
-    }
+    File::open(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?.sync_all()?;
     Ok(())
 }
 

@@ -75,7 +75,6 @@ impl Failure {
     /// The exit code that tells a script what kind of failure this is.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Failure::Picture(PictureError::Write(_)) => ExitCode::Machine,
             Failure::Input(_) | Failure::Unmet(_) | Failure::Picture(_) => ExitCode::Input,
             Failure::Stopped { .. } => ExitCode::Stopped,
             Failure::Interrupted => ExitCode::Interrupted,

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use fractum_fem::ElementKind;
+use fractum_io::atomic::Group;
 use fractum_io::number::instant_text;
 use fractum_io::picture::{ColourMap, View, robust_range};
 use fractum_math::Vec3;
@@ -48,14 +49,14 @@ struct Field<'a> {
 
 impl Studio<'_> {
     /// Draws a picture into its file; none where it cannot be drawn.
-    fn draw(&self, file: &str, title: &str, field: Field) -> Option<PictureNote> {
+    fn draw(&self, files: &mut Group, file: &str, title: &str, field: Field) -> Option<PictureNote> {
         let Field { label, unit, facets, balls, damage } = field;
         let shown: Vec<f64> = facets.iter().chain(balls).copied().collect();
         let range = if damage { (0.0, 1.0) } else { robust_range(&shown) };
         let map = if damage { ColourMap::Damage } else { ColourMap::Viridis };
         let (image, scale) = self.sight.draw(Colours { facets, balls, map, range }, &self.view, true).ok()?;
-        image.write(&self.folder.join("pictures").join(file)).ok()?;
         let scale = scale?;
+        files.add(&self.folder.join("pictures").join(file), &image.to_png().ok()?);
         Some(PictureNote {
             file: file.to_owned(),
             title: format!("{title} at {}", self.when),
@@ -71,10 +72,11 @@ impl Studio<'_> {
     }
 }
 
-/// Draws the scene into the folder `pictures` of the results; a picture that cannot be drawn is left out.
+/// Draws the scene for the folder `pictures` of the results; a picture that cannot be drawn is left out.
 ///
 /// - `at_rest`: whether time is a load factor
-pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool) -> Vec<PictureNote> {
+/// - `files`: takes the pictures
+pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool, files: &mut Group) -> Vec<PictureNote> {
     let (solid, bonded) = (&scene.solid, &scene.bonded);
     let size = extent(solid.reference.iter().chain(bonded.reference()));
     let attached = scene.attached_nodes();
@@ -109,13 +111,13 @@ pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool) -> Vec<PictureNo
     let mut notes = Vec::new();
     if damage.iter().any(|&d| d > 0.0) {
         let field = Field { facets: damage, damage: true, ..none };
-        notes.extend(studio.draw("damage.png", "Damage and discrete elements", field));
+        notes.extend(studio.draw(files, "damage.png", "Damage and discrete elements", field));
     }
     // Heat alone leaves bodies as they are.
     let acts = |values: &[f64]| !values.is_empty() && (scene.heat().is_none() || values.iter().any(|&x| x != 0.0));
     if acts(stress) {
         let field = Field { label: "first principal stress", unit: "Pa", facets: stress, ..none };
-        notes.extend(studio.draw("stress.png", "First principal stress", field));
+        notes.extend(studio.draw(files, "stress.png", "First principal stress", field));
     }
     if let Some(heat) = scene.heat() {
         let facets = studio.sight.skin.means(heat.of_nodes());
@@ -125,17 +127,17 @@ pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool) -> Vec<PictureNo
     let length: Vec<f64> = moved.iter().map(|u| u.norm()).collect();
     if acts(&length) {
         let field = Field { label: "displacement", unit: "m", balls: &length, ..none };
-        notes.extend(studio.draw("particles.png", "Displacement of particles", field));
+        notes.extend(studio.draw(files, "particles.png", "Displacement of particles", field));
     }
     if scene.count(CountKind::BrokenBonds) > 0 {
-        notes.extend(broken_bonds(scene, &studio));
+        notes.extend(broken_bonds(scene, &studio, files));
     }
     notes
 }
 
 /// Bonded bodies cut open in the middle of what broke, seen straight on and coloured by the bonds that particles have lost: along
 /// their broad side where they are flat, upright elsewhere.
-fn broken_bonds(scene: &Scene, studio: &Studio) -> Option<PictureNote> {
+fn broken_bonds(scene: &Scene, studio: &Studio, files: &mut Group) -> Option<PictureNote> {
     let (bonded, balls) = (&scene.bonded, &studio.sight.balls.centres);
     let lost = lost_bonds(balls.len(), bonded.bodies().iter().flat_map(BondedBody::cracks));
     let reference = bonded.reference();
@@ -157,7 +159,8 @@ fn broken_bonds(scene: &Scene, studio: &Studio) -> Option<PictureNote> {
     let colours = Colours { facets: &[], balls: &values, map: ColourMap::Damage, range: (0.0, LOST_BONDS) };
     let section = Sight { balls: Balls { centres, radii }, ..Sight::default() };
     let file = "broken_bonds.png".to_owned();
-    section.draw(colours, &view, false).ok()?.0.write(&studio.folder.join("pictures").join(&file)).ok()?;
+    let image = section.draw(colours, &view, false).ok()?.0;
+    files.add(&studio.folder.join("pictures").join(&file), &image.to_png().ok()?);
     Some(PictureNote {
         file,
         title: format!("Section through what broke: bonds that particles have lost at {}", studio.when),

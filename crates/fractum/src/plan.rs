@@ -1,6 +1,7 @@
 //! What a run will do: bodies, physics on and skipped, time step, size, time.
 
 mod bodies;
+mod cost;
 mod gauges;
 mod heat;
 mod rows;
@@ -8,7 +9,7 @@ mod wrap;
 
 use std::fmt;
 
-use fractum_fem::{ElementKind, Formulation, Kinematics};
+use fractum_fem::{ElementKind, Kinematics};
 use fractum_io::build::{BuiltScene, TieReport};
 use fractum_io::case::model::{
     Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SolverKind, SurfaceSupport,
@@ -19,20 +20,8 @@ use fractum_mesh::Mesh;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
 use fractum_scene::{BondedBody, Domain, GasMeasure, Scene};
 
+use self::cost::Cost;
 use crate::input::Input;
-
-/// Nanoseconds per element and step on one core of a common machine: standard, smoothed, smoothed with damage.
-const COST: [f64; 3] = [20.0, 45.0, 50.0];
-/// Bytes per element: standard, smoothed, smoothed with damage.
-const MEMORY: [f64; 3] = [420.0, 600.0, 720.0];
-/// Bytes of the program itself.
-const MEMORY_OF_PROGRAM: f64 = 35e6;
-/// Bytes per node of solids that may turn into discrete elements, if all of them do.
-const MEMORY_OF_DEBRIS: f64 = 800.0;
-
-/// The same for a bond with its share of particles.
-const COST_OF_BOND: f64 = 60.0;
-const MEMORY_OF_BOND: f64 = 400.0;
 
 /// The plan of a run, as text.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,10 +98,10 @@ impl Plan {
                 let end = instant_text(case.solver.end, true);
                 self.add("equilibrium", format!("{unknowns} unknowns, {path}, to {end}"));
             }
-            None if built.conducts_alone => {}
+            None if built.conducts_alone => self.describe_size(case, built, span),
             None => {
                 self.describe_time(case, scene, span);
-                self.describe_size(case, scene, span);
+                self.describe_size(case, built, span);
             }
         }
     }
@@ -333,38 +322,25 @@ impl Plan {
         }
     }
 
-    fn describe_size(&mut self, case: &Case, scene: &Scene, span: f64) {
-        let (mut nanoseconds, mut bytes, elements) = elements_cost(scene);
-        let bonds = scene.counts().bonds as f64;
-        nanoseconds += COST_OF_BOND * bonds;
-        bytes += MEMORY_OF_BOND * bonds;
-        if scene.solid.has_damage() {
-            bytes += MEMORY_OF_DEBRIS * scene.solid.reference.len() as f64;
-        }
-        let output = 60.0 * elements as f64 + 60.0 * scene.bonded.particles.len() as f64 + 20.0 * bonds;
-        let steps = span / scene.clock.dt_after;
+    fn describe_size(&mut self, case: &Case, built: &BuiltScene, span: f64) {
+        let scene = &built.scene;
+        let cost = Cost::of(scene, span);
+        // Heat alone has steps of its own, in which nothing else is computed.
+        let steps = if built.conducts_alone { 0.0 } else { span / scene.clock.dt_after };
         let frames = (span / case.output.fields_every).ceil() + 1.0;
         let rows = (span / case.output.history_every).ceil();
-        let count = rayon::current_num_threads();
-        let threads = count as f64;
-        // A frame is held until it is written.
-        bytes += MEMORY_OF_PROGRAM + output;
+        let threads = rayon::current_num_threads();
         self.add(
             "size",
             format!(
                 "memory {}, {frames} frames of about {} each, {rows} rows of history",
-                megabytes(bytes),
-                megabytes(output)
+                megabytes(cost.memory(frames)),
+                megabytes(cost.frame)
             ),
         );
-        self.add(
-            "wall time",
-            format!(
-                "about {} on {count} thread{}, without output",
-                quantity(1e-9 * nanoseconds * steps / threads, "s"),
-                if count == 1 { "" } else { "s" }
-            ),
-        );
+        let time = quantity(cost.time(steps, threads as f64), "s");
+        let plural = if threads == 1 { "" } else { "s" };
+        self.add("wall time", format!("about {time} on {threads} thread{plural}, without output"));
     }
 }
 
@@ -372,24 +348,6 @@ impl Plan {
 fn names(all: &[(bool, &str)]) -> String {
     let names: Vec<&str> = all.iter().filter(|(so, _)| *so).map(|(_, name)| *name).collect();
     names.join(", ")
-}
-
-/// Time of the elements in a step [ns], their memory [B], and their number.
-fn elements_cost(scene: &Scene) -> (f64, f64, usize) {
-    let (mut nanoseconds, mut bytes, mut elements) = (0.0, 0.0, 0);
-    for index in 0..scene.solid.body_count() {
-        let body = scene.solid.body(index);
-        let kind = match (body.formulation, &body.damage) {
-            (Formulation::Standard, _) => 0,
-            (Formulation::Smoothed, None) => 1,
-            (Formulation::Smoothed, Some(_)) => 2,
-        };
-        let turning = if body.kinematics == Kinematics::Corotational { 10.0 } else { 1.0 };
-        nanoseconds += COST[kind] * turning * body.elements.len() as f64;
-        bytes += MEMORY[kind] * body.elements.len() as f64;
-        elements += body.elements.len();
-    }
-    (nanoseconds, bytes, elements)
 }
 
 /// Thickness of the first plane body [m], 0 in space.

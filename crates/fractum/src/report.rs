@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use fractum_io::ReadError;
+use fractum_io::atomic::Group;
 use fractum_io::case::model::HistoryColumns;
 use fractum_io::fragments;
 use fractum_io::history::{self, Column, Table};
@@ -72,14 +73,10 @@ pub struct PictureNote {
     pub magnified: String,
 }
 
-/// Keeps the notes of a run in its folder.
-///
-/// # Errors
-/// [`Failure::Write`].
-pub fn keep(folder: &Path, notes: &Notes) -> Result<(), Failure> {
-    fractum_io::atomic::create_folder(&folder.join("pictures"))?;
+/// Keeps the notes of a run in its folder, where they are among the `files` that are written there.
+pub(crate) fn keep(folder: &Path, notes: &Notes, files: &mut Group) {
     let text = serde_json::to_string_pretty(notes).unwrap_or_default();
-    Ok(fractum_io::atomic::write(&folder.join(NOTES), text.as_bytes())?)
+    files.add(&folder.join(NOTES), text.as_bytes());
 }
 
 /// Writes `report.html` from the files of a results folder.

@@ -314,7 +314,10 @@ impl Simulation {
         let clock = scene.clock;
         let (end, later) = (self.end_of_run(), self.later.len());
         let heat = self.scene.heat_state();
-        let state = RunState { end, scene, heat, record: Cow::Borrowed(self.recorder.sync()?), later, solver };
+        let started = Instant::now();
+        let record = self.recorder.sync()?;
+        self.phases.add(Part::Output, started.elapsed());
+        let state = RunState { end, scene, heat, record: Cow::Borrowed(record), later, solver };
         let header = Header { identity: self.about.identity.clone(), step: clock.step, time: clock.time };
         let folder = self.folder.join("checkpoint");
         let write = || checkpoint::save(&folder, &header, &state, Compression::Fast);

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use fractum_io::atomic::Group;
 use fractum_io::number::instant_text;
 use fractum_io::picture::ColourMap;
 
@@ -22,7 +23,8 @@ const IN_STRIP: usize = 5;
 ///
 /// - `peak`: when the load was largest [s]
 /// - `at_rest`: whether time is a load factor
-pub(crate) fn strip(folder: &Path, peak: Option<f64>, at_rest: bool) -> Vec<PictureNote> {
+/// - `files`: takes the pictures
+pub(crate) fn strip(folder: &Path, peak: Option<f64>, at_rest: bool, files: &mut Group) -> Vec<PictureNote> {
     let Some(index) = FrameIndex::open(folder).ok().filter(|index| index.len() > 1) else { return Vec::new() };
     let last = index.len() - 1;
     let times: Vec<f64> = (0..=last).map(|instant| index.time(instant)).collect();
@@ -36,7 +38,7 @@ pub(crate) fn strip(folder: &Path, peak: Option<f64>, at_rest: bool) -> Vec<Pict
     let note = |instant: usize| {
         let file = format!("{STRIP_FILE}{instant:05}.png");
         let image = frames.draw(instant, STRIP[0], STRIP[1]).ok()?;
-        image.write(&folder.join("pictures").join(&file)).ok()?;
+        files.add(&folder.join("pictures").join(&file), &image.to_png().ok()?);
         let peak = if Some(instant) == at_peak { " (nearest to the peak)" } else { "" };
         Some(PictureNote {
             file,

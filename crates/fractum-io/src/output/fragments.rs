@@ -37,7 +37,7 @@ pub struct Fragment {
 /// # Errors
 /// [`WriteError`].
 pub fn write(path: &Path, fragments: &[Fragment]) -> Result<(), WriteError> {
-    atomic::write(path, table(fragments).as_bytes())
+    atomic::write(path, to_csv(fragments).as_bytes())
 }
 
 /// Reads the pieces back.
@@ -74,7 +74,8 @@ fn parse(text: &str) -> Result<Vec<Fragment>, (usize, String)> {
 const HEADER: &str = "id,mass [kg],volume [m^3],nodes,elements,x [m],y [m],z [m],\
      velocity_x [m/s],velocity_y [m/s],velocity_z [m/s],largest_extent [m],size [m]";
 
-fn table(fragments: &[Fragment]) -> String {
+/// The text of `fragments.csv`, in the order given.
+pub fn to_csv(fragments: &[Fragment]) -> String {
     let mut text = format!("{HEADER}\n");
     for fragment in fragments {
         let Fragment { id, mass, volume, nodes, elements, centroid, velocity, largest_extent, size } = fragment;
@@ -110,7 +111,7 @@ mod tests {
             largest_extent: 0.25,
             size: 0.125,
         };
-        let text = table(std::slice::from_ref(&fragment));
+        let text = to_csv(std::slice::from_ref(&fragment));
         assert_eq!(parse(&text).unwrap(), [fragment]);
         assert_eq!(parse("id\n").unwrap_err().0, 1);
         assert_eq!(parse(&text.replace("2.5", "two")).unwrap_err().0, 2);

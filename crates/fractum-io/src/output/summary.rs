@@ -10,8 +10,7 @@ use std::path::Path;
 use fractum_scene::{EnergyKind, Ledger};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::atomic;
-use crate::error::{ReadError, WriteError};
+use crate::error::ReadError;
 use crate::number::or_null;
 use crate::output::attenuation::Attenuation;
 use crate::output::expectation::Expectation;
@@ -234,14 +233,6 @@ impl Summary {
         json(self)
     }
 
-    /// Writes `summary.json` at `path`.
-    ///
-    /// # Errors
-    /// [`WriteError`].
-    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
-        atomic::write(path, self.to_json().as_bytes())
-    }
-
     /// Reads a `summary.json`.
     ///
     /// # Errors
@@ -368,7 +359,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("summary.json");
         let summary = example();
-        summary.write(&path).unwrap();
+        fs::write(&path, summary.to_json()).unwrap();
         assert!(fs::read_to_string(&path).unwrap().contains("\"final\": null"));
         let back = Summary::read(&path).unwrap();
         assert!(back.probes["load"].r#final.is_nan());

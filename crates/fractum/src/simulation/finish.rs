@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use fractum_fem::{CrackFacet, Solid};
+use fractum_io::atomic::Group;
 use fractum_io::attenuation;
 use fractum_io::fragments::{self, Fragment};
 use fractum_io::number::at_instant;
@@ -50,12 +51,10 @@ impl Simulation {
         self.record_last(&end)?;
         self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
         let pieces = self.scene.fragments();
-        fragments::write(&self.folder.join("fragments.csv"), &fragments_of(&self.scene.solid, &pieces))?;
         self.warn_of_single_nodes()?;
         self.warn_of_merged_bands()?;
         write_cracks(&self.scene, &self.folder, &self.recorder.state().removed)?;
-        self.phases.timed(Part::Output, || self.recorder.finish_frame())?;
-        let pictures = self.draw();
+        let pictures = self.draw(&pieces)?;
         let mut summary = Summary {
             title: self.case.source.title.clone(),
             status,
@@ -72,7 +71,6 @@ impl Simulation {
         if !summary.ppv.is_empty() {
             attenuation::write(&self.folder.join("ppv.csv"), &summary.ppv)?;
         }
-        summary.write(&self.folder.join("summary.json"))?;
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
         let load = self.load().map(|index| self.case.probes[index].name.value.clone());
@@ -84,8 +82,11 @@ impl Simulation {
             inputs: crate::inputs::table(&self.case),
             plots: crate::plots::notes(&self.case),
         };
+        let mut files = Group::default();
+        files.add(&self.folder.join("summary.json"), summary.to_json().as_bytes());
+        report::keep(&self.folder, &notes, &mut files);
+        files.finish()?;
         self.recorder.finish()?;
-        report::keep(&self.folder, &notes)?;
         report::write(&self.folder)?;
         let at_rest = self.solver.rests();
         match end {
@@ -101,14 +102,19 @@ impl Simulation {
         }
     }
 
-    /// The pictures of the end, and those over time from the frames.
-    fn draw(&mut self) -> Vec<PictureNote> {
+    /// The pieces, the pictures of the end and, once the last frame is written, those over time.
+    fn draw(&mut self, pieces: &[fractum_scene::Fragment]) -> Result<Vec<PictureNote>, Failure> {
         let (peak, at_rest) = (self.time_of_peak(), self.solver.rests());
-        let Simulation { scene, folder, phases, .. } = self;
+        let Simulation { scene, folder, phases, recorder, .. } = self;
         phases.timed(Part::Output, || {
-            let mut pictures = gallery::draw(scene, folder, at_rest);
-            pictures.extend(strip(folder, peak, at_rest));
-            pictures
+            let mut files = Group::default();
+            let fragments = fragments::to_csv(&fragments_of(&scene.solid, pieces));
+            files.add(&folder.join("fragments.csv"), fragments.as_bytes());
+            let mut pictures = gallery::draw(scene, folder, at_rest, &mut files);
+            recorder.finish_frame()?;
+            pictures.extend(strip(folder, peak, at_rest, &mut files));
+            files.finish()?;
+            Ok(pictures)
         })
     }
 

@@ -27,13 +27,8 @@ mod colour;
 mod raster;
 mod shade;
 
-use std::path::Path;
-
 pub use animation::animation;
 pub use colour::{ColourMap, Rgb};
-
-use crate::atomic;
-use crate::error::WriteError;
 
 /// Samples per pixel and direction.
 const SUPERSAMPLING: usize = 2;
@@ -78,9 +73,6 @@ pub enum PictureError {
     /// The picture could not be stored as PNG.
     #[error("the picture cannot be stored as PNG: {0}")]
     Encoding(#[from] png::EncodingError),
-    /// The file could not be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
 }
 
 /// What colour things have.
@@ -276,14 +268,6 @@ impl Image {
         writer.write_image_data(&self.rgb)?;
         writer.finish()?;
         Ok(bytes)
-    }
-
-    /// Writes the picture as a PNG file at `path`.
-    ///
-    /// # Errors
-    /// As [`to_png`](Self::to_png), and where the file cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), PictureError> {
-        Ok(atomic::write(path, &self.to_png()?)?)
     }
 }
 

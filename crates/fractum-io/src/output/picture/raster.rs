@@ -127,6 +127,68 @@ fn lit(colour: Rgb, light: f64) -> Rgb {
     colour.map(|channel| (f64::from(channel) * light).min(255.0) as u8)
 }
 
+/// Share of a corner along a row of samples.
+#[derive(Clone, Copy)]
+struct Share {
+    /// At the first column, over the scale.
+    start: f64,
+    /// From column to column, over the scale.
+    slope: f64,
+    scale: f64,
+}
+
+impl Share {
+    /// Share of the corner opposite to the edge from `p` to `q`, at the height `y` of a row.
+    ///
+    /// - `scale`: one over twice the area of the triangle
+    fn of_row(p: [f64; 3], q: [f64; 3], y: f64, scale: f64) -> Self {
+        Share { start: (p[0] - 0.5) * (q[1] - y) - (p[1] - y) * (q[0] - 0.5), slope: p[1] - q[1], scale }
+    }
+
+    fn at(self, column: usize) -> f64 {
+        // Scaled last: two triangles with a common edge agree to the last bit on which side of it a sample lies.
+        self.scale * (self.start + self.slope * column as f64)
+    }
+}
+
+/// Columns of a row between which no share is negative, or one more on either side.
+fn span(shares: &[Share; 3], [left, right]: [usize; 2]) -> [usize; 2] {
+    let (mut low, mut high) = (left as f64, right as f64);
+    for share in shares.iter().filter(|share| share.slope != 0.0) {
+        let zero = -share.start / share.slope;
+        if share.slope * share.scale > 0.0 {
+            low = low.max(zero - 1.0);
+        } else {
+            high = high.min(zero + 2.0);
+        }
+    }
+    // What is not a number leaves the bounds as they are.
+    [low as usize, (high.max(0.0) as usize).min(right)]
+}
+
+/// The colour of all samples of a facet, where it is one.
+fn lit_evenly(facet: &Facet) -> Option<Rgb> {
+    match facet.colour {
+        FacetColour::Plain(colour) if facet.lines == 0.0 => Some(lit(colour, facet.light)),
+        _ => None,
+    }
+}
+
+impl Facet {
+    /// Colour of a sample.
+    ///
+    /// - `heights`: samples from the edge opposite to a corner per share of it
+    fn colour_at(&self, shares: [f64; 3], heights: [f64; 3], picture: &Picture) -> Rgb {
+        let colour = match self.colour {
+            FacetColour::Plain(colour) => colour,
+            FacetColour::Corners(corners) => picture.map.colour(dot(shares, corners)),
+        };
+        let to_edge = (0..3).map(|k| shares[k] * heights[k]).fold(f64::INFINITY, f64::min);
+        let line = 1.0 - self.lines * (1.3 - to_edge).clamp(0.0, 1.0);
+        lit(colour, self.light * line)
+    }
+}
+
 /// Some rows of the canvas.
 struct Band<'a> {
     width: usize,
@@ -156,22 +218,23 @@ impl Band<'_> {
         let high = [bound(f64::max, 0), bound(f64::max, 1)];
         let Some([left, right, top, bottom]) = self.window(low, high) else { return };
         let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        if twice_area == 0.0 {
+        let scale = 1.0 / twice_area;
+        if !scale.is_finite() {
             return;
         }
-        // Shares of the corners at a sample, and how many samples they are from the opposite edge per share.
-        let corner_share =
-            |p: [f64; 3], q: [f64; 3], x: f64, y: f64| ((p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x)) / twice_area;
+        // How many samples a sample is from the opposite edge per share of a corner.
         let height = |p: [f64; 3], q: [f64; 3]| {
             let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
             twice_area.abs() / (dx * dx + dy * dy).sqrt()
         };
         let heights = [height(b, c), height(c, a), height(a, b)];
+        let even = lit_evenly(facet);
         for row in top..bottom {
             let y = (self.top + row) as f64 + 0.5;
+            let shares = [(b, c), (c, a), (a, b)].map(|(p, q)| Share::of_row(p, q, y, scale));
+            let [left, right] = span(&shares, [left, right]);
             for column in left..right {
-                let x = column as f64 + 0.5;
-                let shares = [corner_share(b, c, x, y), corner_share(c, a, x, y), corner_share(a, b, x, y)];
+                let shares = shares.map(|share| share.at(column));
                 if shares.iter().any(|&share| share < 0.0) {
                     continue;
                 }
@@ -180,14 +243,8 @@ impl Band<'_> {
                 if depth >= self.depth[at] || dot(shares, facet.clip) > 0.0 {
                     continue;
                 }
-                let colour = match facet.colour {
-                    FacetColour::Plain(colour) => colour,
-                    FacetColour::Corners(corners) => picture.map.colour(dot(shares, corners)),
-                };
-                let to_edge = (0..3).map(|k| shares[k] * heights[k]).fold(f64::INFINITY, f64::min);
-                let line = 1.0 - facet.lines * (1.3 - to_edge).clamp(0.0, 1.0);
                 self.depth[at] = depth;
-                self.colour[at] = lit(colour, facet.light * line);
+                self.colour[at] = even.unwrap_or_else(|| facet.colour_at(shares, heights, picture));
             }
         }
     }

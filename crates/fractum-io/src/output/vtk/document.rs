@@ -98,6 +98,15 @@ impl<'a> Document<'a> {
         self.pieces.push(Piece::Array { tag, unit: unit_of(name).map_or(String::new(), key), bytes });
     }
 
+    /// Bytes of its text and arrays.
+    pub(super) fn size(&self) -> usize {
+        let of = |piece: &Piece| match piece {
+            Piece::Text(text) => text.len(),
+            Piece::Array { bytes, .. } => bytes.len(),
+        };
+        self.pieces.iter().map(of).sum()
+    }
+
     /// The same with arrays of its own.
     pub(super) fn into_owned(self) -> Document<'static> {
         let owned = |piece| match piece {

@@ -1,15 +1,21 @@
 //! Frames are compressed and written on a thread of their own, while the run goes on.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
 use serde::{Deserialize, Serialize};
 
 use super::Compression;
 use super::document::Document;
-use crate::atomic;
+use crate::atomic::{self, Group};
 use crate::error::WriteError;
+
+/// Bytes of frames that may wait for the one under way: small frames follow each other faster than a disk takes them.
+pub const WAITING: usize = 16 << 20;
+/// Files that are brought to the disk together at most, so that few are open at a time.
+const TOGETHER: usize = 64;
 
 /// A file of which everything is known, but which is neither compressed nor written yet.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -41,46 +47,161 @@ impl PendingFile {
             Content::Text(text) => atomic::write(path, text.as_bytes()),
         }
     }
+
+    fn add_to(&self, group: &mut Group, path: &Path) {
+        match &self.0 {
+            Content::Document(document, compression) => group.add(path, &document.to_bytes(*compression)),
+            Content::Text(text) => group.add(path, text.as_bytes()),
+        }
+    }
+
+    /// Bytes that it occupies until it is written.
+    fn size(&self) -> usize {
+        match &self.0 {
+            Content::Document(document, _) => document.size(),
+            Content::Text(text) => text.len(),
+        }
+    }
 }
 
-/// Writes frame after frame on a thread of its own; at most one is under way.
+/// The files of a frame at their paths.
+type Files = Vec<(PathBuf, PendingFile)>;
+
+/// Frames that wait to be written.
+#[derive(Debug, Default)]
+struct Queue {
+    frames: VecDeque<Files>,
+    /// Bytes of those that wait.
+    size: usize,
+    /// Whether a thread takes frames from here.
+    is_served: bool,
+}
+
+/// The queue, and the news that it is shorter.
+#[derive(Debug, Default)]
+struct Shared {
+    queue: Mutex<Queue>,
+    taken: Condvar,
+}
+
+fn size_of(frame: &Files) -> usize {
+    frame.iter().map(|(_, file)| file.size()).sum()
+}
+
+impl Shared {
+    fn queue(&self) -> MutexGuard<'_, Queue> {
+        // A thread that panicked is told of where it is joined.
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds a frame once there is room for it; whether somebody takes it from there.
+    fn push(&self, frame: Files) -> bool {
+        let size = size_of(&frame);
+        let full = |queue: &mut Queue| queue.is_served && !queue.frames.is_empty() && queue.size + size > WAITING;
+        let mut queue = self.taken.wait_while(self.queue(), full).unwrap_or_else(PoisonError::into_inner);
+        queue.frames.push_back(frame);
+        queue.size += size;
+        std::mem::replace(&mut queue.is_served, true)
+    }
+
+    /// The next frame; none, and nobody who takes frames, once the queue is empty.
+    fn take(&self) -> Option<Files> {
+        let mut queue = self.queue();
+        let frame = queue.frames.pop_front();
+        queue.size -= frame.as_ref().map_or(0, size_of);
+        queue.is_served = frame.is_some();
+        self.taken.notify_all();
+        frame
+    }
+
+    /// Writes frame after frame until none waits; after an error those that wait are given up.
+    fn serve(&self) -> Result<(), WriteError> {
+        let _end = EndOfService(self);
+        let written = self.write_all();
+        if written.is_err() {
+            self.give_up();
+        }
+        written
+    }
+
+    fn give_up(&self) {
+        *self.queue() = Queue::default();
+        self.taken.notify_all();
+    }
+
+    fn write_all(&self) -> Result<(), WriteError> {
+        while let Some(first) = self.take() {
+            let mut group = Group::default();
+            let mut next = Some(first);
+            while let Some(frame) = next {
+                frame.iter().for_each(|(path, file)| file.add_to(&mut group, path));
+                // What has come meanwhile goes to the disk with it.
+                let waits = !self.queue().frames.is_empty();
+                next = if waits && group.len() < TOGETHER { self.take() } else { None };
+            }
+            group.finish()?;
+        }
+        Ok(())
+    }
+}
+
+/// Whoever waits for room in the queue must not wait for a thread that has panicked.
+struct EndOfService<'a>(&'a Shared);
+
+impl Drop for EndOfService<'_> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            self.0.give_up();
+        }
+    }
+}
+
+/// Writes frame after frame on a thread of its own, in their order.
 #[derive(Debug, Default)]
 pub struct FrameWriter {
-    under_way: Option<JoinHandle<Result<(), WriteError>>>,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<Result<(), WriteError>>>,
 }
 
 impl FrameWriter {
-    /// Begins to write the files of a frame at their paths, one after the other, once the frame before is written.
+    /// Begins to write the files of a frame at their paths, one after the other, behind the frames before; waits only where too
+    /// many of those are not written yet.
     ///
     /// # Errors
-    /// [`WriteError`] of the frame before; of this one where there is no thread for it.
+    /// [`WriteError`] of a frame before; of this one where there is no thread for it.
     pub fn begin(&mut self, frame: Vec<(PathBuf, PendingFile)>) -> Result<(), WriteError> {
-        self.finish()?;
-        let frame = Arc::new(frame);
-        let own = Arc::clone(&frame);
-        let write = |frame: &[(PathBuf, PendingFile)]| frame.iter().try_for_each(|(path, file)| file.write(path));
-        match thread::Builder::new().name("frames".into()).spawn(move || write(&own)) {
-            Ok(thread) => self.under_way = Some(thread),
+        self.check()?;
+        if self.shared.push(frame) {
+            return Ok(());
+        }
+        // The thread before has seen an empty queue, or failed.
+        if let Err(error) = self.finish() {
+            self.shared.give_up();
+            return Err(error);
+        }
+        let shared = Arc::clone(&self.shared);
+        match thread::Builder::new().name("frames".into()).spawn(move || shared.serve()) {
+            Ok(thread) => self.thread = Some(thread),
             // A system without a thread to spare: the run waits for its frame.
-            Err(_) => write(&frame)?,
+            Err(_) => self.shared.serve()?,
         }
         Ok(())
     }
 
-    /// The error of the last frame, if it has ended with one by now.
+    /// The error of the frames so far, if there has been one by now.
     ///
     /// # Errors
     /// [`WriteError`], once.
     pub fn check(&mut self) -> Result<(), WriteError> {
-        if self.under_way.as_ref().is_some_and(JoinHandle::is_finished) { self.finish() } else { Ok(()) }
+        if self.thread.as_ref().is_some_and(JoinHandle::is_finished) { self.finish() } else { Ok(()) }
     }
 
     /// Waits for the last frame.
     ///
     /// # Errors
-    /// [`WriteError`] of that frame.
+    /// [`WriteError`] of that frame or one before.
     pub fn finish(&mut self) -> Result<(), WriteError> {
-        let Some(thread) = self.under_way.take() else { return Ok(()) };
+        let Some(thread) = self.thread.take() else { return Ok(()) };
         // A panic there is one here.
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     }
@@ -89,7 +210,7 @@ impl FrameWriter {
 impl Drop for FrameWriter {
     /// A frame that was begun is written, also where the run ends by an error, which is the one to report.
     fn drop(&mut self) {
-        let _ = self.under_way.take().map(JoinHandle::join);
+        let _ = self.thread.take().map(JoinHandle::join);
     }
 }
 
@@ -137,10 +258,27 @@ mod tests {
         let [bad, good] = ["absent/a.vtp", "b.vtp"].map(|name| folder.path().join(name));
         let mut writer = FrameWriter::default();
         writer.begin(vec![cloud(&[[0.0; 3]], &bad).0, cloud(&[[0.0; 3]], &good).0]).unwrap();
-        let error = writer.begin(vec![cloud(&[[0.0; 3]], &good).0]).unwrap_err();
+        // The second frame comes before or after the first has failed.
+        let error = writer.begin(vec![cloud(&[[0.0; 3]], &good).0]).and_then(|()| writer.finish()).unwrap_err();
         assert!(matches!(error, WriteError::MissingFolder { .. }), "{error}");
         assert!(!good.exists());
         writer.check().unwrap();
         writer.finish().unwrap();
+    }
+
+    #[test]
+    fn more_frames_than_may_wait_are_all_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut writer = FrameWriter::default();
+        let points: Vec<[f64; 3]> = (0..60_000).map(|i| [f64::from(i), 0.0, 1.0]).collect();
+        for frame in 0..12 {
+            let path = folder.path().join(format!("{frame}.vtp"));
+            let (pending, _) = cloud(&points, &path);
+            assert!(12 * pending.1.size() > 2 * WAITING);
+            writer.begin(vec![pending]).unwrap();
+            assert!(writer.shared.queue().size <= WAITING);
+        }
+        writer.finish().unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 12);
     }
 }

@@ -30,7 +30,7 @@ mod unit;
 use std::borrow::Cow;
 
 pub use collection::{Collection, Entry};
-pub use frame_writer::{FrameWriter, PendingFile};
+pub use frame_writer::{FrameWriter, PendingFile, WAITING};
 pub use grid::{CellBlock, CellKind, UnstructuredGrid};
 pub use poly::{PolyCells, PolyData};
 pub use read::{Arrays, read_collection};

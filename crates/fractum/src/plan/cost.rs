@@ -1,0 +1,128 @@
+//! What a step costs, and how fast the machine is.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use fractum_dem::AnyBondLaw;
+use fractum_fem::{Formulation, Kinematics};
+use fractum_io::vtk::WAITING;
+use fractum_scene::{BondedBody, Scene};
+
+// Nanoseconds are those of one core that needs `REFERENCE` for the loop of `slowness`.
+
+/// Per element and step: standard, smoothed, smoothed with damage.
+const ELEMENT: [f64; 3] = [20.0, 45.0, 50.0];
+/// Times as much where elements turn with their bodies.
+const TURNING: f64 = 10.0;
+/// Per bond and step, with its share of particles: beams; interfaces that hold, that may fail, beside a mean strain.
+const BOND: [f64; 4] = [60.0, 52.0, 150.0, 160.0];
+/// Per loose particle and step, with its contacts in a heap.
+const LOOSE_PARTICLE: f64 = 290.0;
+/// Per pair that conducts heat and explicit step of the heat.
+const HEAT_PAIR: f64 = 8.0;
+
+/// Bytes per element: standard, smoothed, smoothed with damage.
+const MEMORY: [f64; 3] = [420.0, 600.0, 720.0];
+/// Bytes per bond, with its share of particles.
+const MEMORY_OF_BOND: f64 = 400.0;
+/// Bytes of the program itself.
+const MEMORY_OF_PROGRAM: f64 = 35e6;
+/// Bytes per node of solids that may turn into discrete elements, if all of them do.
+const MEMORY_OF_DEBRIS: f64 = 800.0;
+/// Bytes in a frame per element or particle, and per bond.
+const FRAME: [f64; 2] = [60.0, 20.0];
+
+/// What a run in motion needs.
+pub(super) struct Cost {
+    /// Time of a step on one core, without output [s].
+    step: f64,
+    /// Time to conduct heat over the span, on one core [s].
+    heat: f64,
+    /// Memory without frames [B].
+    memory: f64,
+    /// Size of a frame [B].
+    pub(super) frame: f64,
+}
+
+impl Cost {
+    /// - `span`: simulated time [s]
+    pub(super) fn of(scene: &Scene, span: f64) -> Self {
+        let particles = scene.bonded.particles.len() as f64;
+        let mut cost = Cost { step: 0.0, heat: 0.0, memory: MEMORY_OF_PROGRAM, frame: FRAME[0] * particles };
+        cost.add_elements(scene);
+        for body in scene.bonded.bodies() {
+            cost.add_bonds(body);
+        }
+        if scene.solid.has_damage() {
+            cost.memory += MEMORY_OF_DEBRIS * scene.solid.reference.len() as f64;
+        }
+        if let Some(heat) = scene.heat().filter(|heat| !heat.is_implicit()) {
+            let [_, pairs] = heat.counts();
+            cost.heat = 1e-9 * HEAT_PAIR * pairs as f64 * (span / heat.step_size()).ceil();
+        }
+        cost
+    }
+
+    fn add_elements(&mut self, scene: &Scene) {
+        for index in 0..scene.solid.body_count() {
+            let body = scene.solid.body(index);
+            let kind = match (body.formulation, &body.damage) {
+                (Formulation::Standard, _) => 0,
+                (Formulation::Smoothed, None) => 1,
+                (Formulation::Smoothed, Some(_)) => 2,
+            };
+            let turning = if body.kinematics == Kinematics::Corotational { TURNING } else { 1.0 };
+            let elements = body.elements.len() as f64;
+            self.step += 1e-9 * ELEMENT[kind] * turning * elements;
+            self.memory += MEMORY[kind] * elements;
+            self.frame += FRAME[0] * elements;
+        }
+    }
+
+    fn add_bonds(&mut self, body: &BondedBody) {
+        if body.bonds.is_empty() {
+            self.step += 1e-9 * LOOSE_PARTICLE * body.range.len() as f64;
+            return;
+        }
+        let kind = match body.bonds.law() {
+            AnyBondLaw::CohesiveBeam(_) => 0,
+            AnyBondLaw::Local(law) if law.mean_strain.is_some() => 3,
+            AnyBondLaw::Local(law) if law.can_fail() => 2,
+            AnyBondLaw::Local(_) => 1,
+        };
+        let bonds = body.bonds.len() as f64;
+        self.step += 1e-9 * BOND[kind] * bonds;
+        self.memory += MEMORY_OF_BOND * bonds;
+        self.frame += FRAME[1] * bonds;
+    }
+
+    /// Time of the steps and of the heat on this machine, without output [s].
+    pub(super) fn time(&self, steps: f64, threads: f64) -> f64 {
+        slowness() * (self.step * steps + self.heat) / threads
+    }
+
+    /// Memory with the frames that wait to be written, and the one that is being written [B].
+    pub(super) fn memory(&self, frames: f64) -> f64 {
+        self.memory + self.frame + (frames * self.frame).min(WAITING as f64)
+    }
+}
+
+/// Seconds of the loop of [`slowness`] on the core that the costs were measured on.
+const REFERENCE: f64 = 11e-6;
+/// Times that the loop is tried: the shortest was not interrupted.
+const TRIALS: usize = 20;
+
+/// How much slower than that core this one is: the time of a loop of additions, multiplications and divisions, a third of a
+/// millisecond in all.
+fn slowness() -> f64 {
+    let mut values = [1.0; 1024];
+    let mut timed = || {
+        let start = Instant::now();
+        for _ in 0..16 {
+            let values = black_box(&mut values);
+            values.iter_mut().for_each(|value| *value = 0.5 * *value + 1.0 / (*value + 2.0));
+        }
+        start.elapsed().as_secs_f64()
+    };
+    (0..TRIALS).map(|_| timed()).fold(f64::INFINITY, f64::min) / REFERENCE
+}
