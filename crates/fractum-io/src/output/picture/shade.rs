@@ -124,7 +124,8 @@ fn darken(colour: &mut Rgb, shadow: f32, outline: Option<bool>) {
     let Some(outline) = outline else { return };
     let dark = if outline { 0.45 * shadow } else { shadow };
     if dark < 1.0 {
-        *colour = colour.map(|channel| (f32::from(channel) * dark) as u8);
+        // To the nearest: what rounding makes of a flat face must not show as a pattern.
+        *colour = colour.map(|channel| (f32::from(channel) * dark + 0.5) as u8);
     }
 }
 
