@@ -122,7 +122,7 @@ pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool, files: &mut Grou
     if let Some(heat) = scene.heat() {
         let facets = studio.sight.skin.means(heat.of_nodes());
         let field = Field { label: "temperature", unit: "K", facets: &facets, balls: heat.of_particles(), ..none };
-        notes.extend(studio.draw("temperature.png", "Temperature", field));
+        notes.extend(studio.draw(files, "temperature.png", "Temperature", field));
     }
     let length: Vec<f64> = moved.iter().map(|u| u.norm()).collect();
     if acts(&length) {

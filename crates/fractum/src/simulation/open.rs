@@ -225,7 +225,7 @@ fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
 }
 
 /// Files of a run, beside its frames, the pictures over time, its states and the text of its case.
-const RESULTS: [&str; 16] = [
+const RESULTS: [&str; 17] = [
     "summary.json",
     "history.csv",
     "fields.pvd",
@@ -239,6 +239,7 @@ const RESULTS: [&str; 16] = [
     "movie.png",
     "pictures/notes.json",
     "pictures/damage.png",
+    "pictures/temperature.png",
     "pictures/stress.png",
     "pictures/particles.png",
     "pictures/broken_bonds.png",
