@@ -65,7 +65,7 @@ fn the_last_lines_show_the_peak_and_why_the_run_ended() {
 
 #[test]
 fn runs_at_rest_name_load_factors_instead_of_times() {
-    for (case, words) in [(SNAP_BACK, " N at load factor "), (BONDED_BAR, " bonds broke (crack area ")] {
+    for (case, words) in [(SNAP_BACK, "N at load factor "), (BONDED_BAR, " bonds broke (crack area ")] {
         let ended = Workplace::new(case).fractum(&["run", "case.toml", "-o", "out"]);
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         let said: Vec<&str> = ended.stdout.lines().filter(|line| line.contains(words)).collect();

@@ -38,6 +38,9 @@ impl<'a> Tags<'a> {
             }
             let inside = std::str::from_utf8(&rest[1..end - 1])
                 .map_err(|_| Fault::unexpected(at, quote(rest), "a tag in UTF-8"))?;
+            if inside.contains('<') {
+                return Err(Fault::unexpected(at, quote(rest), "a tag that ends with >"));
+            }
             let (inside, empty) = inside.strip_suffix('/').map_or((inside, false), |inside| (inside, true));
             let (inside, closes) = inside.strip_prefix('/').map_or((inside, false), |inside| (inside, true));
             let name = inside.split(|c: char| c.is_ascii_whitespace()).next().unwrap_or_default();
