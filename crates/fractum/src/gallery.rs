@@ -47,6 +47,14 @@ struct Field<'a> {
     damage: bool,
 }
 
+/// Pictures of the last instant, in the folder `pictures` of the results.
+pub(crate) const FILES: [&str; 5] = [DAMAGE, STRESS, TEMPERATURE, PARTICLES, BROKEN_BONDS];
+const DAMAGE: &str = "damage.png";
+const STRESS: &str = "stress.png";
+const TEMPERATURE: &str = "temperature.png";
+const PARTICLES: &str = "particles.png";
+const BROKEN_BONDS: &str = "broken_bonds.png";
+
 impl Studio<'_> {
     /// Draws a picture into its file; none where it cannot be drawn.
     fn draw(&self, files: &mut Group, file: &str, title: &str, field: Field) -> Option<PictureNote> {
@@ -111,23 +119,23 @@ pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool, files: &mut Grou
     let mut notes = Vec::new();
     if damage.iter().any(|&d| d > 0.0) {
         let field = Field { facets: damage, damage: true, ..none };
-        notes.extend(studio.draw(files, "damage.png", "Damage and discrete elements", field));
+        notes.extend(studio.draw(files, DAMAGE, "Damage and discrete elements", field));
     }
     // Heat alone leaves bodies as they are.
     let acts = |values: &[f64]| !values.is_empty() && (scene.heat().is_none() || values.iter().any(|&x| x != 0.0));
     if acts(stress) {
         let field = Field { label: "first principal stress", unit: "Pa", facets: stress, ..none };
-        notes.extend(studio.draw(files, "stress.png", "First principal stress", field));
+        notes.extend(studio.draw(files, STRESS, "First principal stress", field));
     }
     if let Some(heat) = scene.heat() {
         let facets = studio.sight.skin.means(heat.of_nodes());
         let field = Field { label: "temperature", unit: "K", facets: &facets, balls: heat.of_particles(), ..none };
-        notes.extend(studio.draw(files, "temperature.png", "Temperature", field));
+        notes.extend(studio.draw(files, TEMPERATURE, "Temperature", field));
     }
     let length: Vec<f64> = moved.iter().map(|u| u.norm()).collect();
     if acts(&length) {
         let field = Field { label: "displacement", unit: "m", balls: &length, ..none };
-        notes.extend(studio.draw(files, "particles.png", "Displacement of particles", field));
+        notes.extend(studio.draw(files, PARTICLES, "Displacement of particles", field));
     }
     if scene.count(CountKind::BrokenBonds) > 0 {
         notes.extend(broken_bonds(scene, &studio, files));
@@ -158,7 +166,7 @@ fn broken_bonds(scene: &Scene, studio: &Studio, files: &mut Group) -> Option<Pic
     let values: Vec<f64> = kept.iter().map(|&i| lost[i]).collect();
     let colours = Colours { facets: &[], balls: &values, map: ColourMap::Damage, range: (0.0, LOST_BONDS) };
     let section = Sight { balls: Balls { centres, radii }, ..Sight::default() };
-    let file = "broken_bonds.png".to_owned();
+    let file = BROKEN_BONDS.to_owned();
     let image = section.draw(colours, &view, false).ok()?.0;
     files.add(&studio.folder.join("pictures").join(&file), &image.to_png().ok()?);
     Some(PictureNote {

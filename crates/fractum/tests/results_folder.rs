@@ -54,16 +54,25 @@ fn results_are_replaced_only_where_the_user_says_so() {
 #[test]
 fn files_of_the_user_stay_where_no_run_has_been() {
     let place = Workplace::new(BREAKING_BAR);
-    let names = ["input/other.toml", "pictures/damage.png", "movie.png", "solid/mine.vtu"];
+    let names = ["input/other.toml", "pictures/damage.png", "movie.png", "solid/mine.vtu", "gauges/face.csv"];
     for path in names.map(|name| place.path(name)) {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, "own").unwrap();
     }
     let ended = place.fractum(&["run", "case.toml", "-o", ".", "--quiet", "--set", "end=1 us"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    for name in ["input/other.toml", "movie.png", "solid/mine.vtu"] {
+    for name in ["input/other.toml", "movie.png", "solid/mine.vtu", "gauges/face.csv"] {
         assert_eq!(fs::read_to_string(place.path(name)).unwrap(), "own", "{name}");
     }
+    // A case among them is one of the user's files, too; so is what has no name of a frame.
+    fs::copy(place.path("case.toml"), place.path("input/a.toml")).unwrap();
+    fs::copy(place.path("bar.msh"), place.path("input/bar.msh")).unwrap();
+    for case in ["input/a.toml", "case.toml"] {
+        let ended = place.fractum(&["run", case, "-o", ".", "--quiet", "--overwrite", "--set", "end=1 us"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    }
+    let kept = ["input/a.toml", "input/other.toml", "solid/mine.vtu", "gauges/face.csv"];
+    assert!(kept.iter().all(|name| place.path(name).exists()));
 }
 
 #[test]

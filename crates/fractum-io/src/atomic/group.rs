@@ -119,13 +119,7 @@ fn pick<'a, A, B>(files: &'a [A], results: &'a [B], index: usize) -> Option<(&'a
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let mut names: Vec<String> =
-            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
+    use crate::atomic::tests::names;
 
     #[test]
     fn files_get_their_names_together_and_the_last_of_one_name_counts() {

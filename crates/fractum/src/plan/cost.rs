@@ -104,7 +104,7 @@ impl Cost {
 
     /// Memory with the frames that wait to be written, and the one that is being written [B].
     pub(super) fn memory(&self, frames: f64) -> f64 {
-        self.memory + self.frame + (frames * self.frame).min(WAITING as f64)
+        self.memory + self.frame + (frames * self.frame).min(self.frame.max(WAITING as f64))
     }
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use fractum_fem::{CrackFacet, Solid};
-use fractum_io::atomic::Group;
+use fractum_io::atomic::{Group, create_folder};
 use fractum_io::attenuation;
 use fractum_io::fragments::{self, Fragment};
 use fractum_io::number::at_instant;
@@ -107,6 +107,7 @@ impl Simulation {
         let (peak, at_rest) = (self.time_of_peak(), self.solver.rests());
         let Simulation { scene, folder, phases, recorder, .. } = self;
         phases.timed(Part::Output, || {
+            create_folder(&folder.join("pictures"))?;
             let mut files = Group::default();
             let fragments = fragments::to_csv(&fragments_of(&scene.solid, pieces));
             files.add(&folder.join("fragments.csv"), fragments.as_bytes());

@@ -18,6 +18,7 @@ use super::origin::{forget_case, keep_case, origin};
 use super::{About, Options, RunState, Simulation};
 use crate::error::Failure;
 use crate::frames::GridLayout;
+use crate::gallery;
 use crate::gauge_tables;
 use crate::input::{Input, load};
 use crate::interrupt::UnderWay;
@@ -224,8 +225,8 @@ fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
     Ok(log)
 }
 
-/// Files of a run, beside its frames, the pictures over time, its states and the text of its case.
-const RESULTS: [&str; 17] = [
+/// Files of a run, beside its frames, its pictures, its states and the text of its case.
+const RESULTS: [&str; 12] = [
     "summary.json",
     "history.csv",
     "fields.pvd",
@@ -238,11 +239,6 @@ const RESULTS: [&str; 17] = [
     "report.html",
     "movie.png",
     "pictures/notes.json",
-    "pictures/damage.png",
-    "pictures/temperature.png",
-    "pictures/stress.png",
-    "pictures/particles.png",
-    "pictures/broken_bonds.png",
 ];
 
 /// A run that starts anew leaves nothing of an earlier one that could be taken for its own: no state to resume from, no
@@ -255,7 +251,9 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
         }
         _ => {}
     }
-    for path in RESULTS.map(|name| folder.join(name)).into_iter().filter(|path| path.is_file()) {
+    let pictures = gallery::FILES.map(|name| folder.join("pictures").join(name));
+    let files = RESULTS.map(|name| folder.join(name)).into_iter().chain(pictures);
+    for path in files.filter(|path| path.is_file()) {
         std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
     }
     let frames =
@@ -264,12 +262,18 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
         let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
         for path in entries.flatten().map(|entry| entry.path()) {
             let own = path.file_name().and_then(|own| own.to_str());
-            if own.is_some_and(|own| own.starts_with(start) && own.ends_with(end)) {
+            if own.is_some_and(|own| own.starts_with(start) && is_numbered(own, end)) {
                 std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
             }
         }
     }
     forget_case(folder)
+}
+
+/// Whether a file is called as those of a frame: `STEM-00012.vtu`.
+fn is_numbered(name: &str, ending: &str) -> bool {
+    let stem = name.strip_suffix(ending).and_then(|stem| stem.rsplit_once('-'));
+    stem.is_some_and(|(_, number)| number.len() >= 5 && number.bytes().all(|digit| digit.is_ascii_digit()))
 }
 
 /// Version of the program as far as the layout of its state goes.

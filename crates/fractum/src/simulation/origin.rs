@@ -74,9 +74,13 @@ pub(super) fn keep_case(case: &Case, results: &Path, is_new: bool) -> Result<(),
     let folder = results.join(INPUT);
     atomic::create_folder(&folder)?;
     let name = case.source.path.file_name().map_or("case.toml".into(), |name| name.to_string_lossy());
-    let line = format!("{} {name}\n", if is_own { &hash } else { MIXED });
+    let kept = folder.join(&*name);
+    // A case that lies there is the user's own file, which no run removes.
+    let is_source =
+        fs::canonicalize(&kept).is_ok_and(|own| fs::canonicalize(&case.source.path).is_ok_and(|path| path == own));
+    let line = format!("{} {}\n", if is_own { &hash } else { MIXED }, if is_source { "" } else { &*name });
     atomic::write(&folder.join(HASH), line.as_bytes())?;
-    Ok(atomic::write(&folder.join(&*name), case.source.text.as_bytes())?)
+    if is_source { Ok(()) } else { Ok(atomic::write(&kept, case.source.text.as_bytes())?) }
 }
 
 /// Hash of the case, its end included, that all results in a folder are of.

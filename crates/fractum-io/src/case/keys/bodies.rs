@@ -17,7 +17,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("parameters", K::NamedTables, "", "Named quantities for use in any quantity or expression; `--set NAME=value` overrides them"),
     key("parameters.NAME", K::AnyQuantity, "", "A quantity, or an expression of parameters above it"),
     key("mesh", K::Table, "", "The mesh; required by bodies of mesh groups"),
-    key("mesh.file", K::Text, "required", "Gmsh file (.msh) or Abaqus input file (.inp), relative to the case file"),
+    key("mesh.file", K::Text, "required", "Gmsh (.msh), Abaqus (.inp) or VTK (.vtu) file, relative to the case file"),
     key("mesh.unit", K::Unit(Some(D::LENGTH)), "\"m\"", "Unit of the mesh's coordinates"),
     key("materials", K::NamedTables, "", "Materials by name"),
     key("materials.NAME", K::Table, "", "A material"),
