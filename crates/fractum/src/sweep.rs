@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use fractum_io::atomic;
 use fractum_io::case::read_case;
+use fractum_io::checkpoint;
 use fractum_io::history::quoted;
 use fractum_io::study::list::{Listed, keys, read};
 use fractum_io::summary::{Status, Summary, hash_text};
@@ -53,8 +54,9 @@ pub fn run_one(listed: &Listed, folder: &Path, options: &Options, anew: bool) ->
         return Ok(Status::Completed);
     }
     // A state by itself does not tell whether it was reached with the end of this case.
-    let resume = !anew && has_state(&place) && kept_hash(&place) == Some(hash);
-    if !resume && !anew && has_state(&place) {
+    let has_state = checkpoint::is_there(&place.join("checkpoint"));
+    let resume = !anew && has_state && kept_hash(&place) == Some(hash);
+    if !resume && !anew && has_state {
         tell!("{}: a state of another case; run {} starts anew", place.display(), listed.name);
     }
     let overrides = listed.overrides.clone();
@@ -68,11 +70,6 @@ pub fn run_one(listed: &Listed, folder: &Path, options: &Options, anew: bool) ->
         ended => ended,
     }
     .map(|outcome| outcome.summary.status)
-}
-
-/// Whether a results folder holds a state to go on from.
-fn has_state(place: &Path) -> bool {
-    std::fs::read_dir(place.join("checkpoint")).is_ok_and(|mut files| files.next().is_some())
 }
 
 /// Writes what all runs of a list came to as one table: the columns of the list, then every number of the summaries under

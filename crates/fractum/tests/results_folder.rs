@@ -52,6 +52,15 @@ fn results_are_replaced_only_where_the_user_says_so() {
 }
 
 #[test]
+fn a_run_that_was_killed_within_its_first_save_starts_anew_unasked() {
+    let place = Workplace::new(BREAKING_BAR);
+    fs::create_dir_all(place.path("out/checkpoint")).unwrap();
+    fs::write(place.path("out/checkpoint/state-000000000012.fck.part"), "half").unwrap();
+    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet", "--set", "end=1 us"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+}
+
+#[test]
 fn files_of_the_user_stay_where_no_run_has_been() {
     let place = Workplace::new(BREAKING_BAR);
     let names = ["input/other.toml", "pictures/damage.png", "movie.png", "solid/mine.vtu", "gauges/face.csv"];

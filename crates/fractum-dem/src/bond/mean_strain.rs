@@ -118,7 +118,9 @@ impl MeanStrain {
         let global = |&(row, column, area): &(u32, u32, Vec3)| {
             (bonded[row as usize], bonded[column as usize], area / cells.volume[row as usize])
         };
-        let rows = Weights::new(count, cells.entries.iter().map(global).collect());
+        // Flat cells have areas and no volume: a strain by them is none.
+        let solid = |&&(row, _, _): &&(u32, u32, Vec3)| cells.volume[row as usize] > 0.0;
+        let rows = Weights::new(count, cells.entries.iter().filter(solid).map(global).collect());
         Ok(MeanStrain {
             elasticity,
             reference: particles.position.clone(),

@@ -257,6 +257,11 @@ pub fn load<T: DeserializeOwned>(path: &Path, identity: &Identity) -> Result<(He
     Ok((header, state))
 }
 
+/// Whether `folder` holds a checkpoint. What a killed run has left unfinished is none.
+pub fn is_there(folder: &Path) -> bool {
+    checkpoints(folder).is_ok_and(|found| !found.is_empty())
+}
+
 /// Checkpoints in `folder` with their steps.
 fn checkpoints(folder: &Path) -> io::Result<Vec<(u64, PathBuf)>> {
     let mut found = Vec::new();

@@ -201,8 +201,8 @@ fn folder_of(case: &Path, options: &Options) -> Result<PathBuf, Failure> {
 
 /// Whether a folder holds results of a run, or a state to go on from.
 fn holds_results(folder: &Path) -> bool {
-    let states = || std::fs::read_dir(folder.join("checkpoint")).into_iter().flatten().flatten();
-    ["summary.json", "history.csv"].iter().any(|name| folder.join(name).is_file()) || states().count() > 0
+    let results = ["summary.json", "history.csv"].iter().any(|name| folder.join(name).is_file());
+    results || checkpoint::is_there(&folder.join("checkpoint"))
 }
 
 /// Makes the results folder and opens its log.
