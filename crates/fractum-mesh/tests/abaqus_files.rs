@@ -111,6 +111,22 @@ fn what_cannot_be_used_is_refused_with_its_line_and_the_remedy() {
         (format!("{flat}*ELEMENT, TYPE=S3,\n** corners\nELSET=e\n1,1,2,3\n*ELSET, ELSET=f\ne\n"), ""),
         (after("*END PART,\n*ELSET, ELSET=a\nb\n"), "line 9: found `b` in set \"a\""),
         (after("*ELEMENT, TYPE=S3\n1,2,3,1\n2,1,2,3\n1,3,2,1\n"), ""),
+        // An independent instance has its mesh in the assembly.
+        (
+            format!(
+                "*PART, NAME=p\n*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=i, PART=p\n{flat}{triangle}*END INSTANCE\n"
+            ),
+            "",
+        ),
+        (
+            after("*ASSEMBLY, NAME=a\n*INSTANCE, NAME=i, PART=p\n*END INSTANCE\n*NODE\n1, 0, 0\n"),
+            "line 10: *NODE gives nodes of the assembly, such as reference points",
+        ),
+        (after("*NSET, NSET=_Picked, INTERNAL\n1\n*ASSEMBLY, NAME=a\n*NSET, NSET=_Picked, INTERNAL\n2\n"), ""),
+        (
+            after("*NSET, NSET=_Picked\n1\n*ASSEMBLY, NAME=a\n*NSET, NSET=_Picked, INTERNAL\n2\n"),
+            "line 10: set \"_Picked\" of the assembly has the name of one of the part",
+        ),
     ];
     for (text, says) in cases {
         match read_mesh(text.as_bytes()) {

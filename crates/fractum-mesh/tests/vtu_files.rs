@@ -38,6 +38,27 @@ fn numbers_of_parts_are_groups_where_no_array_names_them() {
     assert_eq!((members(&mesh, "physical-7"), members(&mesh, "physical-3")), (vec![(3, 2)], vec![(2, 1)]));
 }
 
+#[test]
+fn empty_pieces_are_passed_over() {
+    let text = String::from_utf8(bytes_of("ascii")).unwrap();
+    let array = |name: &str| format!("<DataArray type=\"Int32\" Name=\"{name}\" format=\"ascii\"></DataArray>");
+    let empty = format!(
+        "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"><PointData>{}</PointData><CellData/><Points>{}</Points></Piece>",
+        array("held"),
+        array("Points")
+    );
+    let whole = read_vtu(text.as_bytes()).unwrap();
+    let before = text.replacen("<Piece", &format!("{empty}<Piece"), 1);
+    let after = text.replacen("</Piece>", &format!("</Piece>{empty}"), 1);
+    for text in [before, after] {
+        let mesh = read_vtu(text.as_bytes()).unwrap();
+        assert_eq!(
+            (&mesh.nodes, &mesh.tetrahedra, mesh.group_names()),
+            (&whole.nodes, &whole.tetrahedra, whole.group_names())
+        );
+    }
+}
+
 /// The message for the file as text with one change.
 fn message(from: &str, to: &str) -> String {
     let text = String::from_utf8(bytes_of("ascii")).unwrap();
@@ -80,6 +101,7 @@ fn what_cannot_be_read_is_refused_with_its_line_and_a_remedy() {
             "array \"Points\" has 15 numbers; the sizes of the grid want 27",
         ),
         ("</DataArray>", "</DataArray", "expected"),
+        ("Name=\"left\"", "Name=\"vtkGhostType\"", "cells that VTK hides or has twice (vtkGhostType)"),
     ] {
         let said = message(from, to);
         assert!(said.contains(says), "{to}: {said}");

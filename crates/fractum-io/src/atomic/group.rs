@@ -24,7 +24,7 @@ pub struct Group {
 }
 
 impl Group {
-    /// Adds a file, in place of one of the same name that was added before.
+    /// Adds a file, in place of one of the same name that was added before, which is gone even if this one cannot be written.
     pub fn add(&mut self, path: &Path, bytes: &[u8]) {
         if self.error.is_some() {
             return;
@@ -76,9 +76,11 @@ impl Group {
                 let _ = fs::remove_file(&unfinished);
             }
         }
-        let error = error.or(self.error.take());
+        let mut error = error.or(self.error.take());
         for folder in folders {
-            sync_folder(folder).map_err(|error| WriteError::new(folder, error))?;
+            if let Err(failed) = sync_folder(folder) {
+                error.get_or_insert_with(|| WriteError::new(folder, failed));
+            }
         }
         error.map_or(Ok(()), Err)
     }

@@ -134,10 +134,12 @@ impl Deck {
                 if self.instances > 1 {
                     return Err(unsupported(keyword, "a second instance", "export one flat file without parts"));
                 }
+                // The lines of an independent instance are those of its part.
+                self.in_assembly = false;
                 Block::Instance
             }
-            "ASSEMBLY" | "ENDASSEMBLY" => {
-                self.in_assembly = keyword.name == "ASSEMBLY";
+            "ASSEMBLY" | "ENDINSTANCE" | "ENDASSEMBLY" => {
+                self.in_assembly = keyword.name != "ENDASSEMBLY";
                 Block::Other
             }
             "INCLUDE" => return Err(unsupported(keyword, "a further file", "put its lines here")),

@@ -44,9 +44,15 @@ impl Sets {
     pub(super) fn open(&mut self, name: &str, at: usize, internal: bool, of_assembly: bool) -> Result<usize, Fault> {
         let next = self.list.len();
         let number = *self.by_name.entry(name.to_uppercase()).or_insert(next);
-        if number == next {
+        let other = self.list.get(number).filter(|set| set.of_assembly != of_assembly);
+        // Sets that Abaqus makes for itself are numbered anew in the assembly; what has used those of the part has done so above.
+        let is_own = other.is_some_and(|other| internal && other.internal);
+        if number == next || is_own {
+            self.by_name.insert(name.to_uppercase(), next);
             self.list.push(Set { name: name.to_owned(), at, internal, of_assembly, items: Vec::new() });
-        } else if self.list[number].of_assembly != of_assembly {
+            return Ok(next);
+        }
+        if other.is_some() {
             let message = format!("set \"{name}\" of the assembly has the name of one of the part; rename one of them");
             return Err(Fault::unsupported(at, message));
         }

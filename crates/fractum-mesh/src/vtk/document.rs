@@ -56,8 +56,9 @@ impl<'a> Document<'a> {
         let mut tags = Tags { bytes, at: begin };
         let mut document = Document::default();
         let mut section = None;
+        let opens = |tag: &Tag| !tag.closes && !tag.empty;
         let mut root = false;
-        let mut pieces = 0;
+        let (mut pieces, mut is_empty) = (0, false);
         while let Some(tag) = tags.next()? {
             match tag.name {
                 "VTKFile" if !tag.closes => {
@@ -67,21 +68,23 @@ impl<'a> Document<'a> {
                 _ if !root => return Err(not_vtk(&tag, bytes)),
                 "Piece" if !tag.closes => {
                     let sizes = (tag.count("NumberOfPoints")?, tag.count("NumberOfCells")?);
-                    pieces += usize::from(sizes != (0, 0));
+                    is_empty = sizes == (0, 0);
+                    pieces += usize::from(!is_empty);
                     if pieces > 1 {
                         return Err(Fault::unsupported(tag.at, SEVERAL_PIECES));
                     }
-                    if sizes != (0, 0) {
+                    if !is_empty {
                         (document.points, document.cells) = sizes;
                     }
                 }
-                "Points" => section = (!tag.closes).then_some(Section::Points),
-                "Cells" => section = (!tag.closes).then_some(Section::Cells),
-                "PointData" => section = (!tag.closes).then_some(Section::PointData),
-                "CellData" => section = (!tag.closes).then_some(Section::CellData),
+                "Points" => section = opens(&tag).then_some(Section::Points),
+                "Cells" => section = opens(&tag).then_some(Section::Cells),
+                "PointData" => section = opens(&tag).then_some(Section::PointData),
+                "CellData" => section = opens(&tag).then_some(Section::CellData),
                 "DataArray" if !tag.closes => {
                     let text = if tag.empty { Vec::new() } else { text_of_array(&mut tags)? };
-                    if let Some(section) = section {
+                    // An empty piece has arrays, of nothing.
+                    if let Some(section) = section.filter(|_| !is_empty) {
                         document.arrays.push(Array::of(&tag, section, text)?);
                     }
                 }

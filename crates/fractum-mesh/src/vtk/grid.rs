@@ -13,7 +13,7 @@ use crate::tagged::raw::{Raw, Records};
 /// Arrays that other programs number the parts of a mesh with; 0 and less is no part.
 const PARTS: [&str; 3] = ["gmsh:physical", "medit:ref", "CellEntityIds"];
 
-/// Arrays of zeros and ones by which VTK hides points and cells.
+/// Flags by which VTK hides points and cells, or says that another piece has them too.
 const GHOSTS: &str = "vtkGhostType";
 
 /// A group and which cells or points are in it.
@@ -28,6 +28,13 @@ pub(super) fn raw(document: &Document, bytes: &[u8]) -> Result<Raw, Fault> {
     groups.builder.raw.node_tags = (1..=document.points as u64).collect();
     groups.builder.raw.node_blocks = vec![(0, Records { at: points.at, stride: 0 })];
 
+    let mut of_cells = document.arrays.iter().filter(|array| array.section == Section::CellData);
+    if let Some(ghosts) = of_cells.find(|array| array.name == GHOSTS)
+        && document.wholes(ghosts, document.cells)?.iter().any(|&flags| flags != 0)
+    {
+        let hidden = "cells that VTK hides or has twice (vtkGhostType); in ParaView remove them and save again";
+        return Err(Fault::unsupported(ghosts.at, hidden));
+    }
     let of_cells = groups.of_cells(document)?;
     let of_points = groups.flags(document, Section::PointData, document.points)?;
     let mut builder = groups.builder;
