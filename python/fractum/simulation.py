@@ -100,17 +100,19 @@ class Body(_State):
         self.connectivity = connectivity
 
 
-class _Load:
-    """A function of a load between the bytes of the simulation and arrays."""
+def _shared(function, count):
+    """What the simulation calls with the time [s] for a load, and the arrays that it fills before and reads after."""
+    arrays = [np.empty((count, 3)) for _ in range(3)]
+    seen = [array.view() for array in arrays[:2]]
+    for array in seen:
+        array.flags.writeable = False
+    forces = arrays[2]
 
-    def __init__(self, function, count):
-        self.function = function
-        self.forces = np.empty((count, 3))
-
-    def __call__(self, time, position, velocity):
+    def call(time):
         # A single force acts on every point.
-        self.forces[...] = self.function(time, _array(position, 3), _array(velocity, 3))
-        return self.forces.tobytes()
+        forces[...] = function(time, *seen)
+
+    return call, arrays
 
 
 class Simulation:
@@ -125,7 +127,6 @@ class Simulation:
 
     def __init__(self, case, set=None, output=None, threads=None, resume=False, quiet=True, overwrite=False):
         self._core = _core.Core(case, overrides(set), output, threads, (resume, overwrite), quiet)
-        self._loads = []
         self.results = None
         self.nodes = Nodes(self._core.nodes)
         self.particles = Particles(self._core.particles)
@@ -209,7 +210,8 @@ class Simulation:
 
         Before every step `function(time, position, velocity)` is called with the time [s] and the arrays (n, 3) of the
         points that the load pushes; it returns their forces [N] as an array (n, 3), or three numbers for the same force on
-        each. It is called on a thread of the simulation. Name the points by one of
+        each. The arrays are the same in every step: copy what is to be kept. The function is called on a thread of the
+        simulation. Name the points by one of
 
         - `group`: the nodes of a group of the mesh
         - `nodes`: indices into the arrays of `nodes`
@@ -228,8 +230,7 @@ class Simulation:
         if points.size and points.min() < 0:
             raise IndexError("points of a load count from 0")
         points = np.ascontiguousarray(points, dtype="u4")
-        index = self._core.add_points(particles is None, points.tobytes())
-        self._loads.append((index, _Load(function, len(points))))
+        self._core.add_load(particles is None, points.tobytes(), *_shared(function, len(points)))
 
     def step(self, count=1):
         """Steps `count` times; whether the run goes on."""
@@ -245,7 +246,7 @@ class Simulation:
 
     def _advance(self, count, until, stop=None, every=1):
         """Whether the run goes on after `count` steps or the time `until`."""
-        goes_on = self._core.step(count, until, self._loads, stop, every)
+        goes_on = self._core.step(count, until, stop, every)
         if not goes_on and self.status == "interrupted":
             # By another thread.
             raise KeyboardInterrupt(f"state saved in {self.folder}")

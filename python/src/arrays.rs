@@ -42,12 +42,3 @@ pub(crate) fn to_indices(bytes: &[u8]) -> Vec<u32> {
     let whole = bytes.as_chunks().0;
     whole.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect()
 }
-
-/// The vectors that bytes of an array hold.
-pub(crate) fn to_vectors(bytes: &[u8]) -> impl ExactSizeIterator<Item = Vec3> + '_ {
-    let (entries, _) = bytes.as_chunks::<24>();
-    entries.iter().map(|entry| {
-        let (values, _) = entry.as_chunks();
-        Vec3::from_iterator(values.iter().map(|bytes| f64::from_ne_bytes(*bytes)))
-    })
-}

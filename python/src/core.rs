@@ -11,13 +11,15 @@ use fractum_io::case::model::ProbeKind;
 use fractum_io::summary::hash_text;
 use fractum_math::Vec3;
 use fractum_scene::{EnergyKind, Population, Scene};
+use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyBytes, PyDict};
 use rayon::ThreadPool;
 
-use crate::arrays::{flags, indices, numbers, to_indices, to_vectors, vectors};
+use crate::arrays::{flags, indices, numbers, to_indices, vectors};
 use crate::errors::{raise, wrong};
+use crate::given_load::GivenLoad;
 use crate::watch::{pool, watch};
 
 /// A case under way. After `finish` it is gone, and every call is refused.
@@ -30,8 +32,7 @@ pub(crate) struct Core {
     numbering: Numbering,
     /// Whether a step is under way.
     stepping: AtomicBool,
-    /// Sets of points that loads push, in the numbering of the scene.
-    points: Vec<(Population, Vec<u32>)>,
+    loads: Vec<GivenLoad>,
 }
 
 /// Nodes of solids in the order of the mesh file.
@@ -100,49 +101,20 @@ impl Core {
     }
 
     /// Sets the forces that functions give for the next step.
-    fn push(&self, py: Python<'_>, loads: &[(usize, Py<PyAny>)]) -> PyResult<()> {
-        let (mut on_nodes, mut on_particles) = (Vec::new(), Vec::new());
-        for (set, function) in loads {
-            let Some((population, points)) = self.points.get(*set) else {
-                return Err(wrong(py, format!("no set {set} of points")));
-            };
-            let (time, position, velocity) = self.state_of_points(py, *population, points)?;
-            let forces = function.call1(py, (time, position, velocity))?;
-            let values = to_vectors(forces.extract::<&[u8]>(py)?);
-            if values.len() != points.len() {
-                let text = format!("{} forces on {} points; expected one for each", values.len(), points.len());
-                return Err(wrong(py, text));
-            }
-            let pushed = points.iter().copied().zip(values);
-            match population {
-                Population::Nodes => on_nodes.extend(pushed),
-                Population::Particles => on_particles.extend(pushed),
-            }
+    fn push(&self, py: Python<'_>) -> PyResult<()> {
+        self.with(py, |run| {
+            run.clear_forces();
+            Ok(())
+        })?;
+        for load in &self.loads {
+            let time = self.with_scene(py, |scene| {
+                load.show(py, scene)?;
+                Ok(scene.clock.time)
+            })?;
+            load.function.call1(py, (time,))?;
+            self.with(py, |run| load.push(py, run))?;
         }
-        self.with(py, |run| run.set_forces(&on_nodes, &on_particles).map_err(|failure| raise(py, &failure)))
-    }
-
-    /// Time [s], positions [m] and velocities [m/s] of points.
-    fn state_of_points<'py>(
-        &self,
-        py: Python<'py>,
-        population: Population,
-        points: &[u32],
-    ) -> PyResult<(f64, Bound<'py, PyBytes>, Bound<'py, PyBytes>)> {
-        self.with_scene(py, |scene| {
-            let (solid, particles) = (&scene.solid, &scene.bonded.particles);
-            let (position, velocity) = match population {
-                Population::Nodes => (
-                    vectors(py, points.len(), |i| solid.position(points[i] as usize))?,
-                    vectors(py, points.len(), |i| solid.velocity[points[i] as usize])?,
-                ),
-                Population::Particles => (
-                    vectors(py, points.len(), |i| particles.position[points[i] as usize])?,
-                    vectors(py, points.len(), |i| particles.velocity[points[i] as usize])?,
-                ),
-            };
-            Ok((scene.clock.time, position, velocity))
-        })
+        Ok(())
     }
 }
 
@@ -170,24 +142,15 @@ impl Core {
         })?;
         let (simulation, numbering) = opened.map_err(|failure| raise(py, &failure))?;
         let simulation = Mutex::new(Some(simulation));
-        Ok(Core { simulation, pool, looks, numbering, stepping: AtomicBool::new(false), points: Vec::new() })
+        Ok(Core { simulation, pool, looks, numbering, stepping: AtomicBool::new(false), loads: Vec::new() })
     }
 
     /// Steps at most `count` times and not beyond `until` [s]; whether the run goes on.
     ///
     /// Functions are called on a thread of the simulation, so that no step waits for one thread to wake another.
     ///
-    /// - `loads`: sets of points and functions of time, positions and velocities (bytes of arrays), which give forces so
     /// - `stop`: a function that ends the run where it is true, looked at after every `every` steps
-    fn step(
-        &self,
-        py: Python<'_>,
-        count: u64,
-        until: f64,
-        loads: Vec<(usize, Py<PyAny>)>,
-        stop: Option<Py<PyAny>>,
-        every: u64,
-    ) -> PyResult<bool> {
+    fn step(&self, py: Python<'_>, count: u64, until: f64, stop: Option<Py<PyAny>>, every: u64) -> PyResult<bool> {
         if self.stepping.swap(true, Ordering::Acquire) {
             return Err(wrong(
                 py,
@@ -198,8 +161,8 @@ impl Core {
         // Attached once: Python sets up much for a thread that it sees for the first time.
         let with_functions = |py: Python<'_>| -> PyResult<()> {
             for done in 1..=count {
-                if !loads.is_empty() && self.with(py, |run| Ok(!run.is_over() && run.time() < until))? {
-                    self.push(py, &loads)?;
+                if !self.loads.is_empty() && self.with(py, |run| Ok(!run.is_over() && run.time() < until))? {
+                    self.push(py)?;
                 }
                 if !py.detach(|| self.advance(until))? {
                     break;
@@ -213,7 +176,7 @@ impl Core {
             Ok(())
         };
         let work = || -> PyResult<()> {
-            if loads.is_empty() && stop.is_none() {
+            if self.loads.is_empty() && stop.is_none() {
                 for _ in 0..count {
                     if !self.advance(until)? {
                         break;
@@ -411,10 +374,20 @@ impl Core {
         }
     }
 
-    /// Keeps points that a load pushes; their number among such sets.
+    /// Adds a load that a function gives.
     ///
-    /// - `nodes`: whether they are nodes of solids, in the order of the mesh file, or particles
-    fn add_points(&mut self, py: Python<'_>, nodes: bool, points: &[u8]) -> PyResult<usize> {
+    /// - `nodes`: whether its points are nodes of solids, in the order of the mesh file, or particles
+    /// - `function`: called with the time [s] before every step, once the arrays hold the positions and velocities of the
+    ///   points; the forces are in their array when it returns
+    /// - `arrays`: positions, velocities and forces, three numbers for every point
+    fn add_load(
+        &mut self,
+        py: Python<'_>,
+        nodes: bool,
+        points: &[u8],
+        function: Py<PyAny>,
+        arrays: [PyBuffer<f64>; 3],
+    ) -> PyResult<()> {
         let mut points = to_indices(points);
         let count = if nodes {
             self.numbering.order.len()
@@ -427,7 +400,11 @@ impl Core {
         if nodes {
             points.iter_mut().for_each(|point| *point = self.numbering.order[*point as usize]);
         }
-        self.points.push((if nodes { Population::Nodes } else { Population::Particles }, points));
-        Ok(self.points.len() - 1)
+        let population = if nodes { Population::Nodes } else { Population::Particles };
+        match GivenLoad::new(population, points, function, arrays) {
+            Some(load) => self.loads.push(load),
+            None => return Err(wrong(py, "the arrays of a load need three numbers for every point")),
+        }
+        Ok(())
     }
 }

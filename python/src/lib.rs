@@ -8,6 +8,7 @@
 mod arrays;
 mod core;
 mod errors;
+mod given_load;
 mod watch;
 
 use std::path::PathBuf;

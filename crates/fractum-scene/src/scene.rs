@@ -13,6 +13,7 @@ use crate::fragment::{Fragment, joined, single_share, solid_pieces};
 use crate::gas::Gas;
 use crate::heat::Heat;
 use crate::ledger::{Books, Ledger};
+use crate::region_probe::Population;
 
 /// One simulation: bodies, boundary conditions, clock and ledger.
 #[derive(Clone)]
@@ -256,16 +257,14 @@ impl Scene {
         found
     }
 
-    /// Forces on nodes of solids that who drives the scene sets before a step [N]. They act in every step until they are
-    /// set anew, those of a node that is named twice are added, and their work is booked as that of loads. The stable step
-    /// knows nothing of them.
-    pub fn given_node_forces(&mut self) -> &mut Vec<(u32, Vec3)> {
-        self.loads.given()
-    }
-
-    /// As [`Scene::given_node_forces`], on particles of bonded bodies and loose ones.
-    pub fn given_particle_forces(&mut self) -> &mut Vec<(u32, Vec3)> {
-        self.bonded.loads.given()
+    /// Forces on nodes of solids, or on particles of bonded bodies and loose ones, that who drives the scene sets before a
+    /// step [N]. They act in every step until they are taken away, those of a point that is named twice are added, and their
+    /// work is booked as that of loads. The stable step knows nothing of them.
+    pub fn given_forces(&mut self, population: Population) -> &mut Vec<(u32, Vec3)> {
+        match population {
+            Population::Nodes => self.loads.given(),
+            Population::Particles => self.bonded.loads.given(),
+        }
     }
 
     /// Whether the end of the run has been reached.

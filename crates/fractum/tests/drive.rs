@@ -4,7 +4,7 @@ use crate::common::Workplace;
 use fractum::{Options, Simulation};
 use fractum_io::summary::Status;
 use fractum_math::Vec3;
-use fractum_scene::EnergyKind;
+use fractum_scene::{EnergyKind, Population};
 
 /// A bar that nothing holds.
 const FREE_BAR: &str = r#"fractum = 1
@@ -30,9 +30,9 @@ fn given_forces_give_their_impulse_and_their_work() {
     let mut simulation = open(&place);
     let force = Vec3::new(3.0, -1.0, 2.0);
     let forces = [(0, force * 0.25), (5, force * 0.5), (0, force * 0.25)];
-    // A force that is set anew replaces those before.
-    simulation.set_forces(&[(7, force * 100.0)], &[]).unwrap();
-    simulation.set_forces(&forces, &[]).unwrap();
+    simulation.add_forces(Population::Nodes, [(7, force * 100.0)]).unwrap();
+    simulation.clear_forces();
+    simulation.add_forces(Population::Nodes, forces).unwrap();
     let momentum = |simulation: &Simulation| -> Vec3 {
         let solid = &simulation.scene().solid;
         solid.velocity.iter().zip(&solid.mass).map(|(v, m)| v * *m).sum()
@@ -46,7 +46,7 @@ fn given_forces_give_their_impulse_and_their_work() {
     let impulse = force * half_step;
     assert!((momentum(&simulation) - impulse).norm() < 1e-9 * impulse.norm(), "{} {impulse}", momentum(&simulation));
     // Without forces the momentum stays.
-    simulation.set_forces(&[], &[]).unwrap();
+    simulation.clear_forces();
     while !simulation.is_over() {
         simulation.step().unwrap();
         simulation.record().unwrap();
@@ -63,16 +63,20 @@ fn forces_that_cannot_be_are_refused() {
     let place = Workplace::new(FREE_BAR);
     let mut simulation = open(&place);
     let count = simulation.scene().solid.reference.len() as u32;
-    let mut said = |nodes: &[(u32, Vec3)], particles: &[(u32, Vec3)]| {
-        simulation.set_forces(nodes, particles).unwrap_err().to_string()
+    let mut said = |population, node: u32, x: f64| {
+        let forces = [(0, Vec3::x()), (node, Vec3::x() * x)];
+        simulation.add_forces(population, forces).unwrap_err().to_string()
     };
-    assert!(said(&[(count, Vec3::zeros())], &[]).contains("expected less than"));
-    assert!(said(&[], &[(0, Vec3::zeros())]).contains("particle 0"));
-    assert!(said(&[(0, Vec3::new(0.0, f64::NAN, 0.0))], &[]).contains("finite"));
+    assert!(said(Population::Nodes, count, 1.0).contains("expected less than"));
+    assert!(said(Population::Particles, 0, 1.0).contains("particle 0"));
+    assert!(said(Population::Nodes, 1, f64::NAN).contains("finite"));
+    // Nor does what was right of them act.
+    simulation.step().unwrap();
+    assert!(simulation.scene().solid.velocity.iter().all(|v| *v == Vec3::zeros()));
     drop(simulation);
     let held = "supports = [{ group = \"x-\", fix = \"xyz\" }]\nsolver = { kind = \"static\", end";
     let place = Workplace::new(&FREE_BAR.replace("solver = { kind = \"explicit\", end", held));
-    let refused = open(&place).set_forces(&[(0, Vec3::zeros())], &[]).unwrap_err().to_string();
+    let refused = open(&place).add_forces(Population::Nodes, [(0, Vec3::zeros())]).unwrap_err().to_string();
     assert!(refused.contains("solver.kind = \"explicit\""), "{refused}");
 }
 

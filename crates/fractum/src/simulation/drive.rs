@@ -2,36 +2,49 @@
 
 use fractum_io::summary::Status;
 use fractum_math::Vec3;
+use fractum_scene::Population;
 
 use super::{End, Simulation};
 use crate::error::Failure;
 use crate::summary::state_hash;
 
 impl Simulation {
-    /// Sets forces that the case does not know of, which act from the next step on until they are set anew: nodes of
-    /// solids and particles, in the numbering of the scene, and the force on each [N].
+    /// Adds forces that the case does not know of: nodes of solids or particles, in the numbering of the scene, and the force
+    /// on each [N]. They act from the next step on until [`Simulation::clear_forces`].
     ///
     /// Forces of a point that is named twice are added. Their work is booked as that of loads; the stable step knows
     /// nothing of them, so that stiff forces need a smaller `solver.safety`. A checkpoint does not hold them.
     ///
     /// # Errors
-    /// [`Failure::Input`] in a run that does not move, for a point that is none and for a force that is not finite.
-    pub fn set_forces(&mut self, nodes: &[(u32, Vec3)], particles: &[(u32, Vec3)]) -> Result<(), Failure> {
+    /// [`Failure::Input`] in a run that does not move, for a point that is none and for a force that is not finite; no force
+    /// is added then.
+    pub fn add_forces(
+        &mut self,
+        population: Population,
+        forces: impl IntoIterator<Item = (u32, Vec3)>,
+    ) -> Result<(), Failure> {
         if !self.solver.is_explicit() {
             let text = "forces from outside the case need a run in motion; expected solver.kind = \"explicit\"";
             return Err(Failure::input(text));
         }
-        let scene = &mut self.scene;
-        let counts = [scene.solid.reference.len(), scene.bonded.particles.len()];
-        check(nodes, "node", counts[0])?;
-        check(particles, "particle", counts[1])?;
-        let replace = |given: &mut Vec<(u32, Vec3)>, forces: &[(u32, Vec3)]| {
-            given.clear();
-            given.extend_from_slice(forces);
+        let (what, count) = match population {
+            Population::Nodes => ("node", self.scene.solid.reference.len()),
+            Population::Particles => ("particle", self.scene.bonded.particles.len()),
         };
-        replace(scene.given_node_forces(), nodes);
-        replace(scene.given_particle_forces(), particles);
-        Ok(())
+        let given = self.scene.given_forces(population);
+        let before = given.len();
+        given.extend(forces);
+        let added = check(&given[before..], what, count);
+        if added.is_err() {
+            given.truncate(before);
+        }
+        added
+    }
+
+    /// Takes away all forces of [`Simulation::add_forces`].
+    pub fn clear_forces(&mut self) {
+        self.scene.given_forces(Population::Nodes).clear();
+        self.scene.given_forces(Population::Particles).clear();
     }
 
     /// Ends the run as if its end were reached; of no effect once it is over.

@@ -196,27 +196,32 @@ impl Loads {
             return 0.0;
         }
         self.applied.gravity = Vec3::zeros();
-        self.applied.forces.extend_from_slice(&self.given);
         self.loads.iter().for_each(|load| load.apply(points, self.cracks.as_ref(), time, &mut self.applied));
         let forces = points.forces();
-        self.applied.forces.iter().for_each(|&(point, force)| forces[point as usize] += force);
+        self.point_forces().for_each(|&(point, force)| forces[point as usize] += force);
         if self.applied.gravity != Vec3::zeros() {
             points.add_weight(&self.applied.gravity);
         }
         0.5 * dt_before * self.power(points)
     }
 
+    /// The last forces on single points [N], those of who drives the scene first.
+    fn point_forces(&self) -> impl Iterator<Item = &(u32, Vec3)> {
+        self.given.iter().chain(&self.applied.forces)
+    }
+
     /// Sum of the last forces on these points, which are ascending, each along its direction [N]; weight is none of them.
     pub(crate) fn resultant(&self, points: &[u32], direction: impl Fn(usize) -> Vec3) -> f64 {
-        let own = self.applied.forces.iter().filter(|(point, _)| points.binary_search(point).is_ok());
+        let own = self.point_forces().filter(|(point, _)| points.binary_search(point).is_ok());
         own.map(|(point, force)| force.dot(&direction(*point as usize))).sum()
     }
 
     /// Power of the last forces at the present velocities [W].
     pub(crate) fn power(&mut self, points: &impl DrivenPoints) -> f64 {
-        let Applied { forces, gravity } = &self.applied;
-        let mut power: f64 = forces.iter().map(|(point, force)| force.dot(points.velocity(*point as usize))).sum();
-        if *gravity != Vec3::zeros() {
+        let mut power: f64 =
+            self.point_forces().map(|(point, force)| force.dot(points.velocity(*point as usize))).sum();
+        let gravity = self.applied.gravity;
+        if gravity != Vec3::zeros() {
             power += gravity.dot(&points.momentum(&mut self.partial));
         }
         power
