@@ -160,6 +160,11 @@ impl GrowingFile {
         let done = self.file.sync_all().and_then(|()| rename(&unfinished_name(&self.path), &self.path));
         done.map_err(|error| WriteError::new(&self.path, error))
     }
+
+    /// Gives the file its name with the others of a group; without that the content stays in `NAME.part`.
+    pub fn finish_in(self, group: &mut Group) {
+        group.add_grown(self.path, self.file);
+    }
 }
 
 /// CRC-32 of the first bytes of a file.

@@ -2,7 +2,7 @@ use std::cell::OnceCell;
 
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::{Separation, Wave};
-use fractum_math::Vec3;
+use fractum_math::{Sym3, Vec3};
 
 use crate::conditions::{Along, PointProbe};
 use crate::contacts::ContactProbe;
@@ -147,12 +147,24 @@ pub struct ProbedScene<'a> {
     fragments: OnceCell<Vec<Fragment>>,
     separation: OnceCell<Separation>,
     counts: OnceCell<Counts>,
+    /// Stress of all elements, body by body.
+    stresses: Vec<OnceCell<Vec<Sym3>>>,
 }
+
+/// Part of the elements of a body from which a probe looks at all of them: a smoothed edge has several elements, and further
+/// probes find them done.
+const MANY: usize = 8;
 
 impl<'a> ProbedScene<'a> {
     /// Before the first probe.
     pub fn new(scene: &'a Scene) -> Self {
-        ProbedScene { scene, fragments: OnceCell::new(), separation: OnceCell::new(), counts: OnceCell::new() }
+        ProbedScene {
+            scene,
+            fragments: OnceCell::new(),
+            separation: OnceCell::new(),
+            counts: OnceCell::new(),
+            stresses: vec![OnceCell::new(); scene.solid.body_count()],
+        }
     }
 
     /// [`Scene::fragments`], found once.
@@ -163,6 +175,16 @@ impl<'a> ProbedScene<'a> {
     /// [`Scene::counts`], found once.
     pub fn counts(&self) -> &Counts {
         self.counts.get_or_init(|| self.scene.counts())
+    }
+
+    /// Stress of an element [Pa]; of all elements of its body at once where a probe has many of them.
+    fn stress(&self, body: usize, element: u32, has_many: bool) -> Sym3 {
+        let solid = &self.scene.solid;
+        if !has_many {
+            return solid.element_field(body, element).0;
+        }
+        let all = || solid.element_fields(body).into_iter().map(|(stress, _)| stress).collect();
+        self.stresses[body].get_or_init(all)[element as usize]
     }
 
     /// What has separated, found once.
@@ -194,9 +216,10 @@ impl Probe {
             Probe::Count(kind) => probed.counts().of(*kind) as f64,
             Probe::Stress { elements, between: [normal, along] } => {
                 let (mut sum, mut volume) = (0.0, 0.0);
+                let many = |body: usize| MANY * elements.len() >= solid.body(body).elements.len();
                 for &(body, element) in elements {
                     let (v, middle) = (solid.element_volume(body, element), solid.element_middle(body, element));
-                    let stress = solid.element_field(body, element).0.to_matrix();
+                    let stress = probed.stress(body, element, many(body)).to_matrix();
                     sum += v * normal.at(&middle).dot(&(stress * along.at(&middle)));
                     volume += v;
                 }

@@ -1,14 +1,13 @@
 //! Cracks as data: broken bonds in a table for scripts and as lines for ParaView, and the facets that removal has exposed.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use fractum_dem::Crack;
 use fractum_dem::criterion::BreakMode;
 use fractum_fem::{CrackSurface, Solid};
+use fractum_io::Compression;
 use fractum_io::history::quoted;
 use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData};
-use fractum_io::{Compression, atomic};
 use fractum_math::{Vec3, rotation_between};
 
 use crate::error::Failure;
@@ -22,15 +21,8 @@ pub struct Columns {
     pub load: Option<(&'static str, f64)>,
 }
 
-/// Writes `cracks.csv`: one line per broken bond, with the name of its body where there is one.
-///
-/// # Errors
-/// A file that cannot be written.
-pub fn write_table<'a>(
-    path: &Path,
-    cracks: impl Iterator<Item = (Option<&'a str>, &'a Crack)>,
-    columns: Columns,
-) -> Result<(), Failure> {
+/// The text of `cracks.csv`: one line per broken bond, with the name of its body where there is one.
+pub fn table<'a>(cracks: impl Iterator<Item = (Option<&'a str>, &'a Crack)>, columns: Columns) -> String {
     let mut cracks = cracks.peekable();
     let named = cracks.peek().is_some_and(|(body, _)| body.is_some());
     let load = columns.load.map_or(String::new(), |(name, _)| format!("{name},"));
@@ -63,21 +55,20 @@ pub fn write_table<'a>(
             c.energy
         );
     }
-    Ok(atomic::write(path, text.as_bytes())?)
+    text
 }
 
-/// Writes broken bonds as the facets that they stand for: regular hexagons of their area, across the bond, where it was in the
+/// Broken bonds as the facets that they stand for: regular hexagons of their area, across the bond, where it was in the
 /// undeformed body; with mode, event, time, area, normal, load and energy.
 ///
 /// - `displacement`: how far a particle has moved [m]; with it the hexagons have their displacement and opening
 ///
 /// # Errors
-/// A file that cannot be written.
-pub fn write_polygons<'a>(
-    path: &Path,
+/// Fields that do not fit together.
+pub fn polygons<'a>(
     cracks: impl Iterator<Item = &'a Crack> + Clone,
     displacement: Option<&dyn Fn(u32) -> Vec3>,
-) -> Result<(), Failure> {
+) -> Result<PendingFile, Failure> {
     let points: Vec<[f64; 3]> = cracks.clone().flat_map(hexagon).map(Into::into).collect();
     let hexagons: Vec<[u32; 6]> = (0..cracks.clone().count() as u32)
         .map(|facet| std::array::from_fn(|corner| 6 * facet + corner as u32))
@@ -111,8 +102,7 @@ pub fn write_polygons<'a>(
     }
     let cells = PolyCells::Hexagons(&hexagons);
     let data = PolyData { points: &points, cells, point_data: &point_data, cell_data: &cell_data, time: None };
-    let file = data.pending(Compression::default()).map_err(|e| Failure::Output(e.into()))?;
-    Ok(file.write(path)?)
+    data.pending(Compression::default()).map_err(|e| Failure::Output(e.into()))
 }
 
 /// Corners of a regular hexagon of the area of a crack, across its normal. With side a, the area is 3√3/2 a².
@@ -166,16 +156,8 @@ pub(crate) struct FacetHistory {
     pub(crate) fragment: Vec<i32>,
 }
 
-/// Writes the facets that the removal of elements has exposed: one line each, where it is now.
-///
-/// # Errors
-/// A file that cannot be written.
-pub(crate) fn write_facets(
-    path: &Path,
-    solid: &Solid,
-    crack: &CrackSurface,
-    history: &FacetHistory,
-) -> Result<(), Failure> {
+/// A table of the facets that the removal of elements has exposed: one line each, where it is now.
+pub(crate) fn facets_table(solid: &Solid, crack: &CrackSurface, history: &FacetHistory) -> String {
     let mut text =
         "body,element,removed,time [s],x [m],y [m],z [m],nx,ny,nz,area [m^2],opening [m],fragment\n".to_owned();
     for ((facet, time), fragment) in crack.facets.iter().zip(&history.time).zip(&history.fragment) {
@@ -197,7 +179,7 @@ pub(crate) fn write_facets(
             facet.opening
         );
     }
-    Ok(atomic::write(path, text.as_bytes())?)
+    text
 }
 
 /// Bonds that every particle has lost.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use fractum_io::atomic::Written;
+use fractum_io::atomic::{Group, Written};
 use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::{BuiltScene, PpvStations};
 use fractum_io::case::model::{
@@ -422,10 +422,9 @@ impl Recorder {
         Ok(&self.state)
     }
 
-    /// Gives the history its final name.
-    pub(crate) fn finish(self) -> Result<RecordState, Failure> {
-        self.history.finish()?;
-        Ok(self.state)
+    /// Gives the history its final name with other files of the end.
+    pub(crate) fn finish(self, files: &mut Group) {
+        self.history.finish_in(files);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The report of a results folder, made from the files in it: at the end of a run, or again later.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use fractum_io::ReadError;
 use fractum_io::atomic::Group;
@@ -84,24 +84,43 @@ pub(crate) fn keep(folder: &Path, notes: &Notes, files: &mut Group) {
 /// # Errors
 /// [`Failure`] if the folder is not that of a finished run, or the page cannot be written.
 pub fn write(folder: &Path) -> Result<(), Failure> {
+    let mut files = Group::default();
+    add(folder, &mut files)?;
+    Ok(files.finish()?)
+}
+
+/// Adds `report.html` to the files of a results folder that have no names yet, from these and from what the folder holds.
+///
+/// # Errors
+/// As [`write`].
+pub(crate) fn add(folder: &Path, files: &mut Group) -> Result<(), Failure> {
+    let page = page(folder, |name| files.place_of(&folder.join(name)))?;
+    files.add(&folder.join("report.html"), page.as_bytes());
+    Ok(())
+}
+
+/// The page of a results folder.
+///
+/// - `place`: where a file of the folder lies
+fn page(folder: &Path, place: impl Fn(&str) -> PathBuf) -> Result<String, Failure> {
     let missing = |name: &str, error: &dyn std::fmt::Display| {
         Failure::input(format!(
             "{}: no {name} to report on: {error}; name the results folder of a run",
             folder.display()
         ))
     };
-    let summary = Summary::read(&folder.join("summary.json")).map_err(|e| missing("summary.json", &e))?;
-    let history = history::read(&folder.join("history.csv")).map_err(|e| missing("history.csv", &e))?;
+    let summary = Summary::read(&place("summary.json")).map_err(|e| missing("summary.json", &e))?;
+    let history = history::read(&place("history.csv")).map_err(|e| missing("history.csv", &e))?;
     let history = crate::record::ordered(history);
-    let notes: Notes = match fs::read(folder.join(NOTES)) {
+    let notes: Notes = match fs::read(place(NOTES)) {
         Ok(bytes) => serde_json::from_slice(&bytes).map_err(|e| missing(NOTES, &e))?,
         Err(_) => Notes::default(),
     };
-    let fragments = match fragments::read(&folder.join("fragments.csv")) {
+    let fragments = match fragments::read(&place("fragments.csv")) {
         Err(ReadError::Refused { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Vec::new(),
         read => read.map_err(|e| missing("fragments.csv", &e))?,
     };
-    let pictures = notes.pictures.iter().filter_map(|note| figure(folder, note)).collect();
+    let pictures = notes.pictures.iter().filter_map(|note| figure(&place, note)).collect();
     // Bonds are columns where there are some; what never changed, as the particles of a bonded body, says nothing.
     let grows = |name: &String| history.column(name).is_some_and(|(values, _)| values.iter().any(|n| *n != values[0]));
     let cracks =
@@ -130,11 +149,11 @@ pub fn write(folder: &Path) -> Result<(), Failure> {
         summary,
         history,
     };
-    Ok(report::write(&folder.join("report.html"), &data)?)
+    Ok(report::to_html(&data))
 }
 
-fn figure(folder: &Path, note: &PictureNote) -> Option<Figure> {
-    let png = fs::read(folder.join("pictures").join(&note.file)).ok()?;
+fn figure(place: impl Fn(&str) -> PathBuf, note: &PictureNote) -> Option<Figure> {
+    let png = fs::read(place(&format!("pictures/{}", note.file))).ok()?;
     let map = if note.damage { ColourMap::Damage } else { ColourMap::Viridis };
     let colours = ColourBar { label: note.label.clone(), unit: note.unit.clone(), map, range: note.range };
     let scale = note.pixels_per_metre.map(|pixels_per_metre| (Scale { pixels_per_metre, axes: note.axes }, note.size));

@@ -14,7 +14,7 @@ use crate::sight::magnified;
 pub(crate) const STRIP_FILE: &str = "strip-";
 
 /// Width and height of the pictures of the strip [pixels].
-const STRIP: [usize; 2] = [460, 390];
+const STRIP: [usize; 2] = [368, 312];
 /// Pictures of the strip, with that at the peak.
 const IN_STRIP: usize = 5;
 

@@ -11,13 +11,14 @@ use fractum_io::case::model::Case;
 use fractum_io::case::read_case;
 use fractum_io::expectation::Expectation;
 use fractum_io::number::quantity;
-use fractum_io::summary::Status;
+use fractum_io::summary::{Status, Summary, Wall};
 use fractum_io::verified::{self, Verified};
 
 use crate::error::Failure;
 use crate::needs::needs;
+use crate::phases::Part;
 use crate::run::run;
-use crate::simulation::Options;
+use crate::simulation::{Options, Outcome};
 use crate::{say, tell};
 use fractum_prepare::Cache;
 
@@ -151,7 +152,11 @@ fn verified(selection: &Selection, path: &Path, case: &Case) -> Result<Vec<Verif
     let (seconds, needs) = (started.elapsed().as_secs_f64(), needs(case));
     let (expectations, phases) = match outcome {
         Ok(outcome) if outcome.summary.status == Status::Interrupted => return Err(Failure::Interrupted),
-        Ok(outcome) => (outcome.summary.expect, outcome.summary.wall.phases),
+        Ok(Outcome { summary: Summary { expect, wall: Wall { total, mut phases }, .. }, .. }) => {
+            // The files of the end are written when the summary has been made.
+            *phases.entry(Part::Output.name().to_owned()).or_default() += seconds - total;
+            (expect, phases)
+        }
         Err(error) => {
             tell!("{name}: {error}");
             let failed = Expectation { quantity: "run".into(), source: error.to_string(), ..Expectation::default() };

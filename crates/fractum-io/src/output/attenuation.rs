@@ -1,13 +1,10 @@
 //! Peak particle velocity against scaled distance: `ppv.csv`, and the power law through it.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use fractum_math::elementary::{exp, ln};
 use serde::{Deserialize, Serialize};
 
-use crate::atomic;
-use crate::error::WriteError;
 use crate::number::{or_null, push_shortest};
 
 /// Largest velocities at stations of one hole, and their power law v = K s^-b by least squares of the logarithms.
@@ -86,15 +83,8 @@ pub(crate) fn line_through(points: &[[f64; 2]]) -> Line {
     Line { slope, intercept: mean[1] - slope * mean[0], r_squared }
 }
 
-/// Writes `ppv.csv`: a line per station.
-///
-/// # Errors
-/// [`WriteError`].
-pub fn write(path: &Path, lines: &[Attenuation]) -> Result<(), WriteError> {
-    atomic::write(path, table(lines).as_bytes())
-}
-
-fn table(lines: &[Attenuation]) -> String {
+/// The text of `ppv.csv`: a line per station.
+pub fn to_csv(lines: &[Attenuation]) -> String {
     let mut text = String::from(
         "name,x [m],y [m],z [m],distance [m],scaled_distance,unit of scaled_distance,ppv [m/s],time [s],law [m/s]\n",
     );
@@ -146,7 +136,7 @@ mod tests {
 
     #[test]
     fn every_line_has_the_columns_of_the_header() {
-        let text = table(&[Attenuation::new("east", "m/kg^(1/2)", stations(|s| 1.0 / s))]);
+        let text = to_csv(&[Attenuation::new("east", "m/kg^(1/2)", stations(|s| 1.0 / s))]);
         assert_eq!(text.lines().count(), 7);
         assert!(text.lines().all(|line| line.split(',').count() == 10), "{text}");
         assert!(text.lines().nth(2).unwrap().starts_with("\"east\",0,0,0,2,2,m/kg^(1/2),0.5,0,"));

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::atomic::{GrowingFile, Written};
+use crate::atomic::{Group, GrowingFile, Written};
 use crate::error::{ReadError, WriteError};
 use crate::number::push_shortest;
 
@@ -90,6 +90,11 @@ impl History {
     /// [`WriteError`].
     pub fn finish(self) -> Result<(), WriteError> {
         self.file.finish()
+    }
+
+    /// As [`finish`](Self::finish), with the other files of a group.
+    pub fn finish_in(self, group: &mut Group) {
+        self.file.finish_in(group);
     }
 }
 

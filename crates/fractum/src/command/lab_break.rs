@@ -317,7 +317,8 @@ fn write(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Fai
     let stress = broken.stress_per_load;
     atomic::write(&folder.join("load.csv"), load_curve(&outcome.curve, broken).as_bytes())?;
     let columns = Columns { time: "load factor", load: Some(("nominal stress [Pa]", stress)) };
-    cracks::write_table(&folder.join("cracks.csv"), outcome.cracks.iter().map(|c| (None, c)), columns)?;
+    let table = cracks::table(outcome.cracks.iter().map(|c| (None, c)), columns);
+    atomic::write(&folder.join("cracks.csv"), table.as_bytes())?;
     let axis = |label: &str, unit: &str| Axis::new(label, unit);
     let chart = Chart {
         title: "Nominal stress against nominal strain".into(),
@@ -373,7 +374,7 @@ fn write_fragments(path: &Path, mut pieces: Vec<Piece>, density: f64) -> Result<
 fn fields(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Failure> {
     let outcome = &broken.outcome;
     let points: Vec<[f64; 3]> = sample.packing.position.iter().map(|x| (*x).into()).collect();
-    cracks::write_polygons(&folder.join("broken.vtp"), outcome.cracks.iter(), None)?;
+    cracks::polygons(outcome.cracks.iter(), None)?.write(&folder.join("broken.vtp"))?;
     let parts = outcome.graph.parts();
     let fragment: Vec<i32> = parts.of.iter().map(|&p| p as i32).collect();
     let lost = cracks::lost_bonds(points.len(), outcome.cracks.iter());

@@ -53,8 +53,9 @@ impl Simulation {
         let pieces = self.scene.fragments();
         self.warn_of_single_nodes()?;
         self.warn_of_merged_bands()?;
-        write_cracks(&self.scene, &self.folder, &self.recorder.state().removed)?;
-        let pictures = self.draw(&pieces)?;
+        // All files of the end get their names together.
+        let mut files = Group::default();
+        let pictures = self.draw(&pieces, &mut files)?;
         let mut summary = Summary {
             title: self.case.source.title.clone(),
             status,
@@ -69,7 +70,7 @@ impl Simulation {
         };
         summary.expect = self.case.expect.iter().map(|e| summary::expectation(e, &summary)).collect();
         if !summary.ppv.is_empty() {
-            attenuation::write(&self.folder.join("ppv.csv"), &summary.ppv)?;
+            files.add(&self.folder.join("ppv.csv"), attenuation::to_csv(&summary.ppv).as_bytes());
         }
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
@@ -82,12 +83,13 @@ impl Simulation {
             inputs: crate::inputs::table(&self.case),
             plots: crate::plots::notes(&self.case),
         };
-        let mut files = Group::default();
         files.add(&self.folder.join("summary.json"), summary.to_json().as_bytes());
         report::keep(&self.folder, &notes, &mut files);
+        self.recorder.finish(&mut files);
+        let page = report::add(&self.folder, &mut files);
+        // A file that could not be written is the reason, not what the page lacks then.
         files.finish()?;
-        self.recorder.finish()?;
-        report::write(&self.folder)?;
+        page?;
         let at_rest = self.solver.rests();
         match end {
             End::Failed(error) => {
@@ -102,19 +104,18 @@ impl Simulation {
         }
     }
 
-    /// The pieces, the pictures of the end and, once the last frame is written, those over time.
-    fn draw(&mut self, pieces: &[fractum_scene::Fragment]) -> Result<Vec<PictureNote>, Failure> {
+    /// Cracks, pieces, the pictures of the end and, once the last frame is written, those over time.
+    fn draw(&mut self, pieces: &[fractum_scene::Fragment], files: &mut Group) -> Result<Vec<PictureNote>, Failure> {
         let (peak, at_rest) = (self.time_of_peak(), self.solver.rests());
         let Simulation { scene, folder, phases, recorder, .. } = self;
         phases.timed(Part::Output, || {
             create_folder(&folder.join("pictures"))?;
-            let mut files = Group::default();
+            add_cracks(scene, folder, &recorder.state().removed, files)?;
             let fragments = fragments::to_csv(&fragments_of(&scene.solid, pieces));
             files.add(&folder.join("fragments.csv"), fragments.as_bytes());
-            let mut pictures = gallery::draw(scene, folder, at_rest, &mut files);
+            let mut pictures = gallery::draw(scene, folder, at_rest, files);
             recorder.finish_frame()?;
-            pictures.extend(strip(folder, peak, at_rest, &mut files));
-            files.finish()?;
+            pictures.extend(strip(folder, peak, at_rest, files));
             Ok(pictures)
         })
     }
@@ -140,23 +141,24 @@ impl Simulation {
 const PLAN_WIDTH: usize = 120;
 
 /// The bonds that broke, where some could.
-fn write_broken_bonds(scene: &Scene, folder: &Path) -> Result<(), Failure> {
+fn add_broken_bonds(scene: &Scene, folder: &Path, files: &mut Group) -> Result<(), Failure> {
     let bodies = scene.bonded.bodies();
     let all = bodies.iter().flat_map(|body| body.cracks().iter().map(|crack| (Some(body.name.as_str()), crack)));
     let columns = Columns { time: "time [s]", load: None };
-    cracks::write_table(&folder.join("cracks.csv"), all.clone(), columns)?;
+    files.add(&folder.join("cracks.csv"), cracks::table(all.clone(), columns).as_bytes());
     let (position, reference) = (&scene.bonded.particles.position, scene.bonded.reference());
     let displacement = |particle: u32| position[particle as usize] - reference[particle as usize];
-    cracks::write_polygons(&folder.join("cracks.vtp"), all.map(|(_, crack)| crack), Some(&displacement))
+    cracks::polygons(all.map(|(_, crack)| crack), Some(&displacement))?.add_to(files, &folder.join("cracks.vtp"));
+    Ok(())
 }
 
 /// The cracks of solids and of bonded bodies; those of solids have names of their own where both can break.
 ///
 /// - `removed`: body, element and time of what was removed
-fn write_cracks(scene: &Scene, folder: &Path, removed: &[(u32, u32, f64)]) -> Result<(), Failure> {
+fn add_cracks(scene: &Scene, folder: &Path, removed: &[(u32, u32, f64)], files: &mut Group) -> Result<(), Failure> {
     let bonds = scene.bonded.can_break();
     if bonds {
-        write_broken_bonds(scene, folder)?;
+        add_broken_bonds(scene, folder, files)?;
     }
     let crack = scene.solid.crack_surface();
     if crack.facets.is_empty() {
@@ -171,9 +173,10 @@ fn write_cracks(scene: &Scene, folder: &Path, removed: &[(u32, u32, f64)]) -> Re
         fragment: crack.facets.iter().map(|facet| nodes[facet.nodes[0] as usize]).collect(),
     };
     let name = if bonds { "cracks-solids" } else { "cracks" };
-    cracks::write_facets(&folder.join(format!("{name}.csv")), &scene.solid, &crack, &history)?;
-    let file = cracks::facets_file(&scene.solid, &crack, Some(&history))?;
-    Ok(file.write(&folder.join(format!("{name}.vtp")))?)
+    let table = cracks::facets_table(&scene.solid, &crack, &history);
+    files.add(&folder.join(format!("{name}.csv")), table.as_bytes());
+    cracks::facets_file(&scene.solid, &crack, Some(&history))?.add_to(files, &folder.join(format!("{name}.vtp")));
+    Ok(())
 }
 
 impl Simulation {

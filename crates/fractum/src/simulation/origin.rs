@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::SystemTime;
 
 use fractum_io::WriteError;
-use fractum_io::atomic;
+use fractum_io::atomic::{self, Group};
 use fractum_io::case::Case;
 use fractum_io::origin::{InputFile, Origin, utc};
 use fractum_io::summary::hash_text;
@@ -79,8 +79,12 @@ pub(super) fn keep_case(case: &Case, results: &Path, is_new: bool) -> Result<(),
     let is_source =
         fs::canonicalize(&kept).is_ok_and(|own| fs::canonicalize(&case.source.path).is_ok_and(|path| path == own));
     let line = format!("{} {}\n", if is_own { &hash } else { MIXED }, if is_source { "" } else { &*name });
-    atomic::write(&folder.join(HASH), line.as_bytes())?;
-    if is_source { Ok(()) } else { Ok(atomic::write(&kept, case.source.text.as_bytes())?) }
+    let mut files = Group::default();
+    files.add(&folder.join(HASH), line.as_bytes());
+    if !is_source {
+        files.add(&kept, case.source.text.as_bytes());
+    }
+    Ok(files.finish()?)
 }
 
 /// Hash of the case, its end included, that all results in a folder are of.

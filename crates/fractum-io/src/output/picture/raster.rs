@@ -3,24 +3,13 @@
 use rayon::prelude::*;
 
 use super::camera::{Camera, cross, dot, subtract, unit};
-use super::{Clip, Paint, Picture, Rgb};
+use super::{Clip, Paint, Picture, Rgb, SUPERSAMPLING};
 
-/// Rows drawn together by one thread.
-const BAND: usize = 48;
 /// Towards the light, in picture coordinates (right, down, away).
 const LIGHT: [f64; 3] = [-0.45, -0.60, -0.66];
 
-/// The picture before shading: colour and depth of each sample.
-pub(super) struct Canvas {
-    pub(super) width: usize,
-    pub(super) height: usize,
-    pub(super) colour: Vec<Rgb>,
-    /// Infinite where nothing is.
-    pub(super) depth: Vec<f64>,
-}
-
 /// A triangle in the picture.
-struct Facet {
+pub(super) struct Facet {
     corners: [[f64; 3]; 3],
     /// Heights above the clip plane; what is above is not drawn.
     clip: [f64; 3],
@@ -35,7 +24,7 @@ enum FacetColour {
     Corners([f64; 3]),
 }
 
-struct Ball {
+pub(super) struct Ball {
     centre: [f64; 3],
     radius: f64,
     colour: Rgb,
@@ -43,19 +32,39 @@ struct Ball {
     place: [f64; 3],
 }
 
-/// Draws all of `picture`.
-pub(super) fn draw(picture: &Picture, camera: &Camera, width: usize, height: usize) -> Canvas {
-    let facets = facets(picture, camera);
-    let balls = balls(picture, camera);
-    let mut colour = vec![[255; 3]; width * height];
-    let mut depth = vec![f64::INFINITY; width * height];
-    let bands = colour.par_chunks_mut(BAND * width).zip(depth.par_chunks_mut(BAND * width)).enumerate();
-    bands.for_each(|(band, (colour, depth))| {
-        let mut band = Band { width, top: band * BAND, colour, depth };
-        facets.iter().for_each(|facet| band.facet(facet, picture));
-        balls.iter().for_each(|ball| band.ball(ball, picture.clip, camera.scale));
-    });
-    Canvas { width, height, colour, depth }
+/// Where something may be in the picture [samples], in depth too.
+#[derive(Clone, Copy)]
+pub(super) struct Extent {
+    pub(super) low: [f64; 3],
+    pub(super) high: [f64; 3],
+}
+
+impl Extent {
+    /// Of nothing.
+    pub(super) const NONE: Extent = Extent { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
+
+    fn including(self, other: Extent) -> Extent {
+        let pick = |a: [f64; 3], b: [f64; 3], best: fn(f64, f64) -> f64| std::array::from_fn(|k| best(a[k], b[k]));
+        Extent { low: pick(self.low, other.low, f64::min), high: pick(self.high, other.high, f64::max) }
+    }
+}
+
+/// What has a place in the picture.
+pub(super) trait Item {
+    fn extent(&self) -> Extent;
+}
+
+impl Item for Facet {
+    fn extent(&self) -> Extent {
+        let points = self.corners.iter().map(|&corner| Extent { low: corner, high: corner });
+        points.fold(Extent::NONE, Extent::including)
+    }
+}
+
+impl Item for Ball {
+    fn extent(&self) -> Extent {
+        Extent { low: self.centre.map(|x| x - self.radius), high: self.centre.map(|x| x + self.radius) }
+    }
 }
 
 fn share(picture: &Picture, value: f64) -> f64 {
@@ -63,7 +72,8 @@ fn share(picture: &Picture, value: f64) -> f64 {
     (value - low) / (high - low)
 }
 
-fn facets(picture: &Picture, camera: &Camera) -> Vec<Facet> {
+/// The triangles of all surfaces; those without an area or a place are left out.
+pub(super) fn facets(picture: &Picture, camera: &Camera) -> Vec<Facet> {
     let of_surface = |surface: &super::Surface| -> Vec<Facet> {
         let facet = |(index, nodes): (usize, &[u32; 3])| {
             let nodes = nodes.map(|node| node as usize);
@@ -91,7 +101,8 @@ fn facets(picture: &Picture, camera: &Camera) -> Vec<Facet> {
     picture.surfaces.iter().flat_map(of_surface).collect()
 }
 
-fn balls(picture: &Picture, camera: &Camera) -> Vec<Ball> {
+/// The spheres that have a place and a size.
+pub(super) fn balls(picture: &Picture, camera: &Camera) -> Vec<Ball> {
     let of_set = |spheres: &super::Spheres| -> Vec<Ball> {
         let ball = |index: usize| {
             let place = spheres.centres[index];
@@ -151,7 +162,7 @@ impl Share {
     }
 }
 
-/// Columns of a row between which no share is negative, or one more on either side.
+/// Columns of a row at which no share is negative: between them none is, since rounding keeps the order of shares.
 fn span(shares: &[Share; 3], [left, right]: [usize; 2]) -> [usize; 2] {
     let (mut low, mut high) = (left as f64, right as f64);
     for share in shares.iter().filter(|share| share.slope != 0.0) {
@@ -162,117 +173,221 @@ fn span(shares: &[Share; 3], [left, right]: [usize; 2]) -> [usize; 2] {
             high = high.min(zero + 2.0);
         }
     }
+    let outside = |column: usize| shares.iter().any(|share| share.at(column) < 0.0);
     // What is not a number leaves the bounds as they are.
-    [low as usize, (high.max(0.0) as usize).min(right)]
-}
-
-/// The colour of all samples of a facet, where it is one.
-fn lit_evenly(facet: &Facet) -> Option<Rgb> {
-    match facet.colour {
-        FacetColour::Plain(colour) if facet.lines == 0.0 => Some(lit(colour, facet.light)),
-        _ => None,
+    let mut left = (low as usize).min(right);
+    let mut right = (high.max(0.0) as usize).clamp(left, right);
+    while left < right && outside(left) {
+        left += 1;
     }
+    while left < right && outside(right - 1) {
+        right -= 1;
+    }
+    [left, right]
 }
 
-impl Facet {
-    /// Colour of a sample.
+/// Some rows of samples, with a border of one sample that nothing is in on the left and on the right.
+#[derive(Default)]
+pub(super) struct Samples {
+    /// Samples of a row, with the border.
+    pub(super) stride: usize,
+    /// Column and row of the first one in the picture.
+    pub(super) origin: [isize; 2],
+    pub(super) colour: Vec<Rgb>,
+    /// Infinite where nothing is.
+    pub(super) depth: Vec<f64>,
+}
+
+impl Samples {
+    /// Clears them, for `columns` samples and their border in each of `rows`.
     ///
-    /// - `heights`: samples from the edge opposite to a corner per share of it
-    fn colour_at(&self, shares: [f64; 3], heights: [f64; 3], picture: &Picture) -> Rgb {
-        let colour = match self.colour {
-            FacetColour::Plain(colour) => colour,
-            FacetColour::Corners(corners) => picture.map.colour(dot(shares, corners)),
-        };
-        let to_edge = (0..3).map(|k| shares[k] * heights[k]).fold(f64::INFINITY, f64::min);
-        let line = 1.0 - self.lines * (1.3 - to_edge).clamp(0.0, 1.0);
-        lit(colour, self.light * line)
+    /// - `first`: column and row in the picture of the first sample within the border
+    pub(super) fn clear(&mut self, first: [isize; 2], columns: usize, rows: usize) {
+        self.stride = columns + 2;
+        self.origin = [first[0] - 1, first[1]];
+        self.colour.resize(self.stride * rows, [255; 3]);
+        self.depth.clear();
+        self.depth.resize(self.stride * rows, f64::INFINITY);
     }
-}
 
-/// Some rows of the canvas.
-struct Band<'a> {
-    width: usize,
-    top: usize,
-    colour: &'a mut [Rgb],
-    depth: &'a mut [f64],
-}
-
-impl Band<'_> {
-    /// Columns and rows of the band within the given bounds; samples lie at the middle of their cells.
-    fn window(&self, low: [f64; 2], high: [f64; 2]) -> Option<[usize; 4]> {
-        let rows = self.depth.len() / self.width;
-        let (top, bottom) = (self.top as f64, (self.top + rows) as f64);
-        if high[1] < top || low[1] > bottom || high[0] < 0.0 || low[0] > self.width as f64 {
-            return None;
-        }
-        let first = |low: f64, start: f64| (low - start - 0.5).ceil().max(0.0) as usize;
+    /// Columns and rows within the bounds of something; samples lie at the middle of their cells.
+    fn window(&self, Extent { low, high }: Extent) -> Option<[usize; 4]> {
+        let inner = self.stride - 2;
+        let [x, y] = [self.origin[0] as f64, self.origin[1] as f64];
+        let first = |low: f64, start: f64, least: f64| (low - start - 0.5).ceil().max(least) as usize;
         let end =
             |high: f64, start: f64, size: usize| ((high - start - 0.5).floor() + 1.0).clamp(0.0, size as f64) as usize;
-        Some([first(low[0], 0.0), end(high[0], 0.0, self.width), first(low[1], top), end(high[1], top, rows)])
+        let rows = self.depth.len() / self.stride;
+        let columns = [first(low[0], x, 1.0), end(high[0], x, 1 + inner)];
+        let rows = [first(low[1], y, 0.0), end(high[1], y, rows)];
+        (columns[0] < columns[1] && rows[0] < rows[1]).then_some([columns[0], columns[1], rows[0], rows[1]])
     }
 
-    fn facet(&mut self, facet: &Facet, picture: &Picture) {
-        let [a, b, c] = facet.corners;
-        let bound = |pick: fn(f64, f64) -> f64, axis: usize| pick(pick(a[axis], b[axis]), c[axis]);
-        let low = [bound(f64::min, 0), bound(f64::min, 1)];
-        let high = [bound(f64::max, 0), bound(f64::max, 1)];
-        let Some([left, right, top, bottom]) = self.window(low, high) else { return };
+    pub(super) fn facet(&mut self, facet: &Facet, picture: &Picture) {
+        let Some([left, right, top, bottom]) = self.window(facet.extent()) else { return };
+        // In the coordinates of these samples.
+        let shift = self.origin.map(|along| along as f64);
+        let [a, b, c] = facet.corners.map(|[x, y, z]| [x - shift[0], y - shift[1], z]);
         let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         let scale = 1.0 / twice_area;
         if !scale.is_finite() {
             return;
         }
-        // How many samples a sample is from the opposite edge per share of a corner.
-        let height = |p: [f64; 3], q: [f64; 3]| {
-            let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
-            twice_area.abs() / (dx * dx + dy * dy).sqrt()
-        };
-        let heights = [height(b, c), height(c, a), height(a, b)];
-        let even = lit_evenly(facet);
+        let painted = Painted::of(facet, [a, b, c], twice_area.abs(), picture);
         for row in top..bottom {
-            let y = (self.top + row) as f64 + 0.5;
+            let y = row as f64 + 0.5;
             let shares = [(b, c), (c, a), (a, b)].map(|(p, q)| Share::of_row(p, q, y, scale));
             let [left, right] = span(&shares, [left, right]);
-            for column in left..right {
-                let shares = shares.map(|share| share.at(column));
-                if shares.iter().any(|&share| share < 0.0) {
-                    continue;
+            let at = row * self.stride;
+            let (depths, colours) = (&mut self.depth[at + left..at + right], &mut self.colour[at + left..at + right]);
+            let corners = [a[2], b[2], c[2]];
+            let start = dot(shares.map(|share| share.at(left)), corners);
+            let slope = scale * dot(shares.map(|share| share.slope), corners);
+            for (index, (nearest, colour)) in depths.iter_mut().zip(colours).enumerate() {
+                let depth = start + slope * index as f64;
+                if depth < *nearest && painted.is_there(&shares, left + index) {
+                    *nearest = depth;
+                    *colour = painted.colour(&shares, left + index);
                 }
-                let depth = dot(shares, [a[2], b[2], c[2]]);
-                let at = row * self.width + column;
-                if depth >= self.depth[at] || dot(shares, facet.clip) > 0.0 {
-                    continue;
-                }
-                self.depth[at] = depth;
-                self.colour[at] = even.unwrap_or_else(|| facet.colour_at(shares, heights, picture));
             }
         }
     }
 
-    fn ball(&mut self, ball: &Ball, clip: Option<Clip>, scale: f64) {
+    pub(super) fn ball(&mut self, ball: &Ball, clip: Option<Clip>, scale: f64) {
         let Ball { centre, radius, colour, place } = *ball;
-        let low = [centre[0] - radius, centre[1] - radius];
-        let high = [centre[0] + radius, centre[1] + radius];
-        let Some([left, right, top, bottom]) = self.window(low, high) else { return };
+        let Some([left, right, top, bottom]) = self.window(ball.extent()) else { return };
         // A ball is small beside the picture: it is kept or cut away as a whole.
         if clip.is_some_and(|Clip { point, normal }| scale * dot(subtract(place, point), normal) > 0.0) {
             return;
         }
+        let [x, y] = [centre[0] - self.origin[0] as f64, centre[1] - self.origin[1] as f64];
         for row in top..bottom {
-            let dy = (self.top + row) as f64 + 0.5 - centre[1];
-            for column in left..right {
-                let dx = column as f64 + 0.5 - centre[0];
+            let dy = row as f64 + 0.5 - y;
+            let half = (radius * radius - dy * dy).max(0.0).sqrt();
+            let first = ((x - half - 0.5).floor().max(0.0) as usize).clamp(left, right);
+            let end = ((x + half + 1.5).max(0.0) as usize).clamp(first, right);
+            for column in first..end {
+                let dx = column as f64 + 0.5 - x;
                 let inside = radius * radius - dx * dx - dy * dy;
                 if inside < 0.0 {
                     continue;
                 }
                 let dz = inside.sqrt();
-                let at = row * self.width + column;
+                let at = row * self.stride + column;
                 if centre[2] - dz < self.depth[at] {
                     self.depth[at] = centre[2] - dz;
                     self.colour[at] = lit(colour, brightness([dx / radius, dy / radius, -dz / radius]));
                 }
             }
         }
+    }
+}
+
+/// Samples from an edge within which its line darkens a facet.
+const LINE: f64 = 1.3;
+
+/// The colours of a facet at its samples.
+struct Painted<'a> {
+    facet: &'a Facet,
+    picture: &'a Picture<'a>,
+    /// The colour off the edges, where it is one.
+    even: Option<Rgb>,
+    /// Samples from the edge opposite to a corner per share of it.
+    heights: [f64; 3],
+}
+
+impl<'a> Painted<'a> {
+    fn of(facet: &'a Facet, [a, b, c]: [[f64; 3]; 3], twice_area: f64, picture: &'a Picture<'a>) -> Self {
+        let height = |p: [f64; 3], q: [f64; 3]| {
+            let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+            twice_area / (dx * dx + dy * dy).sqrt()
+        };
+        let even = match facet.colour {
+            FacetColour::Plain(colour) => Some(lit(colour, facet.light)),
+            FacetColour::Corners(_) => None,
+        };
+        Painted { facet, picture, even, heights: [height(b, c), height(c, a), height(a, b)] }
+    }
+
+    /// Whether the clip plane leaves the facet there.
+    fn is_there(&self, shares: &[Share; 3], column: usize) -> bool {
+        self.picture.clip.is_none() || dot(shares.map(|share| share.at(column)), self.facet.clip) <= 0.0
+    }
+
+    /// Colour of a sample.
+    fn colour(&self, shares: &[Share; 3], column: usize) -> Rgb {
+        let Facet { light, lines, ref colour, .. } = *self.facet;
+        if let (Some(even), true) = (self.even, lines == 0.0) {
+            return even;
+        }
+        let shares = shares.map(|share| share.at(column));
+        let to_edge = (0..3).map(|k| shares[k] * self.heights[k]).fold(f64::INFINITY, f64::min);
+        let line = 1.0 - lines * (LINE - to_edge).clamp(0.0, 1.0);
+        match (self.even, colour) {
+            (Some(even), _) if to_edge >= LINE => even,
+            (_, FacetColour::Plain(colour)) => lit(*colour, light * line),
+            (_, FacetColour::Corners(corners)) => lit(self.picture.map.colour(dot(shares, *corners)), light * line),
+        }
+    }
+}
+
+/// What is drawn, sorted by the bands of rows of samples that it may be seen in.
+pub(super) struct Bands<T> {
+    items: Vec<T>,
+    /// Indices of the items of each band, in their order.
+    of_bands: Vec<Vec<u32>>,
+}
+
+impl<T: Item> Bands<T> {
+    /// - `rows`: of pixels in a band; `bands`: how many
+    pub(super) fn new(items: Vec<T>, top: usize, rows: usize, bands: usize) -> Self {
+        let height = (rows * SUPERSAMPLING) as f64;
+        let mut of_bands = vec![Vec::new(); bands];
+        for (index, item) in (0..).zip(&items) {
+            let Extent { low, high } = item.extent();
+            // A sample more on either side, for the outlines.
+            let from_top = |y: f64| (y - (top * SUPERSAMPLING) as f64) / height;
+            let first = from_top(low[1] - 1.0).max(0.0) as usize;
+            let last = from_top(high[1] + 1.0);
+            if last >= 0.0 && first < bands {
+                of_bands[first..=(last as usize).min(bands - 1).max(first)]
+                    .iter_mut()
+                    .for_each(|band| band.push(index));
+            }
+        }
+        Bands { items, of_bands }
+    }
+
+    pub(super) fn of(&self, band: usize) -> impl Iterator<Item = &T> {
+        self.of_bands[band].iter().map(|&index| &self.items[index as usize])
+    }
+}
+
+/// Where a picture has something: columns from and to, and rows from and to [pixels]; and the depths there [samples].
+pub(super) struct Shown {
+    pub(super) columns: [usize; 2],
+    pub(super) rows: [usize; 2],
+    pub(super) depths: [f64; 2],
+}
+
+impl Shown {
+    /// None where nothing is in the picture.
+    pub(super) fn of(facets: &[Facet], balls: &[Ball], [width, height]: [usize; 2]) -> Option<Self> {
+        let size = [width, height].map(|pixels| (pixels * SUPERSAMPLING) as f64);
+        let inside = |extent: &Extent| {
+            let Extent { low, high } = extent;
+            low.iter().chain(high).all(|x| x.is_finite()) && (0..2).all(|k| high[k] > 0.0 && low[k] < size[k])
+        };
+        let all = facets.iter().map(Item::extent).chain(balls.iter().map(Item::extent));
+        let Extent { low, high } = all.filter(inside).fold(Extent::NONE, Extent::including);
+        let pixels = |axis: usize, count: usize| {
+            let first = (low[axis] / SUPERSAMPLING as f64).floor().max(0.0) as usize;
+            [first, ((high[axis] / SUPERSAMPLING as f64).ceil() as usize).min(count)]
+        };
+        (low[0] < high[0]).then(|| Shown {
+            columns: pixels(0, width),
+            rows: pixels(1, height),
+            depths: [low[2], high[2]],
+        })
     }
 }

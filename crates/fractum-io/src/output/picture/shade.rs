@@ -1,14 +1,18 @@
-//! What the depths tell the eye: darker hollows, and a line where one thing ends before another.
+//! Samples to pixels, and what the depths tell the eye: darker hollows, and a line where one thing ends before another.
 
 use rayon::prelude::*;
 
-use super::Rgb;
-use super::raster::Canvas;
+use super::raster::{Ball, Bands, Facet, Samples, Shown};
+use super::{Picture, SUPERSAMPLING};
 
 /// Reach of a hollow's shadow, as a share of the picture's smaller side.
 const REACH: f64 = 0.035;
 /// Step in depth that makes an outline, as a share of the picture's smaller side.
 const STEP: f64 = 0.012;
+/// Rows of pixels drawn together by one thread: few enough that their samples stay in its cache.
+pub(super) const BAND: usize = 16;
+/// Share of the picture's smaller side within which all depths are those of a plane seen straight on.
+const FLAT: f64 = 1e-6;
 
 /// Directions in which a hollow is felt, each with its opposite.
 const DIRECTIONS: [[f64; 2]; 8] = [
@@ -33,17 +37,135 @@ struct Pair {
 
 /// Pixels that are felt around each one, at two distances.
 ///
-/// - `reach`: of the farther ones [pixels]; `factor`: samples per pixel
-fn hollow_pairs(reach: f64, factor: usize) -> Vec<Pair> {
+/// - `reach`: of the farther ones [pixels]
+fn hollow_pairs(reach: f64) -> Vec<Pair> {
     let pair = |[x, y]: [f64; 2], share: f64| {
         let place = |sign: f64| [x, y].map(|along| (sign * share * reach * along).round() as isize);
-        Pair { one: place(1.0), other: place(-1.0), limit: (share * reach * factor as f64) as f32 }
+        Pair { one: place(1.0), other: place(-1.0), limit: (share * reach * SUPERSAMPLING as f64) as f32 }
     };
     DIRECTIONS.iter().flat_map(|&direction| [0.3, 1.0].map(|share| pair(direction, share))).collect()
 }
 
-/// Depth of the nearest sample of every pixel, behind a margin that nothing is in.
-struct Nearest {
+/// Sums of the colours of the samples of a pixel that something is in, and the number of these samples.
+type Sum = [u16; 4];
+
+/// What is drawn, pixel by pixel.
+pub(super) struct Drawing<'a> {
+    pub(super) picture: &'a Picture<'a>,
+    pub(super) facets: Bands<Facet>,
+    pub(super) balls: Bands<Ball>,
+    pub(super) shown: Shown,
+    /// Samples of a metre.
+    pub(super) scale: f64,
+}
+
+impl Drawing<'_> {
+    /// Red, green, blue of each pixel of a picture of `width` by `height` pixels.
+    pub(super) fn rgb(&self, [width, height]: [usize; 2]) -> Vec<u8> {
+        let smaller = (width.min(height) * SUPERSAMPLING) as f64;
+        let Shown { columns: [left, right], rows: [top, bottom], depths: [nearest, farthest] } = self.shown;
+        let is_flat = farthest - nearest < FLAT * smaller;
+        let reach = REACH * smaller / SUPERSAMPLING as f64;
+        let (count, rows, margin) = (right - left, bottom - top, if is_flat { 0 } else { reach.ceil() as usize + 1 });
+        let mut depths = Depths::new(count, rows, margin);
+        let mut sums: Vec<Sum> = vec![[0; 4]; count * rows];
+        let bands = sums.par_chunks_mut(BAND * count).zip(depths.bands()).enumerate();
+        bands.for_each_init(Samples::default, |samples, (band, (sums, mut depths))| {
+            let rows = sums.len() / count;
+            let first = [left, top + band * BAND].map(|pixel| (pixel * SUPERSAMPLING) as isize);
+            // A row more above and below, for the outlines.
+            samples.clear([first[0], first[1] - 1], count * SUPERSAMPLING, rows * SUPERSAMPLING + 2);
+            self.facets.of(band).for_each(|facet| samples.facet(facet, self.picture));
+            self.balls.of(band).for_each(|ball| samples.ball(ball, self.picture.clip, self.scale));
+            darken_outlines(samples, STEP * smaller, smaller);
+            depths.take(samples, nearest);
+            reduce(samples, sums, count);
+        });
+        let pairs = if is_flat { Vec::new() } else { hollow_pairs(reach) };
+        let mut rgb = vec![255; 3 * width * height];
+        let pixels = rgb.par_chunks_mut(3 * width).skip(top).zip(sums.par_chunks(count)).enumerate();
+        pixels.for_each_init(Vec::new, |hollow, (row, (pixels, sums))| {
+            hollow.resize(count, 0.0);
+            depths.feel(&pairs, row, hollow);
+            let pixels = pixels[3 * left..3 * right].chunks_exact_mut(3);
+            for ((pixel, sum), hollow) in pixels.zip(sums).zip(hollow.iter()) {
+                mix(pixel, *sum, 1.0 - 0.6 * hollow.min(1.0));
+            }
+        });
+        rgb
+    }
+}
+
+/// Colour of a pixel: what is there in its shadow, before white.
+fn mix(pixel: &mut [u8], [red, green, blue, count]: Sum, shadow: f32) {
+    const SAMPLES: f32 = (SUPERSAMPLING * SUPERSAMPLING) as f32;
+    if count == 0 {
+        return;
+    }
+    let white = 255.0 * (SAMPLES - f32::from(count));
+    for (channel, sum) in pixel.iter_mut().zip([red, green, blue]) {
+        // To the nearest: what rounding makes of a flat face must not show as a pattern.
+        *channel = ((shadow * f32::from(sum) + white) / SAMPLES + 0.5) as u8;
+    }
+}
+
+/// Adds up the samples of each pixel.
+fn reduce(samples: &Samples, sums: &mut [Sum], columns: usize) {
+    for (row, sums) in sums.chunks_exact_mut(columns).enumerate() {
+        for sample_row in 0..SUPERSAMPLING {
+            let start = (1 + row * SUPERSAMPLING + sample_row) * samples.stride + 1;
+            let range = start..start + columns * SUPERSAMPLING;
+            let of_pixels = samples.depth[range.clone()]
+                .chunks_exact(SUPERSAMPLING)
+                .zip(samples.colour[range].chunks_exact(SUPERSAMPLING));
+            for (sum, (depths, colours)) in sums.iter_mut().zip(of_pixels) {
+                for (depth, [red, green, blue]) in depths.iter().zip(colours) {
+                    let is_there = u16::from(depth.is_finite());
+                    let added = [u16::from(*red), u16::from(*green), u16::from(*blue), 1];
+                    sum.iter_mut().zip(added).for_each(|(sum, added)| *sum += is_there * added);
+                }
+            }
+        }
+    }
+}
+
+/// Darkens the samples at which one thing ends before another one that is farther by more than `step`.
+///
+/// - `size`: slopes beyond it do not count
+fn darken_outlines(samples: &mut Samples, step: f64, size: f64) {
+    let Samples { stride, colour, depth, .. } = samples;
+    let stride = *stride;
+    // The slope is taken out: a steep face is not an edge.
+    let ends = |own: f64, next: f64, before: f64| next - own > step + 4.0 * (own - before).abs().min(size);
+    for row in 1..depth.len() / stride - 1 {
+        let start = row * stride + 1;
+        let range = |shift: isize| start.wrapping_add_signed(shift)..(start + stride - 2).wrapping_add_signed(shift);
+        let along = stride as isize;
+        let [own, left, right, above, below] = [0, -1, 1, -along, along].map(|shift| &depth[range(shift)]);
+        for (index, colour) in colour[range(0)].iter_mut().enumerate() {
+            let own = own[index];
+            let [left, right, above, below] = [left[index], right[index], above[index], below[index]];
+            let farthest = left.max(right).max(above).max(below);
+            // Most samples lie among others of one face.
+            if farthest - own > step
+                && (ends(own, right, left)
+                    || ends(own, left, right)
+                    || ends(own, below, above)
+                    || ends(own, above, below))
+            {
+                *colour = colour.map(|channel| (OUTLINE * f32::from(channel) + 0.5) as u8);
+            }
+        }
+    }
+}
+
+/// Brightness of an outline.
+const OUTLINE: f32 = 0.45;
+
+/// Depth of the nearest sample of every pixel, within a margin that nothing is in.
+struct Depths {
+    columns: usize,
+    rows: usize,
     /// Pixels of a row, with the margins.
     stride: usize,
     margin: usize,
@@ -51,37 +173,43 @@ struct Nearest {
     depth: Vec<f32>,
 }
 
-impl Nearest {
-    fn of(canvas: &Canvas, factor: usize, margin: usize) -> Self {
-        let (columns, rows) = (canvas.width / factor, canvas.height / factor);
-        let first = canvas.depth.iter().copied().fold(f64::INFINITY, f64::min);
+/// Some rows of these.
+struct Rows<'a> {
+    columns: usize,
+    stride: usize,
+    margin: usize,
+    depth: &'a mut [f32],
+}
+
+impl Depths {
+    fn new(columns: usize, rows: usize, margin: usize) -> Self {
         let stride = columns + 2 * margin;
-        let mut depth = vec![f32::INFINITY; stride * (rows + 2 * margin)];
-        depth.par_chunks_mut(stride).skip(margin).take(rows).enumerate().for_each(|(row, pixels)| {
-            let samples = &canvas.depth[row * factor * canvas.width..(row + 1) * factor * canvas.width];
-            for of_row in samples.chunks_exact(canvas.width) {
-                for (pixel, samples) in pixels[margin..].iter_mut().zip(of_row.chunks_exact(factor)) {
-                    let nearest = samples.iter().copied().fold(f64::INFINITY, f64::min);
-                    *pixel = pixel.min((nearest - first) as f32);
-                }
-            }
-        });
-        Self { stride, margin, depth }
+        Depths { columns, rows, stride, margin, depth: vec![f32::INFINITY; stride * (rows + 2 * margin)] }
     }
 
-    /// Depths of `count` pixels from `column` of a row on, seen from `shift` columns and rows away.
-    fn row(&self, column: usize, row: usize, [x, y]: [isize; 2], count: usize) -> &[f32] {
+    /// Band by band.
+    fn bands(&mut self) -> impl IndexedParallelIterator<Item = Rows<'_>> {
+        let Depths { columns, rows, stride, margin, .. } = *self;
+        let inner = &mut self.depth[margin * stride..(margin + rows) * stride];
+        inner.par_chunks_mut(BAND * stride).map(move |depth| Rows { columns, stride, margin, depth })
+    }
+
+    /// Depths of the pixels of a row, seen from `shift` columns and rows away.
+    fn row(&self, row: usize, [x, y]: [isize; 2]) -> &[f32] {
         let start = (self.margin + row).wrapping_add_signed(y) * self.stride;
-        let start = (start + self.margin + column).wrapping_add_signed(x);
-        &self.depth[start..start + count]
+        let start = (start + self.margin).wrapping_add_signed(x);
+        &self.depth[start..start + self.columns]
     }
 
-    /// Darkness of the pixels of a row by the hollows that they lie in, 0 to 1: from `column` on, one for each in `hollow`.
-    fn feel(&self, pairs: &[Pair], column: usize, row: usize, hollow: &mut [f32]) {
-        let own = self.row(column, row, [0, 0], hollow.len());
+    /// Darkness of the pixels of a row by the hollows that they lie in, 0 to 1.
+    fn feel(&self, pairs: &[Pair], row: usize, hollow: &mut [f32]) {
         hollow.fill(0.0);
+        if pairs.is_empty() {
+            return;
+        }
+        let own = self.row(row, [0, 0]);
         for &Pair { one, other, limit } in pairs {
-            let [one, other] = [one, other].map(|shift| self.row(column, row, shift, hollow.len()));
+            let [one, other] = [one, other].map(|shift| self.row(row, shift));
             let weight = 1.0 / (limit * pairs.len() as f32);
             for (((hollow, own), one), other) in hollow.iter_mut().zip(own).zip(one).zip(other) {
                 // On a plane, what one side is nearer the other is farther: only hollows count.
@@ -92,77 +220,21 @@ impl Nearest {
     }
 }
 
-/// Darkens hollows and draws outlines; a pixel has `factor` × `factor` samples.
-pub(super) fn shade(canvas: &mut Canvas, factor: usize) {
-    let size = canvas.width.min(canvas.height) as f64;
-    let reach = REACH * size / factor as f64;
-    // Hollows are smooth: they are felt once per pixel, for all its samples.
-    let (pairs, nearest) = (hollow_pairs(reach, factor), Nearest::of(canvas, factor, reach.ceil() as usize + 1));
-    let Canvas { width, ref depth, ref mut colour, .. } = *canvas;
-    let columns = width / factor;
-    let rows = colour.par_chunks_mut(factor * width).enumerate();
-    rows.for_each_init(Vec::new, |hollow: &mut Vec<f32>, (pixel_row, colours)| {
-        let own = nearest.row(0, pixel_row, [0, 0], columns);
-        let Some(first) = own.iter().position(|depth| depth.is_finite()) else { return };
-        let last = own.iter().rposition(|depth| depth.is_finite()).unwrap_or(first);
-        hollow.resize(last + 1 - first, 0.0);
-        nearest.feel(&pairs, first, pixel_row, hollow);
-        for (row, colours) in (pixel_row * factor..).zip(colours.chunks_exact_mut(width)) {
-            let samples = colours[first * factor..].chunks_exact_mut(factor).zip((first * factor..).step_by(factor));
-            for ((samples, column), hollow) in samples.zip(hollow.iter()) {
-                let shadow = 1.0 - 0.6 * hollow.min(1.0);
-                for (colour, column) in samples.iter_mut().zip(column..) {
-                    darken(colour, shadow, outline(depth, width, [column, row], STEP * size, size));
+impl Rows<'_> {
+    /// Takes the depths of samples over.
+    ///
+    /// - `nearest`: of the whole picture
+    fn take(&mut self, samples: &Samples, nearest: f64) {
+        for (row, pixels) in self.depth.chunks_exact_mut(self.stride).enumerate() {
+            let pixels = &mut pixels[self.margin..self.margin + self.columns];
+            for sample_row in 0..SUPERSAMPLING {
+                let start = (1 + row * SUPERSAMPLING + sample_row) * samples.stride + 1;
+                let of_row = samples.depth[start..start + samples.stride - 2].chunks_exact(SUPERSAMPLING);
+                for (pixel, depths) in pixels.iter_mut().zip(of_row) {
+                    let first = depths.iter().copied().fold(f64::INFINITY, f64::min);
+                    *pixel = pixel.min((first - nearest) as f32);
                 }
             }
         }
-    });
-}
-
-/// Darkens the colour of a sample; none of one where nothing is.
-fn darken(colour: &mut Rgb, shadow: f32, outline: Option<bool>) {
-    let Some(outline) = outline else { return };
-    let dark = if outline { 0.45 * shadow } else { shadow };
-    if dark < 1.0 {
-        // To the nearest: what rounding makes of a flat face must not show as a pattern.
-        *colour = colour.map(|channel| (f32::from(channel) * dark + 0.5) as u8);
     }
-}
-
-/// Whether one thing ends at a sample before another one that is farther by more than `step`; none where nothing is.
-///
-/// - `size`: slopes beyond it do not count
-fn outline(depth: &[f64], width: usize, [column, row]: [usize; 2], step: f64, size: f64) -> Option<bool> {
-    let at = row * width + column;
-    let own = depth[at];
-    if own.is_infinite() {
-        return None;
-    }
-    let left = if column > 0 { depth[at - 1] } else { f64::INFINITY };
-    let right = if column + 1 < width { depth[at + 1] } else { f64::INFINITY };
-    let above = if row > 0 { depth[at - width] } else { f64::INFINITY };
-    let below = depth.get(at + width).copied().unwrap_or(f64::INFINITY);
-    // The slope is taken out: a steep face is not an edge.
-    let ends = |next: f64, before: f64| next - own > step && next - own > step + 4.0 * (own - before).abs().min(size);
-    Some(ends(right, left) || ends(left, right) || ends(below, above) || ends(above, below))
-}
-
-/// Averages `factor` × `factor` samples to a pixel.
-pub(super) fn reduce(canvas: &Canvas, factor: usize) -> Vec<u8> {
-    let (width, height) = (canvas.width / factor, canvas.height / factor);
-    let mut rgb = vec![0; 3 * width * height];
-    rgb.par_chunks_mut(3 * width).enumerate().for_each(|(row, pixels)| {
-        for (column, pixel) in pixels.chunks_exact_mut(3).enumerate() {
-            let mut sum = [0u32; 3];
-            for dy in 0..factor {
-                let start = (row * factor + dy) * canvas.width + column * factor;
-                for sample in &canvas.colour[start..start + factor] {
-                    (0..3).for_each(|k| sum[k] += u32::from(sample[k]));
-                }
-            }
-            let samples = (factor * factor) as u32;
-            (0..3).for_each(|k| pixel[k] = ((sum[k] + samples / 2) / samples) as u8);
-        }
-    });
-    rgb
 }

@@ -59,14 +59,17 @@ pub(super) fn data_address(png: &[u8]) -> String {
 /// RFC 4648, section 4.
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let letters = |[a, b, c]: [u8; 3]| {
+        let bits = u32::from(a) << 16 | u32::from(b) << 8 | u32::from(c);
+        [18, 12, 6, 0].map(|shift| LETTERS[(bits >> shift & 63) as usize].into())
+    };
+    let (groups, rest) = bytes.as_chunks::<3>();
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let byte = |index: usize| u32::from(group.get(index).copied().unwrap_or(0));
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for letter in 0..4 {
-            let known = letter <= group.len();
-            text.push(if known { LETTERS[(bits >> (18 - 6 * letter) & 63) as usize].into() } else { '=' });
-        }
+    groups.iter().for_each(|&group| text.extend::<[char; 4]>(letters(group)));
+    if !rest.is_empty() {
+        let group = [0, 1, 2].map(|index| rest.get(index).copied().unwrap_or(0));
+        text.extend(&letters(group)[..=rest.len()]);
+        text.extend(std::iter::repeat_n('=', 3 - rest.len()));
     }
     text
 }

@@ -128,7 +128,10 @@ impl<'a> Document<'a> {
             .collect();
         let stored: Vec<Vec<u8>> = match compression {
             Compression::None => arrays.iter().map(|bytes| raw(bytes)).collect(),
-            Compression::Fast => arrays.iter().map(|bytes| compressed(&mut compressor(), bytes)).collect(),
+            Compression::Fast => {
+                let mut compressor = compressor();
+                arrays.iter().map(|bytes| compressed(&mut compressor, bytes)).collect()
+            }
         };
 
         let kind = &self.kind;

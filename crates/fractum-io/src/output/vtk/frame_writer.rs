@@ -1,9 +1,11 @@
 //! Frames are compressed and written on a thread of their own, while the run goes on.
 
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
@@ -12,10 +14,13 @@ use super::document::Document;
 use crate::atomic::{self, Group};
 use crate::error::WriteError;
 
-/// Bytes of frames that may wait for the one under way: small frames follow each other faster than a disk takes them.
+/// Bytes of frames that may wait, with the one that is being compressed: small frames follow each other faster than a disk
+/// takes them.
 pub const WAITING: usize = 16 << 20;
 /// Files that are brought to the disk together at most, so that few are open at a time.
 const TOGETHER: usize = 64;
+/// Frames that come within this time go to the disk together.
+const COLLECTED: Duration = Duration::from_millis(100);
 
 /// A file of which everything is known, but which is neither compressed nor written yet.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -42,16 +47,18 @@ impl PendingFile {
     /// # Errors
     /// [`WriteError`].
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
-        match &self.0 {
-            Content::Document(document, compression) => atomic::write(path, &document.to_bytes(*compression)),
-            Content::Text(text) => atomic::write(path, text.as_bytes()),
-        }
+        atomic::write(path, &self.bytes())
     }
 
-    fn add_to(&self, group: &mut Group, path: &Path) {
+    /// Adds the file at `path` to others that are brought to the disk together.
+    pub fn add_to(&self, group: &mut Group, path: &Path) {
+        group.add(path, &self.bytes());
+    }
+
+    fn bytes(&self) -> Cow<'_, [u8]> {
         match &self.0 {
-            Content::Document(document, compression) => group.add(path, &document.to_bytes(*compression)),
-            Content::Text(text) => group.add(path, text.as_bytes()),
+            Content::Document(document, compression) => document.to_bytes(*compression).into(),
+            Content::Text(text) => text.as_bytes().into(),
         }
     }
 
@@ -71,17 +78,19 @@ type Files = Vec<(PathBuf, PendingFile)>;
 #[derive(Debug, Default)]
 struct Queue {
     frames: VecDeque<Files>,
-    /// Bytes of those that wait.
+    /// Bytes of those that wait, and of the one that is being compressed.
     size: usize,
     /// Whether a thread takes frames from here.
     is_served: bool,
+    /// Whether no more frames come for now.
+    is_closed: bool,
 }
 
-/// The queue, and the news that it is shorter.
+/// The queue, and the news that it has changed.
 #[derive(Debug, Default)]
 struct Shared {
     queue: Mutex<Queue>,
-    taken: Condvar,
+    changed: Condvar,
 }
 
 fn size_of(frame: &Files) -> usize {
@@ -97,21 +106,43 @@ impl Shared {
     /// Adds a frame once there is room for it; whether somebody takes it from there.
     fn push(&self, frame: Files) -> bool {
         let size = size_of(&frame);
-        let full = |queue: &mut Queue| queue.is_served && !queue.frames.is_empty() && queue.size + size > WAITING;
-        let mut queue = self.taken.wait_while(self.queue(), full).unwrap_or_else(PoisonError::into_inner);
+        let full = |queue: &mut Queue| queue.is_served && queue.size > 0 && queue.size + size > WAITING;
+        let mut queue = self.changed.wait_while(self.queue(), full).unwrap_or_else(PoisonError::into_inner);
         queue.frames.push_back(frame);
         queue.size += size;
+        queue.is_closed = false;
+        self.changed.notify_all();
         std::mem::replace(&mut queue.is_served, true)
+    }
+
+    /// No more frames come: what has been collected goes to the disk now.
+    fn close(&self) {
+        self.queue().is_closed = true;
+        self.changed.notify_all();
     }
 
     /// The next frame; none, and nobody who takes frames, once the queue is empty.
     fn take(&self) -> Option<Files> {
         let mut queue = self.queue();
         let frame = queue.frames.pop_front();
-        queue.size -= frame.as_ref().map_or(0, size_of);
         queue.is_served = frame.is_some();
-        self.taken.notify_all();
         frame
+    }
+
+    /// The next frame that comes until then.
+    fn take_until(&self, end: Instant) -> Option<Files> {
+        let none_yet = |queue: &mut Queue| queue.frames.is_empty() && !queue.is_closed;
+        let left = end.saturating_duration_since(Instant::now());
+        let waited = self.changed.wait_timeout_while(self.queue(), left, none_yet);
+        waited.unwrap_or_else(PoisonError::into_inner).0.frames.pop_front()
+    }
+
+    /// Compresses a frame and gives its room to others.
+    fn add(&self, frame: Files, group: &mut Group) {
+        let size = size_of(&frame);
+        frame.into_iter().for_each(|(path, file)| file.add_to(group, &path));
+        self.queue().size -= size;
+        self.changed.notify_all();
     }
 
     /// Writes frame after frame until none waits; after an error those that wait are given up.
@@ -126,18 +157,16 @@ impl Shared {
 
     fn give_up(&self) {
         *self.queue() = Queue::default();
-        self.taken.notify_all();
+        self.changed.notify_all();
     }
 
     fn write_all(&self) -> Result<(), WriteError> {
         while let Some(first) = self.take() {
-            let mut group = Group::default();
+            let (mut group, end) = (Group::default(), Instant::now() + COLLECTED);
             let mut next = Some(first);
             while let Some(frame) = next {
-                frame.iter().for_each(|(path, file)| file.add_to(&mut group, path));
-                // What has come meanwhile goes to the disk with it.
-                let waits = !self.queue().frames.is_empty();
-                next = if waits && group.len() < TOGETHER { self.take() } else { None };
+                self.add(frame, &mut group);
+                next = if group.len() < TOGETHER { self.take_until(end) } else { None };
             }
             group.finish()?;
         }
@@ -175,7 +204,7 @@ impl FrameWriter {
             return Ok(());
         }
         // The thread before has seen an empty queue, or failed.
-        if let Err(error) = self.finish() {
+        if let Err(error) = self.join() {
             self.shared.give_up();
             return Err(error);
         }
@@ -183,7 +212,10 @@ impl FrameWriter {
         match thread::Builder::new().name("frames".into()).spawn(move || shared.serve()) {
             Ok(thread) => self.thread = Some(thread),
             // A system without a thread to spare: the run waits for its frame.
-            Err(_) => self.shared.serve()?,
+            Err(_) => {
+                self.shared.close();
+                self.shared.serve()?;
+            }
         }
         Ok(())
     }
@@ -193,7 +225,7 @@ impl FrameWriter {
     /// # Errors
     /// [`WriteError`], once.
     pub fn check(&mut self) -> Result<(), WriteError> {
-        if self.thread.as_ref().is_some_and(JoinHandle::is_finished) { self.finish() } else { Ok(()) }
+        if self.thread.as_ref().is_some_and(JoinHandle::is_finished) { self.join() } else { Ok(()) }
     }
 
     /// Waits for the last frame.
@@ -201,6 +233,11 @@ impl FrameWriter {
     /// # Errors
     /// [`WriteError`] of that frame or one before.
     pub fn finish(&mut self) -> Result<(), WriteError> {
+        self.shared.close();
+        self.join()
+    }
+
+    fn join(&mut self) -> Result<(), WriteError> {
         let Some(thread) = self.thread.take() else { return Ok(()) };
         // A panic there is one here.
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
@@ -210,6 +247,7 @@ impl FrameWriter {
 impl Drop for FrameWriter {
     /// A frame that was begun is written, also where the run ends by an error, which is the one to report.
     fn drop(&mut self) {
+        self.shared.close();
         let _ = self.thread.take().map(JoinHandle::join);
     }
 }
