@@ -6,8 +6,7 @@ use fractum_fem::Solid;
 use fractum_math::{Rotation, Vec3};
 
 use crate::bonded::Bonded;
-use crate::conditions::Points;
-use crate::region_probe::Population;
+use crate::conditions::{Points, Population};
 use crate::scene::Scene;
 
 /// Smallest part of a direction across a plane of points with which a strain is not measured.

@@ -4,7 +4,7 @@ use fractum_dem::crack_shape::Axis;
 use fractum_fem::{Separation, Wave};
 use fractum_math::{Sym3, Vec3};
 
-use crate::conditions::{Along, PointProbe};
+use crate::conditions::{Along, PointProbe, Population};
 use crate::contacts::ContactProbe;
 use crate::crack_extent::measure_extent;
 use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
@@ -16,7 +16,7 @@ use crate::heat::{HeatMeasure, TemperatureTake};
 use crate::ledger::EnergyProbe;
 use crate::piece_probe::{FragmentMeasure, SurfaceMeasure, measure_fragment, measure_surface, passing_size};
 use crate::radial_cracks::RadialCracks;
-use crate::region_probe::{Population, RegionStrain, RegionStress};
+use crate::region_probe::{RegionStrain, RegionStress};
 use crate::scene::{CountKind, Counts, Scene};
 
 /// A number that a scene yields at every instant.

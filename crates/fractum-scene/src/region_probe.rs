@@ -4,17 +4,8 @@ use fractum_dem::{StrainGauge, StrainMeasure, stress};
 use fractum_math::{Rotation, Vec3, rotation_by, sphere_volume};
 
 use crate::bonded::Bonded;
-use crate::conditions::{Along, Points};
+use crate::conditions::{Along, Points, Population};
 use crate::scene::Scene;
-
-/// The points that a set is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Population {
-    /// Nodes of solids.
-    Nodes,
-    /// Particles of bonded bodies and loose ones.
-    Particles,
-}
 
 /// Virial stress of a set of particles.
 #[derive(Clone, Debug, PartialEq)]

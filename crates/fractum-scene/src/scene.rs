@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::bonded::{Bonded, BondedState};
 use crate::clock::{Clock, Frequencies, TimeStepSettings};
-use crate::conditions::{Loads, LoadsState, Supports, SurfaceSupports};
+use crate::conditions::{Loads, LoadsState, Population, Supports, SurfaceSupports};
 use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
@@ -13,7 +13,6 @@ use crate::fragment::{Fragment, joined, single_share, solid_pieces};
 use crate::gas::Gas;
 use crate::heat::Heat;
 use crate::ledger::{Books, Ledger};
-use crate::region_probe::Population;
 
 /// One simulation: bodies, boundary conditions, clock and ledger.
 #[derive(Clone)]

@@ -7,6 +7,7 @@ mod support;
 mod surface_support;
 
 pub use load::*;
+pub use points::Population;
 pub(crate) use points::{DrivenPoints, Points};
 pub use probe::{Along, PointProbe};
 pub(crate) use support::integral;

@@ -2,6 +2,15 @@ use fractum_fem::Solid;
 use fractum_math::{CHUNK, Vec3};
 use rayon::prelude::*;
 
+/// The points that a set is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Population {
+    /// Nodes of solids.
+    Nodes,
+    /// Particles of bonded bodies and loose ones.
+    Particles,
+}
+
 /// What has a place that moves: nodes of solids, particles.
 pub(crate) trait Points {
     /// Place without load [m].
