@@ -130,27 +130,34 @@ fn beams_of_published_strength_bear_the_tension_of_table_4_1() {
     assert!((mean / 51.8e6 - 1.0).abs() < 0.06, "{mean}");
 }
 
-#[test]
-#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
-fn a_silica_cylinder_vibrates_like_table_2_6() {
-    let (young, poisson, density) = (75e9, 0.17, 2200.0);
+/// Periods over those of theory, less one, of the silica cylinder; `allowed` for each mode.
+fn check_periods(modes: &[(lab::VibrationMode, f64)]) {
     let (sample, _) = &*SILICA;
-    let impact = lab::impact(sample, density, young).unwrap();
-    let speed = impact.wave_speed / impact.theory - 1.0;
-    println!("wave speed {speed:+.4}");
-    // The book prints 0.38, 6.63, 0.50 and 0.40 %. Torsion misses its 0.50 %: the rod is soft there as in the static test, and
-    // the limit is that of this program.
-    assert!(speed.abs() <= 0.0040, "wave speed {speed}");
-    for (mode, allowed) in [
-        (lab::VibrationMode::Tension, 0.0038),
-        (lab::VibrationMode::Bending, 0.0663),
-        (lab::VibrationMode::Torsion, 0.025),
-    ] {
-        let v = lab::vibration(sample, mode, density, young, poisson).unwrap();
+    for &(mode, allowed) in modes {
+        let v = lab::vibration(sample, mode, 2200.0, 75e9, 0.17).unwrap();
         let difference = v.period / v.theory - 1.0;
         println!("{mode:?} {difference:+.4} in {} steps", v.steps);
         assert!(difference.abs() <= allowed, "{mode:?}: {difference} against {allowed}");
     }
+}
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn a_silica_cylinder_vibrates_like_table_2_6() {
+    let impact = lab::impact(&SILICA.0, 2200.0, 75e9).unwrap();
+    let speed = impact.wave_speed / impact.theory - 1.0;
+    println!("wave speed {speed:+.4}");
+    // The book prints 0.38, 0.50 and 0.40 %. Torsion misses its 0.50 %: the rod is soft there as in the static test, and
+    // the limit is that of this program.
+    assert!(speed.abs() <= 0.0040, "wave speed {speed}");
+    check_periods(&[(lab::VibrationMode::Tension, 0.0038), (lab::VibrationMode::Torsion, 0.025)]);
+}
+
+#[test]
+#[ignore = "a minute, for 29,000 steps: .ci/nightly heavy"]
+fn a_silica_cylinder_bends_to_and_fro_like_table_2_6() {
+    // The book prints 6.63 %.
+    check_periods(&[(lab::VibrationMode::Bending, 0.0663)]);
 }
 
 #[test]
