@@ -5,7 +5,8 @@ use fractum_math::{Lane, Vec3};
 use crate::block::{Cells, Scratch};
 use crate::body::Kinematics;
 use crate::body_model::BodyModel;
-use crate::damage::{Advance, EdgeCells, EdgeField, EdgesInStep};
+use crate::damage::EdgeField;
+use crate::edges_in_step::{Advance, EdgeCells, EdgesInStep, FourEdgesInStep};
 use crate::kernel::{self, ElasticCells, ExpandingCells, Viscous};
 use crate::standard::StandardCells;
 use crate::viscosity::ViscousCells;
@@ -62,10 +63,12 @@ impl Block {
             BlockLaw::Edges(law) => {
                 law.energy = start;
                 let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
-                if law.field.softens.is_unilateral() {
-                    run(model, cells, scratch, &mut EdgesInStep::<true> { edges: law, cells, step }, viscous)
+                let by_fours = law.field.softens.is_unilateral() || law.field.is_mostly_damaged();
+                let mut edges = EdgesInStep { edges: law, cells, step };
+                if by_fours {
+                    run(model, cells, scratch, &mut FourEdgesInStep(edges), viscous)
                 } else {
-                    run(model, cells, scratch, &mut EdgesInStep::<false> { edges: law, cells, step }, viscous)
+                    run(model, cells, scratch, &mut edges, viscous)
                 }
             }
             BlockLaw::Standard(law) => {

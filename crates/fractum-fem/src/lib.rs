@@ -33,6 +33,7 @@ mod crack;
 mod crack_network;
 mod crack_surface;
 mod damage;
+mod edges_in_step;
 mod element;
 mod error;
 mod evaluate;

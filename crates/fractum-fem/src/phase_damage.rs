@@ -4,7 +4,8 @@ use fractum_math::{Sym3, Vec3};
 use rayon::prelude::*;
 
 use crate::cell::Geometry;
-use crate::damage::{Advance, EdgeField};
+use crate::damage::EdgeField;
+use crate::edges_in_step::Advance;
 use crate::evaluate::{Block, BlockLaw};
 use crate::phase::{AT_LEAST, ActiveEdge, Drive, Patch, PhaseField};
 use crate::solid::{BodyModel, Solid};
@@ -132,7 +133,7 @@ impl Solid {
             own.drive = Drive { volume, energy: kappa * kappa * compliance, ..own.drive };
             let before = if state.damage == 0.0 { step.strain_before(&block.cells, cell) } else { state.strain };
             let damage = if rebuilt { 0.0 } else { state.damage };
-            own.taken = softens.taken(damage, [before, strain], [stress, softens.closed_stress(strain)]).of(volume);
+            own.taken = softens.taken(damage, [before, strain], stress, softens.closed_stress(strain)).of(volume);
         });
     }
 

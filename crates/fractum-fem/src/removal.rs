@@ -4,7 +4,7 @@ use fractum_math::{Sym3, Vec3};
 
 use crate::body::{Formulation, Kinematics};
 use crate::cell::Geometry;
-use crate::damage::{Advance, EdgesInStep};
+use crate::edges_in_step::{Advance, EdgesInStep};
 use crate::element::cut_modes;
 use crate::evaluate::{Block, BlockLaw};
 use crate::kernel;
@@ -58,7 +58,7 @@ impl Solid {
         for (&(block, cell), &stored) in cells.iter().zip(stored) {
             let Block { body, cells, law: BlockLaw::Edges(edges), .. } = &mut blocks[block as usize] else { continue };
             let step = Advance { displacement, velocity, dt, kinematics: bodies[*body].body.kinematics };
-            let mut edges = EdgesInStep::<false> { edges, cells, step };
+            let mut edges = EdgesInStep { edges, cells, step };
             edges.settle(cell as usize);
             edges.weaken(cell as usize, stored);
         }

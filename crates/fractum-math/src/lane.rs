@@ -41,6 +41,18 @@ impl Lane {
         Lane(self.0.map(f64::sqrt))
     }
 
+    /// The smaller values; the other ones where one is no number.
+    #[inline(always)]
+    pub fn min(self, other: Lane) -> Lane {
+        Lane(std::array::from_fn(|i| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
+    }
+
+    /// The larger values; the other ones where one is no number.
+    #[inline(always)]
+    pub fn max(self, other: Lane) -> Lane {
+        Lane(std::array::from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
+    }
+
     /// Values of `yes` where `condition` holds, of `no` elsewhere.
     #[inline(always)]
     pub fn choose(condition: [bool; 4], yes: Lane, no: Lane) -> Lane {

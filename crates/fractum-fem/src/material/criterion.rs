@@ -1,5 +1,5 @@
 use fractum_math::elementary::{asin, cos, sin};
-use fractum_math::{Sym3, outer_principal_values};
+use fractum_math::{Lane, Sym3, by_component, first_principal_values, outer_principal_values, widest};
 use serde::{Deserialize, Serialize};
 
 /// The equivalent stress of a criterion, scaled so that uniaxial tension σ gives q = σ.
@@ -143,17 +143,6 @@ impl Criterion {
         below(self.bounds[0]) && (self.one_bound || below(self.bounds[1]))
     }
 
-    /// Equivalent stresses of four effective stresses, with the bits of [`Criterion::equivalent_stress`].
-    pub(crate) fn equivalent_stresses(&self, stresses: &[Sym3; 4]) -> [f64; 4] {
-        match self.kind {
-            CriterionKind::Rankine | CriterionKind::MohrCoulomb => {
-                let [first, last] = outer_principal_values(stresses);
-                std::array::from_fn(|k| self.of_outer_values(first[k], last[k]).max(0.0))
-            }
-            _ => stresses.map(|stress| self.equivalent_stress(stress)),
-        }
-    }
-
     /// Rankine's and Mohr-Coulomb's equivalent stress from the first and the last principal value.
     fn of_outer_values(&self, first: f64, last: f64) -> f64 {
         let [n, scale, ..] = self.constants;
@@ -161,6 +150,7 @@ impl Criterion {
     }
 
     /// Equivalent stress q ≥ 0 [Pa] of an effective stress.
+    #[inline]
     pub fn equivalent_stress(&self, stress: Sym3) -> f64 {
         let c = self.constants;
         let q = match self.kind {
@@ -189,6 +179,48 @@ impl Criterion {
         };
         q.max(0.0)
     }
+}
+
+widest! {
+    /// Equivalent stresses of four effective stresses, with the bits of [`Criterion::equivalent_stress`]; zero where one surely stays below its threshold.
+    pub(crate) fn equivalent_stresses(criterion: &Criterion, stresses: &[Sym3; 4], threshold: &Lane) -> [f64; 4]
+        = equivalent_stresses_by_lanes;
+}
+
+#[inline(always)]
+fn equivalent_stresses_by_lanes(criterion: &Criterion, stresses: &[Sym3; 4], threshold: &Lane) -> [f64; 4] {
+    let components = by_component(stresses);
+    let room = room_below(criterion, &components, *threshold).0;
+    if room[0].min(room[1]).min(room[2].min(room[3])) >= 0.0 {
+        return [0.0; 4];
+    }
+    let mut q = match criterion.kind {
+        CriterionKind::Rankine => first_principal_values(&components),
+        CriterionKind::MohrCoulomb => {
+            let [first, last] = outer_principal_values(&components);
+            std::array::from_fn(|k| criterion.of_outer_values(first[k], last[k]))
+        }
+        _ => stresses.map(|stress| criterion.equivalent_stress(stress)),
+    };
+    for k in 0..4 {
+        q[k] = if q[k] > 0.0 && room[k] < 0.0 { q[k] } else { 0.0 };
+    }
+    q
+}
+
+/// Not negative where q surely stays at or below a threshold > 0, as by [`Criterion::surely_below`]; without branches.
+#[inline(always)]
+fn room_below(criterion: &Criterion, &[xx, yy, zz, xy, yz, zx]: &[Lane; 6], threshold: Lane) -> Lane {
+    let square = xx * xx + yy * yy + zz * zz + Lane::splat(2.0) * (xy * xy + yz * yz + zx * zx);
+    let trace = xx + yy + zz;
+    let j2 = Lane::splat(0.5) * square * Lane::splat(1.0 + 1e-14) - trace * trace / Lane::splat(6.0);
+    let mean = trace / Lane::splat(3.0);
+    let mut below = Lane::splat(f64::INFINITY);
+    for (a, b2) in criterion.bounds {
+        let room = threshold - Lane::splat(a) * mean;
+        below = below.min(room).min(room * room - Lane::splat(b2) * j2);
+    }
+    below.max(threshold * threshold - square * Lane::splat(criterion.norm_factor))
 }
 
 #[cfg(test)]

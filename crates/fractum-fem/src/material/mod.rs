@@ -5,6 +5,7 @@ mod degradation;
 mod softening;
 mod wave;
 
+pub(crate) use criterion::equivalent_stresses;
 pub use criterion::{Criterion, CriterionKind};
 pub use degradation::Degradation;
 pub use softening::Softening;
