@@ -4,7 +4,7 @@
 //! displacements and forces stay in the cache of one core. Forces are first summed inside a block, in the order of its
 //! cells, and then per node over the blocks, in the order of the blocks: the same bits for any number of threads.
 
-use fractum_math::{Lane, Ragged, Sym3, Vec3};
+use fractum_math::{Lane, Mat3, Ragged, Sym3, Vec3};
 
 use crate::thermal_strain::ThermalStrain;
 
@@ -94,15 +94,26 @@ impl Cells {
     }
 
     /// Displacement gradient of a cell from the displacements of global nodes.
-    pub(crate) fn gradient(&self, cell: usize, displacement: impl Fn(usize) -> Vec3) -> fractum_math::Mat3 {
-        let mut nodes = self.global_nodes(cell);
-        let base = displacement(nodes.next().expect("a cell has a base node"));
-        let mut h = fractum_math::Mat3::zeros();
-        for (node, g) in nodes.zip(&self.gradients[self.range(cell)]) {
-            h += (displacement(node) - base) * Vec3::from(*g).transpose();
+    pub(crate) fn gradient(&self, cell: usize, displacement: impl Fn(usize) -> Vec3) -> Mat3 {
+        let global = |local: u16| displacement(self.nodes[usize::from(local)] as usize);
+        let local = self.local_nodes(cell);
+        let base = global(local[0]);
+        let (mut x, mut y, mut z) = (Lane::ZERO, Lane::ZERO, Lane::ZERO);
+        for (&node, g) in local[1..].iter().zip(&self.gradients[self.range(cell)]) {
+            let d = Lane::from_vec(&(global(node) - base));
+            x = x + d * Lane::splat(g[0]);
+            y = y + d * Lane::splat(g[1]);
+            z = z + d * Lane::splat(g[2]);
         }
-        h
+        columns_to_matrix(x, y, z)
     }
+}
+
+/// Columns of a displacement gradient from lanes.
+#[inline(always)]
+pub(crate) fn columns_to_matrix(x: Lane, y: Lane, z: Lane) -> Mat3 {
+    let (x, y, z) = (x.0, y.0, z.0);
+    Mat3::new(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2])
 }
 
 impl Scratch {

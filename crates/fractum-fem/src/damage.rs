@@ -13,7 +13,7 @@ use crate::taken::Taken;
 use crate::threshold::Threshold;
 
 /// An equivalent stress beyond all that occur [Pa], of which the square is a number.
-const ABOVE_ALL: f64 = 1e100;
+pub(crate) const ABOVE_ALL: f64 = 1e100;
 
 /// History of one edge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -230,6 +230,14 @@ impl EdgeField {
         }
         self.note(index);
         growth
+    }
+
+    /// Raises the largest equivalent stress of an edge to `q` [Pa]; its damage is that of a phase field.
+    pub(crate) fn see(&mut self, index: usize, q: f64) {
+        if q > self.state[index].kappa {
+            self.state[index].kappa = q;
+            self.note(index);
+        }
     }
 
     /// Raises the damage of an edge to that of the phase field; returns the growth.

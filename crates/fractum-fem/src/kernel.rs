@@ -2,7 +2,7 @@
 
 use fractum_math::{Lane, Mat3, Sym3, widest};
 
-use crate::block::{BLOCK_NODES, Cells, Run, Scratch};
+use crate::block::{BLOCK_NODES, Cells, Run, Scratch, columns_to_matrix};
 use crate::body::Kinematics;
 use crate::hooke::Hooke;
 use crate::polar::{corotational_strain, product, strain_and_turn};
@@ -98,13 +98,6 @@ pub(crate) fn strain(h: &Mat3, kinematics: Kinematics) -> Sym3 {
         Kinematics::Small => Sym3::symmetric_part(h),
         Kinematics::Corotational => corotational_strain(h).0,
     }
-}
-
-/// Columns of a displacement gradient from lanes.
-#[inline(always)]
-fn columns_to_matrix(x: Lane, y: Lane, z: Lane) -> Mat3 {
-    let (x, y, z) = (x.0, y.0, z.0);
-    Mat3::new(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2])
 }
 
 /// A local number as an index that the compiler knows to be in range.

@@ -1,13 +1,16 @@
 //! The phase fields of a solid at work: in motion before the forces of a step, at rest for the trials of a solver.
 
-use fractum_math::{Sym3, Vec3};
+use fractum_math::{Lane, Sym3, Vec3};
 use rayon::prelude::*;
 
+use crate::block::Cells;
 use crate::cell::Geometry;
-use crate::damage::EdgeField;
+use crate::damage::{ABOVE_ALL, EdgeField};
 use crate::edges_in_step::Advance;
 use crate::evaluate::{Block, BlockLaw};
-use crate::phase::{AT_LEAST, ActiveEdge, Drive, Patch, PhaseField};
+use crate::kernel::FOUR;
+use crate::material::equivalent_stresses;
+use crate::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, Patch, PhaseField};
 use crate::solid::{BodyModel, Solid};
 
 impl Solid {
@@ -50,13 +53,16 @@ impl Solid {
             }
             solid.drive(body, field, dt);
             field.sweep();
-            let law = field.law;
-            field.take_over(|own, d| {
-                let (cells, cell, dissipated) = solid.history_of(body, own.edge);
-                cells.state[cell].kappa = cells.state[cell].kappa.max(own.seen);
-                let growth = cells.soften(cell, law.damage(own.drive.a1, d));
+            field.book(|own, edge_step| solid.taken(body, own, edge_step, dt));
+            field.take_over(|edge, step, grown| {
+                let (cells, cell, dissipated) = solid.history_of(body, edge);
+                cells.see(cell, step.seen);
+                if !grown {
+                    return;
+                }
+                cells.soften(cell, step.damage);
                 if let Some(dissipated) = dissipated {
-                    *dissipated += own.taken.by(growth);
+                    *dissipated += step.taken;
                 }
             });
             let mut reached = Vec::new();
@@ -109,32 +115,65 @@ impl Solid {
 
     /// What drives the active edges at the present displacements.
     fn drive(&self, body: usize, field: &mut PhaseField, dt: f64) {
-        let Solid { blocks, bodies, displacement, velocity, .. } = self;
-        let model = &bodies[body];
-        let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
+        let model = &self.bodies[body];
         let compliance = 0.5 / model.body.elastic.young_modulus;
-        field.active.par_iter_mut().with_min_len(AT_LEAST).for_each(|own| {
-            let rebuilt = std::mem::take(&mut own.rebuilt);
-            if let Some(standard) = &model.standard {
+        let PhaseField { active, steps, .. } = field;
+        if let Some(standard) = &model.standard {
+            active.par_iter_mut().with_min_len(AT_LEAST).for_each(|own| {
                 let kappa = standard.field.state[own.edge as usize].kappa;
                 let volume = self.edge_volume(model, own.edge);
                 own.drive = Drive { volume, energy: kappa * kappa * compliance, ..own.drive };
-                return;
+            });
+            return;
+        }
+        let step = self.advance_of(model, dt);
+        let fours = active.par_chunks_mut(FOUR).zip(steps.par_chunks_mut(FOUR));
+        fours.with_min_len(AT_LEAST / FOUR).for_each(|(active, steps)| {
+            let (mut stresses, mut kappa, mut criterion) = ([Sym3::ZERO; FOUR], Lane::splat(ABOVE_ALL), None);
+            for (k, (own, edge_step)) in active.iter_mut().zip(&mut *steps).enumerate() {
+                let Some((cells, field, cell)) = self.cell_of(model, own.edge) else { continue };
+                edge_step.strain = step.strain_now(cells, cell);
+                stresses[k] = field.softens.hooke.stress(edge_step.strain);
+                kappa.0[k] = field.state[cell].kappa;
+                own.drive.volume = cells.volume[cell];
+                criterion = Some(&field.softens.criterion);
             }
-            let (block, cell) = model.location[own.edge as usize];
-            let (block, cell) = (&blocks[block as usize], cell as usize);
-            let Some(EdgeField { softens, state, .. }) = block.edge_field() else { return };
-            let (state, volume) = (&state[cell], block.cells.volume[cell]);
-            let strain = step.strain_now(&block.cells, cell);
-            let stress = softens.hooke.stress(strain);
-            let below = softens.criterion.surely_below(stress, state.kappa);
-            own.seen = if below { 0.0 } else { softens.criterion.equivalent_stress(stress) };
-            let kappa = state.kappa.max(own.seen);
-            own.drive = Drive { volume, energy: kappa * kappa * compliance, ..own.drive };
-            let before = if state.damage == 0.0 { step.strain_before(&block.cells, cell) } else { state.strain };
-            let damage = if rebuilt { 0.0 } else { state.damage };
-            own.taken = softens.taken(damage, [before, strain], stress, softens.closed_stress(strain)).of(volume);
+            let Some(criterion) = criterion else { return };
+            let q = equivalent_stresses(criterion, &stresses, &kappa);
+            for (k, (own, edge_step)) in active.iter_mut().zip(steps).enumerate() {
+                edge_step.seen = if q[k] > kappa.0[k] { q[k] } else { 0.0 };
+                let kappa = kappa.0[k].max(edge_step.seen);
+                own.drive.energy = kappa * kappa * compliance;
+            }
         });
+    }
+
+    /// What the damage of an active edge that has grown takes [J].
+    fn taken(&self, body: usize, own: &ActiveEdge, edge_step: &EdgeStep, dt: f64) -> f64 {
+        let model = &self.bodies[body];
+        let Some((cells, EdgeField { softens, state, .. }, cell)) = self.cell_of(model, own.edge) else { return 0.0 };
+        let (state, strain) = (&state[cell], edge_step.strain);
+        let growth = edge_step.damage - state.damage;
+        if growth <= 0.0 {
+            return 0.0;
+        }
+        let untouched = state.damage == 0.0;
+        let before = if untouched { self.advance_of(model, dt).strain_before(cells, cell) } else { state.strain };
+        let damage = if own.rebuilt { 0.0 } else { state.damage };
+        let (stress, closed) = (softens.hooke.stress(strain), softens.closed_stress(strain));
+        softens.taken(damage, [before, strain], stress, closed).of(cells.volume[cell]).by(growth)
+    }
+
+    fn advance_of(&self, model: &BodyModel, dt: f64) -> Advance<'_> {
+        let Solid { displacement, velocity, .. } = self;
+        Advance { displacement, velocity, dt, kinematics: model.body.kinematics }
+    }
+
+    /// The smoothed cell of an edge, with its number, among those of its block that may be damaged.
+    fn cell_of(&self, model: &BodyModel, edge: u32) -> Option<(&Cells, &EdgeField, usize)> {
+        let (block, cell) = *model.location.get(edge as usize)?;
+        let block = &self.blocks[block as usize];
+        Some((&block.cells, block.edge_field()?, cell as usize))
     }
 
     /// The history of an active edge, and where its dissipation is booked; elements book that of a standard body.

@@ -16,13 +16,13 @@ mod rest;
 
 use std::f64::consts::PI;
 
+use fractum_math::Sym3;
 use rayon::prelude::*;
 
 use crate::body::{Body, BodyEdges, DamageZone, ElementKind, Formulation};
 use crate::cell::Geometry;
 use crate::error::SolidError;
 use crate::material::Degradation;
-use crate::taken::Taken;
 use laplacian::Rows;
 
 /// Value from which on the neighbours of an edge are active.
@@ -91,10 +91,6 @@ pub(crate) struct Drive {
 pub(crate) struct ActiveEdge {
     pub(crate) edge: u32,
     pub(crate) drive: Drive,
-    /// Equivalent stress now [Pa], and what the step takes as damage grows [J]; zero in the standard formulation, which
-    /// keeps the one and books the other itself.
-    pub(crate) seen: f64,
-    pub(crate) taken: Taken,
     /// d at the end of the step before, and of the one before that.
     old: f64,
     before: f64,
@@ -105,6 +101,17 @@ pub(crate) struct ActiveEdge {
     pub(crate) rebuilt: bool,
 }
 
+/// What an active edge of smoothed cells sees and gives in a step of motion; the standard formulation keeps the one and books the other itself.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EdgeStep {
+    /// Equivalent stress now where it is the largest so far [Pa], else zero.
+    pub(crate) seen: f64,
+    pub(crate) strain: Sym3,
+    /// Damage now, and what it takes [J], where d has grown.
+    pub(crate) damage: f64,
+    pub(crate) taken: f64,
+}
+
 /// The phase field of a body.
 #[derive(Clone, Debug)]
 pub(crate) struct PhaseField {
@@ -112,6 +119,8 @@ pub(crate) struct PhaseField {
     /// d of every edge of the body.
     pub(crate) value: Vec<f64>,
     pub(crate) active: Vec<ActiveEdge>,
+    /// The present step of every active edge.
+    pub(crate) steps: Vec<EdgeStep>,
     /// Place in `active` of every edge, [`PhaseField::ASLEEP`] if it is not there.
     slot: Vec<u32>,
     rows: Rows,
@@ -122,7 +131,7 @@ impl PhaseField {
 
     pub(crate) fn new(law: PhaseLaw, edges: usize) -> Self {
         let (value, slot) = (vec![0.0; edges], vec![Self::ASLEEP; edges]);
-        PhaseField { law, value, active: Vec::new(), slot, rows: Rows::default() }
+        PhaseField { law, value, active: Vec::new(), steps: Vec::new(), slot, rows: Rows::default() }
     }
 
     pub(crate) fn is_active(&self, edge: u32) -> bool {
@@ -136,14 +145,13 @@ impl PhaseField {
         self.active.push(ActiveEdge {
             edge,
             drive: Drive { a1, ..Drive::default() },
-            seen: 0.0,
-            taken: Taken::default(),
             old: 0.0,
             before: 0.0,
             next: 0.0,
             spread: false,
             rebuilt: false,
         });
+        self.steps.push(EdgeStep::default());
     }
 
     /// Area of crack in the volume of an edge [1/m]: for the profile of a full crack half of it is that of the gradient.
@@ -171,6 +179,7 @@ impl PhaseField {
         self.value.fill(0.0);
         self.slot.fill(Self::ASLEEP);
         self.active.clear();
+        self.steps.clear();
         self.rows.clear();
     }
 
@@ -215,12 +224,28 @@ impl PhaseField {
         }
     }
 
-    /// Takes d over, each with `work(edge, d)`.
-    pub(crate) fn take_over(&mut self, mut work: impl FnMut(&ActiveEdge, f64)) {
-        for own in &mut self.active {
-            let value = self.value[own.edge as usize];
-            work(own, value);
-            (own.before, own.old) = (own.old, value);
+    /// Finds the damage of the edges whose d has grown, and what it takes by `taken(edge, step)` [J].
+    pub(crate) fn book(&mut self, taken: impl Fn(&ActiveEdge, &EdgeStep) -> f64 + Sync) {
+        let PhaseField { law, value, active, steps, .. } = self;
+        active.par_iter().zip(steps).with_min_len(AT_LEAST).for_each(|(own, step)| {
+            let d = value[own.edge as usize];
+            if d > own.old {
+                step.damage = law.damage(own.drive.a1, d);
+                step.taken = taken(own, step);
+            }
+        });
+    }
+
+    /// Takes d over, with `work(edge, step, has d grown)` where an edge has seen more than before or d has grown.
+    pub(crate) fn take_over(&mut self, mut work: impl FnMut(u32, &EdgeStep, bool)) {
+        let PhaseField { value, active, steps, .. } = self;
+        for (own, step) in active.iter_mut().zip(steps) {
+            let d = value[own.edge as usize];
+            let grown = d > own.old;
+            if grown || step.seen > 0.0 {
+                work(own.edge, step, grown);
+            }
+            (own.before, own.old, own.rebuilt) = (own.old, d, false);
         }
     }
 
