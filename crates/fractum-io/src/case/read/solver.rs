@@ -75,7 +75,9 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         for key in ["step", "time_step", "initial_overlap", "domain", "balance_warning", "balance_stop"] {
             table.refuse(key, "with kind = \"heat\"");
         }
-        refuse_motion(root, root, &["loads"], WHILE_CONDUCTING);
+        refuse_motion(root, root, &["loads", "in_situ"], WHILE_CONDUCTING);
+        // Supports say where bodies will be held once they move.
+        root.set_aside("supports", WHILE_CONDUCTING);
         for body in root.tables("bodies") {
             refuse_motion(root, &body, &["initial_velocity"], WHILE_CONDUCTING);
         }
