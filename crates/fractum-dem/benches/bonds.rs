@@ -64,6 +64,24 @@ fn step_of_interfaces(bencher: divan::Bencher, side: usize) {
     step_under(bencher, side, strong.into());
 }
 
+/// Interfaces that have all separated, and rub where they are closed.
+#[divan::bench(args = [22, 47], sample_count = 20)]
+fn step_of_separated_interfaces(bencher: divan::Bencher, side: usize) {
+    let weak =
+        LocalBond { tensile_strength: 1e-3, shear_strength: 1e-3, friction: 0.4, ..LocalBond::elastic(1e9, 0.2) };
+    step_under(bencher, side, weak.into());
+}
+
+/// Interfaces beside the mean strain of their particles, which fill 0.52 of the body.
+#[divan::bench(args = [22, 47], sample_count = 20)]
+fn step_of_mean_strains(bencher: divan::Bencher, side: usize) {
+    let strong = LocalBond { tensile_strength: 1e12, mean_strain: Some(0.52), ..LocalBond::elastic(1e9, 0.2) };
+    step_under(bencher, side, strong.into());
+}
+
+/// Steps before the first that counts: what can separate has done so.
+const WARM: usize = 10;
+
 fn step_under(bencher: divan::Bencher, side: usize, law: AnyBondLaw) {
     let (position, pairs) = body(side);
     let n = position.len();
@@ -72,11 +90,13 @@ fn step_under(bencher: divan::Bencher, side: usize, law: AnyBondLaw) {
     let dt = bonds.stable_step(&particles, 0.7);
     let mut motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
     particles.velocity.iter_mut().enumerate().for_each(|(i, v)| v.x = 1e-3 * (i as f64).sin());
-    bencher.counter(divan::counter::ItemsCount::new(pairs.len())).bench_local(|| {
+    let mut step = || {
         motion.kick_and_drift(&mut particles);
         particles.clear_forces();
         bonds.add_forces(&mut particles);
-    });
+    };
+    (0..WARM).for_each(|_| step());
+    bencher.counter(divan::counter::ItemsCount::new(pairs.len())).bench_local(step);
 }
 
 #[divan::bench(args = [22, 47], sample_count = 20)]

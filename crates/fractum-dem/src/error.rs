@@ -59,6 +59,14 @@ pub enum DemError {
         /// The valid range.
         expected: &'static str,
     },
+    /// Particles that span no space cell.
+    #[error(
+        "no four of the {particles} bonded particles that meet in a space cell enclose a volume, so that they have no mean strain; take bond = \"local\", or more particles across the body"
+    )]
+    NoCells {
+        /// How many particles have bonds.
+        particles: usize,
+    },
     /// Space cells that are too large for the body of their particles.
     #[error(
         "the space cells of the particles inside fill {inside:.4e} m3 of {body:.4e} m3, which leaves no volume for its surface: particles are too large for its holes and notches; give it more of them"

@@ -21,21 +21,21 @@
 macro_rules! widest {
     (
         $(#[$attribute:meta])*
-        $visible:vis fn $name:ident$(<$law:ident: $bound:path>)?($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)?
-            = $body:path;
+        $visible:vis fn $name:ident$(<$law:ident: $bound:path $(, const $number:ident: $kind:ty)*>)?
+            ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:path;
     ) => {
         $(#[$attribute])*
-        $visible fn $name$(<$law: $bound>)?($($argument: $type),*) $(-> $result)? {
+        $visible fn $name$(<$law: $bound $(, const $number: $kind)*>)?($($argument: $type),*) $(-> $result)? {
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx2,fma")]
-                fn wide$(<$law: $bound>)?($($argument: $type),*) $(-> $result)? {
+                fn wide$(<$law: $bound $(, const $number: $kind)*>)?($($argument: $type),*) $(-> $result)? {
                     $body($($argument),*)
                 }
                 if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
                     // SAFETY: the instruction sets were found on this machine.
                     #[allow(unsafe_code)]
-                    return unsafe { wide($($argument),*) };
+                    return unsafe { wide$(::<$law $(, $number)*>)?($($argument),*) };
                 }
             }
             $body($($argument),*)

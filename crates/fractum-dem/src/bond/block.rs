@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use fractum_math::{Rotation, Vec3};
+use fractum_math::{Rotation, Vec3, widest};
 
 use super::lanes::{Lanes, Vector, dot};
 use super::law::{BondLanes, BondLaw, ForceLanes};
@@ -122,8 +122,8 @@ impl<L: BondLaw> Block<L> {
         }
     }
 
-    /// Sums what is wanted of the bonds.
-    pub(super) fn sum_bonds<const FORCES: bool, const DETAIL: u8>(
+    #[inline(always)]
+    fn sum_bonds<const FORCES: bool, const DETAIL: u8>(
         &mut self,
         position: &[Vec3],
         orientation: &[Rotation],
@@ -167,9 +167,30 @@ impl<L: BondLaw> Block<L> {
     }
 }
 
-impl<L: BondLaw> Block<L> {
+widest! {
+    /// Sums what is wanted of the bonds of a block.
+    pub(super) fn sum_bonds<L: BondLaw, const FORCES: bool, const DETAIL: u8>(
+        block: &mut Block<L>,
+        position: &[Vec3],
+        orientation: &[Rotation],
+        law: &L,
+    ) = Block::<L>::sum_bonds::<FORCES, DETAIL>;
+}
+
+widest! {
     /// Sums the forces of bonds beside the mean strain of their particles, and what they add to the stresses of these; lists the bonds that fail.
-    pub(super) fn sum_deviations(&mut self, position: &[Vec3], orientation: &[Rotation], law: &L, field: &MeanStrain) {
+    pub(super) fn sum_deviations<L: BondLaw>(
+        block: &mut Block<L>,
+        position: &[Vec3],
+        orientation: &[Rotation],
+        law: &L,
+        field: &MeanStrain,
+    ) = Block::<L>::sum_deviations;
+}
+
+impl<L: BondLaw> Block<L> {
+    #[inline(always)]
+    fn sum_deviations(&mut self, position: &[Vec3], orientation: &[Rotation], law: &L, field: &MeanStrain) {
         let Block { groups, memory, first_bond, failing, sums, shares, .. } = self;
         failing.clear();
         sums.fill([0.0; 6]);
@@ -177,8 +198,13 @@ impl<L: BondLaw> Block<L> {
         shares.resize(sums.len(), [0.0; 6]);
         for (index, (group, memory)) in groups.iter_mut().zip(memory).enumerate() {
             let bonds = group.lanes(position, orientation);
-            let strains: [_; WIDTH] = std::array::from_fn(|k| field.between([group.first[k], group.second[k]]).0);
-            let mean = std::array::from_fn(|c| Lanes(std::array::from_fn(|k| strains[k][c])));
+            let mut mean = [Lanes::splat(0.0); 6];
+            for k in 0..WIDTH {
+                let strain = field.between([group.first[k], group.second[k]]).0;
+                for c in 0..6 {
+                    mean[c].0[k] = strain[c];
+                }
+            }
             let found = law.deviating_forces(&bonds, mean, &group.own, &mut group.recent, memory);
             if found.failing != 0 {
                 let lanes = (0..WIDTH).filter(|lane| found.failing >> lane & 1 == 1);

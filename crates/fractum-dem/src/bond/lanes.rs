@@ -13,14 +13,24 @@ impl<const W: usize> Lanes<W> {
         Lanes([value; W])
     }
 
+    /// The number of each lane: a loop, since the closures of `array::from_fn` are not always inlined.
+    #[inline(always)]
+    pub fn of(number: impl Fn(usize) -> f64) -> Self {
+        let mut out = [0.0; W];
+        for k in 0..W {
+            out[k] = number(k);
+        }
+        Lanes(out)
+    }
+
     #[inline(always)]
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Lanes(self.0.map(f))
+        Lanes::of(|k| f(self.0[k]))
     }
 
     #[inline(always)]
     fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Lanes(std::array::from_fn(|k| f(self.0[k], other.0[k])))
+        Lanes::of(|k| f(self.0[k], other.0[k]))
     }
 
     /// Square roots.
@@ -107,4 +117,10 @@ pub fn rotate<const W: usize>(w: Lanes<W>, u: Vector<W>, v: Vector<W>) -> Vector
     let inner = add(cross(u, v), scale(v, w));
     let outer = cross(u, inner);
     add(v, add(outer, outer))
+}
+
+/// `v` turned back by the unit quaternion (w, u).
+#[inline(always)]
+pub fn rotate_back<const W: usize>(w: Lanes<W>, u: Vector<W>, v: Vector<W>) -> Vector<W> {
+    rotate(w, [-u[0], -u[1], -u[2]], v)
 }

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use fractum_math::{Mat3, Sym3, Vec3, sphere_volume};
+use fractum_math::{Lane, Mat3, Sym3, Vec3, sphere_volume, widest};
 use rayon::prelude::*;
 
 use super::graph::BondGraph;
@@ -11,12 +11,23 @@ use super::space_cells::SpaceCells;
 use crate::DemError;
 use crate::particles::Particles;
 
+/// Particles of one part of parallel work.
+const PART: usize = 256;
+
 /// Weights of particles in the mean displacement gradients of others, row by row.
 #[derive(Clone, Debug)]
 struct Weights {
     offsets: Vec<u32>,
-    /// Particle and weight [1/m].
-    entries: Vec<(u32, Vec3)>,
+    columns: Vec<u32>,
+    /// A weight [1/m] for each column.
+    weights: Vec<Lane>,
+}
+
+/// A row of [`Weights`].
+#[derive(Clone, Copy)]
+struct Row<'a> {
+    columns: &'a [u32],
+    weights: &'a [Lane],
 }
 
 impl Weights {
@@ -33,19 +44,65 @@ impl Weights {
         let mut offsets = vec![0u32; count + 1];
         merged.iter().for_each(|entry| offsets[entry.0 as usize + 1] += 1);
         (0..count).for_each(|row| offsets[row + 1] += offsets[row]);
-        Weights { offsets, entries: merged.into_iter().map(|(_, column, weight)| (column, weight)).collect() }
+        let weights = merged.iter().map(|(_, _, weight)| Lane::from_vec(weight)).collect();
+        Weights { offsets, columns: merged.into_iter().map(|(_, column, _)| column).collect(), weights }
     }
 
-    fn row(&self, row: usize) -> &[(u32, Vec3)] {
-        &self.entries[self.offsets[row] as usize..self.offsets[row + 1] as usize]
+    #[inline(always)]
+    fn row(&self, row: usize) -> Row<'_> {
+        let entries = self.offsets[row] as usize..self.offsets[row + 1] as usize;
+        Row { columns: &self.columns[entries.clone()], weights: &self.weights[entries] }
     }
 
     fn transposed(&self) -> Self {
         let rows = self.offsets.len() - 1;
-        let entries =
-            (0..rows).flat_map(|row| self.row(row).iter().map(move |&(column, weight)| (column, row as u32, weight)));
-        Weights::new(rows, entries.collect())
+        let of_row = |row: usize| {
+            let Row { columns, weights } = self.row(row);
+            columns.iter().zip(weights).map(move |(&column, weight)| (column, row as u32, weight.to_vec()))
+        };
+        Weights::new(rows, (0..rows).flat_map(of_row).collect())
     }
+}
+
+/// Sums of displacements times weights over the rows from `start` on, by components of the displacement.
+#[inline(always)]
+fn sum_gradients(start: usize, rows: &Weights, shift: &[Lane], out: &mut [[Lane; 3]]) {
+    for (k, out) in out.iter_mut().enumerate() {
+        let Row { columns, weights } = rows.row(start + k);
+        let mut sums = [Lane::ZERO; 3];
+        for (&j, &weight) in columns.iter().zip(weights) {
+            let shift = shift[j as usize].0;
+            for a in 0..3 {
+                sums[a] = sums[a] + weight * Lane::splat(shift[a]);
+            }
+        }
+        *out = sums;
+    }
+}
+
+/// Takes the sums of stresses times weights over the rows from `start` on off forces.
+#[inline(always)]
+fn take_forces(start: usize, rows: &Weights, stress: &[[Lane; 3]], force: &mut [Vec3]) {
+    for (k, force) in force.iter_mut().enumerate() {
+        let Row { columns, weights } = rows.row(start + k);
+        let mut sum = Lane::from_vec(force);
+        for (&i, weight) in columns.iter().zip(weights) {
+            let [x, y, z] = stress[i as usize];
+            let [a, b, c, _] = weight.0;
+            sum = sum - (x * Lane::splat(a) + y * Lane::splat(b) + z * Lane::splat(c));
+        }
+        *force = sum.to_vec();
+    }
+}
+
+widest! {
+    /// [`sum_gradients`] in the widest instruction set of the machine.
+    fn sum_gradients_fast(start: usize, rows: &Weights, shift: &[Lane], out: &mut [[Lane; 3]]) = sum_gradients;
+}
+
+widest! {
+    /// [`take_forces`] in the widest instruction set of the machine.
+    fn take_forces_fast(start: usize, rows: &Weights, stress: &[[Lane; 3]], force: &mut [Vec3]) = take_forces;
 }
 
 /// The mean deformation gradient F of every particle, that of the Delaunay cells of the centres that meet there weighted with their
@@ -72,12 +129,15 @@ pub(super) struct MeanStrain {
     pub(super) graph: BondGraph,
     /// Particles that have a mean strain.
     intact: Vec<bool>,
-    gradient: Vec<Mat3>,
+    /// Displacements [m].
+    shift: Vec<Lane>,
+    /// Rows of F − 1.
+    gradient: Vec<[Lane; 3]>,
     strain: Vec<Sym3>,
     /// Stress of bonds over their volumes, summed [J].
     deviation: Vec<[f64; 6]>,
-    /// V times the first Piola–Kirchhoff stress [J].
-    stress: Vec<Mat3>,
+    /// Columns of V times the first Piola–Kirchhoff stress [J].
+    stress: Vec<[Lane; 3]>,
 }
 
 /// Bonds that separate under mean strains, and what they do last.
@@ -85,19 +145,31 @@ pub(super) struct MeanStrain {
 pub(super) struct Separating {
     /// Those of this instant, while the work of their last half step is not booked.
     pub(super) failed: Vec<u32>,
-    /// Forces [N] and moments [N m] on the particles without them, less those that act at this instant.
-    pub(super) force: Vec<Vec3>,
-    pub(super) moment: Vec<Vec3>,
-    /// Scratch: particles that lose their mean strain with a bond, and the bonds whose energy this changes.
+    /// Particles that lose their mean strain with them, ascending.
     pub(super) particles: Vec<u32>,
+    /// Bonds whose forces this changes, ascending, and by how much.
     pub(super) bonds: Vec<u32>,
+    pub(super) changes: Vec<BondChange>,
+    /// Particles with other stresses of their mean strains, ascending, and by how much, as [`MeanStrain`] has them.
+    pub(super) stressed: Vec<(u32, Mat3)>,
+    /// Scratch: particles and bonds about one of those that separate.
+    pub(super) about: Vec<u32>,
+    pub(super) near: Vec<u32>,
+}
+
+/// By how much the forces of a bond on its particles change, and its share of their stresses times volumes [J].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BondChange {
+    pub(super) force: Vec3,
+    pub(super) moment: [Vec3; 2],
+    pub(super) share: Sym3,
 }
 
 impl MeanStrain {
     /// Cells of the particles that bonds join, at their present positions.
     ///
     /// # Errors
-    /// [`DemError::NoVolume`] if the cells of the particles inside fill the whole body.
+    /// [`DemError::NoCells`] if no cell has a volume; [`DemError::NoVolume`] if the cells of the particles inside fill the whole body.
     pub(super) fn new(particles: &Particles, pairs: &[[u32; 2]], elasticity: MeanElasticity) -> Result<Self, DemError> {
         let count = particles.len();
         let mut bonded: Vec<u32> = pairs.as_flattened().to_vec();
@@ -129,28 +201,30 @@ impl MeanStrain {
             volume,
             graph: BondGraph::new(count, pairs),
             intact,
-            gradient: vec![Mat3::identity(); count],
+            shift: vec![Lane::ZERO; count],
+            gradient: vec![[Lane::ZERO; 3]; count],
             strain: vec![Sym3::ZERO; count],
             deviation: vec![[0.0; 6]; count],
-            stress: vec![Mat3::zeros(); count],
+            stress: vec![[Lane::ZERO; 3]; count],
         })
     }
 
     /// Strains at these positions [m].
     pub(super) fn find_strains(&mut self, position: &[Vec3]) {
-        let MeanStrain { reference, rows, intact, gradient, strain, .. } = self;
-        gradient.par_iter_mut().zip(strain.par_iter_mut()).enumerate().with_min_len(256).for_each(
-            |(i, (own, strain))| {
-                if !intact[i] {
-                    return;
+        let MeanStrain { reference, rows, intact, shift, gradient, strain, .. } = self;
+        let moved = position.par_iter().zip(&*reference).with_min_len(PART).map(|(x, x0)| Lane::from_vec(&(x - x0)));
+        shift.par_iter_mut().zip(moved).for_each(|(shift, moved)| *shift = moved);
+        let parts = gradient.par_chunks_mut(PART).zip(strain.par_chunks_mut(PART));
+        parts.enumerate().for_each(|(part, (gradient, strain))| {
+            let start = part * PART;
+            sum_gradients_fast(start, rows, shift, gradient);
+            for (k, strain) in strain.iter_mut().enumerate() {
+                if intact[start + k] {
+                    let sum = matrix(&gradient[k]).transpose();
+                    *strain = Sym3::symmetric_part(&(sum + sum.transpose() * sum * 0.5));
                 }
-                let moved = |j: u32| position[j as usize] - reference[j as usize];
-                let sum =
-                    rows.row(i).iter().fold(Mat3::zeros(), |sum, &(j, weight)| sum + moved(j) * weight.transpose());
-                *own = Mat3::identity() + sum;
-                *strain = Sym3::symmetric_part(&(sum + sum.transpose() * sum * 0.5));
-            },
-        );
+            }
+        });
     }
 
     /// Mean of the strains of two particles.
@@ -184,9 +258,10 @@ impl MeanStrain {
                 *stress = match intact[i] {
                     true => {
                         let own = elasticity.stress(strain[i]) * volume[i] - Sym3(deviation[k]);
-                        gradient[i] * own.to_matrix()
+                        let whole = (Mat3::identity() + matrix(&gradient[i]).transpose()) * own.to_matrix();
+                        [0, 1, 2].map(|column| Lane::from_vec(&whole.column(column).into()))
                     }
-                    false => Mat3::zeros(),
+                    false => [Lane::ZERO; 3],
                 };
             }
         });
@@ -195,21 +270,20 @@ impl MeanStrain {
     /// Adds the forces of these stresses [N].
     pub(super) fn add_forces(&self, force: &mut [Vec3]) {
         let MeanStrain { columns, stress, .. } = self;
-        force.par_iter_mut().enumerate().with_min_len(256).for_each(|(j, force)| {
-            *force = columns.row(j).iter().fold(*force, |sum, &(i, weight)| sum - stress[i as usize] * weight);
-        });
+        let parts = force.par_chunks_mut(PART).enumerate();
+        parts.for_each(|(part, force)| take_forces_fast(part * PART, columns, stress, force));
     }
 
     /// The particles that lose their mean strain when the bond of two particles separates, ascending: these, and those whose cells have both.
     pub(super) fn spanning(&self, ends: [u32; 2], out: &mut Vec<u32>) {
         out.clear();
-        let [mut first, mut second] = ends.map(|end| self.columns.row(end as usize));
+        let [mut first, mut second] = ends.map(|end| self.columns.row(end as usize).columns);
         while let ([a, ..], [b, ..]) = (first, second) {
-            match a.0.cmp(&b.0) {
+            match a.cmp(b) {
                 Ordering::Less => first = &first[1..],
                 Ordering::Greater => second = &second[1..],
                 Ordering::Equal => {
-                    out.push(a.0);
+                    out.push(*a);
                     (first, second) = (&first[1..], &second[1..]);
                 }
             }
@@ -220,12 +294,33 @@ impl MeanStrain {
         out.retain(|&i| self.intact[i as usize]);
     }
 
+    /// By how much the stress of a particle changes when it loses its mean strain, or else when bonds add this to it [J].
+    pub(super) fn stress_change(&self, particle: u32, added: Sym3) -> Mat3 {
+        let i = particle as usize;
+        match self.intact[i] {
+            true => -((Mat3::identity() + matrix(&self.gradient[i]).transpose()) * added.to_matrix()),
+            false => -matrix(&self.stress[i]),
+        }
+    }
+
+    /// Power of a change of the stress of a particle at these velocities [m/s].
+    pub(super) fn power_of(&self, particle: u32, stress: &Mat3, velocity: &[Vec3]) -> f64 {
+        let Row { columns, weights } = self.rows.row(particle as usize);
+        let entries = columns.iter().zip(weights);
+        entries.fold(0.0, |sum, (&j, weight)| sum - velocity[j as usize].dot(&(stress * weight.to_vec())))
+    }
+
     /// Takes the mean strain of particles away for ever.
     pub(super) fn release(&mut self, particles: &[u32]) {
         for i in particles.iter().map(|&i| i as usize) {
             self.intact[i] = false;
-            self.gradient[i] = Mat3::identity();
             self.strain[i] = Sym3::ZERO;
         }
     }
+}
+
+/// The matrix with these columns.
+#[inline(always)]
+fn matrix(columns: &[Lane; 3]) -> Mat3 {
+    Mat3::from_columns(&[columns[0].to_vec(), columns[1].to_vec(), columns[2].to_vec()])
 }

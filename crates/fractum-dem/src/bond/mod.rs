@@ -8,6 +8,7 @@ mod law;
 mod mean_strain;
 mod network;
 mod nonlocal;
+mod separating;
 mod space_cells;
 
 pub(crate) use graph::check_pairs;

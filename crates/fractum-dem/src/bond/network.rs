@@ -4,7 +4,7 @@ use fractum_math::{Sym3, Vec3};
 use nalgebra::Matrix6;
 use rayon::prelude::*;
 
-use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, WIDTH};
+use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, WIDTH, sum_bonds};
 use super::graph::{BondGraph, check_pairs};
 use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
 use super::mean_strain::{MeanStrain, Separating};
@@ -257,7 +257,7 @@ impl<L: BondLaw> BondNetwork<L> {
     pub fn find_virials(&mut self, particles: &Particles) {
         let Particles { position, orientation, .. } = particles;
         let law = self.law;
-        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<false, VIRIALS>(position, orientation, &law));
+        self.blocks.par_iter_mut().for_each(|block| sum_bonds::<L, false, VIRIALS>(block, position, orientation, &law));
     }
 
     /// Bounds of the principal values of the virials [N m], as at the last [`BondNetwork::add_forces_and_virial_bounds`]: the sums of
@@ -298,7 +298,7 @@ impl<L: BondLaw> BondNetwork<L> {
         }
         let law = self.law;
         let Particles { position, orientation, .. } = &*particles;
-        self.blocks.par_iter_mut().for_each(|block| block.sum_bonds::<true, DETAIL>(position, orientation, &law));
+        self.blocks.par_iter_mut().for_each(|block| sum_bonds::<L, true, DETAIL>(block, position, orientation, &law));
         self.add_sums(&mut particles.force, &mut particles.moment);
     }
 

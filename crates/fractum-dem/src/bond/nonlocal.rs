@@ -1,11 +1,11 @@
 //! Networks whose bonds resist what their particles do beside their mean strain.
 
-use fractum_math::{Vec3, largest_eigenvalue, sum_chunks};
+use fractum_math::{Vec3, largest_eigenvalue};
 use nalgebra::Vector6;
 use rayon::prelude::*;
 
+use super::block::sum_deviations;
 use super::law::{BondForces, BondLaw};
-use super::mean_strain::Separating;
 use super::network::{BLOCK, BondNetwork};
 use crate::particles::{Particles, turned};
 
@@ -22,20 +22,7 @@ impl<L: BondLaw> BondNetwork<L> {
     pub(super) fn add_deviating_forces(&mut self, particles: &mut Particles) {
         self.find_deviations(particles);
         self.add_found_forces(&mut particles.force, &mut particles.moment);
-        let mut separating = std::mem::take(&mut self.separating);
-        self.separate_failing(particles, &mut separating);
-        let Separating { failed, force, moment, .. } = &mut separating;
-        if !failed.is_empty() {
-            for sums in [&mut *force, &mut *moment] {
-                sums.clear();
-                sums.resize(particles.len(), Vec3::zeros());
-            }
-            self.add_found_forces(force, moment);
-            force.iter_mut().chain(moment.iter_mut()).for_each(|sum| *sum = -*sum);
-            self.find_deviations(particles);
-            self.add_found_forces(force, moment);
-        }
-        self.separating = separating;
+        self.separate_overloaded(particles);
     }
 
     /// Finds the mean strains, the sums of bonds, the bonds that fail, and the stresses of the mean strains.
@@ -45,7 +32,7 @@ impl<L: BondLaw> BondNetwork<L> {
         let Particles { position, orientation, .. } = particles;
         mean.find_strains(position);
         let field = &*mean;
-        self.blocks.par_iter_mut().for_each(|block| block.sum_deviations(position, orientation, &law, field));
+        self.blocks.par_iter_mut().for_each(|block| sum_deviations(block, position, orientation, &law, field));
         let blocks = &self.blocks;
         mean.find_stresses(BLOCK, |number, sums| {
             let block = &blocks[number];
@@ -62,68 +49,12 @@ impl<L: BondLaw> BondNetwork<L> {
         self.mean.iter().for_each(|mean| mean.add_forces(force));
     }
 
-    /// Separates the interfaces that fail, and takes the mean strains away that go with them; the energy that this takes is dissipated by the
-    /// interface.
-    fn separate_failing(&mut self, particles: &Particles, separating: &mut Separating) {
-        let Separating { failed, particles: about, bonds, .. } = separating;
-        failed.clear();
-        self.blocks.iter_mut().for_each(|block| failed.append(&mut block.failing));
-        for bond in failed.iter().map(|&bond| bond as usize) {
-            let Some(mean) = self.mean.as_mut() else { return };
-            let ends = self.pairs[bond];
-            mean.spanning(ends, about);
-            bonds.clear();
-            bonds.push(bond as u32);
-            about.iter().for_each(|&i| bonds.extend(mean.graph.every(i as usize).map(|half| half.bond)));
-            bonds.sort_unstable();
-            bonds.dedup();
-            let before = self.energy_about(about, bonds, particles);
-            let Some(mean) = self.mean.as_mut() else { return };
-            let strain = mean.between(ends);
-            mean.release(about);
-            let own = self.own[bond];
-            let memory = self.law.failed(&self.pair(bond, particles), strain, &own);
-            self.put_memory(bond, memory);
-            let released = before - self.energy_about(about, bonds, particles);
-            self.put_memory(bond, self.law.with_dissipated(memory, released, self.length[bond], &own));
-            let [block, group, lane] = self.index[bond];
-            self.blocks[block as usize].separated.push(group * super::block::WIDTH as u32 + lane);
-        }
-    }
-
     /// Takes the mean strains away that a bond which has separated leaves no particle.
     pub(super) fn release_about(&mut self, bond: usize) {
         let Some(mean) = self.mean.as_mut() else { return };
-        let about = &mut self.separating.particles;
+        let about = &mut self.separating.about;
         mean.spanning(self.pairs[bond], about);
         mean.release(about);
-    }
-
-    /// Energy of some mean strains and bonds [J].
-    fn energy_about(&self, about: &[u32], bonds: &[u32], particles: &Particles) -> f64 {
-        let Some(mean) = &self.mean else { return 0.0 };
-        let own: f64 = about.iter().map(|&i| mean.energy_of(i as usize)).sum();
-        bonds.iter().fold(own, |sum, &bond| sum + self.energy_of(bond as usize, particles).total())
-    }
-
-    /// Takes the work that what separated at tⁿ still did in the step after it off what it dissipated, in equal parts; one call after each kick.
-    ///
-    /// - `particles`: with the velocities and spins vⁿ⁺½ of that step
-    /// - `dt` [s]: the step
-    pub fn book_last_work(&mut self, particles: &Particles, dt: f64) {
-        if self.separating.failed.is_empty() {
-            return;
-        }
-        let mut separating = std::mem::take(&mut self.separating);
-        let Separating { failed, force, moment, .. } = &mut separating;
-        let Particles { velocity, spin, .. } = particles;
-        let power = sum_chunks(force.len(), |i| force[i].dot(&velocity[i]) + moment[i].dot(&spin[i]));
-        let share = 0.5 * dt * power / failed.len() as f64;
-        for bond in failed.drain(..).map(|bond| bond as usize) {
-            let memory = self.memory_of(bond);
-            self.put_memory(bond, self.law.with_dissipated(memory, share, self.length[bond], &self.own[bond]));
-        }
-        self.separating = separating;
     }
 
     /// Force of a bond with the stress that the mean strain of its particles adds.

@@ -64,8 +64,11 @@ impl SpaceCells {
     /// - `share` [m³]: of each particle in the volume of the body
     ///
     /// # Errors
-    /// [`DemError::NoVolume`] if nothing is left for the latter.
+    /// [`DemError::NoCells`] if no cell has a volume; [`DemError::NoVolume`] if nothing is left for the border.
     pub(super) fn volumes(&self, share: &[f64], joined: &BondGraph) -> Result<Vec<f64>, DemError> {
+        if !share.is_empty() && self.volume.iter().all(|volume| *volume <= 0.0) {
+            return Err(DemError::NoCells { particles: share.len() });
+        }
         let mut outer = self.border.clone();
         for &[i, j] in joined.pairs() {
             outer[i as usize] |= self.border[j as usize];
@@ -91,7 +94,7 @@ fn drop_bridges(all: &mut [Vec<[u32; 4]>], joined: &BondGraph) -> Vec<[u32; 2]> 
     loop {
         let mut around = vec![Vec::new(); joined.particles()];
         for corners in all.iter().flatten() {
-            corners.iter().for_each(|&i| around[i as usize].extend(*corners));
+            corners.iter().for_each(|&i| add_new(&mut around[i as usize], corners));
         }
         let patch = |(i, around): (usize, Vec<u32>)| Patch::new(i as u32, around, joined);
         let found: Vec<Patch> = around.into_par_iter().enumerate().map(patch).collect();
@@ -107,6 +110,15 @@ fn drop_bridges(all: &mut [Vec<[u32; 4]>], joined: &BondGraph) -> Vec<[u32; 2]> 
     }
 }
 
+/// Adds the corners of a cell that a list does not have: several tessellations have most of them in common.
+fn add_new(list: &mut Vec<u32>, corners: &[u32; 4]) {
+    for corner in corners {
+        if !list.contains(corner) {
+            list.push(*corner);
+        }
+    }
+}
+
 /// How bonds join the particles of the cells of one.
 struct Patch {
     /// Further particles through which they do, each bonded to two of the patch.
@@ -118,7 +130,6 @@ struct Patch {
 impl Patch {
     fn new(own: u32, mut list: Vec<u32>, joined: &BondGraph) -> Self {
         list.sort_unstable();
-        list.dedup();
         let (mut helpers, mut known) = (Vec::new(), list.clone());
         loop {
             let links = |k: &u32| joined.every(*k as usize).map(|half| half.other);
@@ -172,6 +183,17 @@ mod tests {
         let small = cells.volumes(&vec![4.0 / 216.0; centre.len()], &joined);
         let Err(DemError::NoVolume { inside, body }) = small else { panic!("{small:?}") };
         assert!((inside / 8.0 - 1.0).abs() < 0.1 && (body - 4.0).abs() < 1e-9, "{inside} {body}");
+    }
+
+    #[test]
+    fn a_layer_of_particles_has_no_cells_and_is_refused() {
+        let (centre, pairs) = lattice(4);
+        let flat: Vec<Vec3> = centre[..16].to_vec();
+        let pairs: Vec<[u32; 2]> = pairs.into_iter().filter(|pair| pair.iter().all(|i| *i < 16)).collect();
+        let joined = BondGraph::new(flat.len(), &pairs);
+        let cells = SpaceCells::new(&flat, &[0.5; 16], &joined);
+        let own = cells.volumes(&[1.0; 16], &joined);
+        assert!(matches!(own, Err(DemError::NoCells { particles: 16 })), "{own:?}");
     }
 
     #[test]

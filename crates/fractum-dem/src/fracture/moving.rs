@@ -432,10 +432,11 @@ mod tests {
 
     #[test]
     fn a_criterion_of_stress_is_refused_where_bonds_sum_no_virials() {
-        let (particles, _) = pair(1.0);
+        let position = vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+        let particles = Particles::at_rest(position, vec![0.5; 4], 4.0).unwrap();
         let faces = CrackFaces { friction: 0.5, damping_ratio: 0.0 };
         let law = LocalBond { mean_strain: Some(0.6), ..LocalBond::elastic(1e4, 0.3) };
-        let bonds = Bonds::new(&particles, &[[0, 1]], law).unwrap();
+        let bonds = Bonds::new(&particles, &[[0, 1], [0, 2], [0, 3]], law).unwrap();
         let of = |criterion| Fracture::new(&bonds, &particles, criterion, faces, 0.6, 1.0);
         let stress = Principal { tensile_strength: 1.0, compressive_strength: None, level: Level::Own };
         assert!(matches!(of(FractureCriterion::Principal(stress)), Err(DemError::NoVirials { .. })));

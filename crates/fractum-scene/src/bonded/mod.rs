@@ -87,6 +87,8 @@ pub struct BondedBody {
     pub(crate) closest: Option<Closest>,
     /// All bonds, where they resist the change of their length.
     viscous: Option<BondGraph>,
+    /// Largest viscous resistance over stiffness of its bonds as they were made [s].
+    viscous_time: f64,
     /// Bound on the highest frequency [rad/s]: 2/ω is the step that is stable without a safety factor.
     bound: f64,
 }
@@ -186,7 +188,8 @@ impl Bonded {
                 Some(plan) => Some(Fracture::of_law(&bonds, &all.particles, plan.faces, plan.volume)),
                 None => None,
             };
-            let resists = bonds.viscous_time(&all.particles) > 0.0;
+            let viscous_time = bonds.viscous_time(&all.particles);
+            let resists = viscous_time > 0.0;
             let viscous = resists.then(|| BondGraph::new(all.particles.len(), bonds.pairs()));
             if resists {
                 all.viscous.resize(all.particles.len(), Vec3::zeros());
@@ -202,6 +205,7 @@ impl Bonded {
                 fracture,
                 closest: None,
                 viscous,
+                viscous_time,
                 bound,
             });
         }
@@ -323,7 +327,7 @@ impl Bonded {
     /// Largest damping ratio of bonds and crack faces.
     pub(crate) fn damping_ratio(&self) -> f64 {
         let ratio = |body: &BondedBody| {
-            let bonds = 0.5 * self.frequency * body.bonds.viscous_time(&self.particles);
+            let bonds = 0.5 * self.frequency * body.viscous_time;
             bonds.max(body.fracture.as_ref().map_or(0.0, |f| f.faces().damping_ratio))
         };
         self.bodies.iter().map(ratio).fold(0.0, f64::max)

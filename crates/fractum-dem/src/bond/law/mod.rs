@@ -179,6 +179,18 @@ pub struct BondLanes<const W: usize> {
     pub live: Lanes<W>,
 }
 
+impl<const W: usize> BondLanes<W> {
+    /// Bonds that are not broken, as bits.
+    #[inline(always)]
+    fn acting(&self) -> u32 {
+        let mut bits = 0;
+        for k in 0..W {
+            bits |= u32::from(self.live.0[k] != 0.0) << k;
+        }
+        bits
+    }
+}
+
 /// A rotation as a unit quaternion: scalar and vector part.
 pub type Turn<const W: usize> = (Lanes<W>, Vector<W>);
 

@@ -3,8 +3,8 @@
 use fractum_math::Sym3;
 
 use super::{Interface, InterfaceMemory, Kinematics, LocalBond, RecentStrains, Separation};
-use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, scale, sub};
-use crate::bond::law::{BondEnergy, BondForces, BondLanes, BondedPair, DeviatingForces, ForceLanes, Turn};
+use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
+use crate::bond::law::{BondEnergy, BondForces, BondLanes, BondedPair, DeviatingForces, ForceLanes};
 
 /// Strains of `W` interfaces in the axes of the undeformed body: the mean of their particles, and what they have beside it.
 struct Deviations<const W: usize> {
@@ -21,11 +21,6 @@ fn times<const W: usize>([xx, yy, zz, xy, yz, zx]: [Lanes<W>; 6], v: Vector<W>) 
     [dot([xx, xy, zx], v), dot([xy, yy, yz], v), dot([zx, yz, zz], v)]
 }
 
-#[inline(always)]
-fn back<const W: usize>((w, u): Turn<W>, v: Vector<W>) -> Vector<W> {
-    rotate(w, u.map(|u| -u), v)
-}
-
 /// The part of a vector across a unit vector.
 #[inline(always)]
 fn across<const W: usize>(v: Vector<W>, unit: Vector<W>) -> Vector<W> {
@@ -39,7 +34,8 @@ impl<const W: usize> Deviations<W> {
         let traction = times(mean, bonds.axis);
         let mean = (dot(traction, bonds.axis), across(traction, bonds.axis));
         let normal = at.normal - mean.0;
-        let shear = sub(back(bonds.turns[0], at.shear), mean.1);
+        let (w, u) = bonds.turns[0];
+        let shear = sub(rotate_back(w, u, at.shear), mean.1);
         Deviations { at, mean, normal, shear }
     }
 
@@ -51,7 +47,7 @@ impl<const W: usize> Deviations<W> {
         let tangent = across(stress, n);
         let turned = sub(scale(tangent, along), scale(shear, dot(n, stress)));
         let force = sub(scale(n, -pull), scale(turned, length * over));
-        let [first, second] = arms.map(|arm| scale(cross(arm, tangent), length));
+        let (first, second) = (scale(cross(arms[0], tangent), length), scale(cross(arms[1], tangent), length));
         ForceLanes { force, moment: [add(first, scale(cross(shear, stress), length)), second] }
     }
 }
@@ -83,7 +79,7 @@ impl LocalBond {
         let (young_inverse, modulus_inverse) = (1.0 / self.young_modulus, 1.0 / self.shear_modulus());
         let strain = normal * Lanes::splat(young_inverse);
         let square = dot(shear, shear) * Lanes::splat(modulus_inverse * modulus_inverse);
-        let live = (0..W).fold(0, |bits, k| bits | u32::from(bonds.live.0[k] != 0.0) << k);
+        let live = bonds.acting();
         let failing = live & !self.stay_whole(&strain.0, &square.0) & !recent.inelastic;
         let (w, u) = bonds.turns[0];
         let mut stress_across = rotate(w, u, shear_stress);
@@ -93,7 +89,7 @@ impl LocalBond {
         }
         let [x, y, z] = at.at.shear;
         recent.last = [at.at.normal.0, x.0, y.0, z.0];
-        let area = Lanes(own.map(|own| own.area)) * bonds.live;
+        let area = Lanes::of(|k| own[k].area) * bonds.live;
         let length = bonds.inverse.recip();
         let forces = at.forces(stress * area, scale(stress_across, area), length);
         let volume = area * length * Lanes::splat(0.5);
@@ -140,7 +136,8 @@ impl LocalBond {
         let shear = add(scale(at.shear, Lanes::splat(self.shear_modulus())), shear);
         let by_shear = dot(shear, shear).0[0].sqrt() / self.shear_strength > tension;
         let how = if by_shear { Separation::Shear } else { Separation::Tension };
-        let local = back(lanes.turns[0], at.at.shear).map(|s| s.0[0]);
+        let (w, u) = lanes.turns[0];
+        let local = rotate_back(w, u, at.at.shear).map(|s| s.0[0]);
         self.separated_memory(how, at.at.normal.0[0], local)
     }
 }

@@ -27,16 +27,24 @@ impl Crushing {
     /// Elastic at any stress.
     pub const NONE: Crushing = Crushing { stress: [f64::INFINITY; 3], ratio: [1.0; 3] };
 
+    /// Stress and strain at which each line begins, and its slope; not numbers beyond an infinite stress.
+    #[inline(always)]
+    pub(super) fn lines(&self, young_modulus: f64) -> [[f64; 3]; 3] {
+        let mut lines = [[0.0; 3]; 3];
+        let mut last = [0.0, 0.0, young_modulus];
+        for k in 0..3 {
+            let [stress, begin, slope] = last;
+            last = [self.stress[k], begin + (self.stress[k] - stress) / slope, young_modulus / self.ratio[k]];
+            lines[k] = last;
+        }
+        lines
+    }
+
     /// Compressive stress [Pa] at a compressive strain that grows from zero.
     fn stress_at(&self, young_modulus: f64, strain: f64) -> f64 {
-        let (mut stress, mut begin, mut slope) = (0.0, 0.0, young_modulus);
-        for (limit, ratio) in self.stress.into_iter().zip(self.ratio) {
-            let end = begin + (limit - stress) / slope;
-            if strain <= end {
-                break;
-            }
-            (stress, begin, slope) = (limit, end, young_modulus / ratio);
-        }
+        let below = |line: &[f64; 3]| strain > line[1];
+        let lines = self.lines(young_modulus);
+        let [stress, begin, slope] = lines.into_iter().rfind(below).unwrap_or([0.0, 0.0, young_modulus]);
         stress + slope * (strain - begin)
     }
 }
@@ -54,9 +62,9 @@ pub enum Separation {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InterfaceMemory {
     /// Largest compressive strain, once it has passed the elastic limit.
-    crushed: f64,
+    pub(super) crushed: f64,
     /// Damage in tension and in shear, 0 to 1.
-    damage: [f64; 2],
+    pub(super) damage: [f64; 2],
     /// Strain by which the failed part has slipped, in axes that turn with the first particle.
     pub(super) slip: [f64; 3],
     /// Normal strain and shear strain of the last step; the latter in axes that turn with the first particle where the interface is not whole.
@@ -139,7 +147,7 @@ fn ratio(load: f64, strength: f64) -> f64 {
 }
 
 /// Part of the strength by which friction may be exceeded: rounding.
-const ROUND_OFF: f64 = 1e-12;
+pub(super) const ROUND_OFF: f64 = 1e-12;
 
 impl LocalBond {
     /// Compressive strain that stays without load.
@@ -180,7 +188,11 @@ impl LocalBond {
             let together = || stress <= 0.0 || (stress / self.tensile_strength).powi(2) + shear / most <= 1.0;
             apart && (!coupled || together())
         };
-        (0..W).fold(0, |bits, k| bits | u32::from(whole(k)) << k)
+        let mut bits = 0;
+        for k in 0..W {
+            bits |= u32::from(whole(k)) << k;
+        }
+        bits
     }
 
     /// Stresses at the present strains (normal, and a vector across), and the slip; carries the memory on.

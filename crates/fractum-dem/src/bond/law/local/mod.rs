@@ -2,6 +2,7 @@
 
 mod deviation;
 mod interface;
+mod steady;
 #[cfg(test)]
 mod tests;
 
@@ -9,12 +10,14 @@ pub use interface::{Crushing, InterfaceFailure, InterfaceMemory, RecentStrains, 
 
 use fractum_math::Sym3;
 
+use steady::Past;
+
 use super::{
     BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, DeviatingForces, ForceLanes, MeanElasticity,
     Turn,
 };
 use crate::DemError;
-use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, scale, sub};
+use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
 
 /// Stress at the interface of two particles from their relative displacement:
 ///
@@ -84,7 +87,7 @@ impl<const W: usize> Kinematics<W> {
         let length = dot(gap, gap).sqrt();
         let over = length.recip();
         let n = scale(gap, over);
-        let first = Lanes(own.map(|own| own.arm));
+        let first = Lanes::of(|k| own[k].arm);
         let second = Lanes::splat(1.0) - first;
         let [(w1, u1), (w2, u2)] = turns;
         let arms = [scale(rotate(w1, u1, axis), first), scale(rotate(w2, u2, axis), second)];
@@ -100,13 +103,14 @@ impl<const W: usize> Kinematics<W> {
     fn forces(&self, pull: Lanes<W>, across: Vector<W>, length: Lanes<W>) -> ForceLanes<W> {
         let force = sub(scale(self.direction, -pull), scale(across, self.along * length * self.over));
         let missing = scale(cross(self.shear, across), length);
-        let [first, second] = self.arms.map(|arm| scale(cross(arm, across), length));
+        let [first, second] = [cross(self.arms[0], across), cross(self.arms[1], across)];
+        let (first, second) = (scale(first, length), scale(second, length));
         ForceLanes { force, moment: [add(first, missing), second] }
     }
 }
 
 /// Slips in the axes of the first particles, as they lie across the bonds now.
-#[inline]
+#[inline(always)]
 fn turned_slips<const W: usize>((w, u): Turn<W>, slips: Vector<W>, direction: Vector<W>) -> Vector<W> {
     let slips = rotate(w, u, slips);
     sub(slips, scale(direction, dot(direction, slips)))
@@ -157,7 +161,7 @@ impl LocalBond {
     }
 
     /// Stresses of some interfaces, as bits, that are not, or do not stay, whole, in the place of the elastic ones.
-    #[inline(never)]
+    #[inline(always)]
     fn inelastic<const W: usize>(
         &self,
         (which, (w, u)): (u32, Turn<W>),
@@ -166,34 +170,35 @@ impl LocalBond {
         memory: &mut [InterfaceMemory; W],
         (stress, across): (&mut Lanes<W>, &mut Vector<W>),
     ) {
-        let gather = |of: &dyn Fn(&InterfaceMemory) -> [f64; 3]| {
-            let of = |a: usize| Lanes(std::array::from_fn(|k| of(&memory[k])[a]));
-            [of(0), of(1), of(2)]
-        };
-        let mut slips = turned_slips((w, u), gather(&|memory| memory.slip), at.direction);
-        let lasts = rotate(w, u, gather(&|memory| [memory.last[1], memory.last[2], memory.last[3]]));
-        let shears = rotate(w, u.map(|u| -u), at.shear);
-        let mut moved = 0u32;
-        for k in (0..W).filter(|k| which >> k & 1 == 1) {
-            let (shear, slip) = (at.shear.map(|s| s.0[k]), slips.map(|s| s.0[k]));
-            let turns = recent.inelastic >> k & 1 == 1;
+        let of = |a: usize| Lanes::of(|k| memory[k].slip[a]);
+        let slip = turned_slips((w, u), [of(0), of(1), of(2)], at.direction);
+        let of = |a: usize| Lanes::of(|k| memory[k].last[a]);
+        let mut past = Past { slip, shear: rotate(w, u, [of(1), of(2), of(3)]) };
+        let [x, y, z] = rotate_back(w, u, at.shear);
+        let known = which & recent.inelastic;
+        let [steady, mut moved] = self.steady(known, (at.normal, at.shear), &mut past, memory, (stress, across));
+        for k in (0..W).filter(|k| (which & !steady) >> k & 1 == 1) {
+            let vector = |v: &Vector<W>| [v[0].0[k], v[1].0[k], v[2].0[k]];
+            let (shear, slip) = (vector(&at.shear), vector(&past.slip));
             memory[k] = recent.recall(&memory[k], k);
-            let last = [1, 2, 3].map(|a| if turns { lasts[a - 1].0[k] } else { memory[k].last[a] });
+            let [_, first, second, third] = memory[k].last;
+            let last = if known >> k & 1 == 1 { vector(&past.shear) } else { [first, second, third] };
             let (normal_stress, shear_stress, new) = self.stress(at.normal.0[k], shear, [slip, last], &mut memory[k]);
-            let [x, y, z] = shears.map(|s| s.0[k]);
-            memory[k].last = [at.normal.0[k], x, y, z];
             recent.remember(&memory[k], k);
             stress.0[k] = normal_stress;
             moved |= u32::from(new != slip) << k;
             for a in 0..3 {
                 across[a].0[k] = shear_stress[a];
-                slips[a].0[k] = new[a];
+                past.slip[a].0[k] = new[a];
             }
         }
+        for k in (0..W).filter(|k| which >> k & 1 == 1) {
+            memory[k].last = [at.normal.0[k], x.0[k], y.0[k], z.0[k]];
+        }
         if moved != 0 {
-            let back = rotate(w, u.map(|u| -u), slips);
+            let [x, y, z] = rotate_back(w, u, past.slip);
             for k in (0..W).filter(|k| moved >> k & 1 == 1) {
-                memory[k].slip = back.map(|b| b.0[k]);
+                memory[k].slip = [x.0[k], y.0[k], z.0[k]];
             }
         }
     }
@@ -300,13 +305,13 @@ impl BondLaw for LocalBond {
         let mut stress = at.normal * Lanes::splat(self.young_modulus);
         let mut across = scale(at.shear, Lanes::splat(self.shear_modulus()));
         let whole = self.stay_whole(&at.normal.0, &dot(at.shear, at.shear).0) & !recent.inelastic;
-        let live = (0..W).fold(0, |bits, k| bits | u32::from(bonds.live.0[k] != 0.0) << k);
+        let live = bonds.acting();
         let which = live & !whole;
         if which != 0 {
             self.inelastic((which, bonds.turns[0]), &at, recent, memory, (&mut stress, &mut across));
         }
         recent.last = [at.normal.0, at.shear[0].0, at.shear[1].0, at.shear[2].0];
-        let area = Lanes(own.map(|own| own.area)) * bonds.live;
+        let area = Lanes::of(|k| own[k].area) * bonds.live;
         at.forces(stress * area, scale(across, area), bonds.inverse.recip())
     }
 
