@@ -143,6 +143,15 @@ pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool, files: &mut Grou
     notes
 }
 
+/// Pixels of the pictures that a scene is expected to have at its end.
+pub(crate) fn expected_pixels(scene: &Scene) -> f64 {
+    let View { width, height, .. } = view_of(Vec3::zeros());
+    let has_solids = scene.solid.body_count() > 0;
+    let pictures = [has_solids, scene.solid.has_damage(), scene.heat().is_some(), !scene.bonded.is_empty()];
+    let count = pictures.into_iter().chain([scene.bonded.can_break()]).filter(|&is_there| is_there).count();
+    (count * width * height) as f64
+}
+
 /// Bonded bodies cut open in the middle of what broke, seen straight on and coloured by the bonds that particles have lost: along
 /// their broad side where they are flat, upright elsewhere.
 fn broken_bonds(scene: &Scene, studio: &Studio, files: &mut Group) -> Option<PictureNote> {

@@ -2,26 +2,53 @@
 
 mod bodies;
 mod cost;
+mod estimate;
 mod gauges;
 mod heat;
 mod rows;
 mod wrap;
 
 use std::fmt;
+use std::path::Path;
+use std::time::Instant;
 
 use fractum_fem::{ElementKind, Kinematics};
 use fractum_io::build::{BuiltScene, TieReport};
+use fractum_io::case::Diagnostic;
 use fractum_io::case::model::{
     Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SolverKind, SurfaceSupport,
 };
 use fractum_io::number::{instant_text, quantity};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
+use fractum_prepare::Cache;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
 use fractum_scene::{BondedBody, Domain, GasMeasure, Scene};
 
 use self::cost::Cost;
-use crate::input::Input;
+pub use self::estimate::Estimate;
+pub(crate) use self::estimate::estimate;
+use crate::error::Failure;
+use crate::input::{Input, load};
+use crate::run::pool;
+
+/// The plan of a case with what both solvers would cost and how long its run takes, and what is doubtful; some steps are taken for that.
+///
+/// # Errors
+/// As [`load`].
+pub fn checked(case: &Path, set: &[(String, String)], cache: &Cache) -> Result<(Plan, Vec<Diagnostic>), Failure> {
+    pool(None)?.install(|| {
+        let began = Instant::now();
+        let mut input = load(case, set, cache)?;
+        let set_up = began.elapsed().as_secs_f64();
+        let mut plan = Plan::new(&input);
+        plan.compare_solvers(&input.case, &mut input.built);
+        if let Some(estimate) = estimate(&mut input, set_up) {
+            plan.tell(&estimate);
+        }
+        Ok((plan, input.built.warnings))
+    })
+}
 
 /// The plan of a run, as text.
 #[derive(Clone, Debug, PartialEq)]
@@ -322,6 +349,16 @@ impl Plan {
         }
     }
 
+    /// Tells how long the run takes instead of what its counts say.
+    fn tell(&mut self, estimate: &Estimate) {
+        self.lines.retain(|(topic, _)| topic != TIME);
+        let Estimate { set_up, steps, output } = *estimate;
+        let [total, set_up, steps, output] =
+            [estimate.total(), set_up, steps, output].map(|time| quantity(significant(time), "s"));
+        let threads = threads();
+        self.add(TIME, format!("about {total} on {threads}: {set_up} to set up, {steps} of steps, {output} of output"));
+    }
+
     fn describe_size(&mut self, case: &Case, built: &BuiltScene, span: f64) {
         let scene = &built.scene;
         let cost = Cost::of(scene, span);
@@ -339,9 +376,22 @@ impl Plan {
             ),
         );
         let time = quantity(cost.time(steps, threads as f64), "s");
-        let plural = if threads == 1 { "" } else { "s" };
-        self.add("wall time", format!("about {time} on {threads} thread{plural}, without output"));
+        self.add(TIME, format!("about {time} on {}, without output", self::threads()));
     }
+}
+
+/// Topic of the time on the clock.
+const TIME: &str = "wall time";
+
+/// The threads of the present pool in words.
+fn threads() -> String {
+    let threads = rayon::current_num_threads();
+    format!("{threads} thread{}", if threads == 1 { "" } else { "s" })
+}
+
+/// Two digits of a time.
+fn significant(time: f64) -> f64 {
+    fractum_io::number::significant(time, 2).parse().unwrap_or(time)
 }
 
 /// The names of what is so, as a list.

@@ -18,11 +18,7 @@ pub fn run(path: &Path, options: &Options) -> Result<Outcome, Failure> {
 /// # Errors
 /// As [`run`].
 pub(crate) fn run_measured(path: &Path, options: &Options) -> Result<(Outcome, Option<f64>), Failure> {
-    let mut pool = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = options.threads {
-        pool = pool.num_threads(threads);
-    }
-    let pool = pool.build()?;
+    let pool = pool(options.threads)?;
     // Inside the pool, parallel loops start without a hand-over between threads.
     let outcome = pool.install(|| {
         let mut simulation = Simulation::open(path, options)?;
@@ -34,6 +30,12 @@ pub(crate) fn run_measured(path: &Path, options: &Options) -> Result<(Outcome, O
     })?;
     let seconds = pool.broadcast(|_| processor_time()).into_iter().sum();
     Ok((outcome, seconds))
+}
+
+/// Threads for one case; as many as cores if no number is given.
+pub(crate) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+    // None is told by zero.
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?)
 }
 
 /// Processor time of this thread [s], as Linux tells it.

@@ -18,6 +18,11 @@ const STRIP: [usize; 2] = [368, 312];
 /// Pictures of the strip, with that at the peak.
 const IN_STRIP: usize = 5;
 
+/// Pixels of the strip of a run with that many frames.
+pub(crate) fn expected_pixels(frames: f64) -> f64 {
+    frames.min(IN_STRIP as f64) * (STRIP[0] * STRIP[1]) as f64
+}
+
 /// The body at some instants and at the peak of its load, from the frames in the folder of a run; none where there is one frame
 /// only, or none can be drawn.
 ///

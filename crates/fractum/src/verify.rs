@@ -15,9 +15,11 @@ use fractum_io::summary::{Status, Summary, Wall};
 use fractum_io::verified::{self, Verified};
 
 use crate::error::Failure;
+use crate::input::load;
 use crate::needs::needs;
 use crate::phases::Part;
-use crate::run::run;
+use crate::plan::{Estimate, estimate};
+use crate::run::{pool, run};
 use crate::simulation::{Options, Outcome};
 use crate::{say, tell};
 use fractum_prepare::Cache;
@@ -50,7 +52,8 @@ struct Done {
 }
 
 /// Runs the selected cases that expect something, prints the table and writes it after every case into `verify.json` and
-/// `verify.md`, with the shares of the parts of each run beside those that the case needs in `phases.md`; the lines of the table.
+/// `verify.md`, with the shares of the parts of each run beside those that the case needs in `phases.md`, and the estimates of `fractum check` beside the times of the runs in
+/// `estimates.md`; the lines of the table.
 ///
 /// # Errors
 /// [`Failure::Input`] if nothing is selected, [`Failure::Write`] if the table cannot be written. A case that fails to
@@ -147,6 +150,7 @@ fn verified(selection: &Selection, path: &Path, case: &Case) -> Result<Vec<Verif
         cache: selection.cache.clone(),
         ..Options::default()
     };
+    let estimate = estimated(selection, path);
     let started = Instant::now();
     let outcome = run(path, &options);
     let (seconds, needs) = (started.elapsed().as_secs_f64(), needs(case));
@@ -169,8 +173,21 @@ fn verified(selection: &Selection, path: &Path, case: &Case) -> Result<Vec<Verif
         seconds,
         phases: phases.clone(),
         needs: needs.clone(),
+        estimate,
     };
     Ok(expectations.into_iter().map(line).collect())
+}
+
+/// How long `fractum check` says that a case takes without output, and its output [s].
+fn estimated(selection: &Selection, path: &Path) -> Option<[f64; 2]> {
+    let estimated = || {
+        let began = Instant::now();
+        let mut input = load(path, &[], &selection.cache).ok()?;
+        let set_up = began.elapsed().as_secs_f64();
+        let Estimate { set_up, steps, output } = estimate(&mut input, set_up)?;
+        Some([set_up + steps, output])
+    };
+    pool(selection.threads).ok()?.install(estimated)
 }
 
 fn print_line(line: &Verified) {

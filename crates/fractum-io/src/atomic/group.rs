@@ -90,7 +90,7 @@ impl Group {
     /// # Errors
     /// [`WriteError`] of the first file that cannot be written; neither it nor those after it get their names.
     pub fn finish(mut self) -> Result<(), WriteError> {
-        let synced = sync_all(&self.files);
+        let synced = sync_all(&self.files, |member| member.file.sync_all());
         let files = std::mem::take(&mut self.files);
         let mut folders: Vec<&Path> = Vec::new();
         let mut error = None;
@@ -107,8 +107,8 @@ impl Group {
             }
         }
         let mut error = error.or(self.error.take());
-        for folder in folders {
-            if let Err(failed) = sync_folder(folder) {
+        for (folder, synced) in folders.iter().zip(sync_all(&folders, |folder| sync_folder(folder))) {
+            if let Err(failed) = synced {
                 error.get_or_insert_with(|| WriteError::new(folder, failed));
             }
         }
@@ -131,19 +131,20 @@ impl Drop for Group {
     }
 }
 
-/// Brings files to the disk, by a slow one several at a time; what became of each.
-fn sync_all(files: &[Member]) -> Vec<io::Result<()>> {
-    let results: Vec<OnceLock<io::Result<()>>> = files.iter().map(|_| OnceLock::new()).collect();
+/// Brings files or folders to the disk, to a slow one several at a time; what became of each.
+fn sync_all<T: Sync>(all: &[T], sync: impl Fn(&T) -> io::Result<()> + Sync) -> Vec<io::Result<()>> {
+    let results: Vec<OnceLock<io::Result<()>>> = all.iter().map(|_| OnceLock::new()).collect();
     let next = AtomicUsize::new(0);
     let work = |until: Option<Instant>| {
         while until.is_none_or(|until| Instant::now() < until)
-            && let Some((member, result)) = pick(files, &results, next.fetch_add(1, Ordering::Relaxed))
+            && let index = next.fetch_add(1, Ordering::Relaxed)
+            && let Some((one, result)) = all.get(index).zip(results.get(index))
         {
-            result.get_or_init(|| member.file.sync_all());
+            result.get_or_init(|| sync(one));
         }
     };
     work(Some(Instant::now() + SLOW));
-    let left = files.len().saturating_sub(next.load(Ordering::Relaxed));
+    let left = all.len().saturating_sub(next.load(Ordering::Relaxed));
     thread::scope(|scope| {
         for _ in 1..left.min(SIDE_BY_SIDE) {
             // A system without a thread to spare: the others do its work.
@@ -152,10 +153,6 @@ fn sync_all(files: &[Member]) -> Vec<io::Result<()>> {
         work(None);
     });
     results.into_iter().map(|result| result.into_inner().unwrap_or(Ok(()))).collect()
-}
-
-fn pick<'a, A, B>(files: &'a [A], results: &'a [B], index: usize) -> Option<(&'a A, &'a B)> {
-    files.get(index).zip(results.get(index))
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! The gallery against its references: `verify.json` for scripts, `verify.md` for people, `phases.md` with what took the time.
+//! The gallery against its references: `verify.json` for scripts, `verify.md` for people, `phases.md` with what took the time,
+//! `estimates.md` with what `fractum check` says of it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -29,6 +30,9 @@ pub struct Verified {
     /// Parts that the physics of the case needs, for `phases.md`.
     #[serde(skip)]
     pub needs: BTreeSet<String>,
+    /// Time that `fractum check` says without output, and that of output [s], for `estimates.md`; none where it says nothing.
+    #[serde(skip)]
+    pub estimate: Option<[f64; 2]>,
 }
 
 impl Verified {
@@ -38,13 +42,14 @@ impl Verified {
     }
 }
 
-/// Writes `verify.json`, `verify.md` and `phases.md` into a folder.
+/// Writes `verify.json`, `verify.md`, `phases.md` and `estimates.md` into a folder.
 ///
 /// # Errors
 /// [`WriteError`].
 pub fn write(folder: &Path, lines: &[Verified]) -> Result<(), WriteError> {
     atomic::write(&folder.join("verify.json"), json(lines).as_bytes())?;
     atomic::write(&folder.join("phases.md"), phases(lines).as_bytes())?;
+    atomic::write(&folder.join("estimates.md"), estimates(lines).as_bytes())?;
     atomic::write(&folder.join("verify.md"), table(lines).as_bytes())
 }
 
@@ -71,6 +76,33 @@ fn phases(lines: &[Verified]) -> String {
         }
         let rest = seconds - phases.values().sum::<f64>();
         let _ = writeln!(text, " {:.1} |", 100.0 * rest / seconds);
+    }
+    text
+}
+
+/// Ratio of estimate and run, or of run and estimate, up to which an estimate is good.
+const GOOD: f64 = 2.0;
+
+/// How many estimates are good, without output and with it, then case by case estimate and time of the run.
+fn estimates(lines: &[Verified]) -> String {
+    let pairs = |case: &Verified| {
+        let [without, output] = case.estimate?;
+        let of_run = case.seconds - case.phases.get("output").copied().unwrap_or(0.0);
+        Some([[without, of_run], [without + output, case.seconds]])
+    };
+    let cases = || lines.chunk_by(|a, b| a.case == b.case).filter_map(|case| Some((&case[0].case, pairs(&case[0])?)));
+    let is_good = |[estimate, run]: [f64; 2]| (estimate / GOOD..=estimate * GOOD).contains(&run);
+    let good = |which: usize| cases().filter(|(_, pairs)| is_good(pairs[which])).count();
+    let all = cases().count();
+    let [without, with] = [0, 1].map(good);
+    let mut text = format!(
+        "Within a factor of {GOOD} of the run: {without} of {all} estimates without output, {with} of {all} with it.\n\n\
+         | case | estimate without output [s] | run [s] | ratio | estimate with output [s] | run [s] | ratio |\n\
+         |---|---|---|---|---|---|---|\n"
+    );
+    for (case, [[a, b], [c, d]]) in cases() {
+        // Writing into a string has no way to fail.
+        let _ = writeln!(text, "| {case} | {a:.3} | {b:.3} | {:.2} | {c:.3} | {d:.3} | {:.2} |", a / b, c / d);
     }
     text
 }
@@ -113,6 +145,7 @@ mod tests {
             seconds: 2.0,
             phases: [("motion".to_owned(), 0.1), ("solid".to_owned(), 1.5)].into(),
             needs: ["solid".to_owned()].into(),
+            estimate: Some([1.0, 0.5]),
         }
     }
 
@@ -123,6 +156,18 @@ mod tests {
         let head = "| case | needs | seconds | motion | solid | set up |\n|---|---|---|---|---|---|\n";
         let rows = "| bar/a | solid | 2.00 | 5.0 * | 75.0 | 20.0 |\n| bar/b | solid | 2.00 | - | 100.0 | 0.0 |\n";
         assert_eq!(table, format!("{head}{rows}"));
+    }
+
+    #[test]
+    fn estimates_are_good_up_to_a_factor_of_two() {
+        let far =
+            Verified { estimate: Some([1.5, 2.6]), phases: [("output".to_owned(), 0.5)].into(), ..line("bar/b", 1.0) };
+        let none = Verified { estimate: None, ..line("bar/c", 1.0) };
+        let text = estimates(&[line("bar/a", 1.0), line("bar/a", 1.2), far, none]);
+        let head = "Within a factor of 2 of the run: 2 of 2 estimates without output, 1 of 2 with it.\n";
+        let rows = "| bar/a | 1.000 | 2.000 | 0.50 | 1.500 | 2.000 | 0.75 |\n\
+                    | bar/b | 1.500 | 1.500 | 1.00 | 4.100 | 2.000 | 2.05 |\n";
+        assert!(text.starts_with(head) && text.ends_with(rows), "{text}");
     }
 
     #[test]

@@ -356,14 +356,12 @@ fn with_place(line: &str, tone: Tone, stream: Stream) -> String {
 }
 
 fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, Failure> {
-    let mut input = fractum::load(case, set, &cache())?;
-    let mut plan = fractum::plan::Plan::new(&input);
-    plan.compare_solvers(&input.case, &mut input.built);
+    let (plan, warnings) = fractum::plan::checked(case, set, &cache())?;
     match Stream::Out.width() {
         Some(width) => say!("{}", plan.wrapped(width, |topic| toned(topic, Tone::Name, Stream::Out))),
         None => say!("{plan}"),
     }
-    for warning in &input.built.warnings {
+    for warning in &warnings {
         say!("{}", with_place(&warning.to_string(), Tone::Doubt, Stream::Out));
     }
     Ok(ExitCode::Done)

@@ -36,6 +36,8 @@ const FRAME: [f64; 2] = [60.0, 20.0];
 pub(super) struct Cost {
     /// Time of a step on one core, without output [s].
     step: f64,
+    /// The part of it of loose particles [s].
+    loose: f64,
     /// Time to conduct heat over the span, on one core [s].
     heat: f64,
     /// Memory without frames [B].
@@ -48,7 +50,8 @@ impl Cost {
     /// - `span`: simulated time [s]
     pub(super) fn of(scene: &Scene, span: f64) -> Self {
         let particles = scene.bonded.particles.len() as f64;
-        let mut cost = Cost { step: 0.0, heat: 0.0, memory: MEMORY_OF_PROGRAM, frame: FRAME[0] * particles };
+        let mut cost =
+            Cost { step: 0.0, loose: 0.0, heat: 0.0, memory: MEMORY_OF_PROGRAM, frame: FRAME[0] * particles };
         cost.add_elements(scene);
         for body in scene.bonded.bodies() {
             cost.add_bonds(body);
@@ -81,7 +84,9 @@ impl Cost {
 
     fn add_bonds(&mut self, body: &BondedBody) {
         if body.bonds.is_empty() {
-            self.step += 1e-9 * LOOSE_PARTICLE * body.range.len() as f64;
+            let loose = 1e-9 * LOOSE_PARTICLE * body.range.len() as f64;
+            self.step += loose;
+            self.loose += loose;
             return;
         }
         let kind = match body.bonds.law() {
@@ -102,6 +107,11 @@ impl Cost {
         slowness() * (self.step * steps + self.heat) / threads
     }
 
+    /// Time of loose particles over the steps, when they lie in a heap [s].
+    pub(super) fn time_of_heap(&self, steps: f64, threads: f64) -> f64 {
+        slowness() * self.loose * steps / threads
+    }
+
     /// Memory with the frames that wait to be written, and the one that is being written [B].
     pub(super) fn memory(&self, frames: f64) -> f64 {
         self.memory + self.frame + (frames * self.frame).min(self.frame.max(WAITING as f64))
@@ -115,7 +125,7 @@ const TRIALS: usize = 20;
 
 /// How much slower than that core this one is: the time of a loop of additions, multiplications and divisions, a third of a
 /// millisecond in all.
-fn slowness() -> f64 {
+pub(super) fn slowness() -> f64 {
     let mut values = [1.0; 1024];
     let mut timed = || {
         let start = Instant::now();

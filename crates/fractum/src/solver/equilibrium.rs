@@ -138,6 +138,10 @@ impl EquilibriumRun {
         Ok(advance)
     }
 
+    pub(super) fn iterations(&self) -> usize {
+        self.solver.work().1
+    }
+
     pub(super) fn effort(&self) -> String {
         let (linear, iterations) = self.solver.work();
         format!(

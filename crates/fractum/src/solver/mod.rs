@@ -173,6 +173,11 @@ impl Solver {
         }
     }
 
+    /// Iterations to equilibrium so far; of other solvers none.
+    pub(crate) fn iterations(&self) -> usize {
+        if let Solver::Static(run) = self { run.iterations() } else { 0 }
+    }
+
     /// How much work it was, in words.
     pub(crate) fn effort(&self) -> Option<String> {
         match self {

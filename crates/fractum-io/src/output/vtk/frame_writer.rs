@@ -55,7 +55,8 @@ impl PendingFile {
         group.add(path, &self.bytes());
     }
 
-    fn bytes(&self) -> Cow<'_, [u8]> {
+    /// The bytes of the file.
+    pub fn bytes(&self) -> Cow<'_, [u8]> {
         match &self.0 {
             Content::Document(document, compression) => document.to_bytes(*compression).into(),
             Content::Text(text) => text.as_bytes().into(),

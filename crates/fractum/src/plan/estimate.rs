@@ -1,0 +1,173 @@
+//! How long a run will take: its first steps are taken, and the rest of them counted.
+
+use std::time::Instant;
+
+use fractum_io::build::BuiltScene;
+use fractum_io::case::model::Case;
+use fractum_scene::statics::{Control, Stiffness};
+use fractum_scene::{ProbedScene, Scene};
+
+use super::cost::{Cost, slowness};
+use crate::frames::{Frame, GridLayout};
+use crate::input::Input;
+use crate::phases::Phases;
+use crate::solver::Solver;
+use crate::{gallery, strip};
+
+/// Seconds of a stage that are tried.
+const TRIED: f64 = 0.15;
+/// Steps before those that are timed: caches fill, and contacts that are there from the start are found.
+const WARM_UP: u64 = 2;
+/// Iterations to equilibrium along the path of a crack through a specimen: 390 to 980 in the gallery.
+const ITERATIONS: f64 = 600.0;
+/// Seconds per entry of a factor, and per entry of a matrix that is solved iteratively, of a system that is too large to be tried;
+/// entries up to which one is.
+const DIRECT: [f64; 2] = [4e-8, 4e7];
+const ITERATIVE: [f64; 2] = [3e-7, 5e6];
+/// Seconds per pixel of a picture, of the files of a run that are neither frames nor pictures, and of a row of the history beside its
+/// probes, on the core that costs are measured on.
+const PIXEL: f64 = 2.5e-8;
+const FILES: f64 = 8e-3;
+const ROW: f64 = 5e-6;
+
+/// What a run takes on this machine [s].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Until its first step.
+    pub set_up: f64,
+    /// For its steps.
+    pub steps: f64,
+    /// For what it writes.
+    pub output: f64,
+}
+
+impl Estimate {
+    /// All of it.
+    pub fn total(&self) -> f64 {
+        self.set_up + self.steps + self.output
+    }
+}
+
+/// How long a run of the case takes on the threads of the present pool; none for bonded bodies at rest, whose first solution may be
+/// nearly all of it. The scenes are those after some steps then.
+///
+/// - `set_up`: time that it took to make the input ready [s]
+pub(crate) fn estimate(input: &mut Input, set_up: f64) -> Option<Estimate> {
+    let pixels = gallery::expected_pixels(&input.built.scene);
+    let mut estimate = Estimate { set_up, steps: 0.0, output: 0.0 };
+    let (mut start, mut output_frames) = (0.0, 0.0);
+    let Input { case, built, later, .. } = input;
+    let stages = std::iter::once((&*case, built)).chain(later.iter_mut().map(|(case, built)| (&*case, built)));
+    for (case, built) in stages {
+        if built.bonded_statics.is_some() {
+            return None;
+        }
+        let stage = Stage { case, span: case.solver.end - start };
+        let [frames, rows] = stage.counts(built);
+        output_frames += frames;
+        let written = stage.written(built, [frames, rows]);
+        let began = Instant::now();
+        let mut solver = Solver::new(&built.scene, built, &mut Phases::default()).ok()?;
+        estimate.set_up += began.elapsed().as_secs_f64();
+        let steps = stage.steps(built, &mut solver)?;
+        estimate.steps += steps;
+        // Frames are compressed beside the steps, on a core of their own.
+        estimate.output += written.own + (written.beside - steps).max(0.0);
+        start = case.solver.end;
+    }
+    let pixels = pixels + strip::expected_pixels(output_frames);
+    estimate.output += slowness() * (PIXEL * pixels + FILES);
+    Some(estimate)
+}
+
+/// A stage of a run.
+struct Stage<'a> {
+    case: &'a Case,
+    /// Time from the end of the stage before to that of this one [s].
+    span: f64,
+}
+
+/// Time of what a stage writes [s].
+struct Written {
+    /// Between its steps.
+    own: f64,
+    /// Beside them.
+    beside: f64,
+}
+
+impl Stage<'_> {
+    /// Time of the steps [s].
+    fn steps(&self, built: &mut BuiltScene, solver: &mut Solver) -> Option<f64> {
+        let breaks = built.scene.solid.has_damage();
+        let Some(settings) = &built.statics else { return self.tried(&mut built.scene, solver, built.conducts_alone) };
+        let increments = match settings.control {
+            Control::Time => (self.span / settings.step).ceil(),
+            Control::Path | Control::Opening(_) => 1.0,
+        };
+        let (entries, direct) = Stiffness::new(&built.scene).ok()?.entries();
+        let [per_entry, most] = if direct { DIRECT } else { ITERATIVE };
+        if entries as f64 > most {
+            let times = if breaks { ITERATIONS } else { increments };
+            return Some(times * per_entry * slowness() * entries as f64);
+        }
+        let began = Instant::now();
+        solver.step(&mut built.scene, true, &mut Phases::default()).ok()?;
+        let seconds = began.elapsed().as_secs_f64();
+        let iterations = solver.iterations().max(1) as f64;
+        Some(if breaks { ITERATIONS.max(increments) * seconds / iterations } else { increments * seconds })
+    }
+
+    /// From the first steps to all of them, by the time that they cover; a heap of loose particles costs at least what it will when it lies.
+    fn tried(&self, scene: &mut Scene, solver: &mut Solver, conducts_alone: bool) -> Option<f64> {
+        let threads = rayon::current_num_threads() as f64;
+        let counted = Cost::of(scene, self.span).time_of_heap(self.span / scene.clock.dt_after, threads);
+        let rows = self.case.output.history_every;
+        let mut next_row = 0.0;
+        let (mut from, mut began, mut taken) = (scene.clock.time, Instant::now(), 0);
+        while !solver.is_finished(scene) && began.elapsed().as_secs_f64() < TRIED {
+            let measure = !conducts_alone && scene.clock.time >= next_row;
+            next_row += if measure { rows } else { 0.0 };
+            solver.step(scene, measure, &mut Phases::default()).ok()?;
+            taken += 1;
+            if taken == WARM_UP && began.elapsed().as_secs_f64() < 0.1 * TRIED {
+                (from, began) = (scene.clock.time, Instant::now());
+            }
+        }
+        let share = (scene.clock.time - from) / self.span;
+        let all = if share > 0.0 { began.elapsed().as_secs_f64() / share } else { 0.0 };
+        Some(all.max(counted))
+    }
+
+    /// Numbers of frames and of rows of the history; of a path of equilibria, which has a row for every step, those that its steps ask for.
+    fn counts(&self, built: &BuiltScene) -> [f64; 2] {
+        let output = &self.case.output;
+        let [frames, rows] = [output.fields_every, output.history_every].map(|every| (self.span / every).ceil() + 1.0);
+        match &built.statics {
+            Some(settings) if settings.control == Control::Time => {
+                let steps = (self.span / settings.step).ceil() + 1.0;
+                [frames.min(steps), steps]
+            }
+            _ => [frames, rows],
+        }
+    }
+
+    /// One frame is made and one row is read.
+    fn written(&self, built: &BuiltScene, [frames, rows]: [f64; 2]) -> Written {
+        let scene = &built.scene;
+        let began = Instant::now();
+        let probed = ProbedScene::new(scene);
+        let sum: f64 = built.probes.iter().flatten().map(|probe| probe.value(&probed)).sum();
+        std::hint::black_box(sum);
+        let row = began.elapsed().as_secs_f64() + ROW;
+        let layout = GridLayout::new(scene, &built.file_order, Vec::new(), self.case);
+        let began = Instant::now();
+        let frame = Frame::of(scene, &layout, 0.0);
+        let gathered = began.elapsed().as_secs_f64();
+        let began = Instant::now();
+        let bytes: usize =
+            frame.into_iter().flat_map(|frame| frame.files(0)).map(|(_, _, file)| file.bytes().len()).sum();
+        std::hint::black_box(bytes);
+        let compressed = began.elapsed().as_secs_f64();
+        Written { own: rows * row + frames * gathered, beside: frames * compressed }
+    }
+}
