@@ -125,7 +125,9 @@ impl Softens {
     /// of motion, since the phase field has damaged it.
     #[inline(always)]
     pub(crate) fn seen(&self, edge: &EdgeDamage, stress: Sym3, dt: f64) -> f64 {
-        if self.was_searched(edge, dt) || self.criterion.surely_below(stress, edge.kappa) {
+        let below =
+            || self.criterion.surely_below(stress, edge.kappa) || self.criterion.is_below_by_minors(stress, edge.kappa);
+        if self.was_searched(edge, dt) || below() {
             return 0.0;
         }
         self.criterion.equivalent_stress(stress)

@@ -47,6 +47,7 @@ impl Solid {
             return;
         }
         self.for_each_phase_field(|solid, body, field| {
+            let before = field.active.len();
             solid.wake(body, field);
             if field.active.is_empty() {
                 return;
@@ -68,6 +69,10 @@ impl Solid {
             let mut reached = Vec::new();
             field.newly_reached(&mut reached);
             solid.activate(body, field, &reached);
+            let model = &solid.bodies[body];
+            if model.standard.is_none() {
+                field.arrange(before, |edge| model.location[edge as usize]);
+            }
         });
     }
 

@@ -130,6 +130,22 @@ impl Criterion {
             && (square * self.norm_factor <= threshold * threshold || self.below_by_j2(stress, square, threshold))
     }
 
+    /// [`Criterion::surely_below`] at more cost and without doubt but within rounding, for a threshold > 0 of Rankine's criterion; false for others.
+    ///
+    /// The threshold less the stress has positive leading minors, beyond the rounding of these and the 1e-8 of the norm by which closed forms of principal
+    /// values miss.
+    #[inline(always)]
+    pub(crate) fn is_below_by_minors(&self, stress: Sym3, threshold: f64) -> bool {
+        let [xx, yy, zz, xy, yz, zx] = stress.0;
+        let norm = threshold + stress.0.iter().map(|c| c.abs()).sum::<f64>();
+        let least = threshold - 1e-7 * norm;
+        let (a, b, c) = (least - xx, least - yy, least - zz);
+        let minor = a * b - xy * xy;
+        let determinant = minor * c - a * yz * yz - b * zx * zx - 2.0 * xy * yz * zx;
+        let rounding = 1e-12 * norm * norm;
+        self.kind == CriterionKind::Rankine && a > 0.0 && minor > rounding && determinant > rounding * norm
+    }
+
     /// The sharper test, for stresses that are large but mostly compressive.
     fn below_by_j2(&self, stress: Sym3, square: f64, threshold: f64) -> bool {
         let trace = stress.trace();
@@ -270,6 +286,31 @@ mod tests {
                 if criterion.surely_below(stress, t) {
                     prop_assert!(criterion.equivalent_stress(stress) <= t * (1.0 + 1e-7), "{:?}", kind);
                 }
+            }
+        }
+
+        /// Also beside double values, where closed forms are least exact.
+        #[test]
+        fn rankines_bound_is_sharp_and_hides_nothing(
+            c in prop::array::uniform6(-10f64..10.0),
+            turn in prop::array::uniform3(-3.0f64..3.0),
+            gap in prop::sample::select(vec![1.0, 1e-3, 1e-7, 1e-9, 1e-12, 0.0]),
+        ) {
+            let turn = nalgebra::Rotation3::new(turn.into()).into_inner();
+            let values = nalgebra::Vector3::new(c[0].abs() + 0.1, c[0].abs() + 0.1 - gap, c[1]);
+            let close = Sym3::symmetric_part(&(turn * nalgebra::Matrix3::from_diagonal(&values) * turn.transpose()));
+            let rankine = criterion(CriterionKind::Rankine);
+            for stress in [Sym3(c), close] {
+                let q = rankine.equivalent_stress(stress);
+                prop_assert!(!rankine.surely_below(stress, q * (1.0 - 1e-14)));
+                prop_assert!(q == 0.0 || !rankine.is_below_by_minors(stress, q * (1.0 - 1e-14)));
+                let above = q + 1e-3 * stress.to_matrix().norm();
+                prop_assert!(rankine.is_below_by_minors(stress, above), "{stress:?} {q}");
+                let [one, none] = [q * (1.0 - 1e-14), above].map(|t| {
+                    equivalent_stresses(&rankine, &[stress, Sym3::ZERO, Sym3::ZERO, stress], &Lane([t, 1.0, 1.0, t]))
+                });
+                prop_assert_eq!(one, [q, 0.0, 0.0, q]);
+                prop_assert!(none.iter().all(|seen| *seen == 0.0 || *seen == q));
             }
         }
 

@@ -52,6 +52,19 @@ impl Rows {
         self.values.clear();
     }
 
+    /// These rows in this order.
+    pub(crate) fn in_order(&self, order: &[usize]) -> Rows {
+        let mut rows = Rows { starts: vec![0], ..Rows::default() };
+        for &row in order {
+            let (columns, values) = self.row(row);
+            rows.columns.extend(columns);
+            rows.values.extend(values);
+            rows.bounds.push(self.bounds[row]);
+            rows.starts.push(rows.columns.len() as u32);
+        }
+        rows
+    }
+
     /// Adds the row of an edge, from the elements around it that are alive.
     pub(crate) fn push(
         &mut self,

@@ -154,6 +154,23 @@ impl PhaseField {
         self.steps.push(EdgeStep::default());
     }
 
+    /// Puts the active edges in the order of `place`, that of memory, when an eighth to a quarter more are active than last time.
+    ///
+    /// - `before`: how many were active before the last were added
+    pub(crate) fn arrange(&mut self, before: usize, place: impl Fn(u32) -> (u32, u32)) {
+        let stage = |count: usize| (count.max(4).ilog2(), count >> (count.max(4).ilog2() - 2));
+        if stage(before) == stage(self.active.len()) {
+            return;
+        }
+        let mut order: Vec<usize> = (0..self.active.len()).collect();
+        order.sort_by_key(|&row| place(self.active[row].edge));
+        self.active = order.iter().map(|&row| self.active[row].clone()).collect();
+        self.rows = self.rows.in_order(&order);
+        for (own, row) in self.active.iter().zip(0..) {
+            self.slot[own.edge as usize] = row;
+        }
+    }
+
     /// Area of crack in the volume of an edge [1/m]: for the profile of a full crack half of it is that of the gradient.
     pub(crate) fn area_density(&self, edge: usize) -> f64 {
         let d = self.value[edge];
@@ -335,5 +352,43 @@ impl PhaseField {
         let fracture_energy = zone.law.fracture_energy * (1.0 + lost * size / length);
         let law = PhaseLaw::new(degradation, [length, size], body.elastic.young_modulus, fracture_energy);
         Ok(PhaseField::new(law, edges))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use fractum_mesh::generate::structured_box;
+
+    use super::*;
+    use crate::body::Regularisation;
+    use crate::material::{DamageLaw, Elastic};
+    use crate::solid::Solid;
+
+    #[test]
+    fn order_of_active_edges_changes_no_row() {
+        let mesh = structured_box([3, 2, 2], fractum_math::Vec3::new(0.03, 0.02, 0.02), None);
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let body = Body::new("block", ElementKind::T4, mesh.tetrahedra, elastic).smoothed();
+        let mut body = body.with_damage(DamageLaw::rankine(3e6, 100.0));
+        body.damage.as_mut().unwrap().regularisation = Some(Regularisation { length: None });
+        let mut solid = Solid::new(mesh.nodes, vec![body]).unwrap();
+        solid.wake_phase_fields();
+        let field = solid.bodies[0].phase.as_mut().unwrap();
+        let d: Vec<f64> = (0..field.value.len()).map(|edge| (edge as f64).sin()).collect();
+        let rows = |field: &PhaseField| {
+            let bounds = field.bounds();
+            field.laplacian(&d).map(|(edge, flow)| (edge, [flow, bounds[edge as usize]])).collect::<BTreeMap<_, _>>()
+        };
+        let (before, edges) = (rows(field), field.active.len());
+        let order = |field: &PhaseField| field.active.iter().map(|own| own.edge).collect::<Vec<_>>();
+        let kept = order(field);
+        field.arrange(edges, |edge| (0, !edge));
+        assert_eq!(order(field), kept);
+        field.arrange(0, |edge| (0, !edge));
+        assert_eq!(order(field), kept.into_iter().rev().collect::<Vec<_>>());
+        assert_eq!(rows(field), before);
+        assert!((0..).zip(&field.active).all(|(row, own)| field.slot[own.edge as usize] == row));
     }
 }
