@@ -9,26 +9,28 @@ use std::path::{Path, PathBuf};
 use modules::Modules;
 
 /// What each crate may name of the others. A new crate or arrow is entered here on purpose, or not at all.
-const ARROWS: [(&str, &[&str]); 14] = [
+const ARROWS: [(&str, &[&str]); 15] = [
     ("fractum-math", &[]),
+    ("fractum-parallel", &[]),
     ("fractum-mesh", &["math"]),
     ("fractum-contact", &["math", "mesh"]),
     ("fractum-dem", &["math", "contact"]),
     ("fractum-pack", &["math", "dem"]),
     ("fractum-calibrate", &["math", "dem", "pack"]),
-    ("fractum-fem", &["math", "mesh"]),
+    ("fractum-fem", &["math", "mesh", "parallel"]),
     ("fractum-sparse", &["math"]),
     ("fractum-gas", &["math"]),
     ("fractum-heat", &["math", "sparse"]),
-    ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse", "gas", "heat"]),
+    ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse", "gas", "heat", "parallel"]),
     ("fractum-io", &["math", "mesh", "fem", "dem", "pack", "scene"]),
     ("fractum-prepare", &["math", "mesh", "dem", "pack", "calibrate", "scene", "io"]),
-    ("fractum", &["math", "mesh", "fem", "dem", "pack", "calibrate", "scene", "io", "prepare"]),
+    ("fractum", &["math", "mesh", "fem", "dem", "pack", "calibrate", "scene", "io", "prepare", "parallel"]),
 ];
 
 /// Crates whose kernels take numbers: no files, no printing, no wall clock, nothing of the case format.
-const BELOW_IO: [&str; 11] = [
+const BELOW_IO: [&str; 12] = [
     "fractum-math",
+    "fractum-parallel",
     "fractum-mesh",
     "fractum-contact",
     "fractum-dem",
@@ -141,8 +143,9 @@ fn below_io_there_are_no_files_no_printing_and_no_clock() {
         }
         let (_, foreign) = dependencies(&manifest(name), "dependencies");
         for library in ["toml", "serde_json", "clap", "tempfile", "postcard", "flate2", "png", "maud", "ctrlc"] {
-            // A packing has a format of its own, and arrays of VTK may be compressed: both in bytes and not in files.
-            let allowed = [("fractum-pack", "postcard"), ("fractum-mesh", "flate2")].contains(&(name, library));
+            // A packing has a format of its own, arrays of VTK may be compressed, and ranks send bytes: none of it is a file.
+            let allowed = [("fractum-pack", "postcard"), ("fractum-mesh", "flate2"), ("fractum-parallel", "postcard")];
+            let allowed = allowed.contains(&(name, library));
             assert!(allowed || !foreign.contains(library), "{name} depends on {library}");
         }
     }

@@ -8,5 +8,6 @@ mod leaving;
 mod meeting;
 mod phase_field;
 mod plane;
+mod ranks;
 mod scene;
 mod statics;

@@ -157,6 +157,11 @@ impl NodeSlots {
         NodeSlots { slots: Ragged::from_rows(&rows) }
     }
 
+    /// Blocks that a node belongs to in ascending order, each with the local number of the node there, packed as 32 bits.
+    pub(crate) fn of(&self, node: usize) -> &[u32] {
+        self.slots.row(node)
+    }
+
     /// Sums the forces on one node over the blocks.
     #[inline(always)]
     pub(crate) fn gather<'a>(&self, node: usize, force: impl Fn(usize) -> &'a [Lane]) -> Vec3 {

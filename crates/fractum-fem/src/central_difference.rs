@@ -1,5 +1,7 @@
 //! Motion of the nodes: central differences with the velocity at half steps.
 
+use std::ops::Range;
+
 use fractum_math::{CHUNK, HalfSteps, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -39,7 +41,7 @@ impl Solid {
         measure: bool,
     ) -> HalfSteps {
         let dt_kick = 0.5 * (dt_before + dt_after);
-        let Solid { displacement, velocity, force, inverse_mass, chunk_work, .. } = self;
+        let Solid { displacement, velocity, force, inverse_mass, chunk_work, part, .. } = self;
         let plain = damping.is_off() && !measure;
         displacement
             .par_chunks_mut(CHUNK)
@@ -50,14 +52,16 @@ impl Solid {
                 let first = chunk * CHUNK;
                 let (force, inverse_mass) = (&force[first..], &inverse_mass[first..]);
                 *work = HalfSteps::default();
+                let all = 0..velocity.len();
+                let runs = part.as_ref().map_or(std::slice::from_ref(&all), |part| part.runs(chunk));
                 if plain {
-                    for i in 0..velocity.len() {
+                    for i in runs.iter().flat_map(Range::clone) {
                         velocity[i] += force[i] * (inverse_mass[i] * dt_kick);
                         displacement[i] += velocity[i] * dt_after;
                     }
                     return;
                 }
-                for i in 0..velocity.len() {
+                for i in runs.iter().flat_map(Range::clone) {
                     let before = velocity[i];
                     let mut total = force[i];
                     let mut resist = Vec3::zeros();
@@ -84,7 +88,9 @@ impl Solid {
                     work.after.damping -= 0.5 * dt_after * resist.dot(&after);
                 }
             });
-        chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
+        let work = chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part);
+        self.note_motion();
+        work
     }
 }
 

@@ -42,6 +42,7 @@ mod hooke;
 mod inverted;
 mod kernel;
 pub mod material;
+mod part;
 mod phase;
 mod phase_damage;
 mod polar;

@@ -13,6 +13,7 @@ use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::hooke::Hooke;
 use crate::material::{Wave, rayleigh_wave_speed};
+use crate::part::Part;
 use crate::phase::PhaseField;
 use crate::standard::{StandardCells, StandardDamage};
 use crate::threshold::Threshold;
@@ -41,6 +42,8 @@ pub struct Solid {
     pub(crate) slots: NodeSlots,
     pub(crate) chunk_work: Vec<HalfSteps>,
     pub(crate) viscous_dissipation: f64,
+    /// The share of one of several ranks; none where this process does all.
+    pub(crate) part: Option<Box<Part>>,
 }
 
 /// How far the damage of a solid has come.
@@ -96,6 +99,7 @@ impl Solid {
             blocks,
             slots,
             viscous_dissipation: 0.0,
+            part: None,
         })
     }
 
@@ -125,10 +129,13 @@ impl Solid {
         self.load_standard_edges(dt);
         self.update_phase_fields(dt);
         self.damage_standard_elements();
+        let own = self.own_blocks();
         let Solid { displacement, velocity, blocks, bodies, .. } = self;
-        blocks
+        blocks[own]
             .par_iter_mut()
             .for_each(|block| block.evaluate(&bodies[block.body], displacement, velocity, dt, measure));
+        self.exchange_forces(measure);
+        let Solid { blocks, .. } = self;
         let power: f64 = blocks.iter().map(|b| b.viscous_power).sum();
         self.viscous_dissipation += power * dt;
         self.gather_forces();
@@ -136,12 +143,16 @@ impl Solid {
 
     /// Sums the forces of the blocks on each node.
     pub(crate) fn gather_forces(&mut self) {
-        let Solid { force, blocks, slots, .. } = self;
-        force
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(CHUNK)
-            .for_each(|(node, f)| *f = slots.gather(node, |block| blocks[block].forces()));
+        let Solid { force, blocks, slots, part, .. } = self;
+        let sum = |node: usize| slots.gather(node, |block| blocks[block].forces());
+        if let Some(part) = part {
+            force.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, force)| {
+                let own = part.runs(chunk).iter().flat_map(|run| run.clone());
+                own.for_each(|i| force[i] = sum(chunk * CHUNK + i));
+            });
+            return;
+        }
+        force.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(node, f)| *f = sum(node));
     }
 
     /// First passes of bodies with damage in the standard formulation: element stress, edge histories.

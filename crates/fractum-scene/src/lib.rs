@@ -25,6 +25,7 @@ mod ledger;
 mod piece_probe;
 mod probe;
 mod radial_cracks;
+mod ranks;
 mod region_probe;
 mod scene;
 mod stable_step;

@@ -72,6 +72,10 @@ impl Scene {
         let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
         // Nothing has moved before.
         let elapsed = if first { 0.0 } else { dt_before };
+        let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
+        if step_changes {
+            self.solid.move_all_nodes_next(); // their kinetic energy is summed
+        }
 
         if self.solid.body_count() > 0 {
             self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
@@ -104,7 +108,6 @@ impl Scene {
         let given = if first { self.start_half_a_step_early(dt_before) } else { 0.0 };
         self.let_left_rest();
         self.let_particles_leave(dt_before);
-        let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
         let expansion = self.conduct(dt_after, &mut passed)?;
         self.break_bonds(measure || step_changes, &mut passed);
         let mut work = self.advance(measure || step_changes); // vⁿ⁺½, uⁿ⁺¹
@@ -271,6 +274,7 @@ impl Scene {
         let energy = self.solid.remove_cut_elements(dt, &mut self.removals.last);
         let mut report = StepReport { removed: self.removals.last.len(), particles_born: 0 };
         if report.removed > 0 {
+            self.solid.move_all_nodes(); // contact looks at any of them
             self.books.removed += energy;
             self.heat_loses_elements();
             self.loads.extend_cracks(&self.solid, &self.removals.last);

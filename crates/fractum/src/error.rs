@@ -49,6 +49,9 @@ pub enum Failure {
     /// Threads could not be started.
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
+    /// Another of the processes that run the case together could not go on, and says why.
+    #[error("another process could not go on")]
+    Elsewhere(ExitCode),
     /// The user ended it.
     #[error("interrupted")]
     Interrupted,
@@ -58,6 +61,14 @@ pub enum Failure {
     /// A quantity of the case did not meet its reference.
     #[error("{0}")]
     Unmet(String),
+}
+
+impl ExitCode {
+    /// The exit code of that number; a number of none is a failure of the machine.
+    pub(crate) fn from_code(code: u64) -> Self {
+        let all = [ExitCode::Done, ExitCode::Input, ExitCode::Stopped, ExitCode::Interrupted];
+        all.into_iter().find(|own| *own as u64 == code).unwrap_or(ExitCode::Machine)
+    }
 }
 
 impl Failure {
@@ -77,6 +88,7 @@ impl Failure {
         match self {
             Failure::Input(_) | Failure::Unmet(_) | Failure::Picture(_) => ExitCode::Input,
             Failure::Stopped { .. } => ExitCode::Stopped,
+            Failure::Elsewhere(code) => *code,
             Failure::Interrupted => ExitCode::Interrupted,
             Failure::Write(WriteError::Busy { .. }) => ExitCode::Input,
             Failure::Checkpoint(CheckpointError::Write(_) | CheckpointError::TooLarge { .. }) => ExitCode::Machine,

@@ -162,26 +162,31 @@ pub(crate) struct Recorder {
     grid: GridLayout,
     inputs: Vec<f64>,
     course: Course,
+    /// Whether this process writes the results.
+    writes: bool,
     /// Whether rows tell rest from motion.
     tells_motion: bool,
 }
 
 impl Recorder {
     /// Starts recording, or goes on where `resumed` stood.
+    ///
+    /// - `writes`: whether this process writes the results; else its rows go to a history of its own, and frames nowhere
     pub(crate) fn open(
         case: Arc<Case>,
         scene: &Scene,
         probes: Vec<Option<fractum_scene::Probe>>,
         ppv: Vec<PpvStations>,
         grid: GridLayout,
-        (folder, course): (&Path, Course),
+        (folder, course, writes): (&Path, Course, bool),
         resumed: Option<RecordState>,
     ) -> Result<Self, Failure> {
         let tells_motion = no_probes(&case, scene, course).in_motion;
         let columns = columns(&case, scene, course);
         let path = folder.join("history.csv");
         let (history, state) = match resumed {
-            Some(state) => (History::resume(&path, &columns, state.history)?, state),
+            Some(state) if writes => (History::resume(&path, &columns, state.history)?, state),
+            Some(state) => (History::create(&path, &columns)?, state),
             None => {
                 let series = vec![Vec::new(); case.probes.len()];
                 let peaks = ppv.iter().map(|of| vec![PeakVelocity::default(); of.stations.len()]).collect();
@@ -204,6 +209,7 @@ impl Recorder {
             noted,
             inputs: Vec::new(),
             course,
+            writes,
             tells_motion,
         })
     }
@@ -220,6 +226,12 @@ impl Recorder {
                 station.watch(&scene.solid, &scene.clock, peak);
             }
         }
+    }
+
+    /// Nodes whose velocities are watched in every step.
+    pub(crate) fn watched(&self) -> Vec<u32> {
+        let stations = self.ppv.iter().flat_map(|of| &of.stations);
+        stations.flat_map(|station| &station.nodes).copied().collect()
     }
 
     /// Largest velocities against distance, with their laws.
@@ -354,6 +366,10 @@ impl Recorder {
 
     /// Begins to write a frame of the present instant; before it that of the peak, where no frame has shown it.
     pub(crate) fn frame(&mut self, scene: &Scene) -> Result<(), Failure> {
+        if !self.writes {
+            self.state.frames = next_index(scene.clock.time, self.case.output.fields_every);
+            return Ok(());
+        }
         let frame = self.frame_of(scene)?;
         let peak = self.state.path.unseen_peak().filter(|peak| peak.step < frame.step);
         for frame in peak.into_iter().chain([frame]) {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::Failure;
+use crate::ranks::Ranks;
 use crate::simulation::{Options, Outcome, Simulation};
 
 /// Runs the case at `path` on threads of its own.
@@ -13,15 +14,27 @@ pub fn run(path: &Path, options: &Options) -> Result<Outcome, Failure> {
     run_measured(path, options).map(|(outcome, _)| outcome)
 }
 
+/// As [`run`], as one of several ranks: the first of them has the outcome of one process by itself.
+///
+/// # Errors
+/// As [`run`]; [`Failure::Elsewhere`] where another rank tells what went wrong.
+pub fn run_shared(path: &Path, options: &Options, ranks: Ranks) -> Result<Outcome, Failure> {
+    measure(path, options, ranks).map(|(outcome, _)| outcome)
+}
+
 /// As [`run`], with the processor time of all its threads [s] where the system tells it.
 ///
 /// # Errors
 /// As [`run`].
 pub(crate) fn run_measured(path: &Path, options: &Options) -> Result<(Outcome, Option<f64>), Failure> {
+    measure(path, options, Ranks::alone())
+}
+
+fn measure(path: &Path, options: &Options, ranks: Ranks) -> Result<(Outcome, Option<f64>), Failure> {
     let pool = pool(options.threads)?;
     // Inside the pool, parallel loops start without a hand-over between threads.
     let outcome = pool.install(|| {
-        let mut simulation = Simulation::open(path, options)?;
+        let mut simulation = Simulation::open_shared(path, options, ranks)?;
         while !simulation.is_over() {
             simulation.step()?;
             simulation.record()?;

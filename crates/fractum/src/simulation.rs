@@ -28,6 +28,7 @@ use crate::error::Failure;
 use crate::interrupt::{UnderWay, is_interrupted};
 use crate::phases::{Part, Phases};
 use crate::plan::Plan;
+use crate::ranks::Ranks;
 use crate::record::{RecordState, Recorder};
 use crate::series::index_of_max;
 use crate::solver::{Measured, Solver, SolverState};
@@ -77,6 +78,8 @@ pub struct Simulation {
     /// What follows the present stage.
     later: VecDeque<(Case, BuiltScene)>,
     recorder: Recorder,
+    /// Those that run the case together.
+    ranks: Ranks,
     folder: PathBuf,
     about: About,
     messages: Messages,
@@ -246,16 +249,19 @@ impl Simulation {
         if self.is_over() {
             return Ok(());
         }
-        if is_interrupted() {
+        let every = Duration::try_from_secs_f64(self.case.output.checkpoint_every).unwrap_or(Duration::MAX);
+        let save_is_due = self.saved.is_none_or(|saved| saved.at.elapsed() >= every);
+        let [interrupted, save_is_due] = self.ranks.any([is_interrupted(), save_is_due]);
+        if interrupted {
             self.save()?;
             self.end = Some(End::Interrupted);
             return Ok(());
         }
-        let every = Duration::try_from_secs_f64(self.case.output.checkpoint_every).unwrap_or(Duration::MAX);
-        if self.saved.is_none_or(|saved| saved.at.elapsed() >= every) {
+        if save_is_due {
             self.save()?;
         }
         if self.recorder.frame_is_due(self.scene.clock.time, !self.solver.follows_path()) {
+            self.scene.gather_ranks();
             let Simulation { recorder, scene, phases, .. } = self;
             phases.timed(Part::Output, || recorder.frame(scene))?;
         }
@@ -272,13 +278,14 @@ impl Simulation {
         self.messages.tell(&text)?;
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         let was_moving = self.solver.moves();
+        self.scene.gather_ranks();
         // From the state at t = 0, as a resumed run does.
         self.solver = Solver::new(&built.scene, &built, &mut self.phases)?;
         self.scene.begin_stage(built.scene);
         self.solver.take_over(&mut self.scene, was_moving);
         self.recorder.set_probes(built.probes);
         self.case = Arc::new(case);
-        Ok(())
+        self.ranks.share_out(&mut self.scene, &self.recorder.watched())
     }
 
     /// An instant in words.
@@ -307,6 +314,12 @@ impl Simulation {
     }
 
     fn save(&mut self) -> Result<(), Failure> {
+        self.scene.gather_ranks();
+        if !self.ranks.leads() {
+            let clock = self.scene.clock;
+            self.saved = Some(Saved { at: Instant::now(), step: clock.step, time: clock.time });
+            return Ok(());
+        }
         self.save_state(self.scene.state(), self.solver.state())
     }
 

@@ -19,6 +19,7 @@ mod mesh;
 mod new;
 mod parts;
 mod processor;
+mod ranks;
 mod report;
 mod results_folder;
 mod resume;

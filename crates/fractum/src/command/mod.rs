@@ -13,6 +13,7 @@ mod mesh_vtu;
 mod movie;
 mod new;
 mod pack;
+mod ranks;
 mod shape;
 mod study;
 mod sweep;
@@ -22,7 +23,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use fractum::cache_of_user as cache;
 use fractum::terminal::{Stream, Tone, toned};
-use fractum::{ExitCode, Failure, Options, Outcome, say, tell};
+use fractum::{ExitCode, Failure, Options, Outcome, Ranks, say, tell};
 use fractum_io::summary::{Fracture, Probe, Status};
 
 /// Fracture of solids: finite elements with damage, discrete elements, and the transition between them.
@@ -197,7 +198,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 pub(crate) fn execute(arguments: Arguments) -> ExitCode {
     let json = arguments.format == Format::Json;
     let result = match arguments.command {
-        Command::Run(run) => run_case(run),
+        Command::Run(run) => ranks::run_case(run),
         Command::Check { case, set } => check(&case, &set),
         Command::New { template, folder } => new::new(template.as_deref(), folder),
         Command::Verify { stress: true, blasts, steps, baseline, scenes, seed, output, threads, .. } => {
@@ -257,6 +258,9 @@ fn measure_steps(
 }
 
 fn report(failure: &Failure, json: bool) {
+    if matches!(failure, Failure::Elsewhere(_)) {
+        return; // The process that failed tells why.
+    }
     if !json {
         let text = failure.to_string();
         text.lines().for_each(|line| tell!("{}", with_place(line, Tone::Wrong, Stream::Error)));
@@ -275,17 +279,22 @@ fn report(failure: &Failure, json: bool) {
     }
 }
 
-fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
+/// - `ranks`: this process among those that run the case together
+fn run_case(run: RunArguments, ranks: Ranks) -> Result<ExitCode, Failure> {
+    let leads = ranks.leads();
     let options = Options {
         output: run.output,
         threads: run.threads,
         overrides: run.set,
         resume: run.resume,
         overwrite: run.overwrite,
-        quiet: run.quiet,
+        quiet: run.quiet || !leads,
         cache: cache(),
     };
-    let Outcome { summary, folder, load } = fractum::run(&run.case, &options)?;
+    let Outcome { summary, folder, load } = fractum::run_shared(&run.case, &options, ranks)?;
+    if !leads {
+        return Ok(if summary.status == Status::Interrupted { ExitCode::Interrupted } else { ExitCode::Done });
+    }
     if summary.status == Status::Interrupted {
         let program =
             std::env::args_os().next().map_or_else(|| "fractum".into(), |name| name.to_string_lossy().into_owned());

@@ -14,7 +14,7 @@ use fractum_scene::{Scene, fragment_size};
 
 use super::{End, Outcome, Saved, Simulation};
 use crate::cracks::{self, Columns, FacetHistory};
-use crate::error::Failure;
+use crate::error::{ExitCode, Failure};
 use crate::gallery;
 use crate::phases::Part;
 use crate::report::{self, Notes, PictureNote};
@@ -36,6 +36,7 @@ impl Simulation {
                 End::Interrupted
             }
         };
+        self.scene.gather_ranks();
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         let (status, state_hash) = (end.status(), self.state_hash());
         let reason = match &end {
@@ -55,7 +56,7 @@ impl Simulation {
         self.warn_of_merged_bands()?;
         // All files of the end get their names together.
         let mut files = Group::default();
-        let pictures = self.draw(&pieces, &mut files)?;
+        let pictures = if self.ranks.leads() { self.draw(&pieces, &mut files)? } else { Vec::new() };
         let mut summary = Summary {
             title: self.case.source.title.clone(),
             status,
@@ -94,6 +95,9 @@ impl Simulation {
         match end {
             End::Failed(error) => {
                 self.messages.log.line(&error)?;
+                if !self.ranks.leads() {
+                    return Err(Failure::Elsewhere(ExitCode::Stopped));
+                }
                 let folder = self.folder.display();
                 let saved = self.saved.map_or(format!("{folder}"), |Saved { step, time, .. }| {
                     format!("{folder}: step {step}, {}", at_instant(time, at_rest))

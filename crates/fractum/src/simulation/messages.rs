@@ -16,16 +16,21 @@ pub(super) struct Messages {
     /// What the last step brought, until it is told.
     pub(super) event: Option<String>,
     warned_of_balance: bool,
+    /// Another rank speaks.
+    silent: bool,
 }
 
 impl Messages {
-    pub(super) fn new(log: RunLog, quiet: bool) -> Self {
-        let progress = Progress::on_stderr(quiet);
-        Messages { progress, log, warnings: Vec::new(), event: None, warned_of_balance: false }
+    /// - `quiet`: no progress; `silent`: nothing at all, since another rank speaks
+    pub(super) fn new(log: RunLog, quiet: bool, silent: bool) -> Self {
+        let progress = Progress::on_stderr(quiet || silent);
+        Messages { progress, log, warnings: Vec::new(), event: None, warned_of_balance: false, silent }
     }
 
     pub(super) fn tell(&mut self, text: &str) -> Result<(), Failure> {
-        self.progress.message(text);
+        if !self.silent {
+            self.progress.message(text);
+        }
         Ok(self.log.line(text)?)
     }
 

@@ -25,6 +25,7 @@ use crate::interrupt::UnderWay;
 use crate::phases::Phases;
 use crate::plan::Plan;
 use crate::population::Population;
+use crate::ranks::Ranks;
 use crate::record::{Course, RecordState, Recorder};
 use crate::solver::Solver;
 use crate::strip::STRIP_FILE;
@@ -37,11 +38,23 @@ impl Simulation {
     /// # Errors
     /// [`Failure`]: mistakes in the input, a folder that cannot be written, no checkpoint that fits.
     pub fn open(path: &Path, options: &Options) -> Result<Self, Failure> {
+        Self::open_shared(path, options, Ranks::alone())
+    }
+
+    /// As [`Simulation::open`], as one of several ranks that make the same calls.
+    ///
+    /// # Errors
+    /// As [`Simulation::open`]; [`Failure::Elsewhere`] where another rank tells what went wrong.
+    pub fn open_shared(path: &Path, options: &Options, ranks: Ranks) -> Result<Self, Failure> {
         let started = Instant::now();
-        // Before anything is prepared, which may take long.
-        folder_of(path, options)?;
-        let input = load(path, &options.overrides, &options.cache)?;
-        Self::start(input, path, options, started)
+        let loaded = || {
+            // Before anything is prepared, which may take long.
+            folder_of(path, options)?;
+            ranks.check(path, options)?;
+            load(path, &options.overrides, &options.cache)
+        };
+        let input = ranks.together(loaded())?;
+        Self::start_shared(input, path, options, started, ranks)
     }
 
     /// As [`Simulation::open`], of a case that [`load`] has read with the overrides of the options.
@@ -51,12 +64,28 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::open`].
     pub fn start(input: Input, path: &Path, options: &Options, started: Instant) -> Result<Self, Failure> {
-        let folder = folder_of(path, options)?;
+        Self::start_shared(input, path, options, started, Ranks::alone())
+    }
+
+    fn start_shared(
+        input: Input,
+        path: &Path,
+        options: &Options,
+        started: Instant,
+        ranks: Ranks,
+    ) -> Result<Self, Failure> {
+        let results = folder_of(path, options)?;
+        let folder = ranks.folder(&results);
         let plan = Plan::new(&input);
         let Input { case, mesh_hash, built, later, timings, .. } = input;
         let identity = Identity { program: program(), case_hash: case.hash_but_end(), mesh_hash };
-        let loaded = if options.resume { Some(find_checkpoint(&folder, &identity)?) } else { None };
-        let goes_on = loaded.as_ref().map(|loaded| goes_on(&case, loaded)).transpose()?;
+        let find = || {
+            let loaded = if options.resume { Some(find_checkpoint(&results, &identity, ranks.leads())?) } else { None };
+            let goes_on = loaded.as_ref().map(|loaded| goes_on(&case, loaded)).transpose()?;
+            Ok((loaded, goes_on))
+        };
+        // No rank writes before all have read.
+        let (loaded, goes_on) = ranks.together(find())?;
         let about =
             About { identity, case_hash: case.hash(), origin: origin(&case, mesh_hash, options, &folder), plan };
         if !options.quiet {
@@ -88,7 +117,7 @@ impl Simulation {
         let put_back = |Loaded { state, .. }: Loaded<RunState>| put_back(state, &mut scene, &mut solver, &case);
         let resumed = loaded.map(put_back).transpose()?;
         let is_new = resumed.is_none();
-        let mut messages = Messages::new(open_folder(&folder, is_new)?, options.quiet);
+        let mut messages = Messages::new(open_folder(&folder, is_new || !ranks.leads())?, options.quiet, !ranks.leads());
         keep_case(&case, &folder, is_new)?;
         let threads = rayon::current_num_threads();
         let version = env!("CARGO_PKG_VERSION");
@@ -98,13 +127,16 @@ impl Simulation {
         messages.log.line(&about.plan)?;
         timings.iter().try_for_each(|timing| messages.log.line(timing))?;
         built.warnings.iter().try_for_each(|warning| messages.warn(warning.to_string()))?;
-        let recorder = Recorder::open(case, &scene, probes, built.ppv, grid, (&folder, course), resumed)?;
+        let recorder =
+            Recorder::open(case, &scene, probes, built.ppv, grid, (&folder, course, ranks.leads()), resumed)?;
+        ranks.share_out(&mut scene, &recorder.watched())?;
         let mut simulation = Simulation {
             case: stage,
             scene,
             solver,
             later,
             recorder,
+            ranks,
             folder,
             about,
             messages,
@@ -129,12 +161,14 @@ impl Simulation {
 }
 
 /// The newest checkpoint of this case.
-fn find_checkpoint(folder: &Path, identity: &Identity) -> Result<Loaded<RunState<'static>>, Failure> {
+///
+/// - `tells`: whether to tell of states that are passed over
+fn find_checkpoint(folder: &Path, identity: &Identity, tells: bool) -> Result<Loaded<RunState<'static>>, Failure> {
     let Some(loaded) = checkpoint::load_latest::<RunState>(&folder.join("checkpoint"), identity)? else {
         let text = format!("{}: no checkpoint to resume from; run without --resume", folder.display());
         return Err(Failure::input(text));
     };
-    for refused in &loaded.passed_over {
+    for refused in loaded.passed_over.iter().filter(|_| tells) {
         tell!("warning: {refused}");
     }
     Ok(loaded)

@@ -50,6 +50,15 @@ impl Load {
         }
     }
 
+    /// Points that it pushes or whose places it needs; none where these may be any.
+    fn points(&self) -> Option<Vec<u32>> {
+        match self {
+            Load::Nodal(load) => Some(load.points.iter().map(|&(point, _)| point).collect()),
+            Load::Pressure(load) => Some(load.facets.concat()),
+            Load::CrackPressure(_) | Load::Gravity(_) => None,
+        }
+    }
+
     /// Adds the forces of `time`.
     ///
     /// - `cracks`: those that pressure enters; none before [`Loads::open_cracks`]
@@ -182,6 +191,13 @@ impl Loads {
         if let (Some(gas), Some(state)) = (&mut self.gas, state.gas) {
             gas.restore(solid, state);
         }
+    }
+
+    /// Points that they push or whose places they need; none where these may be any.
+    pub(crate) fn points(&self) -> Option<Vec<u32>> {
+        let given = self.given.iter().map(|&(point, _)| point);
+        let of_loads: Option<Vec<Vec<u32>>> = self.loads.iter().map(Load::points).collect();
+        of_loads.filter(|_| self.gas.is_none()).map(|of| given.chain(of.into_iter().flatten()).collect())
     }
 
     /// Whether nothing pushes.

@@ -1,0 +1,48 @@
+//! One scene that several ranks advance together: which nodes all of them must move, and what they cannot share.
+
+use std::sync::Arc;
+
+use fractum_parallel::Exchange;
+
+use crate::scene::Scene;
+
+impl Scene {
+    /// What ranks cannot share of this scene, in words; none where they can.
+    pub fn cannot_be_shared(&self) -> Option<&'static str> {
+        let others = [
+            (self.solid.body_count() == 0, "a scene without solids"),
+            (!self.bonded.is_empty(), "particles"),
+            (!self.contacts.is_empty() || !self.shape_contacts.is_empty(), "contact and rigid bodies"),
+            (self.optional.heat.is_some(), "heat"),
+            (self.loads.gas().is_some(), "gas"),
+        ];
+        let other = others.iter().find(|(is_there, _)| *is_there).map(|(_, what)| *what);
+        other.or_else(|| self.solid.cannot_be_shared())
+    }
+
+    /// Leaves a share of the cells to each rank of an exchange. Every rank must have the same scene in the same state, and
+    /// all of them step it together from then on; see [`Scene::gather_ranks`].
+    ///
+    /// - `watched`: nodes that are looked at after every step
+    pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, watched: &[u32]) {
+        let held = (0..).zip(self.supports.held()).filter(|(_, held)| **held != 0).map(|(node, _)| node);
+        let loaded = self.loads.points();
+        let damping = self.settings.damping;
+        let all = loaded.is_none()
+            || damping.local != 0.0
+            || damping.mass_rate != 0.0
+            || self.removals.domain.is_some()
+            || !self.debris.is_empty()
+            || self.solid.fracture().removed_elements > 0;
+        let mut everywhere: Vec<u32> = held.chain(loaded.into_iter().flatten()).collect();
+        everywhere.extend(self.optional.surface_supports.nodes());
+        everywhere.extend(watched);
+        self.solid.share_out(exchange, &everywhere, all);
+    }
+
+    /// Brings what this rank has of the nodes and cells of others up to date, before anyone looks at all of them. All ranks must
+    /// call it. What a measured step has measured is up to date without it, but for viscous stress.
+    pub fn gather_ranks(&mut self) {
+        self.solid.gather_ranks();
+    }
+}

@@ -1,0 +1,149 @@
+//! The ranks that run one case together: the first one writes results and speaks, all of them decide alike.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use fractum_fem::Formulation;
+use fractum_io::case::model::{BodyKind, Case, LoadKind, SolverKind};
+use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
+use fractum_parallel::Exchange;
+use fractum_scene::Scene;
+
+use crate::error::{ExitCode, Failure};
+use crate::simulation::Options;
+
+/// This process among those that run a case together, or alone.
+#[derive(Debug, Default)]
+pub struct Ranks {
+    exchange: Option<Arc<dyn Exchange>>,
+    /// Where a rank that does not write keeps what others write; removed with it.
+    scratch: Option<PathBuf>,
+}
+
+/// Ranks of this process so far, for names of their own.
+static STARTED: AtomicUsize = AtomicUsize::new(0);
+
+impl Ranks {
+    /// One process by itself.
+    pub fn alone() -> Self {
+        Ranks::default()
+    }
+
+    /// One of those that an exchange joins; alone if there is no other.
+    pub fn new(exchange: Arc<dyn Exchange>) -> Self {
+        if exchange.size() == 1 {
+            return Ranks::alone();
+        }
+        let number = STARTED.fetch_add(1, Ordering::Relaxed);
+        let name = format!("fractum-rank-{}-{}-{number}", exchange.rank(), std::process::id());
+        let scratch = (exchange.rank() > 0).then(|| std::env::temp_dir().join(name));
+        Ranks { exchange: Some(exchange), scratch }
+    }
+
+    /// Whether this process writes the results.
+    pub fn leads(&self) -> bool {
+        self.scratch.is_none()
+    }
+
+    /// Folder into which this process writes.
+    pub(crate) fn folder(&self, results: &Path) -> PathBuf {
+        self.scratch.as_deref().unwrap_or(results).to_owned()
+    }
+
+    /// The wishes that any process has.
+    pub(crate) fn any(&self, wishes: [bool; 2]) -> [bool; 2] {
+        let Some(exchange) = &self.exchange else { return wishes };
+        let bits = exchange.any(u64::from(wishes[0]) | u64::from(wishes[1]) << 1);
+        [bits & 1 != 0, bits & 2 != 0]
+    }
+
+    /// What all processes have done, or the failure that ends them all: that of the first that has one.
+    ///
+    /// # Errors
+    /// [`Failure::Elsewhere`] where it is not that of this process.
+    pub(crate) fn together<T>(&self, done: Result<T, Failure>) -> Result<T, Failure> {
+        let Some(exchange) = &self.exchange else { return done };
+        let rank = exchange.rank().min(31);
+        let failures = exchange.any(u64::from(done.is_err()) << rank);
+        let code = done.as_ref().err().map_or(0, |failure| failure.exit_code() as u64);
+        let codes = exchange.any(if failures.trailing_zeros() as usize == rank { code } else { 0 });
+        let first = failures.trailing_zeros() as usize;
+        match done {
+            Err(failure) if first == rank => Err(failure),
+            Ok(done) if failures == 0 => Ok(done),
+            _ => Err(Failure::Elsewhere(ExitCode::from_code(codes))),
+        }
+    }
+
+    /// Refuses what several processes cannot do, before anything is made ready for it.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] with everything of the case that they cannot do.
+    pub(crate) fn check(&self, path: &Path, options: &Options) -> Result<(), Failure> {
+        if self.exchange.is_none() {
+            return Ok(());
+        }
+        let case = read_case(path, &options.overrides)?;
+        let found = std::iter::once(&case).chain(&case.later).flat_map(not_for_ranks);
+        let error = |(place, what): (&Place, &str)| {
+            Diagnostic::error(place, format!(": {what} cannot be run by several processes yet"))
+                .remedy("run the case without mpirun, or with one process")
+        };
+        let errors: Vec<Diagnostic> = found.map(error).collect();
+        if errors.is_empty() { Ok(()) } else { Err(Failure::Input(Diagnostics(errors))) }
+    }
+
+    /// Leaves each process its share of a scene.
+    ///
+    /// - `watched`: nodes that are looked at after every step
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for a scene that cannot be shared.
+    pub(crate) fn share_out(&self, scene: &mut Scene, watched: &[u32]) -> Result<(), Failure> {
+        let Some(exchange) = &self.exchange else { return Ok(()) };
+        let refuse =
+            |what| Failure::input(format!("{what} cannot be run by several processes yet; run without mpirun"));
+        self.together(scene.cannot_be_shared().map_or(Ok(()), |what| Err(refuse(what))))?;
+        scene.share_out(Arc::clone(exchange), watched);
+        Ok(())
+    }
+}
+
+impl Drop for Ranks {
+    fn drop(&mut self) {
+        if let Some(scratch) = &self.scratch {
+            // What cannot be removed is left to the system, as all temporary files are.
+            let _ = std::fs::remove_dir_all(scratch);
+        }
+    }
+}
+
+/// What several processes cannot do of a stage, and where it stands.
+fn not_for_ranks(case: &Case) -> Vec<(&Place, &'static str)> {
+    let mut found = Vec::new();
+    if case.solver.kind != SolverKind::Explicit {
+        found.push((&case.solver.place, "a solver that is not explicit"));
+    }
+    for body in &case.bodies {
+        let BodyKind::Solid(solid) = &body.kind else {
+            found.push((&body.name.place, "a body that is not a solid"));
+            continue;
+        };
+        let damage = case.materials[solid.material].damage.as_ref().filter(|_| solid.damage);
+        if damage.is_some_and(|damage| damage.value.regularisation.is_some()) {
+            found.push((&body.name.place, "damage by a phase field"));
+        }
+        if damage.is_some() && solid.formulation == Formulation::Standard {
+            found.push((&body.name.place, "damage in the standard formulation"));
+        }
+    }
+    for load in &case.loads {
+        if let LoadKind::Pressure { pressure, in_cracks: Some(_), .. } = &load.kind {
+            found.push((&pressure.place, "pressure in cracks"));
+        }
+    }
+    found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat")));
+    found.extend(case.flows.gas.iter().map(|gas| (&gas.place, "gas")));
+    found
+}

@@ -1,0 +1,103 @@
+//! Several ranks, here threads of one process, leave the files of one process.
+
+use std::fs;
+use std::path::Path;
+
+use fractum::{Failure, Options, Ranks, Simulation, run, run_shared};
+use fractum_parallel::threads;
+
+use crate::common::{BREAKING_BAR, Workplace, files_below};
+
+/// The breaking bar without its floor.
+fn bar() -> String {
+    let (before, rest) = BREAKING_BAR.split_once("[[bodies]]\nname = \"floor\"").unwrap();
+    let (_, after) = rest.split_once("[[supports]]").unwrap();
+    format!("{before}[[supports]]{after}")
+}
+
+fn options(place: &Workplace, folder: &str) -> Options {
+    Options { output: Some(place.path(folder)), threads: Some(1), quiet: true, ..Options::default() }
+}
+
+/// Runs a case on several ranks; what each of them comes to.
+fn on_ranks(place: &Workplace, ranks: usize, options: &Options) -> Vec<Result<String, Failure>> {
+    let case = place.path("case.toml");
+    std::thread::scope(|scope| {
+        let start = |exchange| scope.spawn(|| run_shared(&case, options, Ranks::new(exchange)));
+        let started: Vec<_> = threads(ranks).into_iter().map(start).collect();
+        let outcome = |thread: std::thread::ScopedJoinHandle<'_, Result<fractum::Outcome, Failure>>| {
+            thread.join().unwrap().map(|outcome| outcome.summary.hashes.state_hash)
+        };
+        started.into_iter().map(outcome).collect()
+    })
+}
+
+/// Files of a results folder that do not tell about the machine and the time.
+fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let below = [".vtu", ".vtp", ".csv", ".pvd"].iter().flat_map(|suffix| files_below(folder, suffix));
+    let name = |path: &Path| path.strip_prefix(folder).unwrap().display().to_string();
+    below.map(|path| (name(&path), fs::read(&path).unwrap())).collect()
+}
+
+fn assert_same_files(place: &Workplace, folder: &str, what: &str) {
+    let (ours, expected) = (files(&place.path(folder)), files(&place.path("alone")));
+    let names = |files: &[(String, Vec<u8>)]| files.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&ours), names(&expected), "{what}");
+    for ((name, ours), (_, expected)) in ours.iter().zip(&expected) {
+        assert!(ours == expected, "{what}: {name}");
+    }
+}
+
+#[test]
+fn ranks_leave_the_files_of_one_process() {
+    let place = Workplace::new(&bar());
+    let alone = run(&place.path("case.toml"), &options(&place, "alone")).unwrap().summary;
+    assert!(alone.counts.removed_elements > 0 && alone.counts.particles > 0);
+    for ranks in [2, 3] {
+        let folder = format!("of-{ranks}");
+        for hash in on_ranks(&place, ranks, &options(&place, &folder)) {
+            assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{ranks} ranks");
+        }
+        assert_same_files(&place, &folder, &format!("{ranks} ranks"));
+    }
+}
+
+#[test]
+fn a_run_is_continued_by_another_number_of_ranks() {
+    let place = Workplace::new(&bar());
+    let case = place.path("case.toml");
+    let alone = run(&case, &options(&place, "alone")).unwrap().summary;
+    for (from, to) in [(1, 3), (3, 2), (2, 1)] {
+        let folder = format!("from-{from}-to-{to}");
+        let options = options(&place, &folder);
+        std::thread::scope(|scope| {
+            for exchange in threads(from) {
+                scope.spawn(|| {
+                    let mut simulation = Simulation::open_shared(&case, &options, Ranks::new(exchange)).unwrap();
+                    while simulation.time() < 4e-4 {
+                        simulation.step().unwrap();
+                        simulation.record().unwrap();
+                    }
+                    simulation.finish().unwrap();
+                });
+            }
+        });
+        for hash in on_ranks(&place, to, &Options { resume: true, ..options.clone() }) {
+            assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{folder}");
+        }
+        assert_same_files(&place, &folder, &folder);
+    }
+}
+
+#[test]
+fn what_ranks_cannot_run_is_refused_once_and_by_name() {
+    let place = Workplace::new(BREAKING_BAR);
+    let results = on_ranks(&place, 3, &options(&place, "refused"));
+    let text = results[0].as_ref().unwrap_err().to_string();
+    assert!(
+        text.contains("case.toml:") && text.contains("a body that is not a solid cannot be run by several"),
+        "{text}"
+    );
+    assert!(results[1..].iter().all(|result| matches!(result, Err(Failure::Elsewhere(_)))));
+    assert!(!place.path("refused").exists());
+}

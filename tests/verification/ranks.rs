@@ -1,0 +1,181 @@
+//! Several ranks advance one scene: the state has the bits of a single process, whatever their number.
+
+use std::sync::Arc;
+
+use fractum_fem::{Body, DamageLaw, ElementKind, Kinematics, LocalDamping, Solid, Viscosity, facet_area};
+use fractum_math::Vec3;
+use fractum_mesh::generate::{Jitter, structured_rectangle};
+use fractum_parallel::{Exchange, threads};
+use fractum_scene::coupling::Debris;
+use fractum_scene::{
+    ContactParameters, Gravity, Load, Loads, Motion, NodalForce, Pressure, Scene, SceneState, Support, SupportedFacet,
+    Supports, SurfaceSupports,
+};
+use fractum_tests::{CONCRETE, jittered_box, noise, settings, surface};
+
+const SIZE: Vec3 = Vec3::new(0.4, 0.2, 0.2);
+const RANKS: [usize; 4] = [2, 3, 4, 7];
+
+/// A box of several blocks.
+fn block() -> (Vec<Vec3>, Body) {
+    jittered_box([20, 10, 10], SIZE)
+}
+
+fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, damping: LocalDamping) -> Scene {
+    let supports = Supports::new(supports, &solid.reference).unwrap();
+    let loads = Loads::new(loads, solid.reference.len());
+    let debris = Debris::new(&solid, vec![ContactParameters::default()]);
+    let mut settings = settings(1.0, 1e9);
+    settings.damping = damping;
+    Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
+}
+
+/// Supports on both ends: one fixed, one that moves along x.
+fn ends(solid: &Solid, speed: f64) -> Vec<Support> {
+    let at = |x: f64| (0..).zip(&solid.reference).filter(|(_, p)| (p.x - x).abs() < 1e-9).map(|(n, _)| n).collect();
+    let right: Vec<u32> = at(SIZE.x);
+    let moves = Motion::Velocity(Arc::new(move |t: f64, _: &Vec3| speed * (t / 2e-5).min(1.0)));
+    vec![Support::new("left", at(0.0), 0, Motion::Fixed), Support::new("right", right, 0, moves)]
+}
+
+fn set_moving(solid: &mut Solid) {
+    for i in 0..solid.velocity.len() {
+        solid.velocity[i] = Vec3::from_fn(|axis, _| noise(3 * i + axis));
+    }
+}
+
+fn advance(scene: &mut Scene, steps: u64) {
+    for _ in 0..steps {
+        scene.step(scene.clock.step.is_multiple_of(13)).unwrap();
+    }
+}
+
+fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap().install(work)
+}
+
+/// The whole state, each bit of it: numbers are written so that they read back as they were.
+fn bits(scene: &Scene) -> String {
+    serde_json::to_string(&scene.state()).unwrap()
+}
+
+/// What each of several ranks has after `steps`, by what `made` gives it at the start.
+fn shared(ranks: usize, steps: u64, made: impl Fn() -> Scene + Sync) -> Vec<Scene> {
+    let run = |exchange: Arc<dyn Exchange>| {
+        on_two_threads(|| {
+            let mut scene = made();
+            scene.share_out(exchange, &[]);
+            advance(&mut scene, steps);
+            scene.gather_ranks();
+            scene
+        })
+    };
+    std::thread::scope(|scope| {
+        let started: Vec<_> = threads(ranks).into_iter().map(|exchange| scope.spawn(|| run(exchange))).collect();
+        started.into_iter().map(|thread| thread.join().unwrap()).collect()
+    })
+}
+
+/// The scene of a single process after `steps`, once any number of ranks has come to the same.
+fn same_on_ranks(steps: u64, made: impl Fn() -> Scene + Sync) -> Scene {
+    let mut single = made();
+    assert_eq!(single.cannot_be_shared(), None);
+    advance(&mut single, steps);
+    let expected = bits(&single);
+    for ranks in RANKS {
+        for (rank, scene) in shared(ranks, steps, &made).iter().enumerate() {
+            assert!(bits(scene) == expected, "rank {rank} of {ranks}");
+        }
+    }
+    single
+}
+
+#[test]
+fn an_elastic_body_has_the_same_bits_on_any_number_of_ranks() {
+    let made = || {
+        let (nodes, body) = block();
+        let mut solid = Solid::new(nodes, vec![Body { kinematics: Kinematics::Corotational, ..body }]).unwrap();
+        set_moving(&mut solid);
+        let top = surface(&solid).into_iter().filter(|f| f.iter().all(|&n| solid.reference[n as usize].z > 0.199));
+        let value = Arc::new(|t: f64, _: &Vec3| 1e6 * (t / 1e-5).min(1.0));
+        let pressure = Pressure { facets: top.collect(), thickness: 0.0, value };
+        let force = NodalForce { points: vec![(40, 0.5), (7, 0.5)], axis: 1, value: Arc::new(|_, _| 1e3) };
+        let supports = ends(&solid, 0.1);
+        scene(solid, supports, vec![Load::Pressure(pressure), Load::Nodal(force)], LocalDamping::default())
+    };
+    let single = same_on_ranks(60, made);
+    assert!(single.ledger().residual_max_relative < 1e-3);
+}
+
+#[test]
+fn a_viscous_body_with_absorbing_ends_has_the_same_bits_on_any_number_of_ranks() {
+    let made = || {
+        let (nodes, body) = block();
+        let mut solid = Solid::new(nodes, vec![body.smoothed()]).unwrap();
+        solid.set_viscosity(Viscosity { stiffness_time: 1e-8, bulk_linear: 0.06, bulk_quadratic: 1.2 });
+        set_moving(&mut solid);
+        for velocity in &mut solid.velocity {
+            velocity.x *= 300.0; // strong enough for the step to follow the shock
+        }
+        let side = surface(&solid).into_iter().filter(|f| f.iter().all(|&n| solid.reference[n as usize].y < 1e-9));
+        let facet = |nodes: [u32; 3]| {
+            let area = facet_area(nodes.map(|n| solid.reference[n as usize]), None);
+            let (normal, area) = (area.normalize(), area.norm());
+            SupportedFacet { nodes, normal, area, along_and_across: [9e6, 5e6] }
+        };
+        let facets: Vec<SupportedFacet> = side.map(facet).collect();
+        let supports = SurfaceSupports::new(&facets, &facets[..9], &solid.mass);
+        scene(solid, Vec::new(), Vec::new(), LocalDamping::default()).with_surface_supports(supports)
+    };
+    let single = same_on_ranks(60, made);
+    assert!(single.solid.viscous_dissipation() > 0.0);
+}
+
+/// The box, pulled until it breaks.
+fn breaking() -> Scene {
+    let (nodes, body) = block();
+    let body = body.smoothed().with_damage(DamageLaw::rankine(3e6, 20.0));
+    let solid = Solid::new(nodes, vec![Body { kinematics: Kinematics::Corotational, ..body }]).unwrap();
+    let supports = ends(&solid, 10.0);
+    scene(solid, supports, Vec::new(), LocalDamping::default())
+}
+
+#[test]
+fn a_body_that_breaks_has_the_same_bits_on_any_number_of_ranks() {
+    let single = same_on_ranks(400, breaking);
+    let counts = single.counts();
+    assert!(counts.removed_elements > 10 && counts.particles > 10, "{counts:?}");
+}
+
+#[test]
+fn gravity_and_damping_have_the_same_bits_on_any_number_of_ranks() {
+    let made = || {
+        let mesh = structured_rectangle([80, 60], [0.4, 0.3], Some(Jitter { fraction: 0.15, seed: 3 }));
+        let triangles = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
+        let body = Body::new("plate", ElementKind::T3, triangles, CONCRETE).smoothed();
+        let solid = Solid::new(mesh.nodes, vec![body]).unwrap();
+        let supports = ends(&solid, 1e-3);
+        let gravity = Load::Gravity(Gravity { axis: 1, value: Arc::new(|_, _| -9.81) });
+        scene(solid, supports, vec![gravity], LocalDamping { local: 0.5, mass_rate: 10.0 })
+    };
+    same_on_ranks(60, made);
+}
+
+/// A state that three ranks have come to, and what other numbers of ranks make of it.
+#[test]
+fn a_state_goes_on_with_any_number_of_ranks() {
+    let mut single = breaking();
+    advance(&mut single, 330);
+    let expected = bits(&single);
+    for first in [60, 300] {
+        let state: SceneState = shared(3, first, breaking).remove(1).state();
+        let resumed = || {
+            let mut scene = breaking();
+            scene.restore(state.clone());
+            scene
+        };
+        for ranks in [1, 2, 4] {
+            assert!(bits(&shared(ranks, 330 - first, resumed)[0]) == expected, "{first} steps, then {ranks} ranks");
+        }
+    }
+}
