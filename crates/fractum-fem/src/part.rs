@@ -305,7 +305,7 @@ impl BlockShare {
                 law.field.fresh = self.fresh;
                 for (index, edge) in self.edges {
                     law.field.state[index as usize] = edge;
-                    law.field.threshold[index as usize] = edge.threshold();
+                    law.field.note(index as usize);
                 }
             }
         }
