@@ -157,6 +157,11 @@ impl NodeSlots {
         NodeSlots { slots: Ragged::from_rows(&rows) }
     }
 
+    /// Number of nodes.
+    pub(crate) fn len(&self) -> usize {
+        self.slots.len()
+    }
+
     /// Blocks that a node belongs to in ascending order, each with the local number of the node there, packed as 32 bits.
     pub(crate) fn of(&self, node: usize) -> &[u32] {
         self.slots.row(node)

@@ -1,7 +1,5 @@
 //! Motion of the nodes: central differences with the velocity at half steps.
 
-use std::ops::Range;
-
 use fractum_math::{CHUNK, HalfSteps, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -49,43 +47,45 @@ impl Solid {
             .zip(chunk_work.par_iter_mut())
             .enumerate()
             .for_each(|(chunk, ((displacement, velocity), work))| {
-                let first = chunk * CHUNK;
-                let (force, inverse_mass) = (&force[first..], &inverse_mass[first..]);
                 *work = HalfSteps::default();
                 let all = 0..velocity.len();
-                let runs = part.as_ref().map_or(std::slice::from_ref(&all), |part| part.runs(chunk));
-                if plain {
-                    for i in runs.iter().flat_map(Range::clone) {
-                        velocity[i] += force[i] * (inverse_mass[i] * dt_kick);
-                        displacement[i] += velocity[i] * dt_after;
+                for run in part.as_ref().map_or(std::slice::from_ref(&all), |part| part.runs(chunk)) {
+                    let first = chunk * CHUNK + run.start;
+                    let (displacement, velocity) = (&mut displacement[run.clone()], &mut velocity[run.clone()]);
+                    let (force, inverse_mass) = (&force[first..], &inverse_mass[first..]);
+                    if plain {
+                        for i in 0..velocity.len() {
+                            velocity[i] += force[i] * (inverse_mass[i] * dt_kick);
+                            displacement[i] += velocity[i] * dt_after;
+                        }
+                        continue;
                     }
-                    return;
-                }
-                for i in runs.iter().flat_map(Range::clone) {
-                    let before = velocity[i];
-                    let mut total = force[i];
-                    let mut resist = Vec3::zeros();
-                    if !damping.is_off() {
-                        let free = held.get(first + i).map_or(Vec3::repeat(1.0), |&bits| free_axes(bits));
-                        resist = damping_force(
-                            damping,
-                            total.component_mul(&free),
-                            before.component_mul(&free),
-                            inverse_mass[i],
-                        );
-                        total += resist;
+                    for i in 0..velocity.len() {
+                        let before = velocity[i];
+                        let mut total = force[i];
+                        let mut resist = Vec3::zeros();
+                        if !damping.is_off() {
+                            let free = held.get(first + i).map_or(Vec3::repeat(1.0), |&bits| free_axes(bits));
+                            resist = damping_force(
+                                damping,
+                                total.component_mul(&free),
+                                before.component_mul(&free),
+                                inverse_mass[i],
+                            );
+                            total += resist;
+                        }
+                        let after = before + total * (inverse_mass[i] * dt_kick);
+                        velocity[i] = after;
+                        displacement[i] += after * dt_after;
+                        if measure {
+                            let mirrored = before + total * (inverse_mass[i] * dt_before);
+                            work.before.kinetic += 0.5 / inverse_mass[i] * before.dot(&mirrored);
+                            let mirrored = after - total * (inverse_mass[i] * dt_after);
+                            work.after.kinetic += 0.5 / inverse_mass[i] * after.dot(&mirrored);
+                        }
+                        work.before.damping -= 0.5 * dt_before * resist.dot(&before);
+                        work.after.damping -= 0.5 * dt_after * resist.dot(&after);
                     }
-                    let after = before + total * (inverse_mass[i] * dt_kick);
-                    velocity[i] = after;
-                    displacement[i] += after * dt_after;
-                    if measure {
-                        let mirrored = before + total * (inverse_mass[i] * dt_before);
-                        work.before.kinetic += 0.5 / inverse_mass[i] * before.dot(&mirrored);
-                        let mirrored = after - total * (inverse_mass[i] * dt_after);
-                        work.after.kinetic += 0.5 / inverse_mass[i] * after.dot(&mirrored);
-                    }
-                    work.before.damping -= 0.5 * dt_before * resist.dot(&before);
-                    work.after.damping -= 0.5 * dt_after * resist.dot(&after);
                 }
             });
         let work = chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part);

@@ -5,6 +5,7 @@
 //! nodes or all cells (energies, removal, output) is told in full before; between such steps, what a rank has of the nodes and
 //! cells of others is out of date.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -13,10 +14,8 @@ use fractum_parallel::{Exchange, Message, gather};
 use serde::{Deserialize, Serialize};
 
 use crate::block::NodeSlots;
-use crate::body::{Formulation, Kinematics};
 use crate::damage::EdgeDamage;
 use crate::evaluate::{Block, BlockLaw};
-use crate::solid::Solid;
 
 /// The share of a rank.
 #[derive(Clone, Debug)]
@@ -31,17 +30,30 @@ pub(crate) struct Part {
     /// For steps in which every rank moves all nodes.
     all: Plan,
     /// Every rank moves all nodes in every step.
-    always_all: bool,
+    pub(crate) always_all: bool,
     /// Every rank moves all nodes in the next step.
-    next_all: bool,
+    pub(crate) next_all: bool,
     /// Every rank moves all nodes in this step.
-    is_all: bool,
+    pub(crate) is_all: bool,
     /// Displacements and velocities of all nodes are the present ones.
-    is_whole: bool,
+    pub(crate) is_whole: bool,
     /// Numbers of every block that all ranks need in every step, see [`record`]; empty where none does.
     records: Vec<f64>,
     own_records: Vec<f64>,
     record_counts: Vec<usize>,
+}
+
+/// How much a rank has to do and to tell in a step in which nothing needs all nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Share {
+    /// Blocks of cells.
+    pub blocks: usize,
+    /// Nodes that it moves.
+    pub nodes: usize,
+    /// Those of them that blocks of other ranks push too.
+    pub shared_nodes: usize,
+    /// Bytes of the sums that it sends.
+    pub bytes: usize,
 }
 
 /// Who sends which sums to whom, and which nodes are moved.
@@ -69,20 +81,26 @@ struct BlockShare {
     viscous: Vec<Sym3>,
 }
 
-impl Solid {
-    /// Leaves a share of the work to each rank of an exchange. Every rank must have the same solid in the same state.
+impl Part {
+    /// The share of a rank, by the blocks of all.
     ///
-    /// - `everywhere`: nodes that every rank shall move, whatever it has of them
-    /// - `all`: whether every rank shall move all nodes
-    pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, everywhere: &[u32], all: bool) {
-        let weights: Vec<usize> = self.blocks.iter().map(|block| block.cells.gradients.len().max(1)).collect();
+    /// - `everywhere`: nodes that every rank shall move
+    /// - `needs_records`: whether all ranks need numbers of every block in every step
+    pub(crate) fn new(
+        exchange: Arc<dyn Exchange>,
+        blocks: &[Block],
+        slots: &NodeSlots,
+        everywhere: &[u32],
+        needs_records: bool,
+    ) -> Self {
+        let weights: Vec<usize> = blocks.iter().map(|block| block.cells.gradients.len().max(1)).collect();
         let first = runs_of_blocks(&weights, exchange.size());
         let (me, size) = (exchange.rank(), exchange.size());
-        let mut moved = vec![vec![false; self.reference.len()]; size];
+        let mut moved = vec![vec![false; slots.len()]; size];
         let mut told = vec![Vec::new(); size];
-        let mut is_told = vec![false; self.reference.len()];
+        let mut is_told = vec![false; slots.len()];
         for rank in 0..size {
-            for &node in self.blocks[first[rank]..first[rank + 1]].iter().flat_map(|block| &block.cells.nodes) {
+            for &node in blocks[first[rank]..first[rank + 1]].iter().flat_map(|block| &block.cells.nodes) {
                 moved[rank][node as usize] = true;
                 if !std::mem::replace(&mut is_told[node as usize], true) {
                     told[rank].push(node);
@@ -90,100 +108,55 @@ impl Solid {
             }
             everywhere.iter().for_each(|&node| moved[rank][node as usize] = true);
         }
-        let near = Plan::new(&self.slots, &first, me, &moved);
+        let near = Plan::new(slots, &first, me, &moved);
         moved.iter_mut().for_each(|of| of.fill(true));
-        let every = Plan::new(&self.slots, &first, me, &moved);
-        let needs_records = self.bodies.iter().any(|model| {
-            let can_break = model.body.damage.is_some();
-            can_break || model.viscosity.is_some() || model.body.kinematics == Kinematics::Corotational
-        });
-        let record_counts: Vec<usize> = (0..size).map(|rank| RECORD * (first[rank + 1] - first[rank])).collect();
-        self.part = Some(Box::new(Part {
-            records: vec![0.0; if needs_records { RECORD * self.blocks.len() } else { 0 }],
+        let all = Plan::new(slots, &first, me, &moved);
+        let numbers = |rank: usize| if needs_records { RECORD * (first[rank + 1] - first[rank]) } else { 0 };
+        let record_counts: Vec<usize> = (0..size).map(numbers).collect();
+        Part {
+            records: vec![0.0; record_counts.iter().sum()],
             own_records: vec![0.0; record_counts[me]],
             record_counts,
             exchange,
             first,
             told,
             near,
-            all: every,
-            always_all: all,
+            all,
+            always_all: false,
             next_all: false,
-            is_all: all,
+            is_all: false,
             is_whole: true,
-        }));
-    }
-
-    /// What a solid has that ranks cannot share, in words.
-    pub fn cannot_be_shared(&self) -> Option<&'static str> {
-        self.bodies.iter().find_map(|model| match &model.body.damage {
-            Some(zone) if zone.regularisation.is_some() => Some("damage by a phase field"),
-            Some(_) if model.body.formulation == Formulation::Standard => Some("damage in the standard formulation"),
-            _ => None,
-        })
-    }
-
-    /// Has every rank move all nodes in the next step: something needs all of them.
-    pub fn move_all_nodes_next(&mut self) {
-        self.part.iter_mut().for_each(|part| part.next_all = true);
-    }
-
-    /// Has every rank move all nodes from now on.
-    pub fn move_all_nodes(&mut self) {
-        self.part.iter_mut().for_each(|part| part.always_all = true);
-    }
-
-    /// Brings what this rank has of the nodes and cells of others up to date. All ranks must call it.
-    pub fn gather_ranks(&mut self) {
-        let Some(mut part) = self.part.take() else { return };
-        part.tell_nodes(&mut self.displacement, &mut self.velocity);
-        part.tell_cells(&mut self.blocks, true);
-        self.part = Some(part);
-    }
-
-    /// Blocks whose cells this process evaluates.
-    pub(crate) fn own_blocks(&self) -> Range<usize> {
-        self.part.as_ref().map_or(0..self.blocks.len(), |part| part.own())
-    }
-
-    /// Gets the sums of the blocks of other ranks for the nodes that this one moves, once its own are there.
-    ///
-    /// - `measure`: whether the energies of all cells are needed
-    pub(crate) fn exchange_forces(&mut self, measure: bool) {
-        let Some(mut part) = self.part.take() else { return };
-        let breaks = part.tell_records(&mut self.blocks);
-        part.is_all = measure | breaks | part.always_all | std::mem::take(&mut part.next_all);
-        if part.is_all {
-            part.tell_nodes(&mut self.displacement, &mut self.velocity);
         }
-        if measure || breaks {
-            part.tell_cells(&mut self.blocks, false);
-        }
-        part.swap_sums(&mut self.blocks);
-        self.part = Some(part);
     }
 
-    /// After a step: what is known of the nodes of others.
-    pub(crate) fn note_motion(&mut self) {
-        self.part.iter_mut().for_each(|part| part.is_whole = part.is_all);
-    }
-}
-
-impl Part {
     /// Runs of nodes of a chunk that this rank moves in this step, counted from the first of the chunk.
     pub(crate) fn runs(&self, chunk: usize) -> &[Range<usize>] {
         let plan = if self.is_all { &self.all } else { &self.near };
         &plan.runs[chunk]
     }
 
-    fn own(&self) -> Range<usize> {
+    /// What this rank does of the work.
+    pub(crate) fn share(&self, blocks: &[Block]) -> Share {
+        let Part { near, .. } = self;
+        let received = near.slots.iter().flat_map(|[_, receive]| receive);
+        let nodes = received.map(|&slot| blocks[(slot >> 16) as usize].cells.nodes[(slot & 0xffff) as usize]);
+        Share {
+            blocks: self.own().len(),
+            nodes: near.runs.iter().flatten().map(Range::len).sum(),
+            shared_nodes: nodes.collect::<BTreeSet<u32>>().len(),
+            bytes: near.messages.iter().map(|message| size_of_val(&message.send[..])).sum(),
+        }
+    }
+
+    /// Blocks whose cells this process evaluates.
+    pub(crate) fn own(&self) -> Range<usize> {
         let rank = self.exchange.rank();
         self.first[rank]..self.first[rank + 1]
     }
 
     /// Tells all ranks what they need of every block in every step; whether an edge broke or a cell was turned inside out,
     /// so that all nodes and cells are needed.
-    fn tell_records(&mut self, blocks: &mut [Block]) -> bool {
+    pub(crate) fn tell_records(&mut self, blocks: &mut [Block]) -> bool {
         if self.records.is_empty() {
             return false;
         }
@@ -204,7 +177,7 @@ impl Part {
     }
 
     /// Tells all ranks displacements and velocities of all nodes.
-    fn tell_nodes(&mut self, displacement: &mut [Vec3], velocity: &mut [Vec3]) {
+    pub(crate) fn tell_nodes(&mut self, displacement: &mut [Vec3], velocity: &mut [Vec3]) {
         if std::mem::replace(&mut self.is_whole, true) {
             return;
         }
@@ -223,7 +196,7 @@ impl Part {
     /// Tells all ranks energies and histories of all cells.
     ///
     /// - `viscous`: viscous stresses too
-    fn tell_cells(&mut self, blocks: &mut [Block], viscous: bool) {
+    pub(crate) fn tell_cells(&mut self, blocks: &mut [Block], viscous: bool) {
         let own = self.own();
         let mine: Vec<BlockShare> = blocks[own.clone()].iter().map(|block| BlockShare::of(block, viscous)).collect();
         let shares = gather(&*self.exchange, &mine).into_iter().flatten();
@@ -232,7 +205,7 @@ impl Part {
         }
     }
 
-    fn swap_sums(&mut self, blocks: &mut [Block]) {
+    pub(crate) fn swap_sums(&mut self, blocks: &mut [Block]) {
         let plan = if self.is_all { &mut self.all } else { &mut self.near };
         for (message, [send, _]) in plan.messages.iter_mut().zip(&plan.slots) {
             for (to, &slot) in message.send.chunks_exact_mut(3).zip(send) {

@@ -147,8 +147,9 @@ impl Solid {
         let sum = |node: usize| slots.gather(node, |block| blocks[block].forces());
         if let Some(part) = part {
             force.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, force)| {
-                let own = part.runs(chunk).iter().flat_map(|run| run.clone());
-                own.for_each(|i| force[i] = sum(chunk * CHUNK + i));
+                for run in part.runs(chunk) {
+                    run.clone().for_each(|i| force[i] = sum(chunk * CHUNK + i));
+                }
             });
             return;
         }

@@ -4,59 +4,12 @@
 //! ranks make the same calls in the same order; every method waits for the others. No method adds numbers: sums are made by
 //! who gets them, in an order of its own, so that they have the same bits for any number of ranks.
 
-use std::fmt::Debug;
-
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-
+mod exchange;
 #[cfg(feature = "mpi")]
 mod mpi;
 mod threads;
 
+pub use crate::exchange::{Exchange, Message, gather};
 #[cfg(feature = "mpi")]
 pub use crate::mpi::{World, initialize};
 pub use threads::threads;
-
-/// Numbers for another rank, and numbers from it.
-#[derive(Clone, Debug, Default)]
-pub struct Message {
-    /// The other rank.
-    pub rank: usize,
-    /// For it.
-    pub send: Vec<f64>,
-    /// From it; as long as what it sends.
-    pub receive: Vec<f64>,
-}
-
-/// What the ranks tell each other.
-pub trait Exchange: Debug + Send + Sync {
-    /// Number of this rank, from 0.
-    fn rank(&self) -> usize;
-
-    /// Number of ranks.
-    fn size(&self) -> usize;
-
-    /// Sends and receives a message for each neighbour. Of two ranks both have a message for each other, or none.
-    fn swap(&self, messages: &mut [Message]);
-
-    /// Gives every rank the values of all, rank after rank.
-    ///
-    /// - `counts`: number of values of each rank; `all` is as long as their sum
-    fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]);
-
-    /// Gives every rank the bytes of all, rank after rank.
-    fn gather_bytes(&self, own: &[u8]) -> Vec<Vec<u8>>;
-
-    /// The bits that are set on any rank.
-    fn any(&self, bits: u64) -> u64;
-}
-
-/// Gives every rank the values of all, rank after rank.
-///
-/// # Panics
-/// If a value cannot be written or read, which is a mistake of the program.
-pub fn gather<T: Serialize + DeserializeOwned>(exchange: &dyn Exchange, own: &T) -> Vec<T> {
-    let own = postcard::to_stdvec(own).expect("plain data");
-    let read = |bytes: &Vec<u8>| postcard::from_bytes(bytes).expect("all ranks run the same program");
-    exchange.gather_bytes(&own).iter().map(read).collect()
-}

@@ -6,7 +6,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 use mpi::{Count, Threading};
 
-use crate::{Exchange, Message};
+use crate::exchange::{Exchange, Message};
 
 /// All processes that MPI has started together.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 use std::sync::{Arc, Barrier, Mutex, MutexGuard, PoisonError};
 
-use crate::{Exchange, Message};
+use crate::exchange::{Exchange, Message};
 
 /// Ranks of one process, a thread for each.
 #[derive(Debug)]
@@ -103,7 +103,7 @@ mod tests {
                     end.gather(&vec![1.0 + me as f64; me], &[0, 1, 2], &mut all);
                     assert_eq!(all, [2.0, 3.0, 3.0]);
                     assert_eq!(end.any(1 << me), 0b111);
-                    assert_eq!(crate::gather(&**end, &(me, "rank".to_owned()))[2], (2, "rank".to_owned()));
+                    assert_eq!(crate::exchange::gather(&**end, &(me, "rank".to_owned()))[2], (2, "rank".to_owned()));
                 });
             }
         });

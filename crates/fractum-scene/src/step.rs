@@ -73,9 +73,7 @@ impl Scene {
         // Nothing has moved before.
         let elapsed = if first { 0.0 } else { dt_before };
         let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
-        if step_changes {
-            self.solid.move_all_nodes_next(); // their kinetic energy is summed
-        }
+        self.solid.move_all_nodes_next(step_changes); // their kinetic energy is summed
 
         if self.solid.body_count() > 0 {
             self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves

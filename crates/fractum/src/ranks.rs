@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fractum_fem::Formulation;
+use fractum_fem::{Formulation, Share};
 use fractum_io::case::model::{BodyKind, Case, LoadKind, SolverKind};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
+use fractum_io::number::grouped;
 use fractum_parallel::Exchange;
 use fractum_scene::Scene;
 
 use crate::error::{ExitCode, Failure};
-use crate::simulation::Options;
 
 /// This process among those that run a case together, or alone.
 #[derive(Debug, Default)]
@@ -80,11 +80,11 @@ impl Ranks {
     ///
     /// # Errors
     /// [`Failure::Input`] with everything of the case that they cannot do.
-    pub(crate) fn check(&self, path: &Path, options: &Options) -> Result<(), Failure> {
+    pub(crate) fn check(&self, path: &Path, overrides: &[(String, String)]) -> Result<(), Failure> {
         if self.exchange.is_none() {
             return Ok(());
         }
-        let case = read_case(path, &options.overrides)?;
+        let case = read_case(path, overrides)?;
         let found = std::iter::once(&case).chain(&case.later).flat_map(not_for_ranks);
         let error = |(place, what): (&Place, &str)| {
             Diagnostic::error(place, format!(": {what} cannot be run by several processes yet"))
@@ -107,6 +107,22 @@ impl Ranks {
         self.together(scene.cannot_be_shared().map_or(Ok(()), |what| Err(refuse(what))))?;
         scene.share_out(Arc::clone(exchange), watched);
         Ok(())
+    }
+
+    /// What this process does of the work, in words; nothing of a process by itself.
+    pub(crate) fn share(&self, scene: &Scene) -> Option<String> {
+        let (exchange, share) = (self.exchange.as_ref()?, scene.solid.share()?);
+        let Share { blocks, nodes, shared_nodes, bytes } = share;
+        let number = |count: usize| grouped(&count.to_string());
+        Some(format!(
+            "process {} of {}: {} blocks of cells, {} nodes, {} of them shared; {} bytes of forces sent per step",
+            exchange.rank(),
+            exchange.size(),
+            number(blocks),
+            number(nodes),
+            number(shared_nodes),
+            number(bytes)
+        ))
     }
 }
 

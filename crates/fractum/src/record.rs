@@ -21,7 +21,7 @@ use crate::gauge_tables;
 use crate::heat_columns;
 use crate::left;
 use crate::path_frames::PathFrames;
-use crate::series::{index_of_max, interpolate, slope_of_window, speed, time_mean};
+use crate::series::{index_of_max, interpolate, is_due, next_index, slope_of_window, speed, time_mean};
 
 /// A history whose first column orders its rows: the step where the load factor may run back, else the time.
 pub(crate) fn ordered(mut history: Table) -> Table {
@@ -171,7 +171,7 @@ pub(crate) struct Recorder {
 impl Recorder {
     /// Starts recording, or goes on where `resumed` stood.
     ///
-    /// - `writes`: whether this process writes the results; else its rows go to a history of its own, and frames nowhere
+    /// - `writes`: whether this process writes the results; else its rows go to a history of its own, frames nowhere
     pub(crate) fn open(
         case: Arc<Case>,
         scene: &Scene,
@@ -230,8 +230,7 @@ impl Recorder {
 
     /// Nodes whose velocities are watched in every step.
     pub(crate) fn watched(&self) -> Vec<u32> {
-        let stations = self.ppv.iter().flat_map(|of| &of.stations);
-        stations.flat_map(|station| &station.nodes).copied().collect()
+        self.ppv.iter().flat_map(|of| &of.stations).flat_map(|station| &station.nodes).copied().collect()
     }
 
     /// Largest velocities against distance, with their laws.
@@ -442,14 +441,4 @@ impl Recorder {
     pub(crate) fn finish(self, files: &mut Group) {
         self.history.finish_in(files);
     }
-}
-
-/// Whether output number `index` of those every `interval` is due at `time`.
-fn is_due(time: f64, index: u64, interval: f64) -> bool {
-    time >= interval * index as f64 * (1.0 - 1e-12)
-}
-
-/// The first output after `time`.
-fn next_index(time: f64, interval: f64) -> u64 {
-    (time / interval * (1.0 + 1e-12)).floor() as u64 + 1
 }

@@ -55,6 +55,16 @@ pub(crate) fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
     }
 }
 
+/// Whether output number `index` of those every `interval` is due at `time`.
+pub(crate) fn is_due(time: f64, index: u64, interval: f64) -> bool {
+    time >= interval * index as f64 * (1.0 - 1e-12)
+}
+
+/// The first output after `time`.
+pub(crate) fn next_index(time: f64, interval: f64) -> u64 {
+    (time / interval * (1.0 + 1e-12)).floor() as u64 + 1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -50,7 +50,7 @@ impl Simulation {
         let loaded = || {
             // Before anything is prepared, which may take long.
             folder_of(path, options)?;
-            ranks.check(path, options)?;
+            ranks.check(path, &options.overrides)?;
             load(path, &options.overrides, &options.cache)
         };
         let input = ranks.together(loaded())?;
@@ -79,22 +79,14 @@ impl Simulation {
         let plan = Plan::new(&input);
         let Input { case, mesh_hash, built, later, timings, .. } = input;
         let identity = Identity { program: program(), case_hash: case.hash_but_end(), mesh_hash };
-        let find = || {
-            let loaded = if options.resume { Some(find_checkpoint(&results, &identity, ranks.leads())?) } else { None };
-            let goes_on = loaded.as_ref().map(|loaded| goes_on(&case, loaded)).transpose()?;
-            Ok((loaded, goes_on))
-        };
+        let find = || options.resume.then(|| find_checkpoint(&results, &identity, ranks.leads())).transpose();
         // No rank writes before all have read.
-        let (loaded, goes_on) = ranks.together(find())?;
+        let loaded = ranks.together(find())?;
+        let goes_on = ranks.together(loaded.as_ref().map(|loaded| goes_on(&case, loaded)).transpose())?;
         let about =
             About { identity, case_hash: case.hash(), origin: origin(&case, mesh_hash, options, &folder), plan };
         if !options.quiet {
-            match Stream::Error.width() {
-                Some(width) => tell!("{}", about.plan.wrapped(width, |topic| toned(topic, Tone::Name, Stream::Error))),
-                None => tell!("{}", about.plan),
-            }
-            goes_on.iter().for_each(|text| tell!("{text}"));
-            tell!("results in {}", folder.display());
+            tell_plan(&about.plan, goes_on.as_deref(), &folder);
         }
         // Prepared before anything is put back: a resumed run solves the same systems in the same order.
         let mut phases = Phases::default();
@@ -117,19 +109,15 @@ impl Simulation {
         let put_back = |Loaded { state, .. }: Loaded<RunState>| put_back(state, &mut scene, &mut solver, &case);
         let resumed = loaded.map(put_back).transpose()?;
         let is_new = resumed.is_none();
-        let mut messages = Messages::new(open_folder(&folder, is_new || !ranks.leads())?, options.quiet, !ranks.leads());
+        let leads = ranks.leads();
+        let mut messages = Messages::new(open_folder(&folder, is_new || !leads)?, options.quiet, !leads);
         keep_case(&case, &folder, is_new)?;
-        let threads = rayon::current_num_threads();
-        let version = env!("CARGO_PKG_VERSION");
-        messages.log.line(format!("fractum {version} on {threads} threads: {}", path.display()))?;
-        about.origin.lines().iter().try_for_each(|(name, value)| messages.log.line(format!("{name}: {value}")))?;
-        goes_on.iter().try_for_each(|text| messages.log.line(text))?;
-        messages.log.line(&about.plan)?;
+        log_start(&mut messages.log, path, &about, goes_on.as_deref())?;
         timings.iter().try_for_each(|timing| messages.log.line(timing))?;
         built.warnings.iter().try_for_each(|warning| messages.warn(warning.to_string()))?;
-        let recorder =
-            Recorder::open(case, &scene, probes, built.ppv, grid, (&folder, course, ranks.leads()), resumed)?;
+        let recorder = Recorder::open(case, &scene, probes, built.ppv, grid, (&folder, course, leads), resumed)?;
         ranks.share_out(&mut scene, &recorder.watched())?;
+        ranks.share(&scene).map_or(Ok(()), |share| messages.log.line(share))?;
         let mut simulation = Simulation {
             case: stage,
             scene,
@@ -158,6 +146,25 @@ impl Simulation {
         simulation.prepare_step()?;
         Ok(simulation)
     }
+}
+
+/// Says on the terminal what will happen, and where results will be.
+fn tell_plan(plan: &Plan, goes_on: Option<&str>, folder: &Path) {
+    match Stream::Error.width() {
+        Some(width) => tell!("{}", plan.wrapped(width, |topic| toned(topic, Tone::Name, Stream::Error))),
+        None => tell!("{plan}"),
+    }
+    goes_on.iter().for_each(|text| tell!("{text}"));
+    tell!("results in {}", folder.display());
+}
+
+/// Begins the log with the program, what it was given, and the plan.
+fn log_start(log: &mut RunLog, path: &Path, about: &About, goes_on: Option<&str>) -> Result<(), Failure> {
+    let (version, threads) = (env!("CARGO_PKG_VERSION"), rayon::current_num_threads());
+    log.line(format!("fractum {version} on {threads} threads: {}", path.display()))?;
+    about.origin.lines().iter().try_for_each(|(name, value)| log.line(format!("{name}: {value}")))?;
+    goes_on.iter().try_for_each(|text| log.line(text))?;
+    Ok(log.line(&about.plan)?)
 }
 
 /// The newest checkpoint of this case.
