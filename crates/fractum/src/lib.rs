@@ -62,6 +62,7 @@ mod path_frames;
 mod phases;
 pub mod plan;
 mod plots;
+mod pool;
 mod population;
 mod ranks;
 mod record;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::Failure;
+use crate::pool::pool;
 use crate::ranks::Ranks;
 use crate::simulation::{Options, Outcome, Simulation};
 
@@ -43,12 +44,6 @@ fn measure(path: &Path, options: &Options, ranks: Ranks) -> Result<(Outcome, Opt
     })?;
     let seconds = pool.broadcast(|_| processor_time()).into_iter().sum();
     Ok((outcome, seconds))
-}
-
-/// Threads for one case; as many as cores if no number is given.
-pub(crate) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
-    // None is told by zero.
-    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?)
 }
 
 /// Processor time of this thread [s], as Linux tells it.

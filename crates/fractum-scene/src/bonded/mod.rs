@@ -1,6 +1,7 @@
 //! Bonded bodies: particles of their own beside the solids, joined by bonds of a law.
 
 mod fields;
+mod frequency;
 mod leave;
 mod momentum;
 mod piece;
@@ -11,7 +12,7 @@ use std::ops::Range;
 
 use fractum_dem::{
     AnyBondLaw, BondEnergy, BondGraph, Bonds, Crack, CrackFaces, Fracture, FractureCriterion, Occasion,
-    ParticleDamping, Particles, PastForces, TimeStep, highest_frequency,
+    ParticleDamping, Particles, PastForces, TimeStep,
 };
 use fractum_fem::LocalDamping;
 use fractum_math::{HalfSteps, Vec3, Work};
@@ -214,24 +215,6 @@ impl Bonded {
         Ok(all)
     }
 
-    /// Finds the highest frequency of beams as they are by the Lanczos process, in the place of its bound. Other bonds keep theirs, and so do bodies
-    /// that can break: where crack faces meet within a step, the balance pays for every step's length.
-    ///
-    /// # Errors
-    /// Beams that are none, which [`Bonded::new`] refuses.
-    pub fn find_frequency(&mut self) -> Result<(), SceneError> {
-        let mut highest: f64 = 0.0;
-        for body in self.bodies.iter().filter(|body| !body.bonds.is_empty()) {
-            highest = highest.max(if body.can_break() || body.bonds.beam().is_none() {
-                body.bound
-            } else {
-                highest_frequency(&body.bonds, &self.particles, body.range.clone())?
-            });
-        }
-        self.frequency = self.frequency.min(highest);
-        Ok(())
-    }
-
     /// Sets what holds and moves particles, which have their initial velocities and spins by now.
     ///
     /// - `turning`: particles and the axes (bits) about which they do not turn
@@ -263,11 +246,6 @@ impl Bonded {
     pub fn set_dissipation(&mut self, phi: f64) {
         self.dissipation = phi - 1.0;
         self.past = if phi > 1.0 { PastForces::none(self.particles.len()) } else { PastForces::default() };
-    }
-
-    /// By how much the dissipation shortens the stable step: √(2φ − 1).
-    pub(crate) fn step_divisor(&self) -> f64 {
-        (1.0 + 2.0 * self.dissipation).sqrt()
     }
 
     /// Sets what pushes particles.
@@ -317,20 +295,6 @@ impl Bonded {
     /// Bonds at the start, and those of them that have broken.
     pub fn bond_counts(&self) -> (usize, usize) {
         self.bodies.iter().fold((0, 0), |(all, broken), body| (all + body.bonds.len(), broken + body.broken()))
-    }
-
-    /// Highest natural frequency, or a bound on it [rad/s]; breaking only lowers it.
-    pub(crate) fn frequency(&self) -> f64 {
-        self.frequency
-    }
-
-    /// Largest damping ratio of bonds and crack faces.
-    pub(crate) fn damping_ratio(&self) -> f64 {
-        let ratio = |body: &BondedBody| {
-            let bonds = 0.5 * self.frequency * body.viscous_time;
-            bonds.max(body.fracture.as_ref().map_or(0.0, |f| f.faces().damping_ratio))
-        };
-        self.bodies.iter().map(ratio).fold(0.0, f64::max)
     }
 
     /// Energy that is nothing [J]: a million steps in each of which places move by a rounding bring a thousandth of it.
