@@ -2,7 +2,7 @@
 
 use fractum_io::build::{BuiltScene, may_rest};
 use fractum_io::case::model::{Body, BodyKind, Case, Motion, SolverKind};
-use fractum_io::number::quantity;
+use fractum_io::number::{quantity, significant};
 use fractum_scene::Scene;
 use fractum_scene::statics::Stiffness;
 
@@ -10,7 +10,7 @@ use fractum_scene::statics::Stiffness;
 /// something breaks as many follow the peak.
 const PERIODS: f64 = 20.0;
 /// Iterations to equilibrium along the path of one crack through a specimen: 390 to 980 in the gallery.
-const ITERATIONS: f64 = 600.0;
+pub const PATH_ITERATIONS: f64 = 600.0;
 /// Nodes up to which the first period is looked for: a few seconds.
 const MOST_NODES: usize = 300_000;
 
@@ -109,14 +109,21 @@ fn decide(case: &Case, built: &mut BuiltScene) -> Decision {
     let steps = end / (case.solver.safety * 2.0 / scene.solid.stable_step().frequency);
     let motion = 1e-9 * STEP * elements as f64 * steps;
     let (entries, direct) = stiffness.entries();
-    let times = if scene.solid.has_damage() { ITERATIONS } else { 1.0 };
-    let rest = times * (entries as f64 * if direct { DIRECT } else { ITERATIVE } + evaluation(scene));
+    let times = if scene.solid.has_damage() { PATH_ITERATIONS } else { 1.0 };
+    let rest = times * (solution_time(entries, direct) + evaluation(scene));
     let why = format!(
-        "loads are slow against the first period of {first}; equilibrium takes about {}, {steps:.0} steps of motion about {}",
-        quantity(rest, "s"),
-        quantity(motion, "s")
+        "loads are slow against the first period of {first}; on a common machine equilibrium takes about {} s, {steps:.0} steps of motion about {} s",
+        significant(rest, 2),
+        significant(motion, 2)
     );
     Decision { kind: if rest < motion { "static" } else { "explicit" }, why, period: Some(period) }
+}
+
+/// Time of one solution of the linear system on a common machine [s].
+///
+/// - `entries`: of the factor, or of the matrix where it is solved iteratively, which `direct` tells
+pub fn solution_time(entries: usize, direct: bool) -> f64 {
+    entries as f64 * if direct { DIRECT } else { ITERATIVE }
 }
 
 /// Time of an iteration beside the linear system [s].

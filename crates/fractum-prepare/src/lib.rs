@@ -31,6 +31,6 @@ pub use bonded::{
     BondedBodies, BondedReport, FoundStrengths, InterfaceReport, Joints, Origin, group_surface, prepare_bodies,
 };
 pub use cache::Cache;
-pub use choice::{choose, compare};
+pub use choice::{PATH_ITERATIONS, choose, compare, solution_time};
 pub use loose::facets;
 pub use memory::check_memory;

@@ -151,7 +151,6 @@ fn verified(selection: &Selection, path: &Path, case: &Case) -> Result<Vec<Verif
         cache: selection.cache.clone(),
         ..Options::default()
     };
-    let estimate = estimated(selection, path);
     let started = Instant::now();
     let outcome = run(path, &options);
     let (seconds, needs) = (started.elapsed().as_secs_f64(), needs(case));
@@ -168,6 +167,8 @@ fn verified(selection: &Selection, path: &Path, case: &Case) -> Result<Vec<Verif
             (vec![failed], BTreeMap::new())
         }
     };
+    // After the run: what that prepares and keeps counts in its time.
+    let estimate = estimated(selection, path);
     let line = |expectation| Verified {
         case: name.clone(),
         expectation,

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use fractum_io::build::BuiltScene;
 use fractum_io::case::model::Case;
+use fractum_prepare::{PATH_ITERATIONS, solution_time};
 use fractum_scene::statics::{Control, Stiffness};
 use fractum_scene::{ProbedScene, Scene};
 
@@ -18,12 +19,8 @@ use crate::{gallery, strip};
 const TRIED: f64 = 0.15;
 /// Steps before those that are timed: caches fill, and contacts that are there from the start are found.
 const WARM_UP: u64 = 2;
-/// Iterations to equilibrium along the path of a crack through a specimen: 390 to 980 in the gallery.
-const ITERATIONS: f64 = 600.0;
-/// Seconds per entry of a factor, and per entry of a matrix that is solved iteratively, of a system that is too large to be tried;
-/// entries up to which one is.
-const DIRECT: [f64; 2] = [4e-8, 4e7];
-const ITERATIVE: [f64; 2] = [3e-7, 5e6];
+/// Time of one solution on a common machine up to which it is tried [s].
+const MOST_TRIED: f64 = 1.6;
 /// Seconds per pixel of a picture, of the files of a run that are neither frames nor pictures, and of a row of the history beside its
 /// probes, on the core that costs are measured on.
 const PIXEL: f64 = 2.5e-8;
@@ -105,16 +102,16 @@ impl Stage<'_> {
             Control::Path | Control::Opening(_) => 1.0,
         };
         let (entries, direct) = Stiffness::new(&built.scene).ok()?.entries();
-        let [per_entry, most] = if direct { DIRECT } else { ITERATIVE };
-        if entries as f64 > most {
-            let times = if breaks { ITERATIONS } else { increments };
-            return Some(times * per_entry * slowness() * entries as f64);
+        let solution = solution_time(entries, direct);
+        if solution > MOST_TRIED {
+            let times = if breaks { PATH_ITERATIONS } else { increments };
+            return Some(times * slowness() * solution);
         }
         let began = Instant::now();
         solver.step(&mut built.scene, true, &mut Phases::default()).ok()?;
         let seconds = began.elapsed().as_secs_f64();
         let iterations = solver.iterations().max(1) as f64;
-        Some(if breaks { ITERATIONS.max(increments) * seconds / iterations } else { increments * seconds })
+        Some(if breaks { PATH_ITERATIONS.max(increments) * seconds / iterations } else { increments * seconds })
     }
 
     /// From the first steps to all of them, by the time that they cover; a heap of loose particles costs at least what it will when it lies.

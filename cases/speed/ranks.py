@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Runs a cube of 511,104 smoothed tetrahedra by one process with two threads and by two processes with one thread each, in turn, and prints
+the least time of their steps without output, the ratio, and what is sent.
+
+Needs numpy, MPI and a build with it: `cargo build --release --features mpi --target-dir target/mpi`, then
+`python3 cases/speed/ranks.py target/mpi/release/fractum`.
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from table import ROOT
+
+sys.path.append(str(ROOT / "python/examples"))
+from box_mesh import write_box
+
+CASE = """fractum = 1
+mesh = { file = "cube.msh" }
+bodies = [{ name = "cube", kind = "solid", group = "body", material = "rock", formulation = "smoothed" }]
+supports = [{ group = "x-", fix = "xyz" }]
+loads = [{ group = "x+", force = { x = "1 kN" } }]
+solver = { kind = "explicit", end = "0.25 ms" }
+output = { history = { every = "0.05 ms" }, fields = { every = "0.25 ms" } }
+[materials.rock]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+"""
+MPIRUN = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "-n", "2"]
+
+
+def main(program, cells=44, rounds=5):
+    ways = {"one process, two threads": ([], 2), "two processes, one thread each": (MPIRUN, 1)}
+    times = {way: [] for way in ways}
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        write_box(folder / "cube.msh", (cells,) * 3, (1.0,) * 3)
+        (folder / "case.toml").write_text(CASE)
+        hashes = set()
+        for _ in range(rounds):
+            for way, (start, threads) in ways.items():
+                results = folder / "results"
+                command = [*start, program, "run", folder / "case.toml", "-o", results, "--overwrite", "--quiet", "--threads", threads]
+                subprocess.run([str(part) for part in command], check=True, stdout=subprocess.DEVNULL)
+                summary = json.loads((results / "summary.json").read_text())
+                phases = summary["wall"]["phases"]
+                times[way].append(sum(phases.values()) - phases["output"])
+                hashes.add(summary["state_hash"])
+        log = (results / "run.log").read_text()
+    steps = summary["time"]["steps"]
+    for way, all_times in times.items():
+        print(f"{way}: {1e3 * min(all_times) / steps:.1f} ms a step, least of {rounds} runs of {steps} steps")
+    alone, shared = (min(all_times) for all_times in times.values())
+    print(f"ratio {shared / alone:.2f}; states {'alike' if len(hashes) == 1 else 'DIFFERENT'}")
+    print(next(line for line in log.splitlines() if "of them shared" in line))
+
+
+if __name__ == "__main__":
+    main(pathlib.Path(sys.argv[1]).resolve())
