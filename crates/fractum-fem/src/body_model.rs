@@ -1,3 +1,5 @@
+use std::sync::OnceLock;
+
 use fractum_math::Ragged;
 
 use crate::body::{Body, BodyEdges};
@@ -13,6 +15,8 @@ pub(crate) struct BodyModel {
     pub(crate) hooke: Hooke,
     pub(crate) viscosity: Option<BodyViscosity>,
     pub(crate) alive: Vec<bool>,
+    /// Volumes of the elements without load [m³], once something asks for them.
+    pub(crate) volumes: OnceLock<Vec<f64>>,
     /// Edges, with damage or in the smoothed formulation.
     pub(crate) edges: Option<BodyEdges>,
     pub(crate) elements_of_edge: Ragged,

@@ -4,8 +4,20 @@ use fractum_math::elementary::asin;
 use fractum_math::{Sym3, Vec3};
 
 use crate::body::ElementKind;
+use crate::damage::EdgeField;
 use crate::evaluate::Block;
 use crate::solid::Solid;
+
+/// How far the damage of a solid has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fracture {
+    /// Edges with damage.
+    pub damaged_edges: usize,
+    /// Edges whose residual stress ratio has reached its limit.
+    pub broken_edges: usize,
+    /// Elements removed.
+    pub removed_elements: usize,
+}
 
 /// An edge that a crack runs through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +36,13 @@ pub struct CrackEdge {
     /// Part of the strength that is lost, 0 to 1; behind damage at first, as stiffness goes before strength. Under a phase field that which its own
     /// opening would take from a crack, so that the middle of the band stands out.
     pub softened: f64,
+}
+
+impl CrackEdge {
+    /// What it adds to the area of crack, d V/l [m²]: a crack through all of a bar counts as its cross-section.
+    pub fn damaged_area(&self) -> f64 {
+        self.damage * self.area
+    }
 }
 
 /// Centre and normal of the plane nearest to a crack; in the plane the line nearest to it.
@@ -71,51 +90,64 @@ impl CrackPlane {
 }
 
 impl Solid {
-    /// All damaged edges, body by body in the order of their edges.
-    pub fn crack_edges(&self) -> Vec<CrackEdge> {
-        let mut found = Vec::new();
-        for (index, model) in self.bodies.iter().enumerate() {
-            let share = 1.0 / model.body.shape.edge_count() as f64;
-            let Some(edges) = &model.edges else { continue };
-            for edge in 0..edges.nodes.len() {
-                let Some((field, at)) = self.edge(index, edge as u32) else { continue };
-                let state = &field.state[at];
-                if state.damage <= 0.0 {
-                    continue;
-                }
-                let elements = model.elements_of_edge.row(edge);
-                // The cell of an edge that has lost no element knows its volume.
-                let whole = model.standard.is_none() && elements.iter().all(|&e| model.alive[e as usize]);
-                let volume: f64 = if whole {
-                    let (block, cell) = model.location[edge];
-                    self.blocks[block as usize].cells.volume[cell as usize]
-                } else {
-                    elements.iter().map(|&e| share * self.element_volume(index, e)).sum()
-                };
-                let [i, j] = edges.nodes[edge];
-                let (area, left) = match &model.phase {
-                    None => (volume / field.length[at], (1.0 - state.damage) * state.kappa / field.strength[at]),
-                    Some(phase) => (
-                        volume * phase.area_density(edge) / state.damage,
-                        field.softens.residual_ratio(state.kappa, field.strength[at], field.length[at]),
-                    ),
-                };
-                found.push(CrackEdge {
-                    body: index,
-                    edge: edge as u32,
-                    middle: (self.reference[i as usize] + self.reference[j as usize]) * 0.5,
-                    area,
-                    damage: state.damage,
-                    softened: 1.0 - left,
-                });
-            }
+    /// Counts damaged and broken edges and removed elements.
+    pub fn fracture(&self) -> Fracture {
+        let mut count = Fracture::default();
+        for edge in self.damaged_fields().flat_map(|(_, field)| &field.state) {
+            count.damaged_edges += usize::from(edge.damage > 0.0);
+            count.broken_edges += usize::from(edge.broken);
         }
-        found
+        count.removed_elements = self.bodies.iter().map(|b| b.alive.iter().filter(|a| !**a).count()).sum();
+        count
     }
 
-    /// Area of crack, Σ d V/l over the edges [m²]: a crack through all of a bar counts as its cross-section.
-    pub fn crack_area(&self) -> f64 {
-        self.crack_edges().iter().map(|edge| edge.damage * edge.area).sum()
+    /// All damaged edges, body by body in the order of their edges.
+    pub fn crack_edges(&self) -> Vec<CrackEdge> {
+        let fields: Vec<(usize, &EdgeField)> = self.damaged_fields().collect();
+        let mut places: Vec<[u32; 4]> = Vec::new();
+        for (index, &(body, field)) in (0..).zip(&fields) {
+            let damaged = (0..).zip(&field.state).filter(|(_, state)| state.damage > 0.0);
+            places.extend(damaged.map(|(at, _)| [body as u32, field.edges[at as usize], index, at]));
+        }
+        places.sort_unstable();
+        let edge =
+            |[body, _, field, at]: [u32; 4]| self.crack_edge(body as usize, fields[field as usize].1, at as usize);
+        places.into_iter().map(edge).collect()
+    }
+
+    fn crack_edge(&self, body: usize, field: &EdgeField, at: usize) -> CrackEdge {
+        let (model, edge, state) = (&self.bodies[body], field.edges[at], &field.state[at]);
+        let volume = self.volume_of_edge(body, edge);
+        let (area, left) = match &model.phase {
+            None => (volume / field.length[at], (1.0 - state.damage) * state.kappa / field.strength[at]),
+            Some(phase) => (
+                volume * phase.area_density(edge as usize) / state.damage,
+                field.softens.residual_ratio(state.kappa, field.strength[at], field.length[at]),
+            ),
+        };
+        let ends = model.edges.iter().flat_map(|edges| edges.nodes[edge as usize]);
+        CrackEdge {
+            body,
+            edge,
+            middle: ends.map(|node| self.reference[node as usize]).sum::<Vec3>() * 0.5,
+            area,
+            damage: state.damage,
+            softened: 1.0 - left,
+        }
+    }
+
+    /// Share of an edge in the volume of the elements around it, whether they are still there or not [m³].
+    fn volume_of_edge(&self, body: usize, edge: u32) -> f64 {
+        let model = &self.bodies[body];
+        let elements = model.elements_of_edge.row(edge as usize);
+        // The cell of an edge that has lost no element knows its volume.
+        if model.standard.is_none() && elements.iter().all(|&e| model.alive[e as usize]) {
+            let (block, cell) = model.location[edge as usize];
+            return self.blocks[block as usize].cells.volume[cell as usize];
+        }
+        let share = 1.0 / model.body.shape.edge_count() as f64;
+        let volumes = self.element_volumes(body);
+        elements.iter().map(|&e| share * volumes[e as usize]).sum()
     }
 
     /// Energy that damage has taken in a body with a phase field over the fracture energy of its area of crack; none without one, or without a crack.
@@ -125,7 +157,7 @@ impl Solid {
     pub fn cost_of_bands(&self, body: usize) -> Option<f64> {
         let model = &self.bodies[body];
         let (zone, _) = model.body.damage.as_ref().zip(model.phase.as_ref())?;
-        let area = |edge: &CrackEdge| if edge.body == body { edge.damage * edge.area } else { 0.0 };
+        let area = |edge: &CrackEdge| if edge.body == body { edge.damaged_area() } else { 0.0 };
         let needed = zone.law.fracture_energy * self.crack_edges().iter().map(area).sum::<f64>();
         let taken: f64 = self.blocks.iter().filter(|block| block.body == body).map(Block::dissipated).sum();
         (needed > 0.0).then(|| taken / needed)

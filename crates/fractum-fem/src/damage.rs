@@ -265,6 +265,11 @@ impl EdgeField {
         self.threshold[index] = threshold;
     }
 
+    /// Whether an edge is damaged.
+    pub(crate) fn is_damaged(&self) -> bool {
+        self.damaged > 0
+    }
+
     /// Whether edges are damaged rather than intact, so that four at a time cost less.
     pub(crate) fn is_mostly_damaged(&self) -> bool {
         2 * self.damaged >= self.edges.len()

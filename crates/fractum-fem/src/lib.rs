@@ -63,7 +63,7 @@ mod viscous_solid;
 
 pub use body::{Body, DamageZone, ElementKind, Formulation, Kinematics, Plane, Region, Regularisation};
 pub use central_difference::LocalDamping;
-pub use crack::{CrackEdge, CrackPlane};
+pub use crack::{CrackEdge, CrackPlane, Fracture};
 pub use crack_network::{CrackCell, CrackMouth, CrackNetwork, CrackNetworkState, CrackSide};
 pub use crack_surface::{CrackFacet, CrackSurface};
 pub use damage::EdgeDamage;
@@ -74,7 +74,7 @@ pub use material::{Criterion, CriterionKind, DamageLaw, Degradation, Elastic, So
 pub use part::Share;
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use separation::{SeparatedElement, SeparatedFacet, Separation};
-pub use solid::{Fracture, Solid};
+pub use solid::Solid;
 pub use state::{BodyState, SolidState};
 pub use time_step::StableStep;
 pub use viscosity::Viscosity;

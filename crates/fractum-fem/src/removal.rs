@@ -197,6 +197,12 @@ impl Solid {
         nodes
     }
 
+    /// Volumes of the elements of a body without load [m³], found once.
+    pub fn element_volumes(&self, body: usize) -> &[f64] {
+        let volumes = || (0..self.bodies[body].alive.len() as u32).map(|e| self.element_volume(body, e)).collect();
+        self.bodies[body].volumes.get_or_init(volumes)
+    }
+
     /// Volume of an element without load [m³].
     pub fn element_volume(&self, body: usize, element: u32) -> f64 {
         Geometry { body: &self.bodies[body].body, nodes: &self.reference }.element(element as usize).0

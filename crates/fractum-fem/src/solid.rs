@@ -1,4 +1,4 @@
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use fractum_math::{CHUNK, HalfSteps, Ragged, Sym3, Vec3};
 use rayon::prelude::*;
@@ -44,17 +44,6 @@ pub struct Solid {
     pub(crate) viscous_dissipation: f64,
     /// The share of one of several ranks; none where this process does all.
     pub(crate) part: Option<Box<Part>>,
-}
-
-/// How far the damage of a solid has come.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Fracture {
-    /// Edges with damage.
-    pub damaged_edges: usize,
-    /// Edges whose residual stress ratio has reached its limit.
-    pub broken_edges: usize,
-    /// Elements removed.
-    pub removed_elements: usize,
 }
 
 impl Solid {
@@ -209,23 +198,17 @@ impl Solid {
         self.viscous_dissipation
     }
 
-    /// Counts damaged and broken edges and removed elements.
-    pub fn fracture(&self) -> Fracture {
-        let mut count = Fracture::default();
-        for edge in self.edge_fields().flat_map(|(_, field)| &field.state) {
-            count.damaged_edges += usize::from(edge.damage > 0.0);
-            count.broken_edges += usize::from(edge.broken);
-        }
-        count.removed_elements = self.bodies.iter().map(|b| b.alive.iter().filter(|a| !**a).count()).sum();
-        count
-    }
-
     /// Damage of the edges of all bodies: blocks of smoothed cells first, then standard bodies.
     pub(crate) fn edge_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
         let cells = self.blocks.iter().filter_map(|block| Some((block.body, block.edge_field()?)));
         let standard =
             (0..).zip(&self.bodies).filter_map(|(body, model)| Some((body, &model.standard.as_ref()?.field)));
         cells.chain(standard)
+    }
+
+    /// Those of [`Self::edge_fields`] with damage.
+    pub(crate) fn damaged_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
+        self.edge_fields().filter(|(_, field)| field.is_damaged())
     }
 
     /// Where the damage of an edge of a body is kept; none where it may not be damaged.
@@ -422,6 +405,7 @@ impl BodyModel {
             hooke,
             viscosity: None,
             alive,
+            volumes: OnceLock::new(),
             edges,
             elements_of_edge,
             location,

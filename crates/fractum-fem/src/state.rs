@@ -66,12 +66,16 @@ impl Solid {
     ///
     /// This is 1 − χ of the softening curve; damage measures the loss of stiffness and comes close to 1 long before.
     pub fn lost_strength(&self, body: usize) -> Vec<f64> {
-        let strength = |edge: u32| self.edge(body, edge).map_or(f64::INFINITY, |(field, index)| field.strength[index]);
-        let lost = |(index, edge): (u32, EdgeDamage)| match edge.damage {
-            0.0 => 0.0,
-            damage => (1.0 - (1.0 - damage) * edge.kappa / strength(index)).clamp(0.0, 1.0),
-        };
-        (0..).zip(self.edge_damage(body)).map(lost).collect()
+        let model = &self.bodies[body];
+        let Some(edges) = model.edges.as_ref().filter(|_| model.body.damage.is_some()) else { return Vec::new() };
+        let mut lost = vec![0.0; edges.nodes.len()];
+        for (_, field) in self.damaged_fields().filter(|(of, _)| *of == body) {
+            for (at, edge) in field.state.iter().enumerate().filter(|(_, edge)| edge.damage > 0.0) {
+                let left = (1.0 - edge.damage) * edge.kappa / field.strength[at];
+                lost[field.edges[at] as usize] = (1.0 - left).clamp(0.0, 1.0);
+            }
+        }
+        lost
     }
 
     fn body_state(&self, body: usize) -> BodyState {

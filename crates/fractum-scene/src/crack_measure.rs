@@ -57,13 +57,13 @@ pub struct InsideCracks {
 /// Part of the strength that an edge of a crack has lost at least.
 const SOFTENED: f64 = 0.5;
 
-/// Places and areas of the crack: damaged edges, then broken bonds in the order of their breaking.
-fn points(scene: &Scene, inside: Option<&InsideCracks>) -> Vec<(Vec3, f64)> {
+/// Places and areas of the crack: of its damaged edges, then broken bonds in the order of their breaking.
+fn points(scene: &Scene, edges: &[CrackEdge], inside: Option<&InsideCracks>) -> Vec<(Vec3, f64)> {
     let counts = |of: fn(&InsideCracks) -> &Vec<Vec<bool>>, body: usize, index: u32| {
         inside.is_none_or(|inside| of(inside).get(body).is_some_and(|body| body.get(index as usize) == Some(&true)))
     };
-    let edge = |edge: &CrackEdge| edge.softened >= SOFTENED && counts(|i| &i.edges, edge.body, edge.edge);
-    let edges = scene.solid.crack_edges().into_iter().filter(edge);
+    let edge = |edge: &&CrackEdge| edge.softened >= SOFTENED && counts(|i| &i.edges, edge.body, edge.edge);
+    let edges = edges.iter().filter(edge);
     let bodies = scene.bonded.bodies().iter().enumerate();
     let bonds = bodies.flat_map(|(index, body)| body.cracks().iter().map(move |crack| (index, crack)));
     let bonds = bonds.filter(|(body, crack)| counts(|i| &i.bonds, *body, crack.bond));
@@ -72,8 +72,14 @@ fn points(scene: &Scene, inside: Option<&InsideCracks>) -> Vec<(Vec3, f64)> {
 }
 
 /// A number about the crack as it is; not a number where there is none, or too little of it.
-pub(crate) fn measure_crack(scene: &Scene, measure: CrackMeasure, axis: &Axis, inside: Option<&InsideCracks>) -> f64 {
-    let points = points(scene, inside);
+pub(crate) fn measure_crack(
+    scene: &Scene,
+    edges: &[CrackEdge],
+    measure: CrackMeasure,
+    axis: &Axis,
+    inside: Option<&InsideCracks>,
+) -> f64 {
+    let points = points(scene, edges, inside);
     let Axis { point, direction } = axis;
     match measure {
         CrackMeasure::Angle => {

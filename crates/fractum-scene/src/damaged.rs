@@ -16,24 +16,30 @@ pub enum DamagedMeasure {
 /// Elements whose damage has come to a threshold, and those that are gone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DamagedPart {
-    /// What about them.
-    pub measure: DamagedMeasure,
-    /// Mean damage over the edges of an element from which on it counts, above 0 up to 1.
-    pub threshold: f64,
-    /// Bodies and their elements that are looked at.
-    pub elements: Vec<(usize, u32)>,
+    measure: DamagedMeasure,
+    threshold: f64,
+    /// Bodies and their elements that are looked at, with their volumes [m³] or areas [m²].
+    elements: Vec<(usize, u32, f64)>,
+    /// Of all of them.
+    size: f64,
 }
 
 impl DamagedPart {
+    /// - `threshold`: mean damage over the edges of an element from which on it counts, above 0 up to 1
+    /// - `elements`: bodies and their elements that are looked at
+    pub fn new(solid: &Solid, measure: DamagedMeasure, threshold: f64, elements: &[(usize, u32)]) -> Self {
+        let depth = |body: usize| if measure == DamagedMeasure::Area { solid.body(body).thickness } else { 1.0 };
+        let sized =
+            |&(body, element): &(usize, u32)| (body, element, solid.element_volume(body, element) / depth(body));
+        let elements: Vec<(usize, u32, f64)> = elements.iter().map(sized).collect();
+        let size = elements.iter().fold(0.0, |sum, (_, _, size)| sum + size);
+        DamagedPart { measure, threshold, elements, size }
+    }
+
     /// The number, at present.
     pub(crate) fn value(&self, solid: &Solid) -> f64 {
-        let (mut damaged, mut all) = (0.0, 0.0);
-        for &(body, element) in &self.elements {
-            let depth = if self.measure == DamagedMeasure::Area { solid.body(body).thickness } else { 1.0 };
-            let size = solid.element_volume(body, element) / depth;
-            all += size;
-            damaged += if solid.element_damage(body, element) >= self.threshold { size } else { 0.0 };
-        }
-        if self.measure == DamagedMeasure::Share { damaged / all } else { damaged }
+        let counts = |(body, element, _): &&(usize, u32, f64)| solid.element_damage(*body, *element) >= self.threshold;
+        let damaged = self.elements.iter().filter(counts).fold(0.0, |sum, (_, _, size)| sum + size);
+        if self.measure == DamagedMeasure::Share { damaged / self.size } else { damaged }
     }
 }

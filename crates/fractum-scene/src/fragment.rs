@@ -86,9 +86,9 @@ pub fn solid_pieces(solid: &Solid, joined_below: f64) -> Vec<Fragment> {
     let mut volume = vec![0.0; part.len()];
     for body in 0..solid.body_count() {
         let corners = solid.body(body).shape.node_count();
-        let alive = solid.alive(body);
+        let (alive, volumes) = (solid.alive(body), solid.element_volumes(body));
         for (index, nodes) in solid.body(body).elements.iter().enumerate().filter(|(e, _)| alive[*e]) {
-            let share = solid.element_volume(body, index as u32) / corners as f64;
+            let share = volumes[index] / corners as f64;
             let of_nodes = nodes[..corners].iter().map(|&node| part[node as usize] as usize);
             of_nodes.clone().for_each(|place| volume[place] += share);
             let first = part[nodes[0] as usize] as usize;
@@ -145,8 +145,14 @@ fn joined_nodes(solid: &Solid, joined_below: f64) -> Vec<u32> {
         };
         let count = solid.body(body).shape.edge_count();
         let alive = edges.of_element.iter().zip(solid.alive(body)).filter(|(_, alive)| **alive);
-        let joining = alive.flat_map(|(of, _)| &of[..count]).filter(|&&edge| lost[edge as usize] < joined_below);
-        links.extend(joining.map(|&edge| edges.nodes[edge as usize]));
+        // Elements share edges, each of which links once.
+        let mut linked = vec![false; lost.len()];
+        for &edge in alive.flat_map(|(of, _)| &of[..count]) {
+            let edge = edge as usize;
+            if lost[edge] < joined_below && !std::mem::replace(&mut linked[edge], true) {
+                links.push(edges.nodes[edge]);
+            }
+        }
     }
     connected(solid.reference.len(), links)
 }

@@ -1,7 +1,7 @@
 use std::cell::OnceCell;
 
 use fractum_dem::crack_shape::Axis;
-use fractum_fem::{Separation, Wave};
+use fractum_fem::{CrackEdge, Separation, Wave};
 use fractum_math::{Sym3, Vec3};
 
 use crate::conditions::{Along, PointProbe, Population};
@@ -146,6 +146,7 @@ pub struct ProbedScene<'a> {
     scene: &'a Scene,
     fragments: OnceCell<Vec<Fragment>>,
     separation: OnceCell<Separation>,
+    crack_edges: OnceCell<Vec<CrackEdge>>,
     counts: OnceCell<Counts>,
     /// Stress of all elements, body by body.
     stresses: Vec<OnceCell<Vec<Sym3>>>,
@@ -162,6 +163,7 @@ impl<'a> ProbedScene<'a> {
             scene,
             fragments: OnceCell::new(),
             separation: OnceCell::new(),
+            crack_edges: OnceCell::new(),
             counts: OnceCell::new(),
             stresses: vec![OnceCell::new(); scene.solid.body_count()],
         }
@@ -187,6 +189,11 @@ impl<'a> ProbedScene<'a> {
         self.stresses[body].get_or_init(all)[element as usize]
     }
 
+    /// [`fractum_fem::Solid::crack_edges`], found once.
+    fn crack_edges(&self) -> &[CrackEdge] {
+        self.crack_edges.get_or_init(|| self.scene.solid.crack_edges())
+    }
+
     /// What has separated, found once.
     fn separation(&self) -> &Separation {
         self.separation.get_or_init(|| self.scene.solid.separation())
@@ -194,6 +201,15 @@ impl<'a> ProbedScene<'a> {
 }
 
 impl Probe {
+    /// Whether the value follows from which elements and bonds are gone, and from nothing else that changes.
+    pub fn is_of_separation(&self) -> bool {
+        match self {
+            Probe::Crack { measure, .. } => measure.is_of_separation(),
+            Probe::RadialCracks(_) => true,
+            _ => false,
+        }
+    }
+
     /// Whether the value needs the energies of the instant.
     pub fn needs_energy(&self) -> bool {
         matches!(self, Probe::Energy(_))
@@ -218,7 +234,8 @@ impl Probe {
                 let (mut sum, mut volume) = (0.0, 0.0);
                 let many = |body: usize| MANY * elements.len() >= solid.body(body).elements.len();
                 for &(body, element) in elements {
-                    let (v, middle) = (solid.element_volume(body, element), solid.element_middle(body, element));
+                    let v = solid.element_volumes(body)[element as usize];
+                    let middle = solid.element_middle(body, element);
                     let stress = probed.stress(body, element, many(body)).to_matrix();
                     sum += v * normal.at(&middle).dot(&(stress * along.at(&middle)));
                     volume += v;
@@ -263,11 +280,13 @@ impl Probe {
                 measure_fragment(solid, probed.fragments(), points, *measure, along)
             }
             Probe::FragmentSize(share) => passing_size(solid, probed.fragments(), *share),
-            Probe::CrackArea => solid.crack_area(),
+            Probe::CrackArea => probed.crack_edges().iter().map(CrackEdge::damaged_area).sum(),
             Probe::Crack { measure, axis, inside } if measure.is_of_separation() => {
                 measure_extent(scene, probed.separation(), *measure, &axis.direction, inside.as_ref())
             }
-            Probe::Crack { measure, axis, inside } => measure_crack(scene, *measure, axis, inside.as_ref()),
+            Probe::Crack { measure, axis, inside } => {
+                measure_crack(scene, probed.crack_edges(), *measure, axis, inside.as_ref())
+            }
             Probe::RadialCracks(probe) => probe.value(solid, probed.separation()),
             Probe::Damaged(probe) => probe.value(solid),
             Probe::WaveSpeed { body, wave } => solid.wave_speed(*body, *wave),

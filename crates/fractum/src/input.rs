@@ -9,9 +9,10 @@ use fractum_io::case::{Case, Diagnostic, Diagnostics, read_case};
 use fractum_io::memory;
 use fractum_mesh::Mesh;
 
+use crate::course::Course;
 use crate::error::Failure;
 use crate::plots;
-use crate::record::{self, Course};
+use crate::record;
 use fractum_prepare::{BondedReport, Cache, check_memory, choose, facets, prepare_bodies};
 
 /// A case with its mesh and the scene made of both.

@@ -45,6 +45,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod course;
 pub mod cracks;
 mod error;
 mod frame_pictures;
@@ -52,6 +53,7 @@ mod frames;
 mod gallery;
 mod gas_cells;
 mod gauge_tables;
+mod gone;
 mod heat_columns;
 mod input;
 mod inputs;

@@ -5,19 +5,21 @@ use std::sync::Arc;
 
 use fractum_io::atomic::{Group, Written};
 use fractum_io::attenuation::{Attenuation, Station};
-use fractum_io::build::{BuiltScene, PpvStations};
+use fractum_io::build::PpvStations;
 use fractum_io::case::model::{
     Body, BodyKind, Case, HistoryColumns, Output, ProbeExpression, ProbeInput, ProbeKind, SolverKind, Take,
 };
 use fractum_io::history::{Column, History, Table};
 use fractum_io::vtk::{Collection, FrameWriter};
-use fractum_scene::statics::{Control, NoEquilibrium};
+use fractum_scene::statics::NoEquilibrium;
 use fractum_scene::{EnergyKind, EnergyRole, PeakVelocity, ProbedScene, Scene, VelocityStation};
 use serde::{Deserialize, Serialize};
 
+use crate::course::Course;
 use crate::error::Failure;
 use crate::frames::{Frame, GridLayout};
 use crate::gauge_tables;
+use crate::gone::Gone;
 use crate::heat_columns;
 use crate::left;
 use crate::path_frames::PathFrames;
@@ -92,27 +94,6 @@ fn parts_of_bonds() -> impl Iterator<Item = EnergyKind> {
     EnergyKind::ALL.into_iter().filter(|kind| kind.role() == EnergyRole::PartOfBonds)
 }
 
-/// How a run proceeds.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Course {
-    /// Whether a part of it is a path of equilibria.
-    pub(crate) rests: bool,
-    /// Whether the load factor may run back: rows and frames are then ordered by steps.
-    pub(crate) turns_back: bool,
-}
-
-impl Course {
-    /// That of the stages of a run.
-    pub(crate) fn of<'a>(stages: impl Iterator<Item = &'a BuiltScene>) -> Self {
-        stages.fold(Course::default(), |course, stage| Course {
-            rests: course.rests || stage.statics.is_some() || stage.bonded_statics.is_some(),
-            turns_back: course.turns_back
-                || stage.bonded_statics.is_some()
-                || stage.statics.as_ref().is_some_and(|statics| statics.control != Control::Time),
-        })
-    }
-}
-
 /// Where recording stands; part of every checkpoint.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct RecordState {
@@ -161,6 +142,8 @@ pub(crate) struct Recorder {
     noted: Vec<Vec<bool>>,
     grid: GridLayout,
     inputs: Vec<f64>,
+    /// What was gone at the row before, for probes that see nothing else.
+    gone: Option<Gone>,
     course: Course,
     /// Whether this process writes the results.
     writes: bool,
@@ -208,6 +191,7 @@ impl Recorder {
             state,
             noted,
             inputs: Vec::new(),
+            gone: None,
             course,
             writes,
             tells_motion,
@@ -216,7 +200,7 @@ impl Recorder {
 
     /// The probes of a further stage, whose supports are others.
     pub(crate) fn set_probes(&mut self, probes: Vec<Option<fractum_scene::Probe>>) {
-        self.probes = probes;
+        (self.probes, self.gone) = (probes, None);
     }
 
     /// Takes over the velocities of the last step where they are the largest so far.
@@ -286,9 +270,14 @@ impl Recorder {
         row.extend(self.course.turns_back.then_some(scene.clock.step as f64));
         row.extend(self.tells_motion.then_some(f64::from(u8::from(in_motion))));
         self.state.times.push(time);
+        let gone = Gone::at(scene, counts);
+        let as_before = self.gone.replace(gone) == Some(gone);
         let case = Arc::clone(&self.case);
         for index in 0..case.probes.len() {
             let value = match (&case.probes[index].kind, &self.probes[index]) {
+                (_, Some(probe)) if as_before && probe.is_of_separation() => {
+                    self.state.series[index].last().copied().unwrap_or(f64::NAN)
+                }
                 (_, Some(probe)) => probe.value(&probed),
                 (ProbeKind::Expression(expression), None) if !expression.scalar => self.expression(expression),
                 _ => continue,
@@ -297,7 +286,7 @@ impl Recorder {
             row.push(value);
         }
         // Those that have left the domain are noted with the rest, and not counted.
-        if counts.removed_elements + scene.left().elements > self.state.removed.len() {
+        if gone.elements > self.state.removed.len() {
             self.note_removed(scene, time);
         }
         self.history.record(&row)?;

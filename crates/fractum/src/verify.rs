@@ -167,7 +167,7 @@ fn verified(selection: &Selection, path: &Path, case: &Case) -> Result<Vec<Verif
             (vec![failed], BTreeMap::new())
         }
     };
-    // After the run: what that prepares and keeps counts in its time.
+    // After the run, which prepares what the estimate would have to make ready once more.
     let estimate = estimated(selection, path);
     let line = |expectation| Verified {
         case: name.clone(),
@@ -180,14 +180,12 @@ fn verified(selection: &Selection, path: &Path, case: &Case) -> Result<Vec<Verif
     Ok(expectations.into_iter().map(line).collect())
 }
 
-/// How long `fractum check` says that a case takes without output, and its output [s].
+/// How long `fractum check` says that the steps of a case take, and its output [s].
 fn estimated(selection: &Selection, path: &Path) -> Option<[f64; 2]> {
     let estimated = || {
-        let began = Instant::now();
         let mut input = load(path, &[], &selection.cache).ok()?;
-        let set_up = began.elapsed().as_secs_f64();
-        let Estimate { set_up, steps, output } = estimate(&mut input, set_up)?;
-        Some([set_up + steps, output])
+        let Estimate { steps, output, .. } = estimate(&mut input, 0.0)?;
+        Some([steps, output])
     };
     pool(selection.threads).ok()?.install(estimated)
 }

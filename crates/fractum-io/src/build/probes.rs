@@ -115,7 +115,7 @@ impl Context<'_> {
             }
             ProbeKind::Damaged { measure, threshold, group, within } => {
                 let elements = self.elements_that_may_be_damaged(group.as_ref(), within.as_ref(), parts, solid);
-                Probe::Damaged(DamagedPart { measure: *measure, threshold: *threshold, elements })
+                Probe::Damaged(DamagedPart::new(solid, *measure, *threshold, &elements))
             }
             ProbeKind::WaveSpeed { body, wave } => {
                 let index = (0..solid.body_count()).find(|&index| solid.body(index).name == body.value);

@@ -30,7 +30,7 @@ pub struct Verified {
     /// Parts that the physics of the case needs, for `phases.md`.
     #[serde(skip)]
     pub needs: BTreeSet<String>,
-    /// Time that `fractum check` says without output, and that of output [s], for `estimates.md`; none where it says nothing.
+    /// Time that `fractum check` says of the steps, and of output [s], for `estimates.md`; none where it says nothing.
     #[serde(skip)]
     pub estimate: Option<[f64; 2]>,
 }
@@ -83,21 +83,31 @@ fn phases(lines: &[Verified]) -> String {
 /// Ratio of estimate and run, or of run and estimate, up to which an estimate is good.
 const GOOD: f64 = 2.0;
 
-/// How many estimates are good, without output and with it, then case by case estimate and time of the run.
+/// Time of the steps of a run from which on its estimate counts among the longer ones [s].
+const LONG: f64 = 0.1;
+
+/// How many estimates are good, of the steps and with output, then case by case estimate and time of the run. Setting up is measured by
+/// `fractum check` rather than estimated, and counts in neither.
 fn estimates(lines: &[Verified]) -> String {
     let pairs = |case: &Verified| {
-        let [without, output] = case.estimate?;
-        let of_run = case.seconds - case.phases.get("output").copied().unwrap_or(0.0);
-        Some([[without, of_run], [without + output, case.seconds]])
+        let [steps, output] = case.estimate?;
+        let all: f64 = case.phases.values().sum();
+        let of_steps = all - case.phases.get("output").copied().unwrap_or(0.0);
+        Some([[steps, of_steps], [steps + output, all]])
     };
     let cases = || lines.chunk_by(|a, b| a.case == b.case).filter_map(|case| Some((&case[0].case, pairs(&case[0])?)));
     let is_good = |[estimate, run]: [f64; 2]| (estimate / GOOD..=estimate * GOOD).contains(&run);
-    let good = |which: usize| cases().filter(|(_, pairs)| is_good(pairs[which])).count();
-    let all = cases().count();
-    let [without, with] = [0, 1].map(good);
+    let counted = |which: usize, least: f64| {
+        let long = cases().filter(|(_, [[_, run], _])| *run >= least);
+        let (good, all) =
+            long.fold((0, 0), |(good, all), (_, pairs)| (good + usize::from(is_good(pairs[which])), all + 1));
+        format!("{good} of {all}")
+    };
+    let [[steps, output], [long, long_output]] = [0.0, LONG].map(|least| [0, 1].map(|which| counted(which, least)));
     let mut text = format!(
-        "Within a factor of {GOOD} of the run: {without} of {all} estimates without output, {with} of {all} with it.\n\n\
-         | case | estimate without output [s] | run [s] | ratio | estimate with output [s] | run [s] | ratio |\n\
+        "Within a factor of {GOOD} of the run: {steps} estimates of the steps, {output} with output; where the steps take {LONG} s or more, \
+         {long} and {long_output}.\n\n\
+         | case | estimate of the steps [s] | run [s] | ratio | estimate with output [s] | run [s] | ratio |\n\
          |---|---|---|---|---|---|---|\n"
     );
     for (case, [[a, b], [c, d]]) in cases() {
@@ -164,9 +174,10 @@ mod tests {
             Verified { estimate: Some([1.5, 2.6]), phases: [("output".to_owned(), 0.5)].into(), ..line("bar/b", 1.0) };
         let none = Verified { estimate: None, ..line("bar/c", 1.0) };
         let text = estimates(&[line("bar/a", 1.0), line("bar/a", 1.2), far, none]);
-        let head = "Within a factor of 2 of the run: 2 of 2 estimates without output, 1 of 2 with it.\n";
-        let rows = "| bar/a | 1.000 | 2.000 | 0.50 | 1.500 | 2.000 | 0.75 |\n\
-                    | bar/b | 1.500 | 1.500 | 1.00 | 4.100 | 2.000 | 2.05 |\n";
+        let head = "Within a factor of 2 of the run: 1 of 2 estimates of the steps, 1 of 2 with output; where the steps take 0.1 s or more, \
+                    1 of 1 and 1 of 1.\n";
+        let rows = "| bar/a | 1.000 | 1.600 | 0.63 | 1.500 | 1.600 | 0.94 |\n\
+                    | bar/b | 1.500 | 0.000 | inf | 4.100 | 0.500 | 8.20 |\n";
         assert!(text.starts_with(head) && text.ends_with(rows), "{text}");
     }
 

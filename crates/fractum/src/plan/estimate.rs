@@ -8,7 +8,7 @@ use fractum_prepare::{PATH_ITERATIONS, solution_time};
 use fractum_scene::statics::{Control, Stiffness};
 use fractum_scene::{ProbedScene, Scene};
 
-use super::cost::{Cost, slowness};
+use super::cost::{Cost, slower_by_cracks, slowness};
 use crate::frames::{Frame, GridLayout};
 use crate::input::Input;
 use crate::phases::Phases;
@@ -114,7 +114,7 @@ impl Stage<'_> {
         Some(if breaks { PATH_ITERATIONS.max(increments) * seconds / iterations } else { increments * seconds })
     }
 
-    /// From the first steps to all of them, by the time that they cover; a heap of loose particles costs at least what it will when it lies.
+    /// From the first steps to all of them, by the time that they cover, longer where cracks are to come; a heap of loose particles costs at least what it will when it lies.
     fn tried(&self, scene: &mut Scene, solver: &mut Solver, conducts_alone: bool) -> Option<f64> {
         let threads = rayon::current_num_threads() as f64;
         let counted = Cost::of(scene, self.span).time_of_heap(self.span / scene.clock.dt_after, threads);
@@ -132,7 +132,7 @@ impl Stage<'_> {
         }
         let share = (scene.clock.time - from) / self.span;
         let all = if share > 0.0 { began.elapsed().as_secs_f64() / share } else { 0.0 };
-        Some(all.max(counted))
+        Some((all * slower_by_cracks(scene)).max(counted))
     }
 
     /// Numbers of frames and of rows of the history; of a path of equilibria, which has a row for every step, those that its steps ask for.

@@ -226,6 +226,8 @@ const FRAMES: f64 = 50.0;
 const ROWS: f64 = 1000.0;
 /// Wall time between checkpoints where nothing is said [s].
 const CHECKPOINT: f64 = 600.0;
+/// Wall time between checkpoints below which time of the scene was probably meant [s].
+const OFTEN: f64 = 1.0;
 /// Share of the strength lost at which an edge joins fragments no longer, where nothing is said.
 const JOINED_BELOW: f64 = 0.95;
 
@@ -252,6 +254,12 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>
         {
             let note = Diagnostic::warning(&every.place, format!("is longer than the run of {longest} s"));
             table.reader.note(note);
+        }
+        if let Some(every) = every.as_ref().filter(|every| name == "checkpoint" && every.value < OFTEN) {
+            let note = Diagnostic::warning(&every.place, "is time on the clock, not time of the scene");
+            table
+                .reader
+                .note(note.remedy("take minutes, or leave it out: a run that always saves its state does little else"));
         }
         every.map(|every| every.value)
     };
