@@ -176,7 +176,7 @@ mod tests {
         let text = estimates(&[line("bar/a", 1.0), line("bar/a", 1.2), far, none]);
         let head = "Within a factor of 2 of the run: 1 of 2 estimates of the steps, 1 of 2 with output; where the steps take 0.1 s or more, \
                     1 of 1 and 1 of 1.\n";
-        let rows = "| bar/a | 1.000 | 1.600 | 0.63 | 1.500 | 1.600 | 0.94 |\n\
+        let rows = "| bar/a | 1.000 | 1.600 | 0.62 | 1.500 | 1.600 | 0.94 |\n\
                     | bar/b | 1.500 | 0.000 | inf | 4.100 | 0.500 | 8.20 |\n";
         assert!(text.starts_with(head) && text.ends_with(rows), "{text}");
     }
