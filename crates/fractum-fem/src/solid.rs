@@ -301,18 +301,23 @@ impl Solid {
         }
     }
 
-    /// Damage of one element: the mean over its edges where it is smoothed, 1 where it has been removed.
-    pub fn element_damage(&self, index: usize, element: u32) -> f64 {
+    /// Damage of the elements of a body: the mean over its edges where it is smoothed, 1 where one has been removed.
+    pub fn element_damages(&self, index: usize) -> Vec<f64> {
         let model = &self.bodies[index];
-        let damage = |cell: u32| {
-            let (block, cell) = model.location[cell as usize];
-            (Sym3::ZERO, self.blocks[block as usize].damage_of(cell as usize))
-        };
-        match model.smoothed_edges() {
-            _ if !model.alive[element as usize] => 1.0,
-            None => damage(element).1,
-            Some(edges) => model.mean_of_edges(&edges.of_element[element as usize], damage).1,
+        let mut damage = vec![0.0; model.location.len()];
+        let may_be_damaged = |block: &&Block| block.edge_field().is_none_or(EdgeField::is_damaged);
+        for block in self.blocks.iter().filter(|block| block.body == index).filter(may_be_damaged) {
+            for (cell, &item) in block.items.iter().enumerate() {
+                damage[item as usize] = block.damage_of(cell);
+            }
         }
+        let of_cell = |cell: u32| (Sym3::ZERO, damage[cell as usize]);
+        let of_element = |(element, &alive): (usize, &bool)| match model.smoothed_edges() {
+            _ if !alive => 1.0,
+            None => damage[element],
+            Some(edges) => model.mean_of_edges(&edges.of_element[element], of_cell).1,
+        };
+        model.alive.iter().enumerate().map(of_element).collect()
     }
 
     fn cell_field(&self, model: &BodyModel, &(block, cell): &(u32, u32)) -> (Sym3, f64) {

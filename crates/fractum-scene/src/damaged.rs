@@ -38,8 +38,12 @@ impl DamagedPart {
 
     /// The number, at present.
     pub(crate) fn value(&self, solid: &Solid) -> f64 {
-        let counts = |(body, element, _): &&(usize, u32, f64)| solid.element_damage(*body, *element) >= self.threshold;
-        let damaged = self.elements.iter().filter(counts).fold(0.0, |sum, (_, _, size)| sum + size);
+        let mut damaged = 0.0;
+        for of_body in self.elements.chunk_by(|a, b| a.0 == b.0) {
+            let damage = solid.element_damages(of_body[0].0);
+            let counts = |of: &&(usize, u32, f64)| damage[of.1 as usize] >= self.threshold;
+            damaged = of_body.iter().filter(counts).fold(damaged, |sum, (_, _, size)| sum + size);
+        }
         if self.measure == DamagedMeasure::Share { damaged / self.size } else { damaged }
     }
 }
