@@ -6,15 +6,17 @@ use fractum_math::{Rotation, Vec3, widest};
 
 use super::lanes::{Lanes, Vector, dot};
 use super::law::{BondLanes, BondLaw, ForceLanes};
+use super::loads::{LoadLanes, load_sizes};
 use super::mean_strain::MeanStrain;
 
 /// Bonds computed side by side.
 pub(super) const WIDTH: usize = 8;
 
-/// What a pass over the bonds sums beside forces: nothing, virials, or bounds of them.
+/// What a pass over the bonds keeps beside forces: nothing, sums of virials, or of bounds of them, or what every bond bears.
 pub(super) const NOTHING: u8 = 0;
 pub(super) const VIRIALS: u8 = 1;
 pub(super) const BOUNDS: u8 = 2;
+pub(super) const LOADS: u8 = 3;
 
 /// Bonds of a block of particles, each with its first particle in it.
 #[derive(Clone, Debug)]
@@ -42,6 +44,8 @@ pub(super) struct Block<L: BondLaw> {
     pub(super) virials: Vec<[f64; 6]>,
     /// Sums of bounds of the virials, where they are wanted.
     pub(super) virial_bounds: Vec<[f64; 2]>,
+    /// What the bonds of each group bear, where that is wanted.
+    pub(super) loads: Vec<LoadLanes>,
     /// Sums of what bonds add to the stresses of mean strains, where there are any [J].
     pub(super) shares: Vec<[f64; 6]>,
     /// Sums that other blocks hold for particles of this one: (block, slot, own particle).
@@ -117,6 +121,7 @@ impl<L: BondLaw> Block<L> {
             sums,
             virials,
             virial_bounds,
+            loads: Vec::new(),
             shares,
             incoming,
         }
@@ -130,11 +135,14 @@ impl<L: BondLaw> Block<L> {
         law: &L,
     ) {
         debug_assert!(self.start + self.count <= position.len());
-        let Block { groups, memory, separated, sums, virials, virial_bounds, .. } = self;
+        let Block { groups, memory, separated, sums, virials, virial_bounds, loads, .. } = self;
         if FORCES {
             sums.fill([0.0; 6]);
         }
-        if DETAIL != NOTHING {
+        if DETAIL == LOADS {
+            loads.resize(groups.len(), LoadLanes::default());
+        }
+        if DETAIL == VIRIALS || DETAIL == BOUNDS {
             // Both at once, so that no later step allocates.
             virials.resize(sums.len(), [0.0; 6]);
             virial_bounds.resize(sums.len(), [0.0; 2]);
@@ -156,6 +164,9 @@ impl<L: BondLaw> Block<L> {
             }
             if FORCES {
                 add_forces(&group.slots, &forces, sums);
+            }
+            if DETAIL == LOADS {
+                loads[index] = load_sizes(bonds.gap, &forces);
             }
             if DETAIL == BOUNDS {
                 add_bounds(&group.slots, &bonds.gap, &forces.force, virial_bounds);

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::graph::BondGraph;
 use super::law::{BeamSection, BondEnergy, BondForces, BondLaw};
 use super::law::{LocalBond, Separation};
+use super::loads::LoadSizes;
 use super::network::BondNetwork;
 use crate::DemError;
 use crate::particles::Particles;
@@ -174,6 +175,16 @@ impl Bonds {
     /// See [`BondNetwork::add_forces_and_virial_bounds`].
     pub fn add_forces_and_virial_bounds(&mut self, particles: &mut Particles) {
         each!(self, network => network.add_forces_and_virial_bounds(particles));
+    }
+
+    /// See [`BondNetwork::add_forces_and_loads`].
+    pub fn add_forces_and_loads(&mut self, particles: &mut Particles) {
+        each!(self, network => network.add_forces_and_loads(particles));
+    }
+
+    /// See [`BondNetwork::load_sizes`].
+    pub fn load_sizes(&self, bond: usize) -> Option<LoadSizes> {
+        each!(self, network => network.load_sizes(bond))
     }
 
     /// See [`BondNetwork::find_virials`].

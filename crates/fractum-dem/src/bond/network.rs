@@ -292,7 +292,7 @@ impl<L: BondLaw> BondNetwork<L> {
         });
     }
 
-    fn add_forces_of<const DETAIL: u8>(&mut self, particles: &mut Particles) {
+    pub(super) fn add_forces_of<const DETAIL: u8>(&mut self, particles: &mut Particles) {
         if self.mean.is_some() {
             return self.add_deviating_forces(particles);
         }

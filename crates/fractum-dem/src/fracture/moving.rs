@@ -11,7 +11,7 @@ use super::criterion::{BondLoad, FailureSite, FractureCriterion};
 use super::faces::{CrackFaces, Face, FaceWork};
 use super::search::{Break, FailureSearch, LoadedBonds};
 use crate::DemError;
-use crate::bond::{BondForces, BondGraph, Bonds, Separation};
+use crate::bond::{BondForces, BondGraph, Bonds, LoadSizes, Separation};
 use crate::particles::Particles;
 
 /// Gap up to which strangers are listed, over the smallest radius.
@@ -39,16 +39,17 @@ pub struct Fracture {
     breaks: Vec<Break>,
     /// Scratch: bonds that have separated by their law.
     pub(super) separated: Vec<(u32, Separation)>,
-    /// What was summed of virials with the last forces.
-    detail: VirialDetail,
+    /// What was kept with the last forces.
+    detail: Detail,
     /// Steps for which whole virials are summed with the forces, since their bounds did not suffice.
     steps_with_tensor: u32,
 }
 
-/// What is summed of virials with the forces.
+/// What is kept with the forces: nothing, what every bond bears, or sums of virials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum VirialDetail {
+enum Detail {
     Nothing,
+    Loads,
     Bounds,
     Tensor,
 }
@@ -86,6 +87,10 @@ impl LoadedBonds for Moving<'_> {
             torsion: first.dot(&n),
             radius: self.bonds.section_radius(),
         }
+    }
+
+    fn sizes(&self, bond: u32) -> Option<LoadSizes> {
+        self.bonds.load_sizes(bond as usize)
     }
 
     fn axis(&self, bond: u32) -> Vec3 {
@@ -139,7 +144,7 @@ impl Fracture {
             sites: Vec::new(),
             breaks: Vec::new(),
             separated: Vec::new(),
-            detail: VirialDetail::Nothing,
+            detail: Detail::Nothing,
             steps_with_tensor: 0,
         }
     }
@@ -164,25 +169,27 @@ impl Fracture {
         self.released
     }
 
-    /// Adds the forces of the bonds, and sums with them what the criterion needs: far from failure bounds of the virials.
+    /// Adds the forces of the bonds, and keeps with them what the criterion needs: far from failure bounds of the virials.
     pub fn add_bond_forces(&mut self, bonds: &mut Bonds, particles: &mut Particles) {
-        self.detail = match self.search.as_ref().and_then(|search| search.criterion().level()) {
-            None => VirialDetail::Nothing,
-            Some(_) if self.steps_with_tensor > 0 => VirialDetail::Tensor,
-            Some(_) => VirialDetail::Bounds,
+        self.detail = match self.search.as_ref().map(|search| search.criterion().level()) {
+            None => Detail::Nothing,
+            Some(None) => Detail::Loads,
+            Some(_) if self.steps_with_tensor > 0 => Detail::Tensor,
+            Some(_) => Detail::Bounds,
         };
         match self.detail {
-            VirialDetail::Nothing => bonds.add_forces(particles),
-            VirialDetail::Bounds => bonds.add_forces_and_virial_bounds(particles),
-            VirialDetail::Tensor => bonds.add_forces_and_virials(particles),
+            Detail::Nothing => bonds.add_forces(particles),
+            Detail::Loads => bonds.add_forces_and_loads(particles),
+            Detail::Bounds => bonds.add_forces_and_virial_bounds(particles),
+            Detail::Tensor => bonds.add_forces_and_virials(particles),
         }
     }
 
     /// Sums the virials at the present positions unless that was done with the forces.
     fn need_virials(&mut self, bonds: &mut Bonds, particles: &Particles) {
-        if self.detail == VirialDetail::Bounds {
+        if self.detail == Detail::Bounds {
             bonds.find_virials(particles);
-            self.detail = VirialDetail::Tensor;
+            self.detail = Detail::Tensor;
         }
     }
 
@@ -214,7 +221,7 @@ impl Fracture {
     /// motion. [`Fracture::book_last_work`] takes what they do in it off the energies of the cracks.
     pub fn break_overloaded(&mut self, bonds: &mut Bonds, particles: &Particles, occasion: Occasion) -> usize {
         let Some(search) = &mut self.search else { return self.list_separated(bonds, occasion) };
-        if self.detail == VirialDetail::Bounds {
+        if self.detail == Detail::Bounds {
             if !search.virial_bounds_may_fail(bonds, 1.0) {
                 return 0;
             }

@@ -2,9 +2,11 @@
 
 use fractum_math::{Sym3, Vec3, sphere_volume};
 
-use super::criterion::{BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule};
+use super::criterion::{
+    BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule, SeenBonds,
+};
 use crate::DemError;
-use crate::bond::{BondGraph, Bonds};
+use crate::bond::{BondGraph, Bonds, LoadSizes};
 
 /// What a criterion needs to know of a bonded body.
 pub trait LoadedBonds: Sync {
@@ -13,6 +15,11 @@ pub trait LoadedBonds: Sync {
 
     /// What a live bond bears.
     fn load(&self, bond: u32) -> BondLoad;
+
+    /// [`LoadedBonds::load`] to rounding and without directions, where it is known already.
+    fn sizes(&self, _bond: u32) -> Option<LoadSizes> {
+        None
+    }
 
     /// Unit vector along a bond, in either sense.
     fn axis(&self, bond: u32) -> Vec3;
@@ -179,7 +186,10 @@ impl FailureSearch {
     pub fn search(&mut self, body: &impl LoadedBonds, graph: &BondGraph, limit: f64) {
         let criterion = self.criterion;
         let found = match criterion.rule() {
-            Rule::Load(criterion) => criterion.search(&|bond| body.load(bond), graph, limit),
+            Rule::Load(criterion) => {
+                let seen = SeenBonds { load: &|bond| body.load(bond), sizes: &|bond| body.sizes(bond) };
+                criterion.search(&seen, graph, limit)
+            }
             Rule::Stress(criterion) => {
                 body.virials(&mut self.virials);
                 let FailureSearch { members, inverse, virials, stress, .. } = self;

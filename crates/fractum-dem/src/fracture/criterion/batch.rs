@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{BondLoad, BreakMode, Level, LoadCriterion, StressCriterion};
-use crate::bond::BondGraph;
+use crate::bond::{BondGraph, LoadSizes};
 
 /// Particles or bonds handled as one block by the parallel loops.
 const BLOCK: usize = 1024;
@@ -112,23 +112,36 @@ impl<C: StressCriterion> StressBatch for C {
     }
 }
 
+/// Rounding by which the sizes of a load that are known already may miss those that are found anew.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Bonds as a criterion of loads sees them.
+pub(in crate::fracture) struct SeenBonds<'a> {
+    /// What a bond bears.
+    pub(in crate::fracture) load: &'a (dyn Fn(u32) -> BondLoad + Sync),
+    /// The same, to rounding and without directions, where it is known already.
+    pub(in crate::fracture) sizes: &'a (dyn Fn(u32) -> Option<LoadSizes> + Sync),
+}
+
 /// A criterion of loads over all bonds.
 pub(in crate::fracture) trait LoadBatch: Sync {
     /// What the criterion says of all bonds that hold.
-    fn search(&self, load: &(dyn Fn(u32) -> BondLoad + Sync), graph: &BondGraph, limit: f64) -> Vec<BlockSearch>;
+    fn search(&self, bonds: &SeenBonds<'_>, graph: &BondGraph, limit: f64) -> Vec<BlockSearch>;
 
     /// How a bond breaks under this load.
     fn mode(&self, load: &BondLoad) -> BreakMode;
 }
 
 impl<C: LoadCriterion> LoadBatch for C {
-    fn search(&self, load: &(dyn Fn(u32) -> BondLoad + Sync), graph: &BondGraph, limit: f64) -> Vec<BlockSearch> {
+    fn search(&self, bonds: &SeenBonds<'_>, graph: &BondGraph, limit: f64) -> Vec<BlockSearch> {
         let count = graph.pairs().len();
         let block = |block: usize| {
             let mut found = BlockSearch::default();
             for bond in block * BLOCK..((block + 1) * BLOCK).min(count) {
-                let live = graph.is_live(bond as u32);
-                found.add(bond, if live { self.ratio(&load(bond as u32)) } else { 0.0 }, limit);
+                let near = |sizes: LoadSizes| self.ratio_of(&sizes) * (1.0 + ROUND_OFF) >= limit.min(found.largest());
+                if graph.is_live(bond as u32) && (bonds.sizes)(bond as u32).is_none_or(near) {
+                    found.add(bond, self.ratio(&(bonds.load)(bond as u32)), limit);
+                }
             }
             found
         };

@@ -5,6 +5,7 @@ use super::{
     positive,
 };
 use crate::DemError;
+use crate::bond::LoadSizes;
 
 /// Largest principal stress in a cohesive beam against its strength (Jebahi et al. 2015, eqs. 4.1–4.3):
 /// σ = ½ (σ_n + √(σ_n² + 4 τ²)) with σ_n = N/S + M r/I and τ = r M_x/I₀.
@@ -43,7 +44,7 @@ impl Strengths for BeamRankine {
 
 impl LoadCriterion for BeamRankine {
     #[inline]
-    fn ratio(&self, load: &BondLoad) -> f64 {
+    fn ratio_of(&self, load: &LoadSizes) -> f64 {
         let (normal, bending, shear) = self.stresses(load);
         let sum = normal + bending;
         (0.5 * (sum + (sum * sum + 4.0 * shear * shear).sqrt()) / self.strength).max(0.0)
@@ -51,7 +52,7 @@ impl LoadCriterion for BeamRankine {
 
     /// What contributes most.
     fn mode(&self, load: &BondLoad) -> BreakMode {
-        let (normal, bending, shear) = self.stresses(load);
+        let (normal, bending, shear) = self.stresses(&load.sizes());
         if normal >= bending && normal >= shear {
             BreakMode::Tension
         } else if bending >= shear {
@@ -65,13 +66,12 @@ impl LoadCriterion for BeamRankine {
 impl BeamRankine {
     /// N/S, M r/I, and r M_x/I₀ [Pa].
     #[inline]
-    fn stresses(&self, load: &BondLoad) -> (f64, f64, f64) {
+    fn stresses(&self, load: &LoadSizes) -> (f64, f64, f64) {
         let r = load.radius;
         let area = std::f64::consts::PI * r * r;
-        let [first, second] = load.bending;
         let moment = match self.moments {
-            EndMoments::Mean => 0.5 * (first - second).norm(),
-            EndMoments::Largest => first.norm_squared().max(second.norm_squared()).sqrt(),
+            EndMoments::Mean => load.mean_bending,
+            EndMoments::Largest => load.largest_bending,
         };
         // I = S r²/4, I₀ = S r²/2.
         (load.normal / area, 4.0 * moment / (area * r), 2.0 * load.torsion.abs() / (area * r))

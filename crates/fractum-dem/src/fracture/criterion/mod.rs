@@ -13,7 +13,7 @@ mod mohr_coulomb;
 mod principal;
 
 pub use batch::FailureSite;
-pub(super) use batch::{LoadBatch, Neighbourhoods, StressBatch};
+pub(super) use batch::{LoadBatch, Neighbourhoods, SeenBonds, StressBatch};
 pub use beam_rankine::BeamRankine;
 pub use drucker_prager::DruckerPrager;
 pub use hydrostatic::Hydrostatic;
@@ -25,6 +25,7 @@ use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::DemError;
+use crate::bond::LoadSizes;
 
 /// What a bond bears.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,6 +38,20 @@ pub struct BondLoad {
     pub torsion: f64,
     /// Radius of its section [m].
     pub radius: f64,
+}
+
+impl BondLoad {
+    /// Without directions.
+    fn sizes(&self) -> LoadSizes {
+        let [first, second] = self.bending;
+        LoadSizes {
+            normal: self.normal,
+            mean_bending: 0.5 * (first - second).norm(),
+            largest_bending: first.norm_squared().max(second.norm_squared()).sqrt(),
+            torsion: self.torsion,
+            radius: self.radius,
+        }
+    }
 }
 
 /// How a bond broke.
@@ -151,7 +166,12 @@ pub trait StressCriterion: Sync {
 /// A criterion on what a single bond bears; the bond itself breaks.
 pub trait LoadCriterion: Sync {
     /// Load over strength: one where the bond fails, proportional to the load; not negative.
-    fn ratio(&self, load: &BondLoad) -> f64;
+    fn ratio(&self, load: &BondLoad) -> f64 {
+        self.ratio_of(&load.sizes())
+    }
+
+    /// [`LoadCriterion::ratio`] without directions.
+    fn ratio_of(&self, load: &LoadSizes) -> f64;
 
     /// How a bond breaks under this load.
     fn mode(&self, load: &BondLoad) -> BreakMode;
