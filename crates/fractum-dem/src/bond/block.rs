@@ -5,7 +5,7 @@ use std::ops::Range;
 use fractum_math::{Rotation, Vec3, widest};
 
 use super::lanes::{Lanes, Vector, dot};
-use super::law::{BondLanes, BondLaw, ForceLanes};
+use super::law::{BondEnergy, BondLanes, BondLaw, ForceLanes};
 use super::loads::{LoadLanes, load_sizes};
 use super::mean_strain::MeanStrain;
 
@@ -209,13 +209,7 @@ impl<L: BondLaw> Block<L> {
         shares.resize(sums.len(), [0.0; 6]);
         for (index, (group, memory)) in groups.iter_mut().zip(memory).enumerate() {
             let bonds = group.lanes(position, orientation);
-            let mut mean = [Lanes::splat(0.0); 6];
-            for k in 0..WIDTH {
-                let strain = field.between([group.first[k], group.second[k]]).0;
-                for c in 0..6 {
-                    mean[c].0[k] = strain[c];
-                }
-            }
+            let mean = group.mean_strains(field);
             let found = law.deviating_forces(&bonds, mean, &group.own, &mut group.recent, memory);
             if found.failing != 0 {
                 let lanes = (0..WIDTH).filter(|lane| found.failing >> lane & 1 == 1);
@@ -232,7 +226,60 @@ impl<L: BondLaw> Block<L> {
     }
 }
 
+impl<L: BondLaw> Block<L> {
+    #[inline(always)]
+    fn sum_energies(
+        &self,
+        position: &[Vec3],
+        orientation: &[Rotation],
+        law: &L,
+        field: Option<&MeanStrain>,
+    ) -> BondEnergy {
+        let mut sums = [Lanes::<WIDTH>::splat(0.0); 3];
+        for (group, memory) in self.groups.iter().zip(&self.memory) {
+            let bonds = group.lanes(position, orientation);
+            let energies = match field {
+                None => law.energies(&bonds, &group.own, &group.recent, memory),
+                Some(field) => {
+                    law.deviating_energies(&bonds, group.mean_strains(field), &group.own, &group.recent, memory)
+                }
+            };
+            let parts = [energies.tension, energies.bending, energies.torsion];
+            for (sum, part) in sums.iter_mut().zip(parts) {
+                // What is broken may have any energy.
+                *sum = *sum + Lanes::of(|k| if bonds.live.0[k] != 0.0 { part.0[k] } else { 0.0 });
+            }
+        }
+        let [tension, bending, torsion] = sums.map(|sum| sum.0.iter().sum());
+        BondEnergy { tension, bending, torsion }
+    }
+}
+
+widest! {
+    /// Energy that the live bonds of a block would give back.
+    pub(super) fn sum_energies<L: BondLaw>(
+        block: &Block<L>,
+        position: &[Vec3],
+        orientation: &[Rotation],
+        law: &L,
+        field: Option<&MeanStrain>,
+    ) -> BondEnergy = Block::<L>::sum_energies;
+}
+
 impl<L: BondLaw> Group<L> {
+    /// Means of the strains of both particles.
+    #[inline(always)]
+    fn mean_strains(&self, field: &MeanStrain) -> [Lanes<WIDTH>; 6] {
+        let mut mean = [Lanes::splat(0.0); 6];
+        for k in 0..WIDTH {
+            let strain = field.between([self.first[k], self.second[k]]).0;
+            for c in 0..6 {
+                mean[c].0[k] = strain[c];
+            }
+        }
+        mean
+    }
+
     /// The bonds at the present positions and orientations.
     #[inline(always)]
     fn lanes(&self, position: &[Vec3], orientation: &[Rotation]) -> BondLanes<WIDTH> {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::graph::BondGraph;
 use super::law::{BeamSection, BondEnergy, BondForces, BondLaw};
 use super::law::{LocalBond, Separation};
-use super::loads::LoadSizes;
+use super::loads::{LoadLanes, LoadSizes};
 use super::network::BondNetwork;
 use crate::DemError;
 use crate::particles::Particles;
@@ -180,6 +180,11 @@ impl Bonds {
     /// See [`BondNetwork::add_forces_and_loads`].
     pub fn add_forces_and_loads(&mut self, particles: &mut Particles) {
         each!(self, network => network.add_forces_and_loads(particles));
+    }
+
+    /// See [`BondNetwork::any_loads`].
+    pub fn any_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync)) -> bool {
+        each!(self, network => network.any_loads(meet))
     }
 
     /// See [`BondNetwork::load_sizes`].

@@ -1,5 +1,7 @@
 //! What bonds bear, kept from the pass over their forces for criteria that look at every one.
 
+use rayon::prelude::*;
+
 use super::block::{LOADS, WIDTH};
 use super::lanes::{Lanes, Vector, dot, scale, sub};
 use super::law::{BondLaw, ForceLanes};
@@ -22,7 +24,7 @@ pub struct LoadSizes {
 }
 
 /// [`LoadSizes`] of bonds side by side, in the order of its first four fields.
-pub(super) type LoadLanes = [[f64; WIDTH]; 4];
+pub type LoadLanes = [[f64; WIDTH]; 4];
 
 #[inline(always)]
 pub(super) fn load_sizes(gap: Vector<WIDTH>, forces: &ForceLanes<WIDTH>) -> LoadLanes {
@@ -40,6 +42,13 @@ impl<L: BondLaw> BondNetwork<L> {
     /// [`BondNetwork::add_forces`], which also keeps what [`BondNetwork::load_sizes`] tells of these forces.
     pub fn add_forces_and_loads(&mut self, particles: &mut Particles) {
         self.add_forces_of::<LOADS>(particles);
+    }
+
+    /// Whether what some bonds side by side bear, and the radius of their sections [m], meet a condition; true where no loads are kept.
+    pub fn any_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync)) -> bool {
+        let radius = self.law.section_radius();
+        let any = |loads: &[LoadLanes]| loads.iter().any(|lanes| meet(lanes, radius));
+        self.blocks.par_iter().any(|block| block.loads.len() != block.groups.len() || any(&block.loads))
     }
 
     /// What a bond bore at the last [`BondNetwork::add_forces_and_loads`], to rounding; none where that keeps nothing.

@@ -16,5 +16,5 @@ pub(crate) use graph::check_pairs;
 pub use graph::{BondGraph, HalfEdge, Parts};
 pub use kinds::{AnyBondLaw, BondMemory, Bonds};
 pub use law::*;
-pub use loads::LoadSizes;
+pub use loads::{LoadLanes, LoadSizes};
 pub use network::BondNetwork;

@@ -4,7 +4,7 @@ use fractum_math::{Sym3, Vec3};
 use nalgebra::Matrix6;
 use rayon::prelude::*;
 
-use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, WIDTH, sum_bonds};
+use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, WIDTH, sum_bonds, sum_energies};
 use super::graph::{BondGraph, check_pairs};
 use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
 use super::mean_strain::{MeanStrain, Separating};
@@ -358,13 +358,9 @@ impl<L: BondLaw> BondNetwork<L> {
 
     /// Energy that all live bonds would give back, by parts [J].
     pub fn energy(&self, particles: &Particles) -> BondEnergy {
-        let chunk = |bonds: std::ops::Range<usize>| {
-            bonds.filter(|&b| self.live[b]).fold(BondEnergy::default(), |sum, b| sum + self.energy_of(b, particles))
-        };
-        let parts: Vec<BondEnergy> = (0..self.len().div_ceil(BLOCK))
-            .into_par_iter()
-            .map(|c| chunk(c * BLOCK..((c + 1) * BLOCK).min(self.len())))
-            .collect();
+        let Particles { position, orientation, .. } = particles;
+        let of = |block| sum_energies(block, position, orientation, &self.law, self.mean.as_ref());
+        let parts: Vec<BondEnergy> = self.blocks.par_iter().map(of).collect();
         let bonds = parts.into_iter().fold(BondEnergy::default(), BondEnergy::add);
         match &self.mean {
             None => bonds,

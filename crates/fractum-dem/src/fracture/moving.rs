@@ -11,7 +11,7 @@ use super::criterion::{BondLoad, FailureSite, FractureCriterion};
 use super::faces::{CrackFaces, Face, FaceWork};
 use super::search::{Break, FailureSearch, LoadedBonds};
 use crate::DemError;
-use crate::bond::{BondForces, BondGraph, Bonds, LoadSizes, Separation};
+use crate::bond::{BondForces, BondGraph, Bonds, LoadLanes, LoadSizes, Separation};
 use crate::particles::Particles;
 
 /// Gap up to which strangers are listed, over the smallest radius.
@@ -91,6 +91,10 @@ impl LoadedBonds for Moving<'_> {
 
     fn sizes(&self, bond: u32) -> Option<LoadSizes> {
         self.bonds.load_sizes(bond as usize)
+    }
+
+    fn any_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync)) -> bool {
+        self.bonds.any_loads(meet)
     }
 
     fn axis(&self, bond: u32) -> Vec3 {
@@ -363,7 +367,7 @@ impl Fracture {
 mod tests {
     use super::*;
     use crate::bond::{BeamSection, LocalBond};
-    use crate::fracture::criterion::{BeamRankine, Level, Principal};
+    use crate::fracture::criterion::{BeamRankine, EndMoments, Level, LoadCriterion, Principal};
     use crate::particles::{CentralDifference, ParticleDamping};
 
     fn pair(length: f64) -> (Particles, Bonds) {
@@ -507,8 +511,7 @@ mod tests {
         assert!((load.torsion.abs() / (section.torsion() * 3e-6) - 1.0).abs() < 1e-4);
     }
 
-    #[test]
-    fn no_neighbourhood_exceeds_the_bound_of_its_particles() {
+    fn stretched_grid() -> (Particles, Bonds) {
         let position: Vec<Vec3> =
             (0..60).map(|i| Vec3::new((i % 5) as f64, (i / 5 % 4) as f64, (i / 20) as f64)).collect();
         let apart = |i: usize, j: usize| (position[i] - position[j]).norm();
@@ -518,8 +521,45 @@ mod tests {
             .map(|(i, j)| [i as u32, j as u32])
             .collect();
         let mut particles = Particles::at_rest(position.clone(), vec![0.5; 60], 1.0).unwrap();
-        let mut bonds = Bonds::new(&particles, &pairs, BeamSection::new(1e4, 0.3).unwrap()).unwrap();
+        let bonds = Bonds::new(&particles, &pairs, BeamSection::new(1e4, 0.3).unwrap()).unwrap();
         particles.position.iter_mut().enumerate().for_each(|(i, x)| x.x *= 1.0 + 1e-3 * (i as f64).sin());
+        (particles, bonds)
+    }
+
+    #[test]
+    fn loads_kept_with_the_forces_find_what_the_loads_of_single_bonds_find() {
+        let (mut particles, mut bonds) = stretched_grid();
+        let turned =
+            |i: usize| fractum_math::Rotation::from_scaled_axis(Vec3::new(0.3, -0.2, 0.5) * 1e-3 * (i as f64).cos());
+        particles.orientation.iter_mut().enumerate().for_each(|(i, turn)| *turn = turned(i));
+        for moments in [EndMoments::Mean, EndMoments::Largest] {
+            let criterion = BeamRankine { strength: 1.0, moments };
+            let rule = FractureCriterion::BeamRankine(criterion);
+            let mut fracture = Fracture::new(&bonds, &particles, rule, CrackFaces::default(), 0.6, 60.0).unwrap();
+            particles.clear_forces();
+            fracture.add_bond_forces(&mut bonds, &mut particles);
+            let worst = fracture.closest(&mut bonds, &particles).unwrap();
+            let body = Moving { bonds: &bonds, particles: &particles };
+            let ratios: Vec<f64> = (0..bonds.len() as u32).map(|bond| criterion.ratio(&body.load(bond))).collect();
+            for (bond, ratio) in ratios.iter().enumerate() {
+                let kept = criterion.ratio_of(&body.sizes(bond as u32).unwrap());
+                assert!((kept - ratio).abs() < 1e-12 * worst.ratio, "{bond}: {kept} {ratio}");
+            }
+            assert_eq!(worst.ratio, ratios.iter().copied().fold(0.0, f64::max));
+            let search = fracture.search.as_mut().unwrap();
+            assert!(search.may_fail(&body, worst.ratio) && !search.may_fail(&body, 1.001 * worst.ratio));
+            let limit = 0.5 * worst.ratio;
+            search.search(&body, &fracture.graph, limit);
+            let found: Vec<u32> = search.overloaded().iter().map(|site| site.index).collect();
+            let over = (0..ratios.len()).filter(|&bond| ratios[bond] >= limit);
+            assert_eq!(found, over.map(|bond| bond as u32).collect::<Vec<_>>());
+            assert!(found.len() > 1 && found.len() < ratios.len() / 2, "{}", found.len());
+        }
+    }
+
+    #[test]
+    fn no_neighbourhood_exceeds_the_bound_of_its_particles() {
+        let (mut particles, mut bonds) = stretched_grid();
         for level in [Level::Own, Level::Neighbours, Level::Second] {
             let principal = Principal { tensile_strength: 1.0, compressive_strength: Some(3.0), level };
             let criterion = FractureCriterion::Principal(principal);

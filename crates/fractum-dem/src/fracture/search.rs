@@ -6,7 +6,7 @@ use super::criterion::{
     BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule, SeenBonds,
 };
 use crate::DemError;
-use crate::bond::{BondGraph, Bonds, LoadSizes};
+use crate::bond::{BondGraph, Bonds, LoadLanes, LoadSizes};
 
 /// What a criterion needs to know of a bonded body.
 pub trait LoadedBonds: Sync {
@@ -19,6 +19,11 @@ pub trait LoadedBonds: Sync {
     /// [`LoadedBonds::load`] to rounding and without directions, where it is known already.
     fn sizes(&self, _bond: u32) -> Option<LoadSizes> {
         None
+    }
+
+    /// Whether what some bonds side by side bear, and the radius of their sections [m], meet a condition; true where that is not known.
+    fn any_loads(&self, _meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync)) -> bool {
+        true
     }
 
     /// Unit vector along a bond, in either sense.
@@ -170,9 +175,13 @@ impl FailureSearch {
     /// neighbourhood is a mean of its members' own, and bounds are convex, so that no neighbourhood exceeds the largest
     /// bound of a particle alone.
     pub fn may_fail(&mut self, body: &impl LoadedBonds, limit: f64) -> bool {
-        let Rule::Stress(criterion) = self.criterion.rule() else { return true };
-        body.virials(&mut self.virials);
-        criterion.virials_reach(&self.virials, &self.volume, self.fraction, limit)
+        match self.criterion.rule() {
+            Rule::Load(criterion) => body.any_loads(&|loads, radius| criterion.loads_reach(loads, radius, limit)),
+            Rule::Stress(criterion) => {
+                body.virials(&mut self.virials);
+                criterion.virials_reach(&self.virials, &self.volume, self.fraction, limit)
+            }
+        }
     }
 
     /// The same from [`Bonds::virial_bounds`], without a tensor: cheaper still, and a coarser bound.

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use super::{BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, ForceLanes};
+use super::{BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, EnergyLanes, ForceLanes, Turn};
 use crate::DemError;
 use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, scale, sub};
 
@@ -78,6 +78,12 @@ pub fn cohesive_beam(pair: &BondedPair, section: &BeamSection) -> BondForces {
     section.forces(&pair.lanes(), &[()], &mut (), &mut [()]).into()
 }
 
+/// Rotation of the second particle seen from the first.
+#[inline(always)]
+fn relative<const W: usize>((w1, u1): Turn<W>, (w2, u2): Turn<W>) -> Turn<W> {
+    (w1 * w2 + dot(u1, u2), sub(sub(scale(u2, w1), scale(u1, w2)), cross(u1, u2)))
+}
+
 impl BondLaw for BeamSection {
     type Parameters = ();
     type Memory = ();
@@ -107,8 +113,7 @@ impl BondLaw for BeamSection {
         // Derivatives of the bending energy with respect to θ₁ and θ₂.
         let (m1, m2) = (scale(add(a, sum), bend), scale(add(b, sum), bend));
         // Twist: relative rotation seen from the first particle, v·n₀ and its derivative s n₀ + v × n₀.
-        let s = w1 * w2 + dot(u1, u2);
-        let v = sub(sub(scale(u2, w1), scale(u1, w2)), cross(u1, u2));
+        let (s, v) = relative((w1, u1), (w2, u2));
         let torque = twist * (dot(v, axis) + dot(v, axis));
         let torque = scale(rotate(w1, u1, add(scale(axis, s), cross(v, axis))), torque);
         // Shear from the moments over the length, so that angular momentum is kept exactly.
@@ -120,8 +125,21 @@ impl BondLaw for BeamSection {
         ForceLanes { force, moment: [add(end(m1, t1), torque), sub(end(m2, t2), torque)] }
     }
 
-    fn energy(&self, pair: &BondedPair, _: &(), _: &()) -> BondEnergy {
-        cohesive_beam_energy(pair, self)
+    #[inline(always)]
+    fn energies<const W: usize>(&self, bonds: &BondLanes<W>, _: &[(); W], _: &(), _: &[(); W]) -> EnergyLanes<W> {
+        let BondLanes { gap, turns: [first, second], axis, inverse, .. } = *bonds;
+        let half = inverse * Lanes::splat(0.5);
+        let l = dot(gap, gap).sqrt();
+        let n = scale(gap, l.recip());
+        let (a, b) = (cross(n, rotate(first.0, first.1, axis)), cross(n, rotate(second.0, second.1, axis)));
+        let stretch = l - inverse.recip();
+        let (_, v) = relative(first, second);
+        let twist = dot(v, axis) + dot(v, axis);
+        EnergyLanes {
+            tension: half * Lanes::splat(self.axial()) * stretch * stretch,
+            bending: half * Lanes::splat(4.0 * self.bending()) * (dot(a, a) + dot(a, b) + dot(b, b)),
+            torsion: half * Lanes::splat(self.torsion()) * twist * twist,
+        }
     }
 
     fn dissipated(&self, _: f64, _: &(), _: &()) -> f64 {
@@ -153,17 +171,7 @@ impl BondLaw for BeamSection {
 
 /// Elastic energy of a cohesive beam, by parts; see [`cohesive_beam`].
 pub fn cohesive_beam_energy(pair: &BondedPair, section: &BeamSection) -> BondEnergy {
-    let gap = pair.position[1] - pair.position[0];
-    let l = gap.norm();
-    let n = gap / l;
-    let [a, b] = pair.rotation.map(|r| n.cross(&(r * pair.axis)));
-    let relative = pair.rotation[0].inverse() * pair.rotation[1];
-    let twist = 2.0 * relative.imag().dot(&pair.axis);
-    BondEnergy {
-        tension: 0.5 * section.axial() / pair.length * (l - pair.length).powi(2),
-        bending: 2.0 * section.bending() / pair.length * (a.dot(&a) + a.dot(&b) + b.dot(&b)),
-        torsion: 0.5 * section.torsion() / pair.length * twist * twist,
-    }
+    section.energy(pair, &(), &())
 }
 
 #[cfg(test)]

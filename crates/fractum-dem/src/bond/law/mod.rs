@@ -74,8 +74,20 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
         0
     }
 
-    /// Energy that a bond would give back [J]; its derivative at fixed memory is the force. It does not need the recent part of the memory.
-    fn energy(&self, pair: &BondedPair, own: &Self::Parameters, memory: &Self::Memory) -> BondEnergy;
+    /// Energies that `W` bonds side by side would give back; their derivative at fixed memory is the force.
+    fn energies<const W: usize>(
+        &self,
+        bonds: &BondLanes<W>,
+        own: &[Self::Parameters; W],
+        recent: &Self::Recent<W>,
+        memory: &[Self::Memory; W],
+    ) -> EnergyLanes<W>;
+
+    /// [`BondLaw::energies`] of one bond [J]. It does not need the recent part of the memory.
+    fn energy(&self, pair: &BondedPair, own: &Self::Parameters, memory: &Self::Memory) -> BondEnergy {
+        let (recent, memory) = alone::<Self>(memory);
+        self.energies(&pair.lanes(), &[*own], &recent, &memory).of_lane(0)
+    }
 
     /// Energy that a bond has dissipated so far [J]; never decreases. It does not need the recent part of the memory.
     fn dissipated(&self, length: f64, own: &Self::Parameters, memory: &Self::Memory) -> f64;
@@ -126,15 +138,28 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
         DeviatingForces { forces: self.forces(bonds, own, recent, memory), share: none, failing: 0 }
     }
 
-    /// [`BondLaw::energy`] of a bond that has not separated, under a law with [`BondLaw::mean_elasticity`].
+    /// [`BondLaw::energies`] under a law with [`BondLaw::mean_elasticity`].
+    fn deviating_energies<const W: usize>(
+        &self,
+        bonds: &BondLanes<W>,
+        _mean: [Lanes<W>; 6],
+        own: &[Self::Parameters; W],
+        recent: &Self::Recent<W>,
+        memory: &[Self::Memory; W],
+    ) -> EnergyLanes<W> {
+        self.energies(bonds, own, recent, memory)
+    }
+
+    /// [`BondLaw::deviating_energies`] of one bond [J].
     fn deviating_energy(
         &self,
         pair: &BondedPair,
-        _mean: Sym3,
+        mean: Sym3,
         own: &Self::Parameters,
         memory: &Self::Memory,
     ) -> BondEnergy {
-        self.energy(pair, own, memory)
+        let (recent, memory) = alone::<Self>(memory);
+        self.deviating_energies(&pair.lanes(), mean.0.map(|e| Lanes([e])), &[*own], &recent, &memory).of_lane(0)
     }
 
     /// What a bond transmits that has not separated, with the stress of the mean strain; none where that is not known.
@@ -162,6 +187,13 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
     fn touches(&self, _strain: f64, _: &Self::Memory) -> bool {
         true
     }
+}
+
+/// The memory of a bond as that of the only one of its lanes.
+fn alone<L: BondLaw>(memory: &L::Memory) -> (L::Recent<1>, [L::Memory; 1]) {
+    let (mut recent, mut alone) = (L::Recent::default(), [L::Memory::default()]);
+    L::remember(*memory, 0, &mut recent, &mut alone);
+    (recent, alone)
 }
 
 /// `W` bonds side by side at their present state.
@@ -201,6 +233,26 @@ pub struct ForceLanes<const W: usize> {
     pub force: Vector<W>,
     /// Moments on the first and on the second particles [N m].
     pub moment: [Vector<W>; 2],
+}
+
+/// Energies of `W` bonds side by side, by parts as in [`BondEnergy`] [J].
+#[derive(Clone, Copy)]
+pub struct EnergyLanes<const W: usize> {
+    /// Of changes of length.
+    pub tension: Lanes<W>,
+    /// Of bending and shear.
+    pub bending: Lanes<W>,
+    /// Of twist.
+    pub torsion: Lanes<W>,
+}
+
+impl<const W: usize> EnergyLanes<W> {
+    /// Energy of one of the bonds.
+    #[inline(always)]
+    pub fn of_lane(&self, lane: usize) -> BondEnergy {
+        let EnergyLanes { tension, bending, torsion } = self;
+        BondEnergy { tension: tension.0[lane], bending: bending.0[lane], torsion: torsion.0[lane] }
+    }
 }
 
 /// Hooke's law of the mean strains of particles.

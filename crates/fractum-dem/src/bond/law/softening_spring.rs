@@ -1,6 +1,6 @@
 //! A toy law with memory, for tests: a spring along the bond that softens in tension.
 
-use super::{BondEnergy, BondLanes, BondLaw, BondStiffness, BondedPair, ForceLanes};
+use super::{BondLanes, BondLaw, BondStiffness, EnergyLanes, ForceLanes};
 use crate::DemError;
 use crate::bond::lanes::{Lanes, dot, scale};
 
@@ -59,10 +59,13 @@ impl BondLaw for SofteningSpring {
         ForceLanes { force: scale(bonds.gap, pull), moment: [none; 2] }
     }
 
-    fn energy(&self, pair: &BondedPair, _: &(), memory: &f64) -> BondEnergy {
-        let elongation = (pair.position[1] - pair.position[0]).norm() - pair.length;
-        let integrity = if elongation > 0.0 { self.integrity(*memory) } else { 1.0 };
-        BondEnergy { tension: 0.5 * integrity * self.stiffness * elongation.powi(2), ..BondEnergy::default() }
+    fn energies<const W: usize>(&self, bonds: &BondLanes<W>, _: &[(); W], _: &(), memory: &[f64; W]) -> EnergyLanes<W> {
+        let elongation = dot(bonds.gap, bonds.gap).sqrt() - bonds.inverse.recip();
+        let tension = Lanes::of(|k| {
+            let integrity = if elongation.0[k] > 0.0 { self.integrity(memory[k]) } else { 1.0 };
+            0.5 * integrity * self.stiffness * elongation.0[k].powi(2)
+        });
+        EnergyLanes { tension, bending: Lanes::splat(0.0), torsion: Lanes::splat(0.0) }
     }
 
     fn dissipated(&self, _: f64, _: &(), memory: &f64) -> f64 {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{BondLoad, BreakMode, Level, LoadCriterion, StressCriterion};
-use crate::bond::{BondGraph, LoadSizes};
+use crate::bond::{BondGraph, LoadLanes, LoadSizes};
 
 /// Particles or bonds handled as one block by the parallel loops.
 const BLOCK: usize = 1024;
@@ -128,6 +128,9 @@ pub(in crate::fracture) trait LoadBatch: Sync {
     /// What the criterion says of all bonds that hold.
     fn search(&self, bonds: &SeenBonds<'_>, graph: &BondGraph, limit: f64) -> Vec<BlockSearch>;
 
+    /// Whether one of some bonds side by side may have a ratio of at least `limit`.
+    fn loads_reach(&self, loads: &LoadLanes, radius: f64, limit: f64) -> bool;
+
     /// How a bond breaks under this load.
     fn mode(&self, load: &BondLoad) -> BreakMode;
 }
@@ -146,6 +149,19 @@ impl<C: LoadCriterion> LoadBatch for C {
             found
         };
         (0..count.div_ceil(BLOCK)).into_par_iter().map(block).collect()
+    }
+
+    fn loads_reach(&self, loads: &LoadLanes, radius: f64, limit: f64) -> bool {
+        let [normal, mean_bending, largest_bending, torsion] = loads;
+        let mut any = false;
+        // All lanes, so that they are looked at side by side.
+        for k in 0..normal.len() {
+            let [normal, torsion] = [normal[k], torsion[k]];
+            let (mean_bending, largest_bending) = (mean_bending[k], largest_bending[k]);
+            let sizes = LoadSizes { normal, mean_bending, largest_bending, torsion, radius };
+            any |= self.ratio_of(&sizes) * (1.0 + ROUND_OFF) >= limit;
+        }
+        any
     }
 
     fn mode(&self, load: &BondLoad) -> BreakMode {

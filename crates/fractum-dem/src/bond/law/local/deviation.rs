@@ -4,7 +4,7 @@ use fractum_math::Sym3;
 
 use super::{Interface, InterfaceMemory, Kinematics, LocalBond, RecentStrains, Separation};
 use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
-use crate::bond::law::{BondEnergy, BondForces, BondLanes, BondedPair, DeviatingForces, ForceLanes};
+use crate::bond::law::{BondForces, BondLanes, BondedPair, DeviatingForces, EnergyLanes, ForceLanes};
 
 /// Strains of `W` interfaces in the axes of the undeformed body: the mean of their particles, and what they have beside it.
 struct Deviations<const W: usize> {
@@ -101,16 +101,22 @@ impl LocalBond {
         DeviatingForces { forces, share, failing }
     }
 
-    /// Energy of a whole interface beside the mean strain of its particles [J].
-    pub(super) fn deviating_energy_of(&self, pair: &BondedPair, mean: Sym3, own: &Interface) -> BondEnergy {
-        let at = Deviations::of(&pair.lanes(), mean.0.map(|e| Lanes([e])), &[*own]);
-        let half = 0.5 * own.area * pair.length;
-        let (normal, shear) = (at.normal.0[0], dot(at.shear, at.shear).0[0]);
-        BondEnergy {
-            tension: half * self.young_modulus * normal * normal,
-            bending: half * self.shear_modulus() * shear,
-            torsion: 0.0,
+    /// Energies of interfaces, whole ones beside the mean strain of their particles.
+    #[inline(always)]
+    pub(super) fn energies_beside<const W: usize>(
+        &self,
+        mean: [Lanes<W>; 6],
+        bonds: &BondLanes<W>,
+        own: &[Interface; W],
+        recent: &RecentStrains<W>,
+        memory: &[InterfaceMemory; W],
+    ) -> EnergyLanes<W> {
+        let at = Deviations::of(bonds, mean, own);
+        let mut energies = self.elastic_energies(at.normal, at.shear, bonds, own);
+        if recent.inelastic != 0 {
+            self.inelastic_energies((recent.inelastic, bonds), &at.at, own, memory, &mut energies);
         }
+        energies
     }
 
     /// Force that an interface transmits, that of the mean strain included (eqs. 21 and 22 of the source).

@@ -13,8 +13,8 @@ use fractum_math::Sym3;
 use steady::Past;
 
 use super::{
-    BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, DeviatingForces, ForceLanes, MeanElasticity,
-    Turn,
+    BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, DeviatingForces, EnergyLanes, ForceLanes,
+    MeanElasticity, Turn,
 };
 use crate::DemError;
 use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
@@ -158,6 +158,43 @@ impl LocalBond {
     /// Whether bonds can separate.
     pub fn can_fail(&self) -> bool {
         self.tensile_strength.is_finite() || self.shear_strength.is_finite()
+    }
+
+    /// Energies of whole interfaces at these strains.
+    #[inline(always)]
+    fn elastic_energies<const W: usize>(
+        &self,
+        normal: Lanes<W>,
+        shear: Vector<W>,
+        bonds: &BondLanes<W>,
+        own: &[Interface; W],
+    ) -> EnergyLanes<W> {
+        let half = Lanes::of(|k| 0.5 * own[k].area) * bonds.inverse.recip();
+        EnergyLanes {
+            tension: half * Lanes::splat(self.young_modulus) * normal * normal,
+            bending: half * Lanes::splat(self.shear_modulus()) * dot(shear, shear),
+            torsion: Lanes::splat(0.0),
+        }
+    }
+
+    /// Energies of some interfaces, as bits, that are not whole, in the place of the elastic ones.
+    #[inline(always)]
+    fn inelastic_energies<const W: usize>(
+        &self,
+        (which, bonds): (u32, &BondLanes<W>),
+        at: &Kinematics<W>,
+        own: &[Interface; W],
+        memory: &[InterfaceMemory; W],
+        energies: &mut EnergyLanes<W>,
+    ) {
+        let of = |a: usize| Lanes::of(|k| memory[k].slip[a]);
+        let slip = turned_slips(bonds.turns[0], [of(0), of(1), of(2)], at.direction);
+        for k in (0..W).filter(|k| which >> k & 1 == 1) {
+            let vector = |v: &Vector<W>| [v[0].0[k], v[1].0[k], v[2].0[k]];
+            let [along, across] = self.stored(at.normal.0[k], vector(&at.shear), vector(&slip), &memory[k]);
+            let volume = own[k].area / bonds.inverse.0[k];
+            (energies.tension.0[k], energies.bending.0[k]) = (along * volume, across * volume);
+        }
     }
 
     /// Stresses of some interfaces, as bits, that are not, or do not stay, whole, in the place of the elastic ones.
@@ -315,16 +352,20 @@ impl BondLaw for LocalBond {
         at.forces(stress * area, scale(across, area), bonds.inverse.recip())
     }
 
-    fn energy(&self, pair: &BondedPair, own: &Interface, memory: &InterfaceMemory) -> BondEnergy {
-        let lanes = pair.lanes();
-        let at = Kinematics::of(&lanes, &[*own]);
-        let slip = match memory.is_whole() {
-            true => memory.slip,
-            false => turned_slips(lanes.turns[0], memory.slip.map(|s| Lanes([s])), at.direction).map(|s| s.0[0]),
-        };
-        let [along, across] = self.stored(at.normal.0[0], at.shear.map(|s| s.0[0]), slip, memory);
-        let volume = own.area * pair.length;
-        BondEnergy { tension: along * volume, bending: across * volume, torsion: 0.0 }
+    #[inline(always)]
+    fn energies<const W: usize>(
+        &self,
+        bonds: &BondLanes<W>,
+        own: &[Interface; W],
+        recent: &RecentStrains<W>,
+        memory: &[InterfaceMemory; W],
+    ) -> EnergyLanes<W> {
+        let at = Kinematics::of(bonds, own);
+        let mut energies = self.elastic_energies(at.normal, at.shear, bonds, own);
+        if recent.inelastic != 0 {
+            self.inelastic_energies((recent.inelastic, bonds), &at, own, memory, &mut energies);
+        }
+        energies
     }
 
     fn dissipated(&self, length: f64, own: &Interface, memory: &InterfaceMemory) -> f64 {
@@ -355,8 +396,16 @@ impl BondLaw for LocalBond {
         self.deviating(bonds, mean, own, recent, memory)
     }
 
-    fn deviating_energy(&self, pair: &BondedPair, mean: Sym3, own: &Interface, memory: &InterfaceMemory) -> BondEnergy {
-        if memory.is_whole() { self.deviating_energy_of(pair, mean, own) } else { self.energy(pair, own, memory) }
+    #[inline(always)]
+    fn deviating_energies<const W: usize>(
+        &self,
+        bonds: &BondLanes<W>,
+        mean: [Lanes<W>; 6],
+        own: &[Interface; W],
+        recent: &RecentStrains<W>,
+        memory: &[InterfaceMemory; W],
+    ) -> EnergyLanes<W> {
+        self.energies_beside(mean, bonds, own, recent, memory)
     }
 
     fn traction(&self, pair: &BondedPair, mean: Sym3, own: &Interface) -> Option<BondForces> {
