@@ -7,6 +7,11 @@ use crate::common::{Workplace, resumed, run};
 /// A block that is crushed between two faces.
 const BLOCK: &str = include_str!("../../../cases/cement/block.toml");
 
+/// A case that saves its state as often as it can: `every` is wall time.
+fn saving(text: &str) -> Workplace {
+    Workplace::new(&text.replace("[output]", "[output]\ncheckpoint = { every = \"25 us\" }"))
+}
+
 fn assert_same_on_threads_and_after_a_checkpoint(place: &Workplace, one: &serde_json::Value) {
     let state = |run: &serde_json::Value| (run["state_hash"].clone(), run["energy"].clone());
     for threads in ["2", "7"] {
@@ -17,7 +22,7 @@ fn assert_same_on_threads_and_after_a_checkpoint(place: &Workplace, one: &serde_
 
 #[test]
 fn interfaces_separate_with_the_same_bits_on_any_threads_and_after_a_checkpoint() {
-    let place = Workplace::new(&BLOCK.replace("1.5 m/s", "8 m/s"));
+    let place = saving(&BLOCK.replace("1.5 m/s", "8 m/s"));
     let one = run(&place, "one", "1");
     let broken = one["counts"]["broken_bonds"].as_u64().unwrap();
     assert!(broken > 50, "{}", one["counts"]);
@@ -36,7 +41,7 @@ fn interfaces_beside_the_mean_strain_separate_with_the_same_bits_on_any_threads_
     let left_out = ["softening", "crushing"];
     let kept = BLOCK.lines().filter(|line| !left_out.iter().any(|word| line.contains(word)));
     let text = kept.collect::<Vec<_>>().join("\n").replace("bond = \"local\"", "bond = \"local-nonlocal\"");
-    let place = Workplace::new(&text.replace("every = \"20 us\"", "every = \"1 ms\""));
+    let place = saving(&text.replace("every = \"20 us\"", "every = \"1 ms\""));
     let one = run(&place, "one", "1");
     assert!(one["counts"]["broken_bonds"].as_u64().unwrap() > 50, "{}", one["counts"]);
     let energy = |name: &str| one["energy"][name].as_f64().unwrap();
