@@ -2,6 +2,9 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+/// Bonds computed side by side.
+pub(super) const WIDTH: usize = 8;
+
 /// `W` numbers handled side by side: plain arrays that the compiler turns into vector instructions.
 #[derive(Clone, Copy)]
 pub struct Lanes<const W: usize>(pub [f64; W]);

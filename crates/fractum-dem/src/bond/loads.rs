@@ -1,12 +1,7 @@
-//! What bonds bear, kept from the pass over their forces for criteria that look at every one.
+//! What bonds bear, for criteria that look at every one.
 
-use rayon::prelude::*;
-
-use super::block::{LOADS, WIDTH};
-use super::lanes::{Lanes, Vector, dot, scale, sub};
-use super::law::{BondLaw, ForceLanes};
-use super::network::BondNetwork;
-use crate::particles::Particles;
+use super::lanes::{Lanes, Vector, WIDTH, dot, scale, sub};
+use super::law::ForceLanes;
 
 /// Sizes of what a bond bears.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,26 +31,4 @@ pub(super) fn load_sizes(gap: Vector<WIDTH>, forces: &ForceLanes<WIDTH>) -> Load
     let (a, b) = (dot(first, first), dot(second, second));
     let largest = Lanes::<WIDTH>::of(|k| a.0[k].max(b.0[k])).sqrt();
     [(-dot(forces.force, n)).0, mean.0, largest.0, dot(forces.moment[0], n).0]
-}
-
-impl<L: BondLaw> BondNetwork<L> {
-    /// [`BondNetwork::add_forces`], which also keeps what [`BondNetwork::load_sizes`] tells of these forces.
-    pub fn add_forces_and_loads(&mut self, particles: &mut Particles) {
-        self.add_forces_of::<LOADS>(particles);
-    }
-
-    /// Whether what some bonds side by side bear, and the radius of their sections [m], meet a condition; true where no loads are kept.
-    pub fn any_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync)) -> bool {
-        let radius = self.law.section_radius();
-        let any = |loads: &[LoadLanes]| loads.iter().any(|lanes| meet(lanes, radius));
-        self.blocks.par_iter().any(|block| block.loads.len() != block.groups.len() || any(&block.loads))
-    }
-
-    /// What a bond bore at the last [`BondNetwork::add_forces_and_loads`], to rounding; none where that keeps nothing.
-    pub fn load_sizes(&self, bond: usize) -> Option<LoadSizes> {
-        let [block, group, lane] = self.index[bond].map(|i| i as usize);
-        let lanes = self.blocks[block].loads.get(group)?;
-        let [normal, mean_bending, largest_bending, torsion] = lanes.map(|of| of[lane]);
-        Some(LoadSizes { normal, mean_bending, largest_bending, torsion, radius: self.law.section_radius() })
-    }
 }

@@ -2,6 +2,7 @@
 
 mod block;
 mod graph;
+mod kept_loads;
 mod kinds;
 pub mod lanes;
 mod law;

@@ -4,8 +4,9 @@ use fractum_math::{Sym3, Vec3};
 use nalgebra::Matrix6;
 use rayon::prelude::*;
 
-use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, WIDTH, sum_bonds, sum_energies};
+use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, sum_bonds, sum_energies};
 use super::graph::{BondGraph, check_pairs};
+use super::lanes::WIDTH;
 use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
 use super::mean_strain::{MeanStrain, Separating};
 use crate::DemError;

@@ -104,7 +104,7 @@ impl<L: BondLaw> BondNetwork<L> {
             let released = before - self.energy_about(about, bonds, particles);
             self.put_memory(bond, self.law.with_dissipated(memory, released, self.length[bond], &own));
             let [block, group, lane] = self.index[bond];
-            self.blocks[block as usize].separated.push(group * super::block::WIDTH as u32 + lane);
+            self.blocks[block as usize].separated.push(group * super::lanes::WIDTH as u32 + lane);
         }
     }
 
