@@ -265,7 +265,7 @@ impl EdgeField {
         self.threshold[index] = threshold;
     }
 
-    /// Whether an edge is damaged.
+    /// Whether an edge of a block is damaged; standard bodies do not count theirs.
     pub(crate) fn is_damaged(&self) -> bool {
         self.damaged > 0
     }

@@ -200,15 +200,20 @@ impl Solid {
 
     /// Damage of the edges of all bodies: blocks of smoothed cells first, then standard bodies.
     pub(crate) fn edge_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
-        let cells = self.blocks.iter().filter_map(|block| Some((block.body, block.edge_field()?)));
-        let standard =
-            (0..).zip(&self.bodies).filter_map(|(body, model)| Some((body, &model.standard.as_ref()?.field)));
-        cells.chain(standard)
+        self.cell_fields().chain(self.standard_fields())
     }
 
-    /// Those of [`Self::edge_fields`] with damage.
+    /// Those that may hold damaged edges: standard bodies do not count theirs.
     pub(crate) fn damaged_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
-        self.edge_fields().filter(|(_, field)| field.is_damaged())
+        self.cell_fields().filter(|(_, field)| field.is_damaged()).chain(self.standard_fields())
+    }
+
+    fn cell_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
+        self.blocks.iter().filter_map(|block| Some((block.body, block.edge_field()?)))
+    }
+
+    fn standard_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
+        (0..).zip(&self.bodies).filter_map(|(body, model)| Some((body, &model.standard.as_ref()?.field)))
     }
 
     /// Where the damage of an edge of a body is kept; none where it may not be damaged.
