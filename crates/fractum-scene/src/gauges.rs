@@ -88,15 +88,10 @@ impl GaugeGrid {
     /// The readings of the present instant, in the order of the places. Those with a point that has left the run have no numbers.
     pub fn readings(&self, scene: &Scene) -> Vec<GaugeReading> {
         let all = points_of(&scene.bonded, &scene.solid, self.population);
-        let nodes = scene.solid.reference.len();
-        let mut left: Vec<u32> = match self.population {
-            Population::Nodes => scene.left().nodes(nodes).collect(),
-            Population::Particles => scene.left().particles(nodes).collect(),
-        };
-        left.sort_unstable();
+        let has_left = scene.has_left(self.population);
         let reading = |gauge: &Gauge| {
             let reading = gauge.reading(|i| all.displacement(i));
-            if gauge.points.iter().any(|i| left.binary_search(i).is_ok()) {
+            if gauge.points.iter().any(|&i| has_left(i)) {
                 return GaugeReading { displacement: Vec3::repeat(f64::NAN), strain: [f64::NAN; 6], ..reading };
             }
             reading
@@ -157,8 +152,13 @@ impl Extensometer {
         (span.norm() > 0.0).then_some(Extensometer { population, feet, span })
     }
 
-    /// Elongation over the distance without load [-], at the instant of the last step; rotation of the whole is none.
+    /// Elongation over the distance without load [-], at the instant of the last step; rotation of the whole is none. Not a number once a
+    /// point of a foot has left the run.
     pub(crate) fn value(&self, scene: &Scene) -> f64 {
+        let has_left = scene.has_left(self.population);
+        if self.feet.iter().flatten().any(|&i| has_left(i)) {
+            return f64::NAN;
+        }
         let (all, dt) = (points_of(&scene.bonded, &scene.solid, self.population), scene.clock.dt_before);
         let [first, second] = [0, 1].map(|foot| mean(&self.feet[foot], |i| all.displacement_before(i, dt)));
         elongation(&self.span, &(second - first))

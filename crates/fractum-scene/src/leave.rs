@@ -2,6 +2,7 @@
 
 use fractum_math::Vec3;
 
+use crate::conditions::Population;
 use crate::domain::{Domain, Left};
 use crate::fragment::parts;
 use crate::scene::Scene;
@@ -24,6 +25,17 @@ impl Scene {
     /// What has left the run.
     pub fn left(&self) -> &Left {
         &self.removals.left
+    }
+
+    /// Whether a point of a population has left the run.
+    pub(crate) fn has_left(&self, population: Population) -> impl Fn(u32) -> bool + use<> {
+        let nodes = self.solid.reference.len();
+        let mut left: Vec<u32> = match population {
+            Population::Nodes => self.left().nodes(nodes).collect(),
+            Population::Particles => self.left().particles(nodes).collect(),
+        };
+        left.sort_unstable();
+        move |point| left.binary_search(&point).is_ok()
     }
 
     /// Has nothing push what has left, which rests where it was then.

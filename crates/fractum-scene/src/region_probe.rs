@@ -87,7 +87,11 @@ impl RegionStrain {
         between.iter().all(measured).then_some(RegionStrain { population, gauge, between })
     }
 
+    /// The component [-], at the instant of the last step. Not a number once a point of the set has left the run.
     pub(crate) fn value(&self, scene: &Scene) -> f64 {
+        if self.gauge.points().any(scene.has_left(self.population)) {
+            return f64::NAN;
+        }
         let dt = scene.clock.dt_before;
         let all = &scene.bonded.particles;
         let strain = match self.population {

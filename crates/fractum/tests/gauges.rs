@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::common::{BONDED_BAR, Workplace, files_below, run};
+use crate::common::{BONDED_BAR, Workplace, files_below, history, run};
 
 /// A bar without lateral contraction that is stretched by 1.5e-4 along x.
 const STRETCHED: &str = r#"fractum = 1
@@ -94,4 +94,56 @@ fn particles_have_gauges_too_and_a_new_run_leaves_no_table_of_an_old_one() {
     fs::write(&old, "old").unwrap();
     let ended = place.fractum(&["run", "case.toml", "-o", "out", "--overwrite", "--quiet"]);
     assert!(ended.code == Some(0) && !old.exists(), "{}", ended.stderr);
+}
+
+/// A solid bar and, above it, a bonded one. One of them flies out of the domain.
+const FLYING: &str = r#"fractum = 1
+mesh = { file = "bar.msh" }
+solver = { end = "2 ms", domain = { min = [-1, -1, -1], max = ["0.6 m", 1, 1] } }
+output = { history = { every = "20 us" } }
+probes = [
+  { name = "solid_strain", strain = { group = "body", component = "xx" } },
+  { name = "solid_clip", extensometer = { group = "body", from = [0, 0, 0], to = ["40 cm", 0, 0] } },
+  { name = "bonded_strain", strain = { group = "bonded", component = "xx" } },
+  { name = "bonded_satake", strain = { group = "bonded", measure = "satake", component = "xx" } },
+  { name = "bonded_clip", extensometer = { group = "bonded", from = [0, 0, "50 cm"], to = ["40 cm", 0, "50 cm"] } },
+]
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "72 GPa"
+poisson_ratio = 0.23
+[[bodies]]
+name = "solid"
+kind = "solid"
+group = "body"
+material = "glass"
+initial_velocity = { x = "0 m/s" }
+[[bodies]]
+name = "bonded"
+kind = "bonded"
+material = "glass"
+shape = "box"
+point = [0, 0, "50 cm"]
+size = ["40 cm", "12 cm", "12 cm"]
+particles = 300
+coordination = 8
+initial_velocity = { x = "0 m/s" }
+"#;
+
+#[test]
+fn probes_of_strain_have_no_value_once_their_points_have_left_the_domain() {
+    let (solid, bonded) = (["solid_strain", "solid_clip"], ["bonded_strain", "bonded_satake", "bonded_clip"]);
+    for (body, leaving, staying) in [("solid", &solid[..], &bonded[..]), ("bonded", &bonded[..], &solid[..])] {
+        let (before, after) = FLYING.split_at(FLYING.find(&format!("name = \"{body}\"\n")).unwrap());
+        let place = Workplace::new(&format!("{before}{}", after.replacen("\"0 m/s\"", "\"600 m/s\"", 1)));
+        run(&place, "out", "1");
+        let rows = |names: &[&str]| history(&place, "out", &[&["left_pieces"], names].concat());
+        assert!(rows(staying).iter().flatten().all(|value| value.is_finite()), "{body}");
+        let mut counts = [0, 0];
+        for row in rows(leaving) {
+            counts[usize::from(row[0] > 0.0)] += 1;
+            assert!(row[1..].iter().all(|value| value.is_nan() == (row[0] > 0.0)), "{body}: {row:?}");
+        }
+        assert!(counts.iter().all(|&count| count > 10), "{body}: rows before and after it has left: {counts:?}");
+    }
 }

@@ -80,6 +80,11 @@ impl StrainGauge {
         Some(StrainGauge { points, normal: None })
     }
 
+    /// The points, ascending.
+    pub fn points(&self) -> impl Iterator<Item = u32> + '_ {
+        self.points.iter().map(|own| own.point)
+    }
+
     /// Mean displacement gradient.
     ///
     /// - `displacement` of a point [m], `rotation` of a point since the start
