@@ -6,6 +6,7 @@
 
 use fractum_math::{Lane, Mat3, Ragged, Sym3, Vec3};
 
+use crate::error::SolidError;
 use crate::thermal_strain::ThermalStrain;
 
 /// Geometry of the cells of a block.
@@ -139,6 +140,9 @@ impl Scratch {
     }
 }
 
+/// Blocks that a slot has numbers for.
+const MOST_BLOCKS: usize = 1 << 16;
+
 /// Where the forces on each node lie in the blocks.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NodeSlots {
@@ -146,15 +150,25 @@ pub(crate) struct NodeSlots {
 }
 
 impl NodeSlots {
-    /// Packs block and local number into 32 bits: blocks are kept below 65,536 and so are the nodes of a block.
-    pub(crate) fn new<'a>(node_count: usize, block_nodes: impl Iterator<Item = &'a [u32]> + Clone) -> Self {
+    /// Packs block and local number into 32 bits; a block has far fewer nodes than 65,536.
+    ///
+    /// # Errors
+    /// [`SolidError::TooManyBlocks`] from 65,537 blocks on.
+    pub(crate) fn new<'a>(
+        node_count: usize,
+        block_nodes: impl Iterator<Item = &'a [u32]> + Clone,
+    ) -> Result<Self, SolidError> {
+        let blocks = block_nodes.clone().count();
+        if blocks > MOST_BLOCKS {
+            return Err(SolidError::TooManyBlocks { blocks, most: MOST_BLOCKS });
+        }
         let mut rows = vec![Vec::new(); node_count];
         for (block, nodes) in block_nodes.enumerate() {
             for (local, &node) in nodes.iter().enumerate() {
                 rows[node as usize].push((block as u32) << 16 | local as u32);
             }
         }
-        NodeSlots { slots: Ragged::from_rows(&rows) }
+        Ok(NodeSlots { slots: Ragged::from_rows(&rows) })
     }
 
     /// Number of nodes.
@@ -175,5 +189,18 @@ impl NodeSlots {
             sum = sum + force((slot >> 16) as usize)[(slot & 0xffff) as usize];
         }
         sum.to_vec()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_blocks_than_numbers_are_an_error() {
+        let slots = |blocks: usize| NodeSlots::new(1, std::iter::repeat_n(&[0][..], blocks));
+        assert_eq!(slots(MOST_BLOCKS).unwrap().of(0).len(), MOST_BLOCKS);
+        let error = slots(MOST_BLOCKS + 1).unwrap_err();
+        assert!(error.to_string().contains("65537 blocks"), "{error}");
     }
 }

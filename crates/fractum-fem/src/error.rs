@@ -65,6 +65,17 @@ pub enum SolidError {
         /// What would do.
         expected: &'static str,
     },
+    /// More blocks of cells than have a number.
+    #[error(
+        "the solids make {blocks} blocks of up to 2,048 cells, of which at most {most} have a number: some 110 million smoothed or 134 million standard \
+         tetrahedra; mesh more coarsely where nothing breaks, or leave out what is far away"
+    )]
+    TooManyBlocks {
+        /// How many there are.
+        blocks: usize,
+        /// How many there may be.
+        most: usize,
+    },
     /// A node that belongs to no element and so has no mass.
     #[error("node {node} belongs to no element of any solid body: it has no mass")]
     MasslessNode {

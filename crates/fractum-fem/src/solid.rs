@@ -52,7 +52,7 @@ impl Solid {
     /// - `nodes`: reference positions [m]
     ///
     /// # Errors
-    /// [`SolidError`] for elements without volume or too large for their fracture energy, and for massless nodes.
+    /// [`SolidError`] for elements without volume or too large for their fracture energy, for massless nodes, and beyond some 110 million smoothed tetrahedra.
     pub fn new(nodes: Vec<Vec3>, bodies: Vec<Body>) -> Result<Self, SolidError> {
         let mut mass = vec![0.0; nodes.len()];
         let mut blocks = Vec::new();
@@ -73,7 +73,7 @@ impl Solid {
         if let Some(node) = mass.iter().position(|&m| m <= 0.0) {
             return Err(SolidError::MasslessNode { node });
         }
-        let slots = NodeSlots::new(nodes.len(), blocks.iter().map(|b: &Block| b.cells.nodes.as_slice()));
+        let slots = NodeSlots::new(nodes.len(), blocks.iter().map(|b: &Block| b.cells.nodes.as_slice()))?;
         let zero = vec![Vec3::zeros(); nodes.len()];
         Ok(Solid {
             displacement: zero.clone(),
