@@ -68,6 +68,22 @@ fn plane_elements_have_edges_and_lose_their_mid_nodes() {
 }
 
 #[test]
+fn labels_that_nothing_bears_are_told_with_what_lists_them() {
+    let flat = "*NODE\n1,0,0\n2,1,0\n3,0,1\n*ELEMENT, TYPE=S3\n1,1,2,3\n";
+    let sets = "*ELSET, ELSET=e\n1, 8, 9\n*NSET, NSET=n\n1, 7\n*NSET, NSET=range, GENERATE\n1, 9, 1\n";
+    let mesh = read_inp(format!("{flat}{sets}*SURFACE, NAME=s\n1, S1\n5, S1\n").as_bytes()).unwrap();
+    for said in [
+        "set \"e\" lists element 8 and 1 more, which the mesh does not have",
+        "set \"n\" lists node 7, which the mesh does not have",
+        "surface \"s\" lists element 5, which the mesh does not have",
+    ] {
+        assert!(mesh.notices.iter().any(|notice| notice == said), "{said}: {:?}", mesh.notices);
+    }
+    assert!(!mesh.notices.iter().any(|notice| notice.contains("range")), "{:?}", mesh.notices);
+    assert_eq!(mesh.group("s")[0].lines.len(), 1);
+}
+
+#[test]
 fn what_cannot_be_used_is_refused_with_its_line_and_the_remedy() {
     let flat = "*NODE\n1,0,0\n2,1,0\n3,0,1\n";
     let triangle = "*ELEMENT, TYPE=S3\n1,1,2,3\n";

@@ -6,7 +6,7 @@ use fractum_math::Ragged;
 
 use super::element::{self, Face};
 use super::read::{Deck, Faced, Surface};
-use super::sets::Sets;
+use super::sets::{Sets, unknown_labels};
 use crate::tagged::builder::Builder;
 use crate::tagged::cursor::list;
 use crate::tagged::element_type::{ElementType, Shape};
@@ -25,6 +25,9 @@ pub(super) fn raw(mut deck: Deck, bytes: &[u8]) -> Result<Raw, Fault> {
     let nodes = labels(builder.raw.node_tags.iter().copied());
     let element_sets = deck.element_sets.resolve(&elements)?;
     let node_sets = deck.node_sets.resolve(&nodes)?;
+    builder.raw.notices.extend(deck.element_sets.unknown(&elements, "element"));
+    builder.raw.notices.extend(deck.node_sets.unknown(&nodes, "node"));
+    builder.raw.notices.extend(deck.surfaces.iter().filter_map(|surface| surface.unknown(&elements)));
 
     let groups = builder.groups(&deck.element_sets, "");
     builder.add_elements(&deck, &element_sets, &groups);
@@ -58,6 +61,17 @@ fn check_nodes(deck: &Deck) -> Result<(), Fault> {
 fn notices(deck: &Deck) -> Vec<String> {
     let left_out: Vec<String> = deck.left_out.iter().map(|(name, count)| format!("{count} of type {name}")).collect();
     if left_out.is_empty() { Vec::new() } else { vec![format!("elements left out: {}", list(&left_out))] }
+}
+
+impl Surface {
+    /// What to tell of elements that it lists and the mesh does not have.
+    fn unknown(&self, elements: &[(u64, u32)]) -> Option<String> {
+        let listed = self.faces.iter().filter_map(|(faced, _)| match faced {
+            Faced::Label(label) => Some(*label),
+            Faced::Set(_) => None,
+        });
+        unknown_labels(&format!("surface \"{}\"", self.name), listed, elements, "element")
+    }
 }
 
 impl Builder {

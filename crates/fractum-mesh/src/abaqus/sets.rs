@@ -92,6 +92,21 @@ impl Sets {
         Ok(())
     }
 
+    /// A line per set that lists labels which nothing bears. Ranges may pass over such labels: programs write them so.
+    ///
+    /// - `labels`: label and index, ascending
+    /// - `what`: "element" or "node"
+    pub(super) fn unknown(&self, labels: &[(u64, u32)], what: &str) -> Vec<String> {
+        let of = |set: &Set| {
+            let listed = set.items.iter().filter_map(|item| match item {
+                Item::Range { first, last, .. } if first == last => Some(*first),
+                _ => None,
+            });
+            unknown_labels(&format!("set \"{}\"", set.name), listed, labels, what)
+        };
+        self.list.iter().filter(|set| !set.internal).filter_map(of).collect()
+    }
+
     /// Members of all sets as ascending indices of labelled things.
     ///
     /// - `labels`: label and index, ascending
@@ -131,6 +146,20 @@ impl Sets {
         }
         Ok(resolved)
     }
+}
+
+/// What to tell of labels in a list that nothing bears; none where there are none.
+pub(super) fn unknown_labels(
+    of: &str,
+    listed: impl Iterator<Item = u64>,
+    labels: &[(u64, u32)],
+    what: &str,
+) -> Option<String> {
+    let mut unknown = listed.filter(|label| labels.binary_search_by_key(label, |(known, _)| *known).is_err());
+    let first = unknown.next()?;
+    let more = unknown.count();
+    let others = if more > 0 { format!(" and {more} more") } else { String::new() };
+    Some(format!("{of} lists {what} {first}{others}, which the mesh does not have"))
 }
 
 /// A label: a whole number, which may follow the name of an instance and a point.
