@@ -2,6 +2,7 @@
 
 import xml.etree.ElementTree as ElementTree
 import zlib
+from pathlib import Path
 
 import numpy as np
 
@@ -33,6 +34,31 @@ class Frame:
 
     def __init__(self, path):
         self.path = path
+        if str(path).endswith((".pvtu", ".pvtp")):
+            self._read_pieces()
+        else:
+            self._read()
+
+    def _read_pieces(self):
+        """The pieces that a file lists, put together by the numbers of their points."""
+        root = ElementTree.parse(self.path).getroot()
+        pieces = [Frame(Path(self.path).parent / tag.get("Source")) for tag in root[0].iter("Piece")]
+        numbers = [piece.point_data.pop("GlobalNodeId") for piece in pieces]
+        self.time, self.field_data = pieces[0].time, pieces[0].field_data
+        self.points = _put([piece.points for piece in pieces], numbers)
+        names = pieces[0].point_data
+        self.point_data = {name: _put([piece.point_data[name] for piece in pieces], numbers) for name in names}
+        names = pieces[0].cell_data
+        self.cell_data = {name: np.concatenate([piece.cell_data[name] for piece in pieces]) for name in names}
+        self.cells = []
+        for piece, own in zip(pieces, numbers):
+            for kind, nodes in piece.cells:
+                same = self.cells and self.cells[-1][0] == kind
+                before = [self.cells.pop()[1]] if same else []
+                self.cells.append((kind, np.concatenate([*before, own[nodes]])))
+
+    def _read(self):
+        path = self.path
         with open(path, "rb") as file:
             content = file.read()
         head, mark, rest = content.partition(_DATA)
@@ -73,6 +99,15 @@ class Frame:
         import pyvista
 
         return pyvista.read(self.path)
+
+
+def _put(parts, numbers):
+    """Rows of pieces at their places in the whole."""
+    count = max((int(own.max()) + 1 for own in numbers if len(own)), default=0)
+    whole = np.zeros((count, *parts[0].shape[1:]), dtype=parts[0].dtype)
+    for part, own in zip(parts, numbers):
+        whole[own] = part
+    return whole
 
 
 class _Arrays:

@@ -137,6 +137,20 @@ def test_frames_are_what_meshio_reads(breaking, tmp_path):
         assert (own.point_data[name] == values).all(), name
 
 
+def test_frames_in_pieces_are_put_together(breaking, tmp_path):
+    whole = fractum.run(breaking, output=tmp_path / "whole").fields()
+    pieces = fractum.run(breaking, output=tmp_path / "pieces", set={"output.fields.pieces": 3}).fields()
+    assert pieces["solid"].path.suffix == ".pvtu" and pieces["discrete elements"].path.suffix == ".pvtp"
+    for name, part in whole.items():
+        own = pieces[name]
+        assert own.time == part.time and (own.points == part.points).all()
+        for mine, theirs in zip(own.cells, part.cells, strict=True):
+            assert mine[0] == theirs[0] and (mine[1] == theirs[1]).all()
+        for mine, theirs in ((own.point_data, part.point_data), (own.cell_data, part.cell_data)):
+            assert list(mine) == list(theirs)
+            assert all((mine[field] == values).all() for field, values in theirs.items()), name
+
+
 def test_mistakes_are_told(breaking, resting, tmp_path):
     simulation = fractum.Simulation(breaking, output=tmp_path / "out")
     with pytest.raises(fractum.CaseError, match="no probe is called \"lod\"; probes here: load"):

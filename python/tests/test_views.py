@@ -24,6 +24,15 @@ def last_frame(results):
     return {str(file).split("/")[0]: part for file, part in zip(files, reader.read())}
 
 
+def test_vtk_reads_frames_in_pieces(breaking, tmp_path):
+    parts = [last_frame(fractum.run(breaking, output=tmp_path / str(n), set={"output.fields.pieces": n})) for n in (1, 4)]
+    for folder in ("fields", "particles"):
+        whole, cut = (part[folder] for part in parts)
+        numbers = cut.point_data["GlobalNodeId"]
+        assert whole.n_cells == cut.n_cells and (whole.points[numbers] == cut.points).all()
+        assert (whole.point_data["velocity"][numbers] == cut.point_data["velocity"]).all()
+
+
 def moved(part, factor):
     """Points of a part warped by a factor."""
     return np.asarray(part.warp_by_vector("displacement", factor=factor).points)

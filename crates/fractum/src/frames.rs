@@ -1,15 +1,15 @@
 //! Frames: what ParaView shows of one instant, a file per population.
 
-use fractum_io::Compression;
 use fractum_io::build::BuiltGauges;
 use fractum_io::case::model::{BodyKind, Case, FurtherFields};
-use fractum_io::vtk::{CellBlock, CellKind, Field, PendingFile, PolyCells, PolyData, UnstructuredGrid, Values};
+use fractum_io::vtk::{CellBlock, CellKind, Cut, Field, PendingFile, PolyCells, PolyData, UnstructuredGrid, Values};
 use fractum_math::Sym3;
 use fractum_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use crate::cracks;
 use crate::error::Failure;
+use crate::frame_file::FrameFile;
 use crate::gas_cells;
 use crate::gauge_tables;
 use crate::population::Population;
@@ -23,9 +23,19 @@ pub(crate) struct Frame {
     pub(crate) instant: f64,
     /// Steps done.
     pub(crate) step: u64,
-    parts: Vec<(Population, PendingFile)>,
+    parts: Vec<(Population, FrameFile)>,
     /// Tables of gauges under their names.
     tables: Vec<(String, PendingFile)>,
+}
+
+/// A file of a frame.
+pub(crate) struct FrameEntry {
+    pub(crate) population: Population,
+    /// Name from the results folder.
+    pub(crate) name: String,
+    pub(crate) file: PendingFile,
+    /// Whether the collection names it; pieces are named by the file that lists them.
+    pub(crate) is_listed: bool,
 }
 
 impl Frame {
@@ -38,20 +48,21 @@ impl Frame {
             parts.push((Population::Solid, solid_file(scene, grid)?));
         }
         if !scene.debris.is_empty() {
-            parts.push((Population::Debris, particles_file(scene)?));
+            parts.push((Population::Debris, particles_file(scene, grid.cut)?));
         }
-        let ParticleFiles { bonded, loose, bonds } = ParticleFiles::of(scene)?;
+        let ParticleFiles { bonded, loose, bonds } = ParticleFiles::of(scene, grid.cut)?;
+        let bonds = bonds.map(FrameFile::Whole);
         let particles = [(Population::Bonded, bonded), (Population::Loose, loose), (Population::Bonds, bonds)];
         parts.extend(particles.into_iter().filter_map(|(population, file)| Some((population, file?))));
         if !grid.rigid.is_empty() {
-            parts.push((Population::Rigid, grid.rigid.file(scene)?));
+            parts.push((Population::Rigid, FrameFile::Whole(grid.rigid.file(scene)?)));
         }
         if let Some(gas) = scene.gas().filter(|gas| gas.cells().nth(gas.hole_count()).is_some()) {
-            parts.push((Population::Gas, gas_cells::file(scene, gas)?));
+            parts.push((Population::Gas, FrameFile::Whole(gas_cells::file(scene, gas)?)));
         }
         let crack = scene.solid.crack_surface();
         if !crack.facets.is_empty() {
-            parts.push((Population::Cracks, cracks::facets_file(&scene.solid, &crack, None)?));
+            parts.push((Population::Cracks, FrameFile::Whole(cracks::facets_file(&scene.solid, &crack, None)?)));
         }
         let tables = grid.gauges.iter().map(|gauges| (gauges.name.clone(), gauge_tables::file(scene, &gauges.grid)));
         Ok(Frame { instant, step: scene.clock.step, parts, tables: tables.collect() })
@@ -63,9 +74,30 @@ impl Frame {
         tables.map(|(name, file)| (format!("{}/{name}-{number:05}.csv", gauge_tables::FOLDER), file)).collect()
     }
 
-    /// The files, as those of frame `number`: population, name from the results folder, and file.
-    pub(crate) fn files(self, number: u64) -> impl Iterator<Item = (Population, String, PendingFile)> {
-        self.parts.into_iter().map(move |(population, file)| (population, population.file(number), file))
+    /// The files, as those of frame `number`; a file that lists pieces comes behind them.
+    ///
+    /// - `all`: whether this process writes all but pieces of others; else only its own pieces
+    pub(crate) fn files(self, number: u64, all: bool) -> Vec<FrameEntry> {
+        let mut files = Vec::new();
+        for (population, file) in self.parts {
+            let (stem, folder, ending) = (population.stem(number), population.folder(), population.ending());
+            let mut add = |name: String, file, is_listed| {
+                files.push(FrameEntry { population, name: format!("{folder}/{name}"), file, is_listed });
+            };
+            match file {
+                FrameFile::Whole(file) if all => add(format!("{stem}.{ending}"), file, true),
+                FrameFile::Whole(_) => {}
+                FrameFile::Cut(mut pieces) => {
+                    for (piece, file) in std::mem::take(&mut pieces.files) {
+                        add(pieces.name(&stem, piece), file, false);
+                    }
+                    if all {
+                        add(format!("{stem}.p{ending}"), pieces.index(&stem), true);
+                    }
+                }
+            }
+        }
+        files
     }
 }
 
@@ -79,10 +111,12 @@ pub(crate) struct GridLayout {
     rigid: RigidSurfaces,
     gauges: Vec<BuiltGauges>,
     further: FurtherFields,
+    cut: Cut,
 }
 
 impl GridLayout {
-    pub(crate) fn new(scene: &Scene, file_order: &[u32], gauges: Vec<BuiltGauges>, case: &Case) -> Self {
+    /// - `cut`: which pieces of solids and particles this process writes
+    pub(crate) fn new(scene: &Scene, file_order: &[u32], gauges: Vec<BuiltGauges>, case: &Case, cut: Cut) -> Self {
         let mut place = vec![0u32; file_order.len()];
         for (file, &node) in (0..).zip(file_order) {
             place[node as usize] = file;
@@ -108,52 +142,54 @@ impl GridLayout {
             rigid: RigidSurfaces::new(scene),
             gauges,
             further: case.output.fields,
+            cut,
         }
     }
 }
 
 /// The elements that are left, with displacement, velocity, stress and damage.
-fn solid_file(scene: &Scene, grid: &GridLayout) -> Result<PendingFile, Failure> {
-    let (solid, order) = (&scene.solid, &grid.file_order);
+fn solid_file(scene: &Scene, layout: &GridLayout) -> Result<FrameFile, Failure> {
+    let (solid, order) = (&scene.solid, &layout.file_order);
     let attached = scene.attached_nodes();
     let nodal = |of: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { order.iter().map(|&n| of(n as usize)).collect() };
     let points = nodal(&|n| solid.reference[n].into());
     let displacement = nodal(&|n| solid.displacement_from_start(n).into());
     let velocity: Vec<[f32; 3]> = order.iter().map(|&n| single(solid.velocity[n as usize].into())).collect();
     let held: Vec<u8> = order.iter().map(|&n| u8::from(attached[n as usize])).collect();
-    let reactions = if grid.further.reaction { scene.supports().reactions(solid.reference.len()) } else { Vec::new() };
-    let reaction: Vec<[f32; 3]> = if grid.further.reaction {
+    let reactions =
+        if layout.further.reaction { scene.supports().reactions(solid.reference.len()) } else { Vec::new() };
+    let reaction: Vec<[f32; 3]> = if layout.further.reaction {
         order.iter().map(|&n| single(reactions[n as usize].into())).collect()
     } else {
         Vec::new()
     };
-    let fragments = if grid.further.fragment { scene.fragment_of_nodes() } else { Vec::new() };
+    let fragments = if layout.further.fragment { scene.fragment_of_nodes() } else { Vec::new() };
     let fragment: Vec<i32> =
-        if grid.further.fragment { order.iter().map(|&n| fragments[n as usize]).collect() } else { Vec::new() };
+        if layout.further.fragment { order.iter().map(|&n| fragments[n as usize]).collect() } else { Vec::new() };
     let mut point_data = vec![
         Field::vector("displacement", &displacement),
         vector("velocity", &velocity),
         Field::flag("attached", &held),
     ];
-    if grid.further.reaction {
+    if layout.further.reaction {
         point_data.push(vector("reaction", &reaction));
     }
-    if grid.further.fragment {
+    if layout.further.fragment {
         point_data.push(Field::integer("fragment", &fragment));
     }
     let temperature: Option<Vec<f64>> =
         scene.heat().map(|heat| order.iter().map(|&n| heat.of_nodes()[n as usize]).collect());
     point_data.extend(temperature.as_ref().map(|temperature| Field::scalar("temperature", temperature)));
-    let elements = ElementFields::of(scene, grid);
+    let elements = ElementFields::of(scene, layout);
     let cells: Vec<CellBlock> = elements.cells.iter().map(|(kind, nodes)| CellBlock { kind: *kind, nodes }).collect();
     let grid = UnstructuredGrid {
         points: &points,
         cells: &cells,
         point_data: &point_data,
-        cell_data: &elements.fields(grid.further),
+        cell_data: &elements.fields(layout.further),
         time: Some(scene.clock.time),
     };
-    grid.pending(Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    FrameFile::of_grid(&grid, layout.cut)
 }
 
 /// What is known of the elements that are left, body after body. Seven digits are plenty for looking at it, and halve what is
@@ -250,7 +286,7 @@ fn vector<'a>(name: &'a str, values: &'a [[f32; 3]]) -> Field<'a> {
 }
 
 /// Discrete elements as vertices with their radius.
-fn particles_file(scene: &Scene) -> Result<PendingFile, Failure> {
+fn particles_file(scene: &Scene, cut: Cut) -> Result<FrameFile, Failure> {
     let (solid, debris) = (&scene.solid, &scene.debris);
     let state = debris.state();
     let of = |f: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> { state.nodes.iter().map(|&n| f(n as usize)).collect() };
@@ -280,5 +316,5 @@ fn particles_file(scene: &Scene) -> Result<PendingFile, Failure> {
         cell_data: &[],
         time: Some(scene.clock.time),
     };
-    data.pending(Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    FrameFile::of_points(&data, cut)
 }

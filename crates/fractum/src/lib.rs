@@ -48,6 +48,7 @@
 mod course;
 pub mod cracks;
 mod error;
+mod frame_file;
 mod frame_pictures;
 mod frames;
 mod gallery;

@@ -47,10 +47,14 @@ impl Population {
         self.names().2[0]
     }
 
-    /// Its file in frame `number`, from the results folder.
-    pub(crate) fn file(self, number: u64) -> String {
-        let [folder, stem, ending] = self.names().2;
-        format!("{folder}/{stem}-{number:05}.{ending}")
+    /// What the names of its files in frame `number` begin with.
+    pub(crate) fn stem(self, number: u64) -> String {
+        format!("{}-{number:05}", self.names().2[1])
+    }
+
+    /// What the names of its files end with.
+    pub(crate) fn ending(self) -> &'static str {
+        self.names().2[2]
     }
 
     /// Number, name, and folder, stem and ending of its files.

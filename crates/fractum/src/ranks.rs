@@ -5,9 +5,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fractum_fem::{Formulation, Share};
-use fractum_io::case::model::{BodyKind, Case, LoadKind, SolverKind};
+use fractum_io::case::model::{BodyKind, Case, LoadKind, Output, SolverKind};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
 use fractum_io::number::grouped;
+use fractum_io::vtk::Cut;
 use fractum_parallel::Exchange;
 use fractum_scene::Scene;
 
@@ -49,6 +50,12 @@ impl Ranks {
     /// Folder into which this process writes.
     pub(crate) fn folder(&self, results: &Path) -> PathBuf {
         self.scratch.as_deref().unwrap_or(results).to_owned()
+    }
+
+    /// Which pieces of a frame this process writes.
+    pub(crate) fn cut(&self, output: &Output) -> Cut {
+        let [first, step] = self.exchange.as_ref().map_or([0, 1], |exchange| [exchange.rank(), exchange.size()]);
+        Cut { count: output.frame_pieces, first, step }
     }
 
     /// The wishes that any process has.

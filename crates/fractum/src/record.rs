@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::course::Course;
 use crate::error::Failure;
-use crate::frames::{Frame, GridLayout};
+use crate::frames::{Frame, FrameEntry, GridLayout};
 use crate::gauge_tables;
 use crate::gone::Gone;
 use crate::heat_columns;
@@ -134,7 +134,8 @@ pub(crate) struct Recorder {
     case: Arc<Case>,
     probes: Vec<Option<fractum_scene::Probe>>,
     ppv: Vec<PpvStations>,
-    folder: PathBuf,
+    /// Results folder of the run, where frames go.
+    results: PathBuf,
     history: History,
     writer: FrameWriter,
     state: RecordState,
@@ -154,14 +155,16 @@ pub(crate) struct Recorder {
 impl Recorder {
     /// Starts recording, or goes on where `resumed` stood.
     ///
-    /// - `writes`: whether this process writes the results; else its rows go to a history of its own, frames nowhere
+    /// - `folder`, `results`: where this process writes its history, and where the frames of all go
+    /// - `writes`: whether this process writes the results; else its rows go to a history of its own, and of frames it writes
+    ///   no more than its pieces
     pub(crate) fn open(
         case: Arc<Case>,
         scene: &Scene,
         probes: Vec<Option<fractum_scene::Probe>>,
         ppv: Vec<PpvStations>,
         grid: GridLayout,
-        (folder, course, writes): (&Path, Course, bool),
+        ([folder, results], course, writes): ([&Path; 2], Course, bool),
         resumed: Option<RecordState>,
     ) -> Result<Self, Failure> {
         let tells_motion = no_probes(&case, scene, course).in_motion;
@@ -179,12 +182,12 @@ impl Recorder {
         let elements = |body: usize| vec![false; scene.solid.alive(body).len()];
         let mut noted: Vec<Vec<bool>> = (0..scene.solid.body_count()).map(elements).collect();
         state.removed.iter().for_each(|&(body, element, _)| noted[body as usize][element as usize] = true);
-        fractum_io::atomic::create_folder(&folder.join("fields"))?;
+        fractum_io::atomic::create_folder(&results.join("fields"))?;
         Ok(Recorder {
             case,
             probes,
             ppv,
-            folder: folder.to_owned(),
+            results: results.to_owned(),
             history,
             writer: FrameWriter::default(),
             grid,
@@ -354,7 +357,7 @@ impl Recorder {
 
     /// Begins to write a frame of the present instant; before it that of the peak, where no frame has shown it.
     pub(crate) fn frame(&mut self, scene: &Scene) -> Result<(), Failure> {
-        if !self.writes {
+        if !self.writes && !self.shares_frames() {
             self.state.frames = next_index(scene.clock.time, self.case.output.fields_every);
             return Ok(());
         }
@@ -385,6 +388,11 @@ impl Recorder {
         self.case.probes.iter().position(|probe| probe.unit == "N" && !probe.is_scalar())
     }
 
+    /// Whether processes write pieces of one frame.
+    pub(crate) fn shares_frames(&self) -> bool {
+        self.case.output.frame_pieces > 1
+    }
+
     fn frame_of(&self, scene: &Scene) -> Result<Frame, Failure> {
         let instant = if self.course.turns_back { scene.clock.step as f64 } else { scene.clock.time };
         Frame::of(scene, &self.grid, instant)
@@ -393,16 +401,21 @@ impl Recorder {
     fn write(&mut self, mut frame: Frame) -> Result<(), Failure> {
         let number = if self.course.rests { self.state.path.frames() } else { self.state.frames };
         let (mut files, instant) = (Vec::new(), frame.instant);
-        for (name, file) in frame.take_tables(number) {
-            fractum_io::atomic::create_folder(&self.folder.join(gauge_tables::FOLDER))?;
-            files.push((self.folder.join(&name), file));
+        let tables = if self.writes { frame.take_tables(number) } else { Vec::new() };
+        for (name, file) in tables {
+            fractum_io::atomic::create_folder(&self.results.join(gauge_tables::FOLDER))?;
+            files.push((self.results.join(&name), file));
         }
-        for (population, name, file) in frame.files(number) {
-            fractum_io::atomic::create_folder(&self.folder.join(population.folder()))?;
-            files.push((self.folder.join(&name), file));
-            self.state.collection.push(instant, population.number(), population.name(), name);
+        for FrameEntry { population, name, file, is_listed } in frame.files(number, self.writes) {
+            fractum_io::atomic::create_folder(&self.results.join(population.folder()))?;
+            files.push((self.results.join(&name), file));
+            if is_listed {
+                self.state.collection.push(instant, population.number(), population.name(), name);
+            }
         }
-        files.push((self.folder.join("fields.pvd"), self.state.collection.pending()));
+        if self.writes {
+            files.push((self.results.join("fields.pvd"), self.state.collection.pending()));
+        }
         if self.course.rests {
             self.state.path.begin_frame();
         }

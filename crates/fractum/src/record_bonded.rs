@@ -4,12 +4,13 @@
 
 use fractum_dem::stress::particle_virials;
 use fractum_io::Compression;
-use fractum_io::vtk::{Field, PendingFile, PolyCells, PolyData, Values};
+use fractum_io::vtk::{Cut, Field, PendingFile, PolyCells, PolyData, Values};
 use fractum_math::{Sym3, Vec3, rotation_vector};
 use fractum_scene::{BondedBody, Scene};
 
 use crate::cracks::lost_bonds;
 use crate::error::Failure;
+use crate::frame_file::FrameFile;
 
 fn vectors<'a>(of: impl Iterator<Item = Vec3> + 'a) -> Vec<[f64; 3]> {
     of.map(Into::into).collect()
@@ -17,27 +18,27 @@ fn vectors<'a>(of: impl Iterator<Item = Vec3> + 'a) -> Vec<[f64; 3]> {
 
 /// Particles with and without bonds, and the bonds that hold; none where there is none of a kind.
 pub(crate) struct ParticleFiles {
-    pub(crate) bonded: Option<PendingFile>,
-    pub(crate) loose: Option<PendingFile>,
+    pub(crate) bonded: Option<FrameFile>,
+    pub(crate) loose: Option<FrameFile>,
     pub(crate) bonds: Option<PendingFile>,
 }
 
 impl ParticleFiles {
     /// Those of the present instant.
-    pub(crate) fn of(scene: &Scene) -> Result<Self, Failure> {
+    pub(crate) fn of(scene: &Scene, cut: Cut) -> Result<Self, Failure> {
         let bodies = || (0..).zip(scene.bonded.bodies());
         let [bonded, loose] = [false, true].map(|is_loose| {
             bodies().filter(|(_, body): &(i32, &BondedBody)| body.bonds.is_empty() == is_loose).collect::<Vec<_>>()
         });
         let count = |bodies: &[(i32, &BondedBody)]| bodies.iter().map(|(_, body)| body.range.len()).sum::<usize>();
-        let loose = if count(&loose) > 0 { Some(particles_file(scene, &loose, None)?) } else { None };
+        let loose = if count(&loose) > 0 { Some(particles_file(scene, &loose, None, cut)?) } else { None };
         if count(&bonded) == 0 {
             return Ok(ParticleFiles { bonded: None, loose, bonds: None });
         }
         let live = live_bonds(scene, &bonded);
         let stress = stresses(scene, &bonded, &live);
         Ok(ParticleFiles {
-            bonded: Some(particles_file(scene, &bonded, Some(&stress))?),
+            bonded: Some(particles_file(scene, &bonded, Some(&stress), cut)?),
             loose,
             bonds: Some(bonds_file(scene, &bonded, &live)?),
         })
@@ -94,7 +95,8 @@ fn particles_file(
     scene: &Scene,
     bodies: &[(i32, &BondedBody)],
     stress: Option<&[[f32; 6]]>,
-) -> Result<PendingFile, Failure> {
+    cut: Cut,
+) -> Result<FrameFile, Failure> {
     let (bonded, all) = (&scene.bonded, &scene.bonded.particles);
     let shown = || bodies.iter().flat_map(|(_, body)| body.range.clone());
     let scalar = |of: &[f64]| shown().map(|i| of[i]).collect::<Vec<f64>>();
@@ -133,7 +135,7 @@ fn particles_file(
         cell_data: &[],
         time: Some(scene.clock.time),
     };
-    data.pending(Compression::Fast).map_err(|e| Failure::Output(e.into()))
+    FrameFile::of_points(&data, cut)
 }
 
 /// A symmetric tensor in single precision: xx yy zz xy yz zx.

@@ -313,8 +313,18 @@ impl Simulation {
         fallen.then(|| format!("{name} fell below {part} of its largest value at {}", self.instant(time)))
     }
 
+    /// Waits until the pieces of frames that all processes write are on the disk.
+    fn finish_pieces(&mut self) -> Result<(), Failure> {
+        if !self.recorder.shares_frames() {
+            return Ok(());
+        }
+        let done = self.recorder.finish_frame();
+        self.ranks.together(done)
+    }
+
     fn save(&mut self) -> Result<(), Failure> {
         self.scene.gather_ranks();
+        self.finish_pieces()?;
         if !self.ranks.leads() {
             let clock = self.scene.clock;
             self.saved = Some(Saved { at: Instant::now(), step: clock.step, time: clock.time });

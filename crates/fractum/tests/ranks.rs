@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use fractum::{Failure, Options, Ranks, Simulation, run, run_shared};
+use fractum_io::vtk::{Arrays, read_collection};
 use fractum_parallel::threads;
 
 use crate::common::{BREAKING_BAR, Workplace, files_below};
@@ -34,7 +35,8 @@ fn on_ranks(place: &Workplace, ranks: usize, options: &Options) -> Vec<Result<St
 
 /// Files of a results folder that do not tell about the machine and the time.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let below = [".vtu", ".vtp", ".csv", ".pvd"].iter().flat_map(|suffix| files_below(folder, suffix));
+    let below =
+        [".vtu", ".vtp", ".pvtu", ".pvtp", ".csv", ".pvd"].iter().flat_map(|suffix| files_below(folder, suffix));
     let name = |path: &Path| path.strip_prefix(folder).unwrap().display().to_string();
     below.map(|path| (name(&path), fs::read(&path).unwrap())).collect()
 }
@@ -60,6 +62,45 @@ fn ranks_leave_the_files_of_one_process() {
         }
         assert_same_files(&place, &folder, &format!("{ranks} ranks"));
     }
+}
+
+/// Names of the arrays that tell frames apart.
+const ARRAYS: [&str; 9] =
+    ["Points", "displacement", "velocity", "stress", "damage", "radius", "connectivity", "offsets", "TimeValue"];
+
+#[test]
+fn frames_in_pieces_are_those_of_whole_files_whoever_writes_them() {
+    let place = Workplace::new(&bar().replace("fields = { ", "fields = { pieces = 5, "));
+    run(&place.path("case.toml"), &options(&place, "alone")).unwrap();
+    let one = vec![("output.fields.pieces".into(), "1".into())];
+    let of_one_file = Options { overrides: one, ..options(&place, "whole") };
+    run(&place.path("case.toml"), &of_one_file).unwrap();
+    let frames = |folder: &str| read_collection(&place.path(folder).join("fields.pvd")).unwrap().entries;
+    let (in_pieces, whole) = (frames("alone"), frames("whole"));
+    assert!(whole.iter().any(|entry| entry.name == "discrete elements"));
+    assert_eq!(in_pieces.len(), whole.len());
+    for (ours, expected) in in_pieces.iter().zip(&whole) {
+        let is_cut = ["solid", "discrete elements"].contains(&expected.name.as_str());
+        assert_eq!(ours.file, expected.file.replace(".v", if is_cut { ".pv" } else { ".v" }));
+        let read = |folder: &str, file: &str| Arrays::read(&place.path(folder).join(file), &ARRAYS).unwrap();
+        assert_eq!(read("alone", &ours.file), read("whole", &expected.file), "{}", ours.file);
+    }
+    for ranks in [2, 3] {
+        let folder = format!("of-{ranks}");
+        on_ranks(&place, ranks, &options(&place, &folder)).into_iter().for_each(|hash| drop(hash.unwrap()));
+        assert_same_files(&place, &folder, &format!("{ranks} ranks"));
+    }
+    assert_eq!(
+        files_below(&place.path("alone/fields"), "-0004.vtu").len() * 5,
+        files_below(&place.path("alone/fields"), ".vtu").len()
+    );
+    // Nothing of them stays behind a run without pieces.
+    let again = Options { overwrite: true, output: Some(place.path("alone")), ..of_one_file };
+    run(&place.path("case.toml"), &again).unwrap();
+    assert!(
+        files_below(&place.path("alone"), ".pvtu").is_empty()
+            && files_below(&place.path("alone/fields"), "-0004.vtu").is_empty()
+    );
 }
 
 #[test]

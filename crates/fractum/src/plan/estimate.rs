@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use fractum_io::build::BuiltScene;
 use fractum_io::case::model::Case;
+use fractum_io::vtk::Cut;
 use fractum_prepare::{PATH_ITERATIONS, solution_time};
 use fractum_scene::statics::{Control, Stiffness};
 use fractum_scene::{ProbedScene, Scene};
@@ -156,13 +157,13 @@ impl Stage<'_> {
         let sum: f64 = built.probes.iter().flatten().map(|probe| probe.value(&probed)).sum();
         std::hint::black_box(sum);
         let row = began.elapsed().as_secs_f64() + ROW;
-        let layout = GridLayout::new(scene, &built.file_order, Vec::new(), self.case);
+        let layout = GridLayout::new(scene, &built.file_order, Vec::new(), self.case, Cut::WHOLE);
         let began = Instant::now();
         let frame = Frame::of(scene, &layout, 0.0);
         let gathered = began.elapsed().as_secs_f64();
         let began = Instant::now();
         let bytes: usize =
-            frame.into_iter().flat_map(|frame| frame.files(0)).map(|(_, _, file)| file.bytes().len()).sum();
+            frame.into_iter().flat_map(|frame| frame.files(0, true)).map(|entry| entry.file.bytes().len()).sum();
         std::hint::black_box(bytes);
         let compressed = began.elapsed().as_secs_f64();
         Written { own: rows * row + frames * gathered, beside: frames * compressed }

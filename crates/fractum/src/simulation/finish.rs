@@ -137,7 +137,8 @@ impl Simulation {
                 recorder.row(scene, time, dt, true)?;
             }
         }
-        Ok(())
+        // The pictures show all of them.
+        self.finish_pieces()
     }
 }
 

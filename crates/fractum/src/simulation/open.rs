@@ -106,7 +106,7 @@ impl Simulation {
             (stage, probes) = (Arc::new(next), built.probes);
         }
         // Rigid bodies are drawn from where they lie at the start.
-        let grid = GridLayout::new(&scene, &built.file_order, built.gauges, &case);
+        let grid = GridLayout::new(&scene, &built.file_order, built.gauges, &case, ranks.cut(&case.output));
         let put_back = |Loaded { state, .. }: Loaded<RunState>| put_back(state, &mut scene, &mut solver, &case);
         let resumed = loaded.map(put_back).transpose()?;
         let is_new = resumed.is_none();
@@ -116,7 +116,8 @@ impl Simulation {
         log_start(&mut messages.log, path, &about, goes_on.as_deref())?;
         timings.iter().try_for_each(|timing| messages.log.line(timing))?;
         built.warnings.iter().try_for_each(|warning| messages.warn(warning.to_string()))?;
-        let recorder = Recorder::open(case, &scene, probes, built.ppv, grid, (&folder, course, leads), resumed)?;
+        let place = ([folder.as_path(), results.as_path()], course, leads);
+        let recorder = Recorder::open(case, &scene, probes, built.ppv, grid, place, resumed)?;
         ranks.share_out(&mut scene, &recorder.watched())?;
         ranks.share(&scene).map_or(Ok(()), |share| messages.log.line(share))?;
         let mut simulation = Simulation {
@@ -298,8 +299,8 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
     for path in files.filter(|path| path.is_file()) {
         std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
     }
-    let frames =
-        Population::ALL.iter().flat_map(|population| [".vtu", ".vtp"].map(|end| (population.folder(), "", end)));
+    let endings = [".vtu", ".vtp", ".pvtu", ".pvtp"];
+    let frames = Population::ALL.iter().flat_map(|population| endings.map(|end| (population.folder(), "", end)));
     for (name, start, end) in frames.chain([("pictures", STRIP_FILE, ".png"), (gauge_tables::FOLDER, "", ".csv")]) {
         let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
         for path in entries.flatten().map(|entry| entry.path()) {
@@ -312,10 +313,15 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
     forget_case(folder)
 }
 
-/// Whether a file is called as those of a frame: `STEM-00012.vtu`.
+/// Whether a file is called as those of a frame, `STEM-00012.vtu`, or of a piece of one, `STEM-00012-0003.vtu`.
 fn is_numbered(name: &str, ending: &str) -> bool {
-    let stem = name.strip_suffix(ending).and_then(|stem| stem.rsplit_once('-'));
-    stem.is_some_and(|(_, number)| number.len() >= 5 && number.bytes().all(|digit| digit.is_ascii_digit()))
+    let parts = |name: &str, digits: usize| {
+        let (stem, number) = name.rsplit_once('-')?;
+        let is_number = number.len() >= digits && number.bytes().all(|digit| digit.is_ascii_digit());
+        is_number.then(|| stem.to_owned())
+    };
+    let Some(stem) = name.strip_suffix(ending) else { return false };
+    parts(stem, 5).is_some() || parts(stem, 4).is_some_and(|frame| parts(&frame, 5).is_some())
 }
 
 /// Version of the program as far as the layout of its state goes.

@@ -14,6 +14,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("output.fields.strain", K::Flag, "false", "Write the strain of elements, thermal strain included"),
     key("output.fields.reaction", K::Flag, "false", "Write the forces of supports on nodes"),
     key("output.fields.fragment", K::Flag, "false", "Write the number of the fragment that each node belongs to, as in fragments.csv; 0 for single nodes"),
+    key("output.fields.pieces", K::Quantity(D::NONE), "1", "Files that solids and particles of a frame are cut into, 1 to 4096; beyond 1 a .pvtu or .pvtp lists them, and several processes share the work of writing them"),
     key("output.history", K::Table, "", "Rows of history.csv"),
     key("output.history.every", K::Quantity(D::TIME), "1/1000 of the run", "Time between rows, > 0"),
     key("output.checkpoint", K::Table, "", "Checkpoints to resume from"),

@@ -147,6 +147,8 @@ pub struct Output {
     pub fields: FurtherFields,
     /// Time between fields [s].
     pub fields_every: f64,
+    /// Files that solids and particles of a frame are cut into, from 1.
+    pub frame_pieces: usize,
     /// Time between rows of the history [s].
     pub history_every: f64,
     /// Wall time between checkpoints [s].

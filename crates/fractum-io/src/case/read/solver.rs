@@ -224,6 +224,8 @@ fn stop_when(solver: &Table<'_>, probes: &[ReadProbe]) -> Option<StopWhen> {
 /// Frames of fields and rows of the history where nothing is said.
 const FRAMES: f64 = 50.0;
 const ROWS: f64 = 1000.0;
+/// Most files that a frame may be cut into.
+const MOST_PIECES: u64 = 4096;
 /// Wall time between checkpoints where nothing is said [s].
 const CHECKPOINT: f64 = 600.0;
 /// Wall time between checkpoints below which time of the scene was probably meant [s].
@@ -235,6 +237,7 @@ const JOINED_BELOW: f64 = 0.95;
 pub(super) fn output(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>>) -> Option<Output> {
     let table = root.table_or_empty("output");
     let mut further = FurtherFields::default();
+    let mut pieces = 1;
     let mut every = |name: &'static str, longest: Option<f64>| {
         let inner = table.table(name)?;
         let every = inner.quantity("every").positive().spanned();
@@ -244,6 +247,7 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>
             further.strain = flag("strain");
             further.reaction = flag("reaction");
             further.fragment = flag("fragment");
+            pieces = inner.integer("pieces").check(|count| (1..=MOST_PIECES).contains(count), "1 to 4096").or(1);
             every.given()
         } else {
             every.required()
@@ -276,6 +280,7 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>
     Some(Output {
         fields: further,
         fields_every: fields.unwrap_or(end / FRAMES),
+        frame_pieces: pieces as usize,
         history_every: history.unwrap_or(end / ROWS),
         checkpoint_every: checkpoint.unwrap_or(CHECKPOINT),
         joined_below,

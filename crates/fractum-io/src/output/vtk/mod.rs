@@ -1,4 +1,5 @@
-//! Files for ParaView: VTU (elements), VTP (particles, bonds, facets) and PVD (the same over time).
+//! Files for ParaView: VTU (elements), VTP (particles, bonds, facets), both also in pieces (PVTU, PVTP), and PVD (the same over
+//! time).
 //!
 //! Arrays are stored as raw appended data with 64-bit headers, compressed by zlib in blocks. ParaView and
 //! PyVista read all of them, meshio the VTU. A run writes its frames beside itself ([`FrameWriter`]).
@@ -23,6 +24,7 @@ mod decode;
 mod document;
 mod frame_writer;
 mod grid;
+mod pieces;
 mod poly;
 mod read;
 mod unit;
@@ -32,6 +34,7 @@ use std::borrow::Cow;
 pub use collection::{Collection, Entry};
 pub use frame_writer::{FrameWriter, PendingFile, WAITING};
 pub use grid::{CellBlock, CellKind, UnstructuredGrid};
+pub use pieces::{Cut, Pieces};
 pub use poly::{PolyCells, PolyData};
 pub use read::{Arrays, read_collection};
 
@@ -119,12 +122,7 @@ impl<'a> Field<'a> {
     }
 
     fn check(&self, count: usize) -> Result<(), VtkError> {
-        let found = match self.values {
-            Values::F64(values) => values.len(),
-            Values::F32(values) => values.len(),
-            Values::I32(values) => values.len(),
-            Values::U8(values) => values.len(),
-        };
+        let found = self.values.len();
         let expected = count * self.components;
         let wrong = found != expected || self.components == 0;
         if wrong { Err(VtkError::WrongLength { field: self.name.into(), found, expected }) } else { Ok(()) }
@@ -132,6 +130,15 @@ impl<'a> Field<'a> {
 }
 
 impl<'a> Values<'a> {
+    fn len(&self) -> usize {
+        match self {
+            Self::F64(values) => values.len(),
+            Self::F32(values) => values.len(),
+            Self::I32(values) => values.len(),
+            Self::U8(values) => values.len(),
+        }
+    }
+
     fn kind(&self) -> &'static str {
         match self {
             Self::F64(_) => "Float64",

@@ -3,6 +3,8 @@
 //! Only what the writers here make is read: arrays appended as raw bytes, in this machine's byte order. A file that is
 //! damaged or from elsewhere is an error, and no size that it states is believed before the bytes are there.
 
+mod together;
+
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
@@ -19,11 +21,15 @@ const LARGEST: usize = 1 << 32;
 pub struct Arrays(BTreeMap<String, Vec<f64>>);
 
 impl Arrays {
-    /// Reads the arrays of these names, and nothing else of a file; what is not there is left out.
+    /// Reads the arrays of these names, and nothing else of a file; what is not there is left out. The pieces that a PVTU or
+    /// PVTP lists come as the whole that they were cut from.
     ///
     /// # Errors
     /// [`ReadError`]: no such file, or none that this program wrote.
     pub fn read(path: &Path, wanted: &[&str]) -> Result<Self, ReadError> {
+        if path.extension().is_some_and(|ending| ending == "pvtu" || ending == "pvtp") {
+            return together::read(path, wanted);
+        }
         let mut file = BufReader::new(File::open(path).map_err(|error| refused(path, error))?);
         decode(&mut file, wanted).map(Arrays).ok_or_else(|| damaged(path))
     }

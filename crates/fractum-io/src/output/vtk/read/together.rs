@@ -1,0 +1,91 @@
+//! The pieces of a PVTU or PVTP as one.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use super::{Arrays, attributes, damaged, refused};
+use crate::error::ReadError;
+use crate::output::vtk::pieces::NUMBERS;
+
+/// What is known of the points, by the declarations of the list.
+struct List<'a> {
+    pieces: Vec<&'a str>,
+    /// Arrays over points, and the components of each.
+    of_points: BTreeMap<&'a str, usize>,
+}
+
+impl<'a> List<'a> {
+    /// None for what this program did not write.
+    fn parse(text: &'a str) -> Option<Self> {
+        let mut list = List { pieces: Vec::new(), of_points: BTreeMap::new() };
+        let mut section = "";
+        for tag in text.split('<') {
+            let attributes = attributes(tag);
+            if ["PPoints>", "PPointData>", "PCellData>"].iter().any(|name| tag.starts_with(name)) {
+                section = tag;
+            } else if tag.starts_with("PDataArray") && !section.starts_with("PCellData") {
+                let components = attributes.get("NumberOfComponents").map_or(Some(1), |text| text.parse().ok())?;
+                list.of_points.insert(attributes.get("Name")?, components);
+            } else if tag.starts_with("Piece") {
+                list.pieces.push(attributes.get("Source")?);
+            }
+        }
+        (!list.pieces.is_empty()).then_some(list)
+    }
+}
+
+pub(super) fn read(path: &Path, wanted: &[&str]) -> Result<Arrays, ReadError> {
+    let text = fs::read_to_string(path).map_err(|error| refused(path, error))?;
+    let list = List::parse(&text).ok_or_else(|| damaged(path))?;
+    let names: Vec<&str> = wanted.iter().copied().chain([NUMBERS]).collect::<BTreeSet<_>>().into_iter().collect();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let read = |piece: &&str| Arrays::read(&folder.join(piece), &names);
+    let pieces = list.pieces.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    // Every point is in some piece, so that there are no more than this.
+    let most: usize = pieces.iter().map(|piece| piece.get(NUMBERS).len()).sum();
+    let mut whole = BTreeMap::new();
+    for (arrays, piece) in pieces.iter().zip(&list.pieces) {
+        add(&mut whole, arrays, &list.of_points, most).ok_or_else(|| damaged(&folder.join(piece)))?;
+    }
+    whole.retain(|name, _| wanted.contains(&name.as_str()));
+    Ok(Arrays(whole))
+}
+
+/// Puts what a piece has where it is in the whole; none where its arrays do not fit together.
+///
+/// - `most`: bound of the number of points in the whole
+fn add(
+    whole: &mut BTreeMap<String, Vec<f64>>,
+    piece: &Arrays,
+    of_points: &BTreeMap<&str, usize>,
+    most: usize,
+) -> Option<()> {
+    let numbers: Vec<usize> = piece.get(NUMBERS).iter().map(|&number| number as usize).collect();
+    let points = numbers.iter().map(|number| number + 1).max().unwrap_or(0);
+    if points > most {
+        return None;
+    }
+    let before = whole.get("offsets").and_then(|ends| ends.last().copied()).unwrap_or(0.0);
+    for (name, values) in &piece.0 {
+        let to = whole.entry(name.clone()).or_default();
+        match (name.as_str(), of_points.get(name.as_str())) {
+            (_, Some(&components)) if values.len() == components * numbers.len() => {
+                to.resize(to.len().max(components * points), 0.0);
+                for (row, &number) in values.chunks_exact(components).zip(&numbers) {
+                    to[components * number..components * (number + 1)].copy_from_slice(row);
+                }
+            }
+            (_, Some(_)) => return None,
+            ("connectivity", _) => {
+                for &local in values {
+                    to.push(*numbers.get(local as usize)? as f64);
+                }
+            }
+            ("offsets", _) => to.extend(values.iter().map(|end| before + end)),
+            ("TimeValue", _) => to.clone_from(values),
+            _ => to.extend(values),
+        }
+    }
+    Some(())
+}

@@ -1,0 +1,35 @@
+//! What a population of a frame is written to.
+
+use fractum_io::Compression;
+use fractum_io::vtk::{Cut, PendingFile, Pieces, PolyData, UnstructuredGrid, VtkError};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Failure;
+
+/// One file, or pieces and a file that lists them.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) enum FrameFile {
+    Whole(PendingFile),
+    Cut(Pieces),
+}
+
+impl FrameFile {
+    /// Elements, in as many pieces as asked for.
+    pub(crate) fn of_grid(grid: &UnstructuredGrid, cut: Cut) -> Result<Self, Failure> {
+        let whole = || grid.pending(Compression::Fast).map(FrameFile::Whole);
+        let pieces = || grid.pieces(cut, Compression::Fast).map(FrameFile::Cut);
+        if cut.count > 1 { pieces() } else { whole() }.map_err(unfit)
+    }
+
+    /// Points, in as many pieces as asked for.
+    pub(crate) fn of_points(points: &PolyData, cut: Cut) -> Result<Self, Failure> {
+        let whole = || points.pending(Compression::Fast).map(FrameFile::Whole);
+        let pieces = || points.pieces(cut, Compression::Fast).map(FrameFile::Cut);
+        if cut.count > 1 { pieces() } else { whole() }.map_err(unfit)
+    }
+}
+
+/// Arrays that do not fit together.
+fn unfit(error: VtkError) -> Failure {
+    Failure::Output(error.into())
+}
