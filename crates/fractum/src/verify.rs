@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -52,6 +51,24 @@ struct Done {
     wrong: Option<Failure>,
 }
 
+/// The cases that have not run, in their order, and those that run.
+struct Queue {
+    waiting: Vec<usize>,
+    running: Vec<usize>,
+}
+
+impl Queue {
+    /// The next case: one of a folder of which none runs, where there is one. Cases of one folder have bonded bodies in common, which
+    /// the second finds ready once the first has made them.
+    fn next<F: PartialEq>(&mut self, folder: impl Fn(usize) -> F) -> Option<usize> {
+        let is_free = |&index: &usize| self.running.iter().all(|&other| folder(other) != folder(index));
+        let place = self.waiting.iter().position(is_free).unwrap_or(0);
+        let index = (!self.waiting.is_empty()).then(|| self.waiting.remove(place))?;
+        self.running.push(index);
+        Some(index)
+    }
+}
+
 /// Runs the selected cases that expect something, prints the table and writes it after every case into `verify.json` and
 /// `verify.md`, with the shares of the parts of each run beside those that the case needs in `phases.md`, and the estimates of `fractum check` beside the times of the runs in
 /// `estimates.md`; the lines of the table.
@@ -78,12 +95,15 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
     let done = Mutex::new(Done { lines: vec![Vec::new(); cases.len()], wrong: None });
     // A worker that panicked has left the lines of whole cases.
     let lock = || done.lock().unwrap_or_else(PoisonError::into_inner);
-    let next = AtomicUsize::new(0);
+    let queue = Mutex::new(Queue { waiting: (0..cases.len()).collect(), running: Vec::new() });
+    let queued = || queue.lock().unwrap_or_else(PoisonError::into_inner);
+    let folder = |index: usize| cases[index].0.parent();
     let work = || {
         loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some((path, case)) = cases.get(index).filter(|_| lock().wrong.is_none()) else { return };
+            let Some(index) = queued().next(folder).filter(|_| lock().wrong.is_none()) else { return };
+            let (path, case) = &cases[index];
             let lines = verified(selection, path, case);
+            queued().running.retain(|&other| other != index);
             let mut done = lock();
             let written = lines.and_then(|lines| {
                 lines.iter().for_each(print_line);
@@ -214,4 +234,22 @@ fn find_cases(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cases_of_one_folder_run_one_after_the_other_where_others_wait() {
+        let folders = ["a", "a", "b", "a", "c"];
+        let mut queue = Queue { waiting: (0..folders.len()).collect(), running: Vec::new() };
+        let mut next = |ended: Option<usize>| {
+            queue.running.retain(|&index| Some(index) != ended);
+            queue.next(|index| folders[index])
+        };
+        assert_eq!([next(None), next(None)], [Some(0), Some(2)]);
+        assert_eq!([next(Some(2)), next(Some(0)), next(Some(4))], [Some(4), Some(1), Some(3)]);
+        assert_eq!(next(None), None);
+    }
 }
