@@ -8,7 +8,7 @@ use crate::body_model::BodyModel;
 use crate::damage::EdgeField;
 use crate::edges_in_step::{Advance, EdgeCells, EdgesInStep, FourEdgesInStep};
 use crate::kernel::{self, ElasticCells, ExpandingCells, Viscous};
-use crate::standard::StandardCells;
+use crate::standard::{self, StandardCells};
 use crate::viscosity::ViscousCells;
 
 /// How the cells of a block answer to strain.
@@ -46,7 +46,16 @@ impl Block {
         dt: f64,
         measure: bool,
     ) {
+        let is_plain = self.is_plain(model);
         let Block { cells, scratch, law, viscous_power, viscous, inverted, .. } = self;
+        if let BlockLaw::Standard(law) = law
+            && is_plain
+            && !measure
+        {
+            law.energy = None;
+            standard::forces(cells, &mut scratch.force, law);
+            return;
+        }
         scratch.load(&cells.nodes, displacement);
         if model.viscosity.is_some() {
             scratch.load_velocity(&cells.nodes, velocity);
@@ -86,7 +95,13 @@ impl Block {
 
     /// Effective stress of the elements of a standard body with damage.
     pub(crate) fn effective_stress(&mut self, model: &BodyModel, displacement: &[Vec3]) {
-        let Block { cells, law: BlockLaw::Standard(law), .. } = self else { return };
+        let is_plain = self.is_plain(model);
+        let Block { cells, scratch, law: BlockLaw::Standard(law), .. } = self else { return };
+        if is_plain {
+            scratch.load(&cells.nodes, displacement);
+            standard::stresses(cells, &scratch.displacement, law);
+            return;
+        }
         for cell in 0..cells.len() {
             let strain = kernel::strain(&cells.gradient(cell, |node| displacement[node]), model.body.kinematics);
             let strain = cells.elastic_strain(cell, strain);
@@ -95,9 +110,18 @@ impl Block {
         }
     }
 
+    /// Whether its cells neither turn nor expand, and are not viscous: strains that were found once serve the forces too.
+    fn is_plain(&self, model: &BodyModel) -> bool {
+        model.body.kinematics == Kinematics::Small && model.viscosity.is_none() && self.cells.thermal.is_none()
+    }
+
     /// Takes over the damage of the elements of a standard body, and books what it dissipates.
     pub(crate) fn take_element_damage(&mut self, damage_of: impl Fn(u32) -> f64) {
         let Block { cells, items, law: BlockLaw::Standard(law), .. } = self else { return };
+        // A phase field has its own list of what grows.
+        if !std::mem::take(&mut law.is_stale) && !law.softens.regularised {
+            return;
+        }
         for (cell, &element) in items.iter().enumerate() {
             let damage = damage_of(element).max(law.damage[cell]);
             law.dissipated += (damage - law.damage[cell]) * law.mixed_energy[cell] * cells.volume[cell];

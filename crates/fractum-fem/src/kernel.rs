@@ -107,7 +107,7 @@ fn slot(local: u16) -> usize {
 }
 
 #[inline(always)]
-fn gradient_columns(values: &[Lane; BLOCK_NODES], local: &[u16], gradients: &[[f64; 3]]) -> [Lane; 3] {
+pub(crate) fn gradient_columns(values: &[Lane; BLOCK_NODES], local: &[u16], gradients: &[[f64; 3]]) -> [Lane; 3] {
     let base = values[slot(local[0])];
     let (mut x, mut y, mut z) = (Lane::ZERO, Lane::ZERO, Lane::ZERO);
     for (&node, g) in local[1..].iter().zip(gradients) {
@@ -120,7 +120,12 @@ fn gradient_columns(values: &[Lane; BLOCK_NODES], local: &[u16], gradients: &[[f
 }
 
 #[inline(always)]
-fn add_cell_forces(force: &mut [Lane; BLOCK_NODES], local: &[u16], gradients: &[[f64; 3]], stress: [Lane; 3]) {
+pub(crate) fn add_cell_forces(
+    force: &mut [Lane; BLOCK_NODES],
+    local: &[u16],
+    gradients: &[[f64; 3]],
+    stress: [Lane; 3],
+) {
     let mut sum = Lane::ZERO;
     for (&node, g) in local[1..].iter().zip(gradients) {
         let f = Lane::ZERO.plus(stress[0], g[0]).plus(stress[1], g[1]).plus(stress[2], g[2]);
@@ -132,13 +137,13 @@ fn add_cell_forces(force: &mut [Lane; BLOCK_NODES], local: &[u16], gradients: &[
 }
 
 #[inline(always)]
-fn small_strain(x: Lane, y: Lane, z: Lane) -> Sym3 {
+pub(crate) fn small_strain(x: Lane, y: Lane, z: Lane) -> Sym3 {
     let (x, y, z) = (x.0, y.0, z.0);
     Sym3([x[0], y[1], z[2], 0.5 * (x[1] + y[0]), 0.5 * (y[2] + z[1]), 0.5 * (x[2] + z[0])])
 }
 
 #[inline(always)]
-fn symmetric_columns(s: Sym3) -> [Lane; 3] {
+pub(crate) fn symmetric_columns(s: Sym3) -> [Lane; 3] {
     let [xx, yy, zz, xy, yz, zx] = s.0;
     [Lane([xx, xy, zx, 0.0]), Lane([xy, yy, yz, 0.0]), Lane([zx, yz, zz, 0.0])]
 }

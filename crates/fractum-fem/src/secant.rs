@@ -280,6 +280,11 @@ impl Solid {
                 next += 1;
             }
         }
+        for block in &mut self.blocks {
+            if let BlockLaw::Standard(law) = &mut block.law {
+                law.is_stale = true;
+            }
+        }
         self.raise_phases(&trial.phases, before, after);
     }
 

@@ -154,17 +154,23 @@ impl Solid {
         blocks.par_iter_mut().for_each(|block| block.effective_stress(&bodies[block.body], displacement));
         for model in bodies {
             let BodyModel { standard: Some(standard), alive, location, .. } = model else { continue };
-            standard.update_edges(dt, |element| {
+            standard.update_edges(dt, alive, |element| {
                 let (block, cell) = location[element as usize];
                 match &blocks[block as usize].law {
-                    BlockLaw::Standard(law) if alive[element as usize] => Some(law.stress[cell as usize]),
-                    _ => None,
+                    BlockLaw::Standard(law) => law.stress[cell as usize],
+                    _ => Sym3::ZERO,
                 }
             });
+            for element in standard.elements_of_growth() {
+                let (block, _) = location[element as usize];
+                if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
+                    law.is_stale = true;
+                }
+            }
         }
     }
 
-    /// Gives the elements of the standard formulation the damage of their edges.
+    /// Gives the elements of the standard formulation the damage of their edges, where that may have grown.
     fn damage_standard_elements(&mut self) {
         let Solid { blocks, bodies, .. } = self;
         for (index, model) in bodies.iter().enumerate() {
@@ -402,11 +408,10 @@ impl BodyModel {
             _ => None,
         };
         let standard = match (softens, threshold) {
-            (Some(softens), Some(t)) if !smoothed => Some(StandardDamage {
-                field: EdgeField::new(softens, (0..edge_count as u32).collect(), &t),
-                shape: body.shape,
-                elements_of_edge: elements_of_edge.clone(),
-            }),
+            (Some(softens), Some(t)) if !smoothed => {
+                let field = EdgeField::new(softens, (0..edge_count as u32).collect(), &t);
+                Some(StandardDamage::new(field, body.shape, elements_of_edge.clone(), body.elements.len()))
+            }
             _ => None,
         };
         let alive = vec![true; body.elements.len()];

@@ -107,6 +107,7 @@ impl Solid {
             for (&(block, cell), saved) in model.location.iter().zip(&body.elements) {
                 if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
                     (law.damage[cell as usize], law.stress[cell as usize]) = *saved;
+                    law.is_stale = true;
                 }
             }
             model.alive = body.alive;
