@@ -6,13 +6,14 @@ import random
 import gmsh
 
 
-def notched_beam(path, h, lattice="triangles", tilt=0.0, jitter=0.0, zone=0.06, far=0.04):
+def notched_beam(path, h, lattice="triangles", tilt=0.0, jitter=0.0, zone=0.06, far=0.04, shift=(0.0, 0.0)):
     """Beam of 2 x 0.2 m for three-point bending with a slot notch, half the depth and one element wide.
 
     - `h`: element size within `zone` [m] of the middle; it grows to `far` at the ends
     - `lattice`: points inside that part, of equilateral "triangles" or of "squares" (cut by Delaunay's diagonals)
     - `tilt`: angle of the lattice against the beam [deg]
     - `jitter`: amplitude in h by which the points leave the lattice; the same numbers on every run
+    - `shift`: of the lattice, in distances of points along its rows and in distances of rows
     """
     length, depth, notch, w = 1.0, 0.2, 0.1, h / 2
     outline = [
@@ -25,7 +26,7 @@ def notched_beam(path, h, lattice="triangles", tilt=0.0, jitter=0.0, zone=0.06, 
     corners = [geo.addPoint(x, y, 0, size) for x, y, size in outline]
     lines = [geo.addLine(a, b) for a, b in zip(corners, corners[1:] + corners[:1])]
     surface = geo.addPlaneSurface([geo.addCurveLoop(lines)])
-    inside = [geo.addPoint(x, y, 0, h) for x, y in points(h, lattice, tilt, jitter, zone, depth, notch)]
+    inside = [geo.addPoint(x, y, 0, h) for x, y in points(h, lattice, tilt, jitter, zone, depth, notch, shift)]
     geo.synchronize()
     gmsh.model.mesh.embed(0, inside, 2, surface)
     gmsh.model.addPhysicalGroup(2, [surface], name="beam")
@@ -38,7 +39,7 @@ def notched_beam(path, h, lattice="triangles", tilt=0.0, jitter=0.0, zone=0.06, 
     gmsh.write(str(path))
 
 
-def points(h, lattice, tilt, jitter, zone, depth, notch):
+def points(h, lattice, tilt, jitter, zone, depth, notch, shift):
     """Lattice points around the ligament, none nearer than 0.6 h to the outline."""
     noise = random.Random(1)
     angle = math.radians(tilt)
@@ -48,8 +49,8 @@ def points(h, lattice, tilt, jitter, zone, depth, notch):
     for j in range(-count, count + 1):
         for i in range(-count, count + 1):
             # A column of squares, or a row of points and gaps, stands on the notch.
-            u = i * h + (h / 2 if lattice == "squares" or j % 2 else 0)
-            v = j * rise
+            u = (i + shift[0]) * h + (h / 2 if lattice == "squares" or j % 2 else 0)
+            v = (j + shift[1]) * rise
             x = u * math.cos(angle) - v * math.sin(angle) + jitter * h * noise.uniform(-1, 1)
             y = 0.75 * depth + u * math.sin(angle) + v * math.cos(angle) + jitter * h * noise.uniform(-1, 1)
             free = 0.6 * h

@@ -138,6 +138,7 @@ NOTCHED = {
     "notched-beam-plane/jittered-5": {"h": 0.005, "lattice": "squares", "jitter": 0.2},
     "notched-beam-plane/tilt-10": {"h": 0.01, "tilt": 10},
     "notched-beam-plane/tilt-20": {"h": 0.01, "tilt": 20},
+    "notched-beam-plane/tilt-20-5": {"h": 0.005, "tilt": 20},
     "notched-beam-plane/tilt-30": {"h": 0.01, "tilt": 30},
 }
 
