@@ -55,6 +55,7 @@ mod bond;
 mod cells;
 mod error;
 mod fracture;
+pub mod lanes;
 mod measure;
 mod particles;
 mod statics;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use fractum_parallel::Exchange;
 
-use crate::body::{Formulation, Kinematics};
+use crate::body::Kinematics;
 use crate::part::{Part, Share};
 use crate::solid::Solid;
 
@@ -20,7 +20,8 @@ impl Solid {
             can_break || model.viscosity.is_some() || model.body.kinematics == Kinematics::Corotational
         });
         let mut part = Part::new(exchange, &self.blocks, &self.slots, everywhere, needs_records);
-        part.always_all = all;
+        // Edges of the standard formulation gather stresses of elements, which every rank finds of all nodes.
+        part.always_all = all || self.bodies.iter().any(|model| model.standard.is_some());
         self.part = Some(Box::new(part));
     }
 
@@ -28,7 +29,6 @@ impl Solid {
     pub fn cannot_be_shared(&self) -> Option<&'static str> {
         self.bodies.iter().find_map(|model| match &model.body.damage {
             Some(zone) if zone.regularisation.is_some() => Some("damage by a phase field"),
-            Some(_) if model.body.formulation == Formulation::Standard => Some("damage in the standard formulation"),
             _ => None,
         })
     }
@@ -66,7 +66,9 @@ impl Solid {
     /// - `measure`: whether the energies of all cells are needed
     pub(crate) fn exchange_forces(&mut self, measure: bool) {
         let Some(mut part) = self.part.take() else { return };
-        let breaks = part.tell_records(&mut self.blocks);
+        // Every rank finds the edges of the standard formulation.
+        let mut standard = self.bodies.iter().filter_map(|model| model.standard.as_ref());
+        let breaks = part.tell_records(&mut self.blocks) | standard.any(|standard| !standard.field.fresh.is_empty());
         part.is_all = measure | breaks | part.always_all | std::mem::take(&mut part.next_all);
         if part.is_all {
             part.tell_nodes(&mut self.displacement, &mut self.velocity);

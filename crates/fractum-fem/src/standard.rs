@@ -30,8 +30,9 @@ const EDGES: usize = 1024;
 /// What happened to a run of edges in a step.
 #[derive(Clone, Debug, Default)]
 struct RunOfEdges {
-    /// Edges whose damage grew, and those of them that broke.
-    grown: Vec<u32>,
+    /// A bit for each edge whose damage grew: no list, which a step would have to lengthen.
+    grown: [u64; EDGES / 64],
+    /// Edges that broke.
     broke: Vec<u32>,
     /// Whether an edge has seen more than ever before.
     loaded: bool,
@@ -96,7 +97,8 @@ impl StandardDamage {
                 let q = softens.criterion.equivalent_stress(mean);
                 let growth = softens.load(edge, q, strength[index], length[index], dt);
                 run.loaded = true;
-                run.grown.extend((growth > 0.0).then_some(index as u32));
+                let place = index % EDGES;
+                run.grown[place / 64] |= u64::from(growth > 0.0) << (place % 64);
                 run.broke.extend((edge.broken && !was_broken).then_some(index as u32));
             }
         });
@@ -106,8 +108,11 @@ impl StandardDamage {
 
     /// The elements around edges whose damage grew in the last step, some of them more than once.
     pub(crate) fn elements_of_growth(&self) -> impl Iterator<Item = u32> {
-        let grown = self.runs.iter().flat_map(|run| &run.grown);
-        grown.flat_map(|&edge| self.elements_of_edge.row(edge as usize)).copied()
+        let words = self.runs.iter().flat_map(|run| &run.grown).enumerate().filter(|(_, word)| **word != 0);
+        let grown = words.flat_map(|(place, &word)| {
+            (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| 64 * place + bit)
+        });
+        grown.flat_map(|edge| self.elements_of_edge.row(edge)).copied()
     }
 
     /// Damage of an element with these edges: the largest mean over the ways a crack cuts it; under a phase field, whose band is
@@ -195,7 +200,7 @@ fn forces_of_run<const N: usize>(cells: &Cells, run: &Run, force: &mut [Lane; BL
 impl RunOfEdges {
     /// Keeps the room of its lists, so that a step allocates nothing.
     fn clear(&mut self) {
-        self.grown.clear();
+        self.grown = [0; EDGES / 64];
         self.broke.clear();
         self.loaded = false;
     }

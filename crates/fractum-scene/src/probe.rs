@@ -221,10 +221,10 @@ impl Probe {
         let solid = &scene.solid;
         match self {
             Probe::Points { population, probe } => {
-                let dt = scene.clock.dt_before;
+                let (dt, has_left) = (scene.clock.dt_before, scene.has_left(*population));
                 match population {
-                    Population::Nodes => probe.value(solid, scene.supports(), dt),
-                    Population::Particles => probe.value(&scene.bonded, scene.bonded.supports(), dt),
+                    Population::Nodes => probe.value(solid, scene.supports(), dt, has_left),
+                    Population::Particles => probe.value(&scene.bonded, scene.bonded.supports(), dt, has_left),
                 }
             }
             Probe::Energy(kind) => scene.ledger().probe(*kind),
@@ -242,7 +242,7 @@ impl Probe {
                 }
                 sum / volume
             }
-            Probe::ParticleStress(probe) => probe.value(&scene.bonded),
+            Probe::ParticleStress(probe) => probe.value(scene),
             Probe::Strain(probe) => probe.value(scene),
             Probe::Extensometer(probe) => probe.value(scene),
             Probe::Momentum(direction) => {

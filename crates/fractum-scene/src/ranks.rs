@@ -9,15 +9,30 @@ use crate::scene::Scene;
 impl Scene {
     /// What ranks cannot share of this scene, in words; none where they can.
     pub fn cannot_be_shared(&self) -> Option<&'static str> {
-        let others = [
-            (self.solid.body_count() == 0, "a scene without solids"),
-            (!self.bonded.is_empty(), "particles"),
-            (!self.contacts.is_empty() || !self.shape_contacts.is_empty(), "contact and rigid bodies"),
-            (self.optional.heat.is_some(), "heat"),
-            (self.loads.gas().is_some(), "gas"),
-        ];
-        let other = others.iter().find(|(is_there, _)| *is_there).map(|(_, what)| *what);
-        other.or_else(|| self.solid.cannot_be_shared())
+        if self.solid.body_count() == 0 {
+            return Some("a scene without solids");
+        }
+        if self.optional.heat.is_some() && self.solid.has_damage() {
+            return Some("heat in solids that may break");
+        }
+        self.solid.cannot_be_shared()
+    }
+
+    /// Whether something looks at all nodes in every step. Every rank does alike what is no cell of a solid: particles and their
+    /// bonds, contact, rigid bodies, ties, heat and gas.
+    fn needs_all_nodes(&self) -> bool {
+        let damping = self.settings.damping;
+        self.loads.points().is_none()
+            || self.loads.gas().is_some()
+            || damping.local != 0.0
+            || damping.mass_rate != 0.0
+            || self.removals.domain.is_some()
+            || !self.debris.is_empty()
+            || self.solid.fracture().removed_elements > 0
+            || !self.bonded.is_empty()
+            || !self.contacts.is_empty()
+            || !self.shape_contacts.is_empty()
+            || self.optional.heat.is_some()
     }
 
     /// Leaves a share of the cells to each rank of an exchange. Every rank must have the same scene in the same state, and
@@ -26,14 +41,8 @@ impl Scene {
     /// - `watched`: nodes that are looked at after every step
     pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, watched: &[u32]) {
         let held = (0..).zip(self.supports.held()).filter(|(_, held)| **held != 0).map(|(node, _)| node);
+        let all = self.needs_all_nodes();
         let loaded = self.loads.points();
-        let damping = self.settings.damping;
-        let all = loaded.is_none()
-            || damping.local != 0.0
-            || damping.mass_rate != 0.0
-            || self.removals.domain.is_some()
-            || !self.debris.is_empty()
-            || self.solid.fracture().removed_elements > 0;
         let mut everywhere: Vec<u32> = held.chain(loaded.into_iter().flatten()).collect();
         everywhere.extend(self.optional.surface_supports.nodes());
         everywhere.extend(watched);

@@ -10,6 +10,8 @@ use crate::scene::Scene;
 /// Virial stress of a set of particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegionStress {
+    /// The particles, ascending.
+    set: Vec<u32>,
     /// Body, bond, and how many of its particles are in the set.
     bonds: Vec<(u32, u32, f64)>,
     /// Volume that the set stands for [m³].
@@ -33,12 +35,15 @@ impl RegionStress {
             let own = set.iter().filter(|&&i| body.range.contains(&(i as usize)));
             volume += own.map(|&i| sphere_volume(bonded.particles.radius[i as usize])).sum::<f64>() / body.fraction;
         }
-        RegionStress { bonds, volume, between }
+        RegionStress { set: set.to_vec(), bonds, volume, between }
     }
 
-    /// The component [Pa]; tension is positive.
-    pub(crate) fn value(&self, bonded: &Bonded) -> f64 {
-        let [normal, along] = &self.between;
+    /// The component [Pa]; tension is positive. Not a number once a particle of the set has left the run.
+    pub(crate) fn value(&self, scene: &Scene) -> f64 {
+        if self.set.iter().copied().any(scene.has_left(Population::Particles)) {
+            return f64::NAN;
+        }
+        let ([normal, along], bonded) = (&self.between, &scene.bonded);
         let all = &bonded.particles;
         let of = |&(body, bond, ends): &(u32, u32, f64)| {
             let (bonds, bond) = (&bonded.bodies()[body as usize].bonds, bond as usize);

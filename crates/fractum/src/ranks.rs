@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fractum_fem::{Formulation, Share};
-use fractum_io::case::model::{BodyKind, Case, LoadKind, Output, SolverKind};
+use fractum_fem::Share;
+use fractum_io::case::model::{BodyKind, Case, Output, SolidBody, SolverKind};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
 use fractum_io::number::grouped;
 use fractum_io::vtk::Cut;
@@ -71,15 +71,13 @@ impl Ranks {
     /// [`Failure::Elsewhere`] where it is not that of this process.
     pub(crate) fn together<T>(&self, done: Result<T, Failure>) -> Result<T, Failure> {
         let Some(exchange) = &self.exchange else { return done };
-        let rank = exchange.rank().min(31);
-        let failures = exchange.any(u64::from(done.is_err()) << rank);
         let code = done.as_ref().err().map_or(0, |failure| failure.exit_code() as u64);
-        let codes = exchange.any(if failures.trailing_zeros() as usize == rank { code } else { 0 });
-        let first = failures.trailing_zeros() as usize;
-        match done {
-            Err(failure) if first == rank => Err(failure),
-            Ok(done) if failures == 0 => Ok(done),
-            _ => Err(Failure::Elsewhere(ExitCode::from_code(codes))),
+        let mut codes = vec![0.0; exchange.size()];
+        exchange.gather(&[code as f64], &vec![1; exchange.size()], &mut codes);
+        match (codes.iter().position(|&code| code != 0.0), done) {
+            (None, done) => done,
+            (Some(first), Err(failure)) if first == exchange.rank() => Err(failure),
+            (Some(first), _) => Err(Failure::Elsewhere(ExitCode::from_code(codes[first] as u64))),
         }
     }
 
@@ -148,25 +146,48 @@ fn not_for_ranks(case: &Case) -> Vec<(&Place, &'static str)> {
     if case.solver.kind != SolverKind::Explicit {
         found.push((&case.solver.place, "a solver that is not explicit"));
     }
-    for body in &case.bodies {
-        let BodyKind::Solid(solid) = &body.kind else {
-            found.push((&body.name.place, "a body that is not a solid"));
-            continue;
-        };
-        let damage = case.materials[solid.material].damage.as_ref().filter(|_| solid.damage);
-        if damage.is_some_and(|damage| damage.value.regularisation.is_some()) {
-            found.push((&body.name.place, "damage by a phase field"));
-        }
-        if damage.is_some() && solid.formulation == Formulation::Standard {
-            found.push((&body.name.place, "damage in the standard formulation"));
-        }
-    }
-    for load in &case.loads {
-        if let LoadKind::Pressure { pressure, in_cracks: Some(_), .. } = &load.kind {
-            found.push((&pressure.place, "pressure in cracks"));
+    let solids = || {
+        case.bodies.iter().filter_map(|body| match &body.kind {
+            BodyKind::Solid(solid) => Some((&body.name.place, solid)),
+            _ => None,
+        })
+    };
+    let damage = |solid: &SolidBody| case.materials[solid.material].damage.as_ref().filter(|_| solid.damage);
+    for (place, solid) in solids() {
+        if damage(solid).is_some_and(|damage| damage.value.regularisation.is_some()) {
+            found.push((place, "damage by a phase field"));
         }
     }
-    found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat")));
-    found.extend(case.flows.gas.iter().map(|gas| (&gas.place, "gas")));
+    if solids().next().is_none() {
+        found.push((&case.solver.place, "a scene without solids, whose cells they would share,"));
+    }
+    if solids().any(|(_, solid)| damage(solid).is_some()) {
+        found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat in solids that may break")));
+    }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use fractum_parallel::threads;
+
+    use super::*;
+
+    /// Also beyond as many ranks as a word has bits.
+    #[test]
+    fn one_rank_tells_what_went_wrong_and_all_end_with_its_code() {
+        let outcome = |exchange: Arc<dyn Exchange>| {
+            let fails = [35, 70].contains(&exchange.rank());
+            Ranks::new(exchange).together(if fails { Err(Failure::input("no mesh")) } else { Ok(()) })
+        };
+        let outcomes: Vec<_> = std::thread::scope(|scope| {
+            let started: Vec<_> = threads(80).into_iter().map(|own| scope.spawn(move || outcome(own))).collect();
+            started.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        for (rank, outcome) in outcomes.into_iter().enumerate() {
+            let failure = outcome.unwrap_err();
+            assert_eq!(matches!(failure, Failure::Elsewhere(_)), rank != 35, "{rank}: {failure}");
+            assert_eq!(failure.exit_code() as u64, ExitCode::Input as u64);
+        }
+    }
 }

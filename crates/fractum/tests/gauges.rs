@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::common::{BONDED_BAR, Workplace, files_below, history, run};
+use crate::common::{BONDED_BAR, FLYING, Workplace, files_below, history, run};
 
 /// A bar without lateral contraction that is stretched by 1.5e-4 along x.
 const STRETCHED: &str = r#"fractum = 1
@@ -96,43 +96,11 @@ fn particles_have_gauges_too_and_a_new_run_leaves_no_table_of_an_old_one() {
     assert!(ended.code == Some(0) && !old.exists(), "{}", ended.stderr);
 }
 
-/// A solid bar and, above it, a bonded one. One of them flies out of the domain.
-const FLYING: &str = r#"fractum = 1
-mesh = { file = "bar.msh" }
-solver = { end = "2 ms", domain = { min = [-1, -1, -1], max = ["0.6 m", 1, 1] } }
-output = { history = { every = "20 us" } }
-probes = [
-  { name = "solid_strain", strain = { group = "body", component = "xx" } },
-  { name = "solid_clip", extensometer = { group = "body", from = [0, 0, 0], to = ["40 cm", 0, 0] } },
-  { name = "bonded_strain", strain = { group = "bonded", component = "xx" } },
-  { name = "bonded_satake", strain = { group = "bonded", measure = "satake", component = "xx" } },
-  { name = "bonded_clip", extensometer = { group = "bonded", from = [0, 0, "50 cm"], to = ["40 cm", 0, "50 cm"] } },
-]
-[materials.glass]
-density = "2500 kg/m^3"
-young_modulus = "72 GPa"
-poisson_ratio = 0.23
-[[bodies]]
-name = "solid"
-kind = "solid"
-group = "body"
-material = "glass"
-initial_velocity = { x = "0 m/s" }
-[[bodies]]
-name = "bonded"
-kind = "bonded"
-material = "glass"
-shape = "box"
-point = [0, 0, "50 cm"]
-size = ["40 cm", "12 cm", "12 cm"]
-particles = 300
-coordination = 8
-initial_velocity = { x = "0 m/s" }
-"#;
-
 #[test]
-fn probes_of_strain_have_no_value_once_their_points_have_left_the_domain() {
-    let (solid, bonded) = (["solid_strain", "solid_clip"], ["bonded_strain", "bonded_satake", "bonded_clip"]);
+fn probes_have_no_value_once_their_points_have_left_the_domain() {
+    let solid = ["strain", "clip", "way", "speed"].map(|name| format!("solid_{name}"));
+    let bonded = ["strain", "satake", "clip", "way", "speed", "turn", "stress"].map(|name| format!("bonded_{name}"));
+    let [solid, bonded] = [&solid[..], &bonded[..]].map(|names| names.iter().map(String::as_str).collect::<Vec<_>>());
     for (body, leaving, staying) in [("solid", &solid[..], &bonded[..]), ("bonded", &bonded[..], &solid[..])] {
         let (before, after) = FLYING.split_at(FLYING.find(&format!("name = \"{body}\"\n")).unwrap());
         let place = Workplace::new(&format!("{before}{}", after.replacen("\"0 m/s\"", "\"600 m/s\"", 1)));

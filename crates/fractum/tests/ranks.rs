@@ -7,7 +7,7 @@ use fractum::{Failure, Options, Ranks, Simulation, run, run_shared};
 use fractum_io::vtk::{Arrays, read_collection};
 use fractum_parallel::threads;
 
-use crate::common::{BREAKING_BAR, Workplace, files_below};
+use crate::common::{BREAKING_BAR, FLYING, Workplace, files_below};
 
 /// The breaking bar without its floor.
 fn bar() -> String {
@@ -130,15 +130,41 @@ fn a_run_is_continued_by_another_number_of_ranks() {
     }
 }
 
+/// A scene of every kind that ranks share, with the overrides that make it.
+fn kinds() -> Vec<(&'static str, String, Vec<(String, String)>)> {
+    let set = |key: &str, value: &str| vec![(key.to_owned(), value.to_owned())];
+    let beads = "[[bodies]]\nname = \"beads\"\nkind = \"particles\"\nmaterial = \"concrete\"\nshape = \"box\"\n\
+        point = [\"10 cm\", \"12.5 cm\", \"2 cm\"]\nsize = [\"20 cm\", \"6 cm\", \"8 cm\"]\nparticle_radius = \"1 cm\"\nseed = 1\n[[supports]]";
+    vec![
+        ("rigid floor", BREAKING_BAR.into(), vec![]),
+        ("standard formulation", BREAKING_BAR.into(), set("bodies[0].formulation", "\"standard\"")),
+        ("loose particles", BREAKING_BAR.replacen("[[supports]]", beads, 1), vec![]),
+        ("bonded body beside a solid", FLYING.replacen("\"0 m/s\"", "\"600 m/s\"", 1), vec![]),
+    ]
+}
+
+#[test]
+fn scenes_of_every_kind_have_the_state_of_one_process() {
+    for (kind, case, overrides) in kinds() {
+        let place = Workplace::new(&case);
+        let with = |folder: &str| Options { overrides: overrides.clone(), ..options(&place, folder) };
+        let alone = run(&place.path("case.toml"), &with("alone")).unwrap_or_else(|error| panic!("{kind}: {error}"));
+        for ranks in [2, 3] {
+            let folder = format!("of-{ranks}");
+            for hash in on_ranks(&place, ranks, &with(&folder)) {
+                assert_eq!(hash.unwrap(), alone.summary.hashes.state_hash, "{kind}, {ranks} ranks");
+            }
+            assert_same_files(&place, &folder, &format!("{kind}, {ranks} ranks"));
+        }
+    }
+}
+
 #[test]
 fn what_ranks_cannot_run_is_refused_once_and_by_name() {
-    let place = Workplace::new(BREAKING_BAR);
+    let place = Workplace::new(&bar().replace("fracture_energy", "regularisation = \"phase-field\"\nfracture_energy"));
     let results = on_ranks(&place, 3, &options(&place, "refused"));
     let text = results[0].as_ref().unwrap_err().to_string();
-    assert!(
-        text.contains("case.toml:") && text.contains("a body that is not a solid cannot be run by several"),
-        "{text}"
-    );
+    assert!(text.contains("case.toml:") && text.contains("damage by a phase field cannot be run by several"), "{text}");
     assert!(results[1..].iter().all(|result| matches!(result, Err(Failure::Elsewhere(_)))));
     assert!(!place.path("refused").exists());
 }

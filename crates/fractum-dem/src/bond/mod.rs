@@ -4,7 +4,6 @@ mod block;
 mod graph;
 mod kept_loads;
 mod kinds;
-pub mod lanes;
 mod law;
 mod loads;
 mod mean_strain;

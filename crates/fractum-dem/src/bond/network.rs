@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, sum_bonds, sum_energies};
 use super::graph::{BondGraph, check_pairs};
-use super::lanes::WIDTH;
 use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
 use super::mean_strain::{MeanStrain, Separating};
 use crate::DemError;
+use crate::lanes::WIDTH;
 use crate::particles::Particles;
 
 /// Particles whose bonds form one block of parallel work.

@@ -2,10 +2,10 @@
 
 use fractum_math::{Sym3, Vec3};
 
-use super::lanes::Lanes;
 use super::law::{BondForces, BondLaw};
 use super::mean_strain::{BondChange, MeanStrain, Separating};
 use super::network::BondNetwork;
+use crate::lanes::Lanes;
 use crate::particles::Particles;
 
 impl<L: BondLaw> BondNetwork<L> {
@@ -104,7 +104,7 @@ impl<L: BondLaw> BondNetwork<L> {
             let released = before - self.energy_about(about, bonds, particles);
             self.put_memory(bond, self.law.with_dissipated(memory, released, self.length[bond], &own));
             let [block, group, lane] = self.index[bond];
-            self.blocks[block as usize].separated.push(group * super::lanes::WIDTH as u32 + lane);
+            self.blocks[block as usize].separated.push(group * crate::lanes::WIDTH as u32 + lane);
         }
     }
 

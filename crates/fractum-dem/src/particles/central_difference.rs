@@ -4,31 +4,9 @@
 use fractum_math::{HalfSteps, Vec3};
 use rayon::prelude::*;
 
-use super::{BLOCK, Particles, free, turned};
-
-/// Damping that acts on particles, on their motion and their rotation alike.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ParticleDamping {
-    /// Fraction a of the unbalanced force that opposes the motion, -a |F| v/|v|; for quasi-static runs.
-    pub local: f64,
-    /// Mass-proportional rate α [1/s].
-    pub mass_rate: f64,
-    /// φ − 1 of the scheme of Tchamwa and Wielgosz, see [`PastForces`]; 0 leaves it out.
-    pub dissipation: f64,
-}
-
-impl ParticleDamping {
-    fn is_off(&self) -> bool {
-        self.local == 0.0 && self.mass_rate == 0.0 && self.dissipation == 0.0
-    }
-
-    /// -a |F| v/|v| - α m v, zero at rest; with moment, spin and moment of inertia for a rotation.
-    fn force(&self, force: Vec3, velocity: Vec3, mass: f64) -> Vec3 {
-        let speed = velocity.norm();
-        let local = if speed > 0.0 { velocity * (-self.local * force.norm() / speed) } else { Vec3::zeros() };
-        local - velocity * (self.mass_rate * mass)
-    }
-}
+use super::kernel::{self, Moving};
+use super::step::{ParticleDamping, TimeStep};
+use super::{BLOCK, Particles, free};
 
 /// Forces and moments of a step, which the scheme of Tchamwa and Wielgosz compares with those of the next (Mahéo, Grolleau
 /// and Rio 2013).
@@ -52,19 +30,6 @@ impl PastForces {
     }
 }
 
-/// One step from tⁿ to tⁿ⁺¹.
-#[derive(Clone, Copy, Debug)]
-pub struct TimeStep {
-    /// Step that led to tⁿ [s].
-    pub dt_before: f64,
-    /// Step that follows [s].
-    pub dt_after: f64,
-    /// Damping of the free degrees of freedom.
-    pub damping: ParticleDamping,
-    /// Whether to sum the kinetic energy.
-    pub measure: bool,
-}
-
 impl Particles {
     /// Number of entries that [`Particles::kick_and_drift`] needs for its partial sums.
     pub fn block_count(&self) -> usize {
@@ -81,54 +46,25 @@ impl Particles {
     ///   rotation: the product that the scheme conserves exactly in a linear body; as the step after sees it, it is
     ///   ½ Σ m vⁿ⁺½ · (vⁿ⁺½ - Δt aⁿ), another one where the step changes
     pub fn kick_and_drift(&mut self, step: &TimeStep, before: &mut PastForces, partial: &mut [HalfSteps]) -> HalfSteps {
-        let TimeStep { dt_before, dt_after, damping, measure } = *step;
-        let dt_kick = 0.5 * (dt_before + dt_after);
-        let plain = damping.is_off() && !measure;
         let motion = self.position.par_chunks_mut(BLOCK).zip(self.orientation.par_chunks_mut(BLOCK));
         let rates = self.velocity.par_chunks_mut(BLOCK).zip(self.spin.par_chunks_mut(BLOCK));
         let loads = self.force.par_chunks(BLOCK).zip(self.moment.par_chunks(BLOCK));
         let weights = self.mass.par_chunks(BLOCK).zip(self.inertia.par_chunks(BLOCK));
         let constants = weights.zip(self.held.par_chunks(BLOCK));
-        let past = &*before;
+        let past = (step.damping.dissipation != 0.0).then_some([&before.force[..], &before.moment[..]]);
         motion.zip(rates).zip(loads.zip(constants)).zip(partial.par_iter_mut()).enumerate().for_each(
-            |(block, (((motion, rates), (loads, (weights, held))), work))| {
-                let (position, orientation) = motion;
-                let (velocity, spin) = rates;
-                *work = HalfSteps::default();
-                for k in 0..position.len() {
-                    let (mass, inertia) = (weights.0[k], weights.1[k]);
-                    let mut force = free(loads.0[k], held[k]);
-                    let mut moment = free(loads.1[k], held[k] >> 3);
-                    if !plain {
-                        let (v, w) = (free(velocity[k], held[k]), free(spin[k], held[k] >> 3));
-                        let (mut resist, mut brake) =
-                            (damping.force(force, v, mass), damping.force(moment, w, inertia));
-                        if damping.dissipation != 0.0 {
-                            let i = block * BLOCK + k;
-                            resist += (force - past.force[i]) * damping.dissipation;
-                            brake += (moment - past.moment[i]) * damping.dissipation;
-                        }
-                        force += resist;
-                        moment += brake;
-                        let after = (v + force * (dt_kick / mass), w + moment * (dt_kick / inertia));
-                        work.before.damping -= 0.5 * dt_before * (resist.dot(&v) + brake.dot(&w));
-                        work.after.damping -= 0.5 * dt_after * (resist.dot(&after.0) + brake.dot(&after.1));
-                        work.before.kinetic +=
-                            0.5 * mass * velocity[k].dot(&(velocity[k] + force * (dt_before / mass)));
-                        work.before.kinetic += 0.5 * inertia * spin[k].dot(&(spin[k] + moment * (dt_before / inertia)));
-                    }
-                    velocity[k] += force * (dt_kick / mass);
-                    spin[k] += moment * (dt_kick / inertia);
-                    if !plain {
-                        work.after.kinetic += 0.5 * velocity[k].dot(&(velocity[k] * mass - force * dt_after));
-                        work.after.kinetic += 0.5 * spin[k].dot(&(spin[k] * inertia - moment * dt_after));
-                    }
-                    position[k] += velocity[k] * dt_after;
-                    orientation[k] = turned(&orientation[k], spin[k] * dt_after);
-                }
+            |(
+                block,
+                ((((position, orientation), (velocity, spin)), ((force, moment), ((mass, inertia), held))), work),
+            )| {
+                let own = block * BLOCK..block * BLOCK + position.len();
+                let past = past.map(|past| past.map(|of| &of[own.clone()]));
+                let particles =
+                    Moving { position, orientation, velocity, spin, force, moment, mass, inertia, held, past };
+                *work = kernel::advance(particles, step);
             },
         );
-        if damping.dissipation != 0.0 {
+        if step.damping.dissipation != 0.0 {
             let past = before.force.par_chunks_mut(BLOCK).zip(before.moment.par_chunks_mut(BLOCK));
             let loads = self.force.par_chunks(BLOCK).zip(self.moment.par_chunks(BLOCK));
             past.zip(loads).zip(self.held.par_chunks(BLOCK)).for_each(|((past, loads), held)| {
@@ -188,6 +124,7 @@ impl CentralDifference {
 
 #[cfg(test)]
 mod tests {
+    use super::super::turned;
     use super::*;
     use crate::{BeamSection, Bonds};
 

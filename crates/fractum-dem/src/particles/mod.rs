@@ -1,10 +1,13 @@
 //! Discrete elements and their motion.
 
 mod central_difference;
+mod kernel;
+mod step;
 
-pub use central_difference::{CentralDifference, ParticleDamping, PastForces, TimeStep};
+pub use central_difference::{CentralDifference, PastForces};
+pub(crate) use kernel::turned;
+pub use step::{ParticleDamping, TimeStep};
 
-use fractum_math::elementary::{cos, sin};
 use fractum_math::{Rotation, Vec3};
 
 use crate::DemError;
@@ -117,33 +120,6 @@ pub(crate) fn free(a: Vec3, held: u8) -> Vec3 {
         return a;
     }
     Vec3::from_fn(|d, _| if held >> d & 1 == 1 { 0.0 } else { a[d] })
-}
-
-/// exp(θ) q, renormalised.
-#[inline]
-pub(crate) fn turned(q: &Rotation, theta: Vec3) -> Rotation {
-    let square = theta.norm_squared();
-    // cos(θ/2) and sin(θ/2)/θ; the series are exact to round-off below 0.2 rad.
-    let (c, s) = if square < 0.04 {
-        let h = 0.25 * square;
-        let c = 1.0 - h / 2.0 * (1.0 - h / 12.0 * (1.0 - h / 30.0 * (1.0 - h / 56.0)));
-        (c, 0.5 * (1.0 - h / 6.0 * (1.0 - h / 20.0 * (1.0 - h / 42.0 * (1.0 - h / 72.0)))))
-    } else {
-        let angle = square.sqrt();
-        (cos(0.5 * angle), sin(0.5 * angle) / angle)
-    };
-    let v = theta * s;
-    let (w, u) = (q.w, q.imag());
-    let vector = u * c + v * w + v.cross(&u);
-    let scalar = c * w - v.dot(&u);
-    // One Newton step of 1/√: round-off only drifts by parts in 1e16.
-    let keep = 1.5 - 0.5 * (scalar * scalar + vector.norm_squared());
-    Rotation::new_unchecked(nalgebra_quaternion(scalar * keep, vector * keep))
-}
-
-#[inline]
-fn nalgebra_quaternion(w: f64, v: Vec3) -> nalgebra::Quaternion<f64> {
-    nalgebra::Quaternion::new(w, v.x, v.y, v.z)
 }
 
 #[cfg(test)]

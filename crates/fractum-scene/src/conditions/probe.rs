@@ -39,22 +39,23 @@ pub enum PointProbe {
         /// Which component.
         along: Along,
     },
-    /// Mean displacement at the instant of the last step, as its reactions are [m]; directions about an axis are those of
-    /// the places without load.
+    /// Mean displacement at the instant of the last step, as its reactions are [m], of the points that have not left the run;
+    /// directions about an axis are those of the places without load.
     Displacement {
         /// The points.
         points: Vec<u32>,
         /// Which component.
         along: Along,
     },
-    /// Mean velocity [m/s]; directions about an axis are those of the present places.
+    /// Mean velocity [m/s] of the points that have not left the run; directions about an axis are those of the present places.
     Velocity {
         /// The points.
         points: Vec<u32>,
         /// Which component.
         along: Along,
     },
-    /// Rotation of the set as a whole about an axis through its centre, for small angles [rad].
+    /// Rotation of the set as a whole about an axis through its centre, for small angles [rad]; not a number once a point has
+    /// left the run.
     Rotation {
         /// The points.
         points: Vec<u32>,
@@ -64,8 +65,15 @@ pub enum PointProbe {
 }
 
 impl PointProbe {
-    /// Value at the last step; `dt` is the step that followed it [s].
-    pub(crate) fn value(&self, population: &impl Points, supports: &Supports, dt: f64) -> f64 {
+    /// Value at the last step; `dt` is the step that followed it [s]. Not a number once all points have left the run.
+    pub(crate) fn value(
+        &self,
+        population: &impl Points,
+        supports: &Supports,
+        dt: f64,
+        has_left: impl Fn(u32) -> bool,
+    ) -> f64 {
+        let present = |points: &[u32]| points.iter().copied().filter(|&point| !has_left(point)).collect::<Vec<u32>>();
         let displacement = |i: usize| population.displacement_before(i, dt);
         match self {
             PointProbe::Reaction { places, along: Along::Direction(direction) } => supports.reaction(places, direction),
@@ -73,11 +81,12 @@ impl PointProbe {
                 supports.reaction_by(places, |point| along.at(population.reference(point)))
             }
             PointProbe::Displacement { points, along } => {
-                component(points, along, |i| *population.reference(i), displacement)
+                component(&present(points), along, |i| *population.reference(i), displacement)
             }
             PointProbe::Velocity { points, along } => {
-                component(points, along, |i| population.position(i), |i| *population.velocity(i))
+                component(&present(points), along, |i| population.position(i), |i| *population.velocity(i))
             }
+            PointProbe::Rotation { points, .. } if points.iter().any(|&point| has_left(point)) => f64::NAN,
             PointProbe::Rotation { points, axis } => {
                 let centre = mean(points, |i| *population.reference(i));
                 let shift = mean(points, displacement);
@@ -99,13 +108,13 @@ fn component(points: &[u32], along: &Along, place: impl Fn(usize) -> Vec3, of: i
         Along::Direction(direction) => mean(points, of).dot(direction),
         _ => {
             let own = |&i: &u32| of(i as usize).dot(&along.at(&place(i as usize)));
-            points.iter().map(own).sum::<f64>() / points.len().max(1) as f64
+            points.iter().map(own).sum::<f64>() / points.len() as f64
         }
     }
 }
 
 fn mean(points: &[u32], of: impl Fn(usize) -> Vec3) -> Vec3 {
-    points.iter().map(|&i| of(i as usize)).sum::<Vec3>() / points.len().max(1) as f64
+    points.iter().map(|&i| of(i as usize)).sum::<Vec3>() / points.len() as f64
 }
 
 #[cfg(test)]

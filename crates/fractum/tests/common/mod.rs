@@ -114,6 +114,46 @@ spacing = "5 cm"
 length = "12 cm"
 "#;
 
+/// A solid bar and, above it, a bonded one. One of them flies out of the domain.
+pub(crate) const FLYING: &str = r#"fractum = 1
+mesh = { file = "bar.msh" }
+solver = { end = "2 ms", domain = { min = [-1, -1, -1], max = ["0.6 m", 1, 1] } }
+output = { history = { every = "20 us" } }
+probes = [
+  { name = "solid_strain", strain = { group = "body", component = "xx" } },
+  { name = "solid_clip", extensometer = { group = "body", from = [0, 0, 0], to = ["40 cm", 0, 0] } },
+  { name = "solid_way", displacement = { group = "body", along = "x" } },
+  { name = "solid_speed", velocity = { group = "body", along = "x" } },
+  { name = "bonded_way", displacement = { group = "bonded", along = "x" } },
+  { name = "bonded_speed", velocity = { group = "bonded", along = "x" } },
+  { name = "bonded_turn", rotation = { group = "bonded", along = "x" } },
+  { name = "bonded_stress", stress = { group = "bonded", component = "xx" } },
+  { name = "bonded_strain", strain = { group = "bonded", component = "xx" } },
+  { name = "bonded_satake", strain = { group = "bonded", measure = "satake", component = "xx" } },
+  { name = "bonded_clip", extensometer = { group = "bonded", from = [0, 0, "50 cm"], to = ["40 cm", 0, "50 cm"] } },
+]
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "72 GPa"
+poisson_ratio = 0.23
+[[bodies]]
+name = "solid"
+kind = "solid"
+group = "body"
+material = "glass"
+initial_velocity = { x = "0 m/s" }
+[[bodies]]
+name = "bonded"
+kind = "bonded"
+material = "glass"
+shape = "box"
+point = [0, 0, "50 cm"]
+size = ["40 cm", "12 cm", "12 cm"]
+particles = 300
+coordination = 8
+initial_velocity = { x = "0 m/s" }
+"#;
+
 /// A brittle bar whose load factor runs back while its weak slab comes apart.
 pub(crate) const SNAP_BACK: &str = r#"fractum = 1
 mesh = { file = "bar.msh" }

@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, EnergyLanes, ForceLanes, Turn};
 use crate::DemError;
-use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, scale, sub};
+use crate::lanes::{Lanes, Vector, add, cross, dot, rotate, scale, sub};
 
 /// The beam that makes a bond: one circular section for all bonds of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -14,13 +14,13 @@ use fractum_math::{Rotation, Sym3, Vec3};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::lanes::{Lanes, Vector};
 use crate::DemError;
+use crate::lanes::{Lanes, Vector};
 
 /// How a bond pulls, bends and dissipates. A law sees one bond and what this remembers, never its neighbours.
 ///
 /// The law itself holds what all bonds of a body share. Forces are written for `W` bonds side by side
-/// ([`super::lanes`]); a network is compiled for each law, so that what a law does not use costs nothing.
+/// ([`crate::lanes`]); a network is compiled for each law, so that what a law does not use costs nothing.
 pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// What a bond has of its own; `()` where the bonds of a body differ by length and direction only.
     type Parameters: Copy + Debug + Send + Sync;

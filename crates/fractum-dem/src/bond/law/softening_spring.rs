@@ -2,7 +2,7 @@
 
 use super::{BondLanes, BondLaw, BondStiffness, EnergyLanes, ForceLanes};
 use crate::DemError;
-use crate::bond::lanes::{Lanes, dot, scale};
+use crate::lanes::{Lanes, dot, scale};
 
 /// F = k δ up to δ₀, then on a line to zero at δ₁; unloading goes to the origin, and compression is elastic.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,8 +3,8 @@
 use fractum_math::Sym3;
 
 use super::{Interface, InterfaceMemory, Kinematics, LocalBond, RecentStrains, Separation};
-use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
 use crate::bond::law::{BondForces, BondLanes, BondedPair, DeviatingForces, EnergyLanes, ForceLanes};
+use crate::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
 
 /// Strains of `W` interfaces in the axes of the undeformed body: the mean of their particles, and what they have beside it.
 struct Deviations<const W: usize> {

@@ -17,7 +17,7 @@ use super::{
     MeanElasticity, Turn,
 };
 use crate::DemError;
-use crate::bond::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
+use crate::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
 
 /// Stress at the interface of two particles from their relative displacement:
 ///

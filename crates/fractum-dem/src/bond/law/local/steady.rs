@@ -2,7 +2,7 @@
 
 use super::interface::ROUND_OFF;
 use super::{InterfaceFailure, InterfaceMemory, LocalBond};
-use crate::bond::lanes::{Lanes, Vector, add, dot, scale, sub};
+use crate::lanes::{Lanes, Vector, add, dot, scale, sub};
 
 /// What interfaces side by side remember of their slips and of the last step, in the axes of their shear strains now.
 pub(super) struct Past<const W: usize> {

@@ -1,9 +1,9 @@
-//! Numbers and vectors side by side, for laws that handle several bonds at once.
+//! Numbers and vectors side by side, for laws that handle several bonds at once, and for particles that move.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Bonds computed side by side.
-pub(super) const WIDTH: usize = 8;
+pub(crate) const WIDTH: usize = 8;
 
 /// `W` numbers handled side by side: plain arrays that the compiler turns into vector instructions.
 #[derive(Clone, Copy)]
