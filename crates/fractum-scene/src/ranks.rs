@@ -12,14 +12,14 @@ impl Scene {
         if self.solid.body_count() == 0 {
             return Some("a scene without solids");
         }
-        if self.optional.heat.is_some() && self.solid.has_damage() {
-            return Some("heat in solids that may break");
+        if self.optional.heat.is_some() {
+            return Some("heat");
         }
         self.solid.cannot_be_shared()
     }
 
     /// Whether something looks at all nodes in every step. Every rank does alike what is no cell of a solid: particles and their
-    /// bonds, contact, rigid bodies, ties, heat and gas.
+    /// bonds, contact, rigid bodies, ties and gas.
     fn needs_all_nodes(&self) -> bool {
         let damping = self.settings.damping;
         self.loads.points().is_none()
@@ -32,7 +32,6 @@ impl Scene {
             || !self.bonded.is_empty()
             || !self.contacts.is_empty()
             || !self.shape_contacts.is_empty()
-            || self.optional.heat.is_some()
     }
 
     /// Leaves a share of the cells to each rank of an exchange. Every rank must have the same scene in the same state, and
