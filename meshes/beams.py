@@ -6,7 +6,7 @@ import random
 import gmsh
 
 
-def notched_beam(path, h, lattice="triangles", tilt=0.0, jitter=0.0, zone=0.06, far=0.04, shift=(0.0, 0.0)):
+def notched_beam(path, h, lattice="triangles", tilt=0.0, jitter=0.0, zone=0.06, far=0.04, shift=(0.0, 0.0), pointed=False):
     """Beam of 2 x 0.2 m for three-point bending with a slot notch, half the depth and one element wide.
 
     - `h`: element size within `zone` [m] of the middle; it grows to `far` at the ends
@@ -14,10 +14,12 @@ def notched_beam(path, h, lattice="triangles", tilt=0.0, jitter=0.0, zone=0.06, 
     - `tilt`: angle of the lattice against the beam [deg]
     - `jitter`: amplitude in h by which the points leave the lattice; the same numbers on every run
     - `shift`: of the lattice, in distances of points along its rows and in distances of rows
+    - `pointed`: the notch ends in a point instead of a side
     """
     length, depth, notch, w = 1.0, 0.2, 0.1, h / 2
+    tip = [(-w, notch - w, h), (0, notch, h), (w, notch - w, h)] if pointed else [(-w, notch, h), (w, notch, h)]
     outline = [
-        (-length, 0, far), (-zone, 0, h), (-w, 0, h), (-w, notch, h), (w, notch, h), (w, 0, h), (zone, 0, h),
+        (-length, 0, far), (-zone, 0, h), (-w, 0, h), *tip, (w, 0, h), (zone, 0, h),
         (length, 0, far), (length, depth, far), (zone, depth, h), (0, depth, h), (-zone, depth, h),
         (-length, depth, far),
     ]  # fmt: skip
@@ -30,9 +32,10 @@ def notched_beam(path, h, lattice="triangles", tilt=0.0, jitter=0.0, zone=0.06, 
     geo.synchronize()
     gmsh.model.mesh.embed(0, inside, 2, surface)
     gmsh.model.addPhysicalGroup(2, [surface], name="beam")
-    names = {"left": 0, "right": 7, "load": 10, "mouth_left": 2, "mouth_right": 5}
-    for name, at in names.items():
-        gmsh.model.addPhysicalGroup(0, [corners[at]], name=name)
+    names = {"left": (-length, 0), "right": (length, 0), "load": (0, depth), "mouth_left": (-w, 0), "mouth_right": (w, 0)}
+    at = {(x, y): corner for (x, y, _), corner in zip(outline, corners)}
+    for name, place in names.items():
+        gmsh.model.addPhysicalGroup(0, [at[place]], name=name)
     gmsh.option.setNumber("Mesh.Algorithm", 5)
     gmsh.option.setNumber("Mesh.Optimize", 0)
     gmsh.model.mesh.generate(2)

@@ -98,7 +98,13 @@ class Frame:
         """As a data set of PyVista."""
         import pyvista
 
-        return pyvista.read(self.path)
+        if not str(self.path).endswith(".pvtp"):
+            return pyvista.read(self.path)
+        # Only points are cut into such pieces, of which PyVista has no reader.
+        cloud = pyvista.PolyData(self.points)
+        for name, values in self.point_data.items():
+            cloud.point_data[name] = values
+        return cloud
 
 
 def _put(parts, numbers):

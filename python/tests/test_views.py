@@ -37,6 +37,9 @@ def test_vtk_reads_frames_in_pieces(breaking, tmp_path):
         numbers = read.point_data["GlobalNodeId"]
         assert expected.n_cells == read.n_cells and (expected.points[numbers] == read.points).all()
         assert (expected.point_data["velocity"][numbers] == read.point_data["velocity"]).all()
+        assert cut[name].to_pyvista().n_cells == expected.n_cells
+    cloud = cut["discrete elements"].to_pyvista()
+    assert (cloud.points == pyvista.read(whole["discrete elements"].path).points).all() and "radius" in cloud.point_data
 
 
 def moved(part, factor):

@@ -115,6 +115,13 @@ impl Block {
         model.body.kinematics == Kinematics::Small && model.viscosity.is_none() && self.cells.thermal.is_none()
     }
 
+    /// Has the elements of a standard body take over the damage of their edges once more.
+    pub(crate) fn expect_damage(&mut self) {
+        if let BlockLaw::Standard(law) = &mut self.law {
+            law.is_stale = true;
+        }
+    }
+
     /// Takes over the damage of the elements of a standard body, and books what it dissipates.
     pub(crate) fn take_element_damage(&mut self, damage_of: impl Fn(u32) -> f64) {
         let Block { cells, items, law: BlockLaw::Standard(law), .. } = self else { return };

@@ -280,11 +280,7 @@ impl Solid {
                 next += 1;
             }
         }
-        for block in &mut self.blocks {
-            if let BlockLaw::Standard(law) = &mut block.law {
-                law.is_stale = true;
-            }
-        }
+        self.blocks.iter_mut().for_each(Block::expect_damage);
         self.raise_phases(&trial.phases, before, after);
     }
 

@@ -163,9 +163,7 @@ impl Solid {
             });
             for element in standard.elements_of_growth() {
                 let (block, _) = location[element as usize];
-                if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
-                    law.is_stale = true;
-                }
+                blocks[block as usize].expect_damage();
             }
         }
     }

@@ -107,9 +107,9 @@ impl Solid {
             for (&(block, cell), saved) in model.location.iter().zip(&body.elements) {
                 if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
                     (law.damage[cell as usize], law.stress[cell as usize]) = *saved;
-                    law.is_stale = true;
                 }
             }
+            blocks.iter_mut().for_each(Block::expect_damage);
             model.alive = body.alive;
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
             self.rebuild_cells_around(index, &removed);

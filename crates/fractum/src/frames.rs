@@ -39,7 +39,7 @@ pub(crate) struct FrameEntry {
 }
 
 impl Frame {
-    /// The frame of the present instant.
+    /// The frame of the present instant: of one of several processes its pieces, of the leading one also what is not cut.
     ///
     /// - `instant`: where it stands in the collection
     pub(crate) fn of(scene: &Scene, grid: &GridLayout, instant: f64) -> Result<Self, Failure> {
@@ -51,21 +51,27 @@ impl Frame {
             parts.push((Population::Debris, particles_file(scene, grid.cut)?));
         }
         let ParticleFiles { bonded, loose, bonds } = ParticleFiles::of(scene, grid.cut)?;
-        let bonds = bonds.map(FrameFile::Whole);
-        let particles = [(Population::Bonded, bonded), (Population::Loose, loose), (Population::Bonds, bonds)];
-        parts.extend(particles.into_iter().filter_map(|(population, file)| Some((population, file?))));
+        parts.extend(bonded.map(|file| (Population::Bonded, file)));
+        parts.extend(loose.map(|file| (Population::Loose, file)));
+        let (mut frame, mut whole) = (Frame { instant, step: scene.clock.step, parts, tables: Vec::new() }, Vec::new());
+        if !grid.cut.is_leading() {
+            return Ok(frame);
+        }
+        whole.extend(bonds.map(|file| (Population::Bonds, file)));
         if !grid.rigid.is_empty() {
-            parts.push((Population::Rigid, FrameFile::Whole(grid.rigid.file(scene)?)));
+            whole.push((Population::Rigid, grid.rigid.file(scene)?));
         }
         if let Some(gas) = scene.gas().filter(|gas| gas.cells().nth(gas.hole_count()).is_some()) {
-            parts.push((Population::Gas, FrameFile::Whole(gas_cells::file(scene, gas)?)));
+            whole.push((Population::Gas, gas_cells::file(scene, gas)?));
         }
         let crack = scene.solid.crack_surface();
         if !crack.facets.is_empty() {
-            parts.push((Population::Cracks, FrameFile::Whole(cracks::facets_file(&scene.solid, &crack, None)?)));
+            whole.push((Population::Cracks, cracks::facets_file(&scene.solid, &crack, None)?));
         }
-        let tables = grid.gauges.iter().map(|gauges| (gauges.name.clone(), gauge_tables::file(scene, &gauges.grid)));
-        Ok(Frame { instant, step: scene.clock.step, parts, tables: tables.collect() })
+        frame.parts.extend(whole.into_iter().map(|(population, file)| (population, FrameFile::Whole(file))));
+        let table = |gauges: &BuiltGauges| (gauges.name.clone(), gauge_tables::file(scene, &gauges.grid));
+        frame.tables = grid.gauges.iter().map(table).collect();
+        Ok(frame)
     }
 
     /// Takes the tables out, as those of frame `number`: name from the results folder, and file.
@@ -75,9 +81,7 @@ impl Frame {
     }
 
     /// The files, as those of frame `number`; a file that lists pieces comes behind them.
-    ///
-    /// - `all`: whether this process writes all but pieces of others; else only its own pieces
-    pub(crate) fn files(self, number: u64, all: bool) -> Vec<FrameEntry> {
+    pub(crate) fn files(self, number: u64) -> Vec<FrameEntry> {
         let mut files = Vec::new();
         for (population, file) in self.parts {
             let (stem, folder, ending) = (population.stem(number), population.folder(), population.ending());
@@ -85,13 +89,13 @@ impl Frame {
                 files.push(FrameEntry { population, name: format!("{folder}/{name}"), file, is_listed });
             };
             match file {
-                FrameFile::Whole(file) if all => add(format!("{stem}.{ending}"), file, true),
-                FrameFile::Whole(_) => {}
+                FrameFile::Whole(file) => add(format!("{stem}.{ending}"), file, true),
                 FrameFile::Cut(mut pieces) => {
+                    let is_leading = pieces.files.first().is_some_and(|(piece, _)| *piece == 0);
                     for (piece, file) in std::mem::take(&mut pieces.files) {
                         add(pieces.name(&stem, piece), file, false);
                     }
-                    if all {
+                    if is_leading {
                         add(format!("{stem}.p{ending}"), pieces.index(&stem), true);
                     }
                 }

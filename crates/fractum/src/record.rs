@@ -401,12 +401,11 @@ impl Recorder {
     fn write(&mut self, mut frame: Frame) -> Result<(), Failure> {
         let number = if self.course.rests { self.state.path.frames() } else { self.state.frames };
         let (mut files, instant) = (Vec::new(), frame.instant);
-        let tables = if self.writes { frame.take_tables(number) } else { Vec::new() };
-        for (name, file) in tables {
+        for (name, file) in frame.take_tables(number) {
             fractum_io::atomic::create_folder(&self.results.join(gauge_tables::FOLDER))?;
             files.push((self.results.join(&name), file));
         }
-        for FrameEntry { population, name, file, is_listed } in frame.files(number, self.writes) {
+        for FrameEntry { population, name, file, is_listed } in frame.files(number) {
             fractum_io::atomic::create_folder(&self.results.join(population.folder()))?;
             files.push((self.results.join(&name), file));
             if is_listed {

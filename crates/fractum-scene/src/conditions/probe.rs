@@ -73,23 +73,29 @@ impl PointProbe {
         dt: f64,
         has_left: impl Fn(u32) -> bool,
     ) -> f64 {
-        let present = |points: &[u32]| points.iter().copied().filter(|&point| !has_left(point)).collect::<Vec<u32>>();
+        let present = |point: &u32| !has_left(*point);
         let displacement = |i: usize| population.displacement_before(i, dt);
         match self {
             PointProbe::Reaction { places, along: Along::Direction(direction) } => supports.reaction(places, direction),
             PointProbe::Reaction { places, along } => {
                 supports.reaction_by(places, |point| along.at(population.reference(point)))
             }
-            PointProbe::Displacement { points, along } => {
-                component(&present(points), along, |i| *population.reference(i), displacement)
-            }
-            PointProbe::Velocity { points, along } => {
-                component(&present(points), along, |i| population.position(i), |i| *population.velocity(i))
-            }
+            PointProbe::Displacement { points, along } => component(
+                points.iter().filter(|point| present(point)),
+                along,
+                |i| *population.reference(i),
+                displacement,
+            ),
+            PointProbe::Velocity { points, along } => component(
+                points.iter().filter(|point| present(point)),
+                along,
+                |i| population.position(i),
+                |i| *population.velocity(i),
+            ),
             PointProbe::Rotation { points, .. } if points.iter().any(|&point| has_left(point)) => f64::NAN,
             PointProbe::Rotation { points, axis } => {
-                let centre = mean(points, |i| *population.reference(i));
-                let shift = mean(points, displacement);
+                let centre = mean(points.iter(), |i| *population.reference(i));
+                let shift = mean(points.iter(), displacement);
                 let (mut moment, mut weight) = (0.0, 0.0);
                 for &i in points {
                     let path = axis.cross(&(population.reference(i as usize) - centre));
@@ -102,19 +108,31 @@ impl PointProbe {
     }
 }
 
-/// Mean component of a vector over points at these places.
-fn component(points: &[u32], along: &Along, place: impl Fn(usize) -> Vec3, of: impl Fn(usize) -> Vec3) -> f64 {
-    match along {
-        Along::Direction(direction) => mean(points, of).dot(direction),
-        _ => {
-            let own = |&i: &u32| of(i as usize).dot(&along.at(&place(i as usize)));
-            points.iter().map(own).sum::<f64>() / points.len() as f64
-        }
+/// Mean component of a vector over points at these places; not a number of no points.
+fn component<'a>(
+    points: impl Iterator<Item = &'a u32>,
+    along: &Along,
+    place: impl Fn(usize) -> Vec3,
+    of: impl Fn(usize) -> Vec3,
+) -> f64 {
+    if let Along::Direction(direction) = along {
+        return mean(points, of).dot(direction);
     }
+    let (mut sum, mut count) = (0.0, 0);
+    for &point in points {
+        sum += of(point as usize).dot(&along.at(&place(point as usize)));
+        count += 1;
+    }
+    sum / f64::from(count)
 }
 
-fn mean(points: &[u32], of: impl Fn(usize) -> Vec3) -> Vec3 {
-    points.iter().map(|&i| of(i as usize)).sum::<Vec3>() / points.len() as f64
+fn mean<'a>(points: impl Iterator<Item = &'a u32>, of: impl Fn(usize) -> Vec3) -> Vec3 {
+    let (mut sum, mut count) = (Vec3::zeros(), 0);
+    for &point in points {
+        sum += of(point as usize);
+        count += 1;
+    }
+    sum / f64::from(count)
 }
 
 #[cfg(test)]

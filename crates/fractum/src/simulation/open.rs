@@ -315,13 +315,15 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
 
 /// Whether a file is called as those of a frame, `STEM-00012.vtu`, or of a piece of one, `STEM-00012-0003.vtu`.
 fn is_numbered(name: &str, ending: &str) -> bool {
-    let parts = |name: &str, digits: usize| {
-        let (stem, number) = name.rsplit_once('-')?;
-        let is_number = number.len() >= digits && number.bytes().all(|digit| digit.is_ascii_digit());
-        is_number.then(|| stem.to_owned())
-    };
     let Some(stem) = name.strip_suffix(ending) else { return false };
-    parts(stem, 5).is_some() || parts(stem, 4).is_some_and(|frame| parts(&frame, 5).is_some())
+    let of_piece = || without_number(stem, 4).and_then(|frame| without_number(frame, 5));
+    without_number(stem, 5).or_else(of_piece).is_some()
+}
+
+/// What stands before a hyphen and a number of at least so many digits, at the end of a name.
+fn without_number(name: &str, digits: usize) -> Option<&str> {
+    let (stem, number) = name.rsplit_once('-')?;
+    (number.len() >= digits && number.bytes().all(|digit| digit.is_ascii_digit())).then_some(stem)
 }
 
 /// Version of the program as far as the layout of its state goes.

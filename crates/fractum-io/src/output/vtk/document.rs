@@ -14,6 +14,17 @@ use crate::output::markup::escape;
 /// Bytes compressed at a time, each block for itself.
 pub(super) const BLOCK: usize = 1 << 16;
 
+/// Order of the bytes of numbers, which is that of this machine.
+pub(super) const BYTE_ORDER: &str = if cfg!(target_endian = "little") { "LittleEndian" } else { "BigEndian" };
+
+/// Type, name and components of an array, as its tag has them.
+pub(super) fn described(kind: &str, name: &str, components: usize) -> String {
+    let escaped = escape(name);
+    // One component is the default; meshio makes a matrix with one column of a scalar that says so.
+    let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
+    format!("type=\"{kind}\" Name=\"{escaped}\"{components}")
+}
+
 /// A VTK file in the making: text and arrays in their order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Document<'a> {
@@ -54,10 +65,7 @@ impl<'a> Document<'a> {
 
     /// Adds an array of `kind` (`Float64`, ...).
     pub(super) fn array(&mut self, kind: &str, name: &str, components: usize, bytes: Cow<'a, [u8]>) {
-        let escaped = escape(name);
-        // One component is the default; meshio makes a matrix with one column of a scalar that says so.
-        let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
-        self.tagged(format!("type=\"{kind}\" Name=\"{escaped}\"{components}"), name, bytes);
+        self.tagged(described(kind, name, components), name, bytes);
     }
 
     /// Adds the points.
@@ -135,13 +143,12 @@ impl<'a> Document<'a> {
         };
 
         let kind = &self.kind;
-        let byte_order = if cfg!(target_endian = "little") { "LittleEndian" } else { "BigEndian" };
         let compressed_by = match compression {
             Compression::None => "",
             Compression::Fast => " compressor=\"vtkZLibDataCompressor\"",
         };
         let mut xml = format!(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"{byte_order}\" \
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"{BYTE_ORDER}\" \
              header_type=\"UInt64\"{compressed_by}>\n  <{kind}>\n"
         );
         let mut offset = 0;

@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use super::document::{BYTE_ORDER, described};
 use super::frame_writer::PendingFile;
 use super::{CellBlock, Compression, Field, PolyCells, PolyData, UnstructuredGrid, Values, VtkError};
 use crate::output::markup::escape;
@@ -30,6 +31,11 @@ pub struct Cut {
 impl Cut {
     /// One piece.
     pub const WHOLE: Cut = Cut { count: 1, first: 0, step: 1 };
+
+    /// Whether the first piece is wanted: by the process that also writes what is not cut.
+    pub fn is_leading(self) -> bool {
+        self.first == 0
+    }
 
     fn wanted(self) -> impl Iterator<Item = usize> {
         (self.first..self.count).step_by(self.step)
@@ -59,9 +65,8 @@ impl Pieces {
     /// - `stem`: what their names begin with, see [`Pieces::name`]
     pub fn index(&self, stem: &str) -> PendingFile {
         let Pieces { kind, arrays, count, .. } = self;
-        let byte_order = if cfg!(target_endian = "little") { "LittleEndian" } else { "BigEndian" };
         let mut text = format!(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"P{kind}\" version=\"1.0\" byte_order=\"{byte_order}\" header_type=\"UInt64\">\n  \
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"P{kind}\" version=\"1.0\" byte_order=\"{BYTE_ORDER}\" header_type=\"UInt64\">\n  \
              <P{kind} GhostLevel=\"0\">\n{arrays}"
         );
         for piece in 0..*count {
@@ -81,9 +86,7 @@ impl Pieces {
 /// The lines that declare arrays in a file that lists pieces.
 fn declared(points: &[Field], cells: &[Field]) -> String {
     let line = |field: &Field| {
-        let components =
-            if field.components == 1 { String::new() } else { format!(" NumberOfComponents=\"{}\"", field.components) };
-        format!("      <PDataArray type=\"{}\" Name=\"{}\"{components}/>\n", field.values.kind(), escape(field.name))
+        format!("      <PDataArray {}/>\n", described(field.values.kind(), field.name, field.components))
     };
     let section = |name: &str, fields: &[Field]| {
         let lines: String = fields.iter().map(line).collect();
