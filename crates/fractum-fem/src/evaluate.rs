@@ -9,6 +9,7 @@ use crate::damage::EdgeField;
 use crate::edges_in_step::{Advance, EdgeCells, EdgesInStep, FourEdgesInStep};
 use crate::kernel::{self, ElasticCells, ExpandingCells, Viscous};
 use crate::standard::{self, StandardCells};
+use crate::taken::Taken;
 use crate::viscosity::ViscousCells;
 
 /// How the cells of a block answer to strain.
@@ -131,7 +132,8 @@ impl Block {
         }
         for (cell, &element) in items.iter().enumerate() {
             let damage = damage_of(element).max(law.damage[cell]);
-            law.dissipated += (damage - law.damage[cell]) * law.mixed_energy[cell] * cells.volume[cell];
+            let taken = Taken::straight(law.mixed_energy[cell]).by(damage - law.damage[cell]);
+            law.dissipated += taken * cells.volume[cell];
             law.damage[cell] = damage;
         }
     }

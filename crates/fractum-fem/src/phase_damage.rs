@@ -12,6 +12,7 @@ use crate::kernel::FOUR;
 use crate::material::equivalent_stresses;
 use crate::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, Patch, PhaseField};
 use crate::solid::{BodyModel, Solid};
+use crate::taken::Taken;
 
 impl Solid {
     /// Whether the damage of some body is a phase field.
@@ -262,19 +263,19 @@ impl Solid {
             let hooke = solid.bodies[body].hooke;
             let law = field.law;
             field.take_rest(&values[body], |own, d| {
-                let work = match &solid.bodies[body] {
-                    model if model.standard.is_some() => 0.0,
+                let taken = match &solid.bodies[body] {
+                    model if model.standard.is_some() => Taken::default(),
                     model => {
                         let (block, cell) = model.location[own.edge as usize];
                         let (cells, cell) = (&solid.blocks[block as usize].cells, cell as usize);
                         let strain = |field: &[Vec3]| Sym3::symmetric_part(&cells.gradient(cell, |node| field[node]));
-                        0.5 * hooke.stress(strain(after)).dot(strain(before)) * cells.volume[cell]
+                        Taken::straight(0.5 * hooke.stress(strain(after)).dot(strain(before))).of(cells.volume[cell])
                     }
                 };
                 let (cells, cell, dissipated) = solid.history_of(body, own.edge);
                 let growth = cells.soften(cell, law.damage(own.drive.a1, d));
                 if let Some(dissipated) = dissipated {
-                    *dissipated += work * growth;
+                    *dissipated += taken.by(growth);
                 }
             });
         });

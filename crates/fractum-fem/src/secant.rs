@@ -9,6 +9,7 @@ use crate::body::{Formulation, Kinematics};
 use crate::damage::EdgeDamage;
 use crate::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
+use crate::taken::Taken;
 
 /// Damage of every cell, block by block; empty rows for blocks without damage.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -270,8 +271,8 @@ impl Solid {
                 }
                 let strain = |field: &[Vec3]| Sym3::symmetric_part(&block.cells.gradient(cell, |node| field[node]));
                 let growth = law.field.load(cell, seen, 0.0);
-                let work = 0.5 * hooke.stress(strain(after)).dot(strain(before));
-                law.dissipated += work * growth * block.cells.volume[cell];
+                let taken = Taken::straight(0.5 * hooke.stress(strain(after)).dot(strain(before)));
+                law.dissipated += taken.by(growth) * block.cells.volume[cell];
             }
         }
         for standard in bodies.iter_mut().filter_map(|model| model.standard.as_mut()) {

@@ -93,7 +93,7 @@ enum Command {
         #[arg(long, requires = "stress")]
         blasts: bool,
         /// The largest stable step of every kind of scene instead of random ones.
-        #[arg(long, requires = "stress", conflicts_with_all = ["blasts", "scenes", "seed"])]
+        #[arg(long, requires = "stress", conflicts_with_all = ["blasts", "scenes", "first", "seed"])]
         steps: bool,
         /// With --steps: a steps.json of before, to tell what has changed.
         #[arg(long, requires = "steps")]
@@ -101,6 +101,9 @@ enum Command {
         /// Number of random scenes.
         #[arg(long, default_value_t = 300, requires = "stress")]
         scenes: usize,
+        /// Number of the first scene: --first 785 --scenes 1 runs one scene again.
+        #[arg(long, default_value_t = 0, requires = "stress")]
+        first: usize,
         /// Seed of the random scenes.
         #[arg(long, default_value_t = 1, requires = "stress")]
         seed: u64,
@@ -201,8 +204,8 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Run(run) => ranks::run_case(run),
         Command::Check { case, set } => check(&case, &set),
         Command::New { template, folder } => new::new(template.as_deref(), folder),
-        Command::Verify { stress: true, blasts, steps, baseline, scenes, seed, output, threads, .. } => {
-            let settings = fractum::stress::Settings { scenes, blasts, seed, output, threads, cache: cache() };
+        Command::Verify { stress: true, blasts, steps, baseline, scenes, first, seed, output, threads, .. } => {
+            let settings = fractum::stress::Settings { scenes, first, blasts, seed, output, threads, cache: cache() };
             if steps { measure_steps(&settings, baseline.as_deref()) } else { run_random_scenes(&settings) }
         }
         Command::Verify { names, quick, cases, output, jobs, threads, .. } => {

@@ -37,6 +37,8 @@ const GOOD_RESIDUAL: f64 = 1e-3;
 pub struct Settings {
     /// Number of scenes.
     pub scenes: usize,
+    /// Number of the first of them.
+    pub first: usize,
     /// Blasts only, instead of scenes of every kind.
     pub blasts: bool,
     /// Seed of all of them.
@@ -91,7 +93,7 @@ pub fn stress(settings: &Settings) -> Result<Vec<Line>, Failure> {
     atomic::create_folder(&settings.output)?;
     let file = settings.output.join("stress.json");
     let mut lines = Vec::new();
-    for number in 0..settings.scenes {
+    for number in settings.first..settings.first.saturating_add(settings.scenes) {
         let folder = settings.output.join(format!("scene-{}-{number}", settings.seed));
         let scene = if settings.blasts {
             blast(&mut Draw::new(settings.seed, number as u64))

@@ -197,8 +197,15 @@ mod tests {
     fn scenes_are_stable_up_to_the_step_that_is_found_and_not_beyond() {
         let output = tempfile::tempdir().expect("a folder");
         let cache = fractum_prepare::Cache::new(None);
-        let settings =
-            Settings { scenes: 0, blasts: false, seed: 1, output: output.path().to_owned(), threads: Some(1), cache };
+        let settings = Settings {
+            scenes: 0,
+            first: 0,
+            blasts: false,
+            seed: 1,
+            output: output.path().to_owned(),
+            threads: Some(1),
+            cache,
+        };
         // A scene before it has left what this one has not.
         let left = output.path().join(SCENE).join("beads.csv");
         atomic::create_folder(&output.path().join(SCENE)).expect("a folder");
