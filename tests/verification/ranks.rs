@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use fractum_fem::{Body, DamageLaw, ElementKind, Kinematics, LocalDamping, Solid, Viscosity, facet_area};
+use fractum_fem::{
+    Body, DamageLaw, ElementKind, Formulation, Kinematics, LocalDamping, Regularisation, Solid, Viscosity, facet_area,
+};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_parallel::{Exchange, threads};
@@ -159,6 +161,34 @@ fn gravity_and_damping_have_the_same_bits_on_any_number_of_ranks() {
         scene(solid, supports, vec![gravity], LocalDamping { local: 0.5, mass_rate: 10.0 })
     };
     same_on_ranks(60, made);
+}
+
+/// A plate and a box whose damage is a phase field, pulled until they break.
+fn breaking_by_phase_field(kind: ElementKind, formulation: Formulation) -> Scene {
+    let (nodes, body) = match kind {
+        ElementKind::T4 => jittered_box([12, 6, 6], SIZE),
+        ElementKind::T3 => {
+            let mesh = structured_rectangle([60, 30], [SIZE.x, SIZE.y], Some(Jitter { fraction: 0.15, seed: 3 }));
+            let triangles = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
+            (mesh.nodes, Body::new("plate", ElementKind::T3, triangles, CONCRETE))
+        }
+    };
+    let mut body = Body { formulation, ..body.smoothed().with_damage(DamageLaw::rankine(3e6, 60.0)) };
+    body.damage.as_mut().unwrap().regularisation = Some(Regularisation { length: None });
+    let solid = Solid::new(nodes, vec![body]).unwrap();
+    let supports = ends(&solid, 10.0);
+    scene(solid, supports, Vec::new(), LocalDamping::default())
+}
+
+#[test]
+fn a_phase_field_has_the_same_bits_on_any_number_of_ranks() {
+    for kind in [ElementKind::T3, ElementKind::T4] {
+        for formulation in [Formulation::Smoothed, Formulation::Standard] {
+            let single = same_on_ranks(400, || breaking_by_phase_field(kind, formulation));
+            let counts = single.counts();
+            assert!(counts.removed_elements > 10, "{kind:?}, {formulation:?}: {counts:?}");
+        }
+    }
 }
 
 /// A state that three ranks have come to, and what other numbers of ranks make of it.

@@ -234,6 +234,12 @@ impl EdgeField {
         growth
     }
 
+    /// Edges of the body that have passed their strength.
+    pub(crate) fn above_strength(&self) -> impl Iterator<Item = u32> + '_ {
+        let histories = self.edges.iter().zip(&self.state).zip(&self.strength);
+        histories.filter(|((_, state), strength)| state.kappa > **strength).map(|((&edge, _), _)| edge)
+    }
+
     /// Raises the largest equivalent stress of an edge to `q` [Pa]; its damage is that of a phase field.
     pub(crate) fn see(&mut self, index: usize, q: f64) {
         if q > self.state[index].kappa {

@@ -45,6 +45,7 @@ pub mod material;
 mod part;
 mod phase;
 mod phase_damage;
+mod phase_edges;
 mod polar;
 mod reflection;
 mod removal;

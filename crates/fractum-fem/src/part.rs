@@ -68,6 +68,9 @@ struct Plan {
 
 /// Numbers of a block in [`Part::records`].
 const RECORD: usize = 4;
+/// In a record: edges have passed their strength, edges broke.
+const WOKEN: f64 = 1.0;
+const BROKEN: f64 = 2.0;
 
 /// What the other ranks need of a block where cells are told in full.
 #[derive(Serialize, Deserialize)]
@@ -154,6 +157,20 @@ impl Part {
         self.first[rank]..self.first[rank + 1]
     }
 
+    pub(crate) fn exchange(&self) -> Arc<dyn Exchange> {
+        Arc::clone(&self.exchange)
+    }
+
+    /// The rank whose block this is.
+    pub(crate) fn rank_of(&self, block: usize) -> usize {
+        self.first.partition_point(|&first| first <= block) - 1
+    }
+
+    /// The edges that all ranks name, rank after rank.
+    pub(crate) fn tell_edges(&self, own: &Vec<u32>) -> Vec<u32> {
+        gather(&*self.exchange, own).concat()
+    }
+
     /// Tells all ranks what they need of every block in every step; whether an edge broke or a cell was turned inside out,
     /// so that all nodes and cells are needed.
     pub(crate) fn tell_records(&mut self, blocks: &mut [Block]) -> bool {
@@ -166,11 +183,14 @@ impl Part {
         self.exchange.gather(&self.own_records, &self.record_counts, &mut self.records);
         let mut breaks = false;
         for (index, (block, from)) in blocks.iter_mut().zip(self.records.chunks_exact(RECORD)).enumerate() {
-            let &[power, shock, inverted, fresh] = from else { continue };
-            breaks |= inverted >= 0.0 || fresh > 0.0;
+            let &[power, shock, inverted, edges] = from else { continue };
+            breaks |= inverted >= 0.0 || edges >= BROKEN;
             if !own.contains(&index) {
                 (block.viscous_power, block.viscous.shock) = (power, shock);
                 block.inverted = (inverted >= 0.0).then_some(inverted as usize);
+                if let Some(field) = block.edge_field_mut() {
+                    field.woken |= edges % BROKEN >= WOKEN;
+                }
             }
         }
         breaks
@@ -286,10 +306,13 @@ impl BlockShare {
 }
 
 /// What all ranks need of a block in every step: viscous power [W], part of the shock, a cell that is turned inside out or
-/// -1, and the edges that broke.
+/// -1, and what became of its edges.
 fn record(block: &Block) -> [f64; RECORD] {
-    let fresh = block.edge_field().map_or(0, |field| field.fresh.len());
-    [block.viscous_power, block.viscous.shock, block.inverted.map_or(-1.0, |cell| cell as f64), fresh as f64]
+    let edges = block.edge_field().map_or(0.0, |field| {
+        let woken = if field.woken { WOKEN } else { 0.0 };
+        if field.fresh.is_empty() { woken } else { woken + BROKEN }
+    });
+    [block.viscous_power, block.viscous.shock, block.inverted.map_or(-1.0, |cell| cell as f64), edges]
 }
 
 /// First block of each rank, and the end: runs of about the same weight.

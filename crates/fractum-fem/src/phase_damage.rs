@@ -4,13 +4,12 @@ use fractum_math::{Lane, Sym3, Vec3};
 use rayon::prelude::*;
 
 use crate::block::Cells;
-use crate::cell::Geometry;
 use crate::damage::{ABOVE_ALL, EdgeField};
 use crate::edges_in_step::Advance;
-use crate::evaluate::{Block, BlockLaw};
+use crate::evaluate::BlockLaw;
 use crate::kernel::FOUR;
 use crate::material::equivalent_stresses;
-use crate::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, Patch, PhaseField};
+use crate::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, PhaseField};
 use crate::solid::{BodyModel, Solid};
 use crate::taken::Taken;
 
@@ -32,14 +31,6 @@ impl Solid {
         let count = model.body.shape.edge_count();
         let mean = |of: &[u32; 6]| of[..count].iter().map(|&e| field.value[e as usize]).sum::<f64>() / count as f64;
         Some(edges.of_element.iter().map(mean).collect())
-    }
-
-    /// Lets every edge take part in the phase field of its body, as a search for equilibrium needs it.
-    pub fn wake_phase_fields(&mut self) {
-        self.for_each_phase_field(|solid, body, field| {
-            let edges = (0..field.value.len() as u32).filter(|&edge| !field.is_active(edge)).collect::<Vec<u32>>();
-            solid.activate(body, field, &edges);
-        });
     }
 
     /// Lets the phase fields follow the displacements of a step; nothing has moved where `dt` is zero.
@@ -77,7 +68,7 @@ impl Solid {
         });
     }
 
-    fn for_each_phase_field(&mut self, mut work: impl FnMut(&mut Solid, usize, &mut PhaseField)) {
+    pub(crate) fn for_each_phase_field(&mut self, mut work: impl FnMut(&mut Solid, usize, &mut PhaseField)) {
         for body in 0..self.bodies.len() {
             let Some(mut field) = self.bodies[body].phase.take() else { continue };
             work(self, body, &mut field);
@@ -85,44 +76,11 @@ impl Solid {
         }
     }
 
-    /// Activates the edges that have passed their strength in the last forces.
-    fn wake(&mut self, body: usize, field: &mut PhaseField) {
-        let mut woken = Vec::new();
-        let Solid { blocks, bodies, .. } = self;
-        let standard = bodies[body].standard.as_mut().map(|standard| &mut standard.field);
-        let cells = blocks.iter_mut().filter(|b| b.body == body).filter_map(Block::edge_field_mut);
-        for cells in cells.chain(standard) {
-            if std::mem::take(&mut cells.woken) {
-                let EdgeField { edges, state, strength, .. } = cells;
-                let passed = edges.iter().zip(state).zip(strength).filter(|((_, state), ft)| state.kappa > **ft);
-                woken.extend(passed.map(|((&edge, _), _)| edge));
-            }
-        }
-        self.activate(body, field, &woken);
-    }
-
-    /// Activates those of these edges that may be damaged and are not active yet.
-    fn activate(&self, body: usize, field: &mut PhaseField, edges: &[u32]) {
-        let model = &self.bodies[body];
-        let Some(patch) = self.patch(model) else { return };
-        for &edge in edges {
-            let strength = self.edge(body, edge).map_or(f64::INFINITY, |(cells, cell)| cells.strength[cell]);
-            if strength.is_finite() && !field.is_active(edge) {
-                field.activate(&patch, edge, field.law.a1(strength));
-            }
-        }
-    }
-
-    fn patch<'a>(&'a self, model: &'a BodyModel) -> Option<Patch<'a>> {
-        let geometry = Geometry { body: &model.body, nodes: &self.reference };
-        let BodyModel { edges, elements_of_edge, alive, .. } = model;
-        Some(Patch { geometry, edges: edges.as_ref()?, elements_of_edge, alive })
-    }
-
     /// What drives the active edges at the present displacements.
     fn drive(&self, body: usize, field: &mut PhaseField, dt: f64) {
         let model = &self.bodies[body];
         let compliance = 0.5 / model.body.elastic.young_modulus;
+        let own_blocks = self.own_blocks();
         let PhaseField { active, steps, .. } = field;
         if let Some(standard) = &model.standard {
             active.par_iter_mut().with_min_len(AT_LEAST).for_each(|own| {
@@ -137,6 +95,9 @@ impl Solid {
         fours.with_min_len(AT_LEAST / FOUR).for_each(|(active, steps)| {
             let (mut stresses, mut kappa, mut criterion) = ([Sym3::ZERO; FOUR], Lane::splat(ABOVE_ALL), None);
             for (k, (own, edge_step)) in active.iter_mut().zip(&mut *steps).enumerate() {
+                if !own_blocks.contains(&(model.location[own.edge as usize].0 as usize)) {
+                    continue;
+                }
                 let Some((cells, field, cell)) = self.cell_of(model, own.edge) else { continue };
                 edge_step.strain = step.strain_now(cells, cell);
                 stresses[k] = field.softens.hooke.stress(edge_step.strain);
@@ -279,28 +240,6 @@ impl Solid {
                 }
             });
         });
-    }
-
-    /// Takes the share of removed elements out of the phase field of a body.
-    ///
-    /// - `edges`: those of the elements
-    pub(crate) fn refresh_phase(&mut self, body: usize, edges: &[u32]) {
-        let Some(mut field) = self.bodies[body].phase.take() else { return };
-        if let Some(patch) = self.patch(&self.bodies[body]) {
-            field.refresh(&patch, edges);
-        }
-        self.bodies[body].phase = Some(field);
-    }
-
-    /// Puts the saved phase field of a body back, for the elements that are there.
-    pub(crate) fn restore_phase(&mut self, body: usize, state: &[(u32, [f64; 2], bool)]) {
-        let Some(mut field) = self.bodies[body].phase.take() else { return };
-        field.clear();
-        for &(edge, values, rebuilt) in state {
-            self.activate(body, &mut field, &[edge]);
-            field.restore_last(values, rebuilt);
-        }
-        self.bodies[body].phase = Some(field);
     }
 }
 

@@ -7,7 +7,7 @@ use fractum_parallel::Exchange;
 
 use crate::body::Kinematics;
 use crate::part::{Part, Share};
-use crate::solid::Solid;
+use crate::solid::{BodyModel, Solid};
 
 impl Solid {
     /// Leaves a share of the work to each rank of an exchange. Every rank must have the same solid in the same state.
@@ -22,15 +22,18 @@ impl Solid {
         let mut part = Part::new(exchange, &self.blocks, &self.slots, everywhere, needs_records);
         // Edges of the standard formulation gather stresses of elements, which every rank finds of all nodes.
         part.always_all = all || self.bodies.iter().any(|model| model.standard.is_some());
+        for model in self.bodies.iter_mut().filter(|model| model.standard.is_none()) {
+            let BodyModel { phase, location, .. } = model;
+            let rank_of = |edge: u32| part.rank_of(location[edge as usize].0 as usize) as u32;
+            phase.iter_mut().for_each(|field| field.share_out(part.exchange(), rank_of));
+        }
         self.part = Some(Box::new(part));
     }
 
-    /// What a solid has that ranks cannot share, in words.
-    pub fn cannot_be_shared(&self) -> Option<&'static str> {
-        self.bodies.iter().find_map(|model| match &model.body.damage {
-            Some(zone) if zone.regularisation.is_some() => Some("damage by a phase field"),
-            _ => None,
-        })
+    /// Rank whose cell an edge is; 0 where each rank finds all edges of the body.
+    pub(crate) fn rank_of_edge(&self, model: &BodyModel, edge: u32) -> u32 {
+        let of_cell = |part: &Part| part.rank_of(model.location[edge as usize].0 as usize) as u32;
+        self.part.as_deref().filter(|_| model.standard.is_none()).map_or(0, of_cell)
     }
 
     /// Has every rank move all nodes in the next step, where something needs all of them.

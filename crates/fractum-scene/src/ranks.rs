@@ -12,10 +12,7 @@ impl Scene {
         if self.solid.body_count() == 0 {
             return Some("a scene without solids");
         }
-        if self.optional.heat.is_some() {
-            return Some("heat");
-        }
-        self.solid.cannot_be_shared()
+        self.optional.heat.as_ref().map(|_| "heat")
     }
 
     /// Whether something looks at all nodes in every step. Every rank does alike what is no cell of a solid: particles and their

@@ -59,6 +59,7 @@ mod heat_columns;
 mod input;
 mod inputs;
 mod interrupt;
+mod last_words;
 mod left;
 mod needs;
 mod path_frames;

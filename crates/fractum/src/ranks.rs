@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fractum_fem::Share;
-use fractum_io::case::model::{BodyKind, Case, Output, SolidBody, SolverKind};
+use fractum_io::case::model::{BodyKind, Case, Output, SolverKind};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
 use fractum_io::number::grouped;
 use fractum_io::vtk::Cut;
@@ -13,6 +13,7 @@ use fractum_parallel::Exchange;
 use fractum_scene::Scene;
 
 use crate::error::{ExitCode, Failure};
+use crate::last_words::LastWords;
 
 /// This process among those that run a case together, or alone.
 #[derive(Debug, Default)]
@@ -45,6 +46,13 @@ impl Ranks {
     /// Whether this process writes the results.
     pub fn leads(&self) -> bool {
         self.scratch.is_none()
+    }
+
+    /// Speaks where a signal ends several processes with a state that is older than their last step.
+    ///
+    /// - `command`: the one that goes on
+    pub(crate) fn last_words(&self, results: &Path, command: impl FnOnce() -> String) -> Option<LastWords> {
+        self.exchange.as_ref().map(|_| LastWords::new(results, command(), self.leads()))
     }
 
     /// Folder into which this process writes.
@@ -146,19 +154,7 @@ fn not_for_ranks(case: &Case) -> Vec<(&Place, &'static str)> {
     if case.solver.kind != SolverKind::Explicit {
         found.push((&case.solver.place, "a solver that is not explicit"));
     }
-    let solids = || {
-        case.bodies.iter().filter_map(|body| match &body.kind {
-            BodyKind::Solid(solid) => Some((&body.name.place, solid)),
-            _ => None,
-        })
-    };
-    let damage = |solid: &SolidBody| case.materials[solid.material].damage.as_ref().filter(|_| solid.damage);
-    for (place, solid) in solids() {
-        if damage(solid).is_some_and(|damage| damage.value.regularisation.is_some()) {
-            found.push((place, "damage by a phase field"));
-        }
-    }
-    if solids().next().is_none() {
+    if !case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Solid(_))) {
         found.push((&case.solver.place, "a scene without solids, whose cells they would share,"));
     }
     found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat")));

@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
 use crate::interrupt::{UnderWay, is_interrupted};
+use crate::last_words::LastWords;
 use crate::phases::{Part, Phases};
 use crate::plan::Plan;
 use crate::ranks::Ranks;
@@ -79,7 +80,7 @@ pub struct Simulation {
     later: VecDeque<(Case, BuiltScene)>,
     recorder: Recorder,
     /// Those that run the case together.
-    ranks: Ranks,
+    ranks: Arc<Ranks>,
     folder: PathBuf,
     about: About,
     messages: Messages,
@@ -91,6 +92,7 @@ pub struct Simulation {
     end: Option<End>,
     /// A signal leaves the program the time to save the state.
     _under_way: UnderWay,
+    _last_words: Option<LastWords>,
 }
 
 /// What is known of a run before its first step.

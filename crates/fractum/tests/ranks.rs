@@ -135,8 +135,12 @@ fn kinds() -> Vec<(&'static str, String)> {
     let standard = BREAKING_BAR.replacen("kinematics =", "formulation = \"standard\"\nkinematics =", 1);
     let beads = "[[bodies]]\nname = \"beads\"\nkind = \"particles\"\nmaterial = \"concrete\"\nshape = \"box\"\n\
         point = [\"10 cm\", \"12.5 cm\", \"2 cm\"]\nsize = [\"20 cm\", \"6 cm\", \"8 cm\"]\nparticle_radius = \"1 cm\"\nseed = 1\n[[supports]]";
+    let with_phase_field =
+        |case: &str| case.replacen("fracture_energy", "regularisation = \"phase-field\"\nfracture_energy", 1);
     vec![
         ("rigid floor", BREAKING_BAR.into()),
+        ("phase field", with_phase_field(BREAKING_BAR)),
+        ("phase field in the standard formulation", with_phase_field(&standard)),
         ("standard formulation", standard),
         ("loose particles", BREAKING_BAR.replacen("[[supports]]", beads, 1)),
         ("bonded body beside a solid", FLYING.replacen("\"0 m/s\"", "\"600 m/s\"", 1)),
@@ -161,10 +165,13 @@ fn scenes_of_every_kind_have_the_state_of_one_process() {
 
 #[test]
 fn what_ranks_cannot_run_is_refused_once_and_by_name() {
-    let place = Workplace::new(&bar().replace("fracture_energy", "regularisation = \"phase-field\"\nfracture_energy"));
+    let place = Workplace::new(&bar().replace("kind = \"explicit\"", "kind = \"auto\""));
     let results = on_ranks(&place, 3, &options(&place, "refused"));
     let text = results[0].as_ref().unwrap_err().to_string();
-    assert!(text.contains("case.toml:") && text.contains("damage by a phase field cannot be run by several"), "{text}");
+    assert!(
+        text.contains("case.toml:") && text.contains("a solver that is not explicit cannot be run by several"),
+        "{text}"
+    );
     assert!(results[1..].iter().all(|result| matches!(result, Err(Failure::Elsewhere(_)))));
     assert!(!place.path("refused").exists());
 }

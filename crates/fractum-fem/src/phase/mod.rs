@@ -12,11 +12,14 @@
 //! Wu, *J. Mech. Phys. Solids* 103 (2017) 72-99, and 119 (2018) 20-42; the unknown on edges is our own.
 
 mod laplacian;
+mod ranks;
 mod rest;
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use fractum_math::Sym3;
+use fractum_parallel::Exchange;
 use rayon::prelude::*;
 
 use crate::body::{Body, BodyEdges, DamageZone, ElementKind, Formulation};
@@ -24,6 +27,7 @@ use crate::cell::Geometry;
 use crate::error::SolidError;
 use crate::material::Degradation;
 use laplacian::Rows;
+use ranks::Told;
 
 /// Value from which on the neighbours of an edge are active.
 const SPREADS: f64 = 1e-4;
@@ -90,6 +94,8 @@ pub(crate) struct Drive {
 #[derive(Clone, Debug)]
 pub(crate) struct ActiveEdge {
     pub(crate) edge: u32,
+    /// The rank that sweeps it; 0 where there is one process.
+    rank: u32,
     pub(crate) drive: Drive,
     /// d at the end of the step before, and of the one before that.
     old: f64,
@@ -124,6 +130,8 @@ pub(crate) struct PhaseField {
     /// Place in `active` of every edge, [`PhaseField::ASLEEP`] if it is not there.
     slot: Vec<u32>,
     rows: Rows,
+    /// Where several ranks share the edges.
+    told: Option<Box<Told>>,
 }
 
 impl PhaseField {
@@ -131,19 +139,31 @@ impl PhaseField {
 
     pub(crate) fn new(law: PhaseLaw, edges: usize) -> Self {
         let (value, slot) = (vec![0.0; edges], vec![Self::ASLEEP; edges]);
-        PhaseField { law, value, active: Vec::new(), steps: Vec::new(), slot, rows: Rows::default() }
+        PhaseField { law, value, active: Vec::new(), steps: Vec::new(), slot, rows: Rows::default(), told: None }
     }
 
     pub(crate) fn is_active(&self, edge: u32) -> bool {
         self.slot[edge as usize] != Self::ASLEEP
     }
 
-    /// Lets an edge take part from now on.
-    pub(crate) fn activate(&mut self, patch: &Patch<'_>, edge: u32, a1: f64) {
+    /// Leaves the edges to the ranks of an exchange, each to the one that `rank_of` tells.
+    pub(crate) fn share_out(&mut self, exchange: Arc<dyn Exchange>, rank_of: impl Fn(u32) -> u32) {
+        self.told = Some(Box::new(Told::new(exchange)));
+        self.active.iter_mut().for_each(|own| own.rank = rank_of(own.edge));
+    }
+
+    /// Number of this rank.
+    fn rank(&self) -> u32 {
+        self.told.as_ref().map_or(0, |told| told.rank())
+    }
+
+    /// Lets an edge of a rank take part from now on.
+    pub(crate) fn activate(&mut self, patch: &Patch<'_>, (edge, rank): (u32, u32), a1: f64) {
         self.slot[edge as usize] = self.active.len() as u32;
         self.rows.push(&patch.geometry, patch.edges, (edge, patch.elements_of_edge.row(edge as usize)), patch.alive);
         self.active.push(ActiveEdge {
             edge,
+            rank,
             drive: Drive { a1, ..Drive::default() },
             old: 0.0,
             before: 0.0,
@@ -225,16 +245,20 @@ impl PhaseField {
     ///
     /// Begins with the growth of the step before; two sweeps then are as good as the exact solution.
     pub(crate) fn sweep(&mut self) {
-        let PhaseField { law, value, active, rows, .. } = self;
+        let rank = self.rank();
+        let PhaseField { law, value, active, rows, told, .. } = self;
         for own in active.iter() {
             value[own.edge as usize] = (own.old + (own.old - own.before)).min(1.0);
         }
         for _ in 0..SWEEPS {
             let field = &*value;
             active.par_iter_mut().enumerate().with_min_len(AT_LEAST).for_each(|(row, own)| {
-                let flow = rows.product(row, field).0;
-                own.next = law.swept(&own.drive, (flow, rows.bound(row)), field[own.edge as usize], own.old);
+                if own.rank == rank {
+                    let flow = rows.product(row, field).0;
+                    own.next = law.swept(&own.drive, (flow, rows.bound(row)), field[own.edge as usize], own.old);
+                }
             });
+            told.iter_mut().for_each(|told| told.tell(active));
             for own in active.iter() {
                 value[own.edge as usize] = own.next;
             }
@@ -243,23 +267,25 @@ impl PhaseField {
 
     /// Finds the damage of the edges whose d has grown, and what it takes by `taken(edge, step)` [J].
     pub(crate) fn book(&mut self, taken: impl Fn(&ActiveEdge, &EdgeStep) -> f64 + Sync) {
+        let rank = self.rank();
         let PhaseField { law, value, active, steps, .. } = self;
         active.par_iter().zip(steps).with_min_len(AT_LEAST).for_each(|(own, step)| {
             let d = value[own.edge as usize];
-            if d > own.old {
+            if d > own.old && own.rank == rank {
                 step.damage = law.damage(own.drive.a1, d);
                 step.taken = taken(own, step);
             }
         });
     }
 
-    /// Takes d over, with `work(edge, step, has d grown)` where an edge has seen more than before or d has grown.
+    /// Takes d over, with `work(edge, step, has d grown)` where an edge of this rank has seen more than before or d has grown.
     pub(crate) fn take_over(&mut self, mut work: impl FnMut(u32, &EdgeStep, bool)) {
+        let rank = self.rank();
         let PhaseField { value, active, steps, .. } = self;
         for (own, step) in active.iter_mut().zip(steps) {
             let d = value[own.edge as usize];
             let grown = d > own.old;
-            if grown || step.seen > 0.0 {
+            if own.rank == rank && (grown || step.seen > 0.0) {
                 work(own.edge, step, grown);
             }
             (own.before, own.old, own.rebuilt) = (own.old, d, false);

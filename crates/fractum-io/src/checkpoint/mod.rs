@@ -262,6 +262,11 @@ pub fn is_there(folder: &Path) -> bool {
     checkpoints(folder).is_ok_and(|found| !found.is_empty())
 }
 
+/// Step and file of the newest checkpoint in `folder`.
+pub fn newest(folder: &Path) -> Option<(u64, PathBuf)> {
+    checkpoints(folder).ok()?.into_iter().max()
+}
+
 /// Checkpoints in `folder` with their steps.
 fn checkpoints(folder: &Path) -> io::Result<Vec<(u64, PathBuf)>> {
     let mut found = Vec::new();
@@ -392,6 +397,7 @@ mod tests {
         }
         let found = load_latest::<State>(folder, &identity()).unwrap().unwrap();
         assert_eq!((found.header.step, found.passed_over.len()), (20, 0));
+        assert_eq!(newest(folder), Some((20, found.path)));
 
         let newest = folder.join("state-000000020.fck");
         let bytes = fs::read(&newest).unwrap();

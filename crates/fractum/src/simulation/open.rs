@@ -75,19 +75,52 @@ impl Simulation {
         started: Instant,
         ranks: Ranks,
     ) -> Result<Self, Failure> {
+        let ranks = Arc::new(ranks);
         let results = folder_of(path, options)?;
-        let folder = ranks.folder(&results);
-        let plan = Plan::new(&input);
-        let Input { case, mesh_hash, built, later, timings, .. } = input;
-        let identity = Identity { program: program(), case_hash: case.hash_but_end(), mesh_hash };
-        let find = || options.resume.then(|| find_checkpoint(&results, &identity, ranks.leads())).transpose();
+        let find = || {
+            let identity = identity(&input);
+            options.resume.then(|| find_checkpoint(&results, &identity, ranks.leads())).transpose()
+        };
         // No rank writes before all have read.
         let loaded = ranks.together(find())?;
-        let goes_on = ranks.together(loaded.as_ref().map(|loaded| goes_on(&case, loaded)).transpose())?;
+        let goes_on = ranks.together(loaded.as_ref().map(|loaded| goes_on(&input.case, loaded)).transpose())?;
+        let begun = Self::begin(input, (path, options), (loaded, goes_on.as_deref()), started, Arc::clone(&ranks));
+        let mut simulation = ranks.together(begun)?;
+        let Simulation { scene, recorder, messages, .. } = &mut simulation;
+        ranks.share_out(scene, &recorder.watched())?;
+        ranks.share(scene).map_or(Ok(()), |share| messages.log.line(share))?;
+        if goes_on.is_none() && !simulation.solver.moves() {
+            // A path begins where nothing acts.
+            let Simulation { recorder, scene, solver, .. } = &mut simulation;
+            recorder.row(scene, 0.0, 0.0, false)?;
+            if solver.follows_path() {
+                recorder.follow(scene)?;
+            }
+        }
+        simulation.prepare_step()?;
+        Ok(simulation)
+    }
+
+    /// A simulation whose scene no ranks share yet.
+    ///
+    /// - `source`: the case file, and how it is run
+    /// - `saved`: the state to go on from, and that in words
+    fn begin(
+        input: Input,
+        (path, options): (&Path, &Options),
+        (loaded, goes_on): (Option<Loaded<RunState>>, Option<&str>),
+        started: Instant,
+        ranks: Arc<Ranks>,
+    ) -> Result<Self, Failure> {
+        let results = folder_of(path, options)?;
+        let folder = ranks.folder(&results);
+        let identity = identity(&input);
+        let plan = Plan::new(&input);
+        let Input { case, mesh_hash, built, later, timings, .. } = input;
         let about =
             About { identity, case_hash: case.hash(), origin: origin(&case, mesh_hash, options, &folder), plan };
         if !options.quiet {
-            tell_plan(&about.plan, goes_on.as_deref(), &folder);
+            tell_plan(&about.plan, goes_on, &folder);
         }
         // Prepared before anything is put back: a resumed run solves the same systems in the same order.
         let mut phases = Phases::default();
@@ -113,14 +146,14 @@ impl Simulation {
         let leads = ranks.leads();
         let mut messages = Messages::new(open_folder(&folder, is_new || !leads)?, options.quiet, !leads);
         keep_case(&case, &folder, is_new)?;
-        log_start(&mut messages.log, path, &about, goes_on.as_deref())?;
+        log_start(&mut messages.log, path, &about, goes_on)?;
         timings.iter().try_for_each(|timing| messages.log.line(timing))?;
         built.warnings.iter().try_for_each(|warning| messages.warn(warning.to_string()))?;
         let place = ([folder.as_path(), results.as_path()], course, leads);
         let recorder = Recorder::open(case, &scene, probes, built.ppv, grid, place, resumed)?;
-        ranks.share_out(&mut scene, &recorder.watched())?;
-        ranks.share(&scene).map_or(Ok(()), |share| messages.log.line(share))?;
-        let mut simulation = Simulation {
+        let resume = Options { resume: true, overwrite: false, quiet: false, ..options.clone() };
+        let last_words = ranks.last_words(&results, || resume.command("fractum", path, &results));
+        Ok(Simulation {
             case: stage,
             scene,
             solver,
@@ -136,18 +169,14 @@ impl Simulation {
             measured: None,
             end: None,
             _under_way: UnderWay::new(),
-        };
-        if is_new && !simulation.solver.moves() {
-            // A path begins where nothing acts.
-            let Simulation { recorder, scene, solver, .. } = &mut simulation;
-            recorder.row(scene, 0.0, 0.0, false)?;
-            if solver.follows_path() {
-                recorder.follow(scene)?;
-            }
-        }
-        simulation.prepare_step()?;
-        Ok(simulation)
+            _last_words: last_words,
+        })
     }
+}
+
+/// What a checkpoint of these inputs must be of.
+fn identity(input: &Input) -> Identity {
+    Identity { program: program(), case_hash: input.case.hash_but_end(), mesh_hash: input.mesh_hash }
 }
 
 /// Says on the terminal what will happen, and where results will be.
