@@ -282,7 +282,7 @@ impl Simulation {
         let was_moving = self.solver.moves();
         self.scene.gather_ranks();
         // From the state at t = 0, as a resumed run does.
-        self.solver = Solver::new(&built.scene, &built, &mut self.phases)?;
+        self.solver = self.ranks.together(Solver::new(&built.scene, &built, &mut self.phases))?;
         self.scene.begin_stage(built.scene);
         self.solver.take_over(&mut self.scene, was_moving);
         self.recorder.set_probes(built.probes);

@@ -163,6 +163,17 @@ fn scenes_of_every_kind_have_the_state_of_one_process() {
     }
 }
 
+/// One of them cannot write its results: the others hear of it instead of waiting.
+#[test]
+fn a_rank_that_cannot_begin_ends_all() {
+    let place = Workplace::new(&bar());
+    fs::write(place.path("taken"), "a file where the results should be").unwrap();
+    let results = on_ranks(&place, 3, &options(&place, "taken/results"));
+    let text = results[0].as_ref().unwrap_err().to_string();
+    assert!(text.contains("taken"), "{text}");
+    assert!(results[1..].iter().all(|result| matches!(result, Err(Failure::Elsewhere(_)))));
+}
+
 #[test]
 fn what_ranks_cannot_run_is_refused_once_and_by_name() {
     let place = Workplace::new(&bar().replace("kind = \"explicit\"", "kind = \"auto\""));

@@ -201,7 +201,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 pub(crate) fn execute(arguments: Arguments) -> ExitCode {
     let json = arguments.format == Format::Json;
     let result = match arguments.command {
-        Command::Run(run) => ranks::run_case(run),
+        Command::Run(run) => ranks::run_case(run, json),
         Command::Check { case, set } => check(&case, &set),
         Command::New { template, folder } => new::new(template.as_deref(), folder),
         Command::Verify { stress: true, blasts, steps, baseline, scenes, first, seed, output, threads, .. } => {

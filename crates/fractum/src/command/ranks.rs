@@ -6,7 +6,7 @@ use super::RunArguments;
 
 /// Runs a case, with the other processes where there are any.
 #[cfg(not(feature = "mpi"))]
-pub(super) fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
+pub(super) fn run_case(run: RunArguments, _json: bool) -> Result<ExitCode, Failure> {
     // What Open MPI, and MPICH and its kin, tell the processes that they start.
     let started = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"].iter().filter_map(|name| std::env::var(name).ok());
     if started.into_iter().any(|size| size.trim() != "1") {
@@ -19,8 +19,10 @@ pub(super) fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
 }
 
 /// Runs a case, with the other processes where there are any.
+///
+/// - `json`: as in [`super::report`]
 #[cfg(feature = "mpi")]
-pub(super) fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
+pub(super) fn run_case(run: RunArguments, json: bool) -> Result<ExitCode, Failure> {
     use std::sync::Arc;
 
     use fractum_parallel::{Exchange, initialize};
@@ -32,15 +34,19 @@ pub(super) fn run_case(run: RunArguments) -> Result<ExitCode, Failure> {
         return super::run_case(run, Ranks::alone());
     }
     let _guard = EndAll(world);
-    let result = super::run_case(run, Ranks::new(Arc::new(world)));
-    if let Err(failure) = &result
-        && !matches!(failure, Failure::Elsewhere(_) | Failure::Input(_) | Failure::Stopped { .. } | Failure::Memory(_))
-    {
-        // Only this process knows of it: the others would wait for ever.
-        fractum::tell!("process {}: {failure}", world.rank());
-        world.abort(failure.exit_code() as i32);
+    let failure = match super::run_case(run, Ranks::new(Arc::new(world))) {
+        Err(failure) => failure,
+        done => return done,
+    };
+    // What comes from input, memory and steps is known to all of them.
+    if failure.exit_code() != ExitCode::Machine || matches!(failure, Failure::Elsewhere(_) | Failure::Memory(_)) {
+        // Told before this process leaves MPI: once one has left with an error, the others are killed.
+        super::report(&failure, json);
+        return Err(Failure::Elsewhere(failure.exit_code()));
     }
-    result
+    // Only this process knows of it: the others would wait for ever.
+    fractum::tell!("process {}: {failure}", world.rank());
+    world.abort(failure.exit_code() as i32);
 }
 
 /// Ends all processes where this one panics, since the others would wait for ever.
