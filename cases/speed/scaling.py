@@ -75,7 +75,7 @@ class Counts(NamedTuple):
     neighbours: int
     nodes: int  # on the boundary of a share
     sums: int  # sent or received for them
-    face_sums: int  # of its own blocks, at nodes of the two faces that every process moves
+    face_sums: int  # of its own blocks, at nodes of the loaded face, which every process moves
     all_face_sums: int  # of all processes
     log: str  # as process 0 has it in run.log
 
@@ -108,7 +108,7 @@ def main():
 
 def print_table(options, cells, compute, memory, networks):
     print(f"\n{cells:,} tetrahedra of each process: {1e9 * compute:.1f} ns per tetrahedron and step, {memory:.0f} bytes each\n")
-    print("| processes | neighbours | nodes shared | kB sent | compute [ms] | exchange here, cluster [ms] | efficiency here, cluster | with two faces held"
+    print("| processes | neighbours | nodes shared | kB sent | compute [ms] | exchange here, cluster [ms] | efficiency here, cluster | with a face loaded"
           " | and where something may break | GB of each process |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     for ranks in options.ranks:
@@ -130,7 +130,7 @@ def print_table(options, cells, compute, memory, networks):
 class Times(NamedTuple):
     compute: float
     exchange: float  # of the nodes on the boundary, and the word that all processes tell each other
-    faces: float  # of the nodes of two faces, which every process moves
+    faces: float  # of the nodes of the loaded face, which every process moves
     records: float  # of what is told of every block
     row: float  # of displacements and velocities of all nodes
     removal: float  # of the sums of all nodes
@@ -143,7 +143,7 @@ def step_times(found, ranks, cells, compute, network):
     send = lambda messages, size: messages * network.latency + size / network.bandwidth
     tree = math.ceil(math.log2(ranks))
     others = ranks - 1
-    # A process with a part of a face sends it to each of the others, and gets the rest of both faces.
+    # A process with a part of a face sends it to each of the others, and gets the rest of the face.
     face = max(others * found.face_sums, found.all_face_sums - found.face_sums)
     # In full: every process gets the sums of all, and sends its own to each of the others.
     full = max(others * found.slots // ranks, found.slots - found.slots // ranks)
@@ -210,10 +210,9 @@ def count_cube(n, ranks):
         same = node[apart:] == node[:-apart]
         pairs += [rank[apart:][same] * ranks + rank[:-apart][same], rank[:-apart][same] * ranks + rank[apart:][same]]
     neighbours = np.bincount(np.unique(np.concatenate(pairs)) // ranks, minlength=ranks)
-    x = node_of_slot // (n + 1) ** 2
-    face = (x == 0) | (x == n)
+    face = node_of_slot // (n + 1) ** 2 == n
     face_sums = np.bincount(rank_of_slot[face], minlength=ranks)
-    # Process 0 of the case of ranks.py: all nodes of both faces are moved by every process.
+    # Process 0 of the case of ranks.py: all nodes of the loaded face are moved by every process, those of the held one by the processes around them.
     mine = rank_of_slot == 0
     moved = np.zeros(count, bool)
     moved[node_of_slot[mine]] = True

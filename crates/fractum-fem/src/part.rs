@@ -126,7 +126,8 @@ impl Part {
             near,
             all,
             always_all: false,
-            next_all: false,
+            // What supports hold from now on may have moved before: they do work in the first step.
+            next_all: true,
             is_all: false,
             is_whole: true,
         }

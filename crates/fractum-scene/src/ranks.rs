@@ -34,12 +34,11 @@ impl Scene {
     /// Leaves a share of the cells to each rank of an exchange. Every rank must have the same scene in the same state, and
     /// all of them step it together from then on; see [`Scene::gather_ranks`].
     ///
-    /// - `watched`: nodes that are looked at after every step
+    /// - `watched`: nodes that are looked at after every step, where that is more than those of supports that move and of loads
     pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, watched: &[u32]) {
-        let held = (0..).zip(self.supports.held()).filter(|(_, held)| **held != 0).map(|(node, _)| node);
         let all = self.needs_all_nodes();
         let loaded = self.loads.points();
-        let mut everywhere: Vec<u32> = held.chain(loaded.into_iter().flatten()).collect();
+        let mut everywhere: Vec<u32> = self.supports.driven().chain(loaded.into_iter().flatten()).collect();
         everywhere.extend(self.optional.surface_supports.nodes());
         everywhere.extend(watched);
         self.solid.share_out(exchange, &everywhere, all);

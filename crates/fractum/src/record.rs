@@ -215,9 +215,11 @@ impl Recorder {
         }
     }
 
-    /// Nodes whose velocities are watched in every step.
-    pub(crate) fn watched(&self) -> Vec<u32> {
-        self.ppv.iter().flat_map(|of| &of.stations).flat_map(|station| &station.nodes).copied().collect()
+    /// Nodes that are looked at after steps without a row: stations in each of them, reactions in frames.
+    pub(crate) fn watched(&self, scene: &Scene) -> Vec<u32> {
+        let stations = self.ppv.iter().flat_map(|of| &of.stations).flat_map(|station| &station.nodes).copied();
+        let held = (0..).zip(scene.supports().held()).filter(|(_, held)| **held != 0).map(|(node, _)| node);
+        stations.chain(held.filter(|_| self.case.output.fields.reaction)).collect()
     }
 
     /// Largest velocities against distance, with their laws.

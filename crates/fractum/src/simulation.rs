@@ -287,7 +287,8 @@ impl Simulation {
         self.solver.take_over(&mut self.scene, was_moving);
         self.recorder.set_probes(built.probes);
         self.case = Arc::new(case);
-        self.ranks.share_out(&mut self.scene, &self.recorder.watched())
+        let watched = self.recorder.watched(&self.scene);
+        self.ranks.share_out(&mut self.scene, &watched)
     }
 
     /// An instant in words.

@@ -130,6 +130,22 @@ fn a_run_is_continued_by_another_number_of_ranks() {
     }
 }
 
+/// The bar, too strong to break and held at one end: what the support does is in frames between rows.
+fn held_bar() -> String {
+    let changes = [
+        ("[[loads]]\ngravity = { y = \"-9.81 m/s^2\" }\n", ""),
+        ("\"3 MPa\"", "\"300 MPa\""),
+        ("\"100 J/m^2\"", "\"1e6 J/m^2\""),
+        ("velocity = { x = { ramp = [[\"0 s\", \"0 m/s\"], [\"0.2 ms\", \"-0.2 m/s\"]] } }", "fix = \"xyz\""),
+        ("fields = { every = \"0.1 ms\"", "fields = { every = \"37 us\", reaction = true"),
+        ("history = { every = \"10 us\"", "history = { every = \"0.3 ms\""),
+    ];
+    changes.iter().fold(bar(), |case, (from, to)| {
+        assert!(case.contains(from), "{from}");
+        case.replacen(from, to, 1)
+    })
+}
+
 /// A scene of every kind that ranks share: what it is, and its case.
 fn kinds() -> Vec<(&'static str, String)> {
     let standard = BREAKING_BAR.replacen("kinematics =", "formulation = \"standard\"\nkinematics =", 1);
@@ -142,6 +158,7 @@ fn kinds() -> Vec<(&'static str, String)> {
         ("phase field", with_phase_field(BREAKING_BAR)),
         ("phase field in the standard formulation", with_phase_field(&standard)),
         ("standard formulation", standard),
+        ("reactions in frames", held_bar()),
         ("loose particles", BREAKING_BAR.replacen("[[supports]]", beads, 1)),
         ("bonded body beside a solid", FLYING.replacen("\"0 m/s\"", "\"600 m/s\"", 1)),
     ]

@@ -99,6 +99,12 @@ impl Supports {
         &self.held
     }
 
+    /// Points that do not merely rest: the work of their supports is summed in every step.
+    pub(crate) fn driven(&self) -> impl Iterator<Item = u32> + '_ {
+        let driven = self.sets.iter().filter(|set| !matches!(set.motion, Motion::Fixed));
+        driven.flat_map(|set| set.points.iter().copied())
+    }
+
     /// Degrees of freedom that are prescribed.
     pub fn count(&self) -> usize {
         self.sets.iter().map(|s| s.points.len()).sum()
