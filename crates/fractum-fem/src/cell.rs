@@ -1,5 +1,7 @@
 //! From the elements of a body to its cells, in blocks.
 
+use std::collections::BTreeMap;
+
 use fractum_math::{Ragged, Vec3};
 use rayon::prelude::*;
 
@@ -10,6 +12,20 @@ use crate::error::SolidError;
 
 /// Cells per block: its displacements, forces and geometry fit the second-level cache.
 const BLOCK_CELLS: usize = 2048;
+
+/// Blocks of cells with short steps, which are few and evaluated by themselves, so that all threads find work: as many as this, unless
+/// they become as small as [`FEWEST_CELLS`].
+const FINE_BLOCKS: usize = 64;
+const FEWEST_CELLS: usize = 256;
+
+/// Cells of different classes never share a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Class {
+    /// Whether they take shorter steps than others.
+    pub(crate) is_fine: bool,
+    /// Whether they cannot be damaged where others can.
+    pub(crate) is_sound: bool,
+}
 
 /// What a body needs to build and rebuild its cells.
 pub(crate) struct Geometry<'a> {
@@ -84,15 +100,15 @@ impl Geometry<'_> {
         total
     }
 
-    /// Blocks of element cells, and the element of each cell.
-    pub(crate) fn element_blocks(&self) -> Vec<(Cells, Vec<u32>)> {
+    /// Blocks of element cells, and the element of each cell; see [`Class`].
+    pub(crate) fn element_blocks(&self, class: impl Fn(u32) -> Class) -> Vec<(Cells, Vec<u32>)> {
         let centres: Vec<Vec3> = (0..self.body.elements.len())
             .into_par_iter()
             .map(|e| self.element_nodes(e).iter().map(|&n| self.nodes[n as usize]).sum::<Vec3>())
             .collect();
-        let order = fractum_mesh::renumber::hilbert_order(&centres);
-        order
-            .par_chunks(BLOCK_CELLS)
+        let groups = by_class(fractum_mesh::renumber::hilbert_order(&centres), class);
+        chunks(&groups)
+            .into_par_iter()
             .flat_map(|items| split_to_fit(items, |e| self.element_nodes(e as usize).to_vec()))
             .map(|items| {
                 let rows: Vec<Vec<u32>> = items.iter().map(|&e| self.element_nodes(e as usize).to_vec()).collect();
@@ -108,21 +124,19 @@ impl Geometry<'_> {
             .collect()
     }
 
-    /// Blocks of edge cells, and the edge of each cell; edges of different `class` never share a block.
+    /// Blocks of edge cells, and the edge of each cell; see [`Class`].
     pub(crate) fn edge_blocks(
         &self,
         edges: &BodyEdges,
         elements_of_edge: &Ragged,
-        class: impl Fn(u32) -> bool + Sync,
+        class: impl Fn(u32) -> Class,
     ) -> Vec<(Cells, Vec<u32>)> {
         let middles: Vec<Vec3> =
             edges.nodes.par_iter().map(|&[i, j]| self.nodes[i as usize] + self.nodes[j as usize]).collect();
-        let order = fractum_mesh::renumber::hilbert_order(&middles);
-        let (first, second): (Vec<u32>, Vec<u32>) = order.into_iter().partition(|&edge| class(edge));
-        let chunks: Vec<&[u32]> = first.chunks(BLOCK_CELLS).chain(second.chunks(BLOCK_CELLS)).collect();
+        let groups = by_class(fractum_mesh::renumber::hilbert_order(&middles), class);
         let elements = |edge: u32| elements_of_edge.row(edge as usize);
         let row = |edge: u32| self.edge_nodes(edges.nodes[edge as usize], elements(edge));
-        chunks
+        chunks(&groups)
             .into_par_iter()
             .flat_map(|items| split_to_fit(items, row))
             .map(|mut items| {
@@ -136,6 +150,22 @@ impl Geometry<'_> {
             })
             .collect()
     }
+}
+
+/// Items of each class, in the order that they have.
+fn by_class(items: Vec<u32>, class: impl Fn(u32) -> Class) -> BTreeMap<Class, Vec<u32>> {
+    let mut groups = BTreeMap::<Class, Vec<u32>>::new();
+    items.into_iter().for_each(|item| groups.entry(class(item)).or_default().push(item));
+    groups
+}
+
+/// Runs of items that make a block each, if they fit into it.
+fn chunks(groups: &BTreeMap<Class, Vec<u32>>) -> Vec<&[u32]> {
+    let size = |class: &Class, items: &[u32]| match class.is_fine {
+        true => (items.len() / FINE_BLOCKS).clamp(FEWEST_CELLS, BLOCK_CELLS),
+        false => BLOCK_CELLS,
+    };
+    groups.iter().flat_map(|(class, items)| items.chunks(size(class, items))).collect()
 }
 
 /// Halves a run of cells until each part touches at most [`BLOCK_NODES`] nodes.

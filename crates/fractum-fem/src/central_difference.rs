@@ -1,10 +1,13 @@
 //! Motion of the nodes: central differences with the velocity at half steps.
 
+use std::ops::Range;
+
 use fractum_math::{CHUNK, HalfSteps, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::solid::Solid;
+use crate::subcycling::WholeStep;
 
 /// Damping that acts on the nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -16,7 +19,7 @@ pub struct LocalDamping {
 }
 
 impl LocalDamping {
-    fn is_off(&self) -> bool {
+    pub(crate) fn is_off(&self) -> bool {
         self.local == 0.0 && self.mass_rate == 0.0
     }
 }
@@ -38,8 +41,25 @@ impl Solid {
         held: &[u8],
         measure: bool,
     ) -> HalfSteps {
+        let part = self.part.take();
+        let step = WholeStep { dt_before, dt_after, damping, held, measure };
+        let work = self.kick_runs(&step, |chunk| Some(part.as_ref()?.runs(chunk)));
+        self.part = part;
+        self.note_motion();
+        work
+    }
+
+    /// [`Solid::kick_and_drift`] of some nodes.
+    ///
+    /// - `runs`: runs of nodes in a chunk, counted from its first; none where these are all nodes
+    pub(crate) fn kick_runs<'a>(
+        &mut self,
+        step: &WholeStep,
+        runs: impl Fn(usize) -> Option<&'a [Range<usize>]> + Sync,
+    ) -> HalfSteps {
+        let WholeStep { dt_before, dt_after, damping, held, measure } = *step;
         let dt_kick = 0.5 * (dt_before + dt_after);
-        let Solid { displacement, velocity, force, inverse_mass, chunk_work, part, .. } = self;
+        let Solid { displacement, velocity, force, inverse_mass, chunk_work, .. } = self;
         let plain = damping.is_off() && !measure;
         displacement
             .par_chunks_mut(CHUNK)
@@ -49,7 +69,7 @@ impl Solid {
             .for_each(|(chunk, ((displacement, velocity), work))| {
                 *work = HalfSteps::default();
                 let all = 0..velocity.len();
-                for run in part.as_ref().map_or(std::slice::from_ref(&all), |part| part.runs(chunk)) {
+                for run in runs(chunk).unwrap_or(std::slice::from_ref(&all)) {
                     let first = chunk * CHUNK + run.start;
                     let (displacement, velocity) = (&mut displacement[run.clone()], &mut velocity[run.clone()]);
                     let (force, inverse_mass) = (&force[first..], &inverse_mass[first..]);
@@ -65,7 +85,7 @@ impl Solid {
                         let mut total = force[i];
                         let mut resist = Vec3::zeros();
                         if !damping.is_off() {
-                            let free = held.get(first + i).map_or(Vec3::repeat(1.0), |&bits| free_axes(bits));
+                            let free = free_axes(held.get(first + i).copied().unwrap_or(0));
                             resist = damping_force(
                                 damping,
                                 total.component_mul(&free),
@@ -88,18 +108,16 @@ impl Solid {
                     }
                 }
             });
-        let work = chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part);
-        self.note_motion();
-        work
+        chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
     }
 }
 
-fn free_axes(bits: u8) -> Vec3 {
+pub(crate) fn free_axes(bits: u8) -> Vec3 {
     Vec3::from_fn(|axis, _| if bits & (1 << axis) == 0 { 1.0 } else { 0.0 })
 }
 
 /// -a |F| v/|v| - α m v, zero at rest.
-fn damping_force(damping: LocalDamping, force: Vec3, velocity: Vec3, inverse_mass: f64) -> Vec3 {
+pub(crate) fn damping_force(damping: LocalDamping, force: Vec3, velocity: Vec3, inverse_mass: f64) -> Vec3 {
     let speed = velocity.norm();
     let local = if speed > 0.0 { velocity * (-damping.local * force.norm() / speed) } else { Vec3::zeros() };
     local - velocity * (damping.mass_rate / inverse_mass)

@@ -35,6 +35,8 @@ pub(crate) struct Block {
     pub(crate) viscous: ViscousCells,
     /// A corotational cell that is turned inside out and still carries.
     pub(crate) inverted: Option<usize>,
+    /// Whether its cells take shorter steps than others, see [`crate::subcycling`].
+    pub(crate) is_fine: bool,
 }
 
 impl Block {

@@ -333,7 +333,7 @@ fn runs_of_blocks(weights: &[usize], ranks: usize) -> Vec<usize> {
 }
 
 /// The runs of what is true.
-fn runs_of(moved: &[bool]) -> Vec<Range<usize>> {
+pub(crate) fn runs_of(moved: &[bool]) -> Vec<Range<usize>> {
     let mut begin = 0;
     let mut runs = Vec::new();
     for run in moved.chunk_by(|a, b| a == b) {

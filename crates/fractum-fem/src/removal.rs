@@ -42,6 +42,7 @@ impl Solid {
             let touched = self.cells_around(body, &elements);
             let stored: Vec<f64> = touched.iter().map(|&cell| self.stored_energy(cell)).collect();
             energy += self.step_energy(dt, &touched);
+            self.forget_ahead();
             elements.iter().for_each(|&e| self.bodies[body].alive[e as usize] = false);
             self.rebuild_cells_around(body, &elements);
             self.settle(dt, &touched, &stored);
@@ -54,8 +55,9 @@ impl Solid {
     ///
     /// - `stored`: energy of each of these cells with the elements [J]
     fn settle(&mut self, dt: f64, cells: &[(u32, u32)], stored: &[f64]) {
-        let Solid { blocks, bodies, displacement, velocity, .. } = self;
         for (&(block, cell), &stored) in cells.iter().zip(stored) {
+            let dt = self.own_step(&self.blocks[block as usize], dt);
+            let Solid { blocks, bodies, displacement, velocity, .. } = self;
             let Block { body, cells, law: BlockLaw::Edges(edges), .. } = &mut blocks[block as usize] else { continue };
             let step = Advance { displacement, velocity, dt, kinematics: bodies[*body].body.kinematics };
             let mut edges = EdgesInStep { edges, cells, step };
@@ -116,6 +118,7 @@ impl Solid {
         let of = |&(block, cell): &(u32, u32)| {
             let (block, cell) = (&self.blocks[block as usize], cell as usize);
             let model = &self.bodies[block.body];
+            let dt = self.own_step(block, dt);
             let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
             let stress = block.nominal_stress(cell, &model.hooke, step.strain_now(&block.cells, cell));
             0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
@@ -125,7 +128,7 @@ impl Solid {
 
     /// Recomputes the cells in which dead elements had a share, from the elements that are alive.
     pub(crate) fn rebuild_cells_around(&mut self, body: usize, elements: &[u32]) {
-        let Solid { bodies, blocks, reference, .. } = self;
+        let Solid { bodies, blocks, reference, copies, .. } = self;
         let model = &bodies[body];
         if model.body.formulation == Formulation::Standard {
             for &element in elements {
@@ -144,7 +147,9 @@ impl Solid {
             let (block, cell) = model.location[edge as usize];
             let cells = &mut blocks[block as usize].cells;
             nodes.clear();
-            nodes.extend(cells.global_nodes(cell as usize).map(|n| n as u32));
+            // Copies lie where their nodes do.
+            let original = |node: usize| node.checked_sub(reference.len()).map_or(node as u32, |copy| copies[copy]);
+            nodes.extend(cells.global_nodes(cell as usize).map(original));
             let range = cells.range(cell as usize);
             let alive = |element: u32| model.alive[element as usize];
             let around = model.elements_of_edge.row(edge as usize);

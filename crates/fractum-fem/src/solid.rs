@@ -1,23 +1,16 @@
-use std::sync::{Arc, OnceLock};
-
-use fractum_math::{CHUNK, HalfSteps, Ragged, Sym3, Vec3};
+use fractum_math::{CHUNK, HalfSteps, Sym3, Vec3};
 use rayon::prelude::*;
 
-use crate::block::{NodeSlots, Scratch};
+use crate::block::NodeSlots;
 use crate::body::{Body, BodyEdges, Formulation};
 pub(crate) use crate::body_model::BodyModel;
 use crate::cell::Geometry;
-use crate::damage::{EdgeField, Softens};
-use crate::edges_in_step::EdgeCells;
+use crate::damage::EdgeField;
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
-use crate::hooke::Hooke;
 use crate::material::{Wave, rayleigh_wave_speed};
 use crate::part::Part;
-use crate::phase::PhaseField;
-use crate::standard::{StandardCells, StandardDamage};
-use crate::threshold::Threshold;
-use crate::viscosity::ViscousCells;
+use crate::subcycling::Subcycling;
 
 /// Finite elements of all solid bodies, with their nodes.
 ///
@@ -44,6 +37,11 @@ pub struct Solid {
     pub(crate) viscous_dissipation: f64,
     /// The share of one of several ranks; none where this process does all.
     pub(crate) part: Option<Box<Part>>,
+    /// Nodes of the mesh that stand twice, ascending; their copies are the nodes beyond those of the mesh. Arrays that change in a run
+    /// and masses have the copies too.
+    pub(crate) copies: Vec<u32>,
+    /// What cells with steps of two sizes need; none where all take the same.
+    pub(crate) subcycling: Option<Box<Subcycling>>,
 }
 
 impl Solid {
@@ -54,10 +52,16 @@ impl Solid {
     /// # Errors
     /// [`SolidError`] for elements without volume or too large for their fracture energy, for massless nodes, and beyond some 110 million smoothed tetrahedra.
     pub fn new(nodes: Vec<Vec3>, bodies: Vec<Body>) -> Result<Self, SolidError> {
+        Solid::with_fine(nodes, bodies, &[])
+    }
+
+    /// - `fine`: elements of each body whose cells have blocks of their own; empty where there are none
+    pub(crate) fn with_fine(nodes: Vec<Vec3>, bodies: Vec<Body>, fine: &[Vec<bool>]) -> Result<Self, SolidError> {
         let mut mass = vec![0.0; nodes.len()];
         let mut blocks = Vec::new();
         let mut models = Vec::new();
         for (index, body) in bodies.into_iter().enumerate() {
+            let fine = fine.get(index).map_or(&[][..], Vec::as_slice);
             let geometry = Geometry { body: &body, nodes: &nodes };
             let volumes = geometry.volumes()?;
             let corners = body.shape.node_count();
@@ -66,7 +70,7 @@ impl Solid {
                     mass[node as usize] += body.elastic.density * volume / corners as f64;
                 }
             }
-            let (model, mut own) = BodyModel::new(body, index, &nodes, &volumes, blocks.len())?;
+            let (model, mut own) = BodyModel::new(body, index, &nodes, &volumes, fine, blocks.len())?;
             blocks.append(&mut own);
             models.push(model);
         }
@@ -89,6 +93,8 @@ impl Solid {
             slots,
             viscous_dissipation: 0.0,
             part: None,
+            copies: Vec::new(),
+            subcycling: None,
         })
     }
 
@@ -120,14 +126,21 @@ impl Solid {
         self.damage_standard_elements();
         let own = self.own_blocks();
         let Solid { displacement, velocity, blocks, bodies, .. } = self;
-        blocks[own]
-            .par_iter_mut()
-            .for_each(|block| block.evaluate(&bodies[block.body], displacement, velocity, dt, measure));
+        let (subcycling, first) = (self.subcycling.as_deref(), own.start);
+        blocks[own].par_iter_mut().enumerate().for_each(|(index, block)| {
+            let dt = match subcycling {
+                Some(subcycling) if subcycling.is_ahead(first + index) => return,
+                Some(subcycling) if block.is_fine => dt / subcycling.parts_before(),
+                _ => dt,
+            };
+            block.evaluate(&bodies[block.body], displacement, velocity, dt, measure);
+        });
         self.exchange_forces(measure);
         let Solid { blocks, .. } = self;
         let power: f64 = blocks.iter().map(|b| b.viscous_power).sum();
         self.viscous_dissipation += power * dt;
         self.gather_forces();
+        self.keep_internal();
     }
 
     /// Sums the forces of the blocks on each node.
@@ -184,6 +197,9 @@ impl Solid {
 
     /// Elastic energy at the last measured step [J].
     pub fn elastic_energy(&self) -> f64 {
+        if let Some([elastic, _]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
+            return elastic;
+        }
         let of = |block: &Block| match &block.law {
             BlockLaw::Elastic { energy } => energy.unwrap_or(0.0),
             BlockLaw::Edges(law) => law.energy.unwrap_or(0.0),
@@ -194,6 +210,9 @@ impl Solid {
 
     /// Energy dissipated by damage so far [J].
     pub fn dissipated_energy(&self) -> f64 {
+        if let Some([_, dissipated]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
+            return dissipated;
+        }
         self.blocks.iter().map(Block::dissipated).sum()
     }
 
@@ -358,87 +377,5 @@ impl BodyModel {
             sum = (sum.0 + stress, sum.1 + damage);
         }
         (sum.0 * (1.0 / count as f64), sum.1 / count as f64)
-    }
-
-    /// The body with its blocks; `first_block` is the index that its first block will have.
-    fn new(
-        body: Body,
-        index: usize,
-        nodes: &[Vec3],
-        volumes: &[f64],
-        first_block: usize,
-    ) -> Result<(Self, Vec<Block>), SolidError> {
-        let hooke = Hooke::of(&body);
-        let smoothed = body.formulation == Formulation::Smoothed;
-        let geometry = Geometry { body: &body, nodes };
-        let edges = (smoothed || body.damage.is_some()).then(|| body.edges());
-        let edge_count = edges.as_ref().map_or(0, |e| e.nodes.len());
-        let per_element = body.shape.edge_count();
-        let elements_of_edge = edges.as_ref().map_or_else(Ragged::default, |edges| {
-            Ragged::inverse(edge_count, edges.of_element.iter().map(|of| &of[..per_element]))
-        });
-        let threshold = match (&body.damage, &edges) {
-            (Some(zone), Some(edges)) => Some(Threshold::new(&body, zone, edges, &elements_of_edge, nodes, volumes)?),
-            _ => None,
-        };
-        let softens = body.damage.as_ref().map(|zone| Arc::new(Softens::new(zone, hooke, body.elastic.young_modulus)));
-        let cells = match &edges {
-            Some(edges) if smoothed => geometry.edge_blocks(edges, &elements_of_edge, |edge| {
-                threshold.as_ref().is_some_and(|t| t.strength[edge as usize].is_finite())
-            }),
-            _ => geometry.element_blocks(),
-        };
-        let mut location = vec![(0, 0); if smoothed { edge_count } else { body.elements.len() }];
-        let mut blocks = Vec::with_capacity(cells.len());
-        for (cells, items) in cells {
-            for (cell, &item) in items.iter().enumerate() {
-                location[item as usize] = ((first_block + blocks.len()) as u32, cell as u32);
-            }
-            let law = block_law(smoothed, softens.as_ref().zip(threshold.as_ref()), &items);
-            let scratch = Scratch::new();
-            let (viscous, inverted) = (ViscousCells::default(), None);
-            blocks.push(Block { body: index, cells, items, law, scratch, viscous_power: 0.0, viscous, inverted });
-        }
-        let (reduced_edges, largest_length_ratio) =
-            threshold.as_ref().map_or((0, 0.0), |t| (t.reduced_edges, t.largest_length_ratio));
-        let phase = match (&body.damage, threshold.as_ref().and_then(|t| t.phase_sizes)) {
-            (Some(zone), Some(sizes)) => Some(Box::new(PhaseField::of(&body, zone, sizes, edge_count)?)),
-            _ => None,
-        };
-        let standard = match (softens, threshold) {
-            (Some(softens), Some(t)) if !smoothed => {
-                let field = EdgeField::new(softens, (0..edge_count as u32).collect(), &t);
-                Some(StandardDamage::new(field, body.shape, elements_of_edge.clone(), body.elements.len()))
-            }
-            _ => None,
-        };
-        let alive = vec![true; body.elements.len()];
-        let model = BodyModel {
-            body,
-            hooke,
-            viscosity: None,
-            alive,
-            volumes: OnceLock::new(),
-            edges,
-            elements_of_edge,
-            location,
-            standard,
-            phase,
-            reduced_edges,
-            largest_length_ratio,
-        };
-        Ok((model, blocks))
-    }
-}
-
-/// Law of the cells of a block; one that holds an edge that may be damaged holds such edges only.
-fn block_law(smoothed: bool, damage: Option<(&Arc<Softens>, &Threshold)>, items: &[u32]) -> BlockLaw {
-    match damage {
-        Some((softens, threshold)) if smoothed && threshold.strength[items[0] as usize].is_finite() => {
-            let field = EdgeField::new(softens.clone(), items.to_vec(), threshold);
-            BlockLaw::Edges(EdgeCells { field, dissipated: 0.0, energy: None })
-        }
-        Some((softens, _)) if !smoothed => BlockLaw::Standard(StandardCells::new(softens.clone(), items.len())),
-        _ => BlockLaw::Elastic { energy: None },
     }
 }

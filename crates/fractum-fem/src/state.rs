@@ -94,10 +94,11 @@ impl Solid {
     /// # Panics
     /// If the sizes of the state are those of another solid.
     pub fn restore(&mut self, state: SolidState) {
-        assert_eq!(state.displacement.len(), self.reference.len(), "state of another solid");
+        assert_eq!(state.displacement.len(), self.displacement.len(), "state of another solid");
         self.displacement = state.displacement;
         self.velocity = state.velocity;
         self.viscous_dissipation = state.viscous_dissipation;
+        self.forget_ahead();
         for (index, body) in state.bodies.into_iter().enumerate() {
             let Solid { bodies, blocks, .. } = self;
             let model = &mut bodies[index];

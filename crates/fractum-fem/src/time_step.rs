@@ -32,13 +32,34 @@ impl Solid {
     ///
     /// The process converges from below; the value carries a margin of 2 %. The governing element is the one with the
     /// highest frequency of its own.
+    ///
+    /// Where cells take steps of two sizes it is that of those with the longer ones.
     pub fn stable_step(&mut self) -> StableStep {
-        StableStep { frequency: 1.02 * self.largest_eigenvalue().sqrt(), ..self.stable_step_bound() }
+        let frequency = 1.02 * self.largest_eigenvalue(|solid, node| !solid.is_fine(node)).sqrt();
+        StableStep { frequency, ..self.stable_step_bound() }
+    }
+
+    /// The same of the cells with the shorter steps; none where all take the same.
+    pub fn fine_stable_step(&mut self, bound: bool) -> Option<StableStep> {
+        let fine = self.subcycling.as_ref()?.fine_elements.clone();
+        let worst = self.bound(|body, element| fine[body][element as usize]);
+        if bound {
+            return Some(worst);
+        }
+        Some(StableStep { frequency: 1.02 * self.largest_eigenvalue(Solid::is_fine).sqrt(), ..worst })
     }
 
     /// ω_max by the rigorous bound max over elements of their own highest frequency (holds for both formulations and
     /// through removal).
     pub fn stable_step_bound(&self) -> StableStep {
+        match &self.subcycling {
+            Some(subcycling) => self.bound(|body, element| !subcycling.fine_elements[body][element as usize]),
+            None => self.bound(|_, _| true),
+        }
+    }
+
+    /// The bound over some elements: body, element.
+    fn bound(&self, counts: impl Fn(usize, u32) -> bool) -> StableStep {
         let mut worst = StableStep { frequency: 0.0, governing: (0, 0) };
         for (body, model) in self.bodies.iter().enumerate() {
             let geometry = Geometry { body: &model.body, nodes: &self.reference };
@@ -52,14 +73,14 @@ impl Solid {
                 gradients[..corners].iter().map(|g| g.norm_squared()).sum::<f64>() * trace_factor * scale
             };
             let traces: Vec<f64> = (0..model.body.elements.len()).into_par_iter().map(trace).collect();
-            let mut order: Vec<u32> = (0..traces.len() as u32).filter(|&e| model.alive[e as usize]).collect();
+            let mut order: Vec<u32> =
+                (0..traces.len() as u32).filter(|&e| model.alive[e as usize] && counts(body, e)).collect();
             order.par_sort_unstable_by(|&a, &b| traces[b as usize].total_cmp(&traces[a as usize]).then(a.cmp(&b)));
             for element in order {
                 if traces[element as usize] <= worst.frequency * worst.frequency {
                     break;
                 }
-                let (_, gradients) = geometry.element(element as usize);
-                let frequency = (element_eigenvalue(&gradients[..corners], hooke) * scale).sqrt();
+                let frequency = element_frequency(&geometry, hooke, element as usize);
                 if frequency > worst.frequency {
                     worst = StableStep { frequency, governing: (body, element) };
                 }
@@ -68,10 +89,11 @@ impl Solid {
         worst
     }
 
-    /// Largest eigenvalue of M⁻¹K, in the symmetric form M^-½ K M^-½.
-    fn largest_eigenvalue(&mut self) -> f64 {
-        let root: Vec<f64> = self.inverse_mass.iter().map(|m| m.sqrt()).collect();
-        largest_eigenvalue(self.reference.len(), LANCZOS_STEPS, |q| self.scaled_stiffness(q, &root))
+    /// Largest eigenvalue of M⁻¹K, in the symmetric form M^-½ K M^-½, of nodes that no cell joins to others.
+    fn largest_eigenvalue(&mut self, counts: impl Fn(&Solid, usize) -> bool) -> f64 {
+        let root = |(node, m): (usize, &f64)| if counts(self, node) { m.sqrt() } else { 0.0 };
+        let root: Vec<f64> = self.inverse_mass.iter().enumerate().map(root).collect();
+        largest_eigenvalue(root.len(), LANCZOS_STEPS, |q| self.scaled_stiffness(q, &root))
     }
 
     /// M^-½ K M^-½ q.
@@ -83,6 +105,14 @@ impl Solid {
         let force = |i: usize| slots.gather(i, |block| blocks[block].forces()) * -root[i];
         (0..q.len()).into_par_iter().map(force).collect()
     }
+}
+
+/// Highest frequency of an element by itself, with its share of the mass [rad/s].
+pub(crate) fn element_frequency(geometry: &Geometry, hooke: &Hooke, element: usize) -> f64 {
+    let corners = geometry.body.shape.node_count();
+    let (_, gradients) = geometry.element(element);
+    let scale = corners as f64 / geometry.body.elastic.density;
+    (element_eigenvalue(&gradients[..corners], hooke) * scale).sqrt()
 }
 
 /// Largest eigenvalue of D Σ b bᵀ, which times n/ρ is the squared frequency of an element with the mass ρV/n per node.

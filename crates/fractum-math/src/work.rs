@@ -15,6 +15,8 @@ pub struct Work {
     pub friction: f64,
     /// Gone through absorbing boundaries.
     pub absorbed: f64,
+    /// Taken by the link between cells with steps of two sizes.
+    pub linked: f64,
 }
 
 impl Work {
@@ -37,6 +39,7 @@ impl AddAssign for Work {
         self.damping += other.damping;
         self.friction += other.friction;
         self.absorbed += other.absorbed;
+        self.linked += other.linked;
     }
 }
 

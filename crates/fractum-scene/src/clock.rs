@@ -57,6 +57,8 @@ impl Clock {
 pub(crate) struct Frequencies {
     /// Of the solids by themselves.
     pub(crate) stable: StableStep,
+    /// Of the cells with short steps, where others take long ones.
+    pub(crate) fine: Option<StableStep>,
     /// Square of that of nodes on rigid shapes [1/s²].
     pub(crate) walls_square: f64,
     /// Square of that of discrete elements in contact, rounded up; the step is for it [1/s²].
@@ -67,7 +69,7 @@ pub(crate) struct Frequencies {
 
 impl Frequencies {
     /// Those of solids without contact.
-    pub(crate) fn of(stable: StableStep) -> Self {
-        Frequencies { stable, walls_square: 0.0, contact_square: 0.0, contact_peak: 0.0 }
+    pub(crate) fn of(stable: StableStep, fine: Option<StableStep>) -> Self {
+        Frequencies { stable, fine, walls_square: 0.0, contact_square: 0.0, contact_peak: 0.0 }
     }
 }

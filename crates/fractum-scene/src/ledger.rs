@@ -198,6 +198,7 @@ impl AddAssign<Work> for Books {
         self.damping += work.damping;
         self.friction += work.friction;
         self.absorbed += work.absorbed;
+        self.time_step += work.linked;
     }
 }
 

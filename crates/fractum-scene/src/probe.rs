@@ -4,7 +4,7 @@ use fractum_dem::crack_shape::Axis;
 use fractum_fem::{CrackEdge, Separation, Wave};
 use fractum_math::{Sym3, Vec3};
 
-use crate::conditions::{Along, PointProbe, Population};
+use crate::conditions::{Along, PointProbe, Points, Population};
 use crate::contacts::ContactProbe;
 use crate::crack_extent::measure_extent;
 use crate::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
@@ -253,7 +253,7 @@ impl Probe {
             }
             Probe::AngularMomentum(direction) => {
                 let nodes = (0..solid.mass.len())
-                    .map(|i| solid.mass[i] * solid.position(i).cross(&solid.velocity[i]).dot(direction));
+                    .map(|i| solid.mass[i] * Points::position(solid, i).cross(&solid.velocity[i]).dot(direction));
                 let spins = scene.debris.spin_momentum(solid) + scene.bonded.angular_momentum();
                 nodes.sum::<f64>() + spins.dot(direction)
             }

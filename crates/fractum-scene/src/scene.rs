@@ -156,11 +156,10 @@ impl Scene {
         surface: &[u32],
         settings: SceneSettings,
     ) -> Self {
-        let stable = if settings.time_step.element_bound || solid.reference.is_empty() {
-            solid.stable_step_bound()
-        } else {
-            solid.stable_step()
-        };
+        let bound = settings.time_step.element_bound || solid.reference.is_empty();
+        let stable = if bound { solid.stable_step_bound() } else { solid.stable_step() };
+        let fine = solid.fine_stable_step(bound);
+        solid.set_copies_off();
         if !shape_contacts.is_empty() {
             debris.prepare(&solid);
             shape_contacts.iter_mut().for_each(|ground| ground.watch(surface, &solid, &debris));
@@ -180,7 +179,7 @@ impl Scene {
             settings,
             ledger: Ledger::default(),
             books: Books::default(),
-            frequencies: Frequencies::of(stable),
+            frequencies: Frequencies::of(stable, fine),
             removals: Removals::default(),
         };
         scene.update_wall_frequency();
@@ -274,6 +273,15 @@ impl Scene {
     /// Supports, with the reactions of the last step.
     pub fn supports(&self) -> &Supports {
         &self.supports
+    }
+
+    /// Forces of the supports on the nodes of the mesh at the last step [N].
+    pub fn node_reactions(&self) -> Vec<Vec3> {
+        let (solid, count) = (&self.solid, self.solid.reference.len());
+        let mut reactions = self.supports.reactions(solid.mass.len());
+        let of_copies = reactions.split_off(count);
+        (count..).zip(of_copies).for_each(|(copy, reaction)| reactions[solid.original(copy)] += reaction);
+        reactions
     }
 
     /// Gas in holes and cracks.

@@ -10,6 +10,9 @@ use crate::scene::Scene;
 /// them, and half a period of contact wants some twenty steps for the energy balance.
 const RESOLUTION: f64 = 4.0;
 
+/// Relative excess of a step over a whole number of parts that is rounding.
+const SAME_PART: f64 = 1e-9;
+
 impl Scene {
     /// Largest stable step of the solid by itself, and what governs it; none where bonds or contacts ask for a
     /// smaller one.
@@ -25,15 +28,46 @@ impl Scene {
         self.contacts.frequency_square().sqrt() > bodies
     }
 
-    /// Largest stable step with contacts and damping [s].
+    /// Largest stable step with contacts and damping [s]; of the cells with long steps where others take short ones.
+    ///
+    /// Contacts know no short steps: where something may touch, all cells take those of the fine ones.
     pub fn stable_dt(&self) -> f64 {
+        let Frequencies { stable, fine, .. } = self.frequencies;
+        match fine {
+            Some(fine) if self.contact_frequency_square() > 0.0 => self.stable_dt_at(fine.frequency),
+            _ => self.stable_dt_at(stable.frequency),
+        }
+    }
+
+    /// How many short steps lie in one of `dt` [s].
+    pub(crate) fn parts(&self, dt: f64) -> u32 {
+        let Frequencies { stable, fine: Some(fine), .. } = self.frequencies else { return 1 };
+        let [long, short] = [stable, fine].map(|of| self.stable_dt_at(of.frequency));
+        let TimeStepSettings { safety, fixed, .. } = self.settings.time_step;
+        let longest = fixed.unwrap_or(safety * long);
+        (dt / (longest * short / long) * (1.0 - SAME_PART)).ceil().max(1.0) as u32
+    }
+
+    /// Most short steps in a long one, share of the cells that take them, and the number of nodes that stand twice; none where all
+    /// cells take the same step.
+    pub fn subcycling(&self) -> Option<(u32, f64, usize)> {
+        let (share, linked) = self.solid.fine_shares()?;
+        Some((self.parts(self.clock.dt_after), share, linked))
+    }
+
+    fn contact_frequency_square(&self) -> f64 {
         let divisor = self.bonded.step_divisor();
-        let frequency =
-            self.frequencies.stable.frequency.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
         let gas = self.loads.gas().map_or(0.0, Gas::frequency_square);
         let Frequencies { walls_square, contact_square, .. } = self.frequencies;
-        let contacts = walls_square + contact_square + self.contacts.frequency_square() * divisor * divisor + gas;
-        let contacts = contacts + self.optional.surface_supports.frequency_square();
+        walls_square + contact_square + self.contacts.frequency_square() * divisor * divisor + gas
+    }
+
+    /// - `solids`: highest frequency of the solids by themselves [rad/s]
+    fn stable_dt_at(&self, solids: f64) -> f64 {
+        let divisor = self.bonded.step_divisor();
+        let frequency = solids.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
+        let Frequencies { walls_square, contact_square, .. } = self.frequencies;
+        let contacts = self.contact_frequency_square() + self.optional.surface_supports.frequency_square();
         // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
         let frequency = ((frequency * frequency + contacts) * (1.0 + self.settings.damping.local)).sqrt();
         let contact = if walls_square + contact_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };

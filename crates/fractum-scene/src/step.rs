@@ -1,7 +1,9 @@
 use fractum_dem::Particles;
-use fractum_fem::InvertedElement;
+use fractum_fem::{InvertedElement, Prescribe, WholeStep};
 use fractum_math::{HalfSteps, Vec3, Work, sum_chunks};
 
+use crate::clock::Clock;
+use crate::conditions::Kick;
 use crate::contacts::Touching;
 use crate::error::StepError;
 use crate::ledger::EnergyKind;
@@ -74,6 +76,9 @@ impl Scene {
         let elapsed = if first { 0.0 } else { dt_before };
         let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
         self.solid.move_all_nodes_next(step_changes); // their kinetic energy is summed
+        if self.solid.is_subcycled() {
+            self.solid.set_parts([dt_before, dt_after].map(|dt| self.parts(dt)));
+        }
 
         if self.solid.body_count() > 0 {
             self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
@@ -150,10 +155,7 @@ impl Scene {
     /// Advances nodes, particles and rigid bodies with the forces of tⁿ; prescribed motion takes the place of free motion.
     fn advance(&mut self, measure: bool) -> HalfSteps {
         let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
-        self.supports.remember(&self.solid);
-        let held = self.supports.held();
-        let mut work = self.solid.kick_and_drift(dt_before, dt_after, self.settings.damping, held, measure);
-        work += self.supports.impose(&mut self.solid, time, dt_before, dt_after);
+        let mut work = self.advance_solids(measure);
         work += self.debris.turn(&self.solid, dt_before, dt_after, measure);
         work += self.move_bonded(time, dt_before, dt_after, measure);
         work += self.contacts.move_bodies(time, dt_before, dt_after);
@@ -161,6 +163,30 @@ impl Scene {
         self.loads.spend_gas_work(&self.solid, dt_after);
         work.after += self.optional.surface_supports.absorbed_after(&self.solid, dt_after);
         work
+    }
+
+    fn advance_solids(&mut self, measure: bool) -> HalfSteps {
+        let Clock { time, dt_before, dt_after, .. } = self.clock;
+        let (damping, Scene { solid, supports, .. }) = (self.settings.damping, self);
+        if !solid.is_subcycled() {
+            supports.remember(solid, None);
+            let mut work = solid.kick_and_drift(dt_before, dt_after, damping, supports.held(), measure);
+            work += supports.impose(solid, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true });
+            return work;
+        }
+        let held = supports.shared_held();
+        let step = WholeStep { dt_before, dt_after, damping, held: &held, measure };
+        solid.advance_in_parts(step, |solid, prescribe| match prescribe {
+            Prescribe::Remember { fine } => {
+                supports.remember(solid, Some(fine));
+                HalfSteps::default()
+            }
+            Prescribe::Impose { fine, since, dt_before, dt_after } => {
+                let kick =
+                    Kick { time: time + since, dt_before, dt_after, is_fine: Some(fine), is_first: since == 0.0 };
+                supports.impose(solid, &kick)
+            }
+        })
     }
 
     /// The velocities given at the start become those of the half step before it; returns the kinetic energy of those given [J].
@@ -171,7 +197,10 @@ impl Scene {
         bonded.particles.start_half_a_step_early(dt);
         contacts.start_half_a_step_early(dt);
         for i in 0..solid.mass.len() {
-            let half_kick = solid.force[i] * (0.5 * dt / solid.mass[i]);
+            let half_kick = match solid.own_acceleration(i, dt) {
+                Some((acceleration, dt)) => acceleration * (0.5 * dt),
+                None => solid.force[i] * (0.5 * dt / solid.mass[i]),
+            };
             let held = supports.held().get(i).copied().unwrap_or(0);
             for axis in (0..3).filter(|axis| held & (1 << axis) == 0) {
                 solid.velocity[i][axis] -= half_kick[axis];

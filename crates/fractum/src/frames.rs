@@ -160,8 +160,7 @@ fn solid_file(scene: &Scene, layout: &GridLayout) -> Result<FrameFile, Failure> 
     let displacement = nodal(&|n| solid.displacement_from_start(n).into());
     let velocity: Vec<[f32; 3]> = order.iter().map(|&n| single(solid.velocity[n as usize].into())).collect();
     let held: Vec<u8> = order.iter().map(|&n| u8::from(attached[n as usize])).collect();
-    let reactions =
-        if layout.further.reaction { scene.supports().reactions(solid.reference.len()) } else { Vec::new() };
+    let reactions = if layout.further.reaction { scene.node_reactions() } else { Vec::new() };
     let reaction: Vec<[f32; 3]> = if layout.further.reaction {
         order.iter().map(|&n| single(reactions[n as usize].into())).collect()
     } else {

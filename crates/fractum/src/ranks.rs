@@ -157,6 +157,7 @@ fn not_for_ranks(case: &Case) -> Vec<(&Place, &'static str)> {
     if !case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Solid(_))) {
         found.push((&case.solver.place, "a scene without solids, whose cells they would share,"));
     }
+    found.extend(case.solver.subcycling.iter().map(|place| (place, "subcycling")));
     found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat")));
     found
 }

@@ -14,6 +14,7 @@ mod ppv;
 mod precheck;
 mod probes;
 mod statics;
+mod subcycling;
 mod surface_supports;
 mod ties;
 
@@ -195,7 +196,8 @@ impl<'a> Context<'a> {
     /// The elements of all solid bodies.
     fn solid(&mut self, parts: &[Part<'a>], numbering: &Numbering) -> Option<Solid> {
         let bodies = self.solid_bodies(parts, numbering)?;
-        let mut solid = match Solid::new(numbering.positions.clone(), bodies) {
+        let new = if self.case.solver.subcycling.is_some() { Solid::subcycled } else { Solid::new };
+        let mut solid = match new(numbering.positions.clone(), bodies) {
             Ok(solid) => solid,
             Err(error) => {
                 let place = parts.first().map_or_else(|| self.whole_case(), |part| part.place.clone());
@@ -230,10 +232,10 @@ impl<'a> Context<'a> {
         let mut loads = self.loads(&points);
         loads.extend(in_situ);
         let gas = self.gas(solid, &points, &supports, &loads);
-        match Supports::new(supports, &solid.reference) {
-            Ok(supports) => {
-                Some((supports, surface_supports, Loads::new(loads, numbering.positions.len()).with_gas(gas)))
-            }
+        let supports = subcycling::by_step(supports, solid);
+        let places: Vec<Vec3> = (0..solid.mass.len()).map(|node| solid.reference[solid.original(node)]).collect();
+        match Supports::new(supports, &places) {
+            Ok(supports) => Some((supports, surface_supports, Loads::new(loads, places.len()).with_gas(gas))),
             Err(error) => {
                 let place = self.place_of_support(&error);
                 self.error(&place, format!(": {error}"), "");

@@ -22,6 +22,7 @@ impl Context<'_> {
         self.check_bonded_statics();
         self.check_contact_probes();
         self.check_heat_probes();
+        self.check_subcycling();
     }
 
     /// Probes of heat need heat.

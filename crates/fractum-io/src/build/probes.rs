@@ -59,7 +59,7 @@ impl Context<'_> {
     ) -> Option<Probe> {
         Some(match kind {
             ProbeKind::Reaction { on, along } => {
-                let places = supports.places(&self.selected_nodes(on, numbering));
+                let places = supports.places(&solid.with_copies(self.selected_nodes(on, numbering)));
                 // Another stage may hold it.
                 let along_held = !self.case.source.stage.is_empty() || is_held(&places, along);
                 if let (false, Some(place)) = (along_held, on.place()) {

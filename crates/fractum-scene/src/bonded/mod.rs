@@ -18,7 +18,7 @@ use fractum_fem::LocalDamping;
 use fractum_math::{HalfSteps, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
-use crate::conditions::{Load, Loads, Support, Supports};
+use crate::conditions::{Kick, Load, Loads, Support, Supports};
 use crate::error::SceneError;
 use momentum::{energy_of, viscous_power};
 use points::ParticlePoints;
@@ -399,10 +399,10 @@ impl Bonded {
         let damping = ParticleDamping { local: damping.local, mass_rate: damping.mass_rate, dissipation: *dissipation };
         let counted_twice = if measure { energy_of(particles, tied) } else { 0.0 };
         let mut points = ParticlePoints { particles, reference, tied };
-        supports.remember(&points);
+        supports.remember(&points, None);
         let mut work =
             points.particles.kick_and_drift(&TimeStep { dt_before, dt_after, damping, measure }, past, partial);
-        work += supports.impose(&mut points, time, dt_before, dt_after);
+        work += supports.impose(&mut points, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true });
         work.before.damping -= 0.5 * dt_before * resistance;
         work.before.kinetic -= counted_twice;
         work.after.kinetic -= counted_twice;

@@ -10,6 +10,6 @@ pub use load::*;
 pub use points::Population;
 pub(crate) use points::{DrivenPoints, Points};
 pub use probe::{Along, PointProbe};
-pub(crate) use support::integral;
+pub(crate) use support::{Kick, integral};
 pub use support::{Motion, Support, Supports};
 pub use surface_support::{SupportedFacet, SurfaceSupports};

@@ -56,11 +56,11 @@ pub(crate) trait DrivenPoints: Points {
 
 impl Points for Solid {
     fn reference(&self, point: usize) -> &Vec3 {
-        &self.reference[point]
+        &self.reference[self.original(point)]
     }
 
     fn position(&self, point: usize) -> Vec3 {
-        Solid::position(self, point)
+        self.reference[self.original(point)] + self.displacement[point]
     }
 
     fn displacement(&self, point: usize) -> Vec3 {

@@ -1,4 +1,5 @@
 use std::fmt;
+use std::sync::Arc;
 
 use fractum_math::{HalfSteps, Vec3};
 
@@ -28,6 +29,8 @@ pub struct Support {
     pub axis: usize,
     /// How it moves.
     pub motion: Motion,
+    /// Whether its points take short steps, where some do.
+    pub is_fine: bool,
     /// Velocity of each point before the kick [m/s].
     before: Vec<f64>,
     /// Force of the support on each point at tⁿ [N].
@@ -38,7 +41,7 @@ impl Support {
     /// A support of `points` along `axis` (0, 1, 2).
     pub fn new(name: &str, points: Vec<u32>, axis: usize, motion: Motion) -> Self {
         let zeros = vec![0.0; points.len()];
-        Support { name: name.to_owned(), points, axis, motion, before: zeros.clone(), reaction: zeros }
+        Support { name: name.to_owned(), points, axis, motion, is_fine: false, before: zeros.clone(), reaction: zeros }
     }
 }
 
@@ -48,12 +51,27 @@ impl fmt::Debug for Support {
     }
 }
 
+/// The kick that prescribed motion takes the place of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kick {
+    /// When it is [s].
+    pub(crate) time: f64,
+    /// Step before it [s].
+    pub(crate) dt_before: f64,
+    /// Step after it [s].
+    pub(crate) dt_after: f64,
+    /// Only the points with short steps, or those with long ones; none where all take the same.
+    pub(crate) is_fine: Option<bool>,
+    /// Whether it is at tⁿ, the instant of all results.
+    pub(crate) is_first: bool,
+}
+
 /// All supports of one population: the nodes of solids, or the particles.
 #[derive(Clone, Debug, Default)]
 pub struct Supports {
     sets: Vec<Support>,
     /// Bit a is set where axis a of a point is prescribed; empty without supports.
-    held: Vec<u8>,
+    held: Arc<[u8]>,
 }
 
 impl Supports {
@@ -87,7 +105,7 @@ impl Supports {
                 }
             }
             let set = &mut sets[index];
-            *set = Support::new(&set.name, kept, axis, set.motion.clone());
+            *set = Support { is_fine: set.is_fine, ..Support::new(&set.name, kept, axis, set.motion.clone()) };
         }
         let bits = |axes: &[u32; 3]| (0..3).filter(|&a| axes[a] != u32::MAX).fold(0u8, |bits, a| bits | 1 << a);
         let held = owner.iter().map(bits).collect();
@@ -103,6 +121,10 @@ impl Supports {
     pub(crate) fn driven(&self) -> impl Iterator<Item = u32> + '_ {
         let driven = self.sets.iter().filter(|set| !matches!(set.motion, Motion::Fixed));
         driven.flat_map(|set| set.points.iter().copied())
+    }
+
+    pub(crate) fn shared_held(&self) -> Arc<[u8]> {
+        self.held.clone()
     }
 
     /// Degrees of freedom that are prescribed.
@@ -222,8 +244,10 @@ impl Supports {
     }
 
     /// Keeps the velocities before the kick.
-    pub(crate) fn remember(&mut self, points: &impl Points) {
-        for set in &mut self.sets {
+    ///
+    /// - `is_fine`: as in [`Kick`]
+    pub(crate) fn remember(&mut self, points: &impl Points, is_fine: Option<bool>) {
+        for set in self.sets.iter_mut().filter(|set| is_fine.is_none_or(|is_fine| set.is_fine == is_fine)) {
             for (before, &point) in set.before.iter_mut().zip(&set.points) {
                 *before = points.velocity(point as usize)[set.axis];
             }
@@ -231,16 +255,12 @@ impl Supports {
     }
 
     /// Gives the prescribed axes their motion, after the kick and drift, and finds the reactions.
-    pub(crate) fn impose(
-        &mut self,
-        points: &mut impl DrivenPoints,
-        time: f64,
-        dt_before: f64,
-        dt_after: f64,
-    ) -> HalfSteps {
+    pub(crate) fn impose(&mut self, points: &mut impl DrivenPoints, kick: &Kick) -> HalfSteps {
+        let Kick { time, dt_before, dt_after, is_fine, is_first } = *kick;
         let mut work = HalfSteps::default();
         let dt_kick = 0.5 * (dt_before + dt_after);
-        for Support { points: set, axis, motion, before, reaction, .. } in &mut self.sets {
+        let counts = |set: &&mut Support| is_fine.is_none_or(|is_fine| set.is_fine == is_fine);
+        for Support { points: set, axis, motion, before, reaction, .. } in self.sets.iter_mut().filter(counts) {
             for ((&point, &mut before), reaction) in set.iter().zip(before).zip(reaction) {
                 let (i, axis) = (point as usize, *axis);
                 let free = points.velocity(i)[axis];
@@ -256,10 +276,13 @@ impl Supports {
                 let change = velocity - free;
                 // What changes the motion: the support, and the force that the kick has left out.
                 let total = points.mass(i) * change / dt_kick;
-                *reaction = total - points.force_left_out(i, axis);
+                let force = total - points.force_left_out(i, axis);
+                if is_first {
+                    *reaction = force;
+                }
                 points.set_motion(i, axis, velocity, change * dt_after);
-                work.before.external += 0.5 * *reaction * before * dt_before;
-                work.after.external += 0.5 * *reaction * velocity * dt_after;
+                work.before.external += 0.5 * force * before * dt_before;
+                work.after.external += 0.5 * force * velocity * dt_after;
                 work.before.kinetic += 0.5 * total * before * dt_before;
                 // Of m v⁺ (v⁺ - Δt a), with the velocity and the acceleration that the kick gave, and as they are.
                 let kinetic = |v: f64| v * (v - dt_after * (v - before) / dt_kick);

@@ -88,7 +88,7 @@ impl Scene {
 
     fn find_step(&mut self, element_bound: bool) {
         let stable = if element_bound { self.solid.stable_step_bound() } else { self.solid.stable_step() };
-        self.frequencies = Frequencies::of(stable);
+        self.frequencies = Frequencies::of(stable, None);
         self.debris.search(&self.solid);
         self.update_wall_frequency();
         self.update_contact_frequency(true, true);

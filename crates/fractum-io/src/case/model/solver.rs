@@ -26,6 +26,8 @@ pub struct Solver {
     pub step: Option<Spanned<f64>>,
     /// Options of a static run, or of one that may become static; `None` with the explicit solver.
     pub statics: Option<StaticOptions>,
+    /// Where it is asked that fine elements take short steps by themselves; `None` where all take the same.
+    pub subcycling: Option<Place>,
     /// What overlaps at the start does.
     pub initial_overlap: InitialOverlap,
     /// Free pieces outside it leave the run.

@@ -72,7 +72,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     let end = table.quantity("end").positive().required();
     let end_place = table.place_below("end");
     if kind == Some(SolverKind::Heat) {
-        for key in ["step", "time_step", "initial_overlap", "domain", "balance_warning", "balance_stop"] {
+        for key in ["step", "time_step", "subcycling", "initial_overlap", "domain", "balance_warning", "balance_stop"] {
             table.refuse(key, "with kind = \"heat\"");
         }
         refuse_motion(root, root, &["loads", "in_situ"], WHILE_CONDUCTING);
@@ -83,6 +83,9 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         }
     }
     let is_static = kind == Some(SolverKind::Static);
+    if is_static || kind == Some(SolverKind::Auto) {
+        table.refuse("subcycling", "where the solver may be static");
+    }
     let statics = match kind {
         Some(SolverKind::Static | SolverKind::Auto) => statics(&table, bodies).map(Some),
         Some(kind @ (SolverKind::Explicit | SolverKind::Heat)) => {
@@ -121,6 +124,8 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         table.reader.note(note);
     }
     let time_step = table.choice("time_step").or(TimeStep::PowerIteration);
+    let subcycling =
+        if table.flag("subcycling").or(false) { table.peek("subcycling").map(|node| node.place.clone()) } else { None };
     let initial_overlap = table.choice("initial_overlap").or(InitialOverlap::Push);
     let domain = if table.has("domain") { domain(&table).map(Some) } else { Some(None) };
     let stop_when = if table.has("stop_when") { stop_when(&table, probes).map(Some) } else { Some(None) };
@@ -137,6 +142,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         safety,
         time_step,
         step,
+        subcycling,
         initial_overlap,
         domain: domain?,
         statics: statics?,

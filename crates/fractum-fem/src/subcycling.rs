@@ -1,0 +1,464 @@
+//! Cells that take several short steps while the others take a long one.
+//!
+//! Nodes that cells of both kinds share stand twice: once with the short steps and the mass of the fine cells around, once as a
+//! *copy* with the long steps and the mass of the others. A force between the two, the link, keeps their velocities together at the
+//! end of every short step, where the velocity of the copy is interpolated between those that it would have without the link at
+//! both ends of the long step: Gravouil and Combescure, *Int. J. Numer. Meth. Eng.* 50 (2001) 199-225, with central differences on
+//! both sides. Masses are lumped, so that the link of every node is found by itself. The scheme is stable wherever both sides are;
+//! the link takes a little energy, never gives any, and is booked. It ties velocities and not displacements: the two drift apart by
+//! what the interpolation misses.
+
+use std::ops::Range;
+
+use fractum_math::{CHUNK, HalfSteps, Vec3, sum_chunks};
+use rayon::prelude::*;
+
+use crate::block::NodeSlots;
+use crate::body::{Body, Formulation};
+use crate::central_difference::{LocalDamping, damping_force, free_axes};
+use crate::error::SolidError;
+use crate::evaluate::Block;
+use crate::fine_elements::fine_elements;
+use crate::part::runs_of;
+use crate::solid::Solid;
+
+/// What a solid keeps where its cells take steps of two sizes.
+#[derive(Clone, Debug)]
+pub(crate) struct Subcycling {
+    /// Elements that ask for the short steps, body by body.
+    pub(crate) fine_elements: Vec<Vec<bool>>,
+    /// Whether a node takes the short steps.
+    is_fine: Vec<bool>,
+    /// Runs of nodes with long steps and of those with short ones in each chunk, without what is linked.
+    runs: [Vec<Vec<Range<usize>>>; 2],
+    /// Blocks with long steps that hold copies: their forces at the end of a long step are needed before the short ones are taken.
+    near: Vec<usize>,
+    /// The forces of these blocks are those of tⁿ already.
+    is_ahead: bool,
+    /// While they are: elastic energy and energy dissipated by damage at the last step of all cells [J].
+    energies: [f64; 2],
+    /// Short steps in the long ones before and after tⁿ.
+    parts: [u32; 2],
+    /// Internal forces at tⁿ, then what other forces there are; on nodes with short steps these act until tⁿ⁺¹ [N].
+    outer: Vec<Vec3>,
+    /// Whether there are any on nodes with short steps.
+    has_outer: bool,
+    /// Velocities of the copies without the link at both ends of a long step [m/s].
+    ends: Vec<[Vec3; 2]>,
+}
+
+/// What the solid wants done about prescribed motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Prescribe {
+    /// Keep the velocities of these nodes before they are kicked.
+    Remember {
+        /// Nodes with short steps, or those with long ones.
+        fine: bool,
+    },
+    /// Give the prescribed ones of these nodes their motion.
+    Impose {
+        /// Nodes with short steps, or those with long ones.
+        fine: bool,
+        /// Time since tⁿ of the kick [s].
+        since: f64,
+        /// Step before the kick [s].
+        dt_before: f64,
+        /// Step after it [s].
+        dt_after: f64,
+    },
+}
+
+/// A step of all nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct WholeStep<'a> {
+    /// Step before tⁿ [s].
+    pub dt_before: f64,
+    /// Step after tⁿ [s].
+    pub dt_after: f64,
+    /// Damping.
+    pub damping: LocalDamping,
+    /// Bit a is set where axis a of a node is prescribed; empty if none is.
+    pub held: &'a [u8],
+    /// Whether to sum the kinetic energy.
+    pub measure: bool,
+}
+
+impl Solid {
+    /// As [`Solid::new`], with short steps for the elements that need them and long ones for the others, where that pays.
+    ///
+    /// # Errors
+    /// As [`Solid::new`].
+    pub fn subcycled(nodes: Vec<Vec3>, bodies: Vec<Body>) -> Result<Self, SolidError> {
+        let fine = fine_elements(&nodes, &bodies);
+        let mut solid = Solid::with_fine(nodes, bodies, fine.as_deref().unwrap_or_default())?;
+        if let Some(fine) = fine {
+            solid.link(fine)?;
+        }
+        Ok(solid)
+    }
+
+    /// Whether some nodes take shorter steps than others.
+    pub fn is_subcycled(&self) -> bool {
+        self.subcycling.is_some()
+    }
+
+    /// Whether a node takes short steps.
+    pub fn is_fine(&self, node: usize) -> bool {
+        self.subcycling.as_ref().is_some_and(|own| own.is_fine.get(node).copied().unwrap_or(false))
+    }
+
+    /// The node of the mesh that a node is, or is a copy of.
+    #[inline]
+    pub fn original(&self, node: usize) -> usize {
+        match node.checked_sub(self.reference.len()) {
+            None => node,
+            Some(copy) => self.copies[copy] as usize,
+        }
+    }
+
+    /// Nodes of the mesh, ascending, with their copies after them.
+    pub fn with_copies(&self, mut nodes: Vec<u32>) -> Vec<u32> {
+        let copies = (self.reference.len() as u32..).zip(&self.copies);
+        let of: Vec<u32> = copies.filter(|(_, node)| nodes.binary_search(node).is_ok()).map(|(copy, _)| copy).collect();
+        nodes.extend(of);
+        nodes
+    }
+
+    /// Shares of cells and nodes with short steps, and the number of nodes that stand twice; none where all take the same.
+    pub fn fine_shares(&self) -> Option<(f64, usize)> {
+        self.subcycling.as_ref()?;
+        let cells = |fine: bool| -> usize {
+            self.blocks.iter().filter(|block| !fine || block.is_fine).map(|block| block.cells.len()).sum()
+        };
+        Some((cells(true) as f64 / cells(false).max(1) as f64, self.copies.len()))
+    }
+
+    /// Sets how many short steps lie in the long ones before and after tⁿ.
+    pub fn set_parts(&mut self, parts: [u32; 2]) {
+        self.subcycling.iter_mut().for_each(|own| own.parts = parts);
+    }
+
+    /// Gives copies the velocities of their nodes.
+    pub fn set_copies_off(&mut self) {
+        for (copy, &node) in (self.reference.len()..).zip(&self.copies) {
+            self.velocity[copy] = self.velocity[node as usize];
+        }
+    }
+
+    /// Where steps have two sizes: acceleration at tⁿ [m/s²], of a node and its copy that of both together; and their step before tⁿ,
+    /// of a whole one `dt` [s].
+    pub fn own_acceleration(&self, node: usize, dt: f64) -> Option<(Vec3, f64)> {
+        let own = self.subcycling.as_ref()?;
+        let dt = if self.is_fine(node) { dt / f64::from(own.parts[0]) } else { dt };
+        let original = self.original(node);
+        let Ok(link) = self.copies.binary_search(&(original as u32)) else {
+            return Some((self.force[node] * self.inverse_mass[node], dt));
+        };
+        let both = [original, self.reference.len() + link];
+        let force = both.iter().map(|&i| self.force[i]).sum::<Vec3>();
+        Some((force / both.iter().map(|&i| self.mass[i]).sum::<f64>(), dt))
+    }
+
+    /// Lets shared nodes stand twice.
+    fn link(&mut self, fine_elements: Vec<Vec<bool>>) -> Result<(), SolidError> {
+        let count = self.reference.len();
+        let mut touched = [vec![false; count], vec![false; count]];
+        for block in &self.blocks {
+            let touched = &mut touched[usize::from(block.is_fine)];
+            block.cells.nodes.iter().for_each(|&node| touched[node as usize] = true);
+        }
+        let [coarse, is_fine] = touched;
+        let linked: Vec<u32> = (0..count).filter(|&n| coarse[n] && is_fine[n]).map(|n| n as u32).collect();
+        let copy_of = |node: u32| linked.binary_search(&node).map(|link| (count + link) as u32);
+        let mut near = Vec::new();
+        for (index, block) in self.blocks.iter_mut().enumerate().filter(|(_, block)| !block.is_fine) {
+            let mut holds = false;
+            for node in &mut block.cells.nodes {
+                if let Ok(copy) = copy_of(*node) {
+                    (*node, holds) = (copy, true);
+                }
+            }
+            if holds {
+                near.push(index);
+            }
+        }
+        let shares = self.coarse_mass();
+        for &node in &linked {
+            let share = shares[node as usize];
+            self.mass.push(share);
+            self.mass[node as usize] -= share;
+        }
+        self.inverse_mass = self.mass.iter().map(|m| 1.0 / m).collect();
+        let all = count + linked.len();
+        for of_nodes in [&mut self.displacement, &mut self.velocity, &mut self.force] {
+            of_nodes.resize(all, Vec3::zeros());
+        }
+        self.chunk_work.resize(all.div_ceil(CHUNK), HalfSteps::default());
+        self.slots = NodeSlots::new(all, self.blocks.iter().map(|block| block.cells.nodes.as_slice()))?;
+        let is_linked = |node: usize| node >= count || linked.binary_search(&(node as u32)).is_ok();
+        let runs = [false, true].map(|fine| {
+            let moved: Vec<bool> = (0..all).map(|node| !is_linked(node) && is_fine[node] == fine).collect();
+            moved.chunks(CHUNK).map(runs_of).collect()
+        });
+        self.subcycling = Some(Box::new(Subcycling {
+            fine_elements,
+            runs,
+            near,
+            is_ahead: false,
+            energies: [0.0; 2],
+            parts: [1; 2],
+            outer: vec![Vec3::zeros(); all],
+            has_outer: false,
+            ends: vec![[Vec3::zeros(); 2]; linked.len()],
+            is_fine,
+        }));
+        self.copies = linked;
+        Ok(())
+    }
+
+    /// Mass of every node that belongs to cells with long steps [kg]. The mass of an element goes with its edges in equal parts where
+    /// these are the cells, so that the bound of the step by elements holds for either side.
+    fn coarse_mass(&self) -> Vec<f64> {
+        let mut mass = vec![0.0; self.reference.len()];
+        for (index, model) in self.bodies.iter().enumerate() {
+            let corners = model.body.shape.node_count();
+            let is_coarse =
+                |item: u32| f64::from(u8::from(!self.blocks[model.location[item as usize].0 as usize].is_fine));
+            for (element, nodes) in (0..).zip(&model.body.elements) {
+                let share = match (&model.edges, model.body.formulation) {
+                    (Some(edges), Formulation::Smoothed) => {
+                        let of = &edges.of_element[element as usize][..model.body.shape.edge_count()];
+                        of.iter().map(|&edge| is_coarse(edge)).sum::<f64>() / of.len() as f64
+                    }
+                    _ => is_coarse(element),
+                };
+                let of_element = model.body.elastic.density * self.element_volume(index, element) / corners as f64;
+                nodes[..corners].iter().for_each(|&node| mass[node as usize] += share * of_element);
+            }
+        }
+        mass
+    }
+
+    /// Once the internal forces are those of tⁿ: what is added to them stays until tⁿ⁺¹.
+    pub(crate) fn keep_internal(&mut self) {
+        let Some(own) = &mut self.subcycling else { return };
+        own.is_ahead = false;
+        own.outer.copy_from_slice(&self.force);
+    }
+
+    /// The last step of the cells of a block, where that of the scene was `dt` [s].
+    pub(crate) fn own_step(&self, block: &Block, dt: f64) -> f64 {
+        match &self.subcycling {
+            Some(own) if block.is_fine => dt / f64::from(own.parts[1]),
+            _ => dt,
+        }
+    }
+
+    /// After cells have changed, no forces are known in advance.
+    pub(crate) fn forget_ahead(&mut self) {
+        self.subcycling.iter_mut().for_each(|own| own.is_ahead = false);
+    }
+
+    /// As [`Solid::kick_and_drift`], with short steps for the nodes that need them.
+    ///
+    /// - `prescribe`: sees to what is prescribed, before and after some nodes move
+    pub fn advance_in_parts(
+        &mut self,
+        step: WholeStep,
+        mut prescribe: impl FnMut(&mut Solid, Prescribe) -> HalfSteps,
+    ) -> HalfSteps {
+        let Some(mut own) = self.subcycling.take() else { return HalfSteps::default() };
+        let parts = f64::from(own.parts[1]);
+        let long = [step.dt_before, step.dt_after];
+        let (before, after) = (step.dt_before / f64::from(own.parts[0]), step.dt_after / parts);
+        own.outer.iter_mut().zip(&self.force).for_each(|(outer, force)| *outer = force - *outer);
+        own.has_outer = own.outer.iter().zip(&own.is_fine).any(|(outer, is_fine)| *is_fine && *outer != Vec3::zeros());
+        let mut work = HalfSteps::default();
+        // Whoever put these forces on has booked their work for whole steps.
+        work.before.external += own.outer_work(self, 0.5 * (before - step.dt_before));
+        for fine in [false, true] {
+            prescribe(self, Prescribe::Remember { fine });
+        }
+        work += own.kick(self, false, long, &step);
+        work += own.kick(self, true, [before, after], &step);
+        work += own.kick_linked(self, [before, after], &step);
+        for (fine, [dt_before, dt_after]) in [(false, long), (true, [before, after])] {
+            work += prescribe(self, Prescribe::Impose { fine, since: 0.0, dt_before, dt_after });
+        }
+        own.energies = [self.elastic_energy(), self.dissipated_energy()];
+        own.look_ahead(self, &step);
+        let step = WholeStep { measure: false, ..step };
+        for part in 1..own.parts[1] {
+            work.after.external += own.outer_work(self, after);
+            own.update_fine_forces(self, after);
+            prescribe(self, Prescribe::Remember { fine: true });
+            let share = f64::from(part) / parts;
+            let mut later = own.kick(self, true, [after; 2], &step);
+            later += own.kick_fine_linked(self, share, after, &step);
+            let since = share * step.dt_after;
+            later += prescribe(self, Prescribe::Impose { fine: true, since, dt_before: after, dt_after: after });
+            // All of it lies after tⁿ.
+            work.after += later.before;
+            work.after += later.after;
+        }
+        work.after.external += own.outer_work(self, 0.5 * (after - step.dt_after));
+        self.subcycling = Some(own);
+        work
+    }
+}
+
+impl Subcycling {
+    /// Whether the forces of a block are those of tⁿ already.
+    pub(crate) fn is_ahead(&self, block: usize) -> bool {
+        self.is_ahead && self.near.binary_search(&block).is_ok()
+    }
+
+    /// Elastic energy and energy dissipated by damage at the last step of all cells, while some are ahead [J].
+    pub(crate) fn energies(&self) -> Option<[f64; 2]> {
+        self.is_ahead.then_some(self.energies)
+    }
+
+    /// Short steps in the long one before tⁿ.
+    pub(crate) fn parts_before(&self) -> f64 {
+        f64::from(self.parts[0])
+    }
+
+    /// Work that the outer forces do on nodes with short steps at their present velocities [J].
+    fn outer_work(&self, solid: &Solid, dt: f64) -> f64 {
+        if !self.has_outer || dt == 0.0 {
+            return 0.0;
+        }
+        let of = |node: usize| if self.is_fine[node] { self.outer[node].dot(&solid.velocity[node]) } else { 0.0 };
+        sum_chunks(self.is_fine.len(), of) * dt
+    }
+
+    /// Kicks the nodes with short steps or those with long ones, but those that stand twice.
+    fn kick(&self, solid: &mut Solid, fine: bool, [dt_before, dt_after]: [f64; 2], step: &WholeStep) -> HalfSteps {
+        let step = WholeStep { dt_before, dt_after, ..*step };
+        solid.kick_runs(&step, |chunk| self.runs[usize::from(fine)].get(chunk).map(Vec::as_slice))
+    }
+
+    /// Kicks nodes and their copies at tⁿ.
+    ///
+    /// - `short`: short steps on both sides [s]
+    fn kick_linked(&mut self, solid: &mut Solid, short: [f64; 2], step: &WholeStep) -> HalfSteps {
+        let mut work = HalfSteps::default();
+        let first = solid.reference.len();
+        for (link, ends) in self.ends.iter_mut().enumerate() {
+            let (node, copy) = (solid.copies[link] as usize, first + link);
+            let free = free_axes(step.held.get(node).copied().unwrap_or(0));
+            let long = [step.dt_before, step.dt_after];
+            let (mut fine, mut coarse) =
+                (LinkedNode::new(solid, node, short, step), LinkedNode::new(solid, copy, long, step));
+            ends[0] = coarse.velocity_at();
+            let link = (ends[0] - fine.velocity_at()).component_mul(&free)
+                / (fine.yield_per_force() + coarse.yield_per_force());
+            work += fine.kick(solid, link, step.measure);
+            work += coarse.kick(solid, -link, step.measure);
+        }
+        work
+    }
+
+    /// Kicks those of nodes and copies that take short steps, within a long one.
+    ///
+    /// - `share`: where in the long step, above 0 and below 1
+    fn kick_fine_linked(&self, solid: &mut Solid, share: f64, dt: f64, step: &WholeStep) -> HalfSteps {
+        let mut work = HalfSteps::default();
+        let first = solid.reference.len();
+        for (link, [begin, end]) in self.ends.iter().enumerate() {
+            let node = solid.copies[link] as usize;
+            let free = free_axes(step.held.get(node).copied().unwrap_or(0));
+            let mut fine = LinkedNode::new(solid, node, [dt; 2], step);
+            let of_copy = 0.5 * step.dt_after * solid.inverse_mass[first + link];
+            let target = begin * (1.0 - share) + end * share;
+            let link = (target - fine.velocity_at()).component_mul(&free) / (fine.yield_per_force() + of_copy);
+            work += fine.kick(solid, link, false);
+        }
+        work
+    }
+
+    /// Finds the forces of the cells around copies at tⁿ⁺¹, and the velocities that the copies will have without the link.
+    fn look_ahead(&mut self, solid: &mut Solid, step: &WholeStep) {
+        let Solid { displacement, velocity, blocks, bodies, .. } = solid;
+        blocks
+            .par_iter_mut()
+            .enumerate()
+            .filter(|(index, _)| self.near.binary_search(index).is_ok())
+            .for_each(|(_, block)| block.evaluate(&bodies[block.body], displacement, velocity, step.dt_after, true));
+        self.is_ahead = true;
+        let first = solid.reference.len();
+        for (copy, [_, end]) in (first..).zip(&mut self.ends) {
+            solid.force[copy] = solid.slots.gather(copy, |block| solid.blocks[block].forces()) + self.outer[copy];
+            *end = LinkedNode::new(solid, copy, [step.dt_after; 2], step).velocity_at();
+        }
+    }
+
+    /// Forces on the nodes with short steps, after one of these [s].
+    fn update_fine_forces(&self, solid: &mut Solid, dt: f64) {
+        let Solid { displacement, velocity, force, blocks, bodies, slots, copies, .. } = solid;
+        blocks
+            .par_iter_mut()
+            .filter(|block| block.is_fine)
+            .for_each(|block| block.evaluate(&bodies[block.body], displacement, velocity, dt, false));
+        let sum = |node: usize| slots.gather(node, |block| blocks[block].forces()) + self.outer[node];
+        force.par_chunks_mut(CHUNK).zip(&self.runs[1]).enumerate().for_each(|(chunk, (force, runs))| {
+            runs.iter().cloned().flatten().for_each(|i| force[i] = sum(chunk * CHUNK + i));
+        });
+        copies.iter().for_each(|&node| force[node as usize] = sum(node as usize));
+    }
+}
+
+/// A node that stands twice, or its copy, in the kick.
+struct LinkedNode {
+    node: usize,
+    velocity: Vec3,
+    force: Vec3,
+    /// Force of damping [N].
+    resist: Vec3,
+    inverse_mass: f64,
+    dt: [f64; 2],
+}
+
+impl LinkedNode {
+    fn new(solid: &Solid, node: usize, dt: [f64; 2], step: &WholeStep) -> Self {
+        let (velocity, force, inverse_mass) = (solid.velocity[node], solid.force[node], solid.inverse_mass[node]);
+        let resist = if step.damping.is_off() {
+            Vec3::zeros()
+        } else {
+            let free = free_axes(step.held.get(node).copied().unwrap_or(0));
+            damping_force(step.damping, force.component_mul(&free), velocity.component_mul(&free), inverse_mass)
+        };
+        LinkedNode { node, velocity, force, resist, inverse_mass, dt }
+    }
+
+    /// Velocity at the instant of the kick, without the link [m/s].
+    fn velocity_at(&self) -> Vec3 {
+        self.velocity + (self.force + self.resist) * (0.5 * self.dt[0] * self.inverse_mass)
+    }
+
+    /// What a force of the link changes in that [s/kg].
+    fn yield_per_force(&self) -> f64 {
+        0.5 * self.dt[0] * self.inverse_mass
+    }
+
+    /// Gives it its next velocity and displacement; what damping and the link take, and the kinetic energy where asked for.
+    fn kick(&mut self, solid: &mut Solid, link: Vec3, measure: bool) -> HalfSteps {
+        let LinkedNode { node, velocity: before, force, resist, inverse_mass, dt: [dt_before, dt_after] } = *self;
+        let total = force + resist + link;
+        let after = before + total * (inverse_mass * 0.5 * (dt_before + dt_after));
+        solid.velocity[node] = after;
+        solid.displacement[node] += after * dt_after;
+        let mut work = HalfSteps::default();
+        for (work, velocity, dt, sign) in
+            [(&mut work.before, before, dt_before, 1.0), (&mut work.after, after, dt_after, -1.0)]
+        {
+            work.damping = -0.5 * dt * resist.dot(&velocity);
+            work.linked = -0.5 * dt * link.dot(&velocity);
+            if measure {
+                let mirrored = velocity + total * (sign * inverse_mass * dt);
+                work.kinetic = 0.5 / inverse_mass * velocity.dot(&mirrored);
+            }
+        }
+        work
+    }
+}
