@@ -79,6 +79,7 @@ UNSTRUCTURED = {
     "l-panel-plane/rows-5": ("l-panel-plane/panel.geo", {"h": 0.005, "algorithm": 6}, False),
     "branching-plane/delaunay": ("branching-plane/plate.geo", {"h": 0.0007, "algorithm": 5}, False),
     "branching-plane/rows": ("branching-plane/plate.geo", {"h": 0.0005, "algorithm": 6}, False),
+    "graded-plate-plane/plate": ("graded-plate-plane/plate.geo", {"h": 0.0025}, False),
     "heat-plane/sheet": ("heat-plane/plate.geo", {"L": 0.05, "H": 0.03, "h": 0.001}, False),
     "heat-plane/strip": ("heat-plane/plate.geo", {"L": 0.01, "H": 0.005, "h": 0.00012}, False),
     "bending-plane/plain": ("bending/beam.geo", {"h": 0.005, "far": 0.012, "notch": 0, "layers": 0}, False),
@@ -92,6 +93,7 @@ LARGE = {
     "large/56k": ("cube.geo", {"h": 0.0436}, True),
     "large/500k": ("cube.geo", {"h": 0.0211}, True),
     "large/2M": ("cube.geo", {"h": 0.0131}, True),
+    "large/graded-plate": ("graded-plate-plane/plate.geo", {"h": 0.00125, "far": 0.01, "radius": 0.012}, True),
     "large/granite": ("blast-plane/disc.geo", {"h": 0.0018, "far": 0.0040, "length": 0.15}, True),
 }
 

@@ -11,3 +11,4 @@ mod plane;
 mod ranks;
 mod scene;
 mod statics;
+mod subcycling;

@@ -38,7 +38,6 @@ mod element;
 mod error;
 mod evaluate;
 mod expansion;
-mod fine_elements;
 mod hooke;
 mod inverted;
 mod kernel;

@@ -75,9 +75,25 @@ mod tests {
 
     #[test]
     fn every_energy_is_added() {
-        let one = Work { kinetic: 1.0, stored: 2.0, external: 4.0, damping: 8.0, friction: 16.0, absorbed: 32.0 };
+        let one = Work {
+            kinetic: 1.0,
+            stored: 2.0,
+            external: 4.0,
+            damping: 8.0,
+            friction: 16.0,
+            absorbed: 32.0,
+            linked: 64.0,
+        };
         let sum = HalfSteps { before: one, after: Work::external(1.0) } + HalfSteps { before: one, after: one };
-        let twice = Work { kinetic: 2.0, stored: 4.0, external: 8.0, damping: 16.0, friction: 32.0, absorbed: 64.0 };
+        let twice = Work {
+            kinetic: 2.0,
+            stored: 4.0,
+            external: 8.0,
+            damping: 16.0,
+            friction: 32.0,
+            absorbed: 64.0,
+            linked: 128.0,
+        };
         assert_eq!(sum.before, twice);
         assert_eq!(sum.after, Work { external: 5.0, ..one });
     }

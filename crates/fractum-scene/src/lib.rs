@@ -4,6 +4,7 @@
 //! [`Scene`] holds everything; [`Scene::step`] reads like the equations. What changes during a run is a
 //! [`SceneState`], one value that can be saved and put back bit for bit.
 
+mod advance;
 mod bonded;
 mod clock;
 mod conditions;
@@ -31,6 +32,7 @@ mod scene;
 mod stable_step;
 pub mod statics;
 mod step;
+mod subcycling;
 mod time_function;
 mod velocity_station;
 
@@ -63,5 +65,6 @@ pub use region_probe::{RegionStrain, RegionStress};
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::{Phase, StepReport};
+pub use subcycling::SubcyclingState;
 pub use time_function::TimeFunction;
 pub use velocity_station::{PeakVelocity, VelocityStation};

@@ -10,9 +10,6 @@ use crate::scene::Scene;
 /// them, and half a period of contact wants some twenty steps for the energy balance.
 const RESOLUTION: f64 = 4.0;
 
-/// Relative excess of a step over a whole number of parts that is rounding.
-const SAME_PART: f64 = 1e-9;
-
 impl Scene {
     /// Largest stable step of the solid by itself, and what governs it; none where bonds or contacts ask for a
     /// smaller one.
@@ -32,27 +29,11 @@ impl Scene {
     ///
     /// Contacts know no short steps: where something may touch, all cells take those of the fine ones.
     pub fn stable_dt(&self) -> f64 {
-        let Frequencies { stable, fine, .. } = self.frequencies;
+        let (Frequencies { stable, fine, .. }, contacts) = (self.frequencies, self.contact_frequency_square());
         match fine {
-            Some(fine) if self.contact_frequency_square() > 0.0 => self.stable_dt_at(fine.frequency),
-            _ => self.stable_dt_at(stable.frequency),
+            Some(fine) if contacts > 0.0 => self.stable_dt_at(fine.frequency, contacts),
+            _ => self.stable_dt_at(stable.frequency, contacts),
         }
-    }
-
-    /// How many short steps lie in one of `dt` [s].
-    pub(crate) fn parts(&self, dt: f64) -> u32 {
-        let Frequencies { stable, fine: Some(fine), .. } = self.frequencies else { return 1 };
-        let [long, short] = [stable, fine].map(|of| self.stable_dt_at(of.frequency));
-        let TimeStepSettings { safety, fixed, .. } = self.settings.time_step;
-        let longest = fixed.unwrap_or(safety * long);
-        (dt / (longest * short / long) * (1.0 - SAME_PART)).ceil().max(1.0) as u32
-    }
-
-    /// Most short steps in a long one, share of the cells that take them, and the number of nodes that stand twice; none where all
-    /// cells take the same step.
-    pub fn subcycling(&self) -> Option<(u32, f64, usize)> {
-        let (share, linked) = self.solid.fine_shares()?;
-        Some((self.parts(self.clock.dt_after), share, linked))
     }
 
     fn contact_frequency_square(&self) -> f64 {
@@ -63,11 +44,12 @@ impl Scene {
     }
 
     /// - `solids`: highest frequency of the solids by themselves [rad/s]
-    fn stable_dt_at(&self, solids: f64) -> f64 {
+    /// - `contacts`: square of that of contacts [1/s²]
+    pub(crate) fn stable_dt_at(&self, solids: f64, contacts: f64) -> f64 {
         let divisor = self.bonded.step_divisor();
         let frequency = solids.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
         let Frequencies { walls_square, contact_square, .. } = self.frequencies;
-        let contacts = self.contact_frequency_square() + self.optional.surface_supports.frequency_square();
+        let contacts = contacts + self.optional.surface_supports.frequency_square();
         // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
         let frequency = ((frequency * frequency + contacts) * (1.0 + self.settings.damping.local)).sqrt();
         let contact = if walls_square + contact_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };

@@ -1,9 +1,7 @@
 use fractum_dem::Particles;
-use fractum_fem::{InvertedElement, Prescribe, WholeStep};
-use fractum_math::{HalfSteps, Vec3, Work, sum_chunks};
+use fractum_fem::InvertedElement;
+use fractum_math::{HalfSteps, Vec3, Work};
 
-use crate::clock::Clock;
-use crate::conditions::Kick;
 use crate::contacts::Touching;
 use crate::error::StepError;
 use crate::ledger::EnergyKind;
@@ -35,6 +33,8 @@ pub struct StepReport {
 pub enum Phase {
     /// Internal forces, damage included.
     Solid,
+    /// Motion and internal forces in short steps, of the cells that need them.
+    Subcycling,
     /// Temperatures, and the strains that follow them.
     Heat,
     /// Forces of the bonds, and the loads on their particles.
@@ -77,7 +77,7 @@ impl Scene {
         let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
         self.solid.move_all_nodes_next(step_changes); // their kinetic energy is summed
         if self.solid.is_subcycled() {
-            self.solid.set_parts([dt_before, dt_after].map(|dt| self.parts(dt)));
+            self.solid.set_parts(self.parts(dt_after), first);
         }
 
         if self.solid.body_count() > 0 {
@@ -113,7 +113,7 @@ impl Scene {
         self.let_particles_leave(dt_before);
         let expansion = self.conduct(dt_after, &mut passed)?;
         self.break_bonds(measure || step_changes, &mut passed);
-        let mut work = self.advance(measure || step_changes); // vⁿ⁺½, uⁿ⁺¹
+        let mut work = self.advance(measure || step_changes, &mut passed); // vⁿ⁺½, uⁿ⁺¹
         work.after.external += expansion;
         work.before.external += load;
         work.before += absorbed;
@@ -150,63 +150,6 @@ impl Scene {
         let dt = self.next_dt(time + dt_after);
         self.clock.advance(dt);
         Ok(report)
-    }
-
-    /// Advances nodes, particles and rigid bodies with the forces of tⁿ; prescribed motion takes the place of free motion.
-    fn advance(&mut self, measure: bool) -> HalfSteps {
-        let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
-        let mut work = self.advance_solids(measure);
-        work += self.debris.turn(&self.solid, dt_before, dt_after, measure);
-        work += self.move_bonded(time, dt_before, dt_after, measure);
-        work += self.contacts.move_bodies(time, dt_before, dt_after);
-        work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
-        self.loads.spend_gas_work(&self.solid, dt_after);
-        work.after += self.optional.surface_supports.absorbed_after(&self.solid, dt_after);
-        work
-    }
-
-    fn advance_solids(&mut self, measure: bool) -> HalfSteps {
-        let Clock { time, dt_before, dt_after, .. } = self.clock;
-        let (damping, Scene { solid, supports, .. }) = (self.settings.damping, self);
-        if !solid.is_subcycled() {
-            supports.remember(solid, None);
-            let mut work = solid.kick_and_drift(dt_before, dt_after, damping, supports.held(), measure);
-            work += supports.impose(solid, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true });
-            return work;
-        }
-        let held = supports.shared_held();
-        let step = WholeStep { dt_before, dt_after, damping, held: &held, measure };
-        solid.advance_in_parts(step, |solid, prescribe| match prescribe {
-            Prescribe::Remember { fine } => {
-                supports.remember(solid, Some(fine));
-                HalfSteps::default()
-            }
-            Prescribe::Impose { fine, since, dt_before, dt_after } => {
-                let kick =
-                    Kick { time: time + since, dt_before, dt_after, is_fine: Some(fine), is_first: since == 0.0 };
-                supports.impose(solid, &kick)
-            }
-        })
-    }
-
-    /// The velocities given at the start become those of the half step before it; returns the kinetic energy of those given [J].
-    fn start_half_a_step_early(&mut self, dt: f64) -> f64 {
-        let Scene { solid, supports, bonded, contacts, .. } = self;
-        let of_node = |i: usize| 0.5 * solid.mass[i] * solid.velocity[i].norm_squared();
-        let given = sum_chunks(solid.mass.len(), of_node) + bonded.kinetic_energy() + contacts.kinetic_energy();
-        bonded.particles.start_half_a_step_early(dt);
-        contacts.start_half_a_step_early(dt);
-        for i in 0..solid.mass.len() {
-            let half_kick = match solid.own_acceleration(i, dt) {
-                Some((acceleration, dt)) => acceleration * (0.5 * dt),
-                None => solid.force[i] * (0.5 * dt / solid.mass[i]),
-            };
-            let held = supports.held().get(i).copied().unwrap_or(0);
-            for axis in (0..3).filter(|axis| held & (1 << axis) == 0) {
-                solid.velocity[i][axis] -= half_kick[axis];
-            }
-        }
-        given
     }
 
     fn refuse_inverted_elements(&self) -> Result<(), StepError> {
@@ -260,7 +203,7 @@ impl Scene {
         !self.contacts.is_empty() || self.has_contacts()
     }
 
-    fn move_bonded(&mut self, time: f64, dt_before: f64, dt_after: f64, measure: bool) -> HalfSteps {
+    pub(crate) fn move_bonded(&mut self, time: f64, dt_before: f64, dt_after: f64, measure: bool) -> HalfSteps {
         if self.bonded.is_empty() {
             return HalfSteps::default();
         }
@@ -325,6 +268,10 @@ impl Scene {
                 let present = self.solid.stable_step();
                 if present.frequency > self.frequencies.stable.frequency {
                     self.frequencies.stable = present;
+                }
+                let fine = self.solid.fine_stable_step(false);
+                if fine.zip(self.frequencies.fine).is_some_and(|(now, before)| now.frequency > before.frequency) {
+                    self.frequencies.fine = fine;
                 }
             }
         }

@@ -5,13 +5,14 @@ use std::time::{Duration, Instant};
 use fractum_scene::Phase;
 
 /// Names of the parts in `summary.json`.
-const NAMES: [&str; 10] =
-    ["solid", "heat", "bonds", "fracture", "contact", "ties", "gas", "motion", "transition", "output"];
+const NAMES: [&str; 11] =
+    ["solid", "subcycling", "heat", "bonds", "fracture", "contact", "ties", "gas", "motion", "transition", "output"];
 
 /// A part of a run.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Part {
     Solid,
+    Subcycling,
     Heat,
     Bonds,
     Fracture,
@@ -34,6 +35,7 @@ impl From<Phase> for Part {
     fn from(phase: Phase) -> Self {
         match phase {
             Phase::Solid => Part::Solid,
+            Phase::Subcycling => Part::Subcycling,
             Phase::Heat => Part::Heat,
             Phase::Bonds => Part::Bonds,
             Phase::Fracture => Part::Fracture,

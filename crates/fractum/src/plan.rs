@@ -6,6 +6,7 @@ mod estimate;
 mod gauges;
 mod heat;
 mod rows;
+mod time_step;
 mod wrap;
 
 use std::fmt;
@@ -294,31 +295,6 @@ impl Plan {
         }
     }
 
-    fn describe_time(&mut self, case: &Case, scene: &Scene, span: f64) {
-        let governing = match scene.governing_element() {
-            Some(stable) => {
-                let (body, element) = stable.governing;
-                format!("element {element} of {}", scene.solid.body(body).name)
-            }
-            None if scene.contacts_govern() => "the contacts of particles".to_owned(),
-            None => "the bonds".to_owned(),
-        };
-        self.add(
-            "time step",
-            format!(
-                "{} ({} of the stable {}), governed by {governing}",
-                quantity(scene.clock.dt_after, "s"),
-                case.solver.step.as_ref().map_or_else(|| format!("{}", case.solver.safety), |_| "fixed; ".to_owned()),
-                quantity(scene.stable_dt(), "s")
-            ),
-        );
-        if case.solver.subcycling.is_some() {
-            self.add("subcycling", subcycling(scene));
-        }
-        let steps = (span / scene.clock.dt_after).ceil();
-        self.add("steps", format!("{steps} to t = {}", quantity(case.solver.end, "s")));
-    }
-
     fn describe_statics(&mut self, scene: &Scene, settings: &StaticSettings) {
         let plane = scene.solid.body(0).shape == ElementKind::T3;
         let unknowns = scene.solid.reference.len() * if plane { 2 } else { 3 } - scene.supports().count();
@@ -439,20 +415,4 @@ fn area_of(mesh: &Mesh, group: &str, thickness: f64) -> String {
 
 fn megabytes(bytes: f64) -> String {
     format!("{} MB", (bytes / 1e6).ceil())
-}
-
-/// How cells share the steps.
-fn subcycling(scene: &Scene) -> String {
-    match scene.subcycling() {
-        None => "none: the elements are too much alike for it".to_owned(),
-        Some((1, ..)) => "none: contacts ask for short steps everywhere".to_owned(),
-        Some((parts, share, linked)) => {
-            let cost = (1.0 + f64::from(parts - 1) * share) / f64::from(parts);
-            format!(
-                "{:.1} % of the cells take {parts} short steps in one of the others, {linked} nodes are linked; about {:.1} times less work",
-                100.0 * share,
-                1.0 / cost
-            )
-        }
-    }
 }

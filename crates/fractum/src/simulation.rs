@@ -21,7 +21,7 @@ use fractum_io::number::{at_instant, percent};
 use fractum_io::origin::Origin;
 use fractum_io::summary::{Status, Summary};
 use fractum_prepare::Cache;
-use fractum_scene::{EnergyKind, HeatState, Scene, SceneState, StepError};
+use fractum_scene::{EnergyKind, HeatState, Scene, SceneState, StepError, SubcyclingState};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
@@ -136,6 +136,7 @@ struct RunState<'a> {
     end: f64,
     scene: SceneState,
     heat: Option<HeatState>,
+    subcycling: Option<SubcyclingState>,
     record: Cow<'a, RecordState>,
     /// Stages that were still to come.
     later: usize,
@@ -339,11 +340,11 @@ impl Simulation {
     fn save_state(&mut self, scene: SceneState, solver: SolverState) -> Result<(), Failure> {
         let clock = scene.clock;
         let (end, later) = (self.end_of_run(), self.later.len());
-        let heat = self.scene.heat_state();
+        let (heat, subcycling) = (self.scene.heat_state(), self.scene.subcycling_state());
         let started = Instant::now();
         let record = self.recorder.sync()?;
         self.phases.add(Part::Output, started.elapsed());
-        let state = RunState { end, scene, heat, record: Cow::Borrowed(record), later, solver };
+        let state = RunState { end, scene, heat, subcycling, record: Cow::Borrowed(record), later, solver };
         let header = Header { identity: self.about.identity.clone(), step: clock.step, time: clock.time };
         let folder = self.folder.join("checkpoint");
         let write = || checkpoint::save(&folder, &header, &state, Compression::Fast);

@@ -74,7 +74,20 @@ fn where_x(nodes: &[Vec3], x: f64) -> Vec<u32> {
 
 /// The block, held at one end and pulled at the other at `speed` [m/s], with a pressure and gravity.
 fn pulled(nodes: Vec<Vec3>, body: Body, speed: f64, viscosity: Viscosity) -> Scene {
-    let (left, right) = (where_x(&nodes, 0.0), where_x(&nodes, SIZE.x));
+    let mut solid = Solid::new(nodes, vec![body]).unwrap();
+    solid.set_viscosity(viscosity);
+    pulled_solid(solid, SIZE.x, speed)
+}
+
+/// The block with two layers of cells an eighth as thick, which take short steps by themselves.
+fn graded(mut nodes: Vec<Vec3>, body: Body) -> Scene {
+    let (from, to) = (0.4, 0.45);
+    nodes.iter_mut().for_each(|node| node.x -= 0.875 * (node.x - from).clamp(0.0, to - from));
+    pulled_solid(Solid::subcycled(nodes, vec![body]).unwrap(), SIZE.x - 0.875 * (to - from), 0.01)
+}
+
+fn pulled_solid(solid: Solid, length: f64, speed: f64) -> Scene {
+    let (left, right) = (where_x(&solid.reference, 0.0), where_x(&solid.reference, length));
     let supports = vec![
         Support::new("left", left, 0, Motion::Fixed),
         Support::new("right", right.clone(), 0, Motion::Velocity(Arc::new(move |_, _| speed))),
@@ -87,8 +100,6 @@ fn pulled(nodes: Vec<Vec3>, body: Body, speed: f64, viscosity: Viscosity) -> Sce
         }),
         Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -9.81) }),
     ];
-    let mut solid = Solid::new(nodes, vec![body]).unwrap();
-    solid.set_viscosity(viscosity);
     scene(solid, supports, loads, Vec::new())
 }
 
@@ -110,7 +121,7 @@ fn landing(nodes: Vec<Vec3>, body: Body) -> Scene {
 
 fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<NodesOnShape>) -> Scene {
     let supports = Supports::new(supports, &solid.reference).unwrap();
-    let loads = Loads::new(loads, solid.reference.len());
+    let loads = Loads::new(loads, solid.mass.len());
     let debris = Debris::new(&solid, vec![ContactParameters::default(); solid.body_count()]);
     let surface: Vec<u32> = (0..).zip(&solid.reference).filter(|(_, p)| p.z < 1e-9).map(|(n, _)| n).collect();
     let settings = SceneSettings {
@@ -210,6 +221,10 @@ fn a_warm_step_allocates_nothing() {
         let mut scene = pulled(nodes.clone(), armed(plain.clone()), 0.5, calm);
         assert_eq!(requests(&mut scene), 0, "standard with growing damage");
         assert!(scene.counts().damaged_edges > 0);
+
+        let mut scene = graded(nodes.clone(), armed(smoothed.clone()));
+        assert_eq!(requests(&mut scene), 0, "steps of two sizes");
+        assert!(scene.subcycling().is_some_and(|(parts, ..)| parts > 3));
 
         let mut scene = bonded_bar(1.0);
         assert_eq!(requests(&mut scene), 0, "bonded particles");

@@ -88,10 +88,55 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn killed_at_any_moment_and_resumed_gives_the_same_bits() {
-    let place = Workplace::new(BREAKING_BAR);
+    killed_and_resumed(BREAKING_BAR, 2);
+}
+
+/// A plate with a fine zone at its notch, whose cells take short steps of their own until elements have left.
+fn graded_plate() -> String {
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/graded-plate-plane/plate.msh");
+    format!(
+        r#"fractum = 1
+mesh = {{ file = {mesh:?} }}
+bodies = [{{ name = "plate", kind = "solid", group = "plate", material = "concrete", damage_where = "abs(x - 0.5) < 0.05" }}]
+supports = [
+  {{ group = "left", velocity = {{ x = {{ smooth_ramp = [["0 s", "0 m/s"], ["0.1 ms", "-0.2 m/s"]] }} }} }},
+  {{ group = "right", velocity = {{ x = {{ smooth_ramp = [["0 s", "0 m/s"], ["0.1 ms", "0.2 m/s"]] }} }} }},
+]
+loads = [{{ gravity = {{ y = "-9.81 m/s^2" }} }}]
+solver = {{ end = "0.6 ms", subcycling = true }}
+damping = {{ local = 0.05 }}
+probes = [{{ name = "load", reaction = {{ group = "right", along = "x" }} }}]
+output = {{ history = {{ every = "10 us" }}, fields = {{ every = "0.1 ms" }}, checkpoint = {{ every = "0.1 s" }} }}
+[materials.concrete]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+[materials.concrete.damage]
+tensile_strength = "3.33 MPa"
+fracture_energy = "20 J/m^2"
+"#
+    )
+}
+
+#[test]
+fn cells_with_short_steps_of_their_own_keep_the_bits() {
+    let case = graded_plate();
+    let place = Workplace::new(&case);
+    let one = uninterrupted(&place, "one", "1");
+    one.assert_same(&uninterrupted(&place, "three", "3"), "three threads");
+    // Elements have left, and the steps with them became short for all.
+    assert!(one.summary["counts"]["removed_elements"].as_u64().unwrap() > 0, "{}", one.summary["counts"]);
+    let [last, least] = ["dt", "dt_min"].map(|key| one.summary["time"][key].as_f64().unwrap());
+    let first: f64 = one.history.lines().nth(1).unwrap().split(',').nth(1).unwrap().parse().unwrap();
+    assert!(least < 0.3 * first && last < first, "{first} {last} {least}");
+    killed_and_resumed(&case, 1);
+}
+
+fn killed_and_resumed(case: &str, trials: u32) {
+    let place = Workplace::new(case);
     let expected = uninterrupted(&place, "whole", "2");
     let mut dice = Dice(20);
-    for trial in 0..2 {
+    for trial in 0..trials {
         let folder = format!("killed-{trial}");
         let results = place.path(&folder);
         let (mut kills, mut resumed_from) = (0, Vec::new());

@@ -223,7 +223,7 @@ fn each_mistake_has_one_clear_message() {
         (
             "end = 1e-3",
             "end = 1e-3\nqqqqqq = 0.5",
-            "15:1: solver.qqqqqq is not a key; keys here: kind, end, safety, time_step, step, initial_overlap, domain, control, \
+            "15:1: solver.qqqqqq is not a key; keys here: kind, end, safety, time_step, step, subcycling, initial_overlap, domain, control, \
              opening, linear_solver, tolerance, batch, no_equilibrium, max_steps, stop_when, \
              balance_warning, balance_stop",
         ),

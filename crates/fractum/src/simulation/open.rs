@@ -246,6 +246,7 @@ fn put_back(state: RunState, scene: &mut Scene, solver: &mut Solver, case: &Case
     }
     scene.restore(state.scene);
     scene.restore_heat(state.heat);
+    scene.restore_subcycling(state.subcycling);
     solver.restore(scene, state.solver);
     let mut record = state.record.into_owned();
     if is_other {

@@ -8,18 +8,18 @@
 //! the link takes a little energy, never gives any, and is booked. It ties velocities and not displacements: the two drift apart by
 //! what the interpolation misses.
 
+mod fine_elements;
+mod linked_node;
+mod set_up;
+
 use std::ops::Range;
 
-use fractum_math::{CHUNK, HalfSteps, Vec3, sum_chunks};
+use fractum_math::{CHUNK, HalfSteps, Vec3};
+use linked_node::LinkedNode;
 use rayon::prelude::*;
 
-use crate::block::NodeSlots;
-use crate::body::{Body, Formulation};
-use crate::central_difference::{LocalDamping, damping_force, free_axes};
-use crate::error::SolidError;
+use crate::central_difference::{LocalDamping, free_axes};
 use crate::evaluate::Block;
-use crate::fine_elements::fine_elements;
-use crate::part::runs_of;
 use crate::solid::Solid;
 
 /// What a solid keeps where its cells take steps of two sizes.
@@ -43,6 +43,8 @@ pub(crate) struct Subcycling {
     outer: Vec<Vec3>,
     /// Whether there are any on nodes with short steps.
     has_outer: bool,
+    /// Their power in each chunk of nodes [W].
+    power: Vec<f64>,
     /// Velocities of the copies without the link at both ends of a long step [m/s].
     ends: Vec<[Vec3; 2]>,
 }
@@ -84,19 +86,6 @@ pub struct WholeStep<'a> {
 }
 
 impl Solid {
-    /// As [`Solid::new`], with short steps for the elements that need them and long ones for the others, where that pays.
-    ///
-    /// # Errors
-    /// As [`Solid::new`].
-    pub fn subcycled(nodes: Vec<Vec3>, bodies: Vec<Body>) -> Result<Self, SolidError> {
-        let fine = fine_elements(&nodes, &bodies);
-        let mut solid = Solid::with_fine(nodes, bodies, fine.as_deref().unwrap_or_default())?;
-        if let Some(fine) = fine {
-            solid.link(fine)?;
-        }
-        Ok(solid)
-    }
-
     /// Whether some nodes take shorter steps than others.
     pub fn is_subcycled(&self) -> bool {
         self.subcycling.is_some()
@@ -133,9 +122,22 @@ impl Solid {
         Some((cells(true) as f64 / cells(false).max(1) as f64, self.copies.len()))
     }
 
-    /// Sets how many short steps lie in the long ones before and after tⁿ.
-    pub fn set_parts(&mut self, parts: [u32; 2]) {
-        self.subcycling.iter_mut().for_each(|own| own.parts = parts);
+    /// Begins a step with this many short ones in it; it follows the last one.
+    ///
+    /// - `is_first`: whether there is none before it
+    pub fn set_parts(&mut self, parts: u32, is_first: bool) {
+        let Some(own) = &mut self.subcycling else { return };
+        own.parts = [if is_first { parts } else { own.parts[1] }, parts];
+    }
+
+    /// Short steps in the last step; none where all nodes take the same.
+    pub fn parts(&self) -> Option<u32> {
+        Some(self.subcycling.as_ref()?.parts[1])
+    }
+
+    /// Takes the number of short steps in the last one.
+    pub fn restore_parts(&mut self, parts: u32) {
+        self.subcycling.iter_mut().for_each(|own| own.parts = [parts; 2]);
     }
 
     /// Gives copies the velocities of their nodes.
@@ -157,86 +159,6 @@ impl Solid {
         let both = [original, self.reference.len() + link];
         let force = both.iter().map(|&i| self.force[i]).sum::<Vec3>();
         Some((force / both.iter().map(|&i| self.mass[i]).sum::<f64>(), dt))
-    }
-
-    /// Lets shared nodes stand twice.
-    fn link(&mut self, fine_elements: Vec<Vec<bool>>) -> Result<(), SolidError> {
-        let count = self.reference.len();
-        let mut touched = [vec![false; count], vec![false; count]];
-        for block in &self.blocks {
-            let touched = &mut touched[usize::from(block.is_fine)];
-            block.cells.nodes.iter().for_each(|&node| touched[node as usize] = true);
-        }
-        let [coarse, is_fine] = touched;
-        let linked: Vec<u32> = (0..count).filter(|&n| coarse[n] && is_fine[n]).map(|n| n as u32).collect();
-        let copy_of = |node: u32| linked.binary_search(&node).map(|link| (count + link) as u32);
-        let mut near = Vec::new();
-        for (index, block) in self.blocks.iter_mut().enumerate().filter(|(_, block)| !block.is_fine) {
-            let mut holds = false;
-            for node in &mut block.cells.nodes {
-                if let Ok(copy) = copy_of(*node) {
-                    (*node, holds) = (copy, true);
-                }
-            }
-            if holds {
-                near.push(index);
-            }
-        }
-        let shares = self.coarse_mass();
-        for &node in &linked {
-            let share = shares[node as usize];
-            self.mass.push(share);
-            self.mass[node as usize] -= share;
-        }
-        self.inverse_mass = self.mass.iter().map(|m| 1.0 / m).collect();
-        let all = count + linked.len();
-        for of_nodes in [&mut self.displacement, &mut self.velocity, &mut self.force] {
-            of_nodes.resize(all, Vec3::zeros());
-        }
-        self.chunk_work.resize(all.div_ceil(CHUNK), HalfSteps::default());
-        self.slots = NodeSlots::new(all, self.blocks.iter().map(|block| block.cells.nodes.as_slice()))?;
-        let is_linked = |node: usize| node >= count || linked.binary_search(&(node as u32)).is_ok();
-        let runs = [false, true].map(|fine| {
-            let moved: Vec<bool> = (0..all).map(|node| !is_linked(node) && is_fine[node] == fine).collect();
-            moved.chunks(CHUNK).map(runs_of).collect()
-        });
-        self.subcycling = Some(Box::new(Subcycling {
-            fine_elements,
-            runs,
-            near,
-            is_ahead: false,
-            energies: [0.0; 2],
-            parts: [1; 2],
-            outer: vec![Vec3::zeros(); all],
-            has_outer: false,
-            ends: vec![[Vec3::zeros(); 2]; linked.len()],
-            is_fine,
-        }));
-        self.copies = linked;
-        Ok(())
-    }
-
-    /// Mass of every node that belongs to cells with long steps [kg]. The mass of an element goes with its edges in equal parts where
-    /// these are the cells, so that the bound of the step by elements holds for either side.
-    fn coarse_mass(&self) -> Vec<f64> {
-        let mut mass = vec![0.0; self.reference.len()];
-        for (index, model) in self.bodies.iter().enumerate() {
-            let corners = model.body.shape.node_count();
-            let is_coarse =
-                |item: u32| f64::from(u8::from(!self.blocks[model.location[item as usize].0 as usize].is_fine));
-            for (element, nodes) in (0..).zip(&model.body.elements) {
-                let share = match (&model.edges, model.body.formulation) {
-                    (Some(edges), Formulation::Smoothed) => {
-                        let of = &edges.of_element[element as usize][..model.body.shape.edge_count()];
-                        of.iter().map(|&edge| is_coarse(edge)).sum::<f64>() / of.len() as f64
-                    }
-                    _ => is_coarse(element),
-                };
-                let of_element = model.body.elastic.density * self.element_volume(index, element) / corners as f64;
-                nodes[..corners].iter().for_each(|&node| mass[node as usize] += share * of_element);
-            }
-        }
-        mass
     }
 
     /// Once the internal forces are those of tⁿ: what is added to them stays until tⁿ⁺¹.
@@ -324,12 +246,17 @@ impl Subcycling {
     }
 
     /// Work that the outer forces do on nodes with short steps at their present velocities [J].
-    fn outer_work(&self, solid: &Solid, dt: f64) -> f64 {
+    fn outer_work(&mut self, solid: &Solid, dt: f64) -> f64 {
         if !self.has_outer || dt == 0.0 {
             return 0.0;
         }
-        let of = |node: usize| if self.is_fine[node] { self.outer[node].dot(&solid.velocity[node]) } else { 0.0 };
-        sum_chunks(self.is_fine.len(), of) * dt
+        let Subcycling { outer, runs, power, .. } = self;
+        let of = |node: usize| outer[node].dot(&solid.velocity[node]);
+        power.par_iter_mut().zip(&runs[1]).enumerate().for_each(|(chunk, (power, runs))| {
+            *power = runs.iter().cloned().flatten().map(|i| of(chunk * CHUNK + i)).sum();
+        });
+        let linked: f64 = solid.copies.iter().map(|&node| of(node as usize)).sum();
+        (power.iter().sum::<f64>() + linked) * dt
     }
 
     /// Kicks the nodes with short steps or those with long ones, but those that stand twice.
@@ -405,60 +332,5 @@ impl Subcycling {
             runs.iter().cloned().flatten().for_each(|i| force[i] = sum(chunk * CHUNK + i));
         });
         copies.iter().for_each(|&node| force[node as usize] = sum(node as usize));
-    }
-}
-
-/// A node that stands twice, or its copy, in the kick.
-struct LinkedNode {
-    node: usize,
-    velocity: Vec3,
-    force: Vec3,
-    /// Force of damping [N].
-    resist: Vec3,
-    inverse_mass: f64,
-    dt: [f64; 2],
-}
-
-impl LinkedNode {
-    fn new(solid: &Solid, node: usize, dt: [f64; 2], step: &WholeStep) -> Self {
-        let (velocity, force, inverse_mass) = (solid.velocity[node], solid.force[node], solid.inverse_mass[node]);
-        let resist = if step.damping.is_off() {
-            Vec3::zeros()
-        } else {
-            let free = free_axes(step.held.get(node).copied().unwrap_or(0));
-            damping_force(step.damping, force.component_mul(&free), velocity.component_mul(&free), inverse_mass)
-        };
-        LinkedNode { node, velocity, force, resist, inverse_mass, dt }
-    }
-
-    /// Velocity at the instant of the kick, without the link [m/s].
-    fn velocity_at(&self) -> Vec3 {
-        self.velocity + (self.force + self.resist) * (0.5 * self.dt[0] * self.inverse_mass)
-    }
-
-    /// What a force of the link changes in that [s/kg].
-    fn yield_per_force(&self) -> f64 {
-        0.5 * self.dt[0] * self.inverse_mass
-    }
-
-    /// Gives it its next velocity and displacement; what damping and the link take, and the kinetic energy where asked for.
-    fn kick(&mut self, solid: &mut Solid, link: Vec3, measure: bool) -> HalfSteps {
-        let LinkedNode { node, velocity: before, force, resist, inverse_mass, dt: [dt_before, dt_after] } = *self;
-        let total = force + resist + link;
-        let after = before + total * (inverse_mass * 0.5 * (dt_before + dt_after));
-        solid.velocity[node] = after;
-        solid.displacement[node] += after * dt_after;
-        let mut work = HalfSteps::default();
-        for (work, velocity, dt, sign) in
-            [(&mut work.before, before, dt_before, 1.0), (&mut work.after, after, dt_after, -1.0)]
-        {
-            work.damping = -0.5 * dt * resist.dot(&velocity);
-            work.linked = -0.5 * dt * link.dot(&velocity);
-            if measure {
-                let mirrored = velocity + total * (sign * inverse_mass * dt);
-                work.kinetic = 0.5 / inverse_mass * velocity.dot(&mirrored);
-            }
-        }
-        work
     }
 }

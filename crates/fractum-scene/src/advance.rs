@@ -1,0 +1,80 @@
+//! From the forces of tⁿ to the velocities after it and the displacements of tⁿ⁺¹.
+
+use fractum_fem::{Prescribe, WholeStep};
+use fractum_math::{HalfSteps, sum_chunks};
+
+use crate::clock::Clock;
+use crate::conditions::Kick;
+use crate::scene::Scene;
+use crate::step::Phase;
+
+impl Scene {
+    /// Advances nodes, particles and rigid bodies with the forces of tⁿ; prescribed motion takes the place of free motion.
+    pub(crate) fn advance(&mut self, measure: bool, passed: &mut impl FnMut(Phase)) -> HalfSteps {
+        let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
+        let mut work = if self.solid.is_subcycled() {
+            passed(Phase::Motion);
+            let work = self.advance_in_parts(measure);
+            passed(Phase::Subcycling);
+            work
+        } else {
+            self.advance_together(measure)
+        };
+        work += self.debris.turn(&self.solid, dt_before, dt_after, measure);
+        work += self.move_bonded(time, dt_before, dt_after, measure);
+        work += self.contacts.move_bodies(time, dt_before, dt_after);
+        work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
+        self.loads.spend_gas_work(&self.solid, dt_after);
+        work.after += self.optional.surface_supports.absorbed_after(&self.solid, dt_after);
+        work
+    }
+
+    /// Advances all nodes by the same step.
+    fn advance_together(&mut self, measure: bool) -> HalfSteps {
+        let Clock { time, dt_before, dt_after, .. } = self.clock;
+        let (damping, Scene { solid, supports, .. }) = (self.settings.damping, self);
+        supports.remember(solid, None);
+        let mut work = solid.kick_and_drift(dt_before, dt_after, damping, supports.held(), measure);
+        work += supports.impose(solid, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true });
+        work
+    }
+
+    /// Advances the nodes that need it by short steps, and the others by one.
+    fn advance_in_parts(&mut self, measure: bool) -> HalfSteps {
+        let Clock { time, dt_before, dt_after, .. } = self.clock;
+        let (damping, Scene { solid, supports, .. }) = (self.settings.damping, self);
+        let held = supports.shared_held();
+        let step = WholeStep { dt_before, dt_after, damping, held: &held, measure };
+        solid.advance_in_parts(step, |solid, prescribe| match prescribe {
+            Prescribe::Remember { fine } => {
+                supports.remember(solid, Some(fine));
+                HalfSteps::default()
+            }
+            Prescribe::Impose { fine, since, dt_before, dt_after } => {
+                let kick =
+                    Kick { time: time + since, dt_before, dt_after, is_fine: Some(fine), is_first: since == 0.0 };
+                supports.impose(solid, &kick)
+            }
+        })
+    }
+
+    /// The velocities given at the start become those of the half step before it; returns the kinetic energy of those given [J].
+    pub(crate) fn start_half_a_step_early(&mut self, dt: f64) -> f64 {
+        let Scene { solid, supports, bonded, contacts, .. } = self;
+        let of_node = |i: usize| 0.5 * solid.mass[i] * solid.velocity[i].norm_squared();
+        let given = sum_chunks(solid.mass.len(), of_node) + bonded.kinetic_energy() + contacts.kinetic_energy();
+        bonded.particles.start_half_a_step_early(dt);
+        contacts.start_half_a_step_early(dt);
+        for i in 0..solid.mass.len() {
+            let half_kick = match solid.own_acceleration(i, dt) {
+                Some((acceleration, dt)) => acceleration * (0.5 * dt),
+                None => solid.force[i] * (0.5 * dt / solid.mass[i]),
+            };
+            let held = supports.held().get(i).copied().unwrap_or(0);
+            for axis in (0..3).filter(|axis| held & (1 << axis) == 0) {
+                solid.velocity[i][axis] -= half_kick[axis];
+            }
+        }
+        given
+    }
+}

@@ -1,0 +1,49 @@
+//! Steps of two sizes: how many short ones lie in a long one.
+
+use fractum_fem::StableStep;
+use serde::{Deserialize, Serialize};
+
+use crate::clock::{Frequencies, TimeStepSettings};
+use crate::scene::Scene;
+
+/// Relative excess of a step over a whole number of parts that is rounding.
+const SAME_PART: f64 = 1e-9;
+
+/// What changes where steps have two sizes, for checkpoints.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SubcyclingState {
+    parts: u32,
+    frequency: f64,
+    governing: (usize, u32),
+}
+
+impl Scene {
+    /// How many short steps lie in one of `dt` [s].
+    pub(crate) fn parts(&self, dt: f64) -> u32 {
+        let Frequencies { stable, fine: Some(fine), .. } = self.frequencies else { return 1 };
+        let [long, short] = [stable, fine].map(|of| self.stable_dt_at(of.frequency, 0.0));
+        let TimeStepSettings { safety, fixed, .. } = self.settings.time_step;
+        let longest = fixed.unwrap_or(safety * long);
+        (dt / (longest * short / long) * (1.0 - SAME_PART)).ceil().max(1.0) as u32
+    }
+
+    /// Most short steps in a long one, share of the cells that take them, and the number of nodes that stand twice; none where all
+    /// cells take the same step.
+    pub fn subcycling(&self) -> Option<(u32, f64, usize)> {
+        let (share, linked) = self.solid.fine_shares()?;
+        Some((self.parts(self.clock.dt_after), share, linked))
+    }
+
+    /// What changes where steps have two sizes, for a checkpoint.
+    pub fn subcycling_state(&self) -> Option<SubcyclingState> {
+        let (parts, fine) = self.solid.parts().zip(self.frequencies.fine)?;
+        Some(SubcyclingState { parts, frequency: fine.frequency, governing: fine.governing })
+    }
+
+    /// Puts it back, after the state of the scene.
+    pub fn restore_subcycling(&mut self, state: Option<SubcyclingState>) {
+        let Some(SubcyclingState { parts, frequency, governing }) = state else { return };
+        self.solid.restore_parts(parts);
+        self.frequencies.fine = Some(StableStep { frequency, governing });
+    }
+}

@@ -1,0 +1,51 @@
+//! The time step in the plan.
+
+use fractum_io::case::model::Case;
+use fractum_io::number::quantity;
+use fractum_scene::Scene;
+
+use super::Plan;
+
+impl Plan {
+    /// The step, what asks for it, and how many there are.
+    pub(super) fn describe_time(&mut self, case: &Case, scene: &Scene, span: f64) {
+        let governing = match scene.governing_element() {
+            Some(stable) => {
+                let (body, element) = stable.governing;
+                format!("element {element} of {}", scene.solid.body(body).name)
+            }
+            None if scene.contacts_govern() => "the contacts of particles".to_owned(),
+            None => "the bonds".to_owned(),
+        };
+        self.add(
+            "time step",
+            format!(
+                "{} ({} of the stable {}), governed by {governing}",
+                quantity(scene.clock.dt_after, "s"),
+                case.solver.step.as_ref().map_or_else(|| format!("{}", case.solver.safety), |_| "fixed; ".to_owned()),
+                quantity(scene.stable_dt(), "s")
+            ),
+        );
+        if case.solver.subcycling.is_some() {
+            self.add("subcycling", subcycling(scene));
+        }
+        let steps = (span / scene.clock.dt_after).ceil();
+        self.add("steps", format!("{steps} to t = {}", quantity(case.solver.end, "s")));
+    }
+}
+
+/// How cells share the steps.
+fn subcycling(scene: &Scene) -> String {
+    match scene.subcycling() {
+        None => "none: the elements are too much alike for it".to_owned(),
+        Some((1, ..)) => "none: contacts ask for short steps everywhere".to_owned(),
+        Some((parts, share, linked)) => {
+            let cost = (1.0 + f64::from(parts - 1) * share) / f64::from(parts);
+            format!(
+                "{:.1} % of the cells take {parts} short steps in one of the others, {linked} nodes are linked; about {:.1} times less work",
+                100.0 * share,
+                1.0 / cost
+            )
+        }
+    }
+}
