@@ -98,6 +98,7 @@ impl Solid {
 
     /// M^-½ K M^-½ q.
     fn scaled_stiffness(&mut self, q: &[Vec3], root: &[f64]) -> Vec<Vec3> {
+        self.forget_ahead(); // it shares the memory of forces
         let field: Vec<Vec3> = q.par_iter().zip(root).map(|(v, r)| v * *r).collect();
         let Solid { blocks, bodies, .. } = self;
         blocks.par_iter_mut().for_each(|block| block.evaluate_elastic(&bodies[block.body], &field));

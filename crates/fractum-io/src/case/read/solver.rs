@@ -124,8 +124,8 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         table.reader.note(note);
     }
     let time_step = table.choice("time_step").or(TimeStep::PowerIteration);
-    let subcycling =
-        if table.flag("subcycling").or(false) { table.peek("subcycling").map(|node| node.place.clone()) } else { None };
+    let wanted = table.flag("subcycling").or(false) && kind == Some(SolverKind::Explicit);
+    let subcycling = table.peek("subcycling").filter(|_| wanted).map(|node| node.place.clone());
     let initial_overlap = table.choice("initial_overlap").or(InitialOverlap::Push);
     let domain = if table.has("domain") { domain(&table).map(Some) } else { Some(None) };
     let stop_when = if table.has("stop_when") { stop_when(&table, probes).map(Some) } else { Some(None) };
