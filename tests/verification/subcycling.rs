@@ -155,11 +155,12 @@ fn loads_and_supports_work_on_both_sides_of_the_link() {
         scene.step(true).unwrap();
         (sum / steps, scene.ledger()[EnergyKind::External])
     };
-    for local in [0.0, 0.3] {
+    // Local damping is no force of the material: nodes on the border do without.
+    for (local, tolerance) in [(0.0, 5e-3), (0.3, 1e-2)] {
         let (force, work) = run(Solid::new, local);
         let (in_parts, work_in_parts) = run(Solid::subcycled, local);
-        assert!((in_parts / force - 1.0).abs() < 5e-3, "{local}: {force} N, {in_parts} N");
-        assert!((work_in_parts / work - 1.0).abs() < 5e-3, "{local}: {work} J, {work_in_parts} J");
+        assert!((in_parts / force - 1.0).abs() < tolerance, "{local}: {force} N, {in_parts} N");
+        assert!((work_in_parts / work - 1.0).abs() < tolerance, "{local}: {work} J, {work_in_parts} J");
     }
 }
 
