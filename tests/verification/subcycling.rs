@@ -155,7 +155,7 @@ fn loads_and_supports_work_on_both_sides_of_the_link() {
         scene.step(true).unwrap();
         (sum / steps, scene.ledger()[EnergyKind::External])
     };
-    // Local damping is no force of the material: nodes on the border do without.
+    // Local damping depends on the steps.
     for (local, tolerance) in [(0.0, 5e-3), (0.3, 1e-2)] {
         let (force, work) = run(Solid::new, local);
         let (in_parts, work_in_parts) = run(Solid::subcycled, local);

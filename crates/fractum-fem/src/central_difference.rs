@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::solid::Solid;
-use crate::subcycling::WholeStep;
 
 /// Damping that acts on the nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -22,6 +21,21 @@ impl LocalDamping {
     pub(crate) fn is_off(&self) -> bool {
         self.local == 0.0 && self.mass_rate == 0.0
     }
+}
+
+/// A step of all nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct WholeStep<'a> {
+    /// Step before tⁿ [s].
+    pub dt_before: f64,
+    /// Step after tⁿ [s].
+    pub dt_after: f64,
+    /// Damping.
+    pub damping: LocalDamping,
+    /// Bit a is set where axis a of a node is prescribed; empty if none is.
+    pub held: &'a [u8],
+    /// Whether to sum the kinetic energy.
+    pub measure: bool,
 }
 
 impl Solid {

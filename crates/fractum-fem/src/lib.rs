@@ -26,6 +26,7 @@
 
 mod block;
 mod body;
+mod body_blocks;
 mod body_model;
 mod cell;
 mod central_difference;
@@ -55,6 +56,7 @@ mod shared_solid;
 mod solid;
 mod standard;
 mod state;
+mod subcycled_solid;
 mod subcycling;
 mod taken;
 mod thermal_strain;
@@ -64,7 +66,7 @@ mod viscosity;
 mod viscous_solid;
 
 pub use body::{Body, DamageZone, ElementKind, Formulation, Kinematics, Plane, Region, Regularisation};
-pub use central_difference::LocalDamping;
+pub use central_difference::{LocalDamping, WholeStep};
 pub use crack::{CrackEdge, CrackPlane, Fracture};
 pub use crack_network::{CrackCell, CrackMouth, CrackNetwork, CrackNetworkState, CrackSide};
 pub use crack_surface::{CrackFacet, CrackSurface};
@@ -78,6 +80,6 @@ pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use separation::{SeparatedElement, SeparatedFacet, Separation};
 pub use solid::Solid;
 pub use state::{BodyState, SolidState};
-pub use subcycling::{Prescribe, WholeStep};
+pub use subcycled_solid::Prescribe;
 pub use time_step::StableStep;
 pub use viscosity::Viscosity;

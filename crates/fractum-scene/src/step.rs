@@ -76,10 +76,7 @@ impl Scene {
         let elapsed = if first { 0.0 } else { dt_before };
         let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
         self.solid.move_all_nodes_next(step_changes); // their kinetic energy is summed
-        if self.solid.is_subcycled() {
-            self.solid.set_parts(self.parts(dt_after), first);
-        }
-
+        self.solid.set_parts(self.parts(dt_after), first);
         if self.solid.body_count() > 0 {
             self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
             self.refuse_inverted_elements()?;

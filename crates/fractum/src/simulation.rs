@@ -91,8 +91,7 @@ pub struct Simulation {
     measured: Option<Measured>,
     end: Option<End>,
     /// A signal leaves the program the time to save the state.
-    _under_way: UnderWay,
-    _last_words: Option<LastWords>,
+    _under_way: (UnderWay, Option<LastWords>),
 }
 
 /// What is known of a run before its first step.

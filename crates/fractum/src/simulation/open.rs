@@ -169,8 +169,7 @@ impl Simulation {
             saved: None,
             measured: None,
             end: None,
-            _under_way: UnderWay::new(),
-            _last_words: last_words,
+            _under_way: (UnderWay::new(), last_words),
         })
     }
 }

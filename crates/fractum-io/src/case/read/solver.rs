@@ -8,7 +8,7 @@ use crate::case::model::{
 };
 use crate::case::reader::Table;
 use crate::case::tree::{Entry, Value};
-use crate::case::{Choice, Diagnostic, Spanned};
+use crate::case::{Choice, Diagnostic, Place, Spanned};
 use fractum_dem::Batch;
 use fractum_scene::Domain;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
@@ -72,20 +72,9 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     let end = table.quantity("end").positive().required();
     let end_place = table.place_below("end");
     if kind == Some(SolverKind::Heat) {
-        for key in ["step", "time_step", "subcycling", "initial_overlap", "domain", "balance_warning", "balance_stop"] {
-            table.refuse(key, "with kind = \"heat\"");
-        }
-        refuse_motion(root, root, &["loads", "in_situ"], WHILE_CONDUCTING);
-        // Supports say where bodies will be held once they move.
-        root.set_aside("supports", WHILE_CONDUCTING);
-        for body in root.tables("bodies") {
-            refuse_motion(root, &body, &["initial_velocity"], WHILE_CONDUCTING);
-        }
+        refuse_while_conducting(root, &table);
     }
     let is_static = kind == Some(SolverKind::Static);
-    if is_static || kind == Some(SolverKind::Auto) {
-        table.refuse("subcycling", "where the solver may be static");
-    }
     let statics = match kind {
         Some(SolverKind::Static | SolverKind::Auto) => statics(&table, bodies).map(Some),
         Some(kind @ (SolverKind::Explicit | SolverKind::Heat)) => {
@@ -124,8 +113,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         table.reader.note(note);
     }
     let time_step = table.choice("time_step").or(TimeStep::PowerIteration);
-    let wanted = table.flag("subcycling").or(false) && kind == Some(SolverKind::Explicit);
-    let subcycling = table.peek("subcycling").filter(|_| wanted).map(|node| node.place.clone());
+    let subcycling = subcycling(&table, kind);
     let initial_overlap = table.choice("initial_overlap").or(InitialOverlap::Push);
     let domain = if table.has("domain") { domain(&table).map(Some) } else { Some(None) };
     let stop_when = if table.has("stop_when") { stop_when(&table, probes).map(Some) } else { Some(None) };
@@ -150,6 +138,28 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         balance_warning,
         balance_stop,
     })
+}
+
+/// Refuses what acts on motion alone.
+fn refuse_while_conducting(root: &Table<'_>, table: &Table<'_>) {
+    for key in ["step", "time_step", "subcycling", "initial_overlap", "domain", "balance_warning", "balance_stop"] {
+        table.refuse(key, "with kind = \"heat\"");
+    }
+    refuse_motion(root, root, &["loads", "in_situ"], WHILE_CONDUCTING);
+    // Supports say where bodies will be held once they move.
+    root.set_aside("supports", WHILE_CONDUCTING);
+    for body in root.tables("bodies") {
+        refuse_motion(root, &body, &["initial_velocity"], WHILE_CONDUCTING);
+    }
+}
+
+/// Where steps of two sizes are asked for.
+fn subcycling(table: &Table<'_>, kind: Option<SolverKind>) -> Option<Place> {
+    if matches!(kind, Some(SolverKind::Static | SolverKind::Auto)) {
+        table.refuse("subcycling", "where the solver may be static");
+    }
+    let wanted = table.flag("subcycling").or(false) && kind == Some(SolverKind::Explicit);
+    table.peek("subcycling").filter(|_| wanted).map(|node| node.place.clone())
 }
 
 fn domain(solver: &Table<'_>) -> Option<Spanned<Domain>> {

@@ -2,8 +2,7 @@
 
 use fractum_math::{HalfSteps, Vec3};
 
-use super::WholeStep;
-use crate::central_difference::{LocalDamping, damping_force, free_axes};
+use crate::central_difference::{WholeStep, damping_force, free_axes};
 use crate::solid::Solid;
 
 /// A node that stands twice, or its copy, in the kick.
@@ -18,15 +17,16 @@ pub(super) struct LinkedNode {
 }
 
 impl LinkedNode {
-    pub(super) fn new(solid: &Solid, node: usize, dt: [f64; 2], step: &WholeStep) -> Self {
+    /// - `acceleration`: of both halves together at tⁿ [m/s²]
+    pub(super) fn new(solid: &Solid, node: usize, acceleration: Vec3, dt: [f64; 2], step: &WholeStep) -> Self {
         let (velocity, force, inverse_mass) = (solid.velocity[node], solid.force[node], solid.inverse_mass[node]);
-        // Local damping would take each half for unbalanced, since the other half and the link balance it.
-        let damping = LocalDamping { local: 0.0, ..step.damping };
-        let resist = if damping.is_off() {
+        let resist = if step.damping.is_off() {
             Vec3::zeros()
         } else {
             let free = free_axes(step.held.get(node).copied().unwrap_or(0));
-            damping_force(damping, force.component_mul(&free), velocity.component_mul(&free), inverse_mass)
+            // Each half by itself is not balanced: the other half and the link balance it.
+            let unbalanced = acceleration / inverse_mass;
+            damping_force(step.damping, unbalanced.component_mul(&free), velocity.component_mul(&free), inverse_mass)
         };
         LinkedNode { node, velocity, force, resist, inverse_mass, dt }
     }

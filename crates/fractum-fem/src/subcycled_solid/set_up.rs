@@ -2,13 +2,13 @@
 
 use fractum_math::{CHUNK, HalfSteps, Vec3};
 
-use super::Subcycling;
 use super::fine_elements::fine_elements;
 use crate::block::NodeSlots;
 use crate::body::{Body, Formulation};
 use crate::error::SolidError;
 use crate::part::runs_of;
 use crate::solid::Solid;
+use crate::subcycling::Subcycling;
 
 impl Solid {
     /// As [`Solid::new`], with short steps for the elements that need them and long ones for the others, where that pays.
@@ -75,6 +75,7 @@ impl Solid {
             outer: vec![Vec3::zeros(); all],
             has_outer: false,
             power: vec![0.0; all.div_ceil(CHUNK)],
+            accelerations: vec![Vec3::zeros(); linked.len()],
             ends: vec![[Vec3::zeros(); 2]; linked.len()],
             is_fine,
         }));

@@ -12,42 +12,14 @@ mod fine_elements;
 mod linked_node;
 mod set_up;
 
-use std::ops::Range;
-
 use fractum_math::{CHUNK, HalfSteps, Vec3};
 use linked_node::LinkedNode;
 use rayon::prelude::*;
 
-use crate::central_difference::{LocalDamping, free_axes};
+use crate::central_difference::{WholeStep, free_axes};
 use crate::evaluate::Block;
 use crate::solid::Solid;
-
-/// What a solid keeps where its cells take steps of two sizes.
-#[derive(Clone, Debug)]
-pub(crate) struct Subcycling {
-    /// Elements that ask for the short steps, body by body.
-    pub(crate) fine_elements: Vec<Vec<bool>>,
-    /// Whether a node takes the short steps.
-    is_fine: Vec<bool>,
-    /// Runs of nodes with long steps and of those with short ones in each chunk, without what is linked.
-    runs: [Vec<Vec<Range<usize>>>; 2],
-    /// Blocks with long steps that hold copies: their forces at the end of a long step are needed before the short ones are taken.
-    near: Vec<usize>,
-    /// The forces of these blocks are those of tⁿ already.
-    is_ahead: bool,
-    /// While they are: elastic energy and energy dissipated by damage at the last step of all cells [J].
-    energies: [f64; 2],
-    /// Short steps in the long ones before and after tⁿ.
-    parts: [u32; 2],
-    /// Internal forces at tⁿ, then what other forces there are; on nodes with short steps these act until tⁿ⁺¹ [N].
-    outer: Vec<Vec3>,
-    /// Whether there are any on nodes with short steps.
-    has_outer: bool,
-    /// Their power in each chunk of nodes [W].
-    power: Vec<f64>,
-    /// Velocities of the copies without the link at both ends of a long step [m/s].
-    ends: Vec<[Vec3; 2]>,
-}
+use crate::subcycling::Subcycling;
 
 /// What the solid wants done about prescribed motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,21 +40,6 @@ pub enum Prescribe {
         /// Step after it [s].
         dt_after: f64,
     },
-}
-
-/// A step of all nodes.
-#[derive(Clone, Copy, Debug)]
-pub struct WholeStep<'a> {
-    /// Step before tⁿ [s].
-    pub dt_before: f64,
-    /// Step after tⁿ [s].
-    pub dt_after: f64,
-    /// Damping.
-    pub damping: LocalDamping,
-    /// Bit a is set where axis a of a node is prescribed; empty if none is.
-    pub held: &'a [u8],
-    /// Whether to sum the kinetic energy.
-    pub measure: bool,
 }
 
 impl Solid {
@@ -230,21 +187,6 @@ impl Solid {
 }
 
 impl Subcycling {
-    /// Whether the forces of a block are those of tⁿ already.
-    pub(crate) fn is_ahead(&self, block: usize) -> bool {
-        self.is_ahead && self.near.binary_search(&block).is_ok()
-    }
-
-    /// Elastic energy and energy dissipated by damage at the last step of all cells, while some are ahead [J].
-    pub(crate) fn energies(&self) -> Option<[f64; 2]> {
-        self.is_ahead.then_some(self.energies)
-    }
-
-    /// Short steps in the long one before tⁿ.
-    pub(crate) fn parts_before(&self) -> f64 {
-        f64::from(self.parts[0])
-    }
-
     /// Work that the outer forces do on nodes with short steps at their present velocities [J].
     fn outer_work(&mut self, solid: &Solid, dt: f64) -> f64 {
         if !self.has_outer || dt == 0.0 {
@@ -271,12 +213,16 @@ impl Subcycling {
     fn kick_linked(&mut self, solid: &mut Solid, short: [f64; 2], step: &WholeStep) -> HalfSteps {
         let mut work = HalfSteps::default();
         let first = solid.reference.len();
-        for (link, ends) in self.ends.iter_mut().enumerate() {
+        let Subcycling { ends, accelerations, .. } = self;
+        for (link, (ends, acceleration)) in ends.iter_mut().zip(accelerations).enumerate() {
             let (node, copy) = (solid.copies[link] as usize, first + link);
             let free = free_axes(step.held.get(node).copied().unwrap_or(0));
             let long = [step.dt_before, step.dt_after];
-            let (mut fine, mut coarse) =
-                (LinkedNode::new(solid, node, short, step), LinkedNode::new(solid, copy, long, step));
+            *acceleration = (solid.force[node] + solid.force[copy]) / (solid.mass[node] + solid.mass[copy]);
+            let (mut fine, mut coarse) = (
+                LinkedNode::new(solid, node, *acceleration, short, step),
+                LinkedNode::new(solid, copy, *acceleration, long, step),
+            );
             ends[0] = coarse.velocity_at();
             let link = (ends[0] - fine.velocity_at()).component_mul(&free)
                 / (fine.yield_per_force() + coarse.yield_per_force());
@@ -295,7 +241,7 @@ impl Subcycling {
         for (link, [begin, end]) in self.ends.iter().enumerate() {
             let node = solid.copies[link] as usize;
             let free = free_axes(step.held.get(node).copied().unwrap_or(0));
-            let mut fine = LinkedNode::new(solid, node, [dt; 2], step);
+            let mut fine = LinkedNode::new(solid, node, self.accelerations[link], [dt; 2], step);
             let of_copy = 0.5 * step.dt_after * solid.inverse_mass[first + link];
             let target = begin * (1.0 - share) + end * share;
             let link = (target - fine.velocity_at()).component_mul(&free) / (fine.yield_per_force() + of_copy);
@@ -314,9 +260,10 @@ impl Subcycling {
             .for_each(|(_, block)| block.evaluate(&bodies[block.body], displacement, velocity, step.dt_after, true));
         self.is_ahead = true;
         let first = solid.reference.len();
-        for (copy, [_, end]) in (first..).zip(&mut self.ends) {
+        let Subcycling { ends, accelerations, .. } = self;
+        for (copy, ([_, end], acceleration)) in (first..).zip(ends.iter_mut().zip(accelerations)) {
             solid.force[copy] = solid.slots.gather(copy, |block| solid.blocks[block].forces()) + self.outer[copy];
-            *end = LinkedNode::new(solid, copy, [step.dt_after; 2], step).velocity_at();
+            *end = LinkedNode::new(solid, copy, *acceleration, [step.dt_after; 2], step).velocity_at();
         }
     }
 
