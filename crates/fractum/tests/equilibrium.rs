@@ -109,6 +109,11 @@ fn opening_and_probes_are_refused_where_they_cannot_act() {
     for (from, to, words) in [
         ("kind = \"static\"", "kind = \"static\"\ncontrol = \"opening\"", "solver.opening is missing"),
         (
+            "reaction = { group = \"x+\", along = \"x\" }",
+            "moment = { group = \"y+\", where = \"abs(x - 20 cm) < 10 cm\" }",
+            "nothing holds it; expected nodes that a support prescribes",
+        ),
+        (
             "kind = \"static\"",
             "kind = \"static\"\nopening = { group = \"x+\", against = \"x-\", along = \"x\", step = 1e-6, end = 1e-4 }",
             "solver.opening has no effect without control = \"opening\"",
@@ -188,6 +193,37 @@ fn the_program_chooses_the_solver_and_says_why() {
     let place = Workplace::new(&kind("stop_when", "step = \"1 ms\"\nstop_when"));
     let checked = place.fractum(&["check", "case.toml"]);
     assert!(checked.code == Some(1) && checked.stderr.contains("solver.step has no effect"), "{}", checked.stderr);
+}
+
+#[test]
+fn the_work_of_a_twist_is_that_of_the_moments_of_its_supports() {
+    let probes = r#"[[probes]]
+name = "torque"
+moment = { group = "x+", about = { point = ["0 m", "6 cm", "6 cm"], axis = "x" } }
+[[probes]]
+name = "opposite"
+moment = { group = "x-", about = { point = ["0 m", "6 cm", "6 cm"], axis = "x" } }
+[[probes]]
+name = "twist"
+rotation = { group = "x+", along = "x" }
+"#;
+    let twisted = BAR
+        .replace(r#"x = "0.4 mm*t/1 s""#, r#"y = "-1e-3*(z - 6 cm)*t/1 s", z = "1e-3*(y - 6 cm)*t/1 s""#)
+        .replace("material = \"concrete\"", "material = \"concrete\"\ndamage = false")
+        .replace("stop_when = { probe = \"load\", below = 0.2 }", "step = \"0.5 s\"");
+    let (head, _) = twisted.split_once("[[probes]]").unwrap();
+    let place = Workplace::new(&format!("{head}{probes}"));
+    let summary = run(&place, "out", "1");
+    let last = |name: &str| summary["probes"][name]["final"].as_f64().unwrap();
+    assert_eq!(summary["probes"]["torque"]["unit"], "N m");
+    assert!((last("twist") / 1e-3 - 1.0).abs() < 1e-9, "{}", last("twist"));
+    assert!((last("opposite") / last("torque") + 1.0).abs() < 1e-6, "{}", last("opposite"));
+    let work = summary["energy"]["external"].as_f64().unwrap();
+    assert!((0.5 * last("torque") * last("twist") / work - 1.0).abs() < 1e-6, "{work} J, {} N m", last("torque"));
+    // Three plain elements across are much stiffer than Saint-Venant's square bar.
+    let shear = 30e9 / 2.4;
+    let theory = 0.1406 * 0.12f64.powi(4) * shear * 1e-3 / 0.4;
+    assert!(last("torque") > theory && last("torque") < 2.0 * theory, "{} N m, {theory}", last("torque"));
 }
 
 /// The bar on a plane, pushed down, sideways and up again by its other end.

@@ -3,6 +3,7 @@
 use fractum_dem::StrainMeasure;
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
+use fractum_math::Vec3;
 use fractum_scene::{
     Along, Bonded, BondedBody, ContactBody, ContactProbe, CrackMeasure, DamagedMeasure, DamagedPart, HoleEnds,
     InsideCracks, PointProbe, Population, Probe, RadialCracks, RegionStrain, Supports, SurfaceMeasure, SymmetryPlanes,
@@ -60,13 +61,14 @@ impl Context<'_> {
         Some(match kind {
             ProbeKind::Reaction { on, along } => {
                 let places = supports.places(&solid.with_copies(self.selected_nodes(on, numbering)));
-                // Another stage may hold it.
-                let along_held = !self.case.source.stage.is_empty() || is_held(&places, along);
-                if let (false, Some(place)) = (along_held, on.place()) {
-                    let found = format!("= \"{}\": nothing holds it along the direction of the probe", on.label());
-                    self.error(&place.clone(), found, "nodes that a support prescribes");
-                }
+                self.refuse_unheld(on, is_held(&places, along), " along the direction of the probe");
                 on_nodes(PointProbe::Reaction { places, along: *along })
+            }
+            ProbeKind::Moment { on, about } => {
+                self.refuse_out_of_plane(on, &about.direction, solid);
+                let places = supports.places(&solid.with_copies(self.selected_nodes(on, numbering)));
+                self.refuse_unheld(on, !places.is_empty(), "");
+                on_nodes(PointProbe::Moment { places, about: *about })
             }
             ProbeKind::Displacement { on, along } => {
                 on_nodes(PointProbe::Displacement { points: self.selected_nodes(on, numbering), along: *along })
@@ -74,10 +76,9 @@ impl Context<'_> {
             ProbeKind::Velocity { on, along } => {
                 on_nodes(PointProbe::Velocity { points: self.selected_nodes(on, numbering), along: *along })
             }
-            ProbeKind::Rotation { on, .. } => {
-                let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
-                self.error(&place, format!("= \"{}\"", on.label()), "a set of particles of a bonded body");
-                return None;
+            ProbeKind::Rotation { on, along } => {
+                self.refuse_out_of_plane(on, along, solid);
+                on_nodes(PointProbe::Rotation { points: self.selected_nodes(on, numbering), axis: *along })
             }
             ProbeKind::Stress { on, between } => {
                 Probe::Stress { elements: self.selected_elements(on, parts, solid), between: *between }
@@ -126,6 +127,22 @@ impl Context<'_> {
             }
             ProbeKind::Temperature { .. } | ProbeKind::Heat(_) | ProbeKind::Expression(_) => return None,
         })
+    }
+
+    /// An error for reactions where no support holds anything; another stage may hold it.
+    fn refuse_unheld(&mut self, on: &Selection, is_held: bool, how: &str) {
+        if let (false, Some(place)) = (is_held || !self.case.source.stage.is_empty(), on.place()) {
+            let found = format!("= \"{}\": nothing holds it{how}", on.label());
+            self.error(&place.clone(), found, "nodes that a support prescribes");
+        }
+    }
+
+    /// An error for an axis about which nothing turns in the plane.
+    fn refuse_out_of_plane(&mut self, on: &Selection, axis: &Vec3, solid: &Solid) {
+        if let (true, Some(place)) = (solid.is_plane() && axis.z == 0.0, on.place()) {
+            let found = format!("= \"{}\": plane bodies turn about z alone", on.label());
+            self.error(&place.clone(), found, "an axis along \"z\"");
+        }
     }
 
     /// An error for what only plane solids have.

@@ -164,6 +164,7 @@ fn documented_defaults_are_the_defaults() {
                 .replace("loads[].in_cracks", "loads[2].in_cracks")
                 .replace("gas.holes[]", "gas.holes[0]")
                 .replace("probes[].reaction.about", "probes[15].reaction.about")
+                .replace("probes[].moment", "probes[37].moment")
                 .replace("probes[].displacement.about", "probes[16].displacement.about")
                 .replace("probes[].velocity.about", "probes[17].velocity.about")
                 .replace("probes[].contact_force.about", "probes[20].contact_force.about")

@@ -39,6 +39,13 @@ pub enum PointProbe {
         /// Which component.
         along: Along,
     },
+    /// Moment of the forces of the supports about an axis [N m]; levers are those without load.
+    Moment {
+        /// Prescribed degrees of freedom; see [`Supports::places`].
+        places: Vec<(u32, u32, u32)>,
+        /// The axis.
+        about: Axis,
+    },
     /// Mean displacement at the instant of the last step, as its reactions are [m], of the points that have not left the run;
     /// directions about an axis are those of the places without load.
     Displacement {
@@ -79,6 +86,10 @@ impl PointProbe {
             PointProbe::Reaction { places, along: Along::Direction(direction) } => supports.reaction(places, direction),
             PointProbe::Reaction { places, along } => {
                 supports.reaction_by(places, |point| along.at(population.reference(point)))
+            }
+            PointProbe::Moment { places, about } => {
+                let lever = |point| population.reference(point) - about.point;
+                supports.reaction_by(places, |point| about.direction.cross(&lever(point)))
             }
             PointProbe::Displacement { points, along } => component(
                 points.iter().filter(|point| present(point)),

@@ -150,7 +150,7 @@ impl Supports {
         places.iter().map(|&(s, e, a)| self.sets[s as usize].reaction[e as usize] * direction[a as usize]).sum()
     }
 
-    /// Force of the supports on these places, each along the direction at its point, at the last step [N].
+    /// Force of the supports on these places, each along the vector at its point, at the last step [N, times its unit].
     pub(crate) fn reaction_by(&self, places: &[(u32, u32, u32)], direction: impl Fn(usize) -> Vec3) -> f64 {
         let own = |&(s, e, a): &(u32, u32, u32)| {
             let set = &self.sets[s as usize];

@@ -42,6 +42,13 @@ pub enum ProbeKind {
         /// Which component.
         along: Along,
     },
+    /// Moment of support reactions about an axis [N m].
+    Moment {
+        /// On these nodes.
+        on: Selection,
+        /// The axis.
+        about: Axis,
+    },
     /// Mean displacement [m].
     Displacement {
         /// Of these nodes or particles.
@@ -56,9 +63,9 @@ pub enum ProbeKind {
         /// Which component.
         along: Along,
     },
-    /// Rotation of a set of particles as a whole about an axis through its centre, for small angles [rad].
+    /// Rotation of a set of points as a whole about an axis through its centre, for small angles [rad].
     Rotation {
-        /// Set of particles.
+        /// Of these nodes or particles.
         on: Selection,
         /// Unit vector.
         along: Vec3,

@@ -32,6 +32,12 @@ pub(super) fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKin
     };
     Some(match key {
         "reaction" => on_along().map(|(on, along)| (ProbeKind::Reaction { on, along }, Dimension::FORCE))?,
+        "moment" => {
+            let inner = table.table(key)?;
+            let (on, about) = (selection(&inner), axis(&inner));
+            inner.finish("here");
+            (ProbeKind::Moment { on: on?, about: about? }, Dimension::ENERGY)
+        }
         "displacement" => on_along().map(|(on, along)| (ProbeKind::Displacement { on, along }, Dimension::LENGTH))?,
         "velocity" => on_along().map(|(on, along)| (ProbeKind::Velocity { on, along }, Dimension::VELOCITY))?,
         "rotation" => {

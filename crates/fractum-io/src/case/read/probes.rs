@@ -76,6 +76,7 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
     let mut read = ReadProbe { name: own_name, dimension: None, scalar: false, probe: None };
     const KINDS: &[&str] = &[
         "reaction",
+        "moment",
         "displacement",
         "velocity",
         "rotation",
@@ -114,7 +115,9 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
     table.finish(&format!("with {key}"));
     if let Some((kind, dimension)) = measured {
         read.dimension = Some(dimension);
-        let unit = unit.unwrap_or_else(|| dimension.symbol());
+        // A moment is no energy, though its dimension is that of one.
+        let own = if key == "moment" { "N m".to_owned() } else { dimension.symbol() };
+        let unit = unit.unwrap_or(own);
         read.probe = name.map(|name| Probe { name, unit, kind });
     }
     read
