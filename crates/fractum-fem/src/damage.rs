@@ -125,12 +125,15 @@ impl Softens {
     /// of motion, since the phase field has damaged it.
     #[inline(always)]
     pub(crate) fn seen(&self, edge: &EdgeDamage, stress: Sym3, dt: f64) -> f64 {
-        let below =
-            || self.criterion.surely_below(stress, edge.kappa) || self.criterion.is_below_by_minors(stress, edge.kappa);
-        if self.was_searched(edge, dt) || below() {
-            return 0.0;
-        }
-        self.criterion.equivalent_stress(stress)
+        if self.was_searched(edge, dt) { 0.0 } else { self.seen_at_all(edge, stress) }
+    }
+
+    /// The same whatever was searched before.
+    #[inline(always)]
+    pub(crate) fn seen_at_all(&self, edge: &EdgeDamage, stress: Sym3) -> f64 {
+        let Softens { criterion, .. } = self;
+        let below = criterion.surely_below(stress, edge.kappa) || criterion.is_below_by_minors(stress, edge.kappa);
+        if below { 0.0 } else { criterion.equivalent_stress(stress) }
     }
 
     /// The same of four edges, of which `below` are of no interest.

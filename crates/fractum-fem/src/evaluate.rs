@@ -9,7 +9,6 @@ use crate::damage::EdgeField;
 use crate::edges_in_step::{Advance, EdgeCells, EdgesInStep, FourEdgesInStep};
 use crate::kernel::{self, ElasticCells, ExpandingCells, Viscous};
 use crate::standard::{self, StandardCells};
-use crate::taken::Taken;
 use crate::viscosity::ViscousCells;
 
 /// How the cells of a block answer to strain.
@@ -108,8 +107,7 @@ impl Block {
         for cell in 0..cells.len() {
             let strain = kernel::strain(&cells.gradient(cell, |node| displacement[node]), model.body.kinematics);
             let strain = cells.elastic_strain(cell, strain);
-            law.mixed_energy[cell] = 0.5 * law.stress[cell].dot(strain);
-            law.stress[cell] = model.hooke.stress(strain);
+            law.see(cell, strain);
         }
     }
 
@@ -118,25 +116,26 @@ impl Block {
         model.body.kinematics == Kinematics::Small && model.viscosity.is_none() && self.cells.thermal.is_none()
     }
 
-    /// Has the elements of a standard body take over the damage of their edges once more.
-    pub(crate) fn expect_damage(&mut self) {
+    /// Has the elements of a standard body take over the damage of their edges once more, whatever happened to these.
+    pub(crate) fn expect_any_damage(&mut self) {
         if let BlockLaw::Standard(law) = &mut self.law {
-            law.is_stale = true;
+            law.expect_any_damage();
         }
     }
 
     /// Takes over the damage of the elements of a standard body, and books what it dissipates.
-    pub(crate) fn take_element_damage(&mut self, damage_of: impl Fn(u32) -> f64) {
+    ///
+    /// - `of_edges`: damage of an element by its edges, and the least stress that one of them has seen [Pa]
+    pub(crate) fn take_element_damage(&mut self, of_edges: impl Fn(u32) -> (f64, f64)) {
         let Block { cells, items, law: BlockLaw::Standard(law), .. } = self else { return };
         // A phase field has its own list of what grows.
-        if !std::mem::take(&mut law.is_stale) && !law.softens.regularised {
+        if law.softens.regularised {
+            items.iter().enumerate().for_each(|(cell, &item)| law.take(cell, cells.volume[cell], of_edges(item)));
             return;
         }
-        for (cell, &element) in items.iter().enumerate() {
-            let damage = damage_of(element).max(law.damage[cell]);
-            let taken = Taken::straight(law.mixed_energy[cell]).by(damage - law.damage[cell]);
-            law.dissipated += taken * cells.volume[cell];
-            law.damage[cell] = damage;
+        let mut word = 0;
+        while let Some(cell) = law.next_stale(&mut word) {
+            law.take(cell, cells.volume[cell], of_edges(items[cell]));
         }
     }
 
@@ -147,6 +146,11 @@ impl Block {
 
     pub(crate) fn edge_field_mut(&mut self) -> Option<&mut EdgeField> {
         if let BlockLaw::Edges(law) = &mut self.law { Some(&mut law.field) } else { None }
+    }
+
+    /// The cells of a block of a standard body with damage.
+    pub(crate) fn standard_cells(&self) -> &StandardCells {
+        if let BlockLaw::Standard(law) = &self.law { law } else { unreachable!("a block of another kind of body") }
     }
 
     pub(crate) fn dissipated(&self) -> f64 {

@@ -281,7 +281,7 @@ impl Solid {
                 next += 1;
             }
         }
-        self.blocks.iter_mut().for_each(Block::expect_damage);
+        self.blocks.iter_mut().for_each(Block::expect_any_damage);
         self.raise_phases(&trial.phases, before, after);
     }
 

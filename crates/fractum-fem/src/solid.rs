@@ -169,14 +169,13 @@ impl Solid {
             let BodyModel { standard: Some(standard), alive, location, .. } = model else { continue };
             standard.update_edges(dt, alive, |element| {
                 let (block, cell) = location[element as usize];
-                match &blocks[block as usize].law {
-                    BlockLaw::Standard(law) => law.stress[cell as usize],
-                    _ => Sym3::ZERO,
-                }
+                (blocks[block as usize].standard_cells(), cell as usize)
             });
             for element in standard.elements_of_growth() {
-                let (block, _) = location[element as usize];
-                blocks[block as usize].expect_damage();
+                let (block, cell) = location[element as usize];
+                if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
+                    law.expect_damage(cell as usize);
+                }
             }
         }
     }
@@ -187,9 +186,11 @@ impl Solid {
         for (index, model) in bodies.iter().enumerate() {
             let BodyModel { standard: Some(standard), edges: Some(edges), .. } = model else { continue };
             blocks.par_iter_mut().filter(|b| b.body == index).for_each(|block| {
-                let damage = |edge: u32| standard.field.state[edge as usize].damage;
+                let edge = |edge: u32| &standard.field.state[edge as usize];
                 block.take_element_damage(|element| {
-                    standard.element_damage(&edges.of_element[element as usize], damage)
+                    let own = &edges.of_element[element as usize][..standard.shape.edge_count()];
+                    let least_seen = own.iter().map(|&e| edge(e).kappa).fold(f64::INFINITY, f64::min);
+                    (standard.element_damage(own, |e| edge(e).damage), least_seen)
                 });
             });
         }

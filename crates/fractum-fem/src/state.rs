@@ -110,7 +110,7 @@ impl Solid {
                     (law.damage[cell as usize], law.stress[cell as usize]) = *saved;
                 }
             }
-            blocks.iter_mut().for_each(Block::expect_damage);
+            blocks.iter_mut().for_each(Block::expect_any_damage);
             model.alive = body.alive;
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
             self.rebuild_cells_around(index, &removed);
