@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::block::LOADS;
+use super::block::{Block, LOADS};
 use super::law::BondLaw;
 use super::loads::{LoadLanes, LoadSizes};
 use super::network::BondNetwork;
+use crate::lanes::WIDTH;
 use crate::particles::Particles;
 
 impl<L: BondLaw> BondNetwork<L> {
@@ -14,11 +15,22 @@ impl<L: BondLaw> BondNetwork<L> {
         self.add_forces_of::<LOADS>(particles);
     }
 
-    /// Whether what some bonds side by side bear, and the radius of their sections [m], meet a condition; true where no loads are kept.
-    pub fn any_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync)) -> bool {
+    /// Lists bonds that stand side by side where what they bear, and the radius of their sections [m], meet a condition, ascending; all where no
+    /// loads are kept.
+    pub fn list_by_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync), list: &mut Vec<u32>) {
         let radius = self.law.section_radius();
-        let any = |loads: &[LoadLanes]| loads.iter().any(|lanes| meet(lanes, radius));
-        self.blocks.par_iter().any(|block| block.loads.len() != block.groups.len() || any(&block.loads))
+        let listed = |block: &'_ Block<L>| {
+            let is_kept = block.loads.len() == block.groups.len();
+            let (first, bonds) = (block.first_bond, block.bonds as u32);
+            let groups = (0..block.groups.len()).filter(move |&group| !is_kept || meet(&block.loads[group], radius));
+            let of_group = move |group: usize| {
+                let begin = (group * WIDTH) as u32;
+                (begin..bonds.min(begin + WIDTH as u32)).map(move |bond| first + bond)
+            };
+            groups.flat_map(of_group).collect::<Vec<u32>>()
+        };
+        list.clear();
+        list.par_extend(self.blocks.par_iter().flat_map_iter(listed));
     }
 
     /// What a bond bore at the last [`BondNetwork::add_forces_and_loads`], to rounding; none where that keeps nothing.

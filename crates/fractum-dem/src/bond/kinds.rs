@@ -182,9 +182,9 @@ impl Bonds {
         each!(self, network => network.add_forces_and_loads(particles));
     }
 
-    /// See [`BondNetwork::any_loads`].
-    pub fn any_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync)) -> bool {
-        each!(self, network => network.any_loads(meet))
+    /// See [`BondNetwork::list_by_loads`].
+    pub fn list_by_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync), list: &mut Vec<u32>) {
+        each!(self, network => network.list_by_loads(meet, list));
     }
 
     /// See [`BondNetwork::load_sizes`].

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::crack::{Crack, Occasion, facet_area};
 use super::criterion::{BondLoad, FailureSite, FractureCriterion};
 use super::faces::{CrackFaces, Face, FaceWork};
-use super::search::{Break, FailureSearch, LoadedBonds};
+use super::search::{Break, FailureSearch, ListedBonds, LoadedBonds};
 use crate::DemError;
 use crate::bond::{BondForces, BondGraph, Bonds, LoadLanes, LoadSizes, Separation};
 use crate::particles::Particles;
@@ -93,13 +93,15 @@ impl LoadedBonds for Moving<'_> {
         self.bonds.load_sizes(bond as usize)
     }
 
-    fn any_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync)) -> bool {
-        self.bonds.any_loads(meet)
-    }
-
     fn axis(&self, bond: u32) -> Vec3 {
         let [i, j] = self.bonds.pairs()[bond as usize].map(|i| i as usize);
         (self.particles.position[j] - self.particles.position[i]).normalize()
+    }
+}
+
+impl ListedBonds for Moving<'_> {
+    fn list_by_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync), list: &mut Vec<u32>) {
+        self.bonds.list_by_loads(meet, list);
     }
 }
 
@@ -235,10 +237,7 @@ impl Fracture {
             self.steps_with_tensor = self.steps_with_tensor.saturating_sub(1);
         }
         let Fracture { graph, search: Some(search), sites, breaks, .. } = self else { return 0 };
-        if !search.may_fail(&Moving { bonds, particles }, 1.0) {
-            return 0;
-        }
-        search.search(&Moving { bonds, particles }, graph, 1.0);
+        search.search_overloaded(&Moving { bonds, particles }, graph, 1.0);
         if search.overloaded().is_empty() {
             return 0;
         }
@@ -547,10 +546,14 @@ mod tests {
             }
             assert_eq!(worst.ratio, ratios.iter().copied().fold(0.0, f64::max));
             let search = fracture.search.as_mut().unwrap();
-            assert!(search.may_fail(&body, worst.ratio) && !search.may_fail(&body, 1.001 * worst.ratio));
             let limit = 0.5 * worst.ratio;
             search.search(&body, &fracture.graph, limit);
-            let found: Vec<u32> = search.overloaded().iter().map(|site| site.index).collect();
+            let all = search.overloaded().to_vec();
+            let found: Vec<u32> = all.iter().map(|site| site.index).collect();
+            search.search_overloaded(&body, &fracture.graph, limit);
+            assert_eq!(search.overloaded(), all);
+            search.search_overloaded(&body, &fracture.graph, 1.001 * worst.ratio);
+            assert!(search.overloaded().is_empty());
             let over = (0..ratios.len()).filter(|&bond| ratios[bond] >= limit);
             assert_eq!(found, over.map(|bond| bond as u32).collect::<Vec<_>>());
             assert!(found.len() > 1 && found.len() < ratios.len() / 2, "{}", found.len());
@@ -570,8 +573,12 @@ mod tests {
             let worst = fracture.closest(&mut bonds, &particles).unwrap().ratio;
             let body = Moving { bonds: &bonds, particles: &particles };
             let search = fracture.search.as_mut().unwrap();
-            assert!(search.may_fail(&body, worst));
-            assert!(!search.may_fail(&body, 100.0 * worst));
+            for limit in [worst, 0.9 * worst, 0.5 * worst, 1.001 * worst] {
+                search.search(&body, &fracture.graph, limit);
+                let all = search.overloaded().to_vec();
+                search.search_overloaded(&body, &fracture.graph, limit);
+                assert_eq!(search.overloaded(), all, "{level:?} {limit}");
+            }
             assert!(search.virial_bounds_may_fail(&bonds, worst));
             assert!(!search.virial_bounds_may_fail(&bonds, 100.0 * worst));
         }

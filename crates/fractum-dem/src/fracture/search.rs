@@ -21,13 +21,14 @@ pub trait LoadedBonds: Sync {
         None
     }
 
-    /// Whether what some bonds side by side bear, and the radius of their sections [m], meet a condition; true where that is not known.
-    fn any_loads(&self, _meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync)) -> bool {
-        true
-    }
-
     /// Unit vector along a bond, in either sense.
     fn axis(&self, bond: u32) -> Vec3;
+}
+
+/// The same where what bonds bear was kept side by side when their forces were found.
+pub trait ListedBonds: LoadedBonds {
+    /// Lists bonds side by side where what they bear, and the radius of their sections [m], meet a condition, ascending; all where nothing was kept.
+    fn list_by_loads(&self, meet: &(dyn Fn(&LoadLanes, f64) -> bool + Sync), list: &mut Vec<u32>);
 }
 
 /// A bond that breaks.
@@ -54,6 +55,10 @@ pub struct FailureSearch {
     virials: Vec<Sym3>,
     virial_bounds: Vec<[f64; 2]>,
     stress: Vec<Sym3>,
+    /// Particles whose own stress may reach the limit.
+    reaching: Vec<bool>,
+    /// Bonds side by side of which one may reach it.
+    listed: Vec<u32>,
     /// Sites over the limit at the last search, by index.
     overloaded: Vec<FailureSite>,
     worst: Option<FailureSite>,
@@ -101,6 +106,8 @@ impl FailureSearch {
             virials: vec![Sym3::ZERO; stressed],
             virial_bounds: vec![[0.0; 2]; stressed],
             stress: vec![Sym3::ZERO; stressed],
+            reaching: vec![false; stressed],
+            listed: Vec::new(),
             overloaded: Vec::new(),
             worst: None,
         };
@@ -171,20 +178,33 @@ impl FailureSearch {
         }
     }
 
-    /// Whether any site can have a ratio of at least `limit`: a cheap answer for bodies far from failure. The stress of a
+    /// Finds the sites with a ratio of at least `limit`, and no other: cheap where few are near it. The stress of a
     /// neighbourhood is a mean of its members' own, and bounds are convex, so that no neighbourhood exceeds the largest
-    /// bound of a particle alone.
-    pub fn may_fail(&mut self, body: &impl LoadedBonds, limit: f64) -> bool {
-        match self.criterion.rule() {
-            Rule::Load(criterion) => body.any_loads(&|loads, radius| criterion.loads_reach(loads, radius, limit)),
+    /// bound of one of its particles alone.
+    pub fn search_overloaded(&mut self, body: &impl ListedBonds, graph: &BondGraph, limit: f64) {
+        let FailureSearch { criterion, volume, inverse, fraction, members, virials, stress, reaching, listed, .. } =
+            self;
+        self.overloaded.clear();
+        self.worst = None;
+        match criterion.rule() {
+            Rule::Load(criterion) => {
+                body.list_by_loads(&|loads, radius| criterion.loads_reach(loads, radius, limit), listed);
+                let site = |&bond: &u32| FailureSite { index: bond, ratio: criterion.ratio_of_bond(&body.load(bond)) };
+                let live = listed.iter().filter(|&&bond| graph.is_live(bond));
+                self.overloaded.extend(live.map(site).filter(|site| site.ratio >= limit));
+            }
             Rule::Stress(criterion) => {
-                body.virials(&mut self.virials);
-                criterion.virials_reach(&self.virials, &self.volume, self.fraction, limit)
+                body.virials(virials);
+                if criterion.virials_reach(virials, volume, *fraction, limit, reaching) {
+                    let around = Neighbourhoods { graph, members, inverse, virials };
+                    let found = criterion.search_among(&around, reaching, stress, limit);
+                    found.iter().for_each(|block| self.overloaded.extend_from_slice(&block.overloaded));
+                }
             }
         }
     }
 
-    /// The same from [`Bonds::virial_bounds`], without a tensor: cheaper still, and a coarser bound.
+    /// Whether [`Bonds::virial_bounds`] allow a site a ratio of at least `limit`: cheaper still, without a tensor, and a coarser bound.
     pub fn virial_bounds_may_fail(&mut self, bonds: &Bonds, limit: f64) -> bool {
         let Rule::Stress(criterion) = self.criterion.rule() else { return true };
         bonds.virial_bounds(&mut self.virial_bounds);

@@ -63,6 +63,17 @@ impl Neighbourhoods<'_> {
         }
         sum * self.inverse[i]
     }
+
+    /// Whether one of neighbourhood `i` fulfils a condition.
+    #[inline]
+    fn any_member(&self, i: usize, level: Level, is: impl Fn(usize) -> bool) -> bool {
+        is(i)
+            || match level {
+                Level::Own => false,
+                Level::Neighbours => self.graph.neighbours(i).any(|h| is(h.other as usize)),
+                Level::Second => self.members[i].iter().any(|&j| is(j as usize)),
+            }
+    }
 }
 
 /// A criterion of stress over all particles.
@@ -70,11 +81,21 @@ pub(in crate::fracture) trait StressBatch: StressCriterion {
     /// Whether the bounds of some particle's virial [N m] allow a ratio of at least `limit`.
     fn bounds_reach(&self, bounds: &[[f64; 2]], volume: &[f64], fraction: f64, limit: f64) -> bool;
 
-    /// Whether the virial of some particle alone [N m] allows a ratio of at least `limit`.
-    fn virials_reach(&self, virials: &[Sym3], volume: &[f64], fraction: f64, limit: f64) -> bool;
+    /// Notes the particles whose virial alone [N m] allows a ratio of at least `limit`; whether there are any.
+    fn virials_reach(&self, virials: &[Sym3], volume: &[f64], fraction: f64, limit: f64, reaching: &mut [bool])
+    -> bool;
 
     /// Stresses of all neighbourhoods, and what the criterion says of them.
     fn search(&self, around: &Neighbourhoods<'_>, stress: &mut [Sym3], limit: f64) -> Vec<BlockSearch>;
+
+    /// The same for neighbourhoods of `reaching` particles alone.
+    fn search_among(
+        &self,
+        around: &Neighbourhoods<'_>,
+        reaching: &[bool],
+        stress: &mut [Sym3],
+        limit: f64,
+    ) -> Vec<BlockSearch>;
 }
 
 impl<C: StressCriterion> StressBatch for C {
@@ -87,29 +108,66 @@ impl<C: StressCriterion> StressBatch for C {
         bounds.par_chunks(BLOCK).zip(volume.par_chunks(BLOCK)).any(reaches)
     }
 
-    fn virials_reach(&self, virials: &[Sym3], volume: &[f64], fraction: f64, limit: f64) -> bool {
-        let reaches = |(virials, volume): (&[Sym3], &[f64])| {
-            virials.iter().zip(volume).any(|(virial, volume)| self.bound(&(*virial * (fraction / volume))) >= limit)
+    fn virials_reach(
+        &self,
+        virials: &[Sym3],
+        volume: &[f64],
+        fraction: f64,
+        limit: f64,
+        reaching: &mut [bool],
+    ) -> bool {
+        let limit = limit * (1.0 - ROUND_OFF);
+        let reach = |(reaching, (virials, volume)): (&mut [bool], (&[Sym3], &[f64]))| {
+            let mut any = false;
+            for (reaching, (virial, volume)) in reaching.iter_mut().zip(virials.iter().zip(volume)) {
+                *reaching = self.bound(&(*virial * (fraction / volume))) >= limit;
+                any |= *reaching;
+            }
+            any
         };
-        virials.par_chunks(BLOCK).zip(volume.par_chunks(BLOCK)).any(reaches)
+        let blocks = virials.par_chunks(BLOCK).zip(volume.par_chunks(BLOCK));
+        // All of them, whatever was found.
+        reaching.par_chunks_mut(BLOCK).zip(blocks).map(reach).reduce(|| false, |one, other| one || other)
     }
 
     fn search(&self, around: &Neighbourhoods<'_>, stress: &mut [Sym3], limit: f64) -> Vec<BlockSearch> {
         let level = self.level();
-        let block = |(block, stress): (usize, &mut [Sym3])| {
-            let mut found = BlockSearch::default();
-            for (slot, stress) in stress.iter_mut().enumerate() {
-                let i = block * BLOCK + slot;
+        search_blocks(stress, |i, stress, found| {
+            *stress = around.stress(i, level);
+            // Eigenvalues only where they could matter.
+            if self.bound(stress) >= limit.min(found.largest()) {
+                found.add(i, self.ratio(stress), limit);
+            }
+        })
+    }
+
+    fn search_among(
+        &self,
+        around: &Neighbourhoods<'_>,
+        reaching: &[bool],
+        stress: &mut [Sym3],
+        limit: f64,
+    ) -> Vec<BlockSearch> {
+        let level = self.level();
+        search_blocks(stress, |i, stress, found| {
+            if around.any_member(i, level, |member| reaching[member]) {
                 *stress = around.stress(i, level);
-                // Eigenvalues only where they could matter.
-                if self.bound(stress) >= limit.min(found.largest()) {
+                if self.bound(stress) >= limit {
                     found.add(i, self.ratio(stress), limit);
                 }
             }
-            found
-        };
-        stress.par_chunks_mut(BLOCK).enumerate().map(block).collect()
+        })
     }
+}
+
+/// Looks at all particles and their stresses, block by block.
+fn search_blocks(stress: &mut [Sym3], look: impl Fn(usize, &mut Sym3, &mut BlockSearch) + Sync) -> Vec<BlockSearch> {
+    let block = |(block, stress): (usize, &mut [Sym3])| {
+        let mut found = BlockSearch::default();
+        (block * BLOCK..).zip(stress).for_each(|(i, stress)| look(i, stress, &mut found));
+        found
+    };
+    stress.par_chunks_mut(BLOCK).enumerate().map(block).collect()
 }
 
 /// Rounding by which the sizes of a load that are known already may miss those that are found anew.
@@ -130,6 +188,9 @@ pub(in crate::fracture) trait LoadBatch: Sync {
 
     /// Whether one of some bonds side by side may have a ratio of at least `limit`.
     fn loads_reach(&self, loads: &LoadLanes, radius: f64, limit: f64) -> bool;
+
+    /// What a bond bears over what it can bear.
+    fn ratio_of_bond(&self, load: &BondLoad) -> f64;
 
     /// How a bond breaks under this load.
     fn mode(&self, load: &BondLoad) -> BreakMode;
@@ -162,6 +223,10 @@ impl<C: LoadCriterion> LoadBatch for C {
             any |= self.ratio_of(&sizes) * (1.0 + ROUND_OFF) >= limit;
         }
         any
+    }
+
+    fn ratio_of_bond(&self, load: &BondLoad) -> f64 {
+        self.ratio(load)
     }
 
     fn mode(&self, load: &BondLoad) -> BreakMode {
