@@ -4,6 +4,7 @@ use fractum_math::{Lane, Mat3, Sym3, widest};
 
 use crate::block::{BLOCK_NODES, Cells, Run, Scratch, columns_to_matrix};
 use crate::body::Kinematics;
+use crate::four_turns::FourGradients;
 use crate::hooke::Hooke;
 use crate::polar::{corotational_strain, product, strain_and_turn};
 use crate::thermal_strain::ThermalStrain;
@@ -20,7 +21,10 @@ pub(crate) trait CellLaw {
     fn scaled_stresses(&mut self, first: usize, strains: &[Sym3; FOUR], volumes: &[f64; FOUR]) -> [Sym3; FOUR] {
         let mut stresses = [Sym3::ZERO; FOUR];
         for k in 0..FOUR {
-            stresses[k] = self.scaled_stress(first + k, strains[k], volumes[k]);
+            // All elements of a cell without volume have been removed.
+            if volumes[k] > 0.0 {
+                stresses[k] = self.scaled_stress(first + k, strains[k], volumes[k]);
+            }
         }
         stresses
     }
@@ -194,7 +198,8 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
     #[inline(always)]
     fn run<const N: usize>(&mut self, cells: &Cells, run: Run) {
         let Run { mut begin, end, .. } = run;
-        if L::BY_FOURS {
+        // Cells that turn take more arithmetic than memory.
+        if L::BY_FOURS || COROTATIONAL {
             let start = cells.starts[begin] as usize;
             let gradients = cells.gradients[start..].chunks_exact(FOUR * N);
             let local = cells.local[start + begin..].chunks_exact(FOUR * (N + 1));
@@ -246,16 +251,61 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
             return;
         }
         // Loops instead of closures: those might be compiled apart, for any processor.
-        let (mut strains, mut turns) = ([Sym3::ZERO; FOUR], [Turn::default(); FOUR]);
+        let mut columns = [[Lane::ZERO; 3]; FOUR];
         for k in 0..FOUR {
             let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
-            (strains[k], turns[k]) = self.strain(first + k, local, gradients, volumes[k]);
+            columns[k] = gradient_columns(&self.scratch.displacement, local, gradients);
+        }
+        if COROTATIONAL {
+            self.turned_stresses(first, volumes, &mut columns);
+        } else {
+            let mut strains = [Sym3::ZERO; FOUR];
+            for k in 0..FOUR {
+                let [x, y, z] = columns[k];
+                strains[k] = small_strain(x, y, z);
+            }
+            let stresses = self.law.scaled_stresses(first, &strains, volumes);
+            for k in 0..FOUR {
+                columns[k] = symmetric_columns(stresses[k]);
+            }
+        }
+        for k in 0..FOUR {
+            let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
+            add_cell_forces(&mut self.scratch.force, local, gradients, columns[k]);
+        }
+    }
+
+    /// Replaces displacement gradients of four cells by their stresses times volumes on the nodes.
+    #[inline(always)]
+    fn turned_stresses(&mut self, first: usize, volumes: &[f64; FOUR], columns: &mut [[Lane; 3]; FOUR]) {
+        let gradients = FourGradients::new(columns);
+        let determinants = gradients.determinants();
+        for k in 0..FOUR {
+            if determinants[k] <= 0.0 {
+                self.note_inverted(first + k, volumes[k]);
+            }
+        }
+        if let Some((strains, turns)) = gradients.strains_and_turns(&determinants) {
+            let stresses = self.law.scaled_stresses(first, &strains, volumes);
+            *columns = turns.stress_columns(&stresses);
+            return;
+        }
+        let (mut strains, mut turns) = ([Sym3::ZERO; FOUR], [Turn::default(); FOUR]);
+        for k in 0..FOUR {
+            let [x, y, z] = columns[k];
+            let (strain, m, n) = strain_and_turn(&columns_to_matrix(x, y, z));
+            (strains[k], turns[k]) = (strain, Turn { m, n });
         }
         let stresses = self.law.scaled_stresses(first, &strains, volumes);
         for k in 0..FOUR {
-            let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
-            let columns = Self::stress_columns(stresses[k], &turns[k]);
-            add_cell_forces(&mut self.scratch.force, local, gradients, columns);
+            columns[k] = Self::stress_columns(stresses[k], &turns[k]);
+        }
+    }
+
+    /// Notes the first cell that is turned inside out while it carries.
+    fn note_inverted(&mut self, cell: usize, volume: f64) {
+        if self.inverted.is_none() && volume > 0.0 && self.law.integrity(cell) > CARRIES {
+            self.inverted = Some(cell);
         }
     }
 
@@ -267,8 +317,8 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
             return (small_strain(x, y, z), Turn::default());
         }
         let h = columns_to_matrix(x, y, z);
-        if is_inverted(&h) && self.inverted.is_none() && volume > 0.0 && self.law.integrity(cell) > CARRIES {
-            self.inverted = Some(cell);
+        if is_inverted(&h) {
+            self.note_inverted(cell, volume);
         }
         let (strain, m, n) = strain_and_turn(&h);
         (strain, Turn { m, n })
@@ -277,7 +327,11 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
     /// Stress on the nodes by columns: R σ = M (1 + n) σ, as laws are isotropic, so that stress is coaxial with strain.
     #[inline(always)]
     fn stress_columns(stress: Sym3, turn: &Turn) -> [Lane; 3] {
-        if COROTATIONAL { turned_columns(&turn.m, stress + product(turn.n, stress)) } else { symmetric_columns(stress) }
+        if COROTATIONAL {
+            turned_columns(&turn.m, stress + Sym3(product(turn.n.0, stress.0)))
+        } else {
+            symmetric_columns(stress)
+        }
     }
 }
 

@@ -39,6 +39,7 @@ mod element;
 mod error;
 mod evaluate;
 mod expansion;
+mod four_turns;
 mod hooke;
 mod inverted;
 mod kernel;

@@ -35,6 +35,12 @@ impl Lane {
         Lane(std::array::from_fn(|i| a.0[i].mul_add(factor, self.0[i])))
     }
 
+    /// `self + a · b`, rounded once.
+    #[inline(always)]
+    pub fn plus_product(self, a: Lane, b: Lane) -> Lane {
+        Lane(std::array::from_fn(|i| a.0[i].mul_add(b.0[i], self.0[i])))
+    }
+
     /// Square roots.
     #[inline(always)]
     pub fn sqrt(self) -> Lane {
