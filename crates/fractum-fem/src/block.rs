@@ -141,7 +141,30 @@ impl Scratch {
 }
 
 /// Blocks that a slot has numbers for.
-const MOST_BLOCKS: usize = 1 << 16;
+const MOST_BLOCKS: usize = 1 << (u32::BITS - LOCAL_BITS);
+/// Bits of a local number.
+const LOCAL_BITS: u32 = BLOCK_NODES.ilog2();
+
+/// Place of a node in a block: the number of the block and the local one of the node, in 32 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Slot(u32);
+
+impl Slot {
+    fn new(block: usize, local: usize) -> Self {
+        debug_assert!(block < MOST_BLOCKS && local < BLOCK_NODES);
+        Slot((block << LOCAL_BITS | local) as u32)
+    }
+
+    #[inline(always)]
+    pub(crate) fn block(self) -> usize {
+        (self.0 >> LOCAL_BITS) as usize
+    }
+
+    #[inline(always)]
+    pub(crate) fn local(self) -> usize {
+        self.0 as usize % BLOCK_NODES
+    }
+}
 
 /// Where the forces on each node lie in the blocks.
 #[derive(Clone, Debug, Default)]
@@ -150,10 +173,8 @@ pub(crate) struct NodeSlots {
 }
 
 impl NodeSlots {
-    /// Packs block and local number into 32 bits; a block has far fewer nodes than 65,536.
-    ///
     /// # Errors
-    /// [`SolidError::TooManyBlocks`] from 65,537 blocks on.
+    /// [`SolidError::TooManyBlocks`] beyond 4,194,304 blocks.
     pub(crate) fn new<'a>(
         node_count: usize,
         block_nodes: impl Iterator<Item = &'a [u32]> + Clone,
@@ -165,7 +186,7 @@ impl NodeSlots {
         let mut rows = vec![Vec::new(); node_count];
         for (block, nodes) in block_nodes.enumerate() {
             for (local, &node) in nodes.iter().enumerate() {
-                rows[node as usize].push((block as u32) << 16 | local as u32);
+                rows[node as usize].push(Slot::new(block, local).0);
             }
         }
         Ok(NodeSlots { slots: Ragged::from_rows(&rows) })
@@ -176,19 +197,15 @@ impl NodeSlots {
         self.slots.len()
     }
 
-    /// Blocks that a node belongs to in ascending order, each with the local number of the node there, packed as 32 bits.
-    pub(crate) fn of(&self, node: usize) -> &[u32] {
-        self.slots.row(node)
+    /// Blocks that a node belongs to in ascending order, each with the local number of the node there.
+    pub(crate) fn of(&self, node: usize) -> impl Iterator<Item = Slot> + '_ {
+        self.slots.row(node).iter().map(|&slot| Slot(slot))
     }
 
     /// Sums the forces on one node over the blocks.
     #[inline(always)]
-    pub(crate) fn gather<'a>(&self, node: usize, force: impl Fn(usize) -> &'a [Lane]) -> Vec3 {
-        let mut sum = Lane::ZERO;
-        for &slot in self.slots.row(node) {
-            sum = sum + force((slot >> 16) as usize)[(slot & 0xffff) as usize];
-        }
-        sum.to_vec()
+    pub(crate) fn gather<'a>(&self, node: usize, force: impl Fn(usize) -> &'a [Lane; BLOCK_NODES]) -> Vec3 {
+        self.of(node).fold(Lane::ZERO, |sum, slot| sum + force(slot.block())[slot.local()]).to_vec()
     }
 }
 
@@ -201,6 +218,6 @@ mod tests {
         let slots = |blocks: usize| NodeSlots::new(1, std::iter::repeat_n(&[0][..], blocks));
         assert_eq!(slots(MOST_BLOCKS).unwrap().of(0).len(), MOST_BLOCKS);
         let error = slots(MOST_BLOCKS + 1).unwrap_err();
-        assert!(error.to_string().contains("65537 blocks"), "{error}");
+        assert!(error.to_string().contains("4194305 blocks"), "{error}");
     }
 }

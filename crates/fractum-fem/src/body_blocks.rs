@@ -59,7 +59,7 @@ impl BodyModel {
             }
             let law = block_law(smoothed, softens.as_ref().zip(threshold.as_ref()), &items);
             let is_fine = of_body.is_fine(items[0]);
-            let (scratch, viscous, inverted) = (Scratch::new(), ViscousCells::default(), None);
+            let (scratch, viscous, inverted) = (Some(Scratch::new()), ViscousCells::default(), None);
             blocks.push(Block {
                 body: index,
                 cells,

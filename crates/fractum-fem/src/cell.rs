@@ -100,6 +100,43 @@ impl Geometry<'_> {
         total
     }
 
+    /// Cells of some items, which touch at most [`BLOCK_NODES`] nodes.
+    ///
+    /// - `edges`: edges and the elements around each, where these are the cells; elements are without
+    /// - `is_alive`: whether an element is still there
+    pub(crate) fn cells(
+        &self,
+        items: &[u32],
+        edges: Option<(&BodyEdges, &Ragged)>,
+        is_alive: impl Fn(u32) -> bool + Copy,
+    ) -> Cells {
+        let rows: Vec<Vec<u32>> = items.iter().map(|&item| self.row(item, edges)).collect();
+        build_block(&rows, |cell, nodes, gradients| match edges {
+            Some((_, elements)) => self.edge_domain(nodes, elements.row(items[cell] as usize), is_alive, gradients),
+            None => {
+                let volume = self.element_cell(items[cell], gradients);
+                if is_alive(items[cell]) { volume } else { 0.0 }
+            }
+        })
+    }
+
+    /// Nodes of the cell of an item.
+    fn row(&self, item: u32, edges: Option<(&BodyEdges, &Ragged)>) -> Vec<u32> {
+        match edges {
+            Some((edges, elements)) => self.edge_nodes(edges.nodes[item as usize], elements.row(item as usize)),
+            None => self.element_nodes(item as usize).to_vec(),
+        }
+    }
+
+    /// Volume [m³] and gradients of the cell of an element.
+    fn element_cell(&self, element: u32, gradients: &mut [[f64; 3]]) -> f64 {
+        let (volume, g) = self.element(element as usize);
+        for (stored, g) in gradients.iter_mut().zip(&g[1..]) {
+            *stored = [g.x, g.y, g.z];
+        }
+        volume
+    }
+
     /// Blocks of element cells, and the element of each cell; see [`Class`].
     pub(crate) fn element_blocks(&self, class: impl Fn(u32) -> Class) -> Vec<(Cells, Vec<u32>)> {
         let centres: Vec<Vec3> = (0..self.body.elements.len())
@@ -109,18 +146,8 @@ impl Geometry<'_> {
         let groups = by_class(fractum_mesh::renumber::hilbert_order(&centres), class);
         chunks(&groups)
             .into_par_iter()
-            .flat_map(|items| split_to_fit(items, |e| self.element_nodes(e as usize).to_vec()))
-            .map(|items| {
-                let rows: Vec<Vec<u32>> = items.iter().map(|&e| self.element_nodes(e as usize).to_vec()).collect();
-                let cells = build_block(&rows, |cell, _, gradients| {
-                    let (volume, g) = self.element(items[cell] as usize);
-                    for (stored, g) in gradients.iter_mut().zip(&g[1..]) {
-                        *stored = [g.x, g.y, g.z];
-                    }
-                    volume
-                });
-                (cells, items)
-            })
+            .flat_map(|items| split_to_fit(items, |element| self.row(element, None)))
+            .map(|items| (self.cells(&items, None, |_| true), items))
             .collect()
     }
 
@@ -134,19 +161,15 @@ impl Geometry<'_> {
         let middles: Vec<Vec3> =
             edges.nodes.par_iter().map(|&[i, j]| self.nodes[i as usize] + self.nodes[j as usize]).collect();
         let groups = by_class(fractum_mesh::renumber::hilbert_order(&middles), class);
-        let elements = |edge: u32| elements_of_edge.row(edge as usize);
-        let row = |edge: u32| self.edge_nodes(edges.nodes[edge as usize], elements(edge));
+        let edges = Some((edges, elements_of_edge));
+        let row = |edge: u32| self.row(edge, edges);
         chunks(&groups)
             .into_par_iter()
             .flat_map(|items| split_to_fit(items, row))
             .map(|mut items| {
                 // Cells of one size side by side: the loops over their nodes become predictable.
                 items.sort_by_cached_key(|&edge| (row(edge).len(), edge));
-                let rows: Vec<Vec<u32>> = items.iter().map(|&edge| row(edge)).collect();
-                let cells = build_block(&rows, |cell, nodes, gradients| {
-                    self.edge_domain(nodes, elements(items[cell]), |_| true, gradients)
-                });
-                (cells, items)
+                (self.cells(&items, edges, |_| true), items)
             })
             .collect()
     }
@@ -185,7 +208,16 @@ fn build_block(rows: &[Vec<u32>], fill: impl Fn(usize, &[u32], &mut [[f64; 3]]) 
     let mut nodes: Vec<u32> = rows.concat();
     nodes.sort_unstable();
     nodes.dedup();
-    let mut cells = Cells { nodes, starts: vec![0], ..Cells::default() };
+    let count: usize = rows.iter().map(Vec::len).sum();
+    let mut cells = Cells {
+        nodes,
+        starts: Vec::with_capacity(rows.len() + 1),
+        local: Vec::with_capacity(count),
+        gradients: Vec::with_capacity(count - rows.len()),
+        volume: Vec::with_capacity(rows.len()),
+        ..Cells::default()
+    };
+    cells.starts.push(0);
     for (cell, row) in rows.iter().enumerate() {
         for node in row {
             let local = cells.nodes.binary_search(node).expect("the block holds the nodes of its cells");

@@ -57,7 +57,7 @@ impl Solid {
     ) -> HalfSteps {
         let part = self.part.take();
         let step = WholeStep { dt_before, dt_after, damping, held, measure };
-        let work = self.kick_runs(&step, |chunk| Some(part.as_ref()?.runs(chunk)));
+        let work = self.kick_runs(&step, |chunk| part.as_ref()?.moved(chunk));
         self.part = part;
         self.note_motion();
         work

@@ -146,8 +146,8 @@ impl Solid {
         let elements = model.elements_of_edge.row(edge as usize);
         // The cell of an edge that has lost no element knows its volume.
         if model.standard.is_none() && elements.iter().all(|&e| model.alive[e as usize]) {
-            let (block, cell) = model.location[edge as usize];
-            return self.blocks[block as usize].cells.volume[cell as usize];
+            let (cells, cell) = self.cells_with(model.location[edge as usize]);
+            return cells.volume[cell];
         }
         let share = 1.0 / model.body.shape.edge_count() as f64;
         let volumes = self.element_volumes(body);

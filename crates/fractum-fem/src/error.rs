@@ -67,7 +67,7 @@ pub enum SolidError {
     },
     /// More blocks of cells than have a number.
     #[error(
-        "the solids make {blocks} blocks of up to 2,048 cells, of which at most {most} have a number: some 110 million smoothed or 134 million standard \
+        "the solids make {blocks} blocks of up to 2,048 cells, of which at most {most} have a number: some 7 billion smoothed or 8 billion standard \
          tetrahedra; mesh more coarsely where nothing breaks, or leave out what is far away"
     )]
     TooManyBlocks {

@@ -2,7 +2,7 @@
 
 use fractum_math::{Lane, Vec3};
 
-use crate::block::{Cells, Scratch};
+use crate::block::{BLOCK_NODES, Cells, Scratch};
 use crate::body::Kinematics;
 use crate::body_model::BodyModel;
 use crate::damage::EdgeField;
@@ -27,7 +27,8 @@ pub(crate) struct Block {
     /// The element or edge of the body that each cell stands for.
     pub(crate) items: Vec<u32>,
     pub(crate) law: BlockLaw,
-    pub(crate) scratch: Scratch,
+    /// Its part of the step; none where this process neither evaluates it nor needs its forces.
+    pub(crate) scratch: Option<Scratch>,
     /// Power of the viscous stress in the last step [W].
     pub(crate) viscous_power: f64,
     /// Viscous stress of the cells; empty without viscosity.
@@ -49,7 +50,7 @@ impl Block {
         measure: bool,
     ) {
         let is_plain = self.is_plain(model);
-        let Block { cells, scratch, law, viscous_power, viscous, inverted, .. } = self;
+        let Block { cells, scratch: Some(scratch), law, viscous_power, viscous, inverted, .. } = self else { return };
         if let BlockLaw::Standard(law) = law
             && is_plain
             && !measure
@@ -91,14 +92,15 @@ impl Block {
 
     /// Elastic forces of all cells whatever their damage, for the stable step.
     pub(crate) fn evaluate_elastic(&mut self, model: &BodyModel, displacement: &[Vec3]) {
-        self.scratch.load(&self.cells.nodes, displacement);
-        kernel::forces(&self.cells, &mut self.scratch, &mut ElasticCells { hooke: model.hooke, energy: None });
+        let Some(scratch) = &mut self.scratch else { return };
+        scratch.load(&self.cells.nodes, displacement);
+        kernel::forces(&self.cells, scratch, &mut ElasticCells { hooke: model.hooke, energy: None });
     }
 
     /// Effective stress of the elements of a standard body with damage.
     pub(crate) fn effective_stress(&mut self, model: &BodyModel, displacement: &[Vec3]) {
         let is_plain = self.is_plain(model);
-        let Block { cells, scratch, law: BlockLaw::Standard(law), .. } = self else { return };
+        let Block { cells, scratch: Some(scratch), law: BlockLaw::Standard(law), .. } = self else { return };
         if is_plain {
             scratch.load(&cells.nodes, displacement);
             standard::stresses(cells, &scratch.displacement, law);
@@ -170,8 +172,8 @@ impl Block {
     }
 
     /// Force sums of the block, one per local node.
-    pub(crate) fn forces(&self) -> &[Lane] {
-        self.scratch.force.as_slice()
+    pub(crate) fn forces(&self) -> &[Lane; BLOCK_NODES] {
+        &self.scratch.as_ref().expect("who needs the forces of a block has them").force
     }
 }
 

@@ -446,10 +446,10 @@ mod tests {
         for block in blocks {
             let (cells, model) = (&block.cells, &bodies[block.body]);
             let mut forces_of = |fastest: bool, corotational: bool, viscous: bool| {
-                block.scratch.load(&cells.nodes, displacement);
-                block.scratch.load_velocity(&cells.nodes, velocity);
+                let scratch = block.scratch.as_mut().unwrap();
+                scratch.load(&cells.nodes, displacement);
+                scratch.load_velocity(&cells.nodes, velocity);
                 let mut law = ElasticCells { hooke: model.hooke, energy: Some(0.0) };
-                let scratch = &mut block.scratch;
                 let mut of_cells = ViscousCells::new(&model.body, &cells.volume);
                 let mut power = 0.0;
                 match viscous {

@@ -1,11 +1,11 @@
 //! The share of one of several ranks: cells of some blocks, and the nodes that it moves.
 //!
-//! A rank evaluates a run of blocks. For every node that it moves it gets the sums of the blocks of others, and adds all of
-//! them in the order of the blocks, as a single process does: every rank that moves a node has the same bits. What needs all
-//! nodes or all cells (energies, removal, output) is told in full before; between such steps, what a rank has of the nodes and
-//! cells of others is out of date.
+//! A rank evaluates a run of blocks. For every node of them it gets the sums of the blocks of others, and adds all of them in
+//! the order of the blocks, as a single process does. Forces on nodes that it moves without having a block there are told by
+//! a rank that has. So every rank that moves a node has the same bits. What needs all nodes or all cells (energies, removal,
+//! output) is told in full before; between such steps, what a rank has of the nodes and cells of others is out of date.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use fractum_math::{CHUNK, Sym3, Vec3};
 use fractum_parallel::{Exchange, Message, gather};
 use serde::{Deserialize, Serialize};
 
-use crate::block::NodeSlots;
+use crate::block::{Cells, NodeSlots, Slot};
 use crate::damage::EdgeDamage;
 use crate::evaluate::{Block, BlockLaw};
 
@@ -23,12 +23,14 @@ pub(crate) struct Part {
     exchange: Arc<dyn Exchange>,
     /// Blocks of every rank: from `first[rank]` up to `first[rank + 1]`.
     first: Vec<usize>,
-    /// Nodes whose motion each rank tells the others: those of its blocks that no lower rank has.
-    told: Vec<Vec<u32>>,
-    /// For steps in which every rank moves the nodes of its own blocks, and those that all move.
-    near: Plan,
-    /// For steps in which every rank moves all nodes.
-    all: Plan,
+    /// Sums that ranks with blocks around the same nodes swap.
+    plan: Plan,
+    /// All nodes.
+    all: Told,
+    /// Nodes that every rank moves in every step.
+    everywhere: Told,
+    /// Runs of nodes that this rank moves where it does not move all of them, see [`runs_of`].
+    moved: Vec<Vec<Range<usize>>>,
     /// Every rank moves all nodes in every step.
     pub(crate) always_all: bool,
     /// Every rank moves all nodes in the next step.
@@ -56,14 +58,23 @@ pub struct Share {
     pub bytes: usize,
 }
 
-/// Who sends which sums to whom, and which nodes are moved.
+/// Who sends which sums to whom.
 #[derive(Clone, Debug)]
 struct Plan {
     messages: Vec<Message>,
     /// Slots to send and to receive, message by message; three numbers each.
-    slots: Vec<[Vec<u32>; 2]>,
-    /// Runs of nodes in each chunk, counted from its first.
+    slots: Vec<[Vec<Slot>; 2]>,
+    /// Nodes of the blocks of this rank, in runs of each chunk, counted from its first.
     runs: Vec<Vec<Range<usize>>>,
+}
+
+/// Nodes of which each rank tells all others some: those of its blocks that no lower rank has.
+#[derive(Clone, Debug, Default)]
+struct Told {
+    nodes: Vec<Vec<u32>>,
+    counts: Vec<usize>,
+    own: Vec<f64>,
+    all: Vec<f64>,
 }
 
 /// Numbers of a block in [`Part::records`].
@@ -86,69 +97,72 @@ struct BlockShare {
 
 impl Part {
     /// The share of a rank, by the blocks of all.
-    ///
-    /// - `everywhere`: nodes that every rank shall move
-    /// - `needs_records`: whether all ranks need numbers of every block in every step
-    pub(crate) fn new(
-        exchange: Arc<dyn Exchange>,
-        blocks: &[Block],
-        slots: &NodeSlots,
-        everywhere: &[u32],
-        needs_records: bool,
-    ) -> Self {
+    pub(crate) fn new(exchange: Arc<dyn Exchange>, blocks: &[Block], slots: &NodeSlots) -> Self {
         let weights: Vec<usize> = blocks.iter().map(|block| block.cells.gradients.len().max(1)).collect();
         let first = runs_of_blocks(&weights, exchange.size());
-        let (me, size) = (exchange.rank(), exchange.size());
-        let mut moved = vec![vec![false; slots.len()]; size];
-        let mut told = vec![Vec::new(); size];
-        let mut is_told = vec![false; slots.len()];
-        for rank in 0..size {
-            for &node in blocks[first[rank]..first[rank + 1]].iter().flat_map(|block| &block.cells.nodes) {
-                moved[rank][node as usize] = true;
-                if !std::mem::replace(&mut is_told[node as usize], true) {
-                    told[rank].push(node);
-                }
-            }
-            everywhere.iter().for_each(|&node| moved[rank][node as usize] = true);
-        }
-        let near = Plan::new(slots, &first, me, &moved);
-        moved.iter_mut().for_each(|of| of.fill(true));
-        let all = Plan::new(slots, &first, me, &moved);
-        let numbers = |rank: usize| if needs_records { RECORD * (first[rank + 1] - first[rank]) } else { 0 };
-        let record_counts: Vec<usize> = (0..size).map(numbers).collect();
         Part {
-            records: vec![0.0; record_counts.iter().sum()],
-            own_records: vec![0.0; record_counts[me]],
-            record_counts,
+            plan: Plan::new(slots, &first, exchange.rank()),
+            all: Told::new(slots, &first, &mut (0..slots.len() as u32)),
+            everywhere: Told::default(),
+            moved: Vec::new(),
+            records: Vec::new(),
+            own_records: Vec::new(),
+            record_counts: Vec::new(),
             exchange,
             first,
-            told,
-            near,
-            all,
             always_all: false,
-            // What supports hold from now on may have moved before: they do work in the first step.
             next_all: true,
             is_all: false,
             is_whole: true,
         }
     }
 
-    /// Runs of nodes of a chunk that this rank moves in this step, counted from the first of the chunk.
-    pub(crate) fn runs(&self, chunk: usize) -> &[Range<usize>] {
-        let plan = if self.is_all { &self.all } else { &self.near };
-        &plan.runs[chunk]
+    /// What a stage of the run needs.
+    ///
+    /// - `everywhere`: nodes that every rank shall move
+    /// - `needs_records`: whether all ranks need numbers of every block in every step
+    pub(crate) fn begin_stage(&mut self, slots: &NodeSlots, everywhere: &[u32], needs_records: bool) {
+        let nodes: BTreeSet<u32> = everywhere.iter().copied().collect();
+        self.everywhere = Told::new(slots, &self.first, &mut nodes.into_iter());
+        let mut moved = vec![false; slots.len()];
+        for (chunk, runs) in moved.chunks_mut(CHUNK).zip(&self.plan.runs) {
+            runs.iter().for_each(|run| chunk[run.clone()].fill(true));
+        }
+        everywhere.iter().for_each(|&node| moved[node as usize] = true);
+        self.moved = moved.chunks(CHUNK).map(runs_of).collect();
+        let (first, size) = (&self.first, self.exchange.size());
+        let numbers = |rank: usize| if needs_records { RECORD * (first[rank + 1] - first[rank]) } else { 0 };
+        self.record_counts = (0..size).map(numbers).collect();
+        self.records = vec![0.0; self.record_counts.iter().sum()];
+        self.own_records = vec![0.0; self.record_counts[self.exchange.rank()]];
+        self.always_all = false;
+        // What supports hold from now on may have moved before: they do work in the first step.
+        self.next_all = true;
+        self.is_all = false;
+        self.is_whole = true;
+    }
+
+    /// Runs of nodes of a chunk that this rank moves in this step, counted from the first of the chunk; none where it moves all.
+    pub(crate) fn moved(&self, chunk: usize) -> Option<&[Range<usize>]> {
+        (!self.is_all).then(|| &self.moved[chunk][..])
+    }
+
+    /// Runs of nodes of a chunk that blocks of this rank push, counted from the first of the chunk.
+    pub(crate) fn pushed(&self, chunk: usize) -> &[Range<usize>] {
+        &self.plan.runs[chunk]
     }
 
     /// What this rank does of the work.
     pub(crate) fn share(&self, blocks: &[Block]) -> Share {
-        let Part { near, .. } = self;
-        let received = near.slots.iter().flat_map(|[_, receive]| receive);
-        let nodes = received.map(|&slot| blocks[(slot >> 16) as usize].cells.nodes[(slot & 0xffff) as usize]);
+        let Part { plan, everywhere, .. } = self;
+        let received = plan.slots.iter().flat_map(|[_, receive]| receive);
+        let nodes = received.map(|&slot| blocks[slot.block()].cells.nodes[slot.local()]);
         Share {
             blocks: self.own().len(),
-            nodes: near.runs.iter().flatten().map(Range::len).sum(),
+            nodes: self.moved.iter().flatten().map(Range::len).sum(),
             shared_nodes: nodes.collect::<BTreeSet<u32>>().len(),
-            bytes: near.messages.iter().map(|message| size_of_val(&message.send[..])).sum(),
+            bytes: plan.messages.iter().map(|message| size_of_val(&message.send[..])).sum::<usize>()
+                + 3 * size_of::<f64>() * everywhere.nodes[self.exchange.rank()].len(),
         }
     }
 
@@ -164,7 +178,7 @@ impl Part {
 
     /// The rank whose block this is.
     pub(crate) fn rank_of(&self, block: usize) -> usize {
-        self.first.partition_point(|&first| first <= block) - 1
+        rank_of(&self.first, block)
     }
 
     /// The edges that all ranks name, rank after rank.
@@ -199,19 +213,16 @@ impl Part {
 
     /// Tells all ranks displacements and velocities of all nodes.
     pub(crate) fn tell_nodes(&mut self, displacement: &mut [Vec3], velocity: &mut [Vec3]) {
-        if std::mem::replace(&mut self.is_whole, true) {
-            return;
+        if !std::mem::replace(&mut self.is_whole, true) {
+            self.all.tell(&*self.exchange, displacement);
+            self.all.tell(&*self.exchange, velocity);
         }
-        let rank = self.exchange.rank();
-        let of = |&node: &u32| [displacement[node as usize], velocity[node as usize]];
-        let own: Vec<f64> = self.told[rank].iter().flat_map(of).flat_map(<[f64; 3]>::from).collect();
-        let counts: Vec<usize> = self.told.iter().map(|nodes| 6 * nodes.len()).collect();
-        let mut all = vec![0.0; counts.iter().sum()];
-        self.exchange.gather(&own, &counts, &mut all);
-        for (&node, from) in self.told.iter().flatten().zip(all.chunks_exact(6)) {
-            displacement[node as usize] = Vec3::new(from[0], from[1], from[2]);
-            velocity[node as usize] = Vec3::new(from[3], from[4], from[5]);
-        }
+    }
+
+    /// Tells all ranks the forces on the nodes that they move beside their own, once each has those on its own.
+    pub(crate) fn tell_forces(&mut self, force: &mut [Vec3]) {
+        let told = if self.is_all { &mut self.all } else { &mut self.everywhere };
+        told.tell(&*self.exchange, force);
     }
 
     /// Tells all ranks energies and histories of all cells.
@@ -226,42 +237,99 @@ impl Part {
         }
     }
 
+    /// Tells all ranks a value of every node, once each has those of its own blocks.
+    pub(crate) fn tell_all(&mut self, values: &mut [Vec3]) {
+        self.all.tell(&*self.exchange, values);
+    }
+
+    /// Gets the sums of the blocks of others at the nodes of its own.
     pub(crate) fn swap_sums(&mut self, blocks: &mut [Block]) {
-        let plan = if self.is_all { &mut self.all } else { &mut self.near };
-        for (message, [send, _]) in plan.messages.iter_mut().zip(&plan.slots) {
-            for (to, &slot) in message.send.chunks_exact_mut(3).zip(send) {
-                to.copy_from_slice(&blocks[(slot >> 16) as usize].forces()[(slot & 0xffff) as usize].0[..3]);
+        let Plan { messages, slots, .. } = &mut self.plan;
+        for (message, [send, _]) in messages.iter_mut().zip(&*slots) {
+            for (to, slot) in message.send.chunks_exact_mut(3).zip(send) {
+                to.copy_from_slice(&blocks[slot.block()].forces()[slot.local()].0[..3]);
             }
         }
-        self.exchange.swap(&mut plan.messages);
-        for (message, [_, receive]) in plan.messages.iter().zip(&plan.slots) {
-            for (from, &slot) in message.receive.chunks_exact(3).zip(receive) {
-                blocks[(slot >> 16) as usize].scratch.force[(slot & 0xffff) as usize].0[..3].copy_from_slice(from);
+        self.exchange.swap(messages);
+        for (message, [_, receive]) in messages.iter().zip(&*slots) {
+            for (from, slot) in message.receive.chunks_exact(3).zip(receive) {
+                let scratch = blocks[slot.block()].scratch.as_mut();
+                let force = &mut scratch.expect("kept, since this rank has nodes of the block").force;
+                force[slot.local()].0[..3].copy_from_slice(from);
             }
+        }
+    }
+
+    /// Lets go of what only the rank needs that evaluates a block: cells, and sums at nodes that this rank does not have.
+    pub(crate) fn keep_own(&self, blocks: &mut [Block]) {
+        let near: BTreeSet<usize> =
+            self.plan.slots.iter().flat_map(|[_, receive]| receive).map(|slot| slot.block()).collect();
+        let own = self.own();
+        for (index, block) in blocks.iter_mut().enumerate().filter(|(index, _)| !own.contains(index)) {
+            let nodes = std::mem::take(&mut block.cells.nodes);
+            block.cells = Cells { nodes, ..Cells::default() };
+            block.viscous.forget();
+            block.scratch.take_if(|_| !near.contains(&index));
         }
     }
 }
 
 impl Plan {
     /// - `first`: as in [`Part`]
-    /// - `moved`: which nodes each rank moves
-    fn new(slots: &NodeSlots, first: &[usize], me: usize, moved: &[Vec<bool>]) -> Self {
-        let count = moved[me].len();
-        let is_of = |rank: usize, slot: u32| (first[rank]..first[rank + 1]).contains(&((slot >> 16) as usize));
-        let between = |from: usize, to: usize| -> Vec<u32> {
-            let nodes = (0..count).filter(|&node| moved[to][node]);
-            nodes.flat_map(|node| slots.of(node)).copied().filter(|&slot| is_of(from, slot)).collect()
-        };
-        let (mut messages, mut all) = (Vec::new(), Vec::new());
-        for rank in (0..moved.len()).filter(|&rank| rank != me) {
-            let (send, receive) = (between(me, rank), between(rank, me));
-            if !send.is_empty() || !receive.is_empty() {
-                let [for_it, from_it] = [&send, &receive].map(|slots| vec![0.0; 3 * slots.len()]);
-                messages.push(Message { rank, send: for_it, receive: from_it });
-                all.push([send, receive]);
+    fn new(slots: &NodeSlots, first: &[usize], me: usize) -> Self {
+        let mut between = BTreeMap::<usize, [Vec<Slot>; 2]>::new();
+        let mut is_own = vec![false; slots.len()];
+        for (node, is_own) in is_own.iter_mut().enumerate() {
+            let (own, others): (Vec<Slot>, Vec<Slot>) =
+                slots.of(node).partition(|slot| rank_of(first, slot.block()) == me);
+            *is_own = !own.is_empty();
+            if own.is_empty() {
+                continue;
+            }
+            for of_rank in others.chunk_by(|a, b| rank_of(first, a.block()) == rank_of(first, b.block())) {
+                let [send, receive] = between.entry(rank_of(first, of_rank[0].block())).or_default();
+                send.extend(&own);
+                receive.extend(of_rank);
             }
         }
-        Plan { messages, slots: all, runs: moved[me].chunks(CHUNK).map(runs_of).collect() }
+        let message = |(&rank, slots): (&usize, &[Vec<Slot>; 2])| {
+            let [send, receive] = slots.each_ref().map(|slots| vec![0.0; 3 * slots.len()]);
+            Message { rank, send, receive }
+        };
+        Plan {
+            messages: between.iter().map(message).collect(),
+            slots: between.into_values().collect(),
+            runs: is_own.chunks(CHUNK).map(runs_of).collect(),
+        }
+    }
+}
+
+impl Told {
+    /// - `first`: as in [`Part`]
+    fn new(slots: &NodeSlots, first: &[usize], nodes: &mut dyn Iterator<Item = u32>) -> Self {
+        let mut of_rank = vec![Vec::new(); first.len() - 1];
+        for node in nodes {
+            let slot = slots.of(node as usize).next().expect("a node has mass, and so a cell");
+            of_rank[rank_of(first, slot.block())].push(node);
+        }
+        let counts = of_rank.iter().map(|nodes| 3 * nodes.len()).collect();
+        Told { nodes: of_rank, counts, own: Vec::new(), all: Vec::new() }
+    }
+
+    /// Gives every rank the values at these nodes.
+    fn tell(&mut self, exchange: &dyn Exchange, values: &mut [Vec3]) {
+        let Told { nodes, counts, own, all } = self;
+        let total = counts.iter().sum();
+        if total == 0 {
+            return;
+        }
+        own.clear();
+        own.extend(nodes[exchange.rank()].iter().flat_map(|&node| <[f64; 3]>::from(values[node as usize])));
+        all.resize(total, 0.0);
+        exchange.gather(own, counts, all);
+        for (&node, from) in nodes.iter().flatten().zip(all.chunks_exact(3)) {
+            values[node as usize] = Vec3::new(from[0], from[1], from[2]);
+        }
     }
 }
 
@@ -314,6 +382,11 @@ fn record(block: &Block) -> [f64; RECORD] {
         if field.fresh.is_empty() { woken } else { woken + BROKEN }
     });
     [block.viscous_power, block.viscous.shock, block.inverted.map_or(-1.0, |cell| cell as f64), edges]
+}
+
+/// The rank of a block, by the first blocks of all.
+fn rank_of(first: &[usize], block: usize) -> usize {
+    first.partition_point(|&first| first <= block) - 1
 }
 
 /// First block of each rank, and the end: runs of about the same weight.

@@ -40,6 +40,7 @@ impl Solid {
                 continue;
             }
             let touched = self.cells_around(body, &elements);
+            self.bring_cells(&touched);
             let stored: Vec<f64> = touched.iter().map(|&cell| self.stored_energy(cell)).collect();
             energy += self.step_energy(dt, &touched);
             self.forget_ahead();
@@ -133,7 +134,7 @@ impl Solid {
         if model.body.formulation == Formulation::Standard {
             for &element in elements {
                 let (block, cell) = model.location[element as usize];
-                blocks[block as usize].cells.volume[cell as usize] = 0.0;
+                blocks[block as usize].cells.volume.get_mut(cell as usize).into_iter().for_each(|volume| *volume = 0.0);
             }
             if model.phase.is_some() {
                 self.refresh_phase(body, &touched_edges(&self.bodies[body], elements));
@@ -146,6 +147,9 @@ impl Solid {
         for &edge in &touched {
             let (block, cell) = model.location[edge as usize];
             let cells = &mut blocks[block as usize].cells;
+            if cells.len() == 0 {
+                continue; // another rank has it
+            }
             nodes.clear();
             // Copies lie where their nodes do.
             let original = |node: usize| node.checked_sub(reference.len()).map_or(node as u32, |copy| copies[copy]);
@@ -217,12 +221,8 @@ impl Solid {
 impl Block {
     /// Elastic strain of one cell at the present displacements.
     pub(crate) fn strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
-        self.cells.elastic_strain(cell, self.total_strain_of(cell, kinematics, displacement))
-    }
-
-    /// Strain of one cell at the present displacements, whether stress or temperature makes it.
-    pub(crate) fn total_strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
-        kernel::strain(&self.cells.gradient(cell, |node| displacement[node]), kinematics)
+        let cells = &self.cells;
+        cells.elastic_strain(cell, kernel::strain(&cells.gradient(cell, |node| displacement[node]), kinematics))
     }
 
     /// Stress of one cell with its damage [Pa].

@@ -1,11 +1,15 @@
 //! A solid of which several ranks advance a share each, see [`crate::part`].
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
+use fractum_math::Vec3;
 use fractum_parallel::Exchange;
 
+use crate::block::Cells;
 use crate::body::Kinematics;
+use crate::cell::Geometry;
 use crate::part::{Part, Share};
 use crate::solid::{BodyModel, Solid};
 
@@ -19,15 +23,20 @@ impl Solid {
             let can_break = model.body.damage.is_some();
             can_break || model.viscosity.is_some() || model.body.kinematics == Kinematics::Corotational
         });
-        let mut part = Part::new(exchange, &self.blocks, &self.slots, everywhere, needs_records);
+        let mut part = self.part.take().unwrap_or_else(|| Box::new(Part::new(exchange, &self.blocks, &self.slots)));
+        part.begin_stage(&self.slots, everywhere, needs_records);
         // Edges of the standard formulation gather stresses of elements, which every rank finds of all nodes.
-        part.always_all = all || self.bodies.iter().any(|model| model.standard.is_some());
+        let is_whole = self.bodies.iter().any(|model| model.standard.is_some());
+        part.always_all = all || is_whole;
+        if !is_whole {
+            part.keep_own(&mut self.blocks);
+        }
         for model in self.bodies.iter_mut().filter(|model| model.standard.is_none()) {
             let BodyModel { phase, location, .. } = model;
             let rank_of = |edge: u32| part.rank_of(location[edge as usize].0 as usize) as u32;
             phase.iter_mut().for_each(|field| field.share_out(part.exchange(), rank_of));
         }
-        self.part = Some(Box::new(part));
+        self.part = Some(part);
     }
 
     /// Rank whose cell an edge is; 0 where each rank finds all edges of the body.
@@ -59,6 +68,27 @@ impl Solid {
         Some(self.part.as_ref()?.share(&self.blocks))
     }
 
+    /// The geometry of a cell (block, number), with its number there: by itself where this process does not keep its block.
+    pub(crate) fn cells_with(&self, (block, cell): (u32, u32)) -> (Cow<'_, Cells>, usize) {
+        let block = &self.blocks[block as usize];
+        let cell = cell as usize;
+        if cell < block.cells.len() {
+            return (Cow::Borrowed(&block.cells), cell);
+        }
+        (Cow::Owned(self.bodies[block.body].cells(&self.reference, &block.items[cell..=cell])), 0)
+    }
+
+    /// Brings back the cells of these blocks where this process does not keep them; it keeps them from now on.
+    pub(crate) fn bring_cells(&mut self, cells: &[(u32, u32)]) {
+        let Solid { blocks, bodies, reference, .. } = self;
+        for &(block, _) in cells {
+            let block = &mut blocks[block as usize];
+            if block.cells.len() == 0 {
+                block.cells = bodies[block.body].cells(reference, &block.items);
+            }
+        }
+    }
+
     /// Blocks whose cells this process evaluates.
     pub(crate) fn own_blocks(&self) -> Range<usize> {
         self.part.as_ref().map_or(0..self.blocks.len(), |part| part.own())
@@ -86,5 +116,13 @@ impl Solid {
     /// After a step: what is known of the nodes of others.
     pub(crate) fn note_motion(&mut self) {
         self.part.iter_mut().for_each(|part| part.is_whole = part.is_all);
+    }
+}
+
+impl BodyModel {
+    /// Cells of some items of the body (elements, or edges if smoothed), of the elements that are there.
+    fn cells(&self, nodes: &[Vec3], items: &[u32]) -> Cells {
+        let edges = self.smoothed_edges().map(|edges| (edges, &self.elements_of_edge));
+        Geometry { body: &self.body, nodes }.cells(items, edges, |element| self.alive[element as usize])
     }
 }

@@ -8,6 +8,7 @@ use crate::cell::Geometry;
 use crate::damage::EdgeField;
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
+use crate::kernel;
 use crate::material::{Wave, rayleigh_wave_speed};
 use crate::part::Part;
 use crate::subcycling::Subcycling;
@@ -50,7 +51,7 @@ impl Solid {
     /// - `nodes`: reference positions [m]
     ///
     /// # Errors
-    /// [`SolidError`] for elements without volume or too large for their fracture energy, for massless nodes, and beyond some 110 million smoothed tetrahedra.
+    /// [`SolidError`] for elements without volume or too large for their fracture energy, for massless nodes, and beyond some 7 billion smoothed tetrahedra.
     pub fn new(nodes: Vec<Vec3>, bodies: Vec<Body>) -> Result<Self, SolidError> {
         Solid::with_fine(nodes, bodies, &[])
     }
@@ -145,11 +146,19 @@ impl Solid {
 
     /// Sums the forces of the blocks on each node.
     pub(crate) fn gather_forces(&mut self) {
-        let Solid { force, blocks, slots, part, .. } = self;
+        let mut force = std::mem::take(&mut self.force);
+        self.sum_blocks(&mut force);
+        self.part.iter_mut().for_each(|part| part.tell_forces(&mut force));
+        self.force = force;
+    }
+
+    /// The same into `force`; of several ranks each has those on the nodes of its blocks then.
+    pub(crate) fn sum_blocks(&self, force: &mut [Vec3]) {
+        let Solid { blocks, slots, part, .. } = self;
         let sum = |node: usize| slots.gather(node, |block| blocks[block].forces());
         if let Some(part) = part {
             force.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, force)| {
-                for run in part.runs(chunk) {
+                for run in part.pushed(chunk) {
                     run.clone().for_each(|i| force[i] = sum(chunk * CHUNK + i));
                 }
             });
@@ -301,9 +310,9 @@ impl Solid {
     /// Strain of every element of a body [-], that of thermal expansion included: the mean over its edges where it is smoothed.
     pub fn element_strains(&self, index: usize) -> Vec<Sym3> {
         let model = &self.bodies[index];
-        let strain = |&(block, cell): &(u32, u32)| {
-            let (block, kinematics) = (&self.blocks[block as usize], model.body.kinematics);
-            (block.total_strain_of(cell as usize, kinematics, &self.displacement), 0.0)
+        let strain = |&at: &(u32, u32)| {
+            let (cells, cell) = self.cells_with(at);
+            (kernel::strain(&cells.gradient(cell, |node| self.displacement[node]), model.body.kinematics), 0.0)
         };
         self.means(model, strain).into_iter().map(|(strain, _)| strain).collect()
     }
@@ -349,9 +358,11 @@ impl Solid {
         model.alive.iter().enumerate().map(of_element).collect()
     }
 
-    fn cell_field(&self, model: &BodyModel, &(block, cell): &(u32, u32)) -> (Sym3, f64) {
-        let (block, cell) = (&self.blocks[block as usize], cell as usize);
-        let strain = block.strain_of(cell, model.body.kinematics, &self.displacement);
+    fn cell_field(&self, model: &BodyModel, &at: &(u32, u32)) -> (Sym3, f64) {
+        let (cells, place) = self.cells_with(at);
+        let strain = kernel::strain(&cells.gradient(place, |node| self.displacement[node]), model.body.kinematics);
+        let strain = cells.elastic_strain(place, strain);
+        let (block, cell) = (&self.blocks[at.0 as usize], at.1 as usize);
         (block.nominal_stress(cell, &model.hooke, strain), block.damage_of(cell))
     }
 
@@ -365,7 +376,7 @@ impl Solid {
 
 impl BodyModel {
     /// Edges that hold the strain of the body; none where its elements do.
-    fn smoothed_edges(&self) -> Option<&BodyEdges> {
+    pub(crate) fn smoothed_edges(&self) -> Option<&BodyEdges> {
         self.edges.as_ref().filter(|_| self.body.formulation == Formulation::Smoothed)
     }
 

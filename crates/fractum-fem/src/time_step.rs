@@ -100,11 +100,15 @@ impl Solid {
     fn scaled_stiffness(&mut self, q: &[Vec3], root: &[f64]) -> Vec<Vec3> {
         self.forget_ahead(); // it shares the memory of forces
         let field: Vec<Vec3> = q.par_iter().zip(root).map(|(v, r)| v * *r).collect();
-        let Solid { blocks, bodies, .. } = self;
-        blocks.par_iter_mut().for_each(|block| block.evaluate_elastic(&bodies[block.body], &field));
-        let Solid { slots, blocks, .. } = self;
-        let force = |i: usize| slots.gather(i, |block| blocks[block].forces()) * -root[i];
-        (0..q.len()).into_par_iter().map(force).collect()
+        let own = self.own_blocks();
+        let Solid { blocks, bodies, part, .. } = self;
+        blocks[own].par_iter_mut().for_each(|block| block.evaluate_elastic(&bodies[block.body], &field));
+        part.iter_mut().for_each(|part| part.swap_sums(blocks));
+        let mut force = field;
+        self.sum_blocks(&mut force);
+        self.part.iter_mut().for_each(|part| part.tell_all(&mut force));
+        force.par_iter_mut().zip(root).for_each(|(force, root)| *force *= -root);
+        force
     }
 }
 

@@ -65,6 +65,11 @@ impl ViscousCells {
         ViscousCells { stress: vec![Sym3::ZERO; volumes.len()], length, shock: 0.0 }
     }
 
+    /// Lets go of what only those need who evaluate the cells.
+    pub(crate) fn forget(&mut self) {
+        (self.stress, self.length) = Default::default();
+    }
+
     pub(crate) fn begin_step(&mut self) {
         self.shock = 0.0;
     }
