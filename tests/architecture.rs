@@ -22,7 +22,7 @@ const ARROWS: [(&str, &[&str]); 15] = [
     ("fractum-gas", &["math"]),
     ("fractum-heat", &["math", "sparse"]),
     ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse", "gas", "heat", "parallel"]),
-    ("fractum-io", &["math", "mesh", "fem", "dem", "pack", "scene"]),
+    ("fractum-io", &["math", "mesh", "fem", "dem", "pack", "scene", "parallel"]),
     ("fractum-prepare", &["math", "mesh", "dem", "pack", "calibrate", "scene", "io"]),
     ("fractum", &["math", "mesh", "fem", "dem", "pack", "calibrate", "scene", "io", "prepare", "parallel"]),
 ];

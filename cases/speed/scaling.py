@@ -26,8 +26,8 @@ from table import run
 BLOCK_CELLS, BLOCK_NODES = 2048, 1024
 BYTES_PER_SUM = 24  # three numbers for each block that has a node
 BYTES_PER_BLOCK = 32  # four numbers of each block, where something may break
-BYTES_PER_NODE = 48  # displacement and velocity
-MOST_BLOCKS = 65536  # the program numbers blocks with 16 bits
+BYTES_PER_FORCE = 24  # on a node that every process moves
+BYTES_PER_NODE = 72  # displacement, velocity and force
 BITS = 20
 WAYS = ((1, 2, 4), (1, 4, 2), (2, 1, 4), (2, 4, 1), (4, 1, 2), (4, 2, 1))
 
@@ -71,12 +71,10 @@ class Counts(NamedTuple):
     """What the process with most of it has, each by itself."""
 
     blocks: int  # of all processes
-    slots: int  # nodes of blocks, of all processes
     neighbours: int
     nodes: int  # on the boundary of a share
     sums: int  # sent or received for them
-    face_sums: int  # of its own blocks, at nodes of the loaded face, which every process moves
-    all_face_sums: int  # of all processes
+    face_nodes: int  # of the loaded face, which every process moves
     log: str  # as process 0 has it in run.log
 
 
@@ -117,10 +115,9 @@ def print_table(options, cells, compute, memory, networks):
         work = times[0].compute
         cut = lambda *parts: ", ".join(f"{100 * work / (work + sum(getattr(of, part) for part in parts)):.0f} %" for of in times)
         exchange = ", ".join(f"{1e3 * of.exchange:.2f}" for of in times)
-        over = " (too many blocks)" if found.blocks > MOST_BLOCKS else ""
         print(f"| {ranks:,} | {found.neighbours} | {found.nodes:,} | {1e-3 * BYTES_PER_SUM * found.sums:,.0f} | {1e3 * work:.1f} | {exchange}"
               f" | {cut('exchange')} | {cut('exchange', 'faces')} | {cut('exchange', 'faces', 'records')}"
-              f" | {1e-9 * memory * cells * ranks:,.2f}{over} |", flush=True)
+              f" | {1e-9 * cells * (memory.shared + memory.all * ranks):,.2f} |", flush=True)
     ranks = options.ranks[-1]
     whole = [step_times(scaled_counts(ranks, cells, options.largest), ranks, cells, compute, network) for network in networks]
     rows, removals = (", ".join(f"{1e3 * getattr(of, part):,.0f}" for of in whole) for part in ("row", "removal"))
@@ -132,8 +129,8 @@ class Times(NamedTuple):
     exchange: float  # of the nodes on the boundary, and the word that all processes tell each other
     faces: float  # of the nodes of the loaded face, which every process moves
     records: float  # of what is told of every block
-    row: float  # of displacements and velocities of all nodes
-    removal: float  # of the sums of all nodes
+    row: float  # of displacements, velocities and forces of all nodes
+    removal: float  # of the forces on all nodes
 
 
 def step_times(found, ranks, cells, compute, network):
@@ -142,18 +139,13 @@ def step_times(found, ranks, cells, compute, network):
         return Times(cells * compute, *[0.0] * 5)
     send = lambda messages, size: messages * network.latency + size / network.bandwidth
     tree = math.ceil(math.log2(ranks))
-    others = ranks - 1
-    # A process with a part of a face sends it to each of the others, and gets the rest of the face.
-    face = max(others * found.face_sums, found.all_face_sums - found.face_sums)
-    # In full: every process gets the sums of all, and sends its own to each of the others.
-    full = max(others * found.slots // ranks, found.slots - found.slots // ranks)
     return Times(
         compute=cells * compute,
         exchange=send(found.neighbours, BYTES_PER_SUM * found.sums) + send(tree, 8 * tree),
-        faces=send(max(others - found.neighbours, 0), BYTES_PER_SUM * face),
+        faces=send(tree, BYTES_PER_FORCE * found.face_nodes),
         records=send(tree, BYTES_PER_BLOCK * found.blocks),
         row=send(tree, BYTES_PER_NODE * cells * ranks / 6),
-        removal=send(others, BYTES_PER_SUM * full),
+        removal=send(tree, BYTES_PER_FORCE * cells * ranks / 6),
     )
 
 
@@ -172,11 +164,9 @@ def scaled_counts(ranks, cells, largest, most=100):
     volume = cells * ranks / (6 * n**3)
     return found._replace(
         blocks=round(found.blocks * volume),
-        slots=round(found.slots * volume),
         nodes=round(found.nodes * surface),
         sums=round(found.sums * surface),
-        face_sums=round(found.face_sums * surface),
-        all_face_sums=round(found.all_face_sums * volume ** (2 / 3)),
+        face_nodes=round(found.face_nodes * volume ** (2 / 3)),
     )
 
 
@@ -210,21 +200,17 @@ def count_cube(n, ranks):
         same = node[apart:] == node[:-apart]
         pairs += [rank[apart:][same] * ranks + rank[:-apart][same], rank[:-apart][same] * ranks + rank[apart:][same]]
     neighbours = np.bincount(np.unique(np.concatenate(pairs)) // ranks, minlength=ranks)
-    face = node_of_slot // (n + 1) ** 2 == n
-    face_sums = np.bincount(rank_of_slot[face], minlength=ranks)
-    # Process 0 of the case of ranks.py: all nodes of the loaded face are moved by every process, those of the held one by the processes around them.
+    on_face = np.arange(count) // (n + 1) ** 2 == n
+    # Process 0 of the case of ranks.py: all nodes of the loaded face are moved by every process, those of the held one by the processes around them. It
+    # tells the forces on nodes of the face that it has.
     mine = rank_of_slot == 0
-    moved = np.zeros(count, bool)
-    moved[node_of_slot[mine]] = True
-    on_face = np.zeros(count, bool)
-    on_face[node_of_slot[face]] = True
+    own = np.zeros(count, bool)
+    own[node_of_slot[mine]] = True
     by_others = np.zeros(count, bool)
     by_others[node_of_slot[~mine]] = True
-    told = np.where(on_face[node_of_slot], ranks - 1, others)[mine].sum()
-    moved |= on_face
-    log = f"process 0 of {ranks}: {first[1]} blocks, {moved.sum()} nodes, {(moved & by_others).sum()} shared, {BYTES_PER_SUM * told} bytes"
-    return Counts(int(first[-1]), len(node_of_slot), int(neighbours.max()), int(nodes.max()), int(max(sent.max(), received.max())),
-                  int(face_sums.max()), int(face_sums.sum()), log)
+    told = BYTES_PER_SUM * others[mine].sum() + BYTES_PER_FORCE * (own & on_face).sum()
+    log = f"process 0 of {ranks}: {first[1]} blocks, {(own | on_face).sum()} nodes, {(own & by_others).sum()} shared, {told} bytes"
+    return Counts(int(first[-1]), int(neighbours.max()), int(nodes.max()), int(max(sent.max(), received.max())), int(on_face.sum()), log)
 
 
 def divide(n, ranks):

@@ -4,10 +4,10 @@ use std::sync::{Arc, OnceLock};
 
 use fractum_math::{Ragged, Vec3};
 
-use crate::block::{Cells, Scratch};
+use crate::block::Cells;
 use crate::body::{Body, BodyEdges, Formulation};
 use crate::body_model::BodyModel;
-use crate::cell::{Class, Geometry};
+use crate::cell::{Bundle, Class, Geometry};
 use crate::damage::{EdgeField, Softens};
 use crate::edges_in_step::EdgeCells;
 use crate::error::SolidError;
@@ -19,7 +19,7 @@ use crate::threshold::Threshold;
 use crate::viscosity::ViscousCells;
 
 impl BodyModel {
-    /// The body with its blocks; `first_block` is the index that its first block will have.
+    /// The body with its blocks, whose cells have no geometry yet; `first_block` is the index that its first block will have.
     ///
     /// - `fine`: elements that take shorter steps; empty where all take the same
     pub(crate) fn new(
@@ -50,22 +50,23 @@ impl BodyModel {
             elements_of_edge: &elements_of_edge,
             fine,
         };
-        let cells = of_body.blocks(|edge| threshold.as_ref().is_some_and(|t| t.strength[edge as usize].is_finite()));
+        let bundles = of_body.blocks(|edge| threshold.as_ref().is_some_and(|t| t.strength[edge as usize].is_finite()));
         let mut location = vec![(0, 0); if smoothed { edge_count } else { body.elements.len() }];
-        let mut blocks = Vec::with_capacity(cells.len());
-        for (cells, items) in cells {
+        let mut blocks = Vec::with_capacity(bundles.len());
+        for Bundle { items, nodes, gradients } in bundles {
             for (cell, &item) in items.iter().enumerate() {
                 location[item as usize] = ((first_block + blocks.len()) as u32, cell as u32);
             }
             let law = block_law(smoothed, softens.as_ref().zip(threshold.as_ref()), &items);
             let is_fine = of_body.is_fine(items[0]);
-            let (scratch, viscous, inverted) = (Some(Scratch::new()), ViscousCells::default(), None);
+            let (cells, viscous, inverted) = (Cells { nodes, ..Cells::default() }, ViscousCells::default(), None);
             blocks.push(Block {
                 body: index,
                 cells,
                 items,
                 law,
-                scratch,
+                scratch: None,
+                gradients,
                 viscous_power: 0.0,
                 viscous,
                 inverted,
@@ -136,10 +137,10 @@ impl CellsOfBody<'_> {
         }
     }
 
-    /// Blocks of cells, and the items that these are.
+    /// Cells in blocks.
     ///
     /// - `breaks`: whether an edge may be damaged
-    fn blocks(&self, breaks: impl Fn(u32) -> bool) -> Vec<(Cells, Vec<u32>)> {
+    fn blocks(&self, breaks: impl Fn(u32) -> bool) -> Vec<Bundle> {
         match self.edges {
             Some(edges) => self.geometry.edge_blocks(edges, self.elements_of_edge, |edge| Class {
                 is_fine: self.is_fine(edge),

@@ -137,8 +137,8 @@ impl Geometry<'_> {
         volume
     }
 
-    /// Blocks of element cells, and the element of each cell; see [`Class`].
-    pub(crate) fn element_blocks(&self, class: impl Fn(u32) -> Class) -> Vec<(Cells, Vec<u32>)> {
+    /// Blocks of element cells; see [`Class`].
+    pub(crate) fn element_blocks(&self, class: impl Fn(u32) -> Class) -> Vec<Bundle> {
         let centres: Vec<Vec3> = (0..self.body.elements.len())
             .into_par_iter()
             .map(|e| self.element_nodes(e).iter().map(|&n| self.nodes[n as usize]).sum::<Vec3>())
@@ -147,32 +147,40 @@ impl Geometry<'_> {
         chunks(&groups)
             .into_par_iter()
             .flat_map(|items| split_to_fit(items, |element| self.row(element, None)))
-            .map(|items| (self.cells(&items, None, |_| true), items))
             .collect()
     }
 
-    /// Blocks of edge cells, and the edge of each cell; see [`Class`].
+    /// Blocks of edge cells; see [`Class`].
     pub(crate) fn edge_blocks(
         &self,
         edges: &BodyEdges,
         elements_of_edge: &Ragged,
         class: impl Fn(u32) -> Class,
-    ) -> Vec<(Cells, Vec<u32>)> {
+    ) -> Vec<Bundle> {
         let middles: Vec<Vec3> =
             edges.nodes.par_iter().map(|&[i, j]| self.nodes[i as usize] + self.nodes[j as usize]).collect();
         let groups = by_class(fractum_mesh::renumber::hilbert_order(&middles), class);
-        let edges = Some((edges, elements_of_edge));
-        let row = |edge: u32| self.row(edge, edges);
+        let row = |edge: u32| self.row(edge, Some((edges, elements_of_edge)));
         chunks(&groups)
             .into_par_iter()
             .flat_map(|items| split_to_fit(items, row))
-            .map(|mut items| {
+            .map(|mut bundle| {
                 // Cells of one size side by side: the loops over their nodes become predictable.
-                items.sort_by_cached_key(|&edge| (row(edge).len(), edge));
-                (self.cells(&items, edges, |_| true), items)
+                bundle.items.sort_by_cached_key(|&edge| (row(edge).len(), edge));
+                bundle
             })
             .collect()
     }
+}
+
+/// The cells of a block before they have a geometry.
+pub(crate) struct Bundle {
+    /// Elements or edges.
+    pub(crate) items: Vec<u32>,
+    /// Nodes that they touch, ascending.
+    pub(crate) nodes: Vec<u32>,
+    /// Gradients of all cells.
+    pub(crate) gradients: usize,
 }
 
 /// Items of each class, in the order that they have.
@@ -192,15 +200,19 @@ fn chunks(groups: &BTreeMap<Class, Vec<u32>>) -> Vec<&[u32]> {
 }
 
 /// Halves a run of cells until each part touches at most [`BLOCK_NODES`] nodes.
-fn split_to_fit(items: &[u32], row: impl Fn(u32) -> Vec<u32> + Copy) -> Vec<Vec<u32>> {
+fn split_to_fit(items: &[u32], row: impl Fn(u32) -> Vec<u32> + Copy) -> Vec<Bundle> {
     let mut nodes: Vec<u32> = items.iter().flat_map(|&item| row(item)).collect();
+    let gradients = nodes.len() - items.len();
     nodes.sort_unstable();
     nodes.dedup();
     if nodes.len() <= BLOCK_NODES || items.len() == 1 {
-        return vec![items.to_vec()];
+        nodes.shrink_to_fit();
+        return vec![Bundle { items: items.to_vec(), nodes, gradients }];
     }
     let (left, right) = items.split_at(items.len() / 2);
-    [split_to_fit(left, row), split_to_fit(right, row)].concat()
+    let mut bundles = split_to_fit(left, row);
+    bundles.extend(split_to_fit(right, row));
+    bundles
 }
 
 /// Lays out the cells of a block; `fill` returns the volume of a cell and writes its gradients.

@@ -26,6 +26,8 @@ pub(crate) struct Block {
     pub(crate) cells: Cells,
     /// The element or edge of the body that each cell stands for.
     pub(crate) items: Vec<u32>,
+    /// Gradients of all its cells: what its evaluation costs.
+    pub(crate) gradients: usize,
     pub(crate) law: BlockLaw,
     /// Its part of the step; none where this process neither evaluates it nor needs its forces.
     pub(crate) scratch: Option<Scratch>,
@@ -169,6 +171,17 @@ impl Block {
             BlockLaw::Edges(law) => law.field.state[cell].damage,
             BlockLaw::Standard(law) => law.damage[cell],
         }
+    }
+
+    /// Bytes of its cells, their forces and viscous stresses.
+    pub(crate) fn memory(&self) -> usize {
+        let Cells { starts, local, gradients, volume, .. } = &self.cells;
+        let cells = size_of_val(&starts[..]) + size_of_val(&local[..]) + size_of_val(&gradients[..]);
+        let scratch = self
+            .scratch
+            .as_ref()
+            .map_or(0, |scratch| size_of_val(&*scratch.displacement) * (2 + usize::from(scratch.velocity.is_some())));
+        cells + size_of_val(&volume[..]) + size_of_val(&self.viscous.stress[..]) + scratch
     }
 
     /// Force sums of the block, one per local node.

@@ -56,6 +56,10 @@ pub struct Share {
     pub shared_nodes: usize,
     /// Bytes of the sums that it sends.
     pub bytes: usize,
+    /// Bytes of cells, their forces and viscous stresses that it keeps.
+    pub memory: usize,
+    /// Whether it keeps those of all ranks.
+    pub keeps_all: bool,
 }
 
 /// Who sends which sums to whom.
@@ -64,6 +68,8 @@ struct Plan {
     messages: Vec<Message>,
     /// Slots to send and to receive, message by message; three numbers each.
     slots: Vec<[Vec<Slot>; 2]>,
+    /// Which blocks have sums that others wait for.
+    is_outer: Vec<bool>,
     /// Nodes of the blocks of this rank, in runs of each chunk, counted from its first.
     runs: Vec<Vec<Range<usize>>>,
 }
@@ -98,7 +104,7 @@ struct BlockShare {
 impl Part {
     /// The share of a rank, by the blocks of all.
     pub(crate) fn new(exchange: Arc<dyn Exchange>, blocks: &[Block], slots: &NodeSlots) -> Self {
-        let weights: Vec<usize> = blocks.iter().map(|block| block.cells.gradients.len().max(1)).collect();
+        let weights: Vec<usize> = blocks.iter().map(|block| block.gradients.max(1)).collect();
         let first = runs_of_blocks(&weights, exchange.size());
         Part {
             plan: Plan::new(slots, &first, exchange.rank()),
@@ -155,15 +161,21 @@ impl Part {
     /// What this rank does of the work.
     pub(crate) fn share(&self, blocks: &[Block]) -> Share {
         let Part { plan, everywhere, .. } = self;
-        let received = plan.slots.iter().flat_map(|[_, receive]| receive);
-        let nodes = received.map(|&slot| blocks[slot.block()].cells.nodes[slot.local()]);
+        let nodes = self.received().map(|slot| blocks[slot.block()].cells.nodes[slot.local()]);
         Share {
             blocks: self.own().len(),
             nodes: self.moved.iter().flatten().map(Range::len).sum(),
             shared_nodes: nodes.collect::<BTreeSet<u32>>().len(),
             bytes: plan.messages.iter().map(|message| size_of_val(&message.send[..])).sum::<usize>()
                 + 3 * size_of::<f64>() * everywhere.nodes[self.exchange.rank()].len(),
+            memory: blocks.iter().map(Block::memory).sum(),
+            keeps_all: self.exchange.size() > 1 && blocks.iter().all(|block| block.cells.len() > 0),
         }
+    }
+
+    /// Where the sums lie that this rank gets.
+    pub(crate) fn received(&self) -> impl Iterator<Item = Slot> + '_ {
+        self.plan.slots.iter().flat_map(|[_, receive]| receive).copied()
     }
 
     /// Blocks whose cells this process evaluates.
@@ -242,15 +254,23 @@ impl Part {
         self.all.tell(&*self.exchange, values);
     }
 
-    /// Gets the sums of the blocks of others at the nodes of its own.
-    pub(crate) fn swap_sums(&mut self, blocks: &mut [Block]) {
-        let Plan { messages, slots, .. } = &mut self.plan;
+    /// Has the blocks of this rank evaluated, and gets the sums of the blocks of others at its nodes. What others wait for comes first;
+    /// the rest is done while messages travel.
+    ///
+    /// - `evaluate`: of the blocks that it is told
+    pub(crate) fn swap_sums(
+        &mut self,
+        blocks: &mut [Block],
+        evaluate: impl Fn(&mut [Block], &(dyn Fn(usize) -> bool + Sync)),
+    ) {
+        let Part { exchange, plan: Plan { messages, slots, is_outer, .. }, .. } = self;
+        evaluate(blocks, &|block| is_outer[block]);
         for (message, [send, _]) in messages.iter_mut().zip(&*slots) {
             for (to, slot) in message.send.chunks_exact_mut(3).zip(send) {
                 to.copy_from_slice(&blocks[slot.block()].forces()[slot.local()].0[..3]);
             }
         }
-        self.exchange.swap(messages);
+        exchange.swap(messages, &mut || evaluate(blocks, &|block| !is_outer[block]));
         for (message, [_, receive]) in messages.iter().zip(&*slots) {
             for (from, slot) in message.receive.chunks_exact(3).zip(receive) {
                 let scratch = blocks[slot.block()].scratch.as_mut();
@@ -262,8 +282,7 @@ impl Part {
 
     /// Lets go of what only the rank needs that evaluates a block: cells, and sums at nodes that this rank does not have.
     pub(crate) fn keep_own(&self, blocks: &mut [Block]) {
-        let near: BTreeSet<usize> =
-            self.plan.slots.iter().flat_map(|[_, receive]| receive).map(|slot| slot.block()).collect();
+        let near: BTreeSet<usize> = self.received().map(Slot::block).collect();
         let own = self.own();
         for (index, block) in blocks.iter_mut().enumerate().filter(|(index, _)| !own.contains(index)) {
             let nodes = std::mem::take(&mut block.cells.nodes);
@@ -296,8 +315,11 @@ impl Plan {
             let [send, receive] = slots.each_ref().map(|slots| vec![0.0; 3 * slots.len()]);
             Message { rank, send, receive }
         };
+        let mut is_outer = vec![false; *first.last().expect("runs of blocks have an end")];
+        between.values().flat_map(|[send, _]| send).for_each(|slot| is_outer[slot.block()] = true);
         Plan {
             messages: between.iter().map(message).collect(),
+            is_outer,
             slots: between.into_values().collect(),
             runs: is_own.chunks(CHUNK).map(runs_of).collect(),
         }

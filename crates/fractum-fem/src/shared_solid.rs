@@ -6,10 +6,12 @@ use std::sync::Arc;
 
 use fractum_math::Vec3;
 use fractum_parallel::Exchange;
+use rayon::prelude::*;
 
-use crate::block::Cells;
+use crate::block::{Cells, Scratch};
 use crate::body::Kinematics;
 use crate::cell::Geometry;
+use crate::evaluate::Block;
 use crate::part::{Part, Share};
 use crate::solid::{BodyModel, Solid};
 
@@ -25,10 +27,8 @@ impl Solid {
         });
         let mut part = self.part.take().unwrap_or_else(|| Box::new(Part::new(exchange, &self.blocks, &self.slots)));
         part.begin_stage(&self.slots, everywhere, needs_records);
-        // Edges of the standard formulation gather stresses of elements, which every rank finds of all nodes.
-        let is_whole = self.bodies.iter().any(|model| model.standard.is_some());
-        part.always_all = all || is_whole;
-        if !is_whole {
+        part.always_all = all || self.needs_all_cells();
+        if !self.needs_all_cells() {
             part.keep_own(&mut self.blocks);
         }
         for model in self.bodies.iter_mut().filter(|model| model.standard.is_none()) {
@@ -37,6 +37,24 @@ impl Solid {
             phase.iter_mut().for_each(|field| field.share_out(part.exchange(), rank_of));
         }
         self.part = Some(part);
+    }
+
+    /// Whether every rank needs the cells of all: edges of the standard formulation gather stresses of elements, which every rank
+    /// finds of all nodes.
+    fn needs_all_cells(&self) -> bool {
+        self.bodies.iter().any(|model| model.standard.is_some())
+    }
+
+    /// Gives the cells that this process needs a geometry.
+    pub(crate) fn make_cells(&mut self) {
+        let own = if self.needs_all_cells() { 0..self.blocks.len() } else { self.own_blocks() };
+        let Solid { blocks, bodies, reference, part, .. } = self;
+        blocks[own].par_iter_mut().for_each(|block| {
+            block.cells = bodies[block.body].cells(reference, &block.items);
+            block.scratch = Some(Scratch::new());
+        });
+        let received = part.iter().flat_map(|part| part.received());
+        received.for_each(|slot| _ = blocks[slot.block()].scratch.get_or_insert_with(Scratch::new));
     }
 
     /// Rank whose cell an edge is; 0 where each rank finds all edges of the body.
@@ -94,10 +112,24 @@ impl Solid {
         self.part.as_ref().map_or(0..self.blocks.len(), |part| part.own())
     }
 
-    /// Gets the sums of the blocks of other ranks for the nodes that this one moves, once its own are there.
+    /// Has `evaluate(bodies, index, block)` done to the blocks of this process, and gets the sums of others at its nodes.
+    pub(crate) fn evaluate_own(&mut self, evaluate: impl Fn(&[BodyModel], usize, &mut Block) + Sync) {
+        let own = self.own_blocks();
+        let Solid { blocks, bodies, part, .. } = self;
+        let evaluate = |blocks: &mut [Block], is_meant: &(dyn Fn(usize) -> bool + Sync)| {
+            let blocks = blocks[own.clone()].par_iter_mut().zip(own.clone());
+            blocks.filter(|(_, index)| is_meant(*index)).for_each(|(block, index)| evaluate(bodies, index, block));
+        };
+        match part {
+            Some(part) => part.swap_sums(blocks, evaluate),
+            None => evaluate(blocks, &|_| true),
+        }
+    }
+
+    /// Tells all ranks what they need of the cells of others, once its own are evaluated.
     ///
     /// - `measure`: whether the energies of all cells are needed
-    pub(crate) fn exchange_forces(&mut self, measure: bool) {
+    pub(crate) fn exchange_cells(&mut self, measure: bool) {
         let Some(mut part) = self.part.take() else { return };
         // Every rank finds the edges of the standard formulation.
         let mut standard = self.bodies.iter().filter_map(|model| model.standard.as_ref());
@@ -109,7 +141,6 @@ impl Solid {
         if measure || breaks {
             part.tell_cells(&mut self.blocks, false);
         }
-        part.swap_sums(&mut self.blocks);
         self.part = Some(part);
     }
 

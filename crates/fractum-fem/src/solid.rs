@@ -1,4 +1,7 @@
+use std::sync::Arc;
+
 use fractum_math::{CHUNK, HalfSteps, Sym3, Vec3};
+use fractum_parallel::Exchange;
 use rayon::prelude::*;
 
 use crate::block::NodeSlots;
@@ -53,11 +56,25 @@ impl Solid {
     /// # Errors
     /// [`SolidError`] for elements without volume or too large for their fracture energy, for massless nodes, and beyond some 7 billion smoothed tetrahedra.
     pub fn new(nodes: Vec<Vec3>, bodies: Vec<Body>) -> Result<Self, SolidError> {
-        Solid::with_fine(nodes, bodies, &[])
+        Solid::with_fine(nodes, bodies, &[], None)
+    }
+
+    /// The same, with the cells alone that this rank evaluates of those of an exchange, where no other are needed; see
+    /// [`Solid::share_out`].
+    ///
+    /// # Errors
+    /// As [`Solid::new`].
+    pub fn shared(nodes: Vec<Vec3>, bodies: Vec<Body>, exchange: Arc<dyn Exchange>) -> Result<Self, SolidError> {
+        Solid::with_fine(nodes, bodies, &[], Some(exchange))
     }
 
     /// - `fine`: elements of each body whose cells have blocks of their own; empty where there are none
-    pub(crate) fn with_fine(nodes: Vec<Vec3>, bodies: Vec<Body>, fine: &[Vec<bool>]) -> Result<Self, SolidError> {
+    pub(crate) fn with_fine(
+        nodes: Vec<Vec3>,
+        bodies: Vec<Body>,
+        fine: &[Vec<bool>],
+        exchange: Option<Arc<dyn Exchange>>,
+    ) -> Result<Self, SolidError> {
         let mut mass = vec![0.0; nodes.len()];
         let mut blocks = Vec::new();
         let mut models = Vec::new();
@@ -80,7 +97,8 @@ impl Solid {
         }
         let slots = NodeSlots::new(nodes.len(), blocks.iter().map(|b: &Block| b.cells.nodes.as_slice()))?;
         let zero = vec![Vec3::zeros(); nodes.len()];
-        Ok(Solid {
+        let part = exchange.map(|exchange| Box::new(Part::new(exchange, &blocks, &slots)));
+        let mut solid = Solid {
             displacement: zero.clone(),
             initial_displacement: Vec::new(),
             velocity: zero.clone(),
@@ -93,10 +111,12 @@ impl Solid {
             blocks,
             slots,
             viscous_dissipation: 0.0,
-            part: None,
+            part,
             copies: Vec::new(),
             subcycling: None,
-        })
+        };
+        solid.make_cells();
+        Ok(solid)
     }
 
     /// Gives a node mass beside that of its elements [kg], for ever.
@@ -125,18 +145,18 @@ impl Solid {
         self.load_standard_edges(dt);
         self.update_phase_fields(dt);
         self.damage_standard_elements();
-        let own = self.own_blocks();
-        let Solid { displacement, velocity, blocks, bodies, .. } = self;
-        let (subcycling, first) = (self.subcycling.as_deref(), own.start);
-        blocks[own].par_iter_mut().enumerate().for_each(|(index, block)| {
-            let dt = match subcycling {
-                Some(subcycling) if subcycling.is_ahead(first + index) => return,
+        let (subcycling, displacement, velocity) =
+            (self.subcycling.take(), std::mem::take(&mut self.displacement), std::mem::take(&mut self.velocity));
+        self.evaluate_own(|bodies, index, block| {
+            let dt = match &subcycling {
+                Some(subcycling) if subcycling.is_ahead(index) => return,
                 Some(subcycling) if block.is_fine => dt / subcycling.parts_before(),
                 _ => dt,
             };
-            block.evaluate(&bodies[block.body], displacement, velocity, dt, measure);
+            block.evaluate(&bodies[block.body], &displacement, &velocity, dt, measure);
         });
-        self.exchange_forces(measure);
+        (self.subcycling, self.displacement, self.velocity) = (subcycling, displacement, velocity);
+        self.exchange_cells(measure);
         let Solid { blocks, .. } = self;
         let power: f64 = blocks.iter().map(|b| b.viscous_power).sum();
         self.viscous_dissipation += power * dt;

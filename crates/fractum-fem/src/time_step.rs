@@ -100,10 +100,7 @@ impl Solid {
     fn scaled_stiffness(&mut self, q: &[Vec3], root: &[f64]) -> Vec<Vec3> {
         self.forget_ahead(); // it shares the memory of forces
         let field: Vec<Vec3> = q.par_iter().zip(root).map(|(v, r)| v * *r).collect();
-        let own = self.own_blocks();
-        let Solid { blocks, bodies, part, .. } = self;
-        blocks[own].par_iter_mut().for_each(|block| block.evaluate_elastic(&bodies[block.body], &field));
-        part.iter_mut().for_each(|part| part.swap_sums(blocks));
+        self.evaluate_own(|bodies, _, block| block.evaluate_elastic(&bodies[block.body], &field));
         let mut force = field;
         self.sum_blocks(&mut force);
         self.part.iter_mut().for_each(|part| part.tell_all(&mut force));

@@ -22,8 +22,12 @@ pub trait Exchange: Debug + Send + Sync {
     /// Number of ranks.
     fn size(&self) -> usize;
 
-    /// Sends and receives a message for each neighbour. Of two ranks both have a message for each other, or none.
-    fn swap(&self, messages: &mut [Message]);
+    /// Name of the machine that this rank is on.
+    fn machine(&self) -> String;
+
+    /// Sends and receives a message for each neighbour, and does some work while they travel. Of two ranks both have a message for each
+    /// other, or none.
+    fn swap(&self, messages: &mut [Message], work: &mut dyn FnMut());
 
     /// Gives every rank the values of all, rank after rank.
     ///

@@ -51,7 +51,12 @@ impl Exchange for World {
         self.size
     }
 
-    fn swap(&self, messages: &mut [Message]) {
+    fn machine(&self) -> String {
+        // Where MPI does not tell it, all processes count as being on one machine.
+        mpi::environment::processor_name().unwrap_or_default()
+    }
+
+    fn swap(&self, messages: &mut [Message], work: &mut dyn FnMut()) {
         let world = SimpleCommunicator::world();
         multiple_scope(2 * messages.len(), |scope, requests| {
             for Message { rank, send, receive } in messages.iter_mut() {
@@ -59,6 +64,7 @@ impl Exchange for World {
                 requests.add(other.immediate_receive_into(scope, &mut receive[..]));
                 requests.add(other.immediate_send(scope, &send[..]));
             }
+            work();
             let mut done = Vec::with_capacity(requests.incomplete());
             requests.wait_all(&mut done);
         });

@@ -43,11 +43,16 @@ impl Exchange for ThreadRank {
         self.hub.size
     }
 
-    fn swap(&self, messages: &mut [Message]) {
+    fn machine(&self) -> String {
+        String::new()
+    }
+
+    fn swap(&self, messages: &mut [Message], work: &mut dyn FnMut()) {
         let Hub { size, barrier, numbers, .. } = &*self.hub;
         for message in &*messages {
             lock(numbers)[self.rank * size + message.rank].clone_from(&message.send);
         }
+        work();
         barrier.wait();
         for message in messages {
             message.receive.copy_from_slice(&lock(numbers)[message.rank * size + self.rank]);
@@ -95,9 +100,11 @@ mod tests {
                     let others = (0..3).filter(|&other| other != me);
                     let message = |rank| Message { rank, send: vec![(10 * me + rank) as f64], receive: vec![0.0] };
                     let mut messages: Vec<Message> = others.map(message).collect();
+                    let mut worked = 0;
                     for _ in 0..3 {
-                        end.swap(&mut messages);
+                        end.swap(&mut messages, &mut || worked += 1);
                     }
+                    assert_eq!(worked, 3);
                     assert!(messages.iter().all(|m| m.receive == [(10 * m.rank + me) as f64]));
                     let mut all = [0.0; 3];
                     end.gather(&vec![1.0 + me as f64; me], &[0, 1, 2], &mut all);

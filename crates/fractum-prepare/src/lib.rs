@@ -33,4 +33,4 @@ pub use bonded::{
 pub use cache::Cache;
 pub use choice::{PATH_ITERATIONS, choose, compare, solution_time};
 pub use loose::facets;
-pub use memory::check_memory;
+pub use memory::{Processes, check_memory};

@@ -19,11 +19,27 @@ const BONDED_PARTICLE: f64 = 1000.0;
 /// Volume of the particles of a packing over that of its shape.
 const FILLED: f64 = 0.6;
 
+/// Processes that run a case together.
+#[derive(Clone, Copy, Debug)]
+pub struct Processes {
+    /// All of them: they share the cells of solids.
+    pub all: usize,
+    /// Those on this machine: they share its memory.
+    pub here: usize,
+}
+
+impl Default for Processes {
+    /// One by itself.
+    fn default() -> Self {
+        Processes { all: 1, here: 1 }
+    }
+}
+
 /// Makes sure that the bodies of a case fit into memory.
 ///
 /// # Errors
 /// [`TooLarge`], with the body that needs most.
-pub fn check_memory(case: &Case, mesh: &Mesh) -> Result<(), TooLarge> {
+pub fn check_memory(case: &Case, mesh: &Mesh, processes: Processes) -> Result<(), TooLarge> {
     let needs = case.bodies.iter().map(|body| {
         let (count, of, each) = match &body.kind {
             BodyKind::Solid(own) => solid(own, mesh),
@@ -34,7 +50,7 @@ pub fn check_memory(case: &Case, mesh: &Mesh) -> Result<(), TooLarge> {
         (count * each, &body.name.value, count, of)
     });
     let needs: Vec<_> = needs.collect();
-    let total: f64 = needs.iter().map(|need| need.0).sum();
+    let total = needs.iter().map(|need| need.0).sum::<f64>() * processes.here as f64;
     let Some((_, name, count, of)) = needs.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else { return Ok(()) };
     memory::require(total as u64, format!("body \"{name}\" of about {count:.2e} {of}"))
 }

@@ -2,18 +2,20 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use fractum_io::build::{BuiltScene, build_scene, check_before_particles, doubts};
+use fractum_io::build::{BuiltScene, build_shared_scene, check_before_particles, doubts};
 use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics, read_case};
 use fractum_io::memory;
 use fractum_mesh::Mesh;
+use fractum_parallel::Exchange;
 
 use crate::course::Course;
 use crate::error::Failure;
 use crate::plots;
 use crate::record;
-use fractum_prepare::{BondedReport, Cache, check_memory, choose, facets, prepare_bodies};
+use fractum_prepare::{BondedBodies, BondedReport, Cache, Processes, check_memory, choose, facets, prepare_bodies};
 
 /// A case with its mesh and the scene made of both.
 pub struct Input {
@@ -43,34 +45,66 @@ pub struct Input {
 /// # Errors
 /// [`Failure::Input`] with everything that is wrong; [`Failure::Memory`].
 pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Result<Input, Failure> {
+    read(path, overrides, cache, Processes::default())?.build(None)
+}
+
+/// What the scene of a case is built from.
+pub(crate) struct Source {
+    case: Case,
+    mesh: Mesh,
+    mesh_hash: u128,
+    made: BondedBodies,
+}
+
+/// Reads a case and its mesh and makes its bonded bodies.
+///
+/// - `processes`: those that run it together
+///
+/// # Errors
+/// As [`load`].
+pub(crate) fn read(
+    path: &Path,
+    overrides: &[(String, String)],
+    cache: &Cache,
+    processes: Processes,
+) -> Result<Source, Failure> {
     let case = read_case(path, overrides)?;
     let (mesh, mesh_hash) = match &case.mesh {
-        Some(source) => read_mesh(source)?,
+        Some(source) => read_mesh(source, processes)?,
         None => (Mesh::default(), 0),
     };
     check_before_particles(&case, &mesh)?;
     plots::check(&case, &record::possible_columns(&case))?;
-    check_memory(&case, &mesh)?;
+    check_memory(&case, &mesh, processes)?;
     let made = prepare_bodies(&case, &mesh, cache)?;
-    let mut built = build_scene(&case, &mesh, made.prepared, facets(&case)?)?;
-    let stage = |stage: &Case| {
-        let built = build_scene(stage, &mesh, Vec::new(), facets(stage)?)?;
-        Ok((stage.clone(), built))
-    };
-    let later = case.later.iter().map(stage).collect::<Result<Vec<_>, Diagnostics>>()?;
-    for warning in later.iter().flat_map(|(_, built)| &built.warnings) {
-        // What concerns the bodies is found with every stage.
-        if !built.warnings.contains(warning) {
-            built.warnings.push(warning.clone());
+    Ok(Source { case, mesh, mesh_hash, made })
+}
+
+impl Source {
+    /// Builds the scene; of several ranks that share its solids all do it together.
+    ///
+    /// # Errors
+    /// As [`load`]; the same on every rank.
+    pub(crate) fn build(self, exchange: Option<&Arc<dyn Exchange>>) -> Result<Input, Failure> {
+        let Source { case, mesh, mesh_hash, made } = self;
+        let build = |case: &Case, prepared| build_shared_scene(case, &mesh, prepared, facets(case)?, exchange.cloned());
+        let mut built = build(&case, made.prepared)?;
+        let stage = |stage: &Case| Ok((stage.clone(), build(stage, Vec::new())?));
+        let later = case.later.iter().map(stage).collect::<Result<Vec<_>, Diagnostics>>()?;
+        for warning in later.iter().flat_map(|(_, built)| &built.warnings) {
+            // What concerns the bodies is found with every stage.
+            if !built.warnings.contains(warning) {
+                built.warnings.push(warning.clone());
+            }
         }
+        built.warnings.extend(case.warnings().iter().cloned());
+        built.warnings.extend(doubts(&case, &mesh));
+        built.warnings.extend(made.warnings);
+        let choice = choose(&case, &mut built);
+        let course = Course::of(later.iter().map(|(_, built)| built).chain([&built]));
+        plots::check(&case, &record::columns(&case, &built.scene, course))?;
+        Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, timings: made.timings, choice })
     }
-    built.warnings.extend(case.warnings().iter().cloned());
-    built.warnings.extend(doubts(&case, &mesh));
-    built.warnings.extend(made.warnings);
-    let choice = choose(&case, &mut built);
-    let course = Course::of(later.iter().map(|(_, built)| built).chain([&built]));
-    plots::check(&case, &record::columns(&case, &built.scene, course))?;
-    Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, timings: made.timings, choice })
 }
 
 /// The cache of packings and beams: the folder named by `FRACTUM_CACHE` (none if that is empty), else `fractum` among
@@ -86,14 +120,14 @@ pub fn cache_of_user() -> Cache {
 }
 
 /// The mesh in metres, and the hash of its file.
-fn read_mesh(source: &MeshSource) -> Result<(Mesh, u128), Failure> {
+fn read_mesh(source: &MeshSource, processes: Processes) -> Result<(Mesh, u128), Failure> {
     let file = &source.file;
     let fail = |found: String, remedy: &str| {
         Failure::Input(Diagnostics(vec![Diagnostic::error(&file.place, found).remedy(remedy)]))
     };
     // The file and the mesh that is read from it, which is about as large.
     let length = fs::metadata(&file.value).map_or(0, |known| known.len());
-    memory::require(2 * length, format!("reading {}", file.value.display()))?;
+    memory::require(2 * length * processes.here as u64, format!("reading {}", file.value.display()))?;
     let bytes = fs::read(&file.value).map_err(|error| {
         let remedy = match error.kind() {
             std::io::ErrorKind::NotFound => "paths are taken from the folder of the case file",

@@ -9,7 +9,8 @@ use fractum_io::case::model::{BodyKind, Case, Output, SolverKind};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
 use fractum_io::number::grouped;
 use fractum_io::vtk::Cut;
-use fractum_parallel::Exchange;
+use fractum_parallel::{Exchange, gather};
+use fractum_prepare::Processes;
 use fractum_scene::Scene;
 
 use crate::error::{ExitCode, Failure};
@@ -19,6 +20,7 @@ use crate::last_words::LastWords;
 #[derive(Debug, Default)]
 pub struct Ranks {
     exchange: Option<Arc<dyn Exchange>>,
+    processes: Processes,
     /// Where a rank that does not write keeps what others write; removed with it.
     scratch: Option<PathBuf>,
 }
@@ -40,7 +42,19 @@ impl Ranks {
         let number = STARTED.fetch_add(1, Ordering::Relaxed);
         let name = format!("fractum-rank-{}-{}-{number}", exchange.rank(), std::process::id());
         let scratch = (exchange.rank() > 0).then(|| std::env::temp_dir().join(name));
-        Ranks { exchange: Some(exchange), scratch }
+        let machines = gather(&*exchange, &exchange.machine());
+        let here = machines.iter().filter(|machine| **machine == machines[exchange.rank()]).count();
+        let processes = Processes { all: exchange.size(), here };
+        Ranks { exchange: Some(exchange), processes, scratch }
+    }
+
+    /// How many there are.
+    pub(crate) fn processes(&self) -> Processes {
+        self.processes
+    }
+
+    pub(crate) fn exchange(&self) -> Option<&Arc<dyn Exchange>> {
+        self.exchange.as_ref()
     }
 
     /// Whether this process writes the results.
@@ -125,16 +139,18 @@ impl Ranks {
     /// What this process does of the work, in words; nothing of a process by itself.
     pub(crate) fn share(&self, scene: &Scene) -> Option<String> {
         let (exchange, share) = (self.exchange.as_ref()?, scene.solid.share()?);
-        let Share { blocks, nodes, shared_nodes, bytes } = share;
+        let Share { blocks, nodes, shared_nodes, bytes, memory, keeps_all } = share;
         let number = |count: usize| grouped(&count.to_string());
         Some(format!(
-            "process {} of {}: {} blocks of cells, {} nodes, {} of them shared; {} bytes of forces sent per step",
+            "process {} of {}: {} blocks of cells, {} nodes, {} of them shared; {} bytes of forces sent per step; {} bytes of cells{}",
             exchange.rank(),
             exchange.size(),
             number(blocks),
             number(nodes),
             number(shared_nodes),
-            number(bytes)
+            number(bytes),
+            number(memory),
+            if keeps_all { ", those of all processes: damage in the standard formulation needs them" } else { "" }
         ))
     }
 }

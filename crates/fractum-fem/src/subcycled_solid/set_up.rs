@@ -17,7 +17,7 @@ impl Solid {
     /// As [`Solid::new`].
     pub fn subcycled(nodes: Vec<Vec3>, bodies: Vec<Body>) -> Result<Self, SolidError> {
         let fine = fine_elements(&nodes, &bodies);
-        let mut solid = Solid::with_fine(nodes, bodies, fine.as_deref().unwrap_or_default())?;
+        let mut solid = Solid::with_fine(nodes, bodies, fine.as_deref().unwrap_or_default(), None)?;
         if let Some(fine) = fine {
             solid.link(fine)?;
         }

@@ -31,6 +31,7 @@ use std::sync::Arc;
 use fractum_fem::{LocalDamping, Solid, Viscosity};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
+use fractum_parallel::Exchange;
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::StaticSettings;
 use fractum_scene::{
@@ -79,6 +80,8 @@ pub struct BuiltScene {
 struct Context<'a> {
     case: &'a Case,
     mesh: &'a Mesh,
+    /// Of several ranks that share the cells of solids.
+    exchange: Option<Arc<dyn Exchange>>,
     /// Sets of particles of the bonded bodies.
     particle_sets: Vec<ParticleSets>,
     /// Faces of each body of particles as rigid bodies feel them.
@@ -91,8 +94,14 @@ struct Context<'a> {
 /// # Errors
 /// Groups and sets of particles that are missing or empty, loads and motions that are not finite numbers.
 pub fn check_before_particles(case: &Case, mesh: &Mesh) -> Result<(), Diagnostics> {
-    let mut context =
-        Context { case, mesh, particle_sets: Vec::new(), flat_faces: Vec::new(), diagnostics: Vec::new() };
+    let mut context = Context {
+        case,
+        mesh,
+        exchange: None,
+        particle_sets: Vec::new(),
+        flat_faces: Vec::new(),
+        diagnostics: Vec::new(),
+    };
     context.check_before_particles();
     if context.diagnostics.is_empty() { Ok(()) } else { Err(Diagnostics::of_many(context.diagnostics)) }
 }
@@ -110,8 +119,25 @@ pub fn build_scene(
     prepared: Vec<PreparedBody>,
     facets: Vec<PreparedFacets>,
 ) -> Result<BuiltScene, Diagnostics> {
-    let mut context =
-        Context { case, mesh, particle_sets: Vec::new(), flat_faces: Vec::new(), diagnostics: Vec::new() };
+    build_shared_scene(case, mesh, prepared, facets, None)
+}
+
+/// The same, as one of the ranks of an exchange, which all build it: with the cells alone that this rank evaluates, where no other are
+/// needed.
+///
+/// # Errors
+/// As [`build_scene`].
+pub fn build_shared_scene(
+    case: &Case,
+    mesh: &Mesh,
+    prepared: Vec<PreparedBody>,
+    facets: Vec<PreparedFacets>,
+    exchange: Option<Arc<dyn Exchange>>,
+) -> Result<BuiltScene, Diagnostics> {
+    // The equilibrium with which in-situ stress begins is found by every rank.
+    let exchange = exchange.filter(|_| case.in_situ.is_none());
+    let (particle_sets, flat_faces, diagnostics) = Default::default();
+    let mut context = Context { case, mesh, exchange, particle_sets, flat_faces, diagnostics };
     context.check_before_particles();
     let built = context.build(prepared, facets);
     match built {
@@ -196,8 +222,13 @@ impl<'a> Context<'a> {
     /// The elements of all solid bodies.
     fn solid(&mut self, parts: &[Part<'a>], numbering: &Numbering) -> Option<Solid> {
         let bodies = self.solid_bodies(parts, numbering)?;
-        let new = if self.case.solver.subcycling.is_some() { Solid::subcycled } else { Solid::new };
-        let mut solid = match new(numbering.positions.clone(), bodies) {
+        let nodes = numbering.positions.clone();
+        let solid = match &self.exchange {
+            _ if self.case.solver.subcycling.is_some() => Solid::subcycled(nodes, bodies),
+            Some(exchange) => Solid::shared(nodes, bodies, Arc::clone(exchange)),
+            None => Solid::new(nodes, bodies),
+        };
+        let mut solid = match solid {
             Ok(solid) => solid,
             Err(error) => {
                 let place = parts.first().map_or_else(|| self.whole_case(), |part| part.place.clone());

@@ -21,7 +21,7 @@ use crate::error::Failure;
 use crate::frames::GridLayout;
 use crate::gallery;
 use crate::gauge_tables;
-use crate::input::{Input, load};
+use crate::input::{Input, read};
 use crate::interrupt::UnderWay;
 use crate::phases::Phases;
 use crate::plan::Plan;
@@ -48,13 +48,15 @@ impl Simulation {
     /// As [`Simulation::open`]; [`Failure::Elsewhere`] where another rank tells what went wrong.
     pub fn open_shared(path: &Path, options: &Options, ranks: Ranks) -> Result<Self, Failure> {
         let started = Instant::now();
-        let loaded = || {
+        let source = || {
             // Before anything is prepared, which may take long.
             folder_of(path, options)?;
             ranks.check(path, &options.overrides)?;
-            load(path, &options.overrides, &options.cache)
+            read(path, &options.overrides, &options.cache, ranks.processes())
         };
-        let input = ranks.together(loaded())?;
+        // No rank builds, which they do together, before all have read.
+        let source = ranks.together(source())?;
+        let input = ranks.together(source.build(ranks.exchange()))?;
         Self::start_shared(input, path, options, started, ranks)
     }
 
