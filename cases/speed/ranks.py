@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Runs a cube of 511,104 smoothed tetrahedra by one process with two threads and by two processes with one thread each, in turn, and prints
-the least time of their steps without output, the ratio, and what is sent.
+the least time of their steps without output, the ratio, and what is sent; then the largest memory of each of 1, 2 and 4 processes.
 
 Needs numpy, MPI and a build with it: `cargo build --release --features mpi --target-dir target/mpi`, then
 `python3 cases/speed/ranks.py target/mpi/release/fractum`.
@@ -30,11 +30,11 @@ density = "2400 kg/m^3"
 young_modulus = "30 GPa"
 poisson_ratio = 0.2
 """
-MPIRUN = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "-n", "2"]
+MPIRUN = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "-n"]
 
 
 def main(program, cells=44, rounds=5):
-    ways = {"one process, two threads": ([], 2), "two processes, one thread each": (MPIRUN, 1)}
+    ways = {"one process, two threads": ([], 2), "two processes, one thread each": ([*MPIRUN, "2"], 1)}
     times = {way: [] for way in ways}
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
@@ -51,12 +51,25 @@ def main(program, cells=44, rounds=5):
                 times[way].append(sum(phases.values()) - phases["output"])
                 hashes.add(summary["state_hash"])
         log = (results / "run.log").read_text()
+        memory = {count: peaks(program, folder, count) for count in (1, 2, 4)}
     steps = summary["time"]["steps"]
     for way, all_times in times.items():
         print(f"{way}: {1e3 * min(all_times) / steps:.1f} ms a step, least of {rounds} runs of {steps} steps")
     alone, shared = (min(all_times) for all_times in times.values())
     print(f"ratio {shared / alone:.2f}; states {'alike' if len(hashes) == 1 else 'DIFFERENT'}")
     print(next(line for line in log.splitlines() if "of them shared" in line))
+    for count, each in memory.items():
+        print(f"{count} of one thread: {', '.join(f'{megabytes:.0f}' for megabytes in each)} MB")
+
+
+def peaks(program, folder, count):
+    """Largest resident memory of each of several processes that run the case of a folder, the first of which writes frames [MB]."""
+    alone = "import sys; from table import run; print(f'peak {run(sys.argv[1:])}')"
+    command = [*MPIRUN, count, sys.executable, "-c", alone, program, "run", folder / "case.toml", "-o", folder / "memory", "--overwrite", "--quiet",
+               "--threads", 1]
+    here = pathlib.Path(__file__).parent
+    out = subprocess.run([str(part) for part in command], cwd=here, check=True, capture_output=True, text=True).stdout
+    return sorted((float(line.split()[1]) for line in out.splitlines() if line.startswith("peak ")), reverse=True)
 
 
 if __name__ == "__main__":

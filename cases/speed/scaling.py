@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """A model of weak scaling: what a step costs where every process has the same number of smoothed tetrahedra, for 1 to 1,000 processes.
 
-Measured: compute per tetrahedron and step and memory, by PROGRAM as one process with one thread; latency and bandwidth between two processes,
-where `mpicc` and `mpirun` are there. Counted: what the processes send each other, on a cube that is divided as the program divides it. The rest is
+Measured: compute per tetrahedron and step, by PROGRAM as one process with one thread; memory, by PROGRAM as one and as four processes; latency and bandwidth
+between two processes. Counted: what the processes send each other, on a cube that is divided as the program divides it. The rest is
 the model, `step_times`. docs/mpi.md has its table and its assumptions.
 
-Needs numpy: `python3 cases/speed/scaling.py target/release/fractum`. `--count CELLS RANKS` prints the counts of a cube alone, to compare with `run.log`.
+Needs numpy, MPI and a build with it: `python3 cases/speed/scaling.py target/mpi/release/fractum`. `--count CELLS RANKS` prints the counts of a cube alone, to compare with `run.log`.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ranks import CASE, MPIRUN
+from ranks import CASE, MPIRUN, peaks
 from table import run
 
 BLOCK_CELLS, BLOCK_NODES = 2048, 1024
@@ -28,6 +28,7 @@ BYTES_PER_SUM = 24  # three numbers for each block that has a node
 BYTES_PER_BLOCK = 32  # four numbers of each block, where something may break
 BYTES_PER_FORCE = 24  # on a node that every process moves
 BYTES_PER_NODE = 72  # displacement, velocity and force
+FRAMES = ', fields = { every = "0.25 ms" }'
 BITS = 20
 WAYS = ((1, 2, 4), (1, 4, 2), (2, 1, 4), (2, 4, 1), (4, 1, 2), (4, 2, 1))
 
@@ -67,6 +68,11 @@ class Network(NamedTuple):
     bandwidth: float  # [B/s], of one process, both ways at once
 
 
+class Memory(NamedTuple):
+    all: float  # of each tetrahedron, on every process [B]
+    divided: float  # of those alone whose cells it has
+
+
 class Counts(NamedTuple):
     """What the process with most of it has, each by itself."""
 
@@ -98,14 +104,14 @@ def main():
     networks = [Network("here", latency, bandwidth), Network("cluster", 1e-6 * options.cluster[0], 1e9 * options.cluster[1])]
     for network in networks:
         print(f"{network.name}: {1e6 * network.latency:.2f} us, {1e-9 * network.bandwidth:.2f} GB/s" + (f" ({source})" if network.name == "here" else " (assumed)"))
-    # First of all: what Linux tells of the memory of a process is at least what its parent had.
     measured = [measure(options.program, side(cells)) for cells in options.cells]
     for cells, (compute, memory) in zip(options.cells, measured):
         print_table(options, cells, compute, memory, networks)
 
 
 def print_table(options, cells, compute, memory, networks):
-    print(f"\n{cells:,} tetrahedra of each process: {1e9 * compute:.1f} ns per tetrahedron and step, {memory:.0f} bytes each\n")
+    print(f"\n{cells:,} tetrahedra of each process: {1e9 * compute:.1f} ns per tetrahedron and step, memory of {memory.all:.0f} bytes for each of all and {memory.divided:.0f} for each"
+          " of its own\n")
     print("| processes | neighbours | nodes shared | kB sent | compute [ms] | exchange here, cluster [ms] | efficiency here, cluster | with a face loaded"
           " | and where something may break | GB of each process |")
     print("|---|---|---|---|---|---|---|---|---|---|")
@@ -117,7 +123,7 @@ def print_table(options, cells, compute, memory, networks):
         exchange = ", ".join(f"{1e3 * of.exchange:.2f}" for of in times)
         print(f"| {ranks:,} | {found.neighbours} | {found.nodes:,} | {1e-3 * BYTES_PER_SUM * found.sums:,.0f} | {1e3 * work:.1f} | {exchange}"
               f" | {cut('exchange')} | {cut('exchange', 'faces')} | {cut('exchange', 'faces', 'records')}"
-              f" | {1e-9 * cells * (memory.shared + memory.all * ranks):,.2f} |", flush=True)
+              f" | {1e-9 * cells * (memory.divided + memory.all * ranks):,.2f} |", flush=True)
     ranks = options.ranks[-1]
     whole = [step_times(scaled_counts(ranks, cells, options.largest), ranks, cells, compute, network) for network in networks]
     rows, removals = (", ".join(f"{1e3 * getattr(of, part):,.0f}" for of in whole) for part in ("row", "removal"))
@@ -282,20 +288,23 @@ def hilbert_index(cell):
 
 
 def measure(program, n, rounds=5):
-    """Least time per tetrahedron and step [s] of one process with one thread, and its memory per tetrahedron [B]."""
+    """Least time per tetrahedron and step [s] of one process with one thread, and the memory of one that writes no frames."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         box = f"from ranks import write_box; write_box({str(folder / 'cube.msh')!r}, ({n},) * 3, (1.0,) * 3)"
         subprocess.run([sys.executable, "-c", box], cwd=pathlib.Path(__file__).parent, check=True)
         (folder / "case.toml").write_text(CASE)
-        times, memory = [], []
+        times = []
         for _ in range(rounds):
             results = folder / "results"
-            memory.append(run([program, "run", folder / "case.toml", "-o", results, "--overwrite", "--quiet", "--threads", 1]))
+            run([program, "run", folder / "case.toml", "-o", results, "--overwrite", "--quiet", "--threads", 1])
             summary = json.loads((results / "summary.json").read_text())
             phases = summary["wall"]["phases"]
             times.append((sum(phases.values()) - phases["output"]) / summary["time"]["steps"])
-    return min(times) / (6 * n**3), min(memory) * 2**20 / (6 * n**3)
+        (folder / "case.toml").write_text(CASE.replace(FRAMES, ""))
+        one, four = (2**20 * peaks(program, folder, count)[-1] / (6 * n**3) for count in (1, 4))
+    divided = (one - four) * 4 / 3
+    return min(times) / (6 * n**3), Memory(one - divided, divided)
 
 
 def between_two(latency, bandwidth):
@@ -308,7 +317,7 @@ def between_two(latency, bandwidth):
             with tempfile.TemporaryDirectory() as folder:
                 pathlib.Path(folder, "ping.c").write_text(PING)
                 subprocess.run(["mpicc", "-O2", "ping.c", "-o", "ping"], cwd=folder, check=True)
-                out = subprocess.run([*MPIRUN, "./ping"], cwd=folder, check=True, capture_output=True, text=True).stdout
+                out = subprocess.run([*MPIRUN, "2", "./ping"], cwd=folder, check=True, capture_output=True, text=True).stdout
             short, long = map(float, out.split())
             found, source = (1e6 * short, 1e-9 * 2**20 / (long - short)), "least of ten, two processes of this machine that send to each other"
         latency, bandwidth = (given or own for given, own in zip((latency, bandwidth), found))

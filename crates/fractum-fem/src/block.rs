@@ -216,7 +216,7 @@ mod tests {
     #[test]
     fn more_blocks_than_numbers_are_an_error() {
         let slots = |blocks: usize| NodeSlots::new(1, std::iter::repeat_n(&[0][..], blocks));
-        assert_eq!(slots(MOST_BLOCKS).unwrap().of(0).len(), MOST_BLOCKS);
+        assert_eq!(slots(MOST_BLOCKS).unwrap().of(0).count(), MOST_BLOCKS);
         let error = slots(MOST_BLOCKS + 1).unwrap_err();
         assert!(error.to_string().contains("4194305 blocks"), "{error}");
     }

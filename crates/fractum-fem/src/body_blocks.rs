@@ -81,7 +81,8 @@ impl BodyModel {
         };
         let standard = match (softens, threshold) {
             (Some(softens), Some(t)) if !smoothed => {
-                let field = EdgeField::new(softens, (0..edge_count as u32).collect(), &t);
+                let mut field = EdgeField::new(softens, (0..edge_count as u32).collect(), &t);
+                field.keep_histories();
                 Some(StandardDamage::new(field, body.shape, elements_of_edge.clone(), body.elements.len()))
             }
             _ => None,

@@ -188,6 +188,7 @@ pub(crate) struct EdgeField {
     pub(crate) softens: Arc<Softens>,
     /// Numbers of the edges in their body.
     pub(crate) edges: Vec<u32>,
+    /// Histories; empty where all edges are intact and another rank evaluates them, see [`EdgeField::keep_histories`].
     pub(crate) state: Vec<EdgeDamage>,
     /// Equivalent stress [Pa] below which an edge of a cell is known to stay intact; negative once it is damaged.
     pub(crate) threshold: Vec<f64>,
@@ -204,13 +205,13 @@ pub(crate) struct EdgeField {
 }
 
 impl EdgeField {
-    /// Intact edges of a body.
+    /// Intact edges of a body, without their histories.
     pub(crate) fn new(softens: Arc<Softens>, edges: Vec<u32>, threshold: &Threshold) -> Self {
         let strength: Vec<f64> = edges.iter().map(|&e| threshold.strength[e as usize]).collect();
         EdgeField {
             softens,
-            state: strength.iter().map(|&s| EdgeDamage::intact(s)).collect(),
-            threshold: strength.clone(),
+            state: Vec::new(),
+            threshold: Vec::new(),
             length: edges.iter().map(|&e| threshold.length[e as usize]).collect(),
             strength,
             edges,
@@ -218,6 +219,27 @@ impl EdgeField {
             fresh: Vec::new(),
             woken: false,
         }
+    }
+
+    /// Keeps the histories of its edges from now on.
+    pub(crate) fn keep_histories(&mut self) {
+        if self.state.is_empty() {
+            self.state = self.strength.iter().map(|&strength| EdgeDamage::intact(strength)).collect();
+            self.threshold.clone_from(&self.strength);
+        }
+    }
+
+    /// Lets go of the histories of its edges where nothing has happened to any of them.
+    pub(crate) fn forget_intact(&mut self) {
+        let mut histories = self.state.iter().zip(&self.strength);
+        if histories.all(|(edge, &strength)| *edge == EdgeDamage::intact(strength)) {
+            (self.state, self.threshold) = Default::default();
+        }
+    }
+
+    /// History of an edge.
+    pub(crate) fn history(&self, index: usize) -> EdgeDamage {
+        self.state.get(index).copied().unwrap_or_else(|| EdgeDamage::intact(self.strength[index]))
     }
 
     /// Advances the history of an edge to the equivalent stress `q` [Pa]; returns the growth of damage.
@@ -307,6 +329,8 @@ impl EdgeField {
 
     /// Takes over saved histories, by edge of the body. Removal looks at all of them once more, and finds nothing new.
     pub(crate) fn restore(&mut self, saved: &[EdgeDamage]) {
+        let is_kept = !self.state.is_empty();
+        self.keep_histories();
         for index in 0..self.edges.len() {
             self.state[index] = saved[self.edges[index] as usize];
             self.threshold[index] = self.state[index].threshold();
@@ -314,6 +338,9 @@ impl EdgeField {
         self.damaged = self.threshold.iter().filter(|&&threshold| threshold < 0.0).count();
         self.woken = true;
         self.renew_fresh();
+        if !is_kept {
+            self.forget_intact();
+        }
     }
 }
 

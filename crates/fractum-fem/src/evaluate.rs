@@ -168,7 +168,7 @@ impl Block {
     pub(crate) fn damage_of(&self, cell: usize) -> f64 {
         match &self.law {
             BlockLaw::Elastic { .. } => 0.0,
-            BlockLaw::Edges(law) => law.field.state[cell].damage,
+            BlockLaw::Edges(law) => law.field.history(cell).damage,
             BlockLaw::Standard(law) => law.damage[cell],
         }
     }

@@ -14,7 +14,7 @@ use fractum_parallel::{Exchange, Message, gather};
 use serde::{Deserialize, Serialize};
 
 use crate::block::{Cells, NodeSlots, Slot};
-use crate::damage::EdgeDamage;
+use crate::damage::{EdgeDamage, EdgeField};
 use crate::evaluate::{Block, BlockLaw};
 
 /// The share of a rank.
@@ -116,7 +116,8 @@ impl Part {
             record_counts: Vec::new(),
             exchange,
             first,
-            always_all: false,
+            // Setting up looks at everything.
+            always_all: true,
             next_all: true,
             is_all: false,
             is_whole: true,
@@ -288,6 +289,7 @@ impl Part {
             let nodes = std::mem::take(&mut block.cells.nodes);
             block.cells = Cells { nodes, ..Cells::default() };
             block.viscous.forget();
+            block.edge_field_mut().into_iter().for_each(EdgeField::forget_intact);
             block.scratch.take_if(|_| !near.contains(&index));
         }
     }
@@ -387,6 +389,9 @@ impl BlockShare {
             BlockLaw::Edges(law) => {
                 (law.energy, law.dissipated) = (self.energy, self.dissipated);
                 law.field.fresh = self.fresh;
+                if !self.edges.is_empty() {
+                    law.field.keep_histories();
+                }
                 for (index, edge) in self.edges {
                     law.field.state[index as usize] = edge;
                     law.field.note(index as usize);

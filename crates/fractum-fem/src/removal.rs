@@ -94,7 +94,7 @@ impl Solid {
         candidates.retain(|&e| model.alive[e as usize]);
         candidates.sort_unstable();
         candidates.dedup();
-        let is_broken = |edge: u32| self.edge(body, edge).is_some_and(|(field, index)| field.state[index].broken);
+        let is_broken = |edge: u32| self.edge(body, edge).is_some_and(|(field, index)| field.history(index).broken);
         let is_cut = |element: u32| {
             let of = &edges.of_element[element as usize];
             modes.iter().any(|mode| mode.iter().all(|&local| is_broken(of[local])))
@@ -230,7 +230,7 @@ impl Block {
         let full = hooke.stress(strain);
         match &self.law {
             // With unilateral damage the closed part keeps its stress.
-            BlockLaw::Edges(law) => full - law.field.softens.opening_stress(strain) * law.field.state[cell].damage,
+            BlockLaw::Edges(law) => full - law.field.softens.opening_stress(strain) * law.field.history(cell).damage,
             _ => full * (1.0 - self.damage_of(cell)),
         }
     }

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::block::{Cells, Scratch};
 use crate::body::Kinematics;
 use crate::cell::Geometry;
+use crate::damage::EdgeField;
 use crate::evaluate::Block;
 use crate::part::{Part, Share};
 use crate::solid::{BodyModel, Solid};
@@ -52,6 +53,7 @@ impl Solid {
         blocks[own].par_iter_mut().for_each(|block| {
             block.cells = bodies[block.body].cells(reference, &block.items);
             block.scratch = Some(Scratch::new());
+            block.edge_field_mut().into_iter().for_each(EdgeField::keep_histories);
         });
         let received = part.iter().flat_map(|part| part.received());
         received.for_each(|slot| _ = blocks[slot.block()].scratch.get_or_insert_with(Scratch::new));
@@ -103,6 +105,7 @@ impl Solid {
             let block = &mut blocks[block as usize];
             if block.cells.len() == 0 {
                 block.cells = bodies[block.body].cells(reference, &block.items);
+                block.edge_field_mut().into_iter().for_each(EdgeField::keep_histories);
             }
         }
     }

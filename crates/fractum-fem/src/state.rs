@@ -57,7 +57,7 @@ impl Solid {
         let Some(edges) = model.edges.as_ref().filter(|_| model.body.damage.is_some()) else { return Vec::new() };
         let mut all = vec![EdgeDamage::intact(f64::INFINITY); edges.nodes.len()];
         for (_, field) in self.edge_fields().filter(|(of, _)| *of == body) {
-            field.edges.iter().zip(&field.state).for_each(|(&edge, state)| all[edge as usize] = *state);
+            (0..).zip(&field.edges).for_each(|(at, &edge)| all[edge as usize] = field.history(at));
         }
         all
     }
