@@ -16,6 +16,8 @@ const DAMAGED_TETRAHEDRON: f64 = 420.0;
 const TRIANGLE: f64 = 120.0;
 const LOOSE_PARTICLE: f64 = 800.0;
 const BONDED_PARTICLE: f64 = 1000.0;
+/// Part of the memory of solids that several processes share, rather than each having all of it: the cells.
+const SHARED: f64 = 0.5;
 /// Volume of the particles of a packing over that of its shape.
 const FILLED: f64 = 0.6;
 
@@ -42,7 +44,10 @@ impl Default for Processes {
 pub fn check_memory(case: &Case, mesh: &Mesh, processes: Processes) -> Result<(), TooLarge> {
     let needs = case.bodies.iter().map(|body| {
         let (count, of, each) = match &body.kind {
-            BodyKind::Solid(own) => solid(own, mesh),
+            BodyKind::Solid(own) => {
+                let (count, of, each) = solid(own, mesh);
+                (count, of, each * (1.0 - SHARED + SHARED / processes.all as f64))
+            }
             BodyKind::Bonded(own) => (bonded(own), "particles", BONDED_PARTICLE),
             BodyKind::Particles(own) => (loose(own), "particles", LOOSE_PARTICLE),
             BodyKind::Rigid(_) => (0.0, "facets", 0.0),
