@@ -4,7 +4,6 @@ use std::sync::{Arc, OnceLock};
 
 use fractum_math::{Ragged, Vec3};
 
-use crate::block::Cells;
 use crate::body::{Body, BodyEdges, Formulation};
 use crate::body_model::BodyModel;
 use crate::cell::{Bundle, Class, Geometry};
@@ -16,7 +15,6 @@ use crate::hooke::Hooke;
 use crate::phase::PhaseField;
 use crate::standard::{StandardCells, StandardDamage};
 use crate::threshold::Threshold;
-use crate::viscosity::ViscousCells;
 
 impl BodyModel {
     /// The body with its blocks, whose cells have no geometry yet; `first_block` is the index that its first block will have.
@@ -53,25 +51,13 @@ impl BodyModel {
         let bundles = of_body.blocks(|edge| threshold.as_ref().is_some_and(|t| t.strength[edge as usize].is_finite()));
         let mut location = vec![(0, 0); if smoothed { edge_count } else { body.elements.len() }];
         let mut blocks = Vec::with_capacity(bundles.len());
-        for Bundle { items, nodes, gradients } in bundles {
-            for (cell, &item) in items.iter().enumerate() {
+        for bundle in bundles {
+            for (cell, &item) in bundle.items.iter().enumerate() {
                 location[item as usize] = ((first_block + blocks.len()) as u32, cell as u32);
             }
-            let law = block_law(smoothed, softens.as_ref().zip(threshold.as_ref()), &items);
-            let is_fine = of_body.is_fine(items[0]);
-            let (cells, viscous, inverted) = (Cells { nodes, ..Cells::default() }, ViscousCells::default(), None);
-            blocks.push(Block {
-                body: index,
-                cells,
-                items,
-                law,
-                scratch: None,
-                gradients,
-                viscous_power: 0.0,
-                viscous,
-                inverted,
-                is_fine,
-            });
+            let law = block_law(smoothed, softens.as_ref().zip(threshold.as_ref()), &bundle.items);
+            let is_fine = of_body.is_fine(bundle.items[0]);
+            blocks.push(Block::new(bundle, index, law, is_fine));
         }
         let (reduced_edges, largest_length_ratio) =
             threshold.as_ref().map_or((0, 0.0), |t| (t.reduced_edges, t.largest_length_ratio));

@@ -5,6 +5,7 @@ use fractum_math::{Lane, Vec3};
 use crate::block::{BLOCK_NODES, Cells, Scratch};
 use crate::body::Kinematics;
 use crate::body_model::BodyModel;
+use crate::cell::Bundle;
 use crate::damage::EdgeField;
 use crate::edges_in_step::{Advance, EdgeCells, EdgesInStep, FourEdgesInStep};
 use crate::kernel::{self, ElasticCells, ExpandingCells, Viscous};
@@ -42,6 +43,24 @@ pub(crate) struct Block {
 }
 
 impl Block {
+    /// A block whose cells have no geometry yet.
+    pub(crate) fn new(bundle: Bundle, body: usize, law: BlockLaw, is_fine: bool) -> Self {
+        let Bundle { items, nodes, gradients } = bundle;
+        let (cells, viscous) = (Cells { nodes, ..Cells::default() }, ViscousCells::default());
+        Block {
+            body,
+            cells,
+            items,
+            gradients,
+            law,
+            scratch: None,
+            viscous_power: 0.0,
+            viscous,
+            inverted: None,
+            is_fine,
+        }
+    }
+
     /// Forces of all cells of the block into its scratch.
     pub(crate) fn evaluate(
         &mut self,

@@ -5,17 +5,22 @@
 //! a rank that has. So every rank that moves a node has the same bits. What needs all nodes or all cells (energies, removal,
 //! output) is told in full before; between such steps, what a rank has of the nodes and cells of others is out of date.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod plan;
+
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
 use fractum_math::{CHUNK, Sym3, Vec3};
-use fractum_parallel::{Exchange, Message, gather};
+use fractum_parallel::{Exchange, gather};
 use serde::{Deserialize, Serialize};
 
 use crate::block::{Cells, NodeSlots, Slot};
 use crate::damage::{EdgeDamage, EdgeField};
 use crate::evaluate::{Block, BlockLaw};
+
+pub(crate) use plan::runs_of;
+use plan::{Plan, Told, rank_of};
 
 /// The share of a rank.
 #[derive(Clone, Debug)]
@@ -60,27 +65,6 @@ pub struct Share {
     pub memory: usize,
     /// Whether it keeps those of all ranks.
     pub keeps_all: bool,
-}
-
-/// Who sends which sums to whom.
-#[derive(Clone, Debug)]
-struct Plan {
-    messages: Vec<Message>,
-    /// Slots to send and to receive, message by message; three numbers each.
-    slots: Vec<[Vec<Slot>; 2]>,
-    /// Which blocks have sums that others wait for.
-    is_outer: Vec<bool>,
-    /// Nodes of the blocks of this rank, in runs of each chunk, counted from its first.
-    runs: Vec<Vec<Range<usize>>>,
-}
-
-/// Nodes of which each rank tells all others some: those of its blocks that no lower rank has.
-#[derive(Clone, Debug, Default)]
-struct Told {
-    nodes: Vec<Vec<u32>>,
-    counts: Vec<usize>,
-    own: Vec<f64>,
-    all: Vec<f64>,
 }
 
 /// Numbers of a block in [`Part::records`].
@@ -295,68 +279,6 @@ impl Part {
     }
 }
 
-impl Plan {
-    /// - `first`: as in [`Part`]
-    fn new(slots: &NodeSlots, first: &[usize], me: usize) -> Self {
-        let mut between = BTreeMap::<usize, [Vec<Slot>; 2]>::new();
-        let mut is_own = vec![false; slots.len()];
-        for (node, is_own) in is_own.iter_mut().enumerate() {
-            let (own, others): (Vec<Slot>, Vec<Slot>) =
-                slots.of(node).partition(|slot| rank_of(first, slot.block()) == me);
-            *is_own = !own.is_empty();
-            if own.is_empty() {
-                continue;
-            }
-            for of_rank in others.chunk_by(|a, b| rank_of(first, a.block()) == rank_of(first, b.block())) {
-                let [send, receive] = between.entry(rank_of(first, of_rank[0].block())).or_default();
-                send.extend(&own);
-                receive.extend(of_rank);
-            }
-        }
-        let message = |(&rank, slots): (&usize, &[Vec<Slot>; 2])| {
-            let [send, receive] = slots.each_ref().map(|slots| vec![0.0; 3 * slots.len()]);
-            Message { rank, send, receive }
-        };
-        let mut is_outer = vec![false; *first.last().expect("runs of blocks have an end")];
-        between.values().flat_map(|[send, _]| send).for_each(|slot| is_outer[slot.block()] = true);
-        Plan {
-            messages: between.iter().map(message).collect(),
-            is_outer,
-            slots: between.into_values().collect(),
-            runs: is_own.chunks(CHUNK).map(runs_of).collect(),
-        }
-    }
-}
-
-impl Told {
-    /// - `first`: as in [`Part`]
-    fn new(slots: &NodeSlots, first: &[usize], nodes: &mut dyn Iterator<Item = u32>) -> Self {
-        let mut of_rank = vec![Vec::new(); first.len() - 1];
-        for node in nodes {
-            let slot = slots.of(node as usize).next().expect("a node has mass, and so a cell");
-            of_rank[rank_of(first, slot.block())].push(node);
-        }
-        let counts = of_rank.iter().map(|nodes| 3 * nodes.len()).collect();
-        Told { nodes: of_rank, counts, own: Vec::new(), all: Vec::new() }
-    }
-
-    /// Gives every rank the values at these nodes.
-    fn tell(&mut self, exchange: &dyn Exchange, values: &mut [Vec3]) {
-        let Told { nodes, counts, own, all } = self;
-        let total = counts.iter().sum();
-        if total == 0 {
-            return;
-        }
-        own.clear();
-        own.extend(nodes[exchange.rank()].iter().flat_map(|&node| <[f64; 3]>::from(values[node as usize])));
-        all.resize(total, 0.0);
-        exchange.gather(own, counts, all);
-        for (&node, from) in nodes.iter().flatten().zip(all.chunks_exact(3)) {
-            values[node as usize] = Vec3::new(from[0], from[1], from[2]);
-        }
-    }
-}
-
 impl BlockShare {
     fn of(block: &Block, viscous: bool) -> Self {
         let (energy, field) = match &block.law {
@@ -411,11 +333,6 @@ fn record(block: &Block) -> [f64; RECORD] {
     [block.viscous_power, block.viscous.shock, block.inverted.map_or(-1.0, |cell| cell as f64), edges]
 }
 
-/// The rank of a block, by the first blocks of all.
-fn rank_of(first: &[usize], block: usize) -> usize {
-    first.partition_point(|&first| first <= block) - 1
-}
-
 /// First block of each rank, and the end: runs of about the same weight.
 fn runs_of_blocks(weights: &[usize], ranks: usize) -> Vec<usize> {
     let total: usize = weights.iter().sum();
@@ -430,20 +347,6 @@ fn runs_of_blocks(weights: &[usize], ranks: usize) -> Vec<usize> {
     first.resize(ranks, weights.len());
     first.push(weights.len());
     first
-}
-
-/// The runs of what is true.
-pub(crate) fn runs_of(moved: &[bool]) -> Vec<Range<usize>> {
-    let mut begin = 0;
-    let mut runs = Vec::new();
-    for run in moved.chunk_by(|a, b| a == b) {
-        let end = begin + run.len();
-        if run[0] {
-            runs.push(begin..end);
-        }
-        begin = end;
-    }
-    runs
 }
 
 #[cfg(test)]
