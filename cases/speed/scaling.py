@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A model of weak scaling: what a step costs where every process has the same number of smoothed tetrahedra, for 1 to 1,000 processes.
 
-Measured: compute per tetrahedron and step, by PROGRAM as one process with one thread; memory, by PROGRAM as one and as four processes; latency and bandwidth
+Measured: compute per tetrahedron and step, by PROGRAM as one process with one thread; memory, by PROGRAM as two and as four processes; latency and bandwidth
 between two processes. Counted: what the processes send each other, on a cube that is divided as the program divides it. The rest is
 the model, `step_times`. docs/mpi.md has its table and its assumptions.
 
@@ -28,7 +28,6 @@ BYTES_PER_SUM = 24  # three numbers for each block that has a node
 BYTES_PER_BLOCK = 32  # four numbers of each block, where something may break
 BYTES_PER_FORCE = 24  # on a node that every process moves
 BYTES_PER_NODE = 72  # displacement, velocity and force
-FRAMES = ', fields = { every = "0.25 ms" }'
 BITS = 20
 WAYS = ((1, 2, 4), (1, 4, 2), (2, 1, 4), (2, 4, 1), (4, 1, 2), (4, 2, 1))
 
@@ -105,13 +104,14 @@ def main():
     for network in networks:
         print(f"{network.name}: {1e6 * network.latency:.2f} us, {1e-9 * network.bandwidth:.2f} GB/s" + (f" ({source})" if network.name == "here" else " (assumed)"))
     measured = [measure(options.program, side(cells)) for cells in options.cells]
-    for cells, (compute, memory) in zip(options.cells, measured):
+    memory = measure_memory(options.program)
+    print(f"memory: {memory.all:.0f} bytes of every tetrahedron on each process, {memory.divided:.0f} of those whose cells it has")
+    for cells, compute in zip(options.cells, measured):
         print_table(options, cells, compute, memory, networks)
 
 
 def print_table(options, cells, compute, memory, networks):
-    print(f"\n{cells:,} tetrahedra of each process: {1e9 * compute:.1f} ns per tetrahedron and step, memory of {memory.all:.0f} bytes for each of all and {memory.divided:.0f} for each"
-          " of its own\n")
+    print(f"\n{cells:,} tetrahedra of each process: {1e9 * compute:.1f} ns per tetrahedron and step\n")
     print("| processes | neighbours | nodes shared | kB sent | compute [ms] | exchange here, cluster [ms] | efficiency here, cluster | with a face loaded"
           " | and where something may break | GB of each process |")
     print("|---|---|---|---|---|---|---|---|---|---|")
@@ -288,12 +288,10 @@ def hilbert_index(cell):
 
 
 def measure(program, n, rounds=5):
-    """Least time per tetrahedron and step [s] of one process with one thread, and the memory of one that writes no frames."""
+    """Least time per tetrahedron and step of one process with one thread [s]."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        box = f"from ranks import write_box; write_box({str(folder / 'cube.msh')!r}, ({n},) * 3, (1.0,) * 3)"
-        subprocess.run([sys.executable, "-c", box], cwd=pathlib.Path(__file__).parent, check=True)
-        (folder / "case.toml").write_text(CASE)
+        write_cube(folder, n)
         times = []
         for _ in range(rounds):
             results = folder / "results"
@@ -301,10 +299,26 @@ def measure(program, n, rounds=5):
             summary = json.loads((results / "summary.json").read_text())
             phases = summary["wall"]["phases"]
             times.append((sum(phases.values()) - phases["output"]) / summary["time"]["steps"])
-        (folder / "case.toml").write_text(CASE.replace(FRAMES, ""))
-        one, four = (2**20 * peaks(program, folder, count)[-1] / (6 * n**3) for count in (1, 4))
-    divided = (one - four) * 4 / 3
-    return min(times) / (6 * n**3), Memory(one - divided, divided)
+    return min(times) / (6 * n**3)
+
+
+def measure_memory(program, n=44):
+    """Memory of a process beside the one that writes results, by a cube on two and on four processes less a small one."""
+    def peak(n, count):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            write_cube(folder, n)
+            return 2**20 * peaks(program, folder, count)[-1]
+
+    program_alone, two, four = peak(4, 2), peak(n, 2), peak(n, 4)
+    divided, cells = 4 * (two - four), 6 * n**3
+    return Memory((two - 0.5 * divided - program_alone) / cells, divided / cells)
+
+
+def write_cube(folder, n):
+    box = f"from ranks import write_box; write_box({str(folder / 'cube.msh')!r}, ({n},) * 3, (1.0,) * 3)"
+    subprocess.run([sys.executable, "-c", box], cwd=pathlib.Path(__file__).parent, check=True)
+    (folder / "case.toml").write_text(CASE)
 
 
 def between_two(latency, bandwidth):
