@@ -7,7 +7,7 @@ use fractum_io::atomic::{Group, Written};
 use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::PpvStations;
 use fractum_io::case::model::{
-    Body, BodyKind, Case, HistoryColumns, Output, ProbeExpression, ProbeInput, ProbeKind, SolverKind, Take,
+    Body, BodyKind, Case, HistoryColumns, Output, Probe, ProbeExpression, ProbeInput, ProbeKind, SolverKind, Take,
 };
 use fractum_io::history::{Column, History, Table};
 use fractum_io::vtk::{Collection, FrameWriter};
@@ -377,7 +377,7 @@ impl Recorder {
         let ledger = scene.ledger();
         let [elastic, spent] = [ledger[EnergyKind::Elastic], ledger.spent()];
         self.state.path.advance(scene.clock.time, spent, elastic, self.case.output.fields_every);
-        let load = self.load().map_or(Some(elastic), |force| self.state.series[force].last().copied());
+        let load = self.load().map_or(Some(elastic), |(load, _)| self.state.series[load].last().copied());
         if self.state.path.is_peak(load.unwrap_or(0.0).abs()) && !self.state.path.frame_is_due() {
             let frame = self.frame_of(scene)?;
             self.state.path.keep_peak(frame);
@@ -385,9 +385,13 @@ impl Recorder {
         Ok(())
     }
 
-    /// Index of the probe that measures the load: the first in newtons with a column of its own.
-    pub(crate) fn load(&self) -> Option<usize> {
-        self.case.probes.iter().position(|probe| probe.unit == "N" && !probe.is_scalar())
+    /// Index and unit of the probe that measures the load: the first force with a column of its own, else the first moment.
+    pub(crate) fn load(&self) -> Option<(usize, &'static str)> {
+        let first = |unit: &'static str| {
+            let is_load = |probe: &Probe| probe.unit == unit && !probe.is_scalar();
+            self.case.probes.iter().position(is_load).map(|index| (index, unit))
+        };
+        first("N").or_else(|| first("N m"))
     }
 
     /// Whether processes write pieces of one frame.

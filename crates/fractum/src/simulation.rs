@@ -63,7 +63,7 @@ pub struct Outcome {
     pub summary: Summary,
     /// Results folder.
     pub folder: PathBuf,
-    /// Name of the probe that measures the load: the first in newtons.
+    /// Name of the probe that measures the load: the first force, else the first moment.
     pub load: Option<String>,
 }
 
@@ -374,20 +374,20 @@ impl Simulation {
             broken_edges: counts.broken_edges as u64,
             broken_bonds: counts.broken_bonds as u64,
             particles: counts.particles as u64,
-            load: self.load().map(|index| self.load_and_peak(index)),
+            load: self.load().map(|(index, unit)| (self.load_and_peak(index), unit)),
             at_rest: self.solver.rests(),
         }
     }
 
-    /// Index of the probe that measures the load, once it has a row.
-    fn load(&self) -> Option<usize> {
-        self.recorder.load().filter(|&index| !self.recorder.state().series[index].is_empty())
+    /// Index and unit of the probe that measures the load, once it has a row.
+    fn load(&self) -> Option<(usize, &'static str)> {
+        self.recorder.load().filter(|&(index, _)| !self.recorder.state().series[index].is_empty())
     }
 
     /// When the load was largest [s], where a probe measures one.
     fn time_of_peak(&self) -> Option<f64> {
         let record = self.recorder.state();
-        let values: Vec<f64> = record.series[self.load()?].iter().map(|value| value.abs()).collect();
+        let values: Vec<f64> = record.series[self.load()?.0].iter().map(|value| value.abs()).collect();
         index_of_max(&values).map(|index| record.times[index])
     }
 

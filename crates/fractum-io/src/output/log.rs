@@ -83,8 +83,8 @@ pub struct Snapshot {
     pub broken_bonds: u64,
     /// Particles.
     pub particles: u64,
-    /// The load and its largest absolute value so far [N], where a probe measures one.
-    pub load: Option<[f64; 2]>,
+    /// The load, its largest absolute value so far, and their unit, where a probe measures one.
+    pub load: Option<([f64; 2], &'static str)>,
     /// Whether the scene is at rest, so that `time` is a load factor.
     pub at_rest: bool,
 }
@@ -93,8 +93,8 @@ impl Snapshot {
     /// What it says, the most wanted first.
     fn words(&self) -> Vec<String> {
         let mut words = Vec::new();
-        if let Some(load) = self.load {
-            let [load, peak] = load.map(|load| quantity(load, "N"));
+        if let Some((load, unit)) = self.load {
+            let [load, peak] = load.map(|load| quantity(load, unit));
             words.push(format!("load {load} (peak {peak})"));
         }
         let instant = instant_text(self.time, self.at_rest);
@@ -286,7 +286,7 @@ mod tests {
             text,
             "t 184 µs  step 1200  12 broken edges  dissipated 0 J  elastic 34 mJ  kinetic 1.2 mJ  dt 73 ns  balance 1.2e-6"
         );
-        let loaded = Snapshot { load: Some([3100.0, -3400.0]), ..snapshot(1.84e-4) }.to_string();
+        let loaded = Snapshot { load: Some(([3100.0, -3400.0], "N")), ..snapshot(1.84e-4) }.to_string();
         assert!(loaded.starts_with("load 3.1 kN (peak -3.4 kN)  t 184 µs  step 1200"), "{loaded}");
     }
 
@@ -302,7 +302,7 @@ mod tests {
                 120 => || Some(120),
                 _ => || Some(200),
             };
-            progress.show(&Snapshot { load: Some([3100.0, 3400.0]), ..snapshot(1e-4) }, Duration::ZERO);
+            progress.show(&Snapshot { load: Some(([3100.0, 3400.0], "N")), ..snapshot(1e-4) }, Duration::ZERO);
             let line = text(&progress).trim_end();
             assert!(line.chars().count() <= width, "{width}: {line}");
             assert_eq!(line.contains("load 3.1 kN (peak 3.4 kN)"), width >= 60, "{width}: {line}");

@@ -75,7 +75,7 @@ impl Simulation {
         }
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
-        let load = self.load().map(|index| self.case.probes[index].name.value.clone());
+        let load = self.load().map(|(index, _)| self.case.probes[index].name.value.clone());
         let notes = Notes {
             case_file: self.case.source.path.display().to_string(),
             plan: self.about.plan.wrapped(PLAN_WIDTH, str::to_owned),
