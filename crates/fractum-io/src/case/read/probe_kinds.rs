@@ -32,21 +32,10 @@ pub(super) fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKin
     };
     Some(match key {
         "reaction" => on_along().map(|(on, along)| (ProbeKind::Reaction { on, along }, Dimension::FORCE))?,
-        "moment" => {
-            let inner = table.table(key)?;
-            let (on, about) = (selection(&inner), axis(&inner));
-            inner.finish("here");
-            (ProbeKind::Moment { on: on?, about: about? }, Dimension::ENERGY)
-        }
+        "moment" => moment(table)?,
         "displacement" => on_along().map(|(on, along)| (ProbeKind::Displacement { on, along }, Dimension::LENGTH))?,
         "velocity" => on_along().map(|(on, along)| (ProbeKind::Velocity { on, along }, Dimension::VELOCITY))?,
-        "rotation" => {
-            let inner = table.table(key)?;
-            let on = selection(&inner);
-            let along = direction(&inner, "along").required();
-            inner.finish("here");
-            (ProbeKind::Rotation { on: on?, along: along? }, Dimension::NONE)
-        }
+        "rotation" => rotation(table)?,
         "contact_force" => {
             let inner = table.table(key)?;
             let [on, from] = ["on", "from"].map(|name| inner.text(name).spanned().required());
@@ -101,6 +90,21 @@ pub(super) fn measured(table: &Table<'_>, key: &'static str) -> Option<(ProbeKin
             (ProbeKind::CrackArea, Dimension::AREA)
         }
     })
+}
+
+fn moment(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("moment")?;
+    let (on, about) = (selection(&inner), axis(&inner));
+    inner.finish("here");
+    Some((ProbeKind::Moment { on: on?, about: about? }, Dimension::ENERGY))
+}
+
+fn rotation(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
+    let inner = table.table("rotation")?;
+    let on = selection(&inner);
+    let along = direction(&inner, "along").required();
+    inner.finish("here");
+    Some((ProbeKind::Rotation { on: on?, along: along? }, Dimension::NONE))
 }
 
 fn extensometer(table: &Table<'_>) -> Option<(ProbeKind, Dimension)> {
