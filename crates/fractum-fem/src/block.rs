@@ -43,6 +43,9 @@ pub(crate) struct Run {
 /// A power of two known to the compiler: a masked local number then needs no bounds check.
 pub(crate) const BLOCK_NODES: usize = 1024;
 
+/// Cells that go side by side: as many as a [`Lane`] has values.
+pub(crate) const FOUR: usize = 4;
+
 /// One value per local node.
 pub(crate) type LocalLanes = Box<[Lane; BLOCK_NODES]>;
 

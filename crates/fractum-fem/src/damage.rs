@@ -5,9 +5,9 @@ use std::sync::Arc;
 use fractum_math::{Lane, Sym3, negative_parts};
 use serde::{Deserialize, Serialize};
 
+use crate::block::FOUR;
 use crate::body::DamageZone;
 use crate::hooke::Hooke;
-use crate::kernel::FOUR;
 use crate::material::{Criterion, DamageLaw, Softening, equivalent_stresses};
 use crate::taken::Taken;
 use crate::threshold::Threshold;

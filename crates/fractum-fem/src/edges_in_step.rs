@@ -2,10 +2,10 @@
 
 use fractum_math::{Sym3, Vec3, widest};
 
-use crate::block::Cells;
+use crate::block::{Cells, FOUR};
 use crate::body::Kinematics;
 use crate::damage::{EdgeDamage, EdgeField};
-use crate::kernel::{self, CellLaw, FOUR};
+use crate::kernel::{self, CellLaw};
 
 /// The edges of one block of smoothed cells.
 #[derive(Clone, Debug)]

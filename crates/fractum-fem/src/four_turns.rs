@@ -2,7 +2,7 @@
 
 use fractum_math::{Lane, Sym3, by_component};
 
-use crate::kernel::FOUR;
+use crate::block::FOUR;
 use crate::polar::{NEAR, product, roots, stretch_square};
 
 /// Displacement gradients of four cells by rows, side by side.
@@ -15,7 +15,7 @@ pub(crate) struct FourTurns {
 }
 
 impl FourGradients {
-    /// - `columns`: of each cell, as [`gradient_columns`](crate::kernel::gradient_columns) has them
+    /// - `columns`: of each cell, derivatives along x, y, z
     #[inline(always)]
     pub(crate) fn new(columns: &[[Lane; 3]; FOUR]) -> Self {
         let mut rows = [[Lane::ZERO; 3]; 3];

@@ -2,7 +2,7 @@
 
 use fractum_math::{Lane, Mat3, Sym3, widest};
 
-use crate::block::{BLOCK_NODES, Cells, Run, Scratch, columns_to_matrix};
+use crate::block::{BLOCK_NODES, Cells, FOUR, Run, Scratch, columns_to_matrix};
 use crate::body::Kinematics;
 use crate::four_turns::FourGradients;
 use crate::hooke::Hooke;
@@ -31,9 +31,6 @@ pub(crate) trait CellLaw {
     /// Part of the stiffness that is left, 1 - d.
     fn integrity(&self, cell: usize) -> f64;
 }
-
-/// Cells that a law gets at a time: as many as a [`Lane`] has values.
-pub(crate) const FOUR: usize = 4;
 
 /// An elastic block: sums its energy when asked to.
 pub(crate) struct ElasticCells {

@@ -7,7 +7,6 @@ use crate::block::Cells;
 use crate::damage::{ABOVE_ALL, EdgeField};
 use crate::edges_in_step::Advance;
 use crate::evaluate::BlockLaw;
-use crate::kernel::FOUR;
 use crate::material::equivalent_stresses;
 use crate::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, PhaseField};
 use crate::solid::{BodyModel, Solid};

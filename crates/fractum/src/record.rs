@@ -7,7 +7,7 @@ use fractum_io::atomic::{Group, Written};
 use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::PpvStations;
 use fractum_io::case::model::{
-    Body, BodyKind, Case, HistoryColumns, Output, Probe, ProbeExpression, ProbeInput, ProbeKind, SolverKind, Take,
+    Body, BodyKind, Case, HistoryColumns, Output, ProbeExpression, ProbeInput, ProbeKind, SolverKind, Take,
 };
 use fractum_io::history::{Column, History, Table};
 use fractum_io::vtk::{Collection, FrameWriter};
@@ -387,11 +387,11 @@ impl Recorder {
 
     /// Index and unit of the probe that measures the load: the first force with a column of its own, else the first moment.
     pub(crate) fn load(&self) -> Option<(usize, &'static str)> {
-        let first = |unit: &'static str| {
-            let is_load = |probe: &Probe| probe.unit == unit && !probe.is_scalar();
-            self.case.probes.iter().position(is_load).map(|index| (index, unit))
+        let first = |unit| {
+            let index = self.case.probes.iter().position(|probe| probe.unit == unit && !probe.is_scalar());
+            index.map(|index| (index, unit))
         };
-        first("N").or_else(|| first("N m"))
+        ["N", "N m"].into_iter().find_map(first)
     }
 
     /// Whether processes write pieces of one frame.
