@@ -50,7 +50,7 @@ const COS_OF_THIRD: [[f64; 4]; 5] = [
 ///
 /// It is analytic in √(1 + x) up to √(1 + x) = −√2: the Chebyshev series to t¹⁷ is exact to 5e-16, at a third of the cost of arc
 /// cosine and cosine.
-#[inline]
+#[inline(always)]
 pub fn cos_of_third(x: f64) -> f64 {
     let t = (2.0 + 2.0 * x).sqrt() - 1.0;
     let square = t * t;

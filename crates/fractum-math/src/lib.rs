@@ -28,7 +28,7 @@ mod work;
 pub use connected::{connected, numbered_parts};
 pub use lanczos::largest_eigenvalue;
 pub use lane::Lane;
-pub use negative_part::{by_component, first_principal_values, negative_parts, outer_principal_values};
+pub use negative_part::{by_component, negative_parts};
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};
 pub use rotation::{angle_between, rotation_between, rotation_by, rotation_vector};

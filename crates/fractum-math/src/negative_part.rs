@@ -50,19 +50,6 @@ fn negative_parts_by_lanes(tensors: &[Sym3; 4]) -> [Sym3; 4] {
     std::array::from_fn(|k| Sym3(part.map(|component| component.0[k])))
 }
 
-/// The first of the [`Sym3::principal_values`] of four tensors by their components, for kernels that are themselves compiled for the widest vectors.
-#[inline(always)]
-pub fn first_principal_values(components: &[Lane; 6]) -> [f64; 4] {
-    outer_value(lode(*components), Lane::splat(1.0)).0
-}
-
-/// The first and the last of them.
-#[inline(always)]
-pub fn outer_principal_values(components: &[Lane; 6]) -> [[f64; 4]; 2] {
-    let lode = lode(*components);
-    [outer_value(lode, Lane::splat(1.0)).0, outer_value(lode, Lane::splat(-1.0)).0]
-}
-
 /// The same component of all four tensors side by side.
 #[inline(always)]
 pub fn by_component(tensors: &[Sym3; 4]) -> [Lane; 6] {
@@ -139,15 +126,14 @@ mod tests {
             prop_assert_eq!(together, bits(negative_parts_by_lanes(&tensors)));
             prop_assert_eq!(together, bits(tensors.map(Sym3::negative_part)));
             let values = tensors.map(Sym3::principal_values);
-            let outer = [values.map(|values| values[0]), values.map(|values| values[2])];
-            prop_assert_eq!(outer_principal_values(&by_component(&tensors)), outer);
-            prop_assert_eq!(first_principal_values(&by_component(&tensors)), outer[0]);
+            let outer = |side: f64| outer_value(lode(by_component(&tensors)), Lane::splat(side)).0;
+            prop_assert_eq!([outer(1.0), outer(-1.0)], [values.map(|values| values[0]), values.map(|values| values[2])]);
         }
     }
 
     #[test]
     fn zero_and_isotropic_tensors_are_their_negative_part_or_have_none() {
-        assert_eq!(outer_principal_values(&[Lane::ZERO; 6]), [[0.0; 4]; 2]);
+        assert_eq!(outer_value(lode([Lane::ZERO; 6]), Lane::splat(1.0)).0, [0.0; 4]);
         assert_eq!([Sym3::ZERO, Sym3::isotropic(2.0)].map(Sym3::negative_part), [Sym3::ZERO; 2]);
         assert_eq!(Sym3::isotropic(-2.0).negative_part(), Sym3::isotropic(-2.0));
     }

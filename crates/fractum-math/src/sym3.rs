@@ -35,7 +35,7 @@ impl Sym3 {
     }
 
     /// Sum of the diagonal.
-    #[inline]
+    #[inline(always)]
     pub fn trace(self) -> f64 {
         self.0[0] + self.0[1] + self.0[2]
     }
@@ -48,14 +48,14 @@ impl Sym3 {
     }
 
     /// Second invariant of the deviator, J₂ = ½ s : s.
-    #[inline]
+    #[inline(always)]
     pub fn j2(self) -> f64 {
         let [xx, yy, zz, xy, yz, zx] = self.0;
         ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 6.0 + xy * xy + yz * yz + zx * zx
     }
 
     /// Third invariant of the deviator, J₃ = det s.
-    #[inline]
+    #[inline(always)]
     pub fn j3(self) -> f64 {
         let mean = self.trace() / 3.0;
         let [xx, yy, zz, xy, yz, zx] = self.0;
@@ -66,7 +66,7 @@ impl Sym3 {
     /// Principal values in descending order, by the trigonometric solution of the characteristic equation.
     ///
     /// Near a double value the error grows to about 1e-8 of the norm; [`Sym3::eigen`] is exact to round-off.
-    #[inline]
+    #[inline(always)]
     pub fn principal_values(self) -> [f64; 3] {
         let [mean, radius, cos3] = self.lode();
         let (first, last) = (mean + radius * cos_of_third(cos3), mean - radius * cos_of_third(-cos3));
@@ -74,14 +74,14 @@ impl Sym3 {
     }
 
     /// The first of [`Sym3::principal_values`].
-    #[inline]
+    #[inline(always)]
     pub fn first_principal_value(self) -> f64 {
         let [mean, radius, cos3] = self.lode();
         mean + radius * cos_of_third(cos3)
     }
 
     /// Mean m, r = 2 √(J₂/3) and cos 3θ: the first principal value is m + r cos θ, the last m - r cos(π/3 - θ).
-    #[inline]
+    #[inline(always)]
     fn lode(self) -> [f64; 3] {
         let (mean, j2) = (self.trace() / 3.0, self.j2());
         if j2 <= 1e-300 {

@@ -1,5 +1,5 @@
 use fractum_math::elementary::{asin, cos, sin};
-use fractum_math::{Lane, Sym3, by_component, first_principal_values, outer_principal_values, widest};
+use fractum_math::{Lane, Sym3, by_component, widest};
 use serde::{Deserialize, Serialize};
 
 /// The equivalent stress of a criterion, scaled so that uniaxial tension σ gives q = σ.
@@ -160,6 +160,7 @@ impl Criterion {
     }
 
     /// Rankine's and Mohr-Coulomb's equivalent stress from the first and the last principal value.
+    #[inline(always)]
     fn of_outer_values(&self, first: f64, last: f64) -> f64 {
         let [n, scale, ..] = self.constants;
         if self.kind == CriterionKind::Rankine { first } else { first.max((n * first - last) * scale) }
@@ -203,21 +204,34 @@ widest! {
         = equivalent_stresses_by_lanes;
 }
 
+/// The loops are those of one stress: so the compiler makes vectors of them.
 #[inline(always)]
 fn equivalent_stresses_by_lanes(criterion: &Criterion, stresses: &[Sym3; 4], threshold: &Lane) -> [f64; 4] {
     let components = by_component(stresses);
-    let room = room_below(criterion, &components, *threshold).0;
+    let of = |k: usize| Sym3(components.map(|component| component.0[k]));
+    let mut room = [0.0; 4];
+    for k in 0..4 {
+        room[k] = room_below(criterion, of(k), threshold.0[k]);
+    }
     if room[0].min(room[1]).min(room[2].min(room[3])) >= 0.0 {
         return [0.0; 4];
     }
-    let mut q = match criterion.kind {
-        CriterionKind::Rankine => first_principal_values(&components),
-        CriterionKind::MohrCoulomb => {
-            let [first, last] = outer_principal_values(&components);
-            std::array::from_fn(|k| criterion.of_outer_values(first[k], last[k]))
+    let mut q = [0.0; 4];
+    match criterion.kind {
+        CriterionKind::Rankine => {
+            for k in 0..4 {
+                q[k] = of(k).first_principal_value();
+            }
         }
-        _ => stresses.map(|stress| criterion.equivalent_stress(stress)),
-    };
+        CriterionKind::MohrCoulomb => {
+            let (mut first, mut last) = ([0.0; 4], [0.0; 4]);
+            for k in 0..4 {
+                [first[k], _, last[k]] = of(k).principal_values();
+            }
+            q = std::array::from_fn(|k| criterion.of_outer_values(first[k], last[k]));
+        }
+        _ => q = stresses.map(|stress| criterion.equivalent_stress(stress)),
+    }
     for k in 0..4 {
         q[k] = if q[k] > 0.0 && room[k] < 0.0 { q[k] } else { 0.0 };
     }
@@ -226,17 +240,20 @@ fn equivalent_stresses_by_lanes(criterion: &Criterion, stresses: &[Sym3; 4], thr
 
 /// Not negative where q surely stays at or below a threshold > 0, as by [`Criterion::surely_below`]; without branches.
 #[inline(always)]
-fn room_below(criterion: &Criterion, &[xx, yy, zz, xy, yz, zx]: &[Lane; 6], threshold: Lane) -> Lane {
-    let square = xx * xx + yy * yy + zz * zz + Lane::splat(2.0) * (xy * xy + yz * yz + zx * zx);
+fn room_below(criterion: &Criterion, stress: Sym3, threshold: f64) -> f64 {
+    let [xx, yy, zz, xy, yz, zx] = stress.0;
+    let square = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
     let trace = xx + yy + zz;
-    let j2 = Lane::splat(0.5) * square * Lane::splat(1.0 + 1e-14) - trace * trace / Lane::splat(6.0);
-    let mean = trace / Lane::splat(3.0);
-    let mut below = Lane::splat(f64::INFINITY);
+    let j2 = 0.5 * square * (1.0 + 1e-14) - trace * trace / 6.0;
+    let mean = trace / 3.0;
+    let least = |a: f64, b: f64| if a < b { a } else { b };
+    let mut below = f64::INFINITY;
     for (a, b2) in criterion.bounds {
-        let room = threshold - Lane::splat(a) * mean;
-        below = below.min(room).min(room * room - Lane::splat(b2) * j2);
+        let room = threshold - a * mean;
+        below = least(least(below, room), room * room - b2 * j2);
     }
-    below.max(threshold * threshold - square * Lane::splat(criterion.norm_factor))
+    let by_norm = threshold * threshold - square * criterion.norm_factor;
+    if below > by_norm { below } else { by_norm }
 }
 
 #[cfg(test)]
