@@ -84,11 +84,11 @@ impl Sym3 {
     #[inline(always)]
     fn lode(self) -> [f64; 3] {
         let (mean, j2) = (self.trace() / 3.0, self.j2());
-        if j2 <= 1e-300 {
-            return [mean, 0.0, 0.0];
-        }
         let radius = 2.0 * (j2 / 3.0).sqrt();
-        [mean, radius, (4.0 * self.j3() / (radius * radius * radius)).clamp(-1.0, 1.0)]
+        let cos3 = (4.0 * self.j3() / (radius * radius * radius)).clamp(-1.0, 1.0);
+        // Chosen at the end rather than returned before, which would keep loops over tensors from becoming vectors.
+        let is_isotropic = j2 <= 1e-300;
+        [mean, if is_isotropic { 0.0 } else { radius }, if is_isotropic { 0.0 } else { cos3 }]
     }
 
     /// Principal values in descending order with their directions (columns), by cyclic Jacobi rotations.

@@ -207,8 +207,8 @@ widest! {
 /// The loops are those of one stress: so the compiler makes vectors of them.
 #[inline(always)]
 fn equivalent_stresses_by_lanes(criterion: &Criterion, stresses: &[Sym3; 4], threshold: &Lane) -> [f64; 4] {
-    let components = by_component(stresses);
-    let of = |k: usize| Sym3(components.map(|component| component.0[k]));
+    let [xx, yy, zz, xy, yz, zx] = by_component(stresses);
+    let of = |k: usize| Sym3([xx.0[k], yy.0[k], zz.0[k], xy.0[k], yz.0[k], zx.0[k]]);
     let mut room = [0.0; 4];
     for k in 0..4 {
         room[k] = room_below(criterion, of(k), threshold.0[k]);
