@@ -209,9 +209,9 @@ widest! {
 fn equivalent_stresses_by_lanes(criterion: &Criterion, stresses: &[Sym3; 4], threshold: &Lane) -> [f64; 4] {
     let [xx, yy, zz, xy, yz, zx] = by_component(stresses);
     let of = |k: usize| Sym3([xx.0[k], yy.0[k], zz.0[k], xy.0[k], yz.0[k], zx.0[k]]);
-    let mut room = [0.0; 4];
+    let (Lane(threshold), mut room) = (threshold, [0.0; 4]);
     for k in 0..4 {
-        room[k] = room_below(criterion, of(k), threshold.0[k]);
+        room[k] = room_below(criterion, of(k), threshold[k]);
     }
     if room[0].min(room[1]).min(room[2].min(room[3])) >= 0.0 {
         return [0.0; 4];
@@ -219,8 +219,8 @@ fn equivalent_stresses_by_lanes(criterion: &Criterion, stresses: &[Sym3; 4], thr
     let mut q = [0.0; 4];
     match criterion.kind {
         CriterionKind::Rankine => {
-            for k in 0..4 {
-                q[k] = of(k).first_principal_value();
+            for (k, q) in q.iter_mut().enumerate() {
+                *q = of(k).first_principal_value();
             }
         }
         CriterionKind::MohrCoulomb => {
