@@ -6,7 +6,7 @@ use fractum_fem::Solid;
 use fractum_math::{Rotation, Vec3};
 
 use crate::bonded::Bonded;
-use crate::conditions::{Points, Population};
+use crate::conditions::{Points, Population, mean};
 use crate::scene::Scene;
 
 /// Smallest part of a direction across a plane of points with which a strain is not measured.
@@ -175,10 +175,6 @@ fn points_of<'a>(bonded: &'a Bonded, solid: &'a Solid, population: Population) -
         Population::Nodes => solid,
         Population::Particles => bonded,
     }
-}
-
-fn mean(points: &[u32], of: impl Fn(usize) -> Vec3) -> Vec3 {
-    points.iter().map(|&i| of(i as usize)).sum::<Vec3>() / points.len() as f64
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod surface_support;
 pub use load::*;
 pub use points::Population;
 pub(crate) use points::{DrivenPoints, Points};
+pub(crate) use probe::mean;
 pub use probe::{Along, PointProbe};
 pub(crate) use support::{Kick, integral};
 pub use support::{Motion, Support, Supports};

@@ -105,8 +105,8 @@ impl PointProbe {
             ),
             PointProbe::Rotation { points, .. } if points.iter().any(|&point| has_left(point)) => f64::NAN,
             PointProbe::Rotation { points, axis } => {
-                let centre = mean(points.iter(), |i| *population.reference(i));
-                let shift = mean(points.iter(), displacement);
+                let centre = mean(points, |i| *population.reference(i));
+                let shift = mean(points, displacement);
                 let (mut moment, mut weight) = (0.0, 0.0);
                 for &i in points {
                     let path = axis.cross(&(population.reference(i as usize) - centre));
@@ -137,7 +137,8 @@ fn component<'a>(
     sum / f64::from(count)
 }
 
-fn mean<'a>(points: impl Iterator<Item = &'a u32>, of: impl Fn(usize) -> Vec3) -> Vec3 {
+/// The mean of a vector over points.
+pub(crate) fn mean<'a>(points: impl IntoIterator<Item = &'a u32>, of: impl Fn(usize) -> Vec3) -> Vec3 {
     let (mut sum, mut count) = (Vec3::zeros(), 0);
     for &point in points {
         sum += of(point as usize);
