@@ -3,7 +3,7 @@
 use fractum_math::{Lane, Sym3, Vec3};
 use rayon::prelude::*;
 
-use crate::block::Cells;
+use crate::block::{Cells, FOUR};
 use crate::damage::{ABOVE_ALL, EdgeField};
 use crate::edges_in_step::Advance;
 use crate::evaluate::BlockLaw;

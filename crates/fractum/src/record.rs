@@ -7,7 +7,7 @@ use fractum_io::atomic::{Group, Written};
 use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::PpvStations;
 use fractum_io::case::model::{
-    Body, BodyKind, Case, HistoryColumns, Output, ProbeExpression, ProbeInput, ProbeKind, SolverKind, Take,
+    Body, BodyKind, Case, HistoryColumns, Output, ProbeExpression, ProbeInput, ProbeKind, SolverKind, Take, load_of,
 };
 use fractum_io::history::{Column, History, Table};
 use fractum_io::vtk::{Collection, FrameWriter};
@@ -385,13 +385,9 @@ impl Recorder {
         Ok(())
     }
 
-    /// Index and unit of the probe that measures the load: the first force with a column of its own, else the first moment.
+    /// Index and unit of the probe that measures the load.
     pub(crate) fn load(&self) -> Option<(usize, &'static str)> {
-        let first = |unit| {
-            let index = self.case.probes.iter().position(|probe| probe.unit == unit && !probe.is_scalar());
-            index.map(|index| (index, unit))
-        };
-        ["N", "N m"].into_iter().find_map(first)
+        load_of(&self.case.probes)
     }
 
     /// Whether processes write pieces of one frame.

@@ -35,7 +35,7 @@ pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Distribution, Material, Scatter};
 pub use plot::{Plot, PlotReference, PlotScale};
 pub use ppv::{Ppv, Scaling, StationLine};
-pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take};
+pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take, load_of};
 pub use rigid::{RigidBody, RigidShape};
 pub use solver::{Control, InitialOverlap, Opening, Solver, SolverKind, StaticOptions, StopWhen, TimeStep};
 pub use tie::Tie;

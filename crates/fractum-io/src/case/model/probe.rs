@@ -32,6 +32,15 @@ impl Probe {
     }
 }
 
+/// Index and unit of the probe that measures the load: the first force with a column of its own, else the first moment.
+pub fn load_of(probes: &[Probe]) -> Option<(usize, &'static str)> {
+    let first = |unit| {
+        let index = probes.iter().position(|probe| probe.unit == unit && !probe.is_scalar());
+        index.map(|index| (index, unit))
+    };
+    ["N", "N m"].into_iter().find_map(first)
+}
+
 /// What a probe measures.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ProbeKind {
