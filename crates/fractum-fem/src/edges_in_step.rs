@@ -32,8 +32,7 @@ pub(crate) struct Advance<'a> {
 impl Advance<'_> {
     /// Elastic strain of a cell now.
     pub(crate) fn strain_now(&self, cells: &Cells, cell: usize) -> Sym3 {
-        let strain = kernel::strain(&cells.gradient(cell, |node| self.displacement[node]), self.kinematics);
-        cells.elastic_strain(cell, strain)
+        kernel::elastic_strain(cells, cell, self.displacement, self.kinematics)
     }
 
     /// Elastic strain of a cell at the step before.

@@ -128,9 +128,7 @@ impl Block {
             return;
         }
         for cell in 0..cells.len() {
-            let strain = kernel::strain(&cells.gradient(cell, |node| displacement[node]), model.body.kinematics);
-            let strain = cells.elastic_strain(cell, strain);
-            law.see(cell, strain);
+            law.see(cell, kernel::elastic_strain(cells, cell, displacement, model.body.kinematics));
         }
     }
 

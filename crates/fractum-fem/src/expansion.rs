@@ -8,6 +8,7 @@ use crate::body::Formulation;
 use crate::body_model::BodyModel;
 use crate::cell::Geometry;
 use crate::evaluate::Block;
+use crate::kernel::elastic_strain;
 use crate::solid::Solid;
 use crate::thermal_strain::ThermalStrain;
 
@@ -53,7 +54,7 @@ impl Solid {
             let traces: f64 = (0..cells.len())
                 .map(|cell| {
                     let change = block.change_of(cell, rise);
-                    let strain = block.strain_of(cell, model.body.kinematics, displacement);
+                    let strain = elastic_strain(&block.cells, cell, displacement, model.body.kinematics);
                     -0.5 * cells.volume[cell] * block.nominal_stress(cell, &model.hooke, strain).dot(change)
                 })
                 .sum();
@@ -74,7 +75,7 @@ impl Solid {
             let work: f64 = (0..block.cells.len())
                 .map(|cell| {
                     let change = own.unit * (own.now[cell] - own.before[cell]);
-                    let strain = block.strain_of(cell, model.body.kinematics, displacement);
+                    let strain = elastic_strain(&block.cells, cell, displacement, model.body.kinematics);
                     -0.5 * block.cells.volume[cell] * block.nominal_stress(cell, &model.hooke, strain).dot(change)
                 })
                 .sum();

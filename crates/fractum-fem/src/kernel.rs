@@ -1,6 +1,6 @@
 //! The force kernel: strain of each cell, stress by its law, forces on its nodes.
 
-use fractum_math::{Lane, Mat3, Sym3, widest};
+use fractum_math::{Lane, Mat3, Sym3, Vec3, widest};
 
 use crate::block::{BLOCK_NODES, Cells, FOUR, Run, Scratch, columns_to_matrix};
 use crate::body::Kinematics;
@@ -99,6 +99,16 @@ pub(crate) fn strain(h: &Mat3, kinematics: Kinematics) -> Sym3 {
         Kinematics::Small => Sym3::symmetric_part(h),
         Kinematics::Corotational => corotational_strain(h).0,
     }
+}
+
+/// Strain of a cell by displacements of all nodes [m], whether stress or temperature makes it.
+pub(crate) fn total_strain(cells: &Cells, cell: usize, displacement: &[Vec3], kinematics: Kinematics) -> Sym3 {
+    strain(&cells.gradient(cell, |node| displacement[node]), kinematics)
+}
+
+/// The same beyond the thermal strain.
+pub(crate) fn elastic_strain(cells: &Cells, cell: usize, displacement: &[Vec3], kinematics: Kinematics) -> Sym3 {
+    cells.elastic_strain(cell, total_strain(cells, cell, displacement, kinematics))
 }
 
 /// A local number as an index that the compiler knows to be in range.

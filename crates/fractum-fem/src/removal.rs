@@ -1,13 +1,13 @@
 //! Elements that a crack has cut through leave; their mass stays on the nodes.
 
-use fractum_math::{Sym3, Vec3};
+use fractum_math::Sym3;
 
-use crate::body::{Formulation, Kinematics};
+use crate::body::Formulation;
 use crate::cell::Geometry;
 use crate::edges_in_step::{Advance, EdgesInStep};
 use crate::element::cut_modes;
 use crate::evaluate::{Block, BlockLaw};
-use crate::kernel;
+use crate::kernel::elastic_strain;
 use crate::solid::{BodyModel, Solid};
 
 impl Solid {
@@ -71,7 +71,7 @@ impl Solid {
     fn stored_energy(&self, (block, cell): (u32, u32)) -> f64 {
         let (block, cell) = (&self.blocks[block as usize], cell as usize);
         let model = &self.bodies[block.body];
-        let strain = block.strain_of(cell, model.body.kinematics, &self.displacement);
+        let strain = elastic_strain(&block.cells, cell, &self.displacement, model.body.kinematics);
         0.5 * block.nominal_stress(cell, &model.hooke, strain).dot(strain) * block.cells.volume[cell]
     }
 
@@ -219,12 +219,6 @@ impl Solid {
 }
 
 impl Block {
-    /// Elastic strain of one cell at the present displacements.
-    pub(crate) fn strain_of(&self, cell: usize, kinematics: Kinematics, displacement: &[Vec3]) -> Sym3 {
-        let cells = &self.cells;
-        cells.elastic_strain(cell, kernel::strain(&cells.gradient(cell, |node| displacement[node]), kinematics))
-    }
-
     /// Stress of one cell with its damage [Pa].
     pub(crate) fn nominal_stress(&self, cell: usize, hooke: &crate::hooke::Hooke, strain: Sym3) -> Sym3 {
         let full = hooke.stress(strain);

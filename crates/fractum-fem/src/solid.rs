@@ -332,7 +332,7 @@ impl Solid {
         let model = &self.bodies[index];
         let strain = |&at: &(u32, u32)| {
             let (cells, cell) = self.cells_with(at);
-            (kernel::strain(&cells.gradient(cell, |node| self.displacement[node]), model.body.kinematics), 0.0)
+            (kernel::total_strain(&cells, cell, &self.displacement, model.body.kinematics), 0.0)
         };
         self.means(model, strain).into_iter().map(|(strain, _)| strain).collect()
     }
@@ -380,8 +380,7 @@ impl Solid {
 
     fn cell_field(&self, model: &BodyModel, &at: &(u32, u32)) -> (Sym3, f64) {
         let (cells, place) = self.cells_with(at);
-        let strain = kernel::strain(&cells.gradient(place, |node| self.displacement[node]), model.body.kinematics);
-        let strain = cells.elastic_strain(place, strain);
+        let strain = kernel::elastic_strain(&cells, place, &self.displacement, model.body.kinematics);
         let (block, cell) = (&self.blocks[at.0 as usize], at.1 as usize);
         (block.nominal_stress(cell, &model.hooke, strain), block.damage_of(cell))
     }

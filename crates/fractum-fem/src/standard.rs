@@ -319,37 +319,3 @@ impl CellLaw for StandardCells {
         1.0 - self.damage[cell]
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::material::{Criterion, CriterionKind};
-
-    proptest! {
-        /// Why an edge may be left alone where none of its elements may load it.
-        #[test]
-        fn the_mean_of_stresses_that_stay_below_stays_below(
-            stresses in prop::collection::vec(prop::array::uniform6(-10f64..10.0), 1..8),
-            least in 1f64..30.0,
-        ) {
-            for kind in [
-                CriterionKind::Rankine,
-                CriterionKind::MohrCoulomb,
-                CriterionKind::PureMohrCoulomb,
-                CriterionKind::DruckerPrager,
-                CriterionKind::Mazars,
-                CriterionKind::ModifiedMohrCoulomb,
-            ] {
-                let criterion = Criterion::new(kind, 35f64.to_radians(), 10.0, 0.2);
-                let is_below = |stress: Sym3| criterion.surely_below(stress, least) || criterion.is_below_by_minors(stress, least);
-                let below: Vec<Sym3> = stresses.iter().map(|&c| Sym3(c)).filter(|&stress| is_below(stress)).collect();
-                let mut sum = Sym3::ZERO;
-                below.iter().for_each(|&stress| sum += stress);
-                let mean = sum * (1.0 / below.len().max(1) as f64);
-                prop_assert!(criterion.equivalent_stress(mean) <= least * (1.0 + 1e-7), "{kind:?}");
-            }
-        }
-    }
-}

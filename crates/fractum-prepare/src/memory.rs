@@ -46,7 +46,9 @@ pub fn check_memory(case: &Case, mesh: &Mesh, processes: Processes) -> Result<()
         let (count, of, each) = match &body.kind {
             BodyKind::Solid(own) => {
                 let (count, of, each) = solid(own, mesh);
-                (count, of, each * (1.0 - SHARED + SHARED / processes.all as f64))
+                // In-situ stress is found by every process.
+                let shared = if own.needs_all_cells() || case.in_situ.is_some() { 0.0 } else { SHARED };
+                (count, of, each * (1.0 - shared + shared / processes.all as f64))
             }
             BodyKind::Bonded(own) => (bonded(own), "particles", BONDED_PARTICLE),
             BodyKind::Particles(own) => (loose(own), "particles", LOOSE_PARTICLE),

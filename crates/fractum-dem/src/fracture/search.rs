@@ -125,7 +125,7 @@ impl FailureSearch {
         &self.criterion
     }
 
-    /// The site nearest to failure at the last search; none where nothing bears anything.
+    /// The site nearest to failure at the last [`FailureSearch::search`]; none where nothing bears anything, or was looked for.
     pub fn worst(&self) -> Option<FailureSite> {
         self.worst
     }
@@ -135,7 +135,7 @@ impl FailureSearch {
         &self.overloaded
     }
 
-    /// Stress of each neighbourhood at the last search [Pa]; empty for a criterion of beams.
+    /// Stress of each neighbourhood when it was last looked at [Pa]; empty for a criterion of beams.
     pub fn stress(&self) -> &[Sym3] {
         &self.stress
     }

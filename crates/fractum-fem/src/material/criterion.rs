@@ -306,6 +306,38 @@ mod tests {
             }
         }
 
+        /// Why an edge among elements that each stay below may be left alone.
+        #[test]
+        fn the_mean_of_stresses_that_stay_below_stays_below(
+            stresses in prop::collection::vec(prop::array::uniform6(-10f64..10.0), 1..8),
+            least in 1f64..30.0,
+        ) {
+            for &kind in KINDS {
+                let criterion = criterion(kind);
+                let is_below = |s: &Sym3| criterion.surely_below(*s, least) || criterion.is_below_by_minors(*s, least);
+                let below: Vec<Sym3> = stresses.iter().map(|&c| Sym3(c)).filter(is_below).collect();
+                let mean = below.iter().fold(Sym3::ZERO, |sum, &s| sum + s) * (1.0 / below.len().max(1) as f64);
+                prop_assert!(criterion.equivalent_stress(mean) <= least * (1.0 + 1e-7), "{:?}", kind);
+            }
+        }
+
+        #[test]
+        fn four_stresses_have_the_bits_of_each_alone(
+            c in prop::array::uniform24(-10f64..10.0),
+            t in prop::array::uniform4(0.1f64..20.0),
+        ) {
+            let stresses: [Sym3; 4] = std::array::from_fn(|k| Sym3(std::array::from_fn(|i| c[6 * k + i])));
+            for &kind in KINDS {
+                let criterion = criterion(kind);
+                let together = equivalent_stresses(&criterion, &stresses, &Lane(t));
+                for k in 0..4 {
+                    let alone = criterion.equivalent_stress(stresses[k]);
+                    let stays_below = together[k] == 0.0 && alone <= t[k] * (1.0 + 1e-7);
+                    prop_assert!(together[k] == alone || stays_below, "{:?}: {} {}", kind, together[k], alone);
+                }
+            }
+        }
+
         /// Also beside double values, where closed forms are least exact.
         #[test]
         fn rankines_bound_is_sharp_and_hides_nothing(

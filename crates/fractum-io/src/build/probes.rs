@@ -60,14 +60,14 @@ impl Context<'_> {
     ) -> Option<Probe> {
         Some(match kind {
             ProbeKind::Reaction { on, along } => {
-                let places = supports.places(&solid.with_copies(self.selected_nodes(on, numbering)));
-                self.refuse_unheld(on, is_held(&places, along), " along the direction of the probe");
+                let nodes = solid.with_copies(self.selected_nodes(on, numbering));
+                let places = self.held_places(on, &nodes, supports, Some(along));
                 on_nodes(PointProbe::Reaction { places, along: *along })
             }
             ProbeKind::Moment { on, about } => {
                 self.refuse_out_of_plane(on, &about.direction, solid);
-                let places = supports.places(&solid.with_copies(self.selected_nodes(on, numbering)));
-                self.refuse_unheld(on, !places.is_empty(), "");
+                let nodes = solid.with_copies(self.selected_nodes(on, numbering));
+                let places = self.held_places(on, &nodes, supports, None);
                 on_nodes(PointProbe::Moment { places, about: *about })
             }
             ProbeKind::Displacement { on, along } => {
@@ -129,12 +129,26 @@ impl Context<'_> {
         })
     }
 
-    /// An error for reactions where no support holds anything; another stage may hold it.
-    fn refuse_unheld(&mut self, on: &Selection, is_held: bool, how: &str) {
-        if let (false, Some(place)) = (is_held || !self.case.source.stage.is_empty(), on.place()) {
+    /// Where supports hold these nodes; an error where they do not, or not along the direction. Another stage may hold
+    /// them, and a selection without any node has its own error.
+    fn held_places(
+        &mut self,
+        on: &Selection,
+        nodes: &[u32],
+        supports: &Supports,
+        along: Option<&Along>,
+    ) -> Vec<(u32, u32, u32)> {
+        let places = supports.places(nodes);
+        let (is_held, how) = match along {
+            Some(along) => (is_held(&places, along), " along the direction of the probe"),
+            None => (!places.is_empty(), ""),
+        };
+        let is_fine = is_held || nodes.is_empty() || !self.case.source.stage.is_empty();
+        if let (false, Some(place)) = (is_fine, on.place()) {
             let found = format!("= \"{}\": nothing holds it{how}", on.label());
             self.error(&place.clone(), found, "nodes that a support prescribes");
         }
+        places
     }
 
     /// An error for an axis about which nothing turns in the plane.

@@ -6,6 +6,7 @@ use fractum_math::Vec3;
 use fractum_scene::ProbedScene;
 
 use crate::build;
+use crate::selection::{refused, refused_on};
 use crate::sides::{AROUND, Listed, RADIUS, THICKNESS, ring};
 
 const CASE: &str = r#"fractum = 1
@@ -104,5 +105,25 @@ fn a_ring_that_turns_and_widens_has_its_components_about_the_axis() {
         };
         let wider = (0..=half).map(own).sum::<f64>() / f64::from(half + 1);
         assert!((now[5] / wider - 1.0).abs() < 1e-9, "{formulation}: {} for {wider}", now[5]);
+    }
+}
+
+#[test]
+fn moments_of_what_nothing_holds_or_turns_are_refused_with_their_place() {
+    let held = "[[supports]]\ngroup = \"x-\"\nfix = \"xyz\"\n[[probes]]\nname = \"m\"\n";
+    for (probe, said) in [
+        ("moment = { group = \"x+\" }", "probes[0].moment.group = \"x+\": nothing holds it"),
+        ("moment = { group = \"body.x+\" }", "expected a group that touches a solid body"),
+    ] {
+        let found = refused(&format!("{held}{probe}\n"));
+        assert!(found.contains(said), "{probe}: {found}");
+    }
+    let case = CASE.replace("FORMULATION", "standard");
+    for probe in
+        ["moment = { group = \"outer\", about = { axis = \"x\" } }", "rotation = { group = \"outer\", along = \"y\" }"]
+    {
+        let said =
+            refused_on(&format!("{case}[[probes]]\nname = \"m\"\n{probe}\n"), &ring(Listed::Along, Listed::Along));
+        assert!(said.contains("plane bodies turn about z alone"), "{probe}: {said}");
     }
 }

@@ -102,10 +102,15 @@ fn facets_count_where_all_of_their_nodes_fulfil_the_condition() {
 /// What is said of a case that is wrong on its mesh.
 pub(crate) fn refused(conditions: &str) -> String {
     let mesh = structured_box([2, 2, 2], Vec3::repeat(0.1), None);
-    let case = parse_case(&format!("{SOLID}{conditions}"), Path::new("case.toml"), &[]).unwrap();
-    match build_scene(&case, &mesh, Vec::new(), Vec::new()) {
+    refused_on(&format!("{SOLID}{conditions}"), &mesh)
+}
+
+/// The same of a whole case.
+pub(crate) fn refused_on(case: &str, mesh: &Mesh) -> String {
+    let read = parse_case(case, Path::new("case.toml"), &[]).unwrap();
+    match build_scene(&read, mesh, Vec::new(), Vec::new()) {
         Err(errors) => errors.to_string(),
-        Ok(_) => panic!("{conditions} should be refused"),
+        Ok(_) => panic!("{case} should be refused"),
     }
 }
 

@@ -54,6 +54,13 @@ pub struct SolidBody {
     pub strength_factor: Option<Spanned<Field>>,
 }
 
+impl SolidBody {
+    /// Whether each of several processes needs the cells of all: edges of plain elements gather stresses around them.
+    pub fn needs_all_cells(&self) -> bool {
+        self.damage && self.formulation == Formulation::Standard
+    }
+}
+
 choice!(Formulation { "smoothed" => Smoothed, "standard" => Standard });
 choice!(Kinematics { "small" => Small, "corotational" => Corotational });
 choice!(Plane { "strain" => Strain, "stress" => Stress });
