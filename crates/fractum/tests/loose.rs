@@ -138,6 +138,65 @@ fn a_heap_runs_with_the_same_bits_on_any_threads_and_after_a_checkpoint() {
     assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
 }
 
+/// At the step of the program two beads that meet at a hundredth of √(E/ρ) keep their energy, since Hertz' impact takes some fifty steps.
+#[test]
+fn an_impact_of_beads_is_resolved_without_asking_for_it() {
+    const IMPACT: &str = r#"fractum = 1
+title = "Two beads meet"
+
+[materials.soft]
+density = "1000 kg/m^3"
+young_modulus = "1 MPa"
+poisson_ratio = 0.25
+contact = { restitution = 1.0 }
+
+[[bodies]]
+name = "left"
+kind = "particles"
+material = "soft"
+file = "left.csv"
+unit = "mm"
+initial_velocity = { x = "0.316 m/s" }
+
+[[bodies]]
+name = "right"
+kind = "particles"
+material = "soft"
+file = "right.csv"
+unit = "mm"
+initial_velocity = { x = "-0.316 m/s" }
+
+[solver]
+end = "3 ms"
+
+[[probes]]
+name = "force"
+contact_force = { on = "left", from = "right", along = "-x" }
+[[probes]]
+name = "rebound"
+velocity = { group = "right", along = "x" }
+
+[output]
+history = { every = "2 us" }
+"#;
+    let place = Workplace::new(IMPACT);
+    for (name, x) in [("left.csv", -2.005), ("right.csv", 2.005)] {
+        fs::write(place.path(name), format!("x, y, z, r\n{x}, 0, 0, 2\n")).unwrap();
+    }
+    let found = run(&place, "one", "1");
+    let residual = found["energy"]["residual_max_relative"].as_f64().unwrap();
+    assert!(residual < 1e-3, "{residual}");
+    let rebound = found["probes"]["rebound"]["final"].as_f64().unwrap();
+    assert!((rebound / 0.316 - 1.0).abs() < 1e-3, "{rebound}");
+    // Hertz: what is left of the motion at the largest depth is elastic energy, 8/15 E √R δ^(5/2), by the reduced mass, radius and modulus.
+    let (radius, modulus) = (1e-3f64, 1e6 / (2.0 * (1.0 - 0.25f64.powi(2))));
+    let mass = 0.5 * 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * 2e-3f64.powi(3);
+    let depth = (15.0 / 16.0 * mass * 0.632f64.powi(2) / (modulus * radius.sqrt())).powf(0.4);
+    let force = 4.0 / 3.0 * modulus * radius.sqrt() * depth.powf(1.5);
+    let largest = found["probes"]["force"]["max"].as_f64().unwrap();
+    assert!((largest / force - 1.0).abs() < 5e-3, "{largest} N, {force} N");
+}
+
 #[test]
 fn wrong_particles_and_bodies_are_explained() {
     for (old, new, words) in [

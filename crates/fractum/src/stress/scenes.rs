@@ -230,7 +230,7 @@ fn loose(draw: &mut Draw) -> RandomScene {
             speed = number(-draw.decades(0.01, 1.0) * (9.81 * radius * side).sqrt()),
         );
     let end = 2.0 * (2.0 * side * radius / 9.81).sqrt();
-    RandomScene { kind: "particles", case: case + &footer("explicit", end, 0.3), mesh: None }
+    RandomScene { kind: "particles", case: case + &footer("explicit", end, 0.8), mesh: None }
 }
 
 /// A cloud that falls onto an elastic block in a container.
@@ -258,7 +258,7 @@ fn beads_on_solid(draw: &mut Draw) -> RandomScene {
             speed = number(-draw.decades(0.01, 1.0) * (9.81 * radius * side).sqrt()),
         );
     let end = (side * radius / 9.81).sqrt();
-    RandomScene { kind: "beads on solid", case: case + &footer("explicit", end, 0.3), mesh: Some(mesh) }
+    RandomScene { kind: "beads on solid", case: case + &footer("explicit", end, 0.8), mesh: Some(mesh) }
 }
 
 /// A packed box that is tied to the end of a block, and pulled away from it or pushed onto it.
