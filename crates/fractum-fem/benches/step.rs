@@ -8,7 +8,7 @@ mod calibration;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as run_benches};
-use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, LocalDamping, Solid};
+use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, LocalDamping, Regularisation, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::renumber::renumber_along_hilbert_curve;
@@ -68,17 +68,27 @@ fn smoothed_damaged(bencher: Bencher, cells: u32) {
     bench_step(bencher, cells, |body| body.smoothed().with_damage(law(1e3)));
 }
 
-/// Forces of cells that are armed (strength 3 MPa) or damaged (1 kPa) in two steps, by kinematics and rotation about the z axis [rad].
+/// Forces of cells that are armed (strength 3 MPa), damaged (1 kPa) or have a phase field (100 kPa) in two steps, by kinematics and rotation about the z axis [rad].
 ///
 /// All nodes swing more and more: in the first of the steps every damaged cell passes what it has seen, in the second it unloads.
 #[divan::bench(args = [
     ("armed", false, 0.0), ("armed", true, 0.0), ("armed", true, 0.7),
     ("damaged", false, 0.0), ("damaged", true, 0.0), ("damaged", true, 0.7),
+    ("phase field", false, 0.0), ("phase field", true, 0.7),
 ])]
 fn cells_in_motion(bencher: Bencher, (state, corotational, angle): (&str, bool, f64)) {
     let kinematics = if corotational { Kinematics::Corotational } else { Kinematics::Small };
-    let strength = if state == "armed" { 3e6 } else { 1e3 };
-    let (mut solid, count, dt) = solid(21, |body| Body { kinematics, ..body.smoothed().with_damage(law(strength)) });
+    let law = match state {
+        "armed" => law(3e6),
+        "damaged" => law(1e3),
+        _ => DamageLaw::rankine(1e5, 1.0),
+    };
+    let (mut solid, count, dt) = solid(21, |body| {
+        let mut body = body.smoothed().with_damage(law.clone());
+        let zone = body.damage.as_mut().expect("it has just got a law");
+        zone.regularisation = (state == "phase field").then_some(Regularisation { length: None });
+        Body { kinematics, ..body }
+    });
     swing_in_pairs(bencher, (&mut solid, count), angle, |solid| solid.update_internal_forces(dt, false));
 }
 

@@ -65,7 +65,7 @@ fn local_lanes() -> LocalLanes {
 
 impl Cells {
     /// Strain of a cell that stress belongs to: beyond the thermal one.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn elastic_strain(&self, cell: usize, strain: Sym3) -> Sym3 {
         self.thermal.as_ref().map_or(strain, |thermal| thermal.elastic(cell, strain))
     }
@@ -98,6 +98,7 @@ impl Cells {
     }
 
     /// Displacement gradient of a cell from the displacements of global nodes.
+    #[inline(always)]
     pub(crate) fn gradient(&self, cell: usize, displacement: impl Fn(usize) -> Vec3) -> Mat3 {
         let global = |local: u16| displacement(self.nodes[usize::from(local)] as usize);
         let local = self.local_nodes(cell);

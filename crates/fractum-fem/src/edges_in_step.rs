@@ -31,6 +31,7 @@ pub(crate) struct Advance<'a> {
 
 impl Advance<'_> {
     /// Elastic strain of a cell now.
+    #[inline(always)]
     pub(crate) fn strain_now(&self, cells: &Cells, cell: usize) -> Sym3 {
         kernel::elastic_strain(cells, cell, self.displacement, self.kinematics)
     }

@@ -94,6 +94,7 @@ fn is_inverted(h: &Mat3) -> bool {
 }
 
 /// Strain of a displacement gradient.
+#[inline(always)]
 pub(crate) fn strain(h: &Mat3, kinematics: Kinematics) -> Sym3 {
     match kinematics {
         Kinematics::Small => Sym3::symmetric_part(h),
@@ -102,11 +103,13 @@ pub(crate) fn strain(h: &Mat3, kinematics: Kinematics) -> Sym3 {
 }
 
 /// Strain of a cell by displacements of all nodes [m], whether stress or temperature makes it.
+#[inline(always)]
 pub(crate) fn total_strain(cells: &Cells, cell: usize, displacement: &[Vec3], kinematics: Kinematics) -> Sym3 {
     strain(&cells.gradient(cell, |node| displacement[node]), kinematics)
 }
 
 /// The same beyond the thermal strain.
+#[inline(always)]
 pub(crate) fn elastic_strain(cells: &Cells, cell: usize, displacement: &[Vec3], kinematics: Kinematics) -> Sym3 {
     cells.elastic_strain(cell, total_strain(cells, cell, displacement, kinematics))
 }

@@ -1,6 +1,6 @@
 //! The phase fields of a solid at work: in motion before the forces of a step, at rest for the trials of a solver.
 
-use fractum_math::{Lane, Sym3, Vec3};
+use fractum_math::{Lane, Sym3, Vec3, widest};
 use rayon::prelude::*;
 
 use crate::block::{Cells, FOUR};
@@ -45,16 +45,18 @@ impl Solid {
             }
             solid.drive(body, field, dt);
             field.sweep();
-            field.book(|own, edge_step| solid.taken(body, own, edge_step, dt));
+            field.book(|own| solid.taken_at_first(body, own, dt));
             field.take_over(|edge, step, grown| {
                 let (cells, cell, dissipated) = solid.history_of(body, edge);
                 cells.see(cell, step.seen);
                 if !grown {
                     return;
                 }
-                cells.soften(cell, step.damage);
-                if let Some(dissipated) = dissipated {
-                    *dissipated += step.taken;
+                let growth = cells.soften(cell, step.damage);
+                if let Some(dissipated) = dissipated
+                    && growth > 0.0
+                {
+                    *dissipated += step.taken.by(growth);
                 }
             });
             let mut reached = Vec::new();
@@ -79,7 +81,6 @@ impl Solid {
     fn drive(&self, body: usize, field: &mut PhaseField, dt: f64) {
         let model = &self.bodies[body];
         let compliance = 0.5 / model.body.elastic.young_modulus;
-        let own_blocks = self.own_blocks();
         let PhaseField { active, steps, .. } = field;
         if let Some(standard) = &model.standard {
             active.par_iter_mut().with_min_len(AT_LEAST).for_each(|own| {
@@ -89,45 +90,20 @@ impl Solid {
             });
             return;
         }
-        let step = self.advance_of(model, dt);
         let fours = active.par_chunks_mut(FOUR).zip(steps.par_chunks_mut(FOUR));
-        fours.with_min_len(AT_LEAST / FOUR).for_each(|(active, steps)| {
-            let (mut stresses, mut kappa, mut criterion) = ([Sym3::ZERO; FOUR], Lane::splat(ABOVE_ALL), None);
-            for (k, (own, edge_step)) in active.iter_mut().zip(&mut *steps).enumerate() {
-                if !own_blocks.contains(&(model.location[own.edge as usize].0 as usize)) {
-                    continue;
-                }
-                let Some((cells, field, cell)) = self.cell_of(model, own.edge) else { continue };
-                edge_step.strain = step.strain_now(cells, cell);
-                stresses[k] = field.softens.hooke.stress(edge_step.strain);
-                kappa.0[k] = field.state[cell].kappa;
-                own.drive.volume = cells.volume[cell];
-                criterion = Some(&field.softens.criterion);
-            }
-            let Some(criterion) = criterion else { return };
-            let q = equivalent_stresses(criterion, &stresses, &kappa);
-            for (k, (own, edge_step)) in active.iter_mut().zip(steps).enumerate() {
-                edge_step.seen = if q[k] > kappa.0[k] { q[k] } else { 0.0 };
-                let kappa = kappa.0[k].max(edge_step.seen);
-                own.drive.energy = kappa * kappa * compliance;
-            }
-        });
+        fours.with_min_len(AT_LEAST / FOUR).for_each(|(active, steps)| drive_four(self, body, dt, active, steps));
     }
 
-    /// What the damage of an active edge that has grown takes [J].
-    fn taken(&self, body: usize, own: &ActiveEdge, edge_step: &EdgeStep, dt: f64) -> f64 {
+    /// What the first damage of an active edge takes if it grows [J].
+    fn taken_at_first(&self, body: usize, own: &ActiveEdge, dt: f64) -> Taken {
         let model = &self.bodies[body];
-        let Some((cells, EdgeField { softens, state, .. }, cell)) = self.cell_of(model, own.edge) else { return 0.0 };
-        let (state, strain) = (&state[cell], edge_step.strain);
-        let growth = edge_step.damage - state.damage;
-        if growth <= 0.0 {
-            return 0.0;
-        }
-        let untouched = state.damage == 0.0;
-        let before = if untouched { self.advance_of(model, dt).strain_before(cells, cell) } else { state.strain };
-        let damage = if own.rebuilt { 0.0 } else { state.damage };
+        let Some((cells, EdgeField { softens, .. }, cell)) = self.cell_of(model, own.edge) else {
+            return Taken::default();
+        };
+        let step = self.advance_of(model, dt);
+        let (before, strain) = (step.strain_before(cells, cell), step.strain_now(cells, cell));
         let (stress, closed) = (softens.hooke.stress(strain), softens.closed_stress(strain));
-        softens.taken(damage, [before, strain], stress, closed).of(cells.volume[cell]).by(growth)
+        softens.taken(0.0, [before, strain], stress, closed).of(cells.volume[cell])
     }
 
     fn advance_of(&self, model: &BodyModel, dt: f64) -> Advance<'_> {
@@ -136,6 +112,7 @@ impl Solid {
     }
 
     /// The smoothed cell of an edge, with its number, among those of its block that may be damaged.
+    #[inline(always)]
     fn cell_of(&self, model: &BodyModel, edge: u32) -> Option<(&Cells, &EdgeField, usize)> {
         let (block, cell) = *model.location.get(edge as usize)?;
         let block = &self.blocks[block as usize];
@@ -239,6 +216,48 @@ impl Solid {
                 }
             });
         });
+    }
+}
+
+widest! {
+    /// Finds what drives up to four active edges of smoothed cells, and what their damage takes if it grows.
+    fn drive_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], steps: &mut [EdgeStep]) = driven_four;
+}
+
+#[inline(always)]
+fn driven_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], steps: &mut [EdgeStep]) {
+    let model = &solid.bodies[body];
+    let compliance = 0.5 / model.body.elastic.young_modulus;
+    let (step, own_blocks) = (solid.advance_of(model, dt), solid.own_blocks());
+    let (mut strains, mut stresses, mut kappa) = ([Sym3::ZERO; FOUR], [Sym3::ZERO; FOUR], Lane::splat(ABOVE_ALL));
+    let (mut places, mut softens) = ([None; FOUR], None);
+    for (k, own) in active.iter_mut().enumerate() {
+        if !own_blocks.contains(&(model.location[own.edge as usize].0 as usize)) {
+            continue;
+        }
+        let Some((cells, field, cell)) = solid.cell_of(model, own.edge) else { continue };
+        strains[k] = step.strain_now(cells, cell);
+        stresses[k] = field.softens.hooke.stress(strains[k]);
+        kappa.0[k] = field.state[cell].kappa;
+        own.drive.volume = cells.volume[cell];
+        places[k] = Some(&field.state[cell]);
+        softens = Some(&field.softens);
+    }
+    let Some(softens) = softens else { return };
+    let q = equivalent_stresses(&softens.criterion, &stresses, &kappa);
+    let closed = softens.closed_stresses(&strains);
+    for (k, (own, edge_step)) in active.iter_mut().zip(steps).enumerate() {
+        let Some(state) = places[k] else { continue };
+        edge_step.seen = if q[k] > kappa.0[k] { q[k] } else { 0.0 };
+        let kappa = kappa.0[k].max(edge_step.seen);
+        own.drive.energy = kappa * kappa * compliance;
+        edge_step.is_intact = state.damage == 0.0;
+        if !edge_step.is_intact {
+            let damage = if own.rebuilt { 0.0 } else { state.damage };
+            let closed = closed.as_ref().map(|closed| closed[k]);
+            edge_step.taken =
+                softens.taken(damage, [state.strain, strains[k]], stresses[k], closed).of(own.drive.volume);
+        }
     }
 }
 

@@ -24,6 +24,7 @@ impl Sym3 {
     }
 
     /// The symmetric part of a matrix.
+    #[inline(always)]
     pub fn symmetric_part(m: &Mat3) -> Self {
         Sym3([m.m11, m.m22, m.m33, 0.5 * (m.m12 + m.m21), 0.5 * (m.m23 + m.m32), 0.5 * (m.m13 + m.m31)])
     }

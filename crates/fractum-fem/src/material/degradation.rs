@@ -1,3 +1,5 @@
+use fractum_math::Lane;
+
 use super::Softening;
 
 /// Stiffness that a cohesive phase field leaves at its value d, ω(d) = (1-d)^p / ((1-d)^p + a₁ d (1 + a₂ d + a₃ d²)).
@@ -37,13 +39,13 @@ impl Degradation {
 
     /// (1-d)^p and its derivatives.
     #[inline(always)]
-    fn powers(&self, d: f64) -> [f64; 3] {
-        let x = 1.0 - d;
+    fn powers(&self, d: Lane) -> [Lane; 3] {
+        let x = Lane::splat(1.0) - d;
         if self.endless {
             let root = x.sqrt();
-            [x * x * root, -2.5 * x * root, 3.75 * root]
+            [x * x * root, Lane::splat(-2.5) * x * root, Lane::splat(3.75) * root]
         } else {
-            [x * x, -2.0 * x, 2.0]
+            [x * x, Lane::splat(-2.0) * x, Lane::splat(2.0)]
         }
     }
 
@@ -51,21 +53,22 @@ impl Degradation {
     #[inline(always)]
     pub fn stiffness(&self, a1: f64, d: f64) -> f64 {
         let d = d.min(PARTED);
-        let [q, ..] = self.powers(d);
+        let q = self.powers(Lane::splat(d))[0].0[0];
         q / (q + a1 * d * (1.0 + d * (self.a2 + d * self.a3)))
     }
 
-    /// ω, ω' and ω''.
+    /// ω' and ω'' of four edges.
     #[inline(always)]
-    pub fn derivatives(&self, a1: f64, d: f64) -> [f64; 3] {
-        let d = d.min(PARTED);
+    pub fn derivatives(&self, a1: Lane, d: Lane) -> [Lane; 2] {
+        let (a2, a3, of) = (Lane::splat(self.a2), Lane::splat(self.a3), Lane::splat);
+        let d = d.min(of(PARTED));
         let [q, q1, q2] = self.powers(d);
-        let r = a1 * d * (1.0 + d * (self.a2 + d * self.a3));
-        let r1 = a1 * (1.0 + d * (2.0 * self.a2 + 3.0 * d * self.a3));
-        let r2 = a1 * (2.0 * self.a2 + 6.0 * d * self.a3);
+        let r = a1 * d * (of(1.0) + d * (a2 + d * a3));
+        let r1 = a1 * (of(1.0) + d * (of(2.0) * a2 + of(3.0) * d * a3));
+        let r2 = a1 * (of(2.0) * a2 + of(6.0) * d * a3);
         let (sum, slope) = (q + r, q1 * r - q * r1);
         let square = sum * sum;
-        [q / sum, slope / square, (q2 * r - q * r2) / square - 2.0 * slope * (q1 + r1) / (square * sum)]
+        [slope / square, (q2 * r - q * r2) / square - of(2.0) * slope * (q1 + r1) / (square * sum)]
     }
 }
 
@@ -157,13 +160,13 @@ mod tests {
             for softening in ALL {
                 let law = curve(softening);
                 prop_assert!((law.stiffness(a1, 0.0) - 1.0).abs() < 1e-15);
-                let [value, first, second] = law.derivatives(a1, d);
-                prop_assert_eq!(value, law.stiffness(a1, d));
+                let derivatives = |d| law.derivatives(Lane::splat(a1), Lane::splat(d)).map(|lane| lane.0[0]);
+                let [first, second] = derivatives(d);
                 let h = 1e-5 * d.min(1.0 - d);
-                let (up, down) = (law.derivatives(a1, d + h), law.derivatives(a1, d - h));
-                prop_assert!(up[0] < down[0]);
-                prop_assert!((first - (up[0] - down[0]) / (2.0 * h)).abs() < 1e-4 * first.abs());
-                prop_assert!((second - (up[1] - down[1]) / (2.0 * h)).abs() < 1e-4 * (second.abs() + first.abs() / d));
+                let [up, down] = [d + h, d - h].map(|d| (law.stiffness(a1, d), derivatives(d)[0]));
+                prop_assert!(up.0 < down.0);
+                prop_assert!((first - (up.0 - down.0) / (2.0 * h)).abs() < 1e-4 * first.abs());
+                prop_assert!((second - (up.1 - down.1) / (2.0 * h)).abs() < 1e-4 * (second.abs() + first.abs() / d));
             }
         }
     }

@@ -18,14 +18,16 @@ mod rest;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use fractum_math::Sym3;
+use fractum_math::{Lane, widest};
 use fractum_parallel::Exchange;
 use rayon::prelude::*;
 
+use crate::block::FOUR;
 use crate::body::{Body, BodyEdges, DamageZone, ElementKind, Formulation};
 use crate::cell::Geometry;
 use crate::error::SolidError;
 use crate::material::Degradation;
+use crate::taken::Taken;
 use laplacian::Rows;
 use ranks::Told;
 
@@ -112,10 +114,12 @@ pub(crate) struct ActiveEdge {
 pub(crate) struct EdgeStep {
     /// Equivalent stress now where it is the largest so far [Pa], else zero.
     pub(crate) seen: f64,
-    pub(crate) strain: Sym3,
-    /// Damage now, and what it takes [J], where d has grown.
+    /// What damage takes if it grows [J].
+    pub(crate) taken: Taken,
+    /// The edge had no damage at the step before, and `taken` is not known yet.
+    pub(crate) is_intact: bool,
+    /// Damage now, where d has grown.
     pub(crate) damage: f64,
-    pub(crate) taken: f64,
 }
 
 /// The phase field of a body.
@@ -230,14 +234,16 @@ impl PhaseField {
     /// (L d) of the active edges.
     #[cfg(test)]
     pub(crate) fn laplacian<'a>(&'a self, field: &'a [f64]) -> impl Iterator<Item = (u32, f64)> + 'a {
-        self.active.iter().enumerate().map(|(row, own)| (own.edge, self.rows.product(row, field).0))
+        self.active.iter().enumerate().map(|(row, own)| (own.edge, self.rows.product(row, field)))
     }
 
     /// What a sweep divides by in the row of every edge.
     #[cfg(test)]
     pub(crate) fn bounds(&self) -> nalgebra::DVector<f64> {
         let mut bounds = nalgebra::DVector::zeros(self.value.len());
-        self.active.iter().enumerate().for_each(|(row, own)| bounds[own.edge as usize] = self.rows.bound(row));
+        for (row, own) in self.active.iter().enumerate() {
+            bounds[own.edge as usize] = self.rows.bounds(row / FOUR).0[row % FOUR];
+        }
         bounds
     }
 
@@ -252,10 +258,9 @@ impl PhaseField {
         }
         for _ in 0..SWEEPS {
             let field = &*value;
-            active.par_iter_mut().enumerate().with_min_len(AT_LEAST).for_each(|(row, own)| {
-                if own.rank == rank {
-                    let flow = rows.product(row, field).0;
-                    own.next = law.swept(&own.drive, (flow, rows.bound(row)), field[own.edge as usize], own.old);
+            active.par_chunks_mut(FOUR).enumerate().with_min_len(AT_LEAST / FOUR).for_each(|(group, four)| {
+                if four.iter().any(|own| own.rank == rank) {
+                    sweep_four(law, rows, group, field, four);
                 }
             });
             told.iter_mut().for_each(|told| told.tell(active));
@@ -265,15 +270,17 @@ impl PhaseField {
         }
     }
 
-    /// Finds the damage of the edges whose d has grown, and what it takes by `taken(edge, step)` [J].
-    pub(crate) fn book(&mut self, taken: impl Fn(&ActiveEdge, &EdgeStep) -> f64 + Sync) {
+    /// Finds the damage of the edges whose d has grown, and what it takes of intact ones by `taken(edge)` [J].
+    pub(crate) fn book(&mut self, taken: impl Fn(&ActiveEdge) -> Taken + Sync) {
         let rank = self.rank();
         let PhaseField { law, value, active, steps, .. } = self;
         active.par_iter().zip(steps).with_min_len(AT_LEAST).for_each(|(own, step)| {
             let d = value[own.edge as usize];
             if d > own.old && own.rank == rank {
                 step.damage = law.damage(own.drive.a1, d);
-                step.taken = taken(own, step);
+                if step.is_intact {
+                    step.taken = taken(own);
+                }
             }
         });
     }
@@ -316,29 +323,64 @@ impl PhaseField {
         for (row, own) in active.iter_mut().enumerate() {
             if !own.spread && value[own.edge as usize] > SPREADS {
                 own.spread = true;
-                reached.extend(rows.row(row).0.iter().filter(|&&edge| slot[edge as usize] == Self::ASLEEP));
+                reached.extend(rows.edges(row).filter(|&edge| slot[edge as usize] == Self::ASLEEP));
             }
         }
     }
 }
 
+widest! {
+    /// Sweeps a group of rows, up to four.
+    fn sweep_four(law: &PhaseLaw, rows: &Rows, group: usize, field: &[f64], active: &mut [ActiveEdge]) = swept_four;
+}
+
+#[inline(always)]
+fn swept_four(law: &PhaseLaw, rows: &Rows, group: usize, field: &[f64], active: &mut [ActiveEdge]) {
+    let (mut drives, mut d, mut old) = (DriveOfFour::default(), Lane::ZERO, Lane::ZERO);
+    for (k, own) in active.iter().enumerate() {
+        drives.set(k, &own.drive);
+        (d.0[k], old.0[k]) = (field[own.edge as usize], own.old);
+    }
+    let next = law.swept(&drives, (rows.products(group, field), rows.bounds(group)), d, old);
+    for (own, next) in active.iter_mut().zip(next.0) {
+        own.next = next;
+    }
+}
+
+/// The same as [`Drive`], of four edges.
+#[derive(Default)]
+struct DriveOfFour {
+    volume: Lane,
+    energy: Lane,
+    a1: Lane,
+}
+
+impl DriveOfFour {
+    #[inline(always)]
+    fn set(&mut self, k: usize, drive: &Drive) {
+        (self.volume.0[k], self.energy.0[k], self.a1.0[k]) = (drive.volume, drive.energy, drive.a1);
+    }
+}
+
 impl PhaseLaw {
-    /// d of an edge after one sweep.
+    /// d of four edges after one sweep.
     ///
     /// - `flow`: (L d); `bound`: that of the row; `d`: now; `old`: at the step before
     #[inline(always)]
-    fn swept(&self, drive: &Drive, (flow, bound): (f64, f64), d: f64, old: f64) -> f64 {
+    fn swept(&self, drive: &DriveOfFour, (flow, bound): (Lane, Lane), d: Lane, old: Lane) -> Lane {
         let (residual, slope) = self.residual(drive, flow, d);
-        let slope = slope + self.gradient * bound;
-        if slope > 0.0 { (d - residual / slope).clamp(old, 1.0) } else { d.max(old) }
+        let slope = slope + Lane::splat(self.gradient) * bound;
+        let next = (d - residual / slope).max(old).min(Lane::splat(1.0));
+        Lane::choose(slope.0.map(|slope| slope > 0.0), next, d.max(old))
     }
 
     /// R_g and the part V max(ω'', 0) Y of its slope.
     #[inline(always)]
-    fn residual(&self, &Drive { volume, energy, a1 }: &Drive, flow: f64, d: f64) -> (f64, f64) {
-        let [_, first, second] = self.degradation.derivatives(a1, d);
-        let residual = volume * (first * energy + self.resistance * (1.0 - d)) + self.gradient * flow;
-        (residual, volume * second.max(0.0) * energy)
+    fn residual(&self, &DriveOfFour { volume, energy, a1 }: &DriveOfFour, flow: Lane, d: Lane) -> (Lane, Lane) {
+        let [first, second] = self.degradation.derivatives(a1, d);
+        let resistance = Lane::splat(self.resistance) * (Lane::splat(1.0) - d);
+        let residual = volume * (first * energy + resistance) + Lane::splat(self.gradient) * flow;
+        (residual, volume * second.max(Lane::ZERO) * energy)
     }
 }
 

@@ -1,6 +1,9 @@
 //! The phase field at rest: a projected Newton method for given drives.
 
-use super::{Drive, PhaseField};
+use fractum_math::Lane;
+
+use super::{Drive, DriveOfFour, PhaseField};
+use crate::block::FOUR;
 
 /// Newton steps at most, and the change of d at which they end.
 const STEPS: usize = 40;
@@ -58,15 +61,21 @@ impl PhaseField {
     /// Finds the edges that are not held, with the right-hand side -R of their equations.
     fn free_edges(&self, drives: &[Drive], d: &[f64], work: &mut Solution) {
         work.free.clear();
-        for (row, (own, drive)) in self.active.iter().zip(drives).enumerate() {
-            let edge = own.edge as usize;
-            let (flow, diagonal) = self.rows.product(row, d);
-            let (residual, slope) = self.law.residual(drive, flow, d[edge]);
-            let held = residual >= 0.0 && d[edge] <= self.value[edge] || residual <= 0.0 && d[edge] >= 1.0;
-            let slope = slope + self.law.gradient * diagonal;
-            if !held && slope > 0.0 {
-                work.residual[edge] = -residual;
-                work.free.push((row, slope));
+        for (group, (active, drives)) in self.active.chunks(FOUR).zip(drives.chunks(FOUR)).enumerate() {
+            let (mut four, mut values) = (DriveOfFour::default(), Lane::ZERO);
+            for (k, (own, drive)) in active.iter().zip(drives).enumerate() {
+                four.set(k, drive);
+                values.0[k] = d[own.edge as usize];
+            }
+            let (Lane(residuals), Lane(slopes)) = self.law.residual(&four, self.rows.products(group, d), values);
+            for (k, own) in active.iter().enumerate() {
+                let (edge, row, residual) = (own.edge as usize, group * FOUR + k, residuals[k]);
+                let held = residual >= 0.0 && d[edge] <= self.value[edge] || residual <= 0.0 && d[edge] >= 1.0;
+                let slope = slopes[k] + self.law.gradient * self.rows.diagonal(row);
+                if !held && slope > 0.0 {
+                    work.residual[edge] = -residual;
+                    work.free.push((row, slope));
+                }
             }
         }
     }
@@ -86,7 +95,7 @@ impl PhaseField {
             let mut curvature = 0.0;
             for &(row, diagonal) in &*free {
                 let e = edge(row);
-                let (flow, own) = self.rows.product(row, direction);
+                let (flow, own) = (self.rows.product(row, direction), self.rows.diagonal(row));
                 image[e] = (diagonal - self.law.gradient * own) * direction[e] + self.law.gradient * flow;
                 curvature += direction[e] * image[e];
             }
