@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::block::{Cells, FOUR};
 use crate::damage::{ABOVE_ALL, EdgeField};
-use crate::edges_in_step::Advance;
+use crate::edges_in_step::{Advance, EdgeCells};
 use crate::evaluate::BlockLaw;
 use crate::material::equivalent_stresses;
 use crate::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, PhaseField};
@@ -46,25 +46,43 @@ impl Solid {
             solid.drive(body, field, dt);
             field.sweep();
             field.book(|own| solid.taken_at_first(body, own, dt));
-            field.take_over(|edge, step, grown| {
-                let (cells, cell, dissipated) = solid.history_of(body, edge);
-                cells.see(cell, step.seen);
-                if !grown {
-                    return;
-                }
-                let growth = cells.soften(cell, step.damage);
-                if let Some(dissipated) = dissipated
-                    && growth > 0.0
-                {
-                    *dissipated += step.taken.by(growth);
-                }
-            });
+            solid.take_over(body, field);
+            field.end_step();
             let mut reached = Vec::new();
             field.newly_reached(&mut reached);
             solid.activate(body, field, &reached);
             let model = &solid.bodies[body];
             if model.standard.is_none() {
                 field.arrange(before, |edge| model.location[edge as usize]);
+            }
+        });
+    }
+
+    /// Lets the histories of edges see what they have seen in a step, and softens those whose d has grown.
+    fn take_over(&mut self, body: usize, field: &PhaseField) {
+        let own = self.own_blocks();
+        let Solid { blocks, bodies, .. } = self;
+        if let Some(standard) = &mut bodies[body].standard {
+            for edge in field.active.iter().map(|own| own.edge) {
+                if let Some((step, true)) = field.change(edge) {
+                    standard.field.soften(edge as usize, step.damage);
+                }
+            }
+            return;
+        }
+        let blocks = blocks[own].par_iter_mut().filter(|block| block.body == body);
+        blocks.for_each(|block| {
+            let BlockLaw::Edges(EdgeCells { field: cells, dissipated, .. }) = &mut block.law else { return };
+            for cell in 0..cells.edges.len() {
+                let Some((step, grown)) = field.change(cells.edges[cell]) else { continue };
+                cells.see(cell, step.seen);
+                if !grown {
+                    continue;
+                }
+                let growth = cells.soften(cell, step.damage);
+                if growth > 0.0 {
+                    *dissipated += step.taken.by(growth);
+                }
             }
         });
     }

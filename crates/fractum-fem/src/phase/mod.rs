@@ -252,10 +252,11 @@ impl PhaseField {
     /// Begins with the growth of the step before; two sweeps then are as good as the exact solution.
     pub(crate) fn sweep(&mut self) {
         let rank = self.rank();
-        let PhaseField { law, value, active, rows, told, .. } = self;
-        for own in active.iter() {
-            value[own.edge as usize] = (own.old + (own.old - own.before)).min(1.0);
-        }
+        let PhaseField { law, value, active, slot, rows, told, .. } = self;
+        spread(value, slot, |slot| {
+            let own = &active[slot];
+            (own.old + (own.old - own.before)).min(1.0)
+        });
         for _ in 0..SWEEPS {
             let field = &*value;
             active.par_chunks_mut(FOUR).enumerate().with_min_len(AT_LEAST / FOUR).for_each(|(group, four)| {
@@ -264,9 +265,7 @@ impl PhaseField {
                 }
             });
             told.iter_mut().for_each(|told| told.tell(active));
-            for own in active.iter() {
-                value[own.edge as usize] = own.next;
-            }
+            spread(value, slot, |slot| active[slot].next);
         }
     }
 
@@ -285,18 +284,20 @@ impl PhaseField {
         });
     }
 
-    /// Takes d over, with `work(edge, step, has d grown)` where an edge of this rank has seen more than before or d has grown.
-    pub(crate) fn take_over(&mut self, mut work: impl FnMut(u32, &EdgeStep, bool)) {
-        let rank = self.rank();
-        let PhaseField { value, active, steps, .. } = self;
-        for (own, step) in active.iter_mut().zip(steps) {
-            let d = value[own.edge as usize];
-            let grown = d > own.old;
-            if own.rank == rank && (grown || step.seen > 0.0) {
-                work(own.edge, step, grown);
-            }
-            (own.before, own.old, own.rebuilt) = (own.old, d, false);
-        }
+    /// The step of an edge that this rank has and that has seen more than before, or whose d has grown; and whether it has.
+    pub(crate) fn change(&self, edge: u32) -> Option<(&EdgeStep, bool)> {
+        let slot = self.slot[edge as usize];
+        let own = self.active.get(slot as usize)?;
+        let (step, grown) = (&self.steps[slot as usize], self.value[edge as usize] > own.old);
+        (own.rank == self.rank() && (grown || step.seen > 0.0)).then_some((step, grown))
+    }
+
+    /// Takes d over.
+    pub(crate) fn end_step(&mut self) {
+        let PhaseField { value, active, .. } = self;
+        active.par_iter_mut().with_min_len(AT_LEAST).for_each(|own| {
+            (own.before, own.old, own.rebuilt) = (own.old, value[own.edge as usize], false);
+        });
     }
 
     /// Takes over values found at rest.
@@ -327,6 +328,15 @@ impl PhaseField {
             }
         }
     }
+}
+
+/// Gives every active edge a value by its place among them.
+fn spread(value: &mut [f64], slot: &[u32], of: impl Fn(usize) -> f64 + Sync) {
+    value.par_iter_mut().zip(slot).with_min_len(AT_LEAST).for_each(|(value, &slot)| {
+        if slot != PhaseField::ASLEEP {
+            *value = of(slot as usize);
+        }
+    });
 }
 
 widest! {
