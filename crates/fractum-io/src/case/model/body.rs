@@ -59,6 +59,11 @@ impl SolidBody {
     pub fn needs_all_cells(&self) -> bool {
         self.damage && self.formulation == Formulation::Standard
     }
+
+    /// Whether strain and stress live on edges.
+    pub fn is_smoothed(&self) -> bool {
+        self.formulation == Formulation::Smoothed
+    }
 }
 
 choice!(Formulation { "smoothed" => Smoothed, "standard" => Standard });
