@@ -70,8 +70,8 @@ impl Solid {
             }
             return;
         }
-        let blocks = blocks[own].par_iter_mut().filter(|block| block.body == body);
-        blocks.for_each(|block| {
+        let blocks = blocks[own.clone()].par_iter_mut().zip(own).filter(|(_, index)| field.has_block(*index));
+        blocks.for_each(|(block, _)| {
             let BlockLaw::Edges(EdgeCells { field: cells, dissipated, .. }) = &mut block.law else { return };
             for cell in 0..cells.edges.len() {
                 let Some((step, grown)) = field.change(cells.edges[cell]) else { continue };
@@ -248,7 +248,7 @@ fn driven_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], s
     let compliance = 0.5 / model.body.elastic.young_modulus;
     let (step, own_blocks) = (solid.advance_of(model, dt), solid.own_blocks());
     let (mut strains, mut stresses, mut kappa) = ([Sym3::ZERO; FOUR], [Sym3::ZERO; FOUR], Lane::splat(ABOVE_ALL));
-    let (mut places, mut softens) = ([None; FOUR], None);
+    let (mut states, mut softens) = ([None; FOUR], None);
     for (k, own) in active.iter_mut().enumerate() {
         if !own_blocks.contains(&(model.location[own.edge as usize].0 as usize)) {
             continue;
@@ -258,14 +258,14 @@ fn driven_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], s
         stresses[k] = field.softens.hooke.stress(strains[k]);
         kappa.0[k] = field.state[cell].kappa;
         own.drive.volume = cells.volume[cell];
-        places[k] = Some(&field.state[cell]);
+        states[k] = Some(&field.state[cell]);
         softens = Some(&field.softens);
     }
     let Some(softens) = softens else { return };
     let q = equivalent_stresses(&softens.criterion, &stresses, &kappa);
     let closed = softens.closed_stresses(&strains);
     for (k, (own, edge_step)) in active.iter_mut().zip(steps).enumerate() {
-        let Some(state) = places[k] else { continue };
+        let Some(state) = states[k] else { continue };
         edge_step.seen = if q[k] > kappa.0[k] { q[k] } else { 0.0 };
         let kappa = kappa.0[k].max(edge_step.seen);
         own.drive.energy = kappa * kappa * compliance;

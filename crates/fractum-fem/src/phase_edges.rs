@@ -46,6 +46,9 @@ impl Solid {
             let strength = self.edge(body, edge).map_or(f64::INFINITY, |(cells, cell)| cells.strength[cell]);
             if strength.is_finite() && !field.is_active(edge) {
                 field.activate(&patch, (edge, self.rank_of_edge(model, edge)), field.law.a1(strength));
+                if model.standard.is_none() {
+                    field.wake_block(model.location[edge as usize].0 as usize);
+                }
             }
         }
     }

@@ -10,11 +10,11 @@ use fractum_mesh::Mesh;
 use fractum_pack::cloud_cells;
 
 /// Memory of the scene by its parts [bytes], what a run saves and draws left out.
-const TRIANGLE: f64 = 120.0;
 const LOOSE_PARTICLE: f64 = 800.0;
 const BONDED_PARTICLE: f64 = 1000.0;
-/// Of a tetrahedron: standard, smoothed; the second of each where it may be damaged. A cube of 511,000 keeps 6 to 21 % more in steps, whole runs 34 to 74 %.
-const TETRAHEDRON: [[f64; 2]; 2] = [[280.0, 550.0], [500.0, 600.0]];
+/// Of a tetrahedron or triangle: standard, smoothed; the second of each where it may be damaged. Somewhat less than bodies of 400,000 to 511,000
+/// keep while they are stepped.
+const ELEMENT: [[f64; 2]; 2] = [[280.0, 550.0], [500.0, 600.0]];
 /// Part of the memory of solids that several processes share, rather than each having all of it: the cells.
 const SHARED: f64 = 0.5;
 /// Volume of the particles of a packing over that of its shape.
@@ -64,11 +64,9 @@ pub fn check_memory(case: &Case, mesh: &Mesh, processes: Processes) -> Result<()
 fn solid(body: &SolidBody, mesh: &Mesh) -> (f64, &'static str, f64) {
     let groups = mesh.group(&body.group.value);
     let tetrahedra: usize = groups.iter().map(|group| group.tetrahedra.len()).sum();
-    if tetrahedra == 0 {
-        let triangles: usize = groups.iter().map(|group| group.triangles.len()).sum();
-        return (triangles as f64, "triangles", TRIANGLE);
-    }
-    (tetrahedra as f64, "tetrahedra", TETRAHEDRON[usize::from(body.is_smoothed())][usize::from(body.damage)])
+    let triangles: usize = groups.iter().map(|group| group.triangles.len()).sum();
+    let (count, of) = if tetrahedra > 0 { (tetrahedra, "tetrahedra") } else { (triangles, "triangles") };
+    (count as f64, of, ELEMENT[usize::from(body.is_smoothed())][usize::from(body.damage)])
 }
 
 /// Particles of a bonded body; none where only its surface or file tells.

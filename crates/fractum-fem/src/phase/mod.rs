@@ -133,6 +133,10 @@ pub(crate) struct PhaseField {
     pub(crate) steps: Vec<EdgeStep>,
     /// Place in `active` of every edge, [`PhaseField::ASLEEP`] if it is not there.
     slot: Vec<u32>,
+    /// Whether some of every [`AT_LEAST`] edges are active; the rest costs nothing in a step.
+    awake: Vec<bool>,
+    /// The same of the edges of every block of cells, up to the last with such edges.
+    awake_blocks: Vec<bool>,
     rows: Rows,
     /// Where several ranks share the edges.
     told: Option<Box<Told>>,
@@ -143,7 +147,17 @@ impl PhaseField {
 
     pub(crate) fn new(law: PhaseLaw, edges: usize) -> Self {
         let (value, slot) = (vec![0.0; edges], vec![Self::ASLEEP; edges]);
-        PhaseField { law, value, active: Vec::new(), steps: Vec::new(), slot, rows: Rows::default(), told: None }
+        PhaseField {
+            law,
+            value,
+            active: Vec::new(),
+            steps: Vec::new(),
+            slot,
+            awake: vec![false; edges.div_ceil(AT_LEAST)],
+            awake_blocks: Vec::new(),
+            rows: Rows::default(),
+            told: None,
+        }
     }
 
     pub(crate) fn is_active(&self, edge: u32) -> bool {
@@ -164,6 +178,7 @@ impl PhaseField {
     /// Lets an edge of a rank take part from now on.
     pub(crate) fn activate(&mut self, patch: &Patch<'_>, (edge, rank): (u32, u32), a1: f64) {
         self.slot[edge as usize] = self.active.len() as u32;
+        self.awake[edge as usize / AT_LEAST] = true;
         self.rows.push(&patch.geometry, patch.edges, (edge, patch.elements_of_edge.row(edge as usize)), patch.alive);
         self.active.push(ActiveEdge {
             edge,
@@ -176,6 +191,18 @@ impl PhaseField {
             rebuilt: false,
         });
         self.steps.push(EdgeStep::default());
+    }
+
+    /// Some edge of a block of cells takes part from now on.
+    pub(crate) fn wake_block(&mut self, block: usize) {
+        let count = self.awake_blocks.len().max(block + 1);
+        self.awake_blocks.resize(count, false);
+        self.awake_blocks[block] = true;
+    }
+
+    /// Whether some edge of a block of cells takes part.
+    pub(crate) fn has_block(&self, block: usize) -> bool {
+        self.awake_blocks.get(block).is_some_and(|awake| *awake)
     }
 
     /// Puts the active edges in the order of `place`, that of memory, when an eighth to a quarter more are active than last time.
@@ -219,6 +246,8 @@ impl PhaseField {
     pub(crate) fn clear(&mut self) {
         self.value.fill(0.0);
         self.slot.fill(Self::ASLEEP);
+        self.awake.fill(false);
+        self.awake_blocks.clear();
         self.active.clear();
         self.steps.clear();
         self.rows.clear();
@@ -252,8 +281,9 @@ impl PhaseField {
     /// Begins with the growth of the step before; two sweeps then are as good as the exact solution.
     pub(crate) fn sweep(&mut self) {
         let rank = self.rank();
-        let PhaseField { law, value, active, slot, rows, told, .. } = self;
-        spread(value, slot, |slot| {
+        let PhaseField { law, value, active, slot, awake, rows, told, .. } = self;
+        let placed = (&slot[..], &awake[..]);
+        spread(value, placed, |slot| {
             let own = &active[slot];
             (own.old + (own.old - own.before)).min(1.0)
         });
@@ -265,7 +295,7 @@ impl PhaseField {
                 }
             });
             told.iter_mut().for_each(|told| told.tell(active));
-            spread(value, slot, |slot| active[slot].next);
+            spread(value, placed, |slot| active[slot].next);
         }
     }
 
@@ -331,9 +361,12 @@ impl PhaseField {
 }
 
 /// Gives every active edge a value by its place among them.
-fn spread(value: &mut [f64], slot: &[u32], of: impl Fn(usize) -> f64 + Sync) {
-    value.par_iter_mut().zip(slot).with_min_len(AT_LEAST).for_each(|(value, &slot)| {
-        if slot != PhaseField::ASLEEP {
+///
+/// - `placed`: that place, and which runs of edges have active ones
+fn spread(value: &mut [f64], (slot, awake): (&[u32], &[bool]), of: impl Fn(usize) -> f64 + Sync) {
+    let runs = value.par_chunks_mut(AT_LEAST).zip(slot.par_chunks(AT_LEAST)).zip(awake);
+    runs.filter(|(_, awake)| **awake).for_each(|((value, slot), _)| {
+        for (value, &slot) in value.iter_mut().zip(slot).filter(|(_, slot)| **slot != PhaseField::ASLEEP) {
             *value = of(slot as usize);
         }
     });

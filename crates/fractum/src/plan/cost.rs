@@ -4,14 +4,14 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use fractum_dem::AnyBondLaw;
-use fractum_fem::{Formulation, Kinematics};
+use fractum_fem::{ElementKind, Formulation, Kinematics};
 use fractum_io::vtk::WAITING;
 use fractum_scene::{BondedBody, Scene};
 
 // Nanoseconds are those of one core that needs `REFERENCE` for the loop of `slowness`.
 
-/// Per element and step: standard, smoothed, smoothed with damage.
-const ELEMENT: [f64; 3] = [20.0, 45.0, 50.0];
+/// Per element and step: standard, smoothed; the second of each with damage.
+const ELEMENT: [[f64; 2]; 2] = [[20.0, 20.0], [45.0, 50.0]];
 /// Times as much where elements turn with their bodies.
 const TURNING: f64 = 10.0;
 /// Per bond and step, with its share of particles: beams; interfaces that hold, that may fail, beside a mean strain.
@@ -21,8 +21,10 @@ const LOOSE_PARTICLE: f64 = 290.0;
 /// Per pair that conducts heat and explicit step of the heat.
 const HEAT_PAIR: f64 = 8.0;
 
-/// Bytes per element: standard, smoothed; the second of each with damage. Peaks of runs of 511,000 tetrahedra.
-const MEMORY: [[f64; 2]; 2] = [[490.0, 890.0], [700.0, 800.0]];
+/// Bytes per tetrahedron, in the order of [`ELEMENT`]: from 64,000 to 511,000 the largest resident memory of a run grows by so much.
+const MEMORY_OF_TETRAHEDRON: [[f64; 2]; 2] = [[490.0, 890.0], [700.0, 800.0]];
+/// The same per triangle, from 45,000 to 405,000.
+const MEMORY_OF_TRIANGLE: [[f64; 2]; 2] = [[850.0, 1080.0], [1030.0, 1090.0]];
 /// Bytes per bond, with its share of particles.
 const MEMORY_OF_BOND: f64 = 400.0;
 /// Bytes of the program itself.
@@ -89,16 +91,17 @@ impl Cost {
     fn add_elements(&mut self, scene: &Scene) {
         for index in 0..scene.solid.body_count() {
             let body = scene.solid.body(index);
-            let kind = match (body.formulation, &body.damage) {
-                (Formulation::Standard, _) => 0,
-                (Formulation::Smoothed, None) => 1,
-                (Formulation::Smoothed, Some(_)) => 2,
+            let of = |table: &[[f64; 2]; 2]| {
+                table[usize::from(body.formulation == Formulation::Smoothed)][usize::from(body.damage.is_some())]
+            };
+            let memory = match body.shape {
+                ElementKind::T3 => &MEMORY_OF_TRIANGLE,
+                ElementKind::T4 => &MEMORY_OF_TETRAHEDRON,
             };
             let turning = if body.kinematics == Kinematics::Corotational { TURNING } else { 1.0 };
             let elements = body.elements.len() as f64;
-            self.step += 1e-9 * ELEMENT[kind] * turning * elements;
-            let smoothed = usize::from(body.formulation == Formulation::Smoothed);
-            self.memory += MEMORY[smoothed][usize::from(body.damage.is_some())] * elements;
+            self.step += 1e-9 * of(&ELEMENT) * turning * elements;
+            self.memory += of(memory) * elements;
             self.frame += FRAME[0] * elements;
         }
     }
