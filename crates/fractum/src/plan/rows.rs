@@ -7,7 +7,7 @@ use fractum_math::Vec3;
 const COSINE: f64 = 0.996_194_698_091_745_5;
 
 /// Edges looked at, and directions tried among them: a share is wanted to a few per cent.
-const LOOKED_AT: usize = 20_000;
+const LOOKED_AT: usize = 5_000;
 const TRIED: usize = 400;
 
 /// Share of edges in common directions from which cracks may follow them. Meshes of the gallery made by rows have 0.54 or more,

@@ -138,45 +138,86 @@ fn lit(colour: Rgb, light: f64) -> Rgb {
     colour.map(|channel| (f64::from(channel) * light).min(255.0) as u8)
 }
 
-/// Share of a corner along a row of samples.
+/// Share of a corner of a triangle, in all of its rows of samples.
 #[derive(Clone, Copy)]
 struct Share {
-    /// At the first column, over the scale.
-    start: f64,
+    /// At column and row zero, over the scale.
+    origin: f64,
+    /// From row to row, over the scale.
+    per_row: f64,
     /// From column to column, over the scale.
-    slope: f64,
+    per_column: f64,
+    /// One over that.
+    columns: f64,
     scale: f64,
 }
 
 impl Share {
-    /// Share of the corner opposite to the edge from `p` to `q`, at the height `y` of a row.
+    /// Share of the corner opposite to the edge from `p` to `q`.
     ///
     /// - `scale`: one over twice the area of the triangle
-    fn of_row(p: [f64; 3], q: [f64; 3], y: f64, scale: f64) -> Self {
-        Share { start: (p[0] - 0.5) * (q[1] - y) - (p[1] - y) * (q[0] - 0.5), slope: p[1] - q[1], scale }
+    #[inline(always)]
+    fn of_corner(p: [f64; 3], q: [f64; 3], scale: f64) -> Self {
+        // Samples lie at the middle of their cells. Turning the edge round changes signs and nothing else.
+        let [p, q] = [p, q].map(|[x, y, _]| [x - 0.5, y - 0.5]);
+        let per_column = p[1] - q[1];
+        Share { origin: p[0] * q[1] - p[1] * q[0], per_row: q[0] - p[0], per_column, columns: 1.0 / per_column, scale }
     }
 
-    fn at(self, column: usize) -> f64 {
-        // Scaled last: two triangles with a common edge agree to the last bit on which side of it a sample lies.
-        self.scale * (self.start + self.slope * column as f64)
+    #[inline(always)]
+    fn in_row(self, row: usize) -> RowShare {
+        RowShare { of: self, start: self.origin + self.per_row * row as f64 }
     }
 }
 
-/// Columns of a row at which no share is negative: between them none is, since rounding keeps the order of shares.
-fn span(shares: &[Share; 3], [left, right]: [usize; 2]) -> [usize; 2] {
+/// Share of a corner along a row of samples.
+#[derive(Clone, Copy)]
+struct RowShare {
+    of: Share,
+    /// At the first column, over the scale.
+    start: f64,
+}
+
+impl RowShare {
+    #[inline(always)]
+    fn at(self, column: usize) -> f64 {
+        // Scaled last: two triangles with a common edge agree to the last bit on which side of it a sample lies.
+        self.of.scale * (self.start + self.of.per_column * column as f64)
+    }
+
+    /// Column at which it is that, over the scale.
+    #[inline(always)]
+    fn column(self, scaled: f64) -> f64 {
+        (scaled - self.start) * self.of.columns
+    }
+}
+
+/// Columns of a row at which every share reaches `least`, within `slack` columns.
+#[inline(always)]
+fn reaching(shares: &[RowShare; 3], least: [f64; 3], [left, right]: [usize; 2], slack: f64) -> [usize; 2] {
     let (mut low, mut high) = (left as f64, right as f64);
-    for share in shares.iter().filter(|share| share.slope != 0.0) {
-        let zero = -share.start / share.slope;
-        if share.slope * share.scale > 0.0 {
-            low = low.max(zero - 1.0);
+    for (share, least) in shares.iter().zip(least) {
+        let Share { per_column, scale, .. } = share.of;
+        if per_column == 0.0 {
+            if share.start * scale < least {
+                return [left, left];
+            }
+        } else if per_column * scale > 0.0 {
+            low = low.max(share.column(least / scale) - slack);
         } else {
-            high = high.min(zero + 2.0);
+            high = high.min(share.column(least / scale) + 1.0 + slack);
         }
     }
-    let outside = |column: usize| shares.iter().any(|share| share.at(column) < 0.0);
     // What is not a number leaves the bounds as they are.
-    let mut left = (low as usize).min(right);
-    let mut right = (high.max(0.0) as usize).clamp(left, right);
+    let left = (low as usize).min(right);
+    [left, (high.max(0.0) as usize).clamp(left, right)]
+}
+
+/// Columns of a row at which no share is negative: between them none is, since rounding keeps the order of shares.
+#[inline(always)]
+fn span(shares: &[RowShare; 3], within: [usize; 2]) -> [usize; 2] {
+    let outside = |column: usize| shares.iter().any(|share| share.at(column) < 0.0);
+    let [mut left, mut right] = reaching(shares, [0.0; 3], within, 1.0);
     while left < right && outside(left) {
         left += 1;
     }
@@ -186,6 +227,13 @@ fn span(shares: &[Share; 3], [left, right]: [usize; 2]) -> [usize; 2] {
     [left, right]
 }
 
+/// Red, green and blue of a sample and whether something is there, 0 or 1.
+pub(super) type Sample = [u8; 4];
+
+fn sample([red, green, blue]: Rgb) -> Sample {
+    [red, green, blue, 1]
+}
+
 /// Some rows of samples, with a border of one sample that nothing is in on the left and on the right.
 #[derive(Default)]
 pub(super) struct Samples {
@@ -193,7 +241,7 @@ pub(super) struct Samples {
     pub(super) stride: usize,
     /// Column and row of the first one in the picture.
     pub(super) origin: [isize; 2],
-    pub(super) colour: Vec<Rgb>,
+    pub(super) colour: Vec<Sample>,
     /// Infinite where nothing is.
     pub(super) depth: Vec<f64>,
 }
@@ -205,7 +253,8 @@ impl Samples {
     pub(super) fn clear(&mut self, first: [isize; 2], columns: usize, rows: usize) {
         self.stride = columns + 2;
         self.origin = [first[0] - 1, first[1]];
-        self.colour.resize(self.stride * rows, [255; 3]);
+        self.colour.clear();
+        self.colour.resize(self.stride * rows, [0; 4]);
         self.depth.clear();
         self.depth.resize(self.stride * rows, f64::INFINITY);
     }
@@ -223,8 +272,18 @@ impl Samples {
         (columns[0] < columns[1] && rows[0] < rows[1]).then_some([columns[0], columns[1], rows[0], rows[1]])
     }
 
+    /// Whether what is there already hides all that is no nearer than that.
+    #[inline(always)]
+    fn hides(&self, [left, right, top, bottom]: [usize; 4], nearest: f64) -> bool {
+        let all_nearer = |depths: &[f64]| depths.iter().fold(true, |all, &depth| all & (depth <= nearest));
+        (top..bottom).map(|row| row * self.stride).all(|at| all_nearer(&self.depth[at + left..at + right]))
+    }
+
+    #[inline(always)]
     pub(super) fn facet(&mut self, facet: &Facet, picture: &Picture) {
-        let Some([left, right, top, bottom]) = self.window(facet.extent()) else { return };
+        let extent = facet.extent();
+        let Some(window) = self.window(extent).filter(|&window| !self.hides(window, extent.low[2])) else { return };
+        let [left, right, top, bottom] = window;
         // In the coordinates of these samples.
         let shift = self.origin.map(|along| along as f64);
         let [a, b, c] = facet.corners.map(|[x, y, z]| [x - shift[0], y - shift[1], z]);
@@ -234,28 +293,42 @@ impl Samples {
             return;
         }
         let painted = Painted::of(facet, [a, b, c], twice_area.abs(), picture);
+        let shares = [(b, c), (c, a), (a, b)].map(|(p, q)| Share::of_corner(p, q, scale));
+        let corners = [a[2], b[2], c[2]];
+        let slope = scale * dot(shares.map(|share| share.per_column), corners);
         for row in top..bottom {
-            let y = row as f64 + 0.5;
-            let shares = [(b, c), (c, a), (a, b)].map(|(p, q)| Share::of_row(p, q, y, scale));
+            let shares = shares.map(|share| share.in_row(row));
             let [left, right] = span(&shares, [left, right]);
+            let [first, last] = painted.even_span(&shares, [left, right]);
             let at = row * self.stride;
-            let (depths, colours) = (&mut self.depth[at + left..at + right], &mut self.colour[at + left..at + right]);
-            let corners = [a[2], b[2], c[2]];
             let start = dot(shares.map(|share| share.at(left)), corners);
-            let slope = scale * dot(shares.map(|share| share.slope), corners);
-            for (index, (nearest, colour)) in depths.iter_mut().zip(colours).enumerate() {
-                let depth = start + slope * index as f64;
-                if depth < *nearest && painted.is_there(&shares, left + index) {
+            let depth_at = |column: usize| start + slope * (column - left) as f64;
+            for column in (left..first).chain(last..right) {
+                let (depth, nearest) = (depth_at(column), &mut self.depth[at + column]);
+                if depth < *nearest && painted.is_there(&shares, column) {
                     *nearest = depth;
-                    *colour = painted.colour(&shares, left + index);
+                    self.colour[at + column] = sample(painted.colour(&shares, column));
                 }
+            }
+            let even = painted.even.map_or([0; 4], sample);
+            let start = depth_at(first);
+            let inner = at + first..at + last;
+            let samples = self.depth[inner.clone()].iter_mut().zip(&mut self.colour[inner]);
+            for (column, (nearest, colour)) in (0_i32..).zip(samples) {
+                let depth = start + slope * f64::from(column);
+                let is_nearer = depth < *nearest;
+                *nearest = if is_nearer { depth } else { *nearest };
+                *colour = if is_nearer { even } else { *colour };
             }
         }
     }
 
+    #[inline(always)]
     pub(super) fn ball(&mut self, ball: &Ball, clip: Option<Clip>, scale: f64) {
         let Ball { centre, radius, colour, place } = *ball;
-        let Some([left, right, top, bottom]) = self.window(ball.extent()) else { return };
+        let extent = ball.extent();
+        let Some(window) = self.window(extent).filter(|&window| !self.hides(window, extent.low[2])) else { return };
+        let [left, right, top, bottom] = window;
         // A ball is small beside the picture: it is kept or cut away as a whole.
         if clip.is_some_and(|Clip { point, normal }| scale * dot(subtract(place, point), normal) > 0.0) {
             return;
@@ -276,7 +349,7 @@ impl Samples {
                 let at = row * self.stride + column;
                 if centre[2] - dz < self.depth[at] {
                     self.depth[at] = centre[2] - dz;
-                    self.colour[at] = lit(colour, brightness([dx / radius, dy / radius, -dz / radius]));
+                    self.colour[at] = sample(lit(colour, brightness([dx / radius, dy / radius, -dz / radius])));
                 }
             }
         }
@@ -310,12 +383,26 @@ impl<'a> Painted<'a> {
     }
 
     /// Whether the clip plane leaves the facet there.
-    fn is_there(&self, shares: &[Share; 3], column: usize) -> bool {
+    #[inline(always)]
+    fn is_there(&self, shares: &[RowShare; 3], column: usize) -> bool {
         self.picture.clip.is_none() || dot(shares.map(|share| share.at(column)), self.facet.clip) <= 0.0
     }
 
+    /// Columns of a row at which the facet is not cut and has its colour off the edges, for sure.
+    #[inline(always)]
+    fn even_span(&self, shares: &[RowShare; 3], within: [usize; 2]) -> [usize; 2] {
+        if self.even.is_none() || self.picture.clip.is_some() {
+            [within[0]; 2]
+        } else if self.facet.lines == 0.0 {
+            within
+        } else {
+            reaching(shares, self.heights.map(|height| LINE / height), within, -1.0)
+        }
+    }
+
     /// Colour of a sample.
-    fn colour(&self, shares: &[Share; 3], column: usize) -> Rgb {
+    #[inline(always)]
+    fn colour(&self, shares: &[RowShare; 3], column: usize) -> Rgb {
         let Facet { light, lines, ref colour, .. } = *self.facet;
         if let (Some(even), true) = (self.even, lines == 0.0) {
             return even;
@@ -334,7 +421,7 @@ impl<'a> Painted<'a> {
 /// What is drawn, sorted by the bands of rows of samples that it may be seen in.
 pub(super) struct Bands<T> {
     items: Vec<T>,
-    /// Indices of the items of each band, in their order.
+    /// Indices of the items of each band, the nearest first: what lies behind them needs no colour.
     of_bands: Vec<Vec<u32>>,
 }
 
@@ -343,8 +430,10 @@ impl<T: Item> Bands<T> {
     pub(super) fn new(items: Vec<T>, top: usize, rows: usize, bands: usize) -> Self {
         let height = (rows * SUPERSAMPLING) as f64;
         let mut of_bands = vec![Vec::new(); bands];
-        for (index, item) in (0..).zip(&items) {
-            let Extent { low, high } = item.extent();
+        let mut order: Vec<(f64, u32)> = (0..).zip(&items).map(|(index, item)| (item.extent().low[2], index)).collect();
+        order.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (_, index) in order {
+            let Extent { low, high } = items[index as usize].extent();
             // A sample more on either side, for the outlines.
             let from_top = |y: f64| (y - (top * SUPERSAMPLING) as f64) / height;
             let first = from_top(low[1] - 1.0).max(0.0) as usize;

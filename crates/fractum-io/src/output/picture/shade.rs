@@ -1,5 +1,6 @@
 //! Samples to pixels, and what the depths tell the eye: darker hollows, and a line where one thing ends before another.
 
+use fractum_math::widest;
 use rayon::prelude::*;
 
 use super::raster::{Ball, Bands, Facet, Samples, Shown};
@@ -71,32 +72,65 @@ impl Drawing<'_> {
         let mut sums: Vec<Sum> = vec![[0; 4]; count * rows];
         let bands = sums.par_chunks_mut(BAND * count).zip(depths.bands()).enumerate();
         bands.for_each_init(Samples::default, |samples, (band, (sums, mut depths))| {
-            let rows = sums.len() / count;
-            let first = [left, top + band * BAND].map(|pixel| (pixel * SUPERSAMPLING) as isize);
-            // A row more above and below, for the outlines.
-            samples.clear([first[0], first[1] - 1], count * SUPERSAMPLING, rows * SUPERSAMPLING + 2);
-            self.facets.of(band).for_each(|facet| samples.facet(facet, self.picture));
-            self.balls.of(band).for_each(|ball| samples.ball(ball, self.picture.clip, self.scale));
-            darken_outlines(samples, STEP * smaller, smaller);
-            depths.take(samples, nearest);
-            reduce(samples, sums, count);
+            draw_band(self, samples, band, sums, &mut depths, smaller);
         });
         let pairs = if is_flat { Vec::new() } else { hollow_pairs(reach) };
         let mut rgb = vec![255; 3 * width * height];
         let pixels = rgb.par_chunks_mut(3 * width).skip(top).zip(sums.par_chunks(count)).enumerate();
         pixels.for_each_init(Vec::new, |hollow, (row, (pixels, sums))| {
             hollow.resize(count, 0.0);
-            depths.feel(&pairs, row, hollow);
-            let pixels = pixels[3 * left..3 * right].chunks_exact_mut(3);
-            for ((pixel, sum), hollow) in pixels.zip(sums).zip(hollow.iter()) {
-                mix(pixel, *sum, 1.0 - 0.6 * hollow.min(1.0));
-            }
+            colour_row(&depths, &pairs, row, hollow, sums, &mut pixels[3 * left..3 * right]);
         });
         rgb
     }
+
+    /// Draws a band of rows: the sums of its pixels and their depths.
+    ///
+    /// - `smaller`: samples along the picture's smaller side
+    #[inline(always)]
+    fn band(&self, samples: &mut Samples, band: usize, sums: &mut [Sum], depths: &mut Rows, smaller: f64) {
+        let Shown { columns: [left, right], rows: [top, _], depths: [nearest, _] } = self.shown;
+        let (count, rows) = (right - left, sums.len() / (right - left));
+        let first = [left, top + band * BAND].map(|pixel| (pixel * SUPERSAMPLING) as isize);
+        // A row more above and below, for the outlines.
+        samples.clear([first[0], first[1] - 1], count * SUPERSAMPLING, rows * SUPERSAMPLING + 2);
+        // Closures would be compiled for any processor.
+        for facet in self.facets.of(band) {
+            samples.facet(facet, self.picture);
+        }
+        for ball in self.balls.of(band) {
+            samples.ball(ball, self.picture.clip, self.scale);
+        }
+        darken_outlines(samples, STEP * smaller, smaller);
+        depths.take(samples, nearest);
+        reduce(samples, sums, count);
+    }
+}
+
+widest! {
+    fn draw_band(
+        drawing: &Drawing,
+        samples: &mut Samples,
+        band: usize,
+        sums: &mut [Sum],
+        depths: &mut Rows,
+        smaller: f64,
+    ) = Drawing::band;
+}
+
+widest! {
+    fn colour_row(
+        depths: &Depths,
+        pairs: &[Pair],
+        row: usize,
+        hollow: &mut [f32],
+        sums: &[Sum],
+        pixels: &mut [u8],
+    ) = Depths::colour;
 }
 
 /// Colour of a pixel: what is there in its shadow, before white.
+#[inline(always)]
 fn mix(pixel: &mut [u8], [red, green, blue, count]: Sum, shadow: f32) {
     const SAMPLES: f32 = (SUPERSAMPLING * SUPERSAMPLING) as f32;
     if count == 0 {
@@ -110,19 +144,15 @@ fn mix(pixel: &mut [u8], [red, green, blue, count]: Sum, shadow: f32) {
 }
 
 /// Adds up the samples of each pixel.
+#[inline(always)]
 fn reduce(samples: &Samples, sums: &mut [Sum], columns: usize) {
     for (row, sums) in sums.chunks_exact_mut(columns).enumerate() {
         for sample_row in 0..SUPERSAMPLING {
             let start = (1 + row * SUPERSAMPLING + sample_row) * samples.stride + 1;
-            let range = start..start + columns * SUPERSAMPLING;
-            let of_pixels = samples.depth[range.clone()]
-                .chunks_exact(SUPERSAMPLING)
-                .zip(samples.colour[range].chunks_exact(SUPERSAMPLING));
-            for (sum, (depths, colours)) in sums.iter_mut().zip(of_pixels) {
-                for (depth, [red, green, blue]) in depths.iter().zip(colours) {
-                    let is_there = u16::from(depth.is_finite());
-                    let added = [u16::from(*red), u16::from(*green), u16::from(*blue), 1];
-                    sum.iter_mut().zip(added).for_each(|(sum, added)| *sum += is_there * added);
+            let of_row = &samples.colour[start..start + columns * SUPERSAMPLING];
+            for (sum, colours) in sums.iter_mut().zip(of_row.chunks_exact(SUPERSAMPLING)) {
+                for colour in colours {
+                    sum.iter_mut().zip(colour).for_each(|(sum, &added)| *sum += u16::from(added));
                 }
             }
         }
@@ -132,6 +162,7 @@ fn reduce(samples: &Samples, sums: &mut [Sum], columns: usize) {
 /// Darkens the samples at which one thing ends before another one that is farther by more than `step`.
 ///
 /// - `size`: slopes beyond it do not count
+#[inline(always)]
 fn darken_outlines(samples: &mut Samples, step: f64, size: f64) {
     let Samples { stride, colour, depth, .. } = samples;
     let stride = *stride;
@@ -153,7 +184,9 @@ fn darken_outlines(samples: &mut Samples, step: f64, size: f64) {
                     || ends(own, below, above)
                     || ends(own, above, below))
             {
-                *colour = colour.map(|channel| (OUTLINE * f32::from(channel) + 0.5) as u8);
+                let [red, green, blue, is_there] = *colour;
+                let [red, green, blue] = [red, green, blue].map(|channel| (OUTLINE * f32::from(channel) + 0.5) as u8);
+                *colour = [red, green, blue, is_there];
             }
         }
     }
@@ -201,7 +234,19 @@ impl Depths {
         &self.depth[start..start + self.columns]
     }
 
+    /// Colours the pixels of a row.
+    ///
+    /// - `hollow`: overwritten
+    #[inline(always)]
+    fn colour(&self, pairs: &[Pair], row: usize, hollow: &mut [f32], sums: &[Sum], pixels: &mut [u8]) {
+        self.feel(pairs, row, hollow);
+        for ((pixel, sum), hollow) in pixels.chunks_exact_mut(3).zip(sums).zip(hollow.iter()) {
+            mix(pixel, *sum, 1.0 - 0.6 * hollow.min(1.0));
+        }
+    }
+
     /// Darkness of the pixels of a row by the hollows that they lie in, 0 to 1.
+    #[inline(always)]
     fn feel(&self, pairs: &[Pair], row: usize, hollow: &mut [f32]) {
         hollow.fill(0.0);
         if pairs.is_empty() {
@@ -224,6 +269,7 @@ impl Rows<'_> {
     /// Takes the depths of samples over.
     ///
     /// - `nearest`: of the whole picture
+    #[inline(always)]
     fn take(&mut self, samples: &Samples, nearest: f64) {
         for (row, pixels) in self.depth.chunks_exact_mut(self.stride).enumerate() {
             let pixels = &mut pixels[self.margin..self.margin + self.columns];
