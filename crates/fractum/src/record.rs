@@ -12,7 +12,7 @@ use fractum_io::case::model::{
 use fractum_io::history::{Column, History, Table};
 use fractum_io::vtk::{Collection, FrameWriter};
 use fractum_scene::statics::NoEquilibrium;
-use fractum_scene::{EnergyKind, EnergyRole, PeakVelocity, ProbedScene, Scene, VelocityStation};
+use fractum_scene::{EnergyKind, EnergyRole, PeakVelocity, Probe, ProbedScene, Scene, VelocityStation};
 use serde::{Deserialize, Serialize};
 
 use crate::course::Course;
@@ -24,6 +24,7 @@ use crate::heat_columns;
 use crate::left;
 use crate::path_frames::PathFrames;
 use crate::series::{index_of_max, interpolate, is_due, next_index, slope_of_window, speed, time_mean};
+use crate::solver::Measured;
 
 /// A history whose first column orders its rows: the step where the load factor may run back, else the time.
 pub(crate) fn ordered(mut history: Table) -> Table {
@@ -132,7 +133,7 @@ impl RecordState {
 /// Writes the results of a run while it goes.
 pub(crate) struct Recorder {
     case: Arc<Case>,
-    probes: Vec<Option<fractum_scene::Probe>>,
+    probes: Vec<Option<Probe>>,
     ppv: Vec<PpvStations>,
     /// Results folder of the run, where frames go.
     results: PathBuf,
@@ -161,7 +162,7 @@ impl Recorder {
     pub(crate) fn open(
         case: Arc<Case>,
         scene: &Scene,
-        probes: Vec<Option<fractum_scene::Probe>>,
+        probes: Vec<Option<Probe>>,
         ppv: Vec<PpvStations>,
         grid: GridLayout,
         ([folder, results], course, writes): ([&Path; 2], Course, bool),
@@ -202,7 +203,7 @@ impl Recorder {
     }
 
     /// The probes of a further stage, whose supports are others.
-    pub(crate) fn set_probes(&mut self, probes: Vec<Option<fractum_scene::Probe>>) {
+    pub(crate) fn set_probes(&mut self, probes: Vec<Option<Probe>>) {
         (self.probes, self.gone) = (probes, None);
     }
 
@@ -256,10 +257,11 @@ impl Recorder {
         &self.state
     }
 
-    /// Adds a row for the instant `time` that the last step measured.
+    /// Adds a row for the instant that the last step measured.
     ///
-    /// - `in_motion`: whether the scene moved then; written where the case may be at rest and in motion
-    pub(crate) fn row(&mut self, scene: &Scene, time: f64, dt: f64, in_motion: bool) -> Result<(), Failure> {
+    /// - `is_last`: whether it is the last row of the run, which measures all
+    pub(crate) fn row(&mut self, scene: &Scene, measured: Measured, is_last: bool) -> Result<(), Failure> {
+        let Measured { time, dt, in_motion } = measured;
         let ledger = scene.ledger();
         let probed = ProbedScene::new(scene);
         let counts = probed.counts();
@@ -274,15 +276,21 @@ impl Recorder {
         row.extend(scene.heat().into_iter().flat_map(heat_columns::values));
         row.extend(self.course.turns_back.then_some(scene.clock.step as f64));
         row.extend(self.tells_motion.then_some(f64::from(u8::from(in_motion))));
+        let before = self.state.times.last().copied();
+        let is_held =
+            |every: f64| !is_last && before.is_some_and(|before| !is_due(time, next_index(before, every), every));
         self.state.times.push(time);
         let gone = Gone::at(scene, counts);
         let as_before = self.gone.replace(gone) == Some(gone);
         let case = Arc::clone(&self.case);
         for index in 0..case.probes.len() {
-            let value = match (&case.probes[index].kind, &self.probes[index]) {
-                (_, Some(probe)) if as_before && probe.is_of_separation() => {
-                    self.state.series[index].last().copied().unwrap_or(f64::NAN)
-                }
+            let described = &case.probes[index];
+            let is_known = |probe: &Probe| match described.every {
+                Some(every) => is_held(every),
+                None => as_before && probe.is_of_separation(),
+            };
+            let value = match (&described.kind, &self.probes[index]) {
+                (_, Some(probe)) if is_known(probe) => self.state.series[index].last().copied().unwrap_or(f64::NAN),
                 (_, Some(probe)) => probe.value(&probed),
                 (ProbeKind::Expression(expression), None) if !expression.scalar => self.expression(expression),
                 _ => continue,

@@ -218,9 +218,11 @@ impl Simulation {
     /// # Errors
     /// [`Failure`] where something cannot be written.
     pub fn record(&mut self) -> Result<(), Failure> {
-        if let Some(Measured { time, dt, in_motion }) = self.measured.take() {
+        if let Some(measured) = self.measured.take() {
+            // Of motion one more row follows at the end.
+            let is_last = self.later.is_empty() && !self.solver.moves() && self.solver.is_finished(&self.scene);
             let Simulation { recorder, scene, phases, .. } = self;
-            phases.timed(Part::Output, || recorder.row(scene, time, dt, in_motion))?;
+            phases.timed(Part::Output, || recorder.row(scene, measured, is_last))?;
             self.messages.warn_of_balance(&self.scene, self.case.solver.balance_warning, self.solver.rests())?;
             if let Some(why) = self.falls_below() {
                 self.end_stage(why)?;

@@ -98,3 +98,34 @@ fn a_run_that_its_driver_ends_is_complete() {
     assert_eq!((outcome.summary.status, outcome.summary.hashes.state_hash), (Status::Completed, hash));
     assert_eq!(outcome.summary.time.reason, "ended by the program that drives it");
 }
+
+#[test]
+fn a_probe_with_an_interval_measures_once_in_each_and_at_the_end() {
+    let probes = "output = { history = { every = \"0.1 ms\" } }
+probes = [
+    { name = \"fast\", momentum = { along = \"-y\" } },
+    { name = \"slow\", momentum = { along = \"-y\" }, every = \"3.5 ms\" },
+]";
+    let case =
+        FREE_BAR.replace("output = { history = { every = \"0.1 ms\" } }", probes).replace("0 m/s^2", "-10 m/s^2");
+    let place = Workplace::new(&case);
+    let mut simulation = open(&place);
+    while !simulation.is_over() {
+        simulation.step().unwrap();
+        simulation.record().unwrap();
+    }
+    let folder = simulation.folder().to_owned();
+    simulation.finish().unwrap();
+    let history = fractum_io::history::read(&folder.join("history.csv")).unwrap();
+    let column = |name: &str| history.column(name).unwrap().0.to_vec();
+    let (times, fast, slow) = (column("time"), column("fast"), column("slow"));
+    let interval = |time: f64| (time / 3.5e-3 * (1.0 + 1e-12)).floor();
+    let mut held = slow[0];
+    for row in 0..times.len() {
+        let is_due = row == 0 || row + 1 == times.len() || interval(times[row]) > interval(times[row - 1]);
+        held = if is_due { fast[row] } else { held };
+        assert_eq!(slow[row], held, "row {row}");
+    }
+    let measured = 1 + (1..slow.len()).filter(|&row| slow[row] != slow[row - 1]).count();
+    assert!((6..=8).contains(&measured) && times.len() > 28, "{measured} of {}", times.len());
+}

@@ -18,6 +18,7 @@ use crate::error::{ExitCode, Failure};
 use crate::gallery;
 use crate::phases::Part;
 use crate::report::{self, Notes, PictureNote};
+use crate::solver::Measured;
 use crate::strip::strip;
 use crate::summary;
 
@@ -134,7 +135,7 @@ impl Simulation {
             // The forces and energies of the last instant: one more step, of which nothing else is kept.
             let (time, dt) = (scene.clock.time, scene.clock.dt_after);
             if scene.step(true).is_ok() {
-                recorder.row(scene, time, dt, true)?;
+                recorder.row(scene, Measured { time, dt, in_motion: true }, true)?;
             }
         }
         // The pictures show all of them.

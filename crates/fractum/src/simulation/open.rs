@@ -28,7 +28,7 @@ use crate::plan::Plan;
 use crate::population::Population;
 use crate::ranks::Ranks;
 use crate::record::{RecordState, Recorder};
-use crate::solver::Solver;
+use crate::solver::{Measured, Solver};
 use crate::strip::STRIP_FILE;
 use crate::tell;
 use crate::terminal::{Stream, Tone, toned};
@@ -95,7 +95,7 @@ impl Simulation {
         if goes_on.is_none() && !simulation.solver.moves() {
             // A path begins where nothing acts.
             let Simulation { recorder, scene, solver, .. } = &mut simulation;
-            recorder.row(scene, 0.0, 0.0, false)?;
+            recorder.row(scene, Measured { time: 0.0, dt: 0.0, in_motion: false }, false)?;
             if solver.follows_path() {
                 recorder.follow(scene)?;
             }

@@ -93,6 +93,7 @@ expression = "slope(tip, 50 us)"
 [[probes]]
 name = "harmed"
 damaged = { measure = "share", threshold = 0.9 }
+every = "35 us"
 
 [output]
 fields = { every = "0.1 ms" }

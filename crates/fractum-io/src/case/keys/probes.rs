@@ -16,6 +16,7 @@ use crate::case::unit::Dimension as D;
 pub(super) static KEYS: &[KeyDoc] = &[
     key("probes[]", K::Tables, "", "Numbers to record; one quantity each"),
     key("probes[].name", K::Text, "required", "Name, unique among probes: letters, digits, underscores"),
+    key("probes[].every", K::Quantity(D::TIME), "every row", "Time from one measurement to the next, at rest as part of the load: the first row of each interval and the last row of the run measure, rows between repeat the value. For fragments, cracks and damage, which cost more than the rest of a row; not with expression, which costs nothing"),
     key("probes[].reaction", K::Table, "", "Sum of the support reactions on a group, or force of a rigid body on particles, in N"),
     key("probes[].reaction.group", K::Text, "", "Mesh group, set of particles or rigid body; required without `where`"),
     key("probes[].reaction.where", K::Condition, "", "Which nodes or particles, by their positions at the start; without `group`: which nodes of all solid bodies"),

@@ -23,6 +23,8 @@ pub struct Probe {
     pub unit: String,
     /// What it measures.
     pub kind: ProbeKind,
+    /// Time from one measurement to the next; rows between repeat the value [s]. Every row measures if absent.
+    pub every: Option<f64>,
 }
 
 impl Probe {

@@ -112,13 +112,14 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
         }),
         _ => measured(&table, key),
     };
+    let every = if key == "expression" { None } else { table.quantity("every").positive().given() };
     table.finish(&format!("with {key}"));
     if let Some((kind, dimension)) = measured {
         read.dimension = Some(dimension);
         // A moment is no energy, though its dimension is that of one.
         let own = if key == "moment" { "N m".to_owned() } else { dimension.symbol() };
         let unit = unit.unwrap_or(own);
-        read.probe = name.map(|name| Probe { name, unit, kind });
+        read.probe = name.map(|name| Probe { name, unit, kind, every });
     }
     read
 }
