@@ -97,8 +97,13 @@ impl Solid {
             count.damaged_edges += usize::from(edge.damage > 0.0);
             count.broken_edges += usize::from(edge.broken);
         }
-        count.removed_elements = self.bodies.iter().map(|b| b.alive.iter().filter(|a| !**a).count()).sum();
+        count.removed_elements = self.removed_count();
         count
+    }
+
+    /// Number of elements that have been removed so far.
+    pub fn removed_count(&self) -> usize {
+        self.bodies.iter().map(|body| body.alive.iter().filter(|alive| !**alive).count()).sum()
     }
 
     /// All damaged edges, body by body in the order of their edges.

@@ -237,6 +237,13 @@ impl EdgeField {
         }
     }
 
+    /// Gives an edge the history that another rank has found.
+    pub(crate) fn put(&mut self, index: usize, history: EdgeDamage) {
+        self.keep_histories();
+        self.state[index] = history;
+        self.note(index);
+    }
+
     /// History of an edge.
     pub(crate) fn history(&self, index: usize) -> EdgeDamage {
         self.state.get(index).copied().unwrap_or_else(|| EdgeDamage::intact(self.strength[index]))

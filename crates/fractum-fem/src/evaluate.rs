@@ -174,6 +174,24 @@ impl Block {
         if let BlockLaw::Standard(law) = &self.law { law } else { unreachable!("a block of another kind of body") }
     }
 
+    /// Elastic energy, where it was summed [J].
+    pub(crate) fn elastic(&self) -> f64 {
+        match &self.law {
+            BlockLaw::Elastic { energy } => energy.unwrap_or(0.0),
+            BlockLaw::Edges(law) => law.energy.unwrap_or(0.0),
+            BlockLaw::Standard(law) => law.energy.unwrap_or(0.0),
+        }
+    }
+
+    /// Takes over elastic and dissipated energy that another rank has found [J].
+    pub(crate) fn put_energies(&mut self, [elastic, taken]: [f64; 2]) {
+        match &mut self.law {
+            BlockLaw::Elastic { energy } => *energy = Some(elastic),
+            BlockLaw::Edges(law) => (law.energy, law.dissipated) = (Some(elastic), taken),
+            BlockLaw::Standard(law) => (law.energy, law.dissipated) = (Some(elastic), taken),
+        }
+    }
+
     pub(crate) fn dissipated(&self) -> f64 {
         match &self.law {
             BlockLaw::Elastic { .. } => 0.0,

@@ -27,7 +27,7 @@ impl Solid {
             }
         }
         if let Some(part) = part.as_ref().filter(|_| any) {
-            woken = part.tell_edges(&woken);
+            woken = part.name_edges(&woken);
         }
         // Every rank finds the edges of the standard formulation.
         if let Some(standard) = &mut bodies[body].standard

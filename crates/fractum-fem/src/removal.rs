@@ -162,6 +162,15 @@ impl Solid {
         self.refresh_phase(body, &touched);
     }
 
+    /// Elements that have been removed so far: body and number.
+    pub fn removed_elements(&self) -> Vec<(usize, u32)> {
+        let of_body = |(body, model): (usize, &BodyModel)| {
+            let gone = (0..).zip(&model.alive).filter(|(_, alive)| !**alive);
+            gone.map(|(element, _)| (body, element)).collect::<Vec<_>>()
+        };
+        self.bodies.iter().enumerate().flat_map(of_body).collect()
+    }
+
     /// Edges of removed elements that no element of any body joins any more, ascending.
     pub fn edges_without_elements(&self, removed: &[(usize, u32)]) -> Vec<[u32; 2]> {
         let mut edges: Vec<[u32; 2]> = removed

@@ -13,7 +13,7 @@ use crate::body::Kinematics;
 use crate::cell::Geometry;
 use crate::damage::EdgeField;
 use crate::evaluate::Block;
-use crate::part::{Part, Share};
+use crate::part::{Events, Part, Share};
 use crate::solid::{BodyModel, Solid};
 
 impl Solid {
@@ -70,9 +70,23 @@ impl Solid {
         self.part.iter_mut().for_each(|part| part.next_all |= needed);
     }
 
-    /// Has every rank move all nodes from now on.
-    pub fn move_all_nodes(&mut self) {
-        self.part.iter_mut().for_each(|part| part.always_all = true);
+    /// Whether several ranks advance it.
+    pub fn is_shared(&self) -> bool {
+        self.part.is_some()
+    }
+
+    /// Brings displacements and velocities of nodes up to date on every rank, which all move them from now on. All ranks must name
+    /// the same nodes.
+    pub fn follow_nodes(&mut self, nodes: &[u32]) {
+        let Solid { part, slots, displacement, velocity, .. } = self;
+        part.iter_mut().for_each(|part| part.follow(slots, nodes, [displacement, velocity]));
+    }
+
+    /// Brings what this rank has of the damage of others up to date. All ranks must call it.
+    pub fn gather_damage(&mut self) {
+        let Some(mut part) = self.part.take() else { return };
+        part.tell_cells(&mut self.blocks, false);
+        self.part = Some(part);
     }
 
     /// Brings what this rank has of the nodes and cells of others up to date. All ranks must call it.
@@ -98,9 +112,12 @@ impl Solid {
         (Cow::Owned(self.bodies[block.body].cells(&self.reference, &block.items[cell..=cell])), 0)
     }
 
-    /// Brings back the cells of these blocks where this process does not keep them; it keeps them from now on.
+    /// Brings cells that several ranks are about to look at up to date, with their histories and nodes. This process keeps their
+    /// blocks from now on.
     pub(crate) fn bring_cells(&mut self, cells: &[(u32, u32)]) {
-        let Solid { blocks, bodies, reference, .. } = self;
+        let Solid { blocks, bodies, reference, part, .. } = self;
+        let Some(part) = part else { return };
+        part.tell_edges(blocks, cells);
         for &(block, _) in cells {
             let block = &mut blocks[block as usize];
             if block.cells.len() == 0 {
@@ -108,6 +125,9 @@ impl Solid {
                 block.edge_field_mut().into_iter().for_each(EdgeField::keep_histories);
             }
         }
+        let nodes = |&(block, cell): &(u32, u32)| blocks[block as usize].cells.global_nodes(cell as usize);
+        let nodes: Vec<u32> = cells.iter().flat_map(nodes).map(|node| node as u32).collect();
+        self.follow_nodes(&nodes);
     }
 
     /// Blocks whose cells this process evaluates.
@@ -134,15 +154,16 @@ impl Solid {
     /// - `measure`: whether the energies of all cells are needed
     pub(crate) fn exchange_cells(&mut self, measure: bool) {
         let Some(mut part) = self.part.take() else { return };
-        // Every rank finds the edges of the standard formulation.
-        let mut standard = self.bodies.iter().filter_map(|model| model.standard.as_ref());
-        let breaks = part.tell_records(&mut self.blocks) | standard.any(|standard| !standard.field.fresh.is_empty());
-        part.is_all = measure | breaks | part.always_all | std::mem::take(&mut part.next_all);
+        let Events { inverted, broken } = part.tell_records(&mut self.blocks);
+        part.is_all = measure | inverted | part.always_all | std::mem::take(&mut part.next_all);
         if part.is_all {
             part.tell_nodes(&mut self.displacement, &mut self.velocity);
         }
-        if measure || breaks {
-            part.tell_cells(&mut self.blocks, false);
+        if measure {
+            part.tell_energies(&mut self.blocks);
+        }
+        if broken {
+            part.tell_broken(&mut self.blocks);
         }
         self.part = Some(part);
     }

@@ -230,12 +230,7 @@ impl Solid {
         if let Some([elastic, _]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
             return elastic;
         }
-        let of = |block: &Block| match &block.law {
-            BlockLaw::Elastic { energy } => energy.unwrap_or(0.0),
-            BlockLaw::Edges(law) => law.energy.unwrap_or(0.0),
-            BlockLaw::Standard(law) => law.energy.unwrap_or(0.0),
-        };
-        self.blocks.iter().map(of).sum()
+        self.blocks.iter().map(Block::elastic).sum()
     }
 
     /// Energy dissipated by damage so far [J].

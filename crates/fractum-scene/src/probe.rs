@@ -1,7 +1,7 @@
 use std::cell::OnceCell;
 
 use fractum_dem::crack_shape::Axis;
-use fractum_fem::{CrackEdge, Separation, Wave};
+use fractum_fem::{CrackEdge, Fracture, Separation, Wave};
 use fractum_math::{Sym3, Vec3};
 
 use crate::conditions::{Along, PointProbe, Points, Population};
@@ -148,6 +148,7 @@ pub struct ProbedScene<'a> {
     separation: OnceCell<Separation>,
     crack_edges: OnceCell<Vec<CrackEdge>>,
     counts: OnceCell<Counts>,
+    fracture: OnceCell<Fracture>,
     /// Stress of all elements, body by body.
     stresses: Vec<OnceCell<Vec<Sym3>>>,
 }
@@ -165,6 +166,7 @@ impl<'a> ProbedScene<'a> {
             separation: OnceCell::new(),
             crack_edges: OnceCell::new(),
             counts: OnceCell::new(),
+            fracture: OnceCell::new(),
             stresses: vec![OnceCell::new(); scene.solid.body_count()],
         }
     }
@@ -177,6 +179,11 @@ impl<'a> ProbedScene<'a> {
     /// [`Scene::counts`], found once.
     pub fn counts(&self) -> &Counts {
         self.counts.get_or_init(|| self.scene.counts())
+    }
+
+    /// [`fractum_fem::Solid::fracture`], found once.
+    fn fracture(&self) -> &Fracture {
+        self.fracture.get_or_init(|| self.scene.solid.fracture())
     }
 
     /// Stress of an element [Pa]; of all elements of its body at once where a probe has many of them.
@@ -210,6 +217,22 @@ impl Probe {
         }
     }
 
+    /// Whether the value needs the damage of edges.
+    pub fn needs_damage(&self) -> bool {
+        match self {
+            Probe::Crack { measure, .. } => !measure.is_of_separation(),
+            Probe::Count(kind) => {
+                matches!(kind, CountKind::BrokenEdges | CountKind::DamagedEdges | CountKind::Fragments)
+            }
+            Probe::Stress { .. }
+            | Probe::Fragment { .. }
+            | Probe::FragmentSize(_)
+            | Probe::CrackArea
+            | Probe::Damaged(_) => true,
+            _ => false,
+        }
+    }
+
     /// Whether the value needs the energies of the instant.
     pub fn needs_energy(&self) -> bool {
         matches!(self, Probe::Energy(_))
@@ -229,6 +252,8 @@ impl Probe {
             }
             Probe::Energy(kind) => scene.ledger().probe(*kind),
             Probe::Count(CountKind::Fragments) => probed.fragments().len() as f64,
+            Probe::Count(CountKind::BrokenEdges) => probed.fracture().broken_edges as f64,
+            Probe::Count(CountKind::DamagedEdges) => probed.fracture().damaged_edges as f64,
             Probe::Count(kind) => probed.counts().of(*kind) as f64,
             Probe::Stress { elements, between: [normal, along] } => {
                 let (mut sum, mut volume) = (0.0, 0.0);

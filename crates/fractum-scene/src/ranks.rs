@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use fractum_fem::Solid;
 use fractum_parallel::Exchange;
 
 use crate::scene::Scene;
@@ -15,8 +16,7 @@ impl Scene {
         self.optional.heat.as_ref().map(|_| "heat")
     }
 
-    /// Whether something looks at all nodes in every step. Every rank does alike what is no cell of a solid: particles and their
-    /// bonds, contact, rigid bodies, ties and gas.
+    /// Whether something looks at all nodes in every step.
     fn needs_all_nodes(&self) -> bool {
         let damping = self.settings.damping;
         self.loads.points().is_none()
@@ -24,11 +24,27 @@ impl Scene {
             || damping.local != 0.0
             || damping.mass_rate != 0.0
             || self.removals.domain.is_some()
-            || !self.debris.is_empty()
-            || self.solid.fracture().removed_elements > 0
-            || !self.bonded.is_empty()
-            || !self.contacts.is_empty()
-            || !self.shape_contacts.is_empty()
+    }
+
+    /// Nodes that contacts, discrete elements and ties look at. Every rank does alike what is no cell of a solid.
+    fn nodes_of_others(&mut self) -> Vec<u32> {
+        let mut touching = corners(&self.solid, &self.solid.removed_elements());
+        self.contacts.each_node(|node| touching.push(node));
+        touching.extend(self.shape_contacts.iter().flat_map(|ground| &ground.candidates).map(|c| c.node));
+        let tied = self.ties.nodes();
+        if touching.is_empty() {
+            return tied.collect();
+        }
+        tied.chain(self.debris.nodes_near(&self.solid, touching.into_iter())).collect()
+    }
+
+    /// Has every rank move the nodes that discrete elements of the elements look at that were just removed.
+    pub(crate) fn follow_removal(&mut self) {
+        if self.solid.is_shared() {
+            let born = corners(&self.solid, &self.removals.last);
+            let near = self.debris.nodes_near(&self.solid, born.into_iter());
+            self.solid.follow_nodes(&near);
+        }
     }
 
     /// Leaves a share of the cells to each rank of an exchange. Every rank must have the same scene in the same state, and
@@ -41,12 +57,27 @@ impl Scene {
         let mut everywhere: Vec<u32> = self.supports.driven().chain(loaded.into_iter().flatten()).collect();
         everywhere.extend(self.optional.surface_supports.nodes());
         everywhere.extend(watched);
+        everywhere.extend(self.nodes_of_others());
         self.solid.share_out(exchange, &everywhere, all);
     }
 
+    /// Brings what this rank has of the damage of others up to date. All ranks must call it, after a step that was measured.
+    pub fn gather_damage(&mut self) {
+        self.solid.gather_damage();
+    }
+
     /// Brings what this rank has of the nodes and cells of others up to date, before anyone looks at all of them. All ranks must
-    /// call it. What a measured step has measured is up to date without it, but for viscous stress.
+    /// call it. Nodes and energies are up to date without it where a step has measured.
     pub fn gather_ranks(&mut self) {
         self.solid.gather_ranks();
     }
+}
+
+/// Nodes of elements (body, number).
+fn corners(solid: &Solid, elements: &[(usize, u32)]) -> Vec<u32> {
+    let of = |&(body, element): &(usize, u32)| {
+        let body = solid.body(body);
+        body.elements[element as usize].into_iter().take(body.shape.node_count())
+    };
+    elements.iter().flat_map(of).collect()
 }

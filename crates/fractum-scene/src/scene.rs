@@ -119,8 +119,6 @@ pub struct Counts {
     pub nodes: usize,
     pub elements: usize,
     pub removed_elements: usize,
-    pub damaged_edges: usize,
-    pub broken_edges: usize,
     pub particles: usize,
     pub contacts: usize,
     pub bonds: usize,
@@ -128,17 +126,15 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// One of them; fragments are not among them.
+    /// One of them; edges and fragments are not among them.
     pub(crate) fn of(&self, kind: CountKind) -> usize {
         match kind {
             CountKind::RemovedElements => self.removed_elements,
-            CountKind::BrokenEdges => self.broken_edges,
-            CountKind::DamagedEdges => self.damaged_edges,
             CountKind::Particles => self.particles,
             CountKind::Contacts => self.contacts,
             CountKind::Bonds => self.bonds,
             CountKind::BrokenBonds => self.broken_bonds,
-            CountKind::Fragments => 0,
+            CountKind::Fragments | CountKind::BrokenEdges | CountKind::DamagedEdges => 0,
         }
     }
 }
@@ -309,15 +305,12 @@ impl Scene {
         attached
     }
 
-    /// Counts of everything but fragments.
+    /// Counts of everything but fragments and edges, of which [`Solid::fracture`] tells.
     pub fn counts(&self) -> Counts {
-        let fracture = self.solid.fracture();
         Counts {
             nodes: self.solid.reference.len(),
             elements: (0..self.solid.body_count()).map(|b| self.solid.body(b).elements.len()).sum(),
-            removed_elements: fracture.removed_elements - self.removals.left.elements,
-            damaged_edges: fracture.damaged_edges,
-            broken_edges: fracture.broken_edges,
+            removed_elements: self.solid.removed_count() - self.removals.left.elements,
             particles: self.debris.len() + self.bonded.particles.len()
                 - self.removals.left.particles(self.solid.reference.len()).count(),
             bonds: self.bonded.bond_counts().0,
@@ -332,6 +325,8 @@ impl Scene {
     pub fn count(&self, kind: CountKind) -> usize {
         match kind {
             CountKind::Fragments => self.fragments().len(),
+            CountKind::BrokenEdges => self.solid.fracture().broken_edges,
+            CountKind::DamagedEdges => self.solid.fracture().damaged_edges,
             kind => self.counts().of(kind),
         }
     }

@@ -260,11 +260,10 @@ impl Recorder {
     /// Adds a row for the instant that the last step measured.
     ///
     /// - `is_last`: whether it is the last row of the run, which measures all
-    pub(crate) fn row(&mut self, scene: &Scene, measured: Measured, is_last: bool) -> Result<(), Failure> {
+    pub(crate) fn row(&mut self, scene: &mut Scene, measured: Measured, is_last: bool) -> Result<(), Failure> {
         let Measured { time, dt, in_motion } = measured;
         let ledger = scene.ledger();
-        let probed = ProbedScene::new(scene);
-        let counts = probed.counts();
+        let counts = scene.counts();
         let mut row = vec![time, dt];
         row.extend(balance().map(|kind| ledger[kind]));
         row.extend([ledger.residual(), counts.removed_elements as f64, counts.particles as f64]);
@@ -280,17 +279,21 @@ impl Recorder {
         let is_held =
             |every: f64| !is_last && before.is_some_and(|before| !is_due(time, next_index(before, every), every));
         self.state.times.push(time);
-        let gone = Gone::at(scene, counts);
+        let gone = Gone::at(scene, &counts);
         let as_before = self.gone.replace(gone) == Some(gone);
         let case = Arc::clone(&self.case);
+        let is_known = |index: usize, probe: &Probe| match case.probes[index].every {
+            Some(every) => is_held(every),
+            None => as_before && probe.is_of_separation(),
+        };
+        let mut due = (0..).zip(&self.probes).filter_map(|(index, probe)| Some((index, probe.as_ref()?)));
+        if due.any(|(index, probe)| probe.needs_damage() && !is_known(index, probe)) {
+            scene.gather_damage();
+        }
+        let probed = ProbedScene::new(scene);
         for index in 0..case.probes.len() {
-            let described = &case.probes[index];
-            let is_known = |probe: &Probe| match described.every {
-                Some(every) => is_held(every),
-                None => as_before && probe.is_of_separation(),
-            };
-            let value = match (&described.kind, &self.probes[index]) {
-                (_, Some(probe)) if is_known(probe) => self.state.series[index].last().copied().unwrap_or(f64::NAN),
+            let value = match (&case.probes[index].kind, &self.probes[index]) {
+                (_, Some(probe)) if is_known(index, probe) => self.state.series[index].last().copied().unwrap_or(f64::NAN),
                 (_, Some(probe)) => probe.value(&probed),
                 (ProbeKind::Expression(expression), None) if !expression.scalar => self.expression(expression),
                 _ => continue,

@@ -373,7 +373,7 @@ impl Simulation {
             elastic: ledger[EnergyKind::Elastic],
             dissipated: ledger.spent(),
             balance_error: ledger.relative_residual(),
-            broken_edges: counts.broken_edges as u64,
+            broken_edges: self.scene.solid.fracture().broken_edges as u64,
             broken_bonds: counts.broken_bonds as u64,
             particles: counts.particles as u64,
             load: self.load().map(|(index, unit)| (self.load_and_peak(index), unit)),

@@ -15,7 +15,7 @@ use crate::series::index_of_max;
 
 /// What the last state of the scene tells.
 pub(crate) fn of_scene(scene: &Scene) -> Summary {
-    let counts = scene.counts();
+    let (counts, fracture) = (scene.counts(), scene.solid.fracture());
     Summary {
         fractum: env!("CARGO_PKG_VERSION").to_owned(),
         threads: rayon::current_num_threads(),
@@ -27,8 +27,8 @@ pub(crate) fn of_scene(scene: &Scene) -> Summary {
             particles: counts.particles as u64,
             bonds: counts.bonds as u64,
             broken_bonds: counts.broken_bonds as u64,
-            broken_edges: counts.broken_edges as u64,
-            damaged_edges: counts.damaged_edges as u64,
+            broken_edges: fracture.broken_edges as u64,
+            damaged_edges: fracture.damaged_edges as u64,
             contacts: counts.contacts as u64,
             fragments: scene.count(CountKind::Fragments) as u64,
         },

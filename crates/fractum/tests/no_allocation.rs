@@ -211,16 +211,16 @@ fn a_warm_step_allocates_nothing() {
 
         let mut scene = pulled(nodes.clone(), armed(smoothed.clone()), 0.01, calm);
         assert_eq!(requests(&mut scene), 0, "smoothed with armed damage");
-        assert_eq!(scene.counts().damaged_edges, 0);
+        assert_eq!(scene.solid.fracture().damaged_edges, 0);
 
         // ρ c v = 4.7 MPa: the end that is pulled is damaged; it is too tough to be cut through in these steps.
         let mut scene = pulled(nodes.clone(), armed(smoothed.clone()), 0.5, calm);
         assert_eq!(requests(&mut scene), 0, "smoothed with growing damage");
-        assert!(scene.counts().damaged_edges > 0);
+        assert!(scene.solid.fracture().damaged_edges > 0);
 
         let mut scene = pulled(nodes.clone(), armed(plain.clone()), 0.5, calm);
         assert_eq!(requests(&mut scene), 0, "standard with growing damage");
-        assert!(scene.counts().damaged_edges > 0);
+        assert!(scene.solid.fracture().damaged_edges > 0);
 
         let mut scene = graded(nodes.clone(), armed(smoothed.clone()));
         assert_eq!(requests(&mut scene), 0, "steps of two sizes");

@@ -2,8 +2,10 @@
 //!
 //! A rank evaluates a run of blocks. For every node of them it gets the sums of the blocks of others, and adds all of them in
 //! the order of the blocks, as a single process does. Forces on nodes that it moves without having a block there are told by
-//! a rank that has. So every rank that moves a node has the same bits. What needs all nodes or all cells (energies, removal,
-//! output) is told in full before; between such steps, what a rank has of the nodes and cells of others is out of date.
+//! a rank that has. So every rank that moves a node has the same bits. What needs all nodes or all cells (energies, output)
+//! is told in full before; between such steps, what a rank has of the nodes and cells of others is out of date. Removal is
+//! done by all ranks alike: they are told the edges that broke, and nodes and edges around the elements that leave, whose nodes
+//! all of them move from then on.
 
 mod plan;
 
@@ -34,6 +36,8 @@ pub(crate) struct Part {
     all: Told,
     /// Nodes that every rank moves in every step.
     everywhere: Told,
+    /// Whether a node is one of them.
+    is_everywhere: Vec<bool>,
     /// Runs of nodes that this rank moves where it does not move all of them, see [`runs_of`].
     moved: Vec<Vec<Range<usize>>>,
     /// Every rank moves all nodes in every step.
@@ -67,6 +71,15 @@ pub struct Share {
     pub keeps_all: bool,
 }
 
+/// What happened in a step, on any rank.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Events {
+    /// A cell was turned inside out.
+    pub(crate) inverted: bool,
+    /// An edge broke.
+    pub(crate) broken: bool,
+}
+
 /// Numbers of a block in [`Part::records`].
 const RECORD: usize = 4;
 /// In a record: edges have passed their strength, edges broke.
@@ -93,7 +106,8 @@ impl Part {
         Part {
             plan: Plan::new(slots, &first, exchange.rank()),
             all: Told::new(slots, &first, &mut (0..slots.len() as u32)),
-            everywhere: Told::default(),
+            everywhere: Told::none(exchange.size()),
+            is_everywhere: vec![false; slots.len()],
             moved: Vec::new(),
             records: Vec::new(),
             own_records: Vec::new(),
@@ -113,14 +127,10 @@ impl Part {
     /// - `everywhere`: nodes that every rank shall move
     /// - `needs_records`: whether all ranks need numbers of every block in every step
     pub(crate) fn begin_stage(&mut self, slots: &NodeSlots, everywhere: &[u32], needs_records: bool) {
-        let nodes: BTreeSet<u32> = everywhere.iter().copied().collect();
-        self.everywhere = Told::new(slots, &self.first, &mut nodes.into_iter());
-        let mut moved = vec![false; slots.len()];
-        for (chunk, runs) in moved.chunks_mut(CHUNK).zip(&self.plan.runs) {
-            runs.iter().for_each(|run| chunk[run.clone()].fill(true));
-        }
-        everywhere.iter().for_each(|&node| moved[node as usize] = true);
-        self.moved = moved.chunks(CHUNK).map(runs_of).collect();
+        self.everywhere = Told::none(self.exchange.size());
+        self.is_everywhere.fill(false);
+        self.moved.clone_from(&self.plan.runs);
+        self.move_everywhere(slots, everywhere);
         let (first, size) = (&self.first, self.exchange.size());
         let numbers = |rank: usize| if needs_records { RECORD * (first[rank + 1] - first[rank]) } else { 0 };
         self.record_counts = (0..size).map(numbers).collect();
@@ -131,6 +141,30 @@ impl Part {
         self.next_all = true;
         self.is_all = false;
         self.is_whole = true;
+    }
+
+    /// Has every rank move these nodes in every step; those of them that not every rank has moved before.
+    fn move_everywhere(&mut self, slots: &NodeSlots, nodes: &[u32]) -> Told {
+        let new: BTreeSet<u32> = nodes.iter().copied().filter(|&node| !self.is_everywhere[node as usize]).collect();
+        new.iter().for_each(|&node| self.is_everywhere[node as usize] = true);
+        let chunks: BTreeSet<usize> = new.iter().map(|&node| node as usize / CHUNK).collect();
+        for chunk in chunks {
+            let mut moved: Vec<bool> = self.is_everywhere.chunks(CHUNK).nth(chunk).expect("of a node").to_vec();
+            self.plan.runs[chunk].iter().for_each(|run| moved[run.clone()].fill(true));
+            self.moved[chunk] = runs_of(&moved);
+        }
+        let told = Told::new(slots, &self.first, &mut new.into_iter());
+        self.everywhere.append(&told);
+        told
+    }
+
+    /// Tells all ranks displacements and velocities of nodes that not every rank moves, and has every rank move them from now on.
+    pub(crate) fn follow(&mut self, slots: &NodeSlots, nodes: &[u32], [displacement, velocity]: [&mut [Vec3]; 2]) {
+        let mut told = self.move_everywhere(slots, nodes);
+        if !self.is_whole {
+            told.tell(&*self.exchange, displacement);
+            told.tell(&*self.exchange, velocity);
+        }
     }
 
     /// Runs of nodes of a chunk that this rank moves in this step, counted from the first of the chunk; none where it moves all.
@@ -179,24 +213,24 @@ impl Part {
     }
 
     /// The edges that all ranks name, rank after rank.
-    pub(crate) fn tell_edges(&self, own: &Vec<u32>) -> Vec<u32> {
+    pub(crate) fn name_edges(&self, own: &Vec<u32>) -> Vec<u32> {
         gather(&*self.exchange, own).concat()
     }
 
-    /// Tells all ranks what they need of every block in every step; whether an edge broke or a cell was turned inside out,
-    /// so that all nodes and cells are needed.
-    pub(crate) fn tell_records(&mut self, blocks: &mut [Block]) -> bool {
+    /// Tells all ranks what they need of every block in every step.
+    pub(crate) fn tell_records(&mut self, blocks: &mut [Block]) -> Events {
+        let mut events = Events::default();
         if self.records.is_empty() {
-            return false;
+            return events;
         }
         let own = self.own();
         let records = self.own_records.chunks_exact_mut(RECORD).zip(&blocks[own.clone()]);
         records.for_each(|(to, block)| to.copy_from_slice(&record(block)));
         self.exchange.gather(&self.own_records, &self.record_counts, &mut self.records);
-        let mut breaks = false;
         for (index, (block, from)) in blocks.iter_mut().zip(self.records.chunks_exact(RECORD)).enumerate() {
             let &[power, shock, inverted, edges] = from else { continue };
-            breaks |= inverted >= 0.0 || edges >= BROKEN;
+            events.inverted |= inverted >= 0.0;
+            events.broken |= edges >= BROKEN;
             if !own.contains(&index) {
                 (block.viscous_power, block.viscous.shock) = (power, shock);
                 block.inverted = (inverted >= 0.0).then_some(inverted as usize);
@@ -205,7 +239,39 @@ impl Part {
                 }
             }
         }
-        breaks
+        events
+    }
+
+    /// Tells all ranks the edges that have just broken.
+    pub(crate) fn tell_broken(&mut self, blocks: &mut [Block]) {
+        let own = self.own();
+        let of_block = |index: usize| {
+            let fresh = blocks[index].edge_field().map_or(&[][..], |field| &field.fresh);
+            fresh.iter().map(move |&edge| (index as u32, edge))
+        };
+        let edges: Vec<(u32, u32)> = own.clone().flat_map(of_block).collect();
+        for (block, edge) in self.tell_edges(blocks, &edges) {
+            let field = blocks[block as usize].edge_field_mut().filter(|_| !own.contains(&(block as usize)));
+            field.into_iter().for_each(|field| field.fresh.push(edge));
+        }
+    }
+
+    /// Tells all ranks the histories of some edges (block, number), which they may name or not; those that any rank of them has.
+    pub(crate) fn tell_edges(&self, blocks: &mut [Block], edges: &[(u32, u32)]) -> Vec<(u32, u32)> {
+        let own = self.own();
+        let mine = edges.iter().filter(|(block, _)| own.contains(&(*block as usize)));
+        let history = |&(block, edge): &(u32, u32)| {
+            let field = blocks[block as usize].edge_field()?;
+            Some((block, edge, field.history(edge as usize)))
+        };
+        let mine: Vec<(u32, u32, EdgeDamage)> = mine.filter_map(history).collect();
+        let all = gather(&*self.exchange, &mine).concat();
+        for &(block, edge, history) in all.iter().filter(|(block, ..)| !own.contains(&(*block as usize))) {
+            if let Some(field) = blocks[block as usize].edge_field_mut() {
+                field.put(edge as usize, history);
+            }
+        }
+        all.into_iter().map(|(block, edge, _)| (block, edge)).collect()
     }
 
     /// Tells all ranks displacements and velocities of all nodes.
@@ -220,6 +286,21 @@ impl Part {
     pub(crate) fn tell_forces(&mut self, force: &mut [Vec3]) {
         let told = if self.is_all { &mut self.all } else { &mut self.everywhere };
         told.tell(&*self.exchange, force);
+    }
+
+    /// Tells all ranks the energies of all blocks, which have been summed.
+    pub(crate) fn tell_energies(&mut self, blocks: &mut [Block]) {
+        let own = self.own();
+        let energies = |block: &Block| [block.elastic(), block.dissipated()];
+        let mine: Vec<f64> = blocks[own.clone()].iter().flat_map(energies).collect();
+        let counts: Vec<usize> = self.first.windows(2).map(|first| 2 * (first[1] - first[0])).collect();
+        let mut all = vec![0.0; 2 * blocks.len()];
+        self.exchange.gather(&mine, &counts, &mut all);
+        for (index, (block, energies)) in blocks.iter_mut().zip(all.chunks_exact(2)).enumerate() {
+            if !own.contains(&index) {
+                block.put_energies([energies[0], energies[1]]);
+            }
+        }
     }
 
     /// Tells all ranks energies and histories of all cells.
@@ -311,13 +392,7 @@ impl BlockShare {
             BlockLaw::Edges(law) => {
                 (law.energy, law.dissipated) = (self.energy, self.dissipated);
                 law.field.fresh = self.fresh;
-                if !self.edges.is_empty() {
-                    law.field.keep_histories();
-                }
-                for (index, edge) in self.edges {
-                    law.field.state[index as usize] = edge;
-                    law.field.note(index as usize);
-                }
+                self.edges.into_iter().for_each(|(index, edge)| law.field.put(index as usize, edge));
             }
         }
     }

@@ -21,7 +21,7 @@ pub(super) struct Plan {
 }
 
 /// Nodes of which each rank tells all others some: those of its blocks that no lower rank has.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Told {
     pub(super) nodes: Vec<Vec<u32>>,
     counts: Vec<usize>,
@@ -72,6 +72,17 @@ impl Told {
         }
         let counts = of_rank.iter().map(|nodes| 3 * nodes.len()).collect();
         Told { nodes: of_rank, counts, own: Vec::new(), all: Vec::new() }
+    }
+
+    /// No nodes of so many ranks.
+    pub(super) fn none(ranks: usize) -> Self {
+        Told { nodes: vec![Vec::new(); ranks], counts: vec![0; ranks], own: Vec::new(), all: Vec::new() }
+    }
+
+    /// Tells these nodes too.
+    pub(super) fn append(&mut self, more: &Told) {
+        self.nodes.iter_mut().zip(&more.nodes).for_each(|(nodes, more)| nodes.extend(more));
+        self.counts.iter_mut().zip(&more.counts).for_each(|(count, more)| *count += more);
     }
 
     /// Gives every rank the values at these nodes.

@@ -9,6 +9,7 @@ use fractum_math::{Work, connected};
 use super::debris_among::{DebrisAmong, Made};
 use super::nodes_on_surface::{NodesOnSurface, frequency_square};
 use super::rigid_body::{Form, RigidBody};
+use super::solid_surface::SolidSurface;
 use super::{Contacts, OverlapWith, SKIN};
 use crate::coupling::Debris;
 
@@ -51,6 +52,13 @@ impl Contacts {
     /// Whether nodes of solids that are no discrete elements yet may touch something here.
     pub fn has_node_contacts(&self) -> bool {
         self.nodes_on_tools.iter().any(Option::is_some) || self.solids.iter().any(|ground| ground.visitors().is_some())
+    }
+
+    /// Visits every node of a solid that something here looks at, some of them more than once.
+    pub(crate) fn each_node(&self, mut visit: impl FnMut(u32)) {
+        let visitors = self.solids.iter().filter_map(SolidSurface::visitors).chain(self.nodes_on_tools.iter().flatten());
+        visitors.flat_map(NodesOnSurface::nodes).for_each(|&node| visit(node));
+        self.solids.iter().flat_map(SolidSurface::nodes).for_each(|&node| visit(node));
     }
 
     /// Adds the forces of nodes of solids; after those of the particles, which put rigid bodies and facets in their places.

@@ -54,6 +54,11 @@ impl NodesOnSurface {
         &self.contacts
     }
 
+    /// The nodes that may touch.
+    pub(crate) fn nodes(&self) -> &[u32] {
+        &self.nodes
+    }
+
     /// Has the next search look up everything, since facets have gone.
     pub(crate) fn look_again(&mut self) {
         self.contacts.look_again();

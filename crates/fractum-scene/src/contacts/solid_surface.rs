@@ -108,6 +108,11 @@ impl SolidSurface {
         &self.contacts
     }
 
+    /// Nodes of its facets.
+    pub(super) fn nodes(&self) -> &[u32] {
+        &self.nodes
+    }
+
     pub(super) fn visitors(&self) -> Option<&NodesOnSurface> {
         self.visitors.as_ref()
     }

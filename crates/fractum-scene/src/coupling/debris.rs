@@ -215,6 +215,10 @@ impl Debris {
     /// Finds the elements that hold the nodes; needed before a node that is no particle yet touches facets.
     pub(crate) fn prepare_holders(&mut self, solid: &Solid) {
         self.prepare(solid);
+        self.find_holders(solid);
+    }
+
+    fn find_holders(&mut self, solid: &Solid) {
         if self.holders.is_empty() {
             self.holders = Holders::new(solid);
         }
@@ -272,6 +276,13 @@ impl Debris {
         let of =
             |(&node, spin): (&u32, &Vec3)| spin * self.inertia(solid.mass[node as usize], self.radius[node as usize]);
         self.state.nodes.iter().zip(&self.state.spin).map(of).sum()
+    }
+
+    /// Nodes that are looked at where discrete elements or contacts are at some nodes: these, and those of the elements around them,
+    /// which hold them.
+    pub(crate) fn nodes_near(&mut self, solid: &Solid, nodes: impl Iterator<Item = u32>) -> Vec<u32> {
+        self.find_holders(solid);
+        self.holders.nodes_near(solid, nodes)
     }
 
     /// Puts particles on the nodes of elements that were just removed, and opens the edges that lost their last

@@ -1,5 +1,7 @@
 //! Elements that hold attached particles against turning.
 
+use std::collections::BTreeSet;
+
 use fractum_fem::Solid;
 use fractum_math::{Mat3, Ragged, Vec3};
 
@@ -80,6 +82,18 @@ impl Holders {
         };
         let turns = radius * radius * size <= limit;
         turns.then_some(Holder { number, nodes, corners, middle, inverse_inertia })
+    }
+
+    /// Nodes of all elements, alive or not, that have one of some nodes, ascending.
+    pub(crate) fn nodes_near(&self, solid: &Solid, nodes: impl Iterator<Item = u32>) -> Vec<u32> {
+        let around: BTreeSet<u32> = nodes.flat_map(|node| self.elements_of_node.row(node as usize)).copied().collect();
+        let nodes_of = |element: u32| {
+            let (body, element) = self.place(element);
+            let corners = solid.body(body).shape.node_count();
+            solid.body(body).elements[element].into_iter().take(corners)
+        };
+        let near: BTreeSet<u32> = around.into_iter().flat_map(nodes_of).collect();
+        near.into_iter().collect()
     }
 
     fn place(&self, element: u32) -> (usize, usize) {
