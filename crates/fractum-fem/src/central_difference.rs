@@ -57,20 +57,26 @@ impl Solid {
     ) -> HalfSteps {
         let part = self.part.take();
         let step = WholeStep { dt_before, dt_after, damping, held, measure };
-        let work = self.kick_runs(&step, |chunk| part.as_ref()?.moved(chunk));
+        self.kick_runs(&step, |chunk| part.as_ref()?.moved(chunk));
         self.part = part;
+        self.tell_work();
         self.note_motion();
-        work
+        self.work_of_chunks()
     }
 
-    /// [`Solid::kick_and_drift`] of some nodes.
+    /// What [`Solid::kick_runs`] has found, in sum.
+    pub(crate) fn work_of_chunks(&self) -> HalfSteps {
+        self.chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
+    }
+
+    /// [`Solid::kick_and_drift`] of some nodes; see [`Solid::work_of_chunks`].
     ///
     /// - `runs`: runs of nodes in a chunk, counted from its first; none where these are all nodes
     pub(crate) fn kick_runs<'a>(
         &mut self,
         step: &WholeStep,
         runs: impl Fn(usize) -> Option<&'a [Range<usize>]> + Sync,
-    ) -> HalfSteps {
+    ) {
         let WholeStep { dt_before, dt_after, damping, held, measure } = *step;
         let dt_kick = 0.5 * (dt_before + dt_after);
         let Solid { displacement, velocity, force, inverse_mass, chunk_work, .. } = self;
@@ -122,7 +128,6 @@ impl Solid {
                     }
                 }
             });
-        chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
     }
 }
 

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-use fractum_math::Vec3;
+use fractum_math::{HalfSteps, Vec3};
 use fractum_parallel::Exchange;
 use rayon::prelude::*;
 
@@ -20,8 +20,8 @@ impl Solid {
     /// Leaves a share of the work to each rank of an exchange. Every rank must have the same solid in the same state.
     ///
     /// - `everywhere`: nodes that every rank shall move, whatever it has of them
-    /// - `all`: whether every rank shall move all nodes
-    pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, everywhere: &[u32], all: bool) {
+    /// - `all`: whether every rank shall move all nodes; `sums`: whether steps need sums over all nodes, as those of damping
+    pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, everywhere: &[u32], [all, sums]: [bool; 2]) {
         let needs_records = self.bodies.iter().any(|model| {
             let can_break = model.body.damage.is_some();
             can_break || model.viscosity.is_some() || model.body.kinematics == Kinematics::Corotational
@@ -29,6 +29,7 @@ impl Solid {
         let mut part = self.part.take().unwrap_or_else(|| Box::new(Part::new(exchange, &self.blocks, &self.slots)));
         part.begin_stage(&self.slots, everywhere, needs_records);
         part.always_all = all || self.needs_all_cells();
+        part.always_sums = sums;
         if !self.needs_all_cells() {
             part.keep_own(&mut self.blocks);
         }
@@ -82,6 +83,32 @@ impl Solid {
         part.iter_mut().for_each(|part| part.follow(slots, nodes, [displacement, velocity]));
     }
 
+    /// Gives every rank the sums over chunks of nodes, once each has those of its own.
+    pub fn tell_sums(&self, sums: &mut [Vec3]) {
+        let Some(part) = &self.part else { return };
+        let mut numbers: Vec<[f64; 3]> = sums.iter().map(|&sum| sum.into()).collect();
+        part.tell_sums(&mut numbers);
+        sums.iter_mut().zip(numbers).for_each(|(sum, numbers)| *sum = numbers.into());
+    }
+
+    /// The same of what damping has taken from the nodes of each chunk, and of their kinetic energy.
+    pub(crate) fn tell_work(&mut self) {
+        let Some(part) = &self.part else { return };
+        let numbers =
+            |HalfSteps { before, after }: &HalfSteps| [before.kinetic, before.damping, after.kinetic, after.damping];
+        let mut all: Vec<[f64; 4]> = self.chunk_work.iter().map(numbers).collect();
+        part.tell_sums(&mut all);
+        for (work, numbers) in self.chunk_work.iter_mut().zip(all) {
+            [work.before.kinetic, work.before.damping, work.after.kinetic, work.after.damping] = numbers;
+        }
+    }
+
+    /// Brings displacements and velocities of all nodes up to date on every rank. All ranks must call it.
+    pub fn gather_nodes(&mut self) {
+        let Solid { part, displacement, velocity, .. } = self;
+        part.iter_mut().for_each(|part| part.tell_nodes(displacement, velocity));
+    }
+
     /// Brings what this rank has of the damage of others up to date. All ranks must call it.
     pub fn gather_damage(&mut self) {
         let Some(mut part) = self.part.take() else { return };
@@ -100,6 +127,11 @@ impl Solid {
     /// What this rank does of the work; none where there is one process.
     pub fn share(&self) -> Option<Share> {
         Some(self.part.as_ref()?.share(&self.blocks))
+    }
+
+    /// Steps in which every rank moved all nodes, and all steps that ranks have done together; none where there is one process.
+    pub fn steps_of_ranks(&self) -> Option<[u64; 2]> {
+        Some(self.part.as_ref()?.steps)
     }
 
     /// The geometry of a cell (block, number), with its number there: by itself where this process does not keep its block.
@@ -155,9 +187,12 @@ impl Solid {
     pub(crate) fn exchange_cells(&mut self, measure: bool) {
         let Some(mut part) = self.part.take() else { return };
         let Events { inverted, broken } = part.tell_records(&mut self.blocks);
-        part.is_all = measure | inverted | part.always_all | std::mem::take(&mut part.next_all);
+        part.is_all = inverted | part.always_all | std::mem::take(&mut part.next_all);
+        part.sums = !part.is_all && (measure || part.always_sums);
         if part.is_all {
             part.tell_nodes(&mut self.displacement, &mut self.velocity);
+        } else if part.sums {
+            part.fetch_chunks(&mut self.displacement, &mut self.velocity);
         }
         if measure {
             part.tell_energies(&mut self.blocks);
@@ -170,7 +205,10 @@ impl Solid {
 
     /// After a step: what is known of the nodes of others.
     pub(crate) fn note_motion(&mut self) {
-        self.part.iter_mut().for_each(|part| part.is_whole = part.is_all);
+        let Some(part) = &mut self.part else { return };
+        part.is_whole = part.is_all;
+        part.has_chunks = part.is_all || part.sums;
+        part.steps = [part.steps[0] + u64::from(part.is_all), part.steps[1] + 1];
     }
 }
 

@@ -217,6 +217,43 @@ impl Probe {
         }
     }
 
+    /// Nodes of solids whose motion the value needs, and whether every process must follow them, since supports act on them; none
+    /// where these may be any.
+    pub fn nodes(&self, scene: &Scene) -> Option<(Vec<u32>, bool)> {
+        let nodes = match self {
+            Probe::Points { population: Population::Nodes, probe } => {
+                return Some((probe.points(scene.supports()), probe.is_of_supports()));
+            }
+            Probe::Surface { facets, .. } => facets.concat(),
+            Probe::Stress { .. }
+            | Probe::Strain(_)
+            | Probe::Extensometer(_)
+            | Probe::Momentum(_)
+            | Probe::AngularMomentum(_)
+            | Probe::Gas { .. }
+            | Probe::Fragment { .. }
+            | Probe::FragmentSize(_)
+            | Probe::Count(CountKind::Fragments) => return None,
+            Probe::Points { population: Population::Particles, .. }
+            | Probe::Energy(_)
+            | Probe::Count(_)
+            | Probe::ParticleStress(_)
+            | Probe::ContactForce(_)
+            | Probe::RigidBodyForce { .. }
+            | Probe::RigidBodyDisplacement { .. }
+            | Probe::RigidBodyVelocity { .. }
+            | Probe::Temperature { .. }
+            | Probe::Heat(_)
+            | Probe::Load { .. }
+            | Probe::CrackArea
+            | Probe::Crack { .. }
+            | Probe::RadialCracks(_)
+            | Probe::Damaged(_)
+            | Probe::WaveSpeed { .. } => Vec::new(),
+        };
+        Some((nodes, false))
+    }
+
     /// Whether the value needs the damage of edges.
     pub fn needs_damage(&self) -> bool {
         match self {

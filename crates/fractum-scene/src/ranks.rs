@@ -18,12 +18,13 @@ impl Scene {
 
     /// Whether something looks at all nodes in every step.
     fn needs_all_nodes(&self) -> bool {
+        self.loads.points().is_none() || self.loads.gas().is_some() || self.removals.domain.is_some()
+    }
+
+    /// Whether every step needs sums over all nodes: of what damping takes, or of the momentum that gravity works on.
+    fn needs_sums(&self) -> bool {
         let damping = self.settings.damping;
-        self.loads.points().is_none()
-            || self.loads.gas().is_some()
-            || damping.local != 0.0
-            || damping.mass_rate != 0.0
-            || self.removals.domain.is_some()
+        damping.local != 0.0 || damping.mass_rate != 0.0 || self.loads.has_weight()
     }
 
     /// Nodes that contacts, discrete elements and ties look at. Every rank does alike what is no cell of a solid.
@@ -52,13 +53,18 @@ impl Scene {
     ///
     /// - `watched`: nodes that are looked at after every step, where that is more than those of supports that move and of loads
     pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, watched: &[u32]) {
-        let all = self.needs_all_nodes();
+        let needs = [self.needs_all_nodes(), self.needs_sums()];
         let loaded = self.loads.points();
         let mut everywhere: Vec<u32> = self.supports.driven().chain(loaded.into_iter().flatten()).collect();
         everywhere.extend(self.optional.surface_supports.nodes());
         everywhere.extend(watched);
         everywhere.extend(self.nodes_of_others());
-        self.solid.share_out(exchange, &everywhere, all);
+        self.solid.share_out(exchange, &everywhere, needs);
+    }
+
+    /// Brings displacements and velocities of all nodes up to date. All ranks must call it.
+    pub fn gather_nodes(&mut self) {
+        self.solid.gather_nodes();
     }
 
     /// Brings what this rank has of the damage of others up to date. All ranks must call it, after a step that was measured.
@@ -67,7 +73,7 @@ impl Scene {
     }
 
     /// Brings what this rank has of the nodes and cells of others up to date, before anyone looks at all of them. All ranks must
-    /// call it. Nodes and energies are up to date without it where a step has measured.
+    /// call it. Energies are up to date without it where a step has measured.
     pub fn gather_ranks(&mut self) {
         self.solid.gather_ranks();
     }

@@ -75,7 +75,7 @@ impl Scene {
         // Nothing has moved before.
         let elapsed = if first { 0.0 } else { dt_before };
         let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
-        self.solid.move_all_nodes_next(step_changes); // their kinetic energy is summed
+        self.solid.move_all_nodes_next(step_changes); // supports change their kinetic energy
         self.solid.set_parts(self.parts(dt_after), first);
         if self.solid.body_count() > 0 {
             self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
@@ -350,7 +350,8 @@ impl Scene {
     }
 
     /// The element or bonded particle with the largest kinetic energy, or with a value that is not a number.
-    fn culprit(&self) -> String {
+    fn culprit(&mut self) -> String {
+        self.gather_ranks();
         let solid = &self.solid;
         let energy = |node: u32| {
             let i = node as usize;

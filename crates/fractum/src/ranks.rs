@@ -153,6 +153,12 @@ impl Ranks {
             if keeps_all { ", those of all processes: damage in the standard formulation needs them" } else { "" }
         ))
     }
+
+    /// In how many steps all processes moved all nodes, in words; nothing of a process by itself.
+    pub(crate) fn steps(&self, scene: &Scene) -> Option<String> {
+        let [whole, all] = scene.solid.steps_of_ranks()?.map(|steps| grouped(&steps.to_string()));
+        Some(format!("every process moved all nodes in {whole} of {all} steps"))
+    }
 }
 
 impl Drop for Ranks {

@@ -130,6 +130,9 @@ impl RecordState {
     }
 }
 
+/// Part of all nodes up to which those of a probe are followed by every process.
+const WATCHED_PART: usize = 50;
+
 /// Writes the results of a run while it goes.
 pub(crate) struct Recorder {
     case: Arc<Case>,
@@ -144,6 +147,8 @@ pub(crate) struct Recorder {
     noted: Vec<Vec<bool>>,
     grid: GridLayout,
     inputs: Vec<f64>,
+    /// Whether each probe looks at nodes that not every process follows.
+    looks_at_others: Vec<bool>,
     /// What was gone at the row before, for probes that see nothing else.
     gone: Option<Gone>,
     course: Course,
@@ -195,6 +200,7 @@ impl Recorder {
             state,
             noted,
             inputs: Vec::new(),
+            looks_at_others: Vec::new(),
             gone: None,
             course,
             writes,
@@ -216,11 +222,24 @@ impl Recorder {
         }
     }
 
-    /// Nodes that are looked at after steps without a row: stations in each of them, reactions in frames.
-    pub(crate) fn watched(&self, scene: &Scene) -> Vec<u32> {
+    /// Nodes that every process follows: stations are looked at in every step, supports in rows and frames, and some few nodes
+    /// in rows. Finds which probes look at others.
+    pub(crate) fn watch_nodes(&mut self, scene: &Scene) -> Vec<u32> {
+        let few = scene.solid.reference.len() / WATCHED_PART;
+        let mut watched = Vec::new();
+        let mut looks_at_others = |probe: &Probe| match probe.nodes(scene) {
+            Some((nodes, of_supports)) if of_supports || nodes.len() <= few => {
+                watched.extend(nodes);
+                false
+            }
+            _ => true,
+        };
+        self.looks_at_others =
+            self.probes.iter().map(|probe| probe.as_ref().is_some_and(&mut looks_at_others)).collect();
         let stations = self.ppv.iter().flat_map(|of| &of.stations).flat_map(|station| &station.nodes).copied();
         let held = (0..).zip(scene.supports().held()).filter(|(_, held)| **held != 0).map(|(node, _)| node);
-        stations.chain(held.filter(|_| self.case.output.fields.reaction)).collect()
+        watched.extend(stations.chain(held.filter(|_| self.case.output.fields.reaction)));
+        watched
     }
 
     /// Largest velocities against distance, with their laws.
@@ -286,14 +305,20 @@ impl Recorder {
             Some(every) => is_held(every),
             None => as_before && probe.is_of_separation(),
         };
-        let mut due = (0..).zip(&self.probes).filter_map(|(index, probe)| Some((index, probe.as_ref()?)));
-        if due.any(|(index, probe)| probe.needs_damage() && !is_known(index, probe)) {
+        let all = (0..).zip(&self.probes).filter_map(|(index, probe)| Some((index, probe.as_ref()?)));
+        let due: Vec<(usize, &Probe)> = all.filter(|(index, probe)| !is_known(*index, probe)).collect();
+        if due.iter().any(|(_, probe)| probe.needs_damage()) {
             scene.gather_damage();
+        }
+        if due.iter().any(|(index, _)| self.looks_at_others.get(*index).is_some_and(|others| *others)) {
+            scene.gather_nodes();
         }
         let probed = ProbedScene::new(scene);
         for index in 0..case.probes.len() {
             let value = match (&case.probes[index].kind, &self.probes[index]) {
-                (_, Some(probe)) if is_known(index, probe) => self.state.series[index].last().copied().unwrap_or(f64::NAN),
+                (_, Some(probe)) if is_known(index, probe) => {
+                    self.state.series[index].last().copied().unwrap_or(f64::NAN)
+                }
                 (_, Some(probe)) => probe.value(&probed),
                 (ProbeKind::Expression(expression), None) if !expression.scalar => self.expression(expression),
                 _ => continue,

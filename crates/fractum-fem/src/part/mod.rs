@@ -7,6 +7,7 @@
 //! done by all ranks alike: they are told the edges that broke, and nodes and edges around the elements that leave, whose nodes
 //! all of them move from then on.
 
+mod chunks;
 mod plan;
 
 use std::collections::BTreeSet;
@@ -21,6 +22,7 @@ use crate::block::{Cells, NodeSlots, Slot};
 use crate::damage::{EdgeDamage, EdgeField};
 use crate::evaluate::{Block, BlockLaw};
 
+use chunks::Chunks;
 pub(crate) use plan::runs_of;
 use plan::{Plan, Told, rank_of};
 
@@ -38,6 +40,8 @@ pub(crate) struct Part {
     everywhere: Told,
     /// Whether a node is one of them.
     is_everywhere: Vec<bool>,
+    /// Who sums over which nodes.
+    chunks: Chunks,
     /// Runs of nodes that this rank moves where it does not move all of them, see [`runs_of`].
     moved: Vec<Vec<Range<usize>>>,
     /// Every rank moves all nodes in every step.
@@ -46,8 +50,16 @@ pub(crate) struct Part {
     pub(crate) next_all: bool,
     /// Every rank moves all nodes in this step.
     pub(crate) is_all: bool,
+    /// Every step needs sums over all nodes.
+    pub(crate) always_sums: bool,
+    /// This step does, and is not one in which every rank moves all nodes: each moves those of its chunks too.
+    pub(crate) sums: bool,
+    /// Displacements and velocities of the nodes of own chunks are the present ones.
+    pub(crate) has_chunks: bool,
     /// Displacements and velocities of all nodes are the present ones.
     pub(crate) is_whole: bool,
+    /// Steps in which every rank moved all nodes, and all steps.
+    pub(crate) steps: [u64; 2],
     /// Numbers of every block that all ranks need in every step, see [`record`]; empty where none does.
     records: Vec<f64>,
     own_records: Vec<f64>,
@@ -105,6 +117,7 @@ impl Part {
         let first = runs_of_blocks(&weights, exchange.size());
         Part {
             plan: Plan::new(slots, &first, exchange.rank()),
+            chunks: Chunks::new(slots, &first, exchange.rank()),
             all: Told::new(slots, &first, &mut (0..slots.len() as u32)),
             everywhere: Told::none(exchange.size()),
             is_everywhere: vec![false; slots.len()],
@@ -118,7 +131,11 @@ impl Part {
             always_all: true,
             next_all: true,
             is_all: false,
+            always_sums: false,
+            sums: false,
+            has_chunks: true,
             is_whole: true,
+            steps: [0; 2],
         }
     }
 
@@ -139,8 +156,8 @@ impl Part {
         self.always_all = false;
         // What supports hold from now on may have moved before: they do work in the first step.
         self.next_all = true;
-        self.is_all = false;
-        self.is_whole = true;
+        (self.is_all, self.sums) = (false, false);
+        (self.is_whole, self.has_chunks) = (true, true);
     }
 
     /// Has every rank move these nodes in every step; those of them that not every rank has moved before.
@@ -169,7 +186,8 @@ impl Part {
 
     /// Runs of nodes of a chunk that this rank moves in this step, counted from the first of the chunk; none where it moves all.
     pub(crate) fn moved(&self, chunk: usize) -> Option<&[Range<usize>]> {
-        (!self.is_all).then(|| &self.moved[chunk][..])
+        let moves_all = self.is_all || self.sums && self.chunks.is_own(chunk);
+        (!moves_all).then(|| &self.moved[chunk][..])
     }
 
     /// Runs of nodes of a chunk that blocks of this rank push, counted from the first of the chunk.
@@ -286,6 +304,24 @@ impl Part {
     pub(crate) fn tell_forces(&mut self, force: &mut [Vec3]) {
         let told = if self.is_all { &mut self.all } else { &mut self.everywhere };
         told.tell(&*self.exchange, force);
+        if self.sums {
+            self.chunks.fetch(&*self.exchange, force);
+        }
+    }
+
+    /// Gets displacements and velocities of the nodes of own chunks.
+    pub(crate) fn fetch_chunks(&mut self, displacement: &mut [Vec3], velocity: &mut [Vec3]) {
+        if !self.has_chunks {
+            self.chunks.fetch(&*self.exchange, displacement);
+            self.chunks.fetch(&*self.exchange, velocity);
+        }
+    }
+
+    /// Gives every rank the sums over the nodes of all chunks, once each has those of its own; nothing where all ranks have all.
+    pub(crate) fn tell_sums<const N: usize>(&self, sums: &mut [[f64; N]]) {
+        if self.sums {
+            self.chunks.tell(&*self.exchange, sums);
+        }
     }
 
     /// Tells all ranks the energies of all blocks, which have been summed.

@@ -204,7 +204,8 @@ impl Subcycling {
     /// Kicks the nodes with short steps or those with long ones, but those that stand twice.
     fn kick(&self, solid: &mut Solid, fine: bool, [dt_before, dt_after]: [f64; 2], step: &WholeStep) -> HalfSteps {
         let step = WholeStep { dt_before, dt_after, ..*step };
-        solid.kick_runs(&step, |chunk| self.runs[usize::from(fine)].get(chunk).map(Vec::as_slice))
+        solid.kick_runs(&step, |chunk| self.runs[usize::from(fine)].get(chunk).map(Vec::as_slice));
+        solid.work_of_chunks()
     }
 
     /// Kicks nodes and their copies at tⁿ.

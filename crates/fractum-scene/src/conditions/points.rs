@@ -104,6 +104,7 @@ impl DrivenPoints for Solid {
         let momentum = |v: &[Vec3], m: &[f64]| v.iter().zip(m).map(|(v, m)| v * *m).sum::<Vec3>();
         let chunks = self.velocity.par_chunks(CHUNK).zip(self.mass.par_chunks(CHUNK));
         partial.par_iter_mut().zip(chunks).for_each(|(sum, (v, m))| *sum = momentum(v, m));
+        self.tell_sums(partial);
         partial.iter().sum()
     }
 }

@@ -72,6 +72,23 @@ pub enum PointProbe {
 }
 
 impl PointProbe {
+    /// The points that it looks at.
+    pub(crate) fn points(&self, supports: &Supports) -> Vec<u32> {
+        match self {
+            PointProbe::Reaction { places, .. } | PointProbe::Moment { places, .. } => {
+                supports.points_at(places).collect()
+            }
+            PointProbe::Displacement { points, .. }
+            | PointProbe::Velocity { points, .. }
+            | PointProbe::Rotation { points, .. } => points.clone(),
+        }
+    }
+
+    /// Whether it looks at what supports have done.
+    pub(crate) fn is_of_supports(&self) -> bool {
+        matches!(self, PointProbe::Reaction { .. } | PointProbe::Moment { .. })
+    }
+
     /// Value at the last step; `dt` is the step that followed it [s]. Not a number once all points have left the run.
     pub(crate) fn value(
         &self,

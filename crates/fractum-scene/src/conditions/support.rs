@@ -145,6 +145,11 @@ impl Supports {
         places
     }
 
+    /// The points of these places.
+    pub(crate) fn points_at(&self, places: &[(u32, u32, u32)]) -> impl Iterator<Item = u32> {
+        places.iter().map(|&(set, entry, _)| self.sets[set as usize].points[entry as usize])
+    }
+
     /// Force of the supports on these places along `direction` at the last step [N].
     pub fn reaction(&self, places: &[(u32, u32, u32)], direction: &Vec3) -> f64 {
         places.iter().map(|&(s, e, a)| self.sets[s as usize].reaction[e as usize] * direction[a as usize]).sum()

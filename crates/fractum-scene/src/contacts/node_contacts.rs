@@ -56,7 +56,8 @@ impl Contacts {
 
     /// Visits every node of a solid that something here looks at, some of them more than once.
     pub(crate) fn each_node(&self, mut visit: impl FnMut(u32)) {
-        let visitors = self.solids.iter().filter_map(SolidSurface::visitors).chain(self.nodes_on_tools.iter().flatten());
+        let visitors =
+            self.solids.iter().filter_map(SolidSurface::visitors).chain(self.nodes_on_tools.iter().flatten());
         visitors.flat_map(NodesOnSurface::nodes).for_each(|&node| visit(node));
         self.solids.iter().flat_map(SolidSurface::nodes).for_each(|&node| visit(node));
     }

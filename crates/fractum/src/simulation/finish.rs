@@ -39,6 +39,7 @@ impl Simulation {
         };
         self.scene.gather_ranks();
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
+        self.ranks.steps(&self.scene).map_or(Ok(()), |steps| self.messages.log.line(steps))?;
         let (status, state_hash) = (end.status(), self.state_hash());
         let reason = match &end {
             End::Finished(why) => why.clone(),
@@ -135,6 +136,7 @@ impl Simulation {
             // The forces and energies of the last instant: one more step, of which nothing else is kept.
             let (time, dt) = (scene.clock.time, scene.clock.dt_after);
             if scene.step(true).is_ok() {
+                scene.gather_ranks();
                 recorder.row(scene, Measured { time, dt, in_motion: true }, true)?;
             }
         }

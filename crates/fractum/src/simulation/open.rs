@@ -89,7 +89,7 @@ impl Simulation {
         let begun = Self::begin(input, (path, options), (loaded, goes_on.as_deref()), started, Arc::clone(&ranks));
         let mut simulation = ranks.together(begun)?;
         let Simulation { scene, recorder, messages, .. } = &mut simulation;
-        let watched = recorder.watched(scene);
+        let watched = recorder.watch_nodes(scene);
         ranks.share_out(scene, &watched)?;
         ranks.share(scene).map_or(Ok(()), |share| messages.log.line(share))?;
         if goes_on.is_none() && !simulation.solver.moves() {

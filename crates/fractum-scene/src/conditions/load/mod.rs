@@ -50,12 +50,13 @@ impl Load {
         }
     }
 
-    /// Points that it pushes or whose places it needs; none where these may be any.
+    /// Points that it pushes or whose places it needs, weight aside; none where these may be any.
     fn points(&self) -> Option<Vec<u32>> {
         match self {
             Load::Nodal(load) => Some(load.points.iter().map(|&(point, _)| point).collect()),
             Load::Pressure(load) => Some(load.facets.concat()),
-            Load::CrackPressure(_) | Load::Gravity(_) => None,
+            Load::CrackPressure(_) => None,
+            Load::Gravity(_) => Some(Vec::new()),
         }
     }
 
@@ -193,7 +194,12 @@ impl Loads {
         }
     }
 
-    /// Points that they push or whose places they need; none where these may be any.
+    /// Whether points have weight.
+    pub(crate) fn has_weight(&self) -> bool {
+        !self.partial.is_empty()
+    }
+
+    /// Points that they push or whose places they need, all of which may have weight beside; none where these may be any.
     pub(crate) fn points(&self) -> Option<Vec<u32>> {
         let given = self.given.iter().map(|&(point, _)| point);
         let of_loads: Option<Vec<Vec<u32>>> = self.loads.iter().map(Load::points).collect();

@@ -1,0 +1,96 @@
+//! Sums over all nodes: each chunk of nodes has a rank that adds what its nodes have, in their order, and tells all others.
+
+use std::collections::BTreeMap;
+
+use fractum_math::{CHUNK, Vec3};
+use fractum_parallel::{Exchange, Message};
+
+use super::plan::rank_of;
+use crate::block::NodeSlots;
+
+/// The chunks of every rank, and their nodes that other ranks have.
+#[derive(Clone, Debug)]
+pub(super) struct Chunks {
+    me: usize,
+    /// The rank of each chunk: that which has most of its nodes, the lowest of these.
+    owner: Vec<usize>,
+    messages: Vec<Message>,
+    /// Nodes to send and to receive, message by message; three numbers each.
+    nodes: Vec<[Vec<u32>; 2]>,
+}
+
+impl Chunks {
+    /// - `first`: first block of each rank, and the end
+    pub(super) fn new(slots: &NodeSlots, first: &[usize], me: usize) -> Self {
+        let ranks_of = |node: usize| {
+            let mut ranks: Vec<usize> = slots.of(node).map(|slot| rank_of(first, slot.block())).collect();
+            ranks.dedup();
+            ranks
+        };
+        let mut owner = Vec::with_capacity(slots.len().div_ceil(CHUNK));
+        let mut between = BTreeMap::<usize, [Vec<u32>; 2]>::new();
+        let mut count = vec![0; first.len() - 1];
+        for begin in (0..slots.len()).step_by(CHUNK) {
+            let chunk = begin..(begin + CHUNK).min(slots.len());
+            count.fill(0);
+            chunk.clone().flat_map(ranks_of).for_each(|rank| count[rank] += 1);
+            let most = count.iter().copied().max().unwrap_or(0);
+            let own = count.iter().position(|&count| count == most).unwrap_or(0);
+            owner.push(own);
+            for node in chunk {
+                let ranks = ranks_of(node);
+                // The lowest rank that has it tells of a node.
+                match ranks.first() {
+                    Some(&teller) if !ranks.contains(&own) => {
+                        if teller == me {
+                            between.entry(own).or_default()[0].push(node as u32);
+                        } else if own == me {
+                            between.entry(teller).or_default()[1].push(node as u32);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        let message = |(&rank, nodes): (&usize, &[Vec<u32>; 2])| {
+            let [send, receive] = nodes.each_ref().map(|nodes| vec![0.0; 3 * nodes.len()]);
+            Message { rank, send, receive }
+        };
+        Chunks { me, owner, messages: between.iter().map(message).collect(), nodes: between.into_values().collect() }
+    }
+
+    /// Whether this rank adds what the nodes of a chunk have.
+    pub(super) fn is_own(&self, chunk: usize) -> bool {
+        self.owner[chunk] == self.me
+    }
+
+    /// Gets values of the nodes of own chunks that other ranks have.
+    pub(super) fn fetch(&mut self, exchange: &dyn Exchange, values: &mut [Vec3]) {
+        for (message, [send, _]) in self.messages.iter_mut().zip(&self.nodes) {
+            for (to, &node) in message.send.chunks_exact_mut(3).zip(send) {
+                to.copy_from_slice(values[node as usize].as_slice());
+            }
+        }
+        exchange.swap(&mut self.messages, &mut || {});
+        for (message, [_, receive]) in self.messages.iter().zip(&self.nodes) {
+            for (from, &node) in message.receive.chunks_exact(3).zip(receive) {
+                values[node as usize] = Vec3::from_column_slice(from);
+            }
+        }
+    }
+
+    /// Gives every rank the sums of all chunks, once each has those of its own.
+    pub(super) fn tell<const N: usize>(&self, exchange: &dyn Exchange, sums: &mut [[f64; N]]) {
+        let mut counts = vec![0; exchange.size()];
+        self.owner.iter().for_each(|&owner| counts[owner] += N);
+        let own: Vec<f64> = (0..sums.len()).filter(|&chunk| self.is_own(chunk)).flat_map(|chunk| sums[chunk]).collect();
+        let mut all = vec![0.0; N * sums.len()];
+        exchange.gather(&own, &counts, &mut all);
+        let mut next: Vec<usize> =
+            counts.iter().scan(0, |begin, count| Some(std::mem::replace(begin, *begin + count))).collect();
+        for (sum, &owner) in sums.iter_mut().zip(&self.owner) {
+            sum.copy_from_slice(&all[next[owner]..next[owner] + N]);
+            next[owner] += N;
+        }
+    }
+}
