@@ -25,9 +25,10 @@ from table import run
 
 BLOCK_CELLS, BLOCK_NODES = 2048, 1024
 BYTES_PER_SUM = 24  # three numbers for each block that has a node
-BYTES_PER_BLOCK = 32  # four numbers of each block, where something may break
+BYTES_PER_BLOCK = 16  # two energies of each block, in a row of the history
+BYTES_PER_CHUNK, CHUNK = 32, 4096  # four sums over as many nodes, in a row
 BYTES_PER_FORCE = 24  # on a node that every process moves
-BYTES_PER_NODE = 72  # displacement, velocity and force
+BYTES_PER_NODE = 48  # displacement and velocity, in a row that looks at all nodes
 BITS = 20
 WAYS = ((1, 2, 4), (1, 4, 2), (2, 1, 4), (2, 4, 1), (4, 1, 2), (4, 2, 1))
 
@@ -112,9 +113,8 @@ def main():
 
 def print_table(options, cells, compute, memory, networks):
     print(f"\n{cells:,} tetrahedra of each process: {1e9 * compute:.1f} ns per tetrahedron and step\n")
-    print("| processes | neighbours | nodes shared | kB sent | compute [ms] | exchange here, cluster [ms] | efficiency here, cluster | with a face loaded"
-          " | and where something may break | GB of each process |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    print("| processes | neighbours | nodes shared | kB sent | compute [ms] | exchange here, cluster [ms] | efficiency here, cluster | with a face loaded | GB of each process |")
+    print("|---|---|---|---|---|---|---|---|---|")
     for ranks in options.ranks:
         found = scaled_counts(ranks, cells, options.largest)
         times = [step_times(found, ranks, cells, compute, network) for network in networks]
@@ -122,36 +122,34 @@ def print_table(options, cells, compute, memory, networks):
         cut = lambda *parts: ", ".join(f"{100 * work / (work + sum(getattr(of, part) for part in parts)):.0f} %" for of in times)
         exchange = ", ".join(f"{1e3 * of.exchange:.2f}" for of in times)
         print(f"| {ranks:,} | {found.neighbours} | {found.nodes:,} | {1e-3 * BYTES_PER_SUM * found.sums:,.0f} | {1e3 * work:.1f} | {exchange}"
-              f" | {cut('exchange')} | {cut('exchange', 'faces')} | {cut('exchange', 'faces', 'records')}"
+              f" | {cut('exchange')} | {cut('exchange', 'faces')}"
               f" | {1e-9 * cells * (memory.divided + memory.all * ranks):,.2f} |", flush=True)
     ranks = options.ranks[-1]
     whole = [step_times(scaled_counts(ranks, cells, options.largest), ranks, cells, compute, network) for network in networks]
-    rows, removals = (", ".join(f"{1e3 * getattr(of, part):,.0f}" for of in whole) for part in ("row", "removal"))
-    print(f"\nOn {ranks:,} processes, in addition [ms]: a row of the history {rows}; a step after the first removal {removals}; neither is divided.")
+    rows, nodes = (", ".join(f"{1e3 * getattr(of, part):,.2f}" for of in whole) for part in ("row", "all_nodes"))
+    print(f"\nOn {ranks:,} processes, in addition [ms]: a row of the history {rows}; places and velocities of all nodes, where a probe looks at them, {nodes}.")
 
 
 class Times(NamedTuple):
     compute: float
     exchange: float  # of the nodes on the boundary, and the word that all processes tell each other
     faces: float  # of the nodes of the loaded face, which every process moves
-    records: float  # of what is told of every block
-    row: float  # of displacements, velocities and forces of all nodes
-    removal: float  # of the forces on all nodes
+    row: float  # of energies of all blocks, and sums over all nodes
+    all_nodes: float  # of their displacements and velocities
 
 
 def step_times(found, ranks, cells, compute, network):
     """Seconds of a step [s]. Messages to one process after the other, at once both ways; nothing overlaps with work."""
     if ranks == 1:
-        return Times(cells * compute, *[0.0] * 5)
+        return Times(cells * compute, *[0.0] * 4)
     send = lambda messages, size: messages * network.latency + size / network.bandwidth
-    tree = math.ceil(math.log2(ranks))
+    tree, nodes = math.ceil(math.log2(ranks)), cells * ranks / 6
     return Times(
         compute=cells * compute,
         exchange=send(found.neighbours, BYTES_PER_SUM * found.sums) + send(tree, 8 * tree),
         faces=send(tree, BYTES_PER_FORCE * found.face_nodes),
-        records=send(tree, BYTES_PER_BLOCK * found.blocks),
-        row=send(tree, BYTES_PER_NODE * cells * ranks / 6),
-        removal=send(tree, BYTES_PER_FORCE * cells * ranks / 6),
+        row=send(2 * tree, BYTES_PER_BLOCK * found.blocks + BYTES_PER_CHUNK * nodes / CHUNK),
+        all_nodes=send(2 * tree, BYTES_PER_NODE * nodes),
     )
 
 

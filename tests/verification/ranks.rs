@@ -149,6 +149,16 @@ fn a_body_that_breaks_has_the_same_bits_on_any_number_of_ranks() {
     assert!(counts.removed_elements > 10 && counts.particles > 10, "{counts:?}");
 }
 
+/// What happens far off does not have every rank move all nodes: removal, contact of discrete elements, rows.
+#[test]
+fn few_steps_of_a_body_that_breaks_need_all_nodes() {
+    for scene in shared(3, 400, breaking) {
+        let [whole, all] = scene.solid.steps_of_ranks().unwrap();
+        assert!(all == 400 && 20 * whole <= all, "{whole} of {all} steps");
+        assert!(!scene.debris.is_empty());
+    }
+}
+
 #[test]
 fn gravity_and_damping_have_the_same_bits_on_any_number_of_ranks() {
     let made = || {

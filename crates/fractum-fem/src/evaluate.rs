@@ -174,6 +174,13 @@ impl Block {
         if let BlockLaw::Standard(law) = &self.law { law } else { unreachable!("a block of another kind of body") }
     }
 
+    /// Whether something happened in the last step that others must know: an edge woke or broke, a cell was turned inside out.
+    pub(crate) fn has_event(&self) -> bool {
+        // Without a phase field no edge waits for its damage.
+        let of_edges = |field: &EdgeField| field.woken && field.softens.regularised || !field.fresh.is_empty();
+        self.inverted.is_some() || self.edge_field().is_some_and(of_edges)
+    }
+
     /// Elastic energy, where it was summed [J].
     pub(crate) fn elastic(&self) -> f64 {
         match &self.law {

@@ -20,15 +20,16 @@ impl Solid {
     /// Leaves a share of the work to each rank of an exchange. Every rank must have the same solid in the same state.
     ///
     /// - `everywhere`: nodes that every rank shall move, whatever it has of them
-    /// - `all`: whether every rank shall move all nodes; `sums`: whether steps need sums over all nodes, as those of damping
-    pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, everywhere: &[u32], [all, sums]: [bool; 2]) {
-        let needs_records = self.bodies.iter().any(|model| {
-            let can_break = model.body.damage.is_some();
-            can_break || model.viscosity.is_some() || model.body.kinematics == Kinematics::Corotational
-        });
+    /// - `sums`: whether every step needs sums over all nodes, as those of damping
+    pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, everywhere: &[u32], sums: bool) {
+        let has_events = self
+            .bodies
+            .iter()
+            .any(|model| model.body.damage.is_some() || model.body.kinematics == Kinematics::Corotational);
+        let always_records = self.bodies.iter().any(|model| model.viscosity.is_some());
         let mut part = self.part.take().unwrap_or_else(|| Box::new(Part::new(exchange, &self.blocks, &self.slots)));
-        part.begin_stage(&self.slots, everywhere, needs_records);
-        part.always_all = all || self.needs_all_cells();
+        part.begin_stage(&self.slots, everywhere, [has_events, always_records]);
+        part.always_all = self.needs_all_cells();
         part.always_sums = sums;
         if !self.needs_all_cells() {
             part.keep_own(&mut self.blocks);

@@ -74,6 +74,7 @@ impl Scene {
     /// - `dt`: time since the forces were last computed [s]
     pub(crate) fn let_pieces_leave(&mut self, dt: f64) {
         let Some(domain) = self.domain_to_look_at() else { return };
+        self.gather_nodes();
         let (solid, planar) = (&self.solid, self.solid.is_plane());
         let mut gone = vec![false; solid.reference.len()];
         self.removals.left.nodes(gone.len()).for_each(|node| gone[node as usize] = true);

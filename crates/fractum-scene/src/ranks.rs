@@ -16,18 +16,13 @@ impl Scene {
         self.optional.heat.as_ref().map(|_| "heat")
     }
 
-    /// Whether something looks at all nodes in every step.
-    fn needs_all_nodes(&self) -> bool {
-        self.loads.points().is_none() || self.loads.gas().is_some() || self.removals.domain.is_some()
-    }
-
     /// Whether every step needs sums over all nodes: of what damping takes, or of the momentum that gravity works on.
     fn needs_sums(&self) -> bool {
         let damping = self.settings.damping;
         damping.local != 0.0 || damping.mass_rate != 0.0 || self.loads.has_weight()
     }
 
-    /// Nodes that contacts, discrete elements and ties look at. Every rank does alike what is no cell of a solid.
+    /// Nodes that contacts, discrete elements, ties, and pressure and gas in cracks look at. Every rank does alike what is no cell of a solid.
     fn nodes_of_others(&mut self) -> Vec<u32> {
         let mut touching = corners(&self.solid, &self.solid.removed_elements());
         self.contacts.each_node(|node| touching.push(node));
@@ -39,7 +34,7 @@ impl Scene {
         tied.chain(self.debris.nodes_near(&self.solid, touching.into_iter())).collect()
     }
 
-    /// Has every rank move the nodes that discrete elements of the elements look at that were just removed.
+    /// Has every rank move the nodes that are looked at where elements were just removed.
     pub(crate) fn follow_removal(&mut self) {
         if self.solid.is_shared() {
             let born = corners(&self.solid, &self.removals.last);
@@ -53,13 +48,12 @@ impl Scene {
     ///
     /// - `watched`: nodes that are looked at after every step, where that is more than those of supports that move and of loads
     pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, watched: &[u32]) {
-        let needs = [self.needs_all_nodes(), self.needs_sums()];
-        let loaded = self.loads.points();
-        let mut everywhere: Vec<u32> = self.supports.driven().chain(loaded.into_iter().flatten()).collect();
+        let sums = self.needs_sums();
+        let mut everywhere: Vec<u32> = self.supports.driven().chain(self.loads.points()).collect();
         everywhere.extend(self.optional.surface_supports.nodes());
         everywhere.extend(watched);
         everywhere.extend(self.nodes_of_others());
-        self.solid.share_out(exchange, &everywhere, needs);
+        self.solid.share_out(exchange, &everywhere, sums);
     }
 
     /// Brings displacements and velocities of all nodes up to date. All ranks must call it.

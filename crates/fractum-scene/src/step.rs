@@ -241,11 +241,11 @@ impl Scene {
         let energy = self.solid.remove_cut_elements(dt, &mut self.removals.last);
         let mut report = StepReport { removed: self.removals.last.len(), particles_born: 0 };
         if report.removed > 0 {
+            self.follow_removal();
             self.books.removed += energy;
             self.heat_loses_elements();
             self.loads.extend_cracks(&self.solid, &self.removals.last);
             let before = self.debris.len();
-            self.follow_removal();
             self.debris.release(&self.solid, &self.removals.last);
             report.particles_born = self.debris.len() - before;
             for ground in &mut self.shape_contacts {

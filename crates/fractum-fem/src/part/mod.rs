@@ -60,8 +60,10 @@ pub(crate) struct Part {
     pub(crate) is_whole: bool,
     /// Steps in which every rank moved all nodes, and all steps.
     pub(crate) steps: [u64; 2],
-    /// Numbers of every block that all ranks need in every step, see [`record`]; empty where none does.
+    /// Numbers of every block that all ranks need where something happens, see [`record`]; empty where nothing can.
     records: Vec<f64>,
+    /// All ranks need them in every step.
+    always_records: bool,
     own_records: Vec<f64>,
     record_counts: Vec<usize>,
 }
@@ -123,6 +125,7 @@ impl Part {
             is_everywhere: vec![false; slots.len()],
             moved: Vec::new(),
             records: Vec::new(),
+            always_records: false,
             own_records: Vec::new(),
             record_counts: Vec::new(),
             exchange,
@@ -142,17 +145,25 @@ impl Part {
     /// What a stage of the run needs.
     ///
     /// - `everywhere`: nodes that every rank shall move
-    /// - `needs_records`: whether all ranks need numbers of every block in every step
-    pub(crate) fn begin_stage(&mut self, slots: &NodeSlots, everywhere: &[u32], needs_records: bool) {
+    /// - `has_events`: whether something can happen in a block that all ranks must know; `always_records`: whether all need numbers of
+    ///   every block in every step
+    pub(crate) fn begin_stage(
+        &mut self,
+        slots: &NodeSlots,
+        everywhere: &[u32],
+        [has_events, always_records]: [bool; 2],
+    ) {
         self.everywhere = Told::none(self.exchange.size());
         self.is_everywhere.fill(false);
         self.moved.clone_from(&self.plan.runs);
         self.move_everywhere(slots, everywhere);
         let (first, size) = (&self.first, self.exchange.size());
-        let numbers = |rank: usize| if needs_records { RECORD * (first[rank + 1] - first[rank]) } else { 0 };
+        let numbers =
+            |rank: usize| if has_events || always_records { RECORD * (first[rank + 1] - first[rank]) } else { 0 };
         self.record_counts = (0..size).map(numbers).collect();
         self.records = vec![0.0; self.record_counts.iter().sum()];
         self.own_records = vec![0.0; self.record_counts[self.exchange.rank()]];
+        self.always_records = always_records;
         self.always_all = false;
         // What supports hold from now on may have moved before: they do work in the first step.
         self.next_all = true;
@@ -235,13 +246,14 @@ impl Part {
         gather(&*self.exchange, own).concat()
     }
 
-    /// Tells all ranks what they need of every block in every step.
+    /// Tells all ranks what they need of every block, where something has happened.
     pub(crate) fn tell_records(&mut self, blocks: &mut [Block]) -> Events {
         let mut events = Events::default();
-        if self.records.is_empty() {
+        let own = self.own();
+        let happened = || blocks[own.clone()].iter().any(Block::has_event);
+        if self.records.is_empty() || !self.always_records && self.exchange.any(u64::from(happened())) == 0 {
             return events;
         }
-        let own = self.own();
         let records = self.own_records.chunks_exact_mut(RECORD).zip(&blocks[own.clone()]);
         records.for_each(|(to, block)| to.copy_from_slice(&record(block)));
         self.exchange.gather(&self.own_records, &self.record_counts, &mut self.records);

@@ -350,6 +350,11 @@ impl Gas {
         })
     }
 
+    /// Nodes around the holes, some of them more than once.
+    pub(crate) fn hole_nodes(&self) -> impl Iterator<Item = u32> {
+        self.holes.iter().flat_map(|hole| hole.facets.iter().flatten()).copied()
+    }
+
     /// Number of holes.
     pub fn hole_count(&self) -> usize {
         self.holes.len()

@@ -50,13 +50,13 @@ impl Load {
         }
     }
 
-    /// Points that it pushes or whose places it needs, weight aside; none where these may be any.
-    fn points(&self) -> Option<Vec<u32>> {
+    /// Points that it pushes or whose places it needs, weight aside, and those of the removed elements that it has entered.
+    fn points(&self) -> Vec<u32> {
         match self {
-            Load::Nodal(load) => Some(load.points.iter().map(|&(point, _)| point).collect()),
-            Load::Pressure(load) => Some(load.facets.concat()),
-            Load::CrackPressure(_) => None,
-            Load::Gravity(_) => Some(Vec::new()),
+            Load::Nodal(load) => load.points.iter().map(|&(point, _)| point).collect(),
+            Load::Pressure(load) => load.facets.concat(),
+            Load::CrackPressure(load) => load.facets.concat(),
+            Load::Gravity(_) => Vec::new(),
         }
     }
 
@@ -199,11 +199,11 @@ impl Loads {
         !self.partial.is_empty()
     }
 
-    /// Points that they push or whose places they need, all of which may have weight beside; none where these may be any.
-    pub(crate) fn points(&self) -> Option<Vec<u32>> {
+    /// Points that they push or whose places they need: all may have weight beside, and pressure and gas enter removed elements.
+    pub(crate) fn points(&self) -> Vec<u32> {
         let given = self.given.iter().map(|&(point, _)| point);
-        let of_loads: Option<Vec<Vec<u32>>> = self.loads.iter().map(Load::points).collect();
-        of_loads.filter(|_| self.gas.is_none()).map(|of| given.chain(of.into_iter().flatten()).collect())
+        let of_gas = self.gas.iter().flat_map(|gas| gas.hole_nodes());
+        given.chain(self.loads.iter().flat_map(Load::points)).chain(of_gas).collect()
     }
 
     /// Whether nothing pushes.
