@@ -232,8 +232,11 @@ impl Block {
     pub(crate) fn nominal_stress(&self, cell: usize, hooke: &crate::hooke::Hooke, strain: Sym3) -> Sym3 {
         let full = hooke.stress(strain);
         match &self.law {
-            // With unilateral damage the closed part keeps its stress.
-            BlockLaw::Edges(law) => full - law.field.softens.opening_stress(strain) * law.field.history(cell).damage,
+            // With unilateral damage the closed part keeps its stress; an intact edge needs no search for it.
+            BlockLaw::Edges(law) => match law.field.history(cell).damage {
+                0.0 => full,
+                damage => full - law.field.softens.opening_stress(strain) * damage,
+            },
             _ => full * (1.0 - self.damage_of(cell)),
         }
     }
