@@ -29,8 +29,8 @@ impl Solid {
         let always_records = self.bodies.iter().any(|model| model.viscosity.is_some());
         let mut part = self.part.take().unwrap_or_else(|| Box::new(Part::new(exchange, &self.blocks, &self.slots)));
         part.begin_stage(&self.slots, everywhere, [has_events, always_records]);
-        part.always_all = self.needs_all_cells();
-        part.always_sums = sums;
+        part.needs.all = self.needs_all_cells();
+        part.needs.sums = sums;
         if !self.needs_all_cells() {
             part.keep_own(&mut self.blocks);
         }
@@ -69,7 +69,7 @@ impl Solid {
 
     /// Has every rank move all nodes in the next step, where something needs all of them.
     pub fn move_all_nodes_next(&mut self, needed: bool) {
-        self.part.iter_mut().for_each(|part| part.next_all |= needed);
+        self.part.iter_mut().for_each(|part| part.needs.all_next |= needed);
     }
 
     /// Whether several ranks advance it.
@@ -188,8 +188,8 @@ impl Solid {
     pub(crate) fn exchange_cells(&mut self, measure: bool) {
         let Some(mut part) = self.part.take() else { return };
         let Events { inverted, broken } = part.tell_records(&mut self.blocks);
-        part.is_all = inverted | part.always_all | std::mem::take(&mut part.next_all);
-        part.sums = !part.is_all && (measure || part.always_sums);
+        part.is_all = inverted | part.needs.all | std::mem::take(&mut part.needs.all_next);
+        part.sums = !part.is_all && (measure || part.needs.sums);
         if part.is_all {
             part.tell_nodes(&mut self.displacement, &mut self.velocity);
         } else if part.sums {

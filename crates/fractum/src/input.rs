@@ -11,10 +11,10 @@ use fractum_io::memory;
 use fractum_mesh::Mesh;
 use fractum_parallel::Exchange;
 
+use crate::columns;
 use crate::course::Course;
 use crate::error::Failure;
 use crate::plots;
-use crate::record;
 use fractum_prepare::{BondedBodies, BondedReport, Cache, Processes, check_memory, choose, facets, prepare_bodies};
 
 /// A case with its mesh and the scene made of both.
@@ -74,7 +74,7 @@ pub(crate) fn read(
         None => (Mesh::default(), 0),
     };
     check_before_particles(&case, &mesh)?;
-    plots::check(&case, &record::possible_columns(&case))?;
+    plots::check(&case, &columns::possible_columns(&case))?;
     check_memory(&case, &mesh, processes)?;
     let made = prepare_bodies(&case, &mesh, cache)?;
     Ok(Source { case, mesh, mesh_hash, made })
@@ -102,7 +102,7 @@ impl Source {
         built.warnings.extend(made.warnings);
         let choice = choose(&case, &mut built);
         let course = Course::of(later.iter().map(|(_, built)| built).chain([&built]));
-        plots::check(&case, &record::columns(&case, &built.scene, course))?;
+        plots::check(&case, &columns::columns(&case, &built.scene, course))?;
         Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, timings: made.timings, choice })
     }
 }

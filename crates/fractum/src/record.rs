@@ -6,15 +6,13 @@ use std::sync::Arc;
 use fractum_io::atomic::{Group, Written};
 use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::PpvStations;
-use fractum_io::case::model::{
-    Body, BodyKind, Case, HistoryColumns, Output, ProbeExpression, ProbeInput, ProbeKind, SolverKind, Take, load_of,
-};
-use fractum_io::history::{Column, History, Table};
+use fractum_io::case::model::{Case, Output, ProbeExpression, ProbeInput, ProbeKind, Take, load_of};
+use fractum_io::history::History;
 use fractum_io::vtk::{Collection, FrameWriter};
-use fractum_scene::statics::NoEquilibrium;
 use fractum_scene::{EnergyKind, EnergyRole, PeakVelocity, Probe, ProbedScene, Scene, VelocityStation};
 use serde::{Deserialize, Serialize};
 
+use crate::columns::{columns, no_probes};
 use crate::course::Course;
 use crate::error::Failure;
 use crate::frames::{Frame, FrameEntry, GridLayout};
@@ -25,66 +23,6 @@ use crate::left;
 use crate::path_frames::PathFrames;
 use crate::series::{index_of_max, interpolate, is_due, next_index, slope_of_window, speed, time_mean};
 use crate::solver::Measured;
-
-/// A history whose first column orders its rows: the step where the load factor may run back, else the time.
-pub(crate) fn ordered(mut history: Table) -> Table {
-    let names: Vec<&str> = history.columns.iter().map(|column| column.name.as_str()).collect();
-    if let Some(step) = HistoryColumns::step(&names) {
-        history.columns[..=step].rotate_right(1);
-        history.values[..=step].rotate_right(1);
-    }
-    history
-}
-
-/// Columns of the history of a run.
-pub(crate) fn columns(case: &Case, scene: &Scene, course: Course) -> Vec<Column> {
-    with_probes(case, no_probes(case, scene, course))
-}
-
-/// Columns that the history of a case may have: which solver `kind = "auto"` takes is not known before there are particles.
-pub(crate) fn possible_columns(case: &Case) -> Vec<Column> {
-    let mut stages = case.later.iter().chain([case]);
-    let is_particles = |body: &Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
-    let columns = HistoryColumns {
-        particles: case.bodies.iter().any(is_particles),
-        domain: stages.clone().any(|stage| stage.solver.domain.is_some()),
-        heat: case.flows.heat.is_some(),
-        turns_back: stages.any(|stage| matches!(stage.solver.kind, SolverKind::Static | SolverKind::Auto)),
-        in_motion: both_rests_and_moves(case),
-    };
-    with_probes(case, columns)
-}
-
-/// The columns of a history, then those of its probes.
-fn with_probes(case: &Case, no_probes: HistoryColumns) -> Vec<Column> {
-    let no_probes = no_probes.list();
-    let of_probes = case.probes.iter().filter(|probe| !probe.is_scalar());
-    let of_probes = of_probes.map(|probe| {
-        // A probe may be called like another column: no two columns have one name.
-        let taken = no_probes.iter().any(|(name, _)| *name == probe.name.value);
-        let name = if taken { format!("probe.{}", probe.name.value) } else { probe.name.value.clone() };
-        Column::new(name, probe.unit.clone())
-    });
-    let of_probes: Vec<Column> = of_probes.collect();
-    no_probes.into_iter().map(|(name, unit)| Column::new(name, unit)).chain(of_probes).collect()
-}
-
-/// The columns that are no probes.
-fn no_probes(case: &Case, scene: &Scene, course: Course) -> HistoryColumns {
-    HistoryColumns {
-        particles: !scene.bonded.is_empty(),
-        domain: scene.domain().is_some(),
-        heat: scene.heat().is_some(),
-        turns_back: course.turns_back,
-        in_motion: both_rests_and_moves(case),
-    }
-}
-
-/// Whether a run may be at rest and in motion.
-fn both_rests_and_moves(case: &Case) -> bool {
-    let hands_over = case.solver.statics.as_ref().is_some_and(|s| s.no_equilibrium == NoEquilibrium::Motion);
-    hands_over || !case.later.is_empty()
-}
 
 /// Entries of the ledger that count in its balance.
 fn balance() -> impl Iterator<Item = EnergyKind> {

@@ -111,7 +111,7 @@ fn page(folder: &Path, place: impl Fn(&str) -> PathBuf) -> Result<String, Failur
     };
     let summary = Summary::read(&place("summary.json")).map_err(|e| missing("summary.json", &e))?;
     let history = history::read(&place("history.csv")).map_err(|e| missing("history.csv", &e))?;
-    let history = crate::record::ordered(history);
+    let history = crate::columns::ordered(history);
     let notes: Notes = match fs::read(place(NOTES)) {
         Ok(bytes) => serde_json::from_slice(&bytes).map_err(|e| missing(NOTES, &e))?,
         Err(_) => Notes::default(),

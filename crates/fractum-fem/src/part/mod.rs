@@ -7,24 +7,28 @@
 //! done by all ranks alike: they are told the edges that broke, and nodes and edges around the elements that leave, whose nodes
 //! all of them move from then on.
 
+mod block_share;
 mod chunks;
 mod plan;
+mod records;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
-use fractum_math::{CHUNK, Sym3, Vec3};
+use fractum_math::{CHUNK, Vec3};
 use fractum_parallel::{Exchange, gather};
-use serde::{Deserialize, Serialize};
 
 use crate::block::{Cells, NodeSlots, Slot};
 use crate::damage::{EdgeDamage, EdgeField};
-use crate::evaluate::{Block, BlockLaw};
+use crate::evaluate::Block;
 
+use block_share::BlockShare;
 use chunks::Chunks;
 pub(crate) use plan::runs_of;
 use plan::{Plan, Told, rank_of};
+pub(crate) use records::Events;
+use records::Records;
 
 /// The share of a rank.
 #[derive(Clone, Debug)]
@@ -44,15 +48,10 @@ pub(crate) struct Part {
     chunks: Chunks,
     /// Runs of nodes that this rank moves where it does not move all of them, see [`runs_of`].
     moved: Vec<Vec<Range<usize>>>,
-    /// Every rank moves all nodes in every step.
-    pub(crate) always_all: bool,
-    /// Every rank moves all nodes in the next step.
-    pub(crate) next_all: bool,
+    pub(crate) needs: Needs,
     /// Every rank moves all nodes in this step.
     pub(crate) is_all: bool,
-    /// Every step needs sums over all nodes.
-    pub(crate) always_sums: bool,
-    /// This step does, and is not one in which every rank moves all nodes: each moves those of its chunks too.
+    /// This step needs sums over all nodes, and is not one in which every rank moves them: each moves those of its chunks too.
     pub(crate) sums: bool,
     /// Displacements and velocities of the nodes of own chunks are the present ones.
     pub(crate) has_chunks: bool,
@@ -60,12 +59,19 @@ pub(crate) struct Part {
     pub(crate) is_whole: bool,
     /// Steps in which every rank moved all nodes, and all steps.
     pub(crate) steps: [u64; 2],
-    /// Numbers of every block that all ranks need where something happens, see [`record`]; empty where nothing can.
-    records: Vec<f64>,
-    /// All ranks need them in every step.
-    always_records: bool,
-    own_records: Vec<f64>,
-    record_counts: Vec<usize>,
+    /// Numbers of every block that all ranks need where something happens.
+    records: Records,
+}
+
+/// What steps need of all nodes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Needs {
+    /// Every rank moves all of them in every step.
+    pub(crate) all: bool,
+    /// Every rank does so in the next step.
+    pub(crate) all_next: bool,
+    /// Every step sums over all of them.
+    pub(crate) sums: bool,
 }
 
 /// How much a rank has to do and to tell in a step in which nothing needs all nodes.
@@ -85,33 +91,6 @@ pub struct Share {
     pub keeps_all: bool,
 }
 
-/// What happened in a step, on any rank.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Events {
-    /// A cell was turned inside out.
-    pub(crate) inverted: bool,
-    /// An edge broke.
-    pub(crate) broken: bool,
-}
-
-/// Numbers of a block in [`Part::records`].
-const RECORD: usize = 4;
-/// In a record: edges have passed their strength, edges broke.
-const WOKEN: f64 = 1.0;
-const BROKEN: f64 = 2.0;
-
-/// What the other ranks need of a block where cells are told in full.
-#[derive(Serialize, Deserialize)]
-struct BlockShare {
-    energy: Option<f64>,
-    dissipated: f64,
-    fresh: Vec<u32>,
-    /// Histories that are no longer those of the start.
-    edges: Vec<(u32, EdgeDamage)>,
-    /// Viscous stress, where asked for.
-    viscous: Vec<Sym3>,
-}
-
 impl Part {
     /// The share of a rank, by the blocks of all.
     pub(crate) fn new(exchange: Arc<dyn Exchange>, blocks: &[Block], slots: &NodeSlots) -> Self {
@@ -124,17 +103,12 @@ impl Part {
             everywhere: Told::none(exchange.size()),
             is_everywhere: vec![false; slots.len()],
             moved: Vec::new(),
-            records: Vec::new(),
-            always_records: false,
-            own_records: Vec::new(),
-            record_counts: Vec::new(),
+            records: Records::default(),
             exchange,
             first,
             // Setting up looks at everything.
-            always_all: true,
-            next_all: true,
+            needs: Needs { all: true, all_next: true, sums: false },
             is_all: false,
-            always_sums: false,
             sums: false,
             has_chunks: true,
             is_whole: true,
@@ -145,28 +119,16 @@ impl Part {
     /// What a stage of the run needs.
     ///
     /// - `everywhere`: nodes that every rank shall move
-    /// - `has_events`: whether something can happen in a block that all ranks must know; `always_records`: whether all need numbers of
-    ///   every block in every step
-    pub(crate) fn begin_stage(
-        &mut self,
-        slots: &NodeSlots,
-        everywhere: &[u32],
-        [has_events, always_records]: [bool; 2],
-    ) {
+    /// - `needs`: of numbers of blocks, see [`Records::new`]
+    pub(crate) fn begin_stage(&mut self, slots: &NodeSlots, everywhere: &[u32], needs: [bool; 2]) {
         self.everywhere = Told::none(self.exchange.size());
         self.is_everywhere.fill(false);
         self.moved.clone_from(&self.plan.runs);
         self.move_everywhere(slots, everywhere);
-        let (first, size) = (&self.first, self.exchange.size());
-        let numbers =
-            |rank: usize| if has_events || always_records { RECORD * (first[rank + 1] - first[rank]) } else { 0 };
-        self.record_counts = (0..size).map(numbers).collect();
-        self.records = vec![0.0; self.record_counts.iter().sum()];
-        self.own_records = vec![0.0; self.record_counts[self.exchange.rank()]];
-        self.always_records = always_records;
-        self.always_all = false;
+        let counts = self.first.windows(2).map(|first| first[1] - first[0]);
+        self.records = Records::new(counts, self.exchange.rank(), needs);
         // What supports hold from now on may have moved before: they do work in the first step.
-        self.next_all = true;
+        self.needs = Needs { all: false, all_next: true, sums: false };
         (self.is_all, self.sums) = (false, false);
         (self.is_whole, self.has_chunks) = (true, true);
     }
@@ -248,28 +210,8 @@ impl Part {
 
     /// Tells all ranks what they need of every block, where something has happened.
     pub(crate) fn tell_records(&mut self, blocks: &mut [Block]) -> Events {
-        let mut events = Events::default();
         let own = self.own();
-        let happened = || blocks[own.clone()].iter().any(Block::has_event);
-        if self.records.is_empty() || !self.always_records && self.exchange.any(u64::from(happened())) == 0 {
-            return events;
-        }
-        let records = self.own_records.chunks_exact_mut(RECORD).zip(&blocks[own.clone()]);
-        records.for_each(|(to, block)| to.copy_from_slice(&record(block)));
-        self.exchange.gather(&self.own_records, &self.record_counts, &mut self.records);
-        for (index, (block, from)) in blocks.iter_mut().zip(self.records.chunks_exact(RECORD)).enumerate() {
-            let &[power, shock, inverted, edges] = from else { continue };
-            events.inverted |= inverted >= 0.0;
-            events.broken |= edges >= BROKEN;
-            if !own.contains(&index) {
-                (block.viscous_power, block.viscous.shock) = (power, shock);
-                block.inverted = (inverted >= 0.0).then_some(inverted as usize);
-                if let Some(field) = block.edge_field_mut() {
-                    field.woken |= edges % BROKEN >= WOKEN;
-                }
-            }
-        }
-        events
+        self.records.tell(&*self.exchange, own, blocks)
     }
 
     /// Tells all ranks the edges that have just broken.
@@ -406,54 +348,6 @@ impl Part {
             block.scratch.take_if(|_| !near.contains(&index));
         }
     }
-}
-
-impl BlockShare {
-    fn of(block: &Block, viscous: bool) -> Self {
-        let (energy, field) = match &block.law {
-            BlockLaw::Elastic { energy } => (*energy, None),
-            BlockLaw::Edges(law) => (law.energy, Some(&law.field)),
-            BlockLaw::Standard(law) => (law.energy, None),
-        };
-        let changed = field.into_iter().flat_map(|field| {
-            let edges = (0..).zip(&field.state).zip(&field.strength);
-            edges
-                .filter(|((_, edge), strength)| **edge != EdgeDamage::intact(**strength))
-                .map(|((i, edge), _)| (i, *edge))
-        });
-        BlockShare {
-            energy,
-            dissipated: block.dissipated(),
-            fresh: field.map_or_else(Vec::new, |field| field.fresh.clone()),
-            edges: changed.collect(),
-            viscous: if viscous { block.viscous.stress.clone() } else { Vec::new() },
-        }
-    }
-
-    fn put(self, block: &mut Block, viscous: bool) {
-        if viscous {
-            block.viscous.stress = self.viscous;
-        }
-        match &mut block.law {
-            BlockLaw::Elastic { energy } => *energy = self.energy,
-            BlockLaw::Standard(law) => (law.energy, law.dissipated) = (self.energy, self.dissipated),
-            BlockLaw::Edges(law) => {
-                (law.energy, law.dissipated) = (self.energy, self.dissipated);
-                law.field.fresh = self.fresh;
-                self.edges.into_iter().for_each(|(index, edge)| law.field.put(index as usize, edge));
-            }
-        }
-    }
-}
-
-/// What all ranks need of a block in every step: viscous power [W], part of the shock, a cell that is turned inside out or
-/// -1, and what became of its edges.
-fn record(block: &Block) -> [f64; RECORD] {
-    let edges = block.edge_field().map_or(0.0, |field| {
-        let woken = if field.woken { WOKEN } else { 0.0 };
-        if field.fresh.is_empty() { woken } else { woken + BROKEN }
-    });
-    [block.viscous_power, block.viscous.shock, block.inverted.map_or(-1.0, |cell| cell as f64), edges]
 }
 
 /// First block of each rank, and the end: runs of about the same weight.

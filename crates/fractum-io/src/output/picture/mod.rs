@@ -26,6 +26,7 @@ mod camera;
 mod colour;
 mod raster;
 mod shade;
+mod shares;
 
 pub use animation::animation;
 pub use colour::{ColourMap, Rgb};
