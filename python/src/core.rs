@@ -225,13 +225,13 @@ impl Core {
             let (energies, all) = (PyDict::new(py), PyDict::new(py));
             let ledger = scene.ledger();
             EnergyKind::ALL.into_iter().try_for_each(|kind| energies.set_item(kind.name(), ledger[kind]))?;
-            let counts = scene.counts();
+            let (counts, fracture) = (scene.counts(), scene.solid.fracture());
             for (name, count) in [
                 ("nodes", counts.nodes),
                 ("elements", counts.elements),
                 ("removed_elements", counts.removed_elements),
-                ("damaged_edges", counts.damaged_edges),
-                ("broken_edges", counts.broken_edges),
+                ("damaged_edges", fracture.damaged_edges),
+                ("broken_edges", fracture.broken_edges),
                 ("particles", counts.particles),
                 ("contacts", counts.contacts),
                 ("bonds", counts.bonds),
