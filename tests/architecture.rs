@@ -14,7 +14,7 @@ const ARROWS: [(&str, &[&str]); 15] = [
     ("fractum-parallel", &[]),
     ("fractum-mesh", &["math"]),
     ("fractum-contact", &["math", "mesh"]),
-    ("fractum-dem", &["math", "contact"]),
+    ("fractum-dem", &["math", "contact", "parallel"]),
     ("fractum-pack", &["math", "dem"]),
     ("fractum-calibrate", &["math", "dem", "pack"]),
     ("fractum-fem", &["math", "mesh", "parallel"]),

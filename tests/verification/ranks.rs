@@ -11,12 +11,12 @@ use fractum_parallel::{Exchange, threads};
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
     ContactParameters, Gravity, Load, Loads, Motion, NodalForce, Pressure, Scene, SceneState, Support, SupportedFacet,
-    Supports, SurfaceSupports,
+    Supports, SurfaceSupports, Watched,
 };
 use fractum_tests::{CONCRETE, jittered_box, noise, settings, surface};
 
 const SIZE: Vec3 = Vec3::new(0.4, 0.2, 0.2);
-const RANKS: [usize; 4] = [2, 3, 4, 7];
+pub(crate) const RANKS: [usize; 4] = [2, 3, 4, 7];
 
 /// A box of several blocks.
 fn block() -> (Vec<Vec3>, Body) {
@@ -57,16 +57,16 @@ fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
 }
 
 /// The whole state, each bit of it: numbers are written so that they read back as they were.
-fn bits(scene: &Scene) -> String {
+pub(crate) fn bits(scene: &Scene) -> String {
     serde_json::to_string(&scene.state()).unwrap()
 }
 
 /// What each of several ranks has after `steps`, by what `made` gives it at the start.
-fn shared(ranks: usize, steps: u64, made: impl Fn() -> Scene + Sync) -> Vec<Scene> {
+pub(crate) fn shared(ranks: usize, steps: u64, made: impl Fn() -> Scene + Sync) -> Vec<Scene> {
     let run = |exchange: Arc<dyn Exchange>| {
         on_two_threads(|| {
             let mut scene = made();
-            scene.share_out(exchange, &[]);
+            scene.share_out(exchange, &Watched::default());
             advance(&mut scene, steps);
             scene.gather_ranks();
             scene
@@ -79,7 +79,7 @@ fn shared(ranks: usize, steps: u64, made: impl Fn() -> Scene + Sync) -> Vec<Scen
 }
 
 /// The scene of a single process after `steps`, once any number of ranks has come to the same.
-fn same_on_ranks(steps: u64, made: impl Fn() -> Scene + Sync) -> Scene {
+pub(crate) fn same_on_ranks(steps: u64, made: impl Fn() -> Scene + Sync) -> Scene {
     let mut single = made();
     assert_eq!(single.cannot_be_shared(), None);
     advance(&mut single, steps);

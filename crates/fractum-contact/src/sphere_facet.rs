@@ -1,5 +1,7 @@
 //! Spheres on a ground of facets or a rigid shape, through time.
 
+use std::ops::Range;
+
 use fractum_math::{Vec3, Work};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
@@ -57,26 +59,34 @@ impl<L: ContactLaw> SurfaceContacts<L> {
 
     /// Looks up the facets near each sphere if the skin is used up; true if it did.
     pub fn search(&mut self, ground: &Surface, spheres: &Spheres) -> bool {
-        let to_ground = |x: &Vec3| match ground {
-            Surface::Rigid { frame, .. } | Surface::Shape { frame, .. } => frame.to_body(x),
-            Surface::Deformable { .. } => *x,
-        };
+        let is_due = self.is_used_up(ground, spheres, 0..spheres.position.len());
+        if is_due {
+            self.renew(ground, spheres);
+        }
+        is_due
+    }
+
+    /// Whether the skin is used up, by the way of some of the spheres and that of the ground.
+    pub fn is_used_up(&self, ground: &Surface, spheres: &Spheres, range: Range<usize>) -> bool {
         if spheres.position.is_empty() {
             return false;
         }
-        let most = |moved: &mut dyn Iterator<Item = f64>| moved.fold(0.0, f64::max).sqrt();
-        if self.searched_at.len() == spheres.position.len() {
-            let sphere = |(x, at): (&Vec3, &Vec3)| (to_ground(x) - at).norm_squared();
-            let mut used = most(&mut spheres.position.iter().zip(&self.searched_at).map(sphere));
-            if let Surface::Deformable { points, .. } = ground {
-                used += most(&mut points.iter().zip(&self.points_at).map(|(p, at)| (p - at).norm_squared()));
-            }
-            if used <= self.skin {
-                return false;
-            }
+        if self.searched_at.len() != spheres.position.len() {
+            return true;
         }
+        let most = |moved: &mut dyn Iterator<Item = f64>| moved.fold(0.0, f64::max).sqrt();
+        let sphere = |(x, at): (&Vec3, &Vec3)| (to_ground(ground, x) - at).norm_squared();
+        let mut used = most(&mut spheres.position[range.clone()].iter().zip(&self.searched_at[range]).map(sphere));
+        if let Surface::Deformable { points, .. } = ground {
+            used += most(&mut points.iter().zip(&self.points_at).map(|(p, at)| (p - at).norm_squared()));
+        }
+        used > self.skin
+    }
+
+    /// Looks up the facets near each sphere.
+    pub fn renew(&mut self, ground: &Surface, spheres: &Spheres) {
         self.searched_at.clear();
-        self.searched_at.extend(spheres.position.iter().map(to_ground));
+        self.searched_at.extend(spheres.position.iter().map(|x| to_ground(ground, x)));
         if let Surface::Deformable { points, .. } = ground {
             self.points_at.clear();
             self.points_at.extend_from_slice(points);
@@ -84,7 +94,6 @@ impl<L: ContactLaw> SurfaceContacts<L> {
         let touches = self.state();
         self.find_near(ground, spheres.radius);
         self.hand_out(touches);
-        true
     }
 
     fn find_near(&mut self, ground: &Surface, radii: &[f64]) {
@@ -218,6 +227,14 @@ impl<L: ContactLaw> SurfaceContacts<L> {
                 }
             }
         }
+    }
+}
+
+/// A place in the axes of the ground.
+fn to_ground(ground: &Surface, x: &Vec3) -> Vec3 {
+    match ground {
+        Surface::Rigid { frame, .. } | Surface::Shape { frame, .. } => frame.to_body(x),
+        Surface::Deformable { .. } => *x,
     }
 }
 

@@ -1,5 +1,7 @@
 //! Spheres on spheres, through time.
 
+use std::ops::Range;
+
 use fractum_math::{Vec3, Work};
 use rayon::prelude::*;
 
@@ -7,7 +9,7 @@ use crate::broad_phase::close_pairs;
 use crate::law::{ContactLaw, PairMotion};
 use crate::touch::Spheres;
 
-/// Pairs handled as one piece of parallel work.
+/// Pairs handled as one piece of parallel work, and spheres whose contacts are summed before those of others.
 const BLOCK: usize = 1024;
 
 /// Contacts among the spheres of one population, with their memories.
@@ -30,6 +32,10 @@ pub struct SphereContacts<L: ContactLaw> {
     /// Pairs of each sphere, ascending: offsets and values.
     starts: Vec<u32>,
     pairs_of: Vec<u32>,
+    /// Energies of the pairs by their first spheres, block by block.
+    works: Vec<Work>,
+    /// Pairs of which only the second sphere is in a range, where forces on that are wanted.
+    cut: Option<(Range<usize>, Vec<u32>)>,
 }
 
 /// Force of a pair and its energies.
@@ -58,6 +64,8 @@ impl<L: ContactLaw> SphereContacts<L> {
             keeps_loads: false,
             starts: Vec::new(),
             pairs_of: Vec::new(),
+            works: Vec::new(),
+            cut: None,
         }
     }
 
@@ -65,12 +73,25 @@ impl<L: ContactLaw> SphereContacts<L> {
     ///
     /// - `law`: law of two spheres; `None` if they never touch (bonded ones)
     pub fn search(&mut self, spheres: &Spheres, law: impl Fn(u32, u32) -> Option<L> + Sync) -> bool {
+        let is_due = self.is_used_up(spheres, 0..spheres.position.len());
+        if is_due {
+            self.renew(spheres, law);
+        }
+        is_due
+    }
+
+    /// Whether the skin is used up, by the way of some of the spheres.
+    pub fn is_used_up(&self, spheres: &Spheres, range: Range<usize>) -> bool {
         let limit = 0.25 * self.skin * self.skin;
         let moved = |(x, at): (&Vec3, &Vec3)| (x - at).norm_squared() > limit;
-        let known = self.searched_at.len() == spheres.position.len();
-        if known && !spheres.position.iter().zip(&self.searched_at).any(moved) {
-            return false;
-        }
+        self.searched_at.len() != spheres.position.len()
+            || spheres.position[range.clone()].iter().zip(&self.searched_at[range]).any(moved)
+    }
+
+    /// Renews the list of near pairs.
+    ///
+    /// - `law`: as in [`SphereContacts::search`]
+    pub fn renew(&mut self, spheres: &Spheres, law: impl Fn(u32, u32) -> Option<L> + Sync) {
         self.searched_at.clear();
         self.searched_at.extend_from_slice(spheres.position);
         let near = close_pairs(spheres.position, spheres.radius, self.skin);
@@ -89,7 +110,6 @@ impl<L: ContactLaw> SphereContacts<L> {
         }
         (self.pairs, self.laws) = found.into_iter().unzip();
         self.index(spheres.position.len());
-        true
     }
 
     /// Has the next search renew the list of near pairs, since radii have changed.
@@ -116,6 +136,9 @@ impl<L: ContactLaw> SphereContacts<L> {
             }
         }
         self.loads.clear();
+        self.works.clear();
+        self.works.resize(spheres.div_ceil(BLOCK), Work::default());
+        self.cut = None;
     }
 
     /// Adds forces [N] and moments about the centres [N m] of all contacts.
@@ -126,30 +149,92 @@ impl<L: ContactLaw> SphereContacts<L> {
         if alone && !self.keeps_loads {
             return self.add_one_by_one(spheres, force, moment, dt);
         }
-        let SphereContacts { pairs, laws, memories, touching, loads, starts, pairs_of, .. } = self;
+        self.add_forces_on(0..spheres.position.len(), spheres, force, moment, dt);
+        self.work()
+    }
+
+    /// [`SphereContacts::add_forces`] on a range of spheres that begins and ends a block of 1024, or ends with all; energies are those of
+    /// the pairs whose first spheres are among them.
+    pub fn add_forces_on(
+        &mut self,
+        range: Range<usize>,
+        spheres: &Spheres,
+        force: &mut [Vec3],
+        moment: &mut [Vec3],
+        dt: f64,
+    ) {
+        let own = self.pairs_from(range.start)..self.pairs_from(range.end);
+        let SphereContacts { pairs, laws, memories, touching, loads, starts, pairs_of, works, cut, .. } = self;
         loads.resize(pairs.len(), PairLoad::default());
-        let chunks = pairs.par_chunks(BLOCK).zip(laws.par_chunks(BLOCK)).zip(memories.par_chunks_mut(BLOCK));
-        chunks.zip(touching.par_chunks_mut(BLOCK)).zip(loads.par_chunks_mut(BLOCK)).for_each(
-            |((((pairs, laws), memories), touching), loads)| {
+        let chunks = pairs[own.clone()].par_chunks(BLOCK).zip(laws[own.clone()].par_chunks(BLOCK));
+        let memory = memories[own.clone()].par_chunks_mut(BLOCK).zip(touching[own.clone()].par_chunks_mut(BLOCK));
+        chunks.zip(memory).zip(loads[own.clone()].par_chunks_mut(BLOCK)).for_each(
+            |(((pairs, laws), (memories, touching)), loads)| {
                 for k in 0..pairs.len() {
                     loads[k] = pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, dt)
                         .unwrap_or_default();
                 }
             },
         );
+        if cut.as_ref().is_none_or(|(known, _)| *known != range) {
+            // Their first sphere is before the range.
+            let is_cut = |k: &u32| range.contains(&(pairs[*k as usize][1] as usize));
+            *cut = Some((range.clone(), (0..own.start as u32).filter(is_cut).collect()));
+        }
+        for k in cut.iter().flat_map(|(_, pairs)| pairs).map(|&k| k as usize) {
+            loads[k] =
+                pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, dt).unwrap_or_default();
+        }
         let (loads, pairs) = (&*loads, &*pairs);
-        force.par_iter_mut().zip(moment.par_iter_mut()).enumerate().with_min_len(BLOCK).for_each(
-            |(i, (force, moment))| {
-                for &pair in &pairs_of[starts[i] as usize..starts[i + 1] as usize] {
-                    let (load, second) = (&loads[pair as usize], pairs[pair as usize][1] == i as u32);
-                    *force += if second { load.force } else { -load.force };
-                    *moment += load.moments[usize::from(second)];
-                }
-            },
-        );
-        let mut work = Work::default();
-        loads.iter().for_each(|load| work += load.work);
-        work
+        let (forces, moments) = (&mut force[range.clone()], &mut moment[range.clone()]);
+        forces.par_iter_mut().zip(moments).zip(range.clone()).with_min_len(BLOCK).for_each(|((force, moment), i)| {
+            for &pair in &pairs_of[starts[i] as usize..starts[i + 1] as usize] {
+                let (load, second) = (&loads[pair as usize], pairs[pair as usize][1] == i as u32);
+                *force += if second { load.force } else { -load.force };
+                *moment += load.moments[usize::from(second)];
+            }
+        });
+        works[range.start.div_ceil(BLOCK)..range.end.div_ceil(BLOCK)].fill(Work::default());
+        pairs[own.clone()]
+            .iter()
+            .zip(&loads[own])
+            .for_each(|(pair, load)| works[pair[0] as usize / BLOCK] += load.work);
+    }
+
+    /// First pair whose first sphere is at or behind one.
+    fn pairs_from(&self, sphere: usize) -> usize {
+        self.pairs.partition_point(|pair| (pair[0] as usize) < sphere)
+    }
+
+    /// Energies at the last step, of the pairs whose first spheres are in each block of 1024.
+    pub fn works(&mut self) -> &mut [Work] {
+        &mut self.works
+    }
+
+    /// Energies of all contacts at the last step.
+    pub fn work(&self) -> Work {
+        self.works.iter().fold(Work::default(), |mut sum, work| {
+            sum += *work;
+            sum
+        })
+    }
+
+    /// Near pairs, ascending.
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        &self.pairs
+    }
+
+    /// Whether each near pair touches, and what it remembers; of the pairs whose first spheres are in a range.
+    pub fn memories(&self, range: Range<usize>) -> Vec<(bool, L::Memory)> {
+        let own = self.pairs_from(range.start)..self.pairs_from(range.end);
+        own.map(|k| (self.touching[k], self.memories[k])).collect()
+    }
+
+    /// Puts what all near pairs remember, in their order.
+    pub fn put_memories(&mut self, all: impl Iterator<Item = (bool, L::Memory)>) {
+        for ((touching, own), (touches, memory)) in self.touching.iter_mut().zip(&mut self.memories).zip(all) {
+            (*touching, *own) = (touches, memory);
+        }
     }
 
     /// Has the forces of the pairs kept from step to step; of the same bits, and a little slower on one thread.
@@ -164,8 +249,8 @@ impl<L: ContactLaw> SphereContacts<L> {
     }
 
     fn add_one_by_one(&mut self, spheres: &Spheres, force: &mut [Vec3], moment: &mut [Vec3], dt: f64) -> Work {
-        let SphereContacts { pairs, laws, memories, touching, .. } = self;
-        let mut work = Work::default();
+        let SphereContacts { pairs, laws, memories, touching, works, .. } = self;
+        works.fill(Work::default());
         for k in 0..pairs.len() {
             let load = pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, dt);
             if let Some(load) = load {
@@ -174,10 +259,10 @@ impl<L: ContactLaw> SphereContacts<L> {
                 force[j] += load.force;
                 moment[i] += load.moments[0];
                 moment[j] += load.moments[1];
-                work += load.work;
+                works[i / BLOCK] += load.work;
             }
         }
-        work
+        self.work()
     }
 
     /// Takes the pairs that overlap and for which `which` holds as they stand, without any force; they touch no nearer than

@@ -84,9 +84,9 @@ impl Solid {
         part.iter_mut().for_each(|part| part.follow(slots, nodes, [displacement, velocity]));
     }
 
-    /// Gives every rank the sums over chunks of nodes, once each has those of its own.
+    /// Gives every rank the sums over chunks of nodes, once each has those of its own; nothing where every rank has all.
     pub fn tell_sums(&self, sums: &mut [Vec3]) {
-        let Some(part) = &self.part else { return };
+        let Some(part) = self.part.as_ref().filter(|part| part.sums) else { return };
         let mut numbers: Vec<[f64; 3]> = sums.iter().map(|&sum| sum.into()).collect();
         part.tell_sums(&mut numbers);
         sums.iter_mut().zip(numbers).for_each(|(sum, numbers)| *sum = numbers.into());
@@ -94,7 +94,7 @@ impl Solid {
 
     /// The same of what damping has taken from the nodes of each chunk, and of their kinetic energy.
     pub(crate) fn tell_work(&mut self) {
-        let Some(part) = &self.part else { return };
+        let Some(part) = self.part.as_ref().filter(|part| part.sums) else { return };
         let numbers =
             |HalfSteps { before, after }: &HalfSteps| [before.kinetic, before.damping, after.kinetic, after.damping];
         let mut all: Vec<[f64; 4]> = self.chunk_work.iter().map(numbers).collect();

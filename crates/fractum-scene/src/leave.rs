@@ -55,7 +55,13 @@ impl Scene {
     ///
     /// - `dt`: the step that led to tⁿ [s]
     pub(crate) fn let_particles_leave(&mut self, dt: f64) {
-        let Some(domain) = self.domain_to_look_at().filter(|domain| self.bonded.has_outside(domain)) else { return };
+        let Some(domain) = self.domain_to_look_at() else { return };
+        self.bonded.gather_motion();
+        if !self.bonded.has_outside(&domain) {
+            return;
+        }
+        self.bonded.gather_forces();
+        self.gather_contacts();
         let mut touching: Vec<u32> = Vec::new();
         self.contacts.each_touching_particle(|i| touching.push(i));
         let (energy, gone) = self.bonded.let_leave(&domain, &touching, dt, &mut self.removals.left);

@@ -59,8 +59,9 @@ pub use heat::{
 };
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use piece_probe::{FragmentMeasure, SurfaceMeasure, equivalent_diameter, fragment_size, passing_size};
-pub use probe::{Probe, ProbedScene};
+pub use probe::{NeededPoints, Probe, ProbeNeeds, ProbedScene};
 pub use radial_cracks::{RadialCracks, RadialMeasure};
+pub use ranks::Watched;
 pub use region_probe::{RegionStrain, RegionStress};
 pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};

@@ -141,13 +141,43 @@ pub enum Probe {
     },
 }
 
+/// What of a scene a probe looks at, for ranks that advance it together.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ProbeNeeds {
+    /// Nodes whose motion it looks at.
+    pub nodes: NeededPoints,
+    /// Particles whose motion it looks at.
+    pub particles: NeededPoints,
+    /// Whether it looks at what supports do at these points, which is known where they are moved alone.
+    pub of_supports: bool,
+    /// Whether it looks at the damage of edges.
+    pub damage: bool,
+    /// Whether it looks at contacts among particles.
+    pub contacts: bool,
+}
+
+/// Points that a probe looks at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NeededPoints {
+    /// These.
+    Some(Vec<u32>),
+    /// Any of them.
+    Any,
+}
+
+impl Default for NeededPoints {
+    fn default() -> Self {
+        NeededPoints::Some(Vec::new())
+    }
+}
+
 /// A scene at one instant, with what several probes need of it.
 pub struct ProbedScene<'a> {
     scene: &'a Scene,
     fragments: OnceCell<Vec<Fragment>>,
     separation: OnceCell<Separation>,
     crack_edges: OnceCell<Vec<CrackEdge>>,
-    counts: OnceCell<Counts>,
+    counts: Counts,
     fracture: OnceCell<Fracture>,
     /// Stress of all elements, body by body.
     stresses: Vec<OnceCell<Vec<Sym3>>>,
@@ -160,12 +190,17 @@ const MANY: usize = 8;
 impl<'a> ProbedScene<'a> {
     /// Before the first probe.
     pub fn new(scene: &'a Scene) -> Self {
+        Self::with_counts(scene, scene.counts())
+    }
+
+    /// The same where [`Scene::counts`] are known.
+    pub fn with_counts(scene: &'a Scene, counts: Counts) -> Self {
         ProbedScene {
             scene,
             fragments: OnceCell::new(),
             separation: OnceCell::new(),
             crack_edges: OnceCell::new(),
-            counts: OnceCell::new(),
+            counts,
             fracture: OnceCell::new(),
             stresses: vec![OnceCell::new(); scene.solid.body_count()],
         }
@@ -174,11 +209,6 @@ impl<'a> ProbedScene<'a> {
     /// [`Scene::fragments`], found once.
     pub(crate) fn fragments(&self) -> &[Fragment] {
         self.fragments.get_or_init(|| self.scene.fragments())
-    }
-
-    /// [`Scene::counts`], found once.
-    pub fn counts(&self) -> &Counts {
-        self.counts.get_or_init(|| self.scene.counts())
     }
 
     /// [`fractum_fem::Solid::fracture`], found once.
@@ -217,27 +247,37 @@ impl Probe {
         }
     }
 
-    /// Nodes of solids whose motion the value needs, and whether every process must follow them, since supports act on them; none
-    /// where these may be any.
-    pub fn nodes(&self, scene: &Scene) -> Option<(Vec<u32>, bool)> {
-        let nodes = match self {
-            Probe::Points { population: Population::Nodes, probe } => {
-                return Some((probe.points(scene.supports()), probe.is_of_supports()));
+    /// What the value is found from.
+    pub fn needs(&self, scene: &Scene) -> ProbeNeeds {
+        use NeededPoints::{Any, Some};
+        let nothing = ProbeNeeds::default;
+        let all = |damage: bool| ProbeNeeds { nodes: Any, particles: Any, damage, ..nothing() };
+        match self {
+            Probe::Points { population, probe } => {
+                let of_supports = probe.is_of_supports();
+                match population {
+                    Population::Nodes => {
+                        ProbeNeeds { nodes: Some(probe.points(scene.supports())), of_supports, ..nothing() }
+                    }
+                    Population::Particles => {
+                        let particles = Some(probe.points(scene.bonded.supports()));
+                        ProbeNeeds { particles, of_supports, ..nothing() }
+                    }
+                }
             }
-            Probe::Surface { facets, .. } => facets.concat(),
-            Probe::Stress { .. }
-            | Probe::Strain(_)
-            | Probe::Extensometer(_)
-            | Probe::Momentum(_)
-            | Probe::AngularMomentum(_)
-            | Probe::Gas { .. }
-            | Probe::Fragment { .. }
-            | Probe::FragmentSize(_)
-            | Probe::Count(CountKind::Fragments) => return None,
-            Probe::Points { population: Population::Particles, .. }
-            | Probe::Energy(_)
+            Probe::Surface { facets, .. } => ProbeNeeds { nodes: Some(facets.concat()), ..nothing() },
+            Probe::Stress { .. } => ProbeNeeds { nodes: Any, damage: true, ..nothing() },
+            Probe::Gas { .. } => ProbeNeeds { nodes: Any, ..nothing() },
+            Probe::ParticleStress(_) => ProbeNeeds { particles: Any, ..nothing() },
+            Probe::Fragment { .. } | Probe::FragmentSize(_) | Probe::Count(CountKind::Fragments) => all(true),
+            Probe::Strain(_) | Probe::Extensometer(_) | Probe::Momentum(_) | Probe::AngularMomentum(_) => all(false),
+            Probe::Count(CountKind::BrokenEdges | CountKind::DamagedEdges) | Probe::CrackArea | Probe::Damaged(_) => {
+                ProbeNeeds { damage: true, ..nothing() }
+            }
+            Probe::Crack { measure, .. } => ProbeNeeds { damage: !measure.is_of_separation(), ..nothing() },
+            Probe::Count(CountKind::Contacts) => ProbeNeeds { contacts: true, ..nothing() },
+            Probe::Energy(_)
             | Probe::Count(_)
-            | Probe::ParticleStress(_)
             | Probe::ContactForce(_)
             | Probe::RigidBodyForce { .. }
             | Probe::RigidBodyDisplacement { .. }
@@ -245,28 +285,8 @@ impl Probe {
             | Probe::Temperature { .. }
             | Probe::Heat(_)
             | Probe::Load { .. }
-            | Probe::CrackArea
-            | Probe::Crack { .. }
             | Probe::RadialCracks(_)
-            | Probe::Damaged(_)
-            | Probe::WaveSpeed { .. } => Vec::new(),
-        };
-        Some((nodes, false))
-    }
-
-    /// Whether the value needs the damage of edges.
-    pub fn needs_damage(&self) -> bool {
-        match self {
-            Probe::Crack { measure, .. } => !measure.is_of_separation(),
-            Probe::Count(kind) => {
-                matches!(kind, CountKind::BrokenEdges | CountKind::DamagedEdges | CountKind::Fragments)
-            }
-            Probe::Stress { .. }
-            | Probe::Fragment { .. }
-            | Probe::FragmentSize(_)
-            | Probe::CrackArea
-            | Probe::Damaged(_) => true,
-            _ => false,
+            | Probe::WaveSpeed { .. } => nothing(),
         }
     }
 
@@ -291,7 +311,7 @@ impl Probe {
             Probe::Count(CountKind::Fragments) => probed.fragments().len() as f64,
             Probe::Count(CountKind::BrokenEdges) => probed.fracture().broken_edges as f64,
             Probe::Count(CountKind::DamagedEdges) => probed.fracture().damaged_edges as f64,
-            Probe::Count(kind) => probed.counts().of(*kind) as f64,
+            Probe::Count(kind) => probed.counts.of(*kind) as f64,
             Probe::Stress { elements, between: [normal, along] } => {
                 let (mut sum, mut volume) = (0.0, 0.0);
                 let many = |body: usize| MANY * elements.len() >= solid.body(body).elements.len();

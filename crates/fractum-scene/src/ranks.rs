@@ -7,13 +7,27 @@ use fractum_parallel::Exchange;
 
 use crate::scene::Scene;
 
+/// Nodes of solids and particles that every rank moves, since they are looked at after every step.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Watched {
+    /// Nodes.
+    pub nodes: Vec<u32>,
+    /// Particles.
+    pub particles: Vec<u32>,
+}
+
 impl Scene {
     /// What ranks cannot share of this scene, in words; none where they can.
     pub fn cannot_be_shared(&self) -> Option<&'static str> {
-        if self.solid.body_count() == 0 {
-            return Some("a scene without solids");
+        if self.optional.heat.is_some() {
+            return Some("heat");
         }
-        self.optional.heat.as_ref().map(|_| "heat")
+        self.particles_cannot_be_shared().filter(|_| self.solid.body_count() == 0)
+    }
+
+    /// What has every rank do alike what particles and bonds do, in words; none where they are shared, or not there.
+    pub fn particles_cannot_be_shared(&self) -> Option<&'static str> {
+        self.bonded.cannot_be_shared().or_else(|| self.contacts.cannot_be_shared(&self.solid))
     }
 
     /// Whether every step needs sums over all nodes: of what damping takes, or of the momentum that gravity works on.
@@ -43,15 +57,23 @@ impl Scene {
         }
     }
 
-    /// Leaves a share of the cells to each rank of an exchange. Every rank must have the same scene in the same state, and
-    /// all of them step it together from then on; see [`Scene::gather_ranks`].
+    /// Leaves a share of the cells, particles and bonds to each rank of an exchange. Every rank must have the same scene in the same
+    /// state, and all of them step it together from then on; see [`Scene::gather_ranks`].
     ///
-    /// - `watched`: nodes that are looked at after every step, where that is more than those of supports that move and of loads
-    pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, watched: &[u32]) {
+    /// - `watched`: nodes and particles that are looked at after every step, where that is more than those of supports that move and of loads
+    pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, watched: &Watched) {
+        if !self.bonded.is_empty() && self.particles_cannot_be_shared().is_none() {
+            let near: Vec<u32> = watched.particles.iter().copied().chain(self.contacts.near()).collect();
+            self.bonded.share_out(Arc::clone(&exchange), near.into_iter());
+            self.bonded.set_near(self.contacts.near_pairs());
+        }
+        if self.solid.body_count() == 0 {
+            return;
+        }
         let sums = self.needs_sums();
         let mut everywhere: Vec<u32> = self.supports.driven().chain(self.loads.points()).collect();
         everywhere.extend(self.optional.surface_supports.nodes());
-        everywhere.extend(watched);
+        everywhere.extend(&watched.nodes);
         everywhere.extend(self.nodes_of_others());
         self.solid.share_out(exchange, &everywhere, sums);
     }
@@ -59,6 +81,29 @@ impl Scene {
     /// Brings displacements and velocities of all nodes up to date. All ranks must call it.
     pub fn gather_nodes(&mut self) {
         self.solid.gather_nodes();
+    }
+
+    /// Brings particles and the memory of their bonds up to date. All ranks must call it.
+    pub fn gather_particles(&mut self) {
+        self.bonded.gather();
+    }
+
+    /// Brings the memory of contacts among particles up to date. All ranks must call it.
+    pub fn gather_contacts(&mut self) {
+        let Scene { bonded, contacts, .. } = self;
+        bonded.with_part(|part, _| part.into_iter().for_each(|part| contacts.gather_memories(part)));
+    }
+
+    /// Does the searches for contacts of particles that are due on any rank.
+    pub(crate) fn search_together(&mut self) {
+        let Scene { bonded, contacts, solid, .. } = self;
+        let due = bonded.with_part(|part, particles| Some(contacts.due_on_any(part?, solid, particles)));
+        if let Some(due) = due.filter(|due| due.contains(&true)) {
+            bonded.gather_motion();
+            let near = contacts.search(&due, solid, &bonded.particles);
+            bonded.follow(&near);
+            bonded.set_near(contacts.near_pairs());
+        }
     }
 
     /// Brings what this rank has of the damage of others up to date. All ranks must call it, after a step that was measured.
@@ -70,6 +115,8 @@ impl Scene {
     /// call it. Energies are up to date without it where a step has measured.
     pub fn gather_ranks(&mut self) {
         self.solid.gather_ranks();
+        self.gather_particles();
+        self.gather_contacts();
     }
 }
 

@@ -187,8 +187,9 @@ impl Scene {
         }
     }
 
-    /// Hands the forces of tied particles to the solids, where there are any.
+    /// Hands the forces of tied particles to the solids, where there are any; all ranks know the forces on what all of them move.
     fn pass_on_ties(&mut self, passed: &mut impl FnMut(Phase)) {
+        self.bonded.tell_forces();
         if !self.ties.is_empty() {
             self.ties.pass_on(&mut self.solid, &mut self.bonded.particles);
             passed(Phase::Ties);
@@ -218,7 +219,9 @@ impl Scene {
     /// - `work`: that of the contacts counted so far
     fn add_contact_forces(&mut self, dt: f64, mut work: Work) -> Work {
         if !self.contacts.is_empty() {
-            work += self.contacts.add_forces(&mut self.solid, &mut self.bonded.particles, dt);
+            self.search_together();
+            let Scene { contacts, solid, bonded, .. } = self;
+            work += bonded.with_part(|part, particles| contacts.add_forces(part, solid, particles, dt));
         }
         if self.debris.is_empty() && self.shape_contacts.is_empty() && !self.contacts.has_node_contacts() {
             return work;

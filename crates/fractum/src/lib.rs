@@ -49,6 +49,7 @@ mod columns;
 mod course;
 pub mod cracks;
 mod error;
+mod fetch;
 mod frame_file;
 mod frame_pictures;
 mod frames;

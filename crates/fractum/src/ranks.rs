@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use fractum_dem::ParticleShare;
 use fractum_fem::Share;
-use fractum_io::case::model::{BodyKind, Case, Output, SolverKind};
+use fractum_io::case::model::{Case, Output, SolverKind};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
 use fractum_io::number::grouped;
 use fractum_io::vtk::Cut;
 use fractum_parallel::{Exchange, gather};
 use fractum_prepare::Processes;
-use fractum_scene::Scene;
+use fractum_scene::{Scene, Watched};
 
 use crate::error::{ExitCode, Failure};
 use crate::last_words::LastWords;
@@ -123,11 +124,11 @@ impl Ranks {
 
     /// Leaves each process its share of a scene.
     ///
-    /// - `watched`: nodes that are looked at after every step
+    /// - `watched`: what is looked at after every step
     ///
     /// # Errors
     /// [`Failure::Input`] for a scene that cannot be shared.
-    pub(crate) fn share_out(&self, scene: &mut Scene, watched: &[u32]) -> Result<(), Failure> {
+    pub(crate) fn share_out(&self, scene: &mut Scene, watched: &Watched) -> Result<(), Failure> {
         let Some(exchange) = &self.exchange else { return Ok(()) };
         let refuse =
             |what| Failure::input(format!("{what} cannot be run by several processes yet; run without mpirun"));
@@ -137,26 +138,42 @@ impl Ranks {
     }
 
     /// What this process does of the work, in words; nothing of a process by itself.
-    pub(crate) fn share(&self, scene: &Scene) -> Option<String> {
-        let (exchange, share) = (self.exchange.as_ref()?, scene.solid.share()?);
-        let Share { blocks, nodes, shared_nodes, bytes, memory, keeps_all } = share;
+    pub(crate) fn share(&self, scene: &Scene) -> Vec<String> {
+        let Some(exchange) = &self.exchange else { return Vec::new() };
         let number = |count: usize| grouped(&count.to_string());
-        Some(format!(
-            "process {} of {}: {} blocks of cells, {} nodes, {} of them shared; {} bytes of forces sent per step; {} bytes of cells{}",
-            exchange.rank(),
-            exchange.size(),
-            number(blocks),
-            number(nodes),
-            number(shared_nodes),
-            number(bytes),
-            number(memory),
-            if keeps_all { ", those of all processes: damage in the standard formulation needs them" } else { "" }
-        ))
+        let process = format!("process {} of {}", exchange.rank(), exchange.size());
+        let of_cells = |share: Share| {
+            let Share { blocks, nodes, shared_nodes, bytes, memory, keeps_all } = share;
+            format!(
+                "{process}: {} blocks of cells, {} nodes, {} of them shared; {} bytes of forces sent per step; {} bytes of cells{}",
+                number(blocks),
+                number(nodes),
+                number(shared_nodes),
+                number(bytes),
+                number(memory),
+                if keeps_all { ", those of all processes: damage in the standard formulation needs them" } else { "" }
+            )
+        };
+        let of_particles = |share: ParticleShare| {
+            let ParticleShare { particles, ghosts, everywhere } = share;
+            format!(
+                "{process}: {} particles, and the motion of {} others; {} particles moved by every process",
+                number(particles),
+                number(ghosts),
+                number(everywhere)
+            )
+        };
+        let alike = scene.particles_cannot_be_shared().filter(|_| !scene.bonded.is_empty());
+        let alike =
+            alike.map(|what| format!("every process moves all particles and computes all bonds, because of {what}"));
+        let cells = scene.solid.share().filter(|_| scene.solid.body_count() > 0).map(of_cells);
+        cells.into_iter().chain(scene.bonded.share().map(of_particles)).chain(alike).collect()
     }
 
     /// In how many steps all processes moved all nodes, in words; nothing of a process by itself.
     pub(crate) fn steps(&self, scene: &Scene) -> Option<String> {
-        let [whole, all] = scene.solid.steps_of_ranks()?.map(|steps| grouped(&steps.to_string()));
+        let of_solids = scene.solid.steps_of_ranks().filter(|_| scene.solid.body_count() > 0);
+        let [whole, all] = of_solids?.map(|steps| grouped(&steps.to_string()));
         Some(format!("every process moved all nodes in {whole} of {all} steps"))
     }
 }
@@ -175,9 +192,6 @@ fn not_for_ranks(case: &Case) -> Vec<(&Place, &'static str)> {
     let mut found = Vec::new();
     if case.solver.kind != SolverKind::Explicit {
         found.push((&case.solver.place, "a solver that is not explicit"));
-    }
-    if !case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Solid(_))) {
-        found.push((&case.solver.place, "a scene without solids, whose cells they would share,"));
     }
     found.extend(case.solver.subcycling.iter().map(|place| (place, "subcycling")));
     found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat")));

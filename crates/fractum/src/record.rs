@@ -9,12 +9,13 @@ use fractum_io::build::PpvStations;
 use fractum_io::case::model::{Case, Output, ProbeExpression, ProbeInput, ProbeKind, Take, load_of};
 use fractum_io::history::History;
 use fractum_io::vtk::{Collection, FrameWriter};
-use fractum_scene::{EnergyKind, EnergyRole, PeakVelocity, Probe, ProbedScene, Scene, VelocityStation};
+use fractum_scene::{EnergyKind, EnergyRole, PeakVelocity, Probe, ProbedScene, Scene, VelocityStation, Watched};
 use serde::{Deserialize, Serialize};
 
 use crate::columns::{columns, no_probes};
 use crate::course::Course;
 use crate::error::Failure;
+use crate::fetch::{Fetch, points_of_probes};
 use crate::frames::{Frame, FrameEntry, GridLayout};
 use crate::gauge_tables;
 use crate::gone::Gone;
@@ -68,9 +69,6 @@ impl RecordState {
     }
 }
 
-/// Part of all nodes up to which those of a probe are followed by every process.
-const WATCHED_PART: usize = 50;
-
 /// Writes the results of a run while it goes.
 pub(crate) struct Recorder {
     case: Arc<Case>,
@@ -85,8 +83,8 @@ pub(crate) struct Recorder {
     noted: Vec<Vec<bool>>,
     grid: GridLayout,
     inputs: Vec<f64>,
-    /// Whether each probe looks at nodes that not every process follows.
-    looks_at_others: Vec<bool>,
+    /// What has to be fetched for each probe.
+    fetches: Vec<Fetch>,
     /// What was gone at the row before, for probes that see nothing else.
     gone: Option<Gone>,
     course: Course,
@@ -138,7 +136,7 @@ impl Recorder {
             state,
             noted,
             inputs: Vec::new(),
-            looks_at_others: Vec::new(),
+            fetches: Vec::new(),
             gone: None,
             course,
             writes,
@@ -160,23 +158,19 @@ impl Recorder {
         }
     }
 
-    /// Nodes that every process follows: stations are looked at in every step, supports in rows and frames, and some few nodes
-    /// in rows. Finds which probes look at others.
-    pub(crate) fn watch_nodes(&mut self, scene: &Scene) -> Vec<u32> {
-        let few = scene.solid.reference.len() / WATCHED_PART;
-        let mut watched = Vec::new();
-        let mut looks_at_others = |probe: &Probe| match probe.nodes(scene) {
-            Some((nodes, of_supports)) if of_supports || nodes.len() <= few => {
-                watched.extend(nodes);
-                false
-            }
-            _ => true,
-        };
-        self.looks_at_others =
-            self.probes.iter().map(|probe| probe.as_ref().is_some_and(&mut looks_at_others)).collect();
-        let stations = self.ppv.iter().flat_map(|of| &of.stations).flat_map(|station| &station.nodes).copied();
-        let held = (0..).zip(scene.supports().held()).filter(|(_, held)| **held != 0).map(|(node, _)| node);
-        watched.extend(stations.chain(held.filter(|_| self.case.output.fields.reaction)));
+    /// Nodes and particles that every process follows: stations are looked at in every step, supports in rows and frames, and some few
+    /// points in rows. Finds what probes look at beside them.
+    pub(crate) fn watch_points(&mut self, scene: &Scene) -> Watched {
+        let (mut watched, fetches) = points_of_probes(&self.probes, scene);
+        self.fetches = fetches;
+        let stations = self.ppv.iter().flat_map(|of| &of.stations).flat_map(|station| &station.nodes);
+        watched.nodes.extend(stations);
+        if self.case.output.fields.reaction {
+            let held =
+                |held: &[u8]| (0..).zip(held).filter(|(_, held)| **held != 0).map(|(i, _)| i).collect::<Vec<u32>>();
+            watched.nodes.extend(held(scene.supports().held()));
+            watched.particles.extend(held(scene.bonded.supports().held()));
+        }
         watched
     }
 
@@ -245,13 +239,21 @@ impl Recorder {
         };
         let all = (0..).zip(&self.probes).filter_map(|(index, probe)| Some((index, probe.as_ref()?)));
         let due: Vec<(usize, &Probe)> = all.filter(|(index, probe)| !is_known(*index, probe)).collect();
-        if due.iter().any(|(_, probe)| probe.needs_damage()) {
+        let fetches = |of: fn(&Fetch) -> bool| due.iter().any(|(index, _)| self.fetches.get(*index).is_some_and(of));
+        if fetches(|fetch| fetch.damage) {
             scene.gather_damage();
         }
-        if due.iter().any(|(index, _)| self.looks_at_others.get(*index).is_some_and(|others| *others)) {
+        if fetches(|fetch| fetch.nodes) {
             scene.gather_nodes();
         }
-        let probed = ProbedScene::new(scene);
+        if fetches(|fetch| fetch.particles) {
+            scene.gather_particles();
+        }
+        if fetches(|fetch| fetch.contacts) {
+            scene.gather_contacts();
+        }
+        let counts = if fetches(|fetch| fetch.contacts) { scene.counts() } else { counts };
+        let probed = ProbedScene::with_counts(scene, counts);
         for index in 0..case.probes.len() {
             let value = match (&case.probes[index].kind, &self.probes[index]) {
                 (_, Some(probe)) if is_known(index, probe) => {

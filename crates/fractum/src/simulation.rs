@@ -289,7 +289,7 @@ impl Simulation {
         self.solver.take_over(&mut self.scene, was_moving);
         self.recorder.set_probes(built.probes);
         self.case = Arc::new(case);
-        let watched = self.recorder.watch_nodes(&self.scene);
+        let watched = self.recorder.watch_points(&self.scene);
         self.ranks.share_out(&mut self.scene, &watched)
     }
 

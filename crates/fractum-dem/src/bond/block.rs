@@ -124,6 +124,11 @@ impl<L: BondLaw> Block<L> {
         }
     }
 
+    /// Has room for sums of virials and of their bounds.
+    pub(super) fn make_room_for_details(&mut self) {
+        make_room(self.sums.len(), &mut self.virials, &mut self.virial_bounds);
+    }
+
     #[inline(always)]
     fn sum_bonds<const FORCES: bool, const DETAIL: u8>(
         &mut self,
@@ -141,8 +146,7 @@ impl<L: BondLaw> Block<L> {
         }
         if DETAIL == VIRIALS || DETAIL == BOUNDS {
             // Both at once, so that no later step allocates.
-            virials.resize(sums.len(), [0.0; 6]);
-            virial_bounds.resize(sums.len(), [0.0; 2]);
+            make_room(sums.len(), virials, virial_bounds);
         }
         if DETAIL == VIRIALS {
             virials.fill([0.0; 6]);
@@ -173,6 +177,11 @@ impl<L: BondLaw> Block<L> {
             }
         }
     }
+}
+
+fn make_room(sums: usize, virials: &mut Vec<[f64; 6]>, virial_bounds: &mut Vec<[f64; 2]>) {
+    virials.resize(sums, [0.0; 6]);
+    virial_bounds.resize(sums, [0.0; 2]);
 }
 
 widest! {

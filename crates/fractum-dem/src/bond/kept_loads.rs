@@ -30,7 +30,7 @@ impl<L: BondLaw> BondNetwork<L> {
             groups.flat_map(of_group).collect::<Vec<u32>>()
         };
         list.clear();
-        list.par_extend(self.blocks.par_iter().flat_map_iter(listed));
+        list.par_extend(self.blocks[self.own_blocks()].par_iter().flat_map_iter(listed));
     }
 
     /// What a bond bore at the last [`BondNetwork::add_forces_and_loads`], to rounding; none where that keeps nothing.

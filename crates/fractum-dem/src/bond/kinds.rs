@@ -1,5 +1,7 @@
 //! The choice of a bond law: the only place that names every law, matched once per batch of bonds.
 
+use std::ops::Range;
+
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +11,7 @@ use super::law::{LocalBond, Separation};
 use super::loads::{LoadLanes, LoadSizes};
 use super::network::BondNetwork;
 use crate::DemError;
-use crate::particles::Particles;
+use crate::particles::{ParticlePart, Particles};
 
 macro_rules! laws {
     ($($(#[$doc:meta])* $name:ident($law:ty),)*) => {
@@ -145,6 +147,31 @@ impl Bonds {
     /// See [`BondNetwork::take_separated`].
     pub fn take_separated(&mut self, out: &mut Vec<(u32, Separation)>) {
         each!(self, network => network.take_separated(out));
+    }
+
+    /// See [`BondNetwork::share_out`].
+    pub fn share_out(&mut self, part: &ParticlePart) {
+        each!(self, network => network.share_out(part));
+    }
+
+    /// See [`BondNetwork::can_be_shared`].
+    pub fn can_be_shared(&self) -> bool {
+        each!(self, network => network.can_be_shared())
+    }
+
+    /// See [`BondNetwork::has_memory`].
+    pub fn has_memory(&self) -> bool {
+        each!(self, network => network.has_memory())
+    }
+
+    /// See [`BondNetwork::gather_memory`].
+    pub fn gather_memory(&mut self) {
+        each!(self, network => network.gather_memory());
+    }
+
+    /// Bonds that this process computes; all where there is one.
+    pub(crate) fn own_bonds(&self) -> Range<usize> {
+        each!(self, network => network.own_bonds())
     }
 
     /// See [`BondNetwork::viscous_time`].

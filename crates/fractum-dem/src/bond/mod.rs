@@ -8,8 +8,10 @@ mod law;
 mod loads;
 mod mean_strain;
 mod network;
+mod network_part;
 mod nonlocal;
 mod separating;
+mod share;
 mod space_cells;
 
 pub(crate) use graph::check_pairs;

@@ -4,16 +4,17 @@ use fractum_math::{Sym3, Vec3};
 use nalgebra::Matrix6;
 use rayon::prelude::*;
 
-use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, sum_bonds, sum_energies};
+use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, sum_energies};
 use super::graph::{BondGraph, check_pairs};
 use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
 use super::mean_strain::{MeanStrain, Separating};
+use super::network_part::NetworkPart;
 use crate::DemError;
 use crate::lanes::WIDTH;
-use crate::particles::Particles;
+use crate::particles::{Particles, SHARED};
 
 /// Particles whose bonds form one block of parallel work.
-pub(super) const BLOCK: usize = 2048;
+pub(super) const BLOCK: usize = SHARED;
 
 /// The bonds of a body under one law, ready for many time steps.
 ///
@@ -35,6 +36,8 @@ pub struct BondNetwork<L: BondLaw> {
     pub(super) mean: Option<MeanStrain>,
     /// What separates under them.
     pub(super) separating: Separating,
+    /// The blocks of this process, where several share the bonds.
+    pub(super) part: Option<Box<NetworkPart>>,
 }
 
 impl<L: BondLaw> BondNetwork<L> {
@@ -96,7 +99,7 @@ impl<L: BondLaw> BondNetwork<L> {
             None => None,
         };
         let separating = Separating::default();
-        Ok(BondNetwork { law, pairs, axis, length, own, live, blocks, index, mean, separating })
+        Ok(BondNetwork { law, pairs, axis, length, own, live, blocks, index, mean, separating, part: None })
     }
 
     /// Number of bonds, broken ones included.
@@ -175,7 +178,7 @@ impl<L: BondLaw> BondNetwork<L> {
         L::remember(memory, lane, &mut groups[group].recent, &mut own[group]);
     }
 
-    /// Energy that all bonds have dissipated so far, broken ones included [J].
+    /// Energy that all bonds have dissipated so far, broken ones included [J]. All ranks must call it where several share the bonds.
     pub fn dissipated(&self) -> f64 {
         if size_of::<L::Memory>() == 0 {
             return 0.0;
@@ -186,14 +189,15 @@ impl<L: BondLaw> BondNetwork<L> {
             memories
                 .fold(0.0, |sum, (bond, memory)| sum + self.law.dissipated(self.length[bond], &self.own[bond], memory))
         };
-        let parts: Vec<f64> = self.blocks.par_iter().map(of).collect();
-        parts.iter().sum()
+        self.of_all_blocks(|block| [of(block)]).iter().flatten().sum()
     }
 
-    /// Bonds that have separated by the law since the last call, ascending, with the way they did.
+    /// Bonds that have separated by the law since the last call, ascending, with the way they did. All ranks must call it where several
+    /// share the bonds.
     pub fn take_separated(&mut self, out: &mut Vec<(u32, Separation)>) {
         out.clear();
-        for block in &mut self.blocks {
+        let own = self.own_blocks();
+        for block in &mut self.blocks[own] {
             for bond in block.separated.drain(..) {
                 let (group, lane) = (bond as usize / WIDTH, bond as usize % WIDTH);
                 if let Some(how) = L::separation(&block.memory[group][lane]) {
@@ -201,6 +205,7 @@ impl<L: BondLaw> BondNetwork<L> {
                 }
             }
         }
+        self.named_by_all(out);
     }
 
     /// Largest viscous resistance over stiffness of a bond [s]; 0 where there is no resistance.
@@ -256,17 +261,15 @@ impl<L: BondLaw> BondNetwork<L> {
 
     /// Finds the virials at the present positions, and leaves forces as they are.
     pub fn find_virials(&mut self, particles: &Particles) {
-        let Particles { position, orientation, .. } = particles;
-        let law = self.law;
-        self.blocks.par_iter_mut().for_each(|block| sum_bonds::<L, false, VIRIALS>(block, position, orientation, &law));
+        self.sum_own::<false, VIRIALS>(particles);
     }
 
     /// Bounds of the principal values of the virials [N m], as at the last [`BondNetwork::add_forces_and_virial_bounds`]: the sums of
     /// the largest ones of each bond, and of the smallest ones with their sign changed. ½ sym(r ⊗ f) has the principal
     /// values ¼ (r·f ± |r| |f|) and 0, and the largest one of a sum is at most the sum of the largest ones.
     pub fn virial_bounds(&self, out: &mut [[f64; 2]]) {
-        let blocks = &self.blocks;
-        out.par_chunks_mut(BLOCK).zip(blocks).for_each(|(out, block)| {
+        let (blocks, (out, own)) = (&self.blocks, self.own_of(out));
+        out.par_chunks_mut(BLOCK).zip(own).for_each(|(out, block)| {
             out.fill([0.0; 2]);
             out.iter_mut().zip(&block.virial_bounds).for_each(|(out, sum)| *out = *sum);
             for &(from, slot, own) in &block.incoming {
@@ -280,8 +283,8 @@ impl<L: BondLaw> BondNetwork<L> {
     /// Half the sums of sym(r_ij ⊗ f_ij) over the bonds of each particle [N m], as at the last
     /// [`BondNetwork::add_forces_and_virials`] or [`BondNetwork::find_virials`]; zero before it.
     pub fn virials(&self, out: &mut [Sym3]) {
-        let blocks = &self.blocks;
-        out.par_chunks_mut(BLOCK).zip(blocks).for_each(|(out, block)| {
+        let (blocks, (out, own)) = (&self.blocks, self.own_of(out));
+        out.par_chunks_mut(BLOCK).zip(own).for_each(|(out, block)| {
             out.fill(Sym3::ZERO);
             // Components of Voigt order xx yy zz xy yz zx; the sums hold them so.
             out.iter_mut().zip(&block.virials).for_each(|(out, sum)| *out = Sym3(*sum));
@@ -297,17 +300,15 @@ impl<L: BondLaw> BondNetwork<L> {
         if self.mean.is_some() {
             return self.add_deviating_forces(particles);
         }
-        let law = self.law;
-        let Particles { position, orientation, .. } = &*particles;
-        self.blocks.par_iter_mut().for_each(|block| sum_bonds::<L, true, DETAIL>(block, position, orientation, &law));
+        self.sum_own::<true, DETAIL>(particles);
         self.add_sums(&mut particles.force, &mut particles.moment);
     }
 
     /// Adds the sums of the blocks to the forces and moments of their particles.
     pub(super) fn add_sums(&self, force: &mut [Vec3], moment: &mut [Vec3]) {
-        let blocks = &self.blocks;
+        let (blocks, (force, own), (moment, _)) = (&self.blocks, self.own_of(force), self.own_of(moment));
         let owned = force.par_chunks_mut(BLOCK).zip(moment.par_chunks_mut(BLOCK));
-        owned.zip(blocks).for_each(|((force, moment), block)| {
+        owned.zip(own).for_each(|((force, moment), block)| {
             let mut add = |i: usize, s: &[f64; 6]| {
                 force[i] += Vec3::new(s[0], s[1], s[2]);
                 moment[i] += Vec3::new(s[3], s[4], s[5]);
@@ -357,12 +358,17 @@ impl<L: BondLaw> BondNetwork<L> {
         }
     }
 
-    /// Energy that all live bonds would give back, by parts [J].
+    /// Energy that all live bonds would give back, by parts [J]. All ranks must call it where several share the bonds.
     pub fn energy(&self, particles: &Particles) -> BondEnergy {
         let Particles { position, orientation, .. } = particles;
-        let of = |block| sum_energies(block, position, orientation, &self.law, self.mean.as_ref());
-        let parts: Vec<BondEnergy> = self.blocks.par_iter().map(of).collect();
-        let bonds = parts.into_iter().fold(BondEnergy::default(), BondEnergy::add);
+        let of = |block: &Block<L>| {
+            let BondEnergy { tension, bending, torsion } =
+                sum_energies(block, position, orientation, &self.law, self.mean.as_ref());
+            [tension, bending, torsion]
+        };
+        let parts = self.of_all_blocks(of).into_iter();
+        let parts = parts.map(|[tension, bending, torsion]| BondEnergy { tension, bending, torsion });
+        let bonds = parts.fold(BondEnergy::default(), BondEnergy::add);
         match &self.mean {
             None => bonds,
             Some(mean) => BondEnergy { tension: bonds.tension + mean.energy(), ..bonds },

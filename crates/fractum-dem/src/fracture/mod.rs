@@ -6,6 +6,7 @@ mod faces;
 mod moving;
 mod search;
 mod separated;
+mod share;
 
 pub(crate) use crack::facet_area;
 pub use crack::{Crack, Occasion};

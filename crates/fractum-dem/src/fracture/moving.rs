@@ -12,7 +12,7 @@ use super::faces::{CrackFaces, Face, FaceWork};
 use super::search::{Break, FailureSearch, ListedBonds, LoadedBonds};
 use crate::DemError;
 use crate::bond::{BondForces, BondGraph, Bonds, LoadLanes, LoadSizes, Separation};
-use crate::particles::Particles;
+use crate::particles::{ParticlePart, Particles};
 
 /// Gap up to which strangers are listed, over the smallest radius.
 const SKIN: f64 = 0.5;
@@ -226,26 +226,48 @@ impl Fracture {
     /// are and act on the kick that follows: taken away at once, a force would cost the balance its square, whatever the
     /// motion. [`Fracture::book_last_work`] takes what they do in it off the energies of the cracks.
     pub fn break_overloaded(&mut self, bonds: &mut Bonds, particles: &Particles, occasion: Occasion) -> usize {
-        let Some(search) = &mut self.search else { return self.list_separated(bonds, occasion) };
+        self.find_overloaded(bonds, particles);
+        self.break_found(bonds, particles, occasion)
+    }
+
+    /// Leaves the search to ranks. Every rank must have the same body in the same state; from then on each finds what fails of its own
+    /// and all break it, which needs the particles of [`Fracture::found`] on every rank.
+    pub fn share_out(&mut self, part: &ParticlePart, bonds: &Bonds) {
+        self.search.iter_mut().for_each(|search| search.share_out(part, bonds, &self.graph));
+    }
+
+    /// Finds what [`Fracture::break_found`] is to break: for every overloaded site what it releases.
+    pub fn find_overloaded(&mut self, bonds: &mut Bonds, particles: &Particles) {
+        self.breaks.clear();
+        let Some(search) = &mut self.search else { return };
         if self.detail == Detail::Bounds {
             if !search.virial_bounds_may_fail(bonds, 1.0) {
-                return 0;
+                return;
             }
             self.steps_with_tensor = STEPS_WITH_TENSOR;
             self.need_virials(bonds, particles);
         } else {
             self.steps_with_tensor = self.steps_with_tensor.saturating_sub(1);
         }
-        let Fracture { graph, search: Some(search), sites, breaks, .. } = self else { return 0 };
+        let Fracture { graph, search: Some(search), sites, breaks, .. } = self else { return };
         search.search_overloaded(&Moving { bonds, particles }, graph, 1.0);
-        if search.overloaded().is_empty() {
-            return 0;
-        }
         sites.clear();
         sites.extend_from_slice(search.overloaded());
-        breaks.clear();
         for site in sites.iter() {
             search.breaks(site, &Moving { bonds, particles }, graph, breaks);
+        }
+        search.breaks_of_all(breaks);
+    }
+
+    /// Particles of the bonds that were found to break.
+    pub fn found(&self) -> impl Iterator<Item = u32> {
+        self.breaks.iter().flat_map(|broken| self.graph.pairs()[broken.bond as usize])
+    }
+
+    /// Breaks what was found last, or lists what has separated by its law. Returns the number of bonds.
+    pub fn break_found(&mut self, bonds: &mut Bonds, particles: &Particles, occasion: Occasion) -> usize {
+        if self.search.is_none() {
+            return self.list_separated(bonds, occasion);
         }
         let before = self.cracks.len();
         for k in 0..self.breaks.len() {
@@ -318,6 +340,16 @@ impl Fracture {
         let mut work = FaceWork::default();
         self.pairs.iter_mut().for_each(|face| face.add_force(particles, dt, &mut work));
         work
+    }
+
+    /// Whether [`Fracture::find_new_pairs`] would look for any.
+    pub fn may_have_new_pairs(&self) -> bool {
+        !self.cracks.is_empty()
+    }
+
+    /// Particles of all crack faces, and of strangers that may touch.
+    pub fn face_particles(&self) -> impl Iterator<Item = u32> {
+        self.pairs.iter().flat_map(|face| face.pair)
     }
 
     /// Pairs of particles that touch where no bond joins them.

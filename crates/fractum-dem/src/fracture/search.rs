@@ -5,8 +5,10 @@ use fractum_math::{Sym3, Vec3, sphere_volume};
 use super::criterion::{
     BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule, SeenBonds,
 };
+use super::share::SearchPart;
 use crate::DemError;
 use crate::bond::{BondGraph, Bonds, LoadLanes, LoadSizes};
+use crate::particles::ParticlePart;
 
 /// What a criterion needs to know of a bonded body.
 pub trait LoadedBonds: Sync {
@@ -62,6 +64,8 @@ pub struct FailureSearch {
     /// Sites over the limit at the last search, by index.
     overloaded: Vec<FailureSite>,
     worst: Option<FailureSite>,
+    /// Sites of this process, where several share them.
+    part: Option<Box<SearchPart>>,
 }
 
 impl FailureSearch {
@@ -110,6 +114,7 @@ impl FailureSearch {
             listed: Vec::new(),
             overloaded: Vec::new(),
             worst: None,
+            part: None,
         };
         search.gather_all(graph);
         Ok(search)
@@ -162,6 +167,25 @@ impl FailureSearch {
         self.inverse[i] = self.fraction / space;
     }
 
+    /// Leaves the sites to ranks: particles to those that move them, bonds to those that compute them.
+    pub(super) fn share_out(&mut self, part: &ParticlePart, bonds: &Bonds, graph: &BondGraph) {
+        let rings = match self.criterion.level() {
+            None | Some(Level::Own) => 0,
+            Some(Level::Neighbours) => 1,
+            Some(Level::Second) => 2,
+        };
+        self.part = Some(Box::new(SearchPart::new(part, bonds, graph, rings)));
+    }
+
+    /// The bonds that break on any rank, by those of this one.
+    pub(super) fn breaks_of_all(&self, own: &mut Vec<Break>) {
+        if let Some(part) = &self.part {
+            let mine: Vec<(u32, BreakMode)> = own.iter().map(|Break { bond, mode }| (*bond, *mode)).collect();
+            own.clear();
+            own.extend(part.named_by_all(&mine).into_iter().map(|(bond, mode)| Break { bond, mode }));
+        }
+    }
+
     /// Takes note that a bond of the graph has broken: only the neighbourhoods that it led through change.
     pub fn bond_broken(&mut self, bond: u32, graph: &BondGraph) {
         let ends = graph.pairs()[bond as usize].map(|i| i as usize);
@@ -182,8 +206,19 @@ impl FailureSearch {
     /// neighbourhood is a mean of its members' own, and bounds are convex, so that no neighbourhood exceeds the largest
     /// bound of one of its particles alone.
     pub fn search_overloaded(&mut self, body: &impl ListedBonds, graph: &BondGraph, limit: f64) {
-        let FailureSearch { criterion, volume, inverse, fraction, members, virials, stress, reaching, listed, .. } =
-            self;
+        let FailureSearch {
+            criterion,
+            volume,
+            inverse,
+            fraction,
+            members,
+            virials,
+            stress,
+            reaching,
+            listed,
+            part,
+            ..
+        } = self;
         self.overloaded.clear();
         self.worst = None;
         match criterion.rule() {
@@ -195,9 +230,15 @@ impl FailureSearch {
             }
             Rule::Stress(criterion) => {
                 body.virials(virials);
-                if criterion.virials_reach(virials, volume, *fraction, limit, reaching) {
-                    let around = Neighbourhoods { graph, members, inverse, virials };
-                    let found = criterion.search_among(&around, reaching, stress, limit);
+                let own = part.as_ref().map_or(0..virials.len(), |part| part.particles());
+                let (virial, volume) = (&virials[own.clone()], &volume[own.clone()]);
+                let mut any = criterion.virials_reach(virial, volume, *fraction, limit, &mut reaching[own.clone()]);
+                if let Some(part) = part {
+                    any |= part.tell(virials, reaching);
+                }
+                if any {
+                    let around = Neighbourhoods { graph, members, inverse, virials, first: own.start };
+                    let found = criterion.search_among(&around, reaching, &mut stress[own], limit);
                     found.iter().for_each(|block| self.overloaded.extend_from_slice(&block.overloaded));
                 }
             }
@@ -208,21 +249,29 @@ impl FailureSearch {
     pub fn virial_bounds_may_fail(&mut self, bonds: &Bonds, limit: f64) -> bool {
         let Rule::Stress(criterion) = self.criterion.rule() else { return true };
         bonds.virial_bounds(&mut self.virial_bounds);
-        criterion.bounds_reach(&self.virial_bounds, &self.volume, self.fraction, limit)
+        let own = self.part.as_ref().map_or(0..self.volume.len(), |part| part.particles());
+        let own_reach =
+            criterion.bounds_reach(&self.virial_bounds[own.clone()], &self.volume[own], self.fraction, limit);
+        self.part.as_ref().map_or(own_reach, |part| part.any(own_reach))
     }
 
-    /// Searches all sites: finds the one nearest to failure, and those with a ratio of at least `limit`.
+    /// Searches all sites: finds the one nearest to failure, and those with a ratio of at least `limit`; only those of this
+    /// process where several share them.
     pub fn search(&mut self, body: &impl LoadedBonds, graph: &BondGraph, limit: f64) {
         let criterion = self.criterion;
         let found = match criterion.rule() {
             Rule::Load(criterion) => {
                 let seen = SeenBonds { load: &|bond| body.load(bond), sizes: &|bond| body.sizes(bond) };
-                criterion.search(&seen, graph, limit)
+                let own = self.part.as_ref().map_or(0..graph.pairs().len(), |part| part.bonds());
+                criterion.search(&seen, graph, own, limit)
             }
             Rule::Stress(criterion) => {
                 body.virials(&mut self.virials);
-                let FailureSearch { members, inverse, virials, stress, .. } = self;
-                criterion.search(&Neighbourhoods { graph, members, inverse, virials }, stress, limit)
+                let FailureSearch { members, inverse, virials, stress, part, reaching, .. } = self;
+                let own = part.as_ref().map_or(0..virials.len(), |part| part.particles());
+                part.iter_mut().for_each(|part| _ = part.tell(virials, reaching));
+                let around = Neighbourhoods { graph, members, inverse, virials, first: own.start };
+                criterion.search(&around, &mut stress[own], limit)
             }
         };
         self.overloaded.clear();
@@ -235,6 +284,9 @@ impl FailureSearch {
             {
                 self.worst = Some(site);
             }
+        }
+        if let Some(part) = &self.part {
+            self.worst = part.worst(self.worst);
         }
     }
 

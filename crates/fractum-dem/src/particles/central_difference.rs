@@ -1,34 +1,14 @@
 //! The time integrator: central differences with velocities at half steps, which is velocity Verlet seen from the middle
 //! of its steps, for steps that may differ in size and energies that balance to round-off.
 
+use std::ops::Range;
+
 use fractum_math::{HalfSteps, Vec3};
 use rayon::prelude::*;
 
 use super::kernel::{self, Moving};
 use super::step::{ParticleDamping, TimeStep};
-use super::{BLOCK, Particles, free};
-
-/// Forces and moments of a step, which the scheme of Tchamwa and Wielgosz compares with those of the next (Mahéo, Grolleau
-/// and Rio 2013).
-///
-/// It drifts by Δt v + φ Δt² a. Seen from velocities u = Δx/Δt at half steps this reads
-/// uⁿ⁺½ = uⁿ⁻½ + Δt aⁿ + (φ − 1) Δt (aⁿ − aⁿ⁻¹): central differences with the resistance (φ − 1)(Fⁿ − Fⁿ⁻¹), which in a
-/// linear body is damping proportional to stiffness with the time (φ − 1) Δt. So its work can be booked like that of any
-/// damping. Without forces of a step before, as here by default, the first step is the one of the scheme from rest.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct PastForces {
-    /// Forces on the free degrees of freedom [N], one per particle.
-    pub force: Vec<Vec3>,
-    /// Moments on them [N m].
-    pub moment: Vec<Vec3>,
-}
-
-impl PastForces {
-    /// No forces on `count` particles.
-    pub fn none(count: usize) -> Self {
-        PastForces { force: vec![Vec3::zeros(); count], moment: vec![Vec3::zeros(); count] }
-    }
-}
+use super::{BLOCK, ParticlePart, Particles, PastForces, free};
 
 impl Particles {
     /// Number of entries that [`Particles::kick_and_drift`] needs for its partial sums.
@@ -46,12 +26,42 @@ impl Particles {
     ///   rotation: the product that the scheme conserves exactly in a linear body; as the step after sees it, it is
     ///   ½ Σ m vⁿ⁺½ · (vⁿ⁺½ - Δt aⁿ), another one where the step changes
     pub fn kick_and_drift(&mut self, step: &TimeStep, before: &mut PastForces, partial: &mut [HalfSteps]) -> HalfSteps {
-        let motion = self.position.par_chunks_mut(BLOCK).zip(self.orientation.par_chunks_mut(BLOCK));
-        let rates = self.velocity.par_chunks_mut(BLOCK).zip(self.spin.par_chunks_mut(BLOCK));
-        let loads = self.force.par_chunks(BLOCK).zip(self.moment.par_chunks(BLOCK));
-        let weights = self.mass.par_chunks(BLOCK).zip(self.inertia.par_chunks(BLOCK));
-        let constants = weights.zip(self.held.par_chunks(BLOCK));
-        let past = (step.damping.dissipation != 0.0).then_some([&before.force[..], &before.moment[..]]);
+        self.advance(0..self.len(), step, before, partial);
+        partial.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
+    }
+
+    /// [`Particles::kick_and_drift`] of what a rank moves. All ranks must call it.
+    pub fn kick_and_drift_part(
+        &mut self,
+        part: &ParticlePart,
+        step: &TimeStep,
+        before: &mut PastForces,
+        partial: &mut [HalfSteps],
+    ) -> HalfSteps {
+        let own = part.own();
+        let blocks = own.start / BLOCK..own.end.div_ceil(BLOCK);
+        self.advance(own, step, before, &mut partial[blocks]);
+        part.of_others().iter().for_each(|run| self.advance_run(run.clone(), step, before));
+        if step.measure || !step.damping.is_off() {
+            part.tell_work(partial);
+        }
+        partial.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
+    }
+
+    /// Advances a range of particles.
+    ///
+    /// - `partial`: what each [`BLOCK`] of them has done
+    fn advance(&mut self, range: Range<usize>, step: &TimeStep, before: &mut PastForces, partial: &mut [HalfSteps]) {
+        let all = &mut *self;
+        let motion = all.position[range.clone()].par_chunks_mut(BLOCK);
+        let motion = motion.zip(all.orientation[range.clone()].par_chunks_mut(BLOCK));
+        let rates = all.velocity[range.clone()].par_chunks_mut(BLOCK);
+        let rates = rates.zip(all.spin[range.clone()].par_chunks_mut(BLOCK));
+        let loads = all.force[range.clone()].par_chunks(BLOCK).zip(all.moment[range.clone()].par_chunks(BLOCK));
+        let weights = all.mass[range.clone()].par_chunks(BLOCK).zip(all.inertia[range.clone()].par_chunks(BLOCK));
+        let constants = weights.zip(all.held[range.clone()].par_chunks(BLOCK));
+        let damps = step.damping.dissipation != 0.0;
+        let past = damps.then(|| [&before.force[range.clone()], &before.moment[range.clone()]]);
         motion.zip(rates).zip(loads.zip(constants)).zip(partial.par_iter_mut()).enumerate().for_each(
             |(
                 block,
@@ -64,17 +74,36 @@ impl Particles {
                 *work = kernel::advance(particles, step);
             },
         );
-        if step.damping.dissipation != 0.0 {
-            let past = before.force.par_chunks_mut(BLOCK).zip(before.moment.par_chunks_mut(BLOCK));
-            let loads = self.force.par_chunks(BLOCK).zip(self.moment.par_chunks(BLOCK));
-            past.zip(loads).zip(self.held.par_chunks(BLOCK)).for_each(|((past, loads), held)| {
-                for k in 0..held.len() {
-                    past.0[k] = free(loads.0[k], held[k]);
-                    past.1[k] = free(loads.1[k], held[k] >> 3);
-                }
-            });
+        if damps {
+            let past = before.force[range.clone()].par_chunks_mut(BLOCK);
+            let past = past.zip(before.moment[range.clone()].par_chunks_mut(BLOCK));
+            let loads = self.force[range.clone()].par_chunks(BLOCK).zip(self.moment[range.clone()].par_chunks(BLOCK));
+            let held = self.held[range].par_chunks(BLOCK);
+            past.zip(loads).zip(held).for_each(|((past, loads), held)| note(past, loads, held));
         }
-        partial.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
+    }
+
+    /// Advances a run of particles that another rank counts.
+    fn advance_run(&mut self, run: Range<usize>, step: &TimeStep, before: &mut PastForces) {
+        let Particles { position, orientation, velocity, spin, force, moment, mass, inertia, held, .. } = self;
+        let (force, moment, held) = (&force[run.clone()], &moment[run.clone()], &held[run.clone()]);
+        let damps = step.damping.dissipation != 0.0;
+        let particles = Moving {
+            position: &mut position[run.clone()],
+            orientation: &mut orientation[run.clone()],
+            velocity: &mut velocity[run.clone()],
+            spin: &mut spin[run.clone()],
+            force,
+            moment,
+            mass: &mass[run.clone()],
+            inertia: &inertia[run.clone()],
+            held,
+            past: damps.then(|| [&before.force[run.clone()], &before.moment[run.clone()]]),
+        };
+        kernel::advance(particles, step);
+        if damps {
+            note((&mut before.force[run.clone()], &mut before.moment[run]), (force, moment), held);
+        }
     }
 
     /// Velocities and spins given at t = 0 become those of half a step before it.
@@ -84,6 +113,14 @@ impl Particles {
             self.velocity[i] -= free(self.force[i], held) * (0.5 * dt / self.mass[i]);
             self.spin[i] -= free(self.moment[i], held >> 3) * (0.5 * dt / self.inertia[i]);
         }
+    }
+}
+
+/// Keeps the forces and moments on free degrees of freedom.
+fn note(past: (&mut [Vec3], &mut [Vec3]), loads: (&[Vec3], &[Vec3]), held: &[u8]) {
+    for k in 0..held.len() {
+        past.0[k] = free(loads.0[k], held[k]);
+        past.1[k] = free(loads.1[k], held[k] >> 3);
     }
 }
 

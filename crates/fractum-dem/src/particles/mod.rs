@@ -2,10 +2,14 @@
 
 mod central_difference;
 mod kernel;
+mod part;
+mod past_forces;
 mod step;
 
-pub use central_difference::{CentralDifference, PastForces};
+pub use central_difference::CentralDifference;
 pub(crate) use kernel::turned;
+pub use part::{ParticlePart, ParticleShare};
+pub use past_forces::PastForces;
 pub use step::{ParticleDamping, TimeStep};
 
 use fractum_math::{Rotation, Vec3};
@@ -14,6 +18,9 @@ use crate::DemError;
 
 /// Number of particles handled as one block by the parallel loops.
 pub(crate) const BLOCK: usize = 1024;
+
+/// Particles that one process has as a whole, where several share them, and whose bonds are computed together.
+pub(crate) const SHARED: usize = 2 * BLOCK;
 
 /// Discrete elements: spheres that move and turn. One entry per particle in every array.
 #[derive(Clone, Debug, Default)]

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use fractum_math::{CHUNK, Vec3};
-use fractum_parallel::{Exchange, Message};
+use fractum_parallel::{Exchange, Swapped, rank_of};
 
-use super::plan::rank_of;
 use crate::block::NodeSlots;
 
 /// The chunks of every rank, and their nodes that other ranks have.
@@ -14,9 +13,8 @@ pub(super) struct Chunks {
     me: usize,
     /// The rank of each chunk: that which has most of its nodes, the lowest of these.
     owner: Vec<usize>,
-    messages: Vec<Message>,
-    /// Nodes to send and to receive, message by message; three numbers each.
-    nodes: Vec<[Vec<u32>; 2]>,
+    /// Nodes of own chunks that other ranks have, and the other way round.
+    nodes: Swapped<u32>,
 }
 
 impl Chunks {
@@ -40,23 +38,15 @@ impl Chunks {
             for node in chunk {
                 let ranks = ranks_of(node);
                 // The lowest rank that has it tells of a node.
-                match ranks.first() {
-                    Some(&teller) if !ranks.contains(&own) => {
-                        if teller == me {
-                            between.entry(own).or_default()[0].push(node as u32);
-                        } else if own == me {
-                            between.entry(teller).or_default()[1].push(node as u32);
-                        }
-                    }
-                    _ => {}
+                let Some(&teller) = ranks.first().filter(|_| !ranks.contains(&own)) else { continue };
+                if teller == me {
+                    between.entry(own).or_default()[0].push(node as u32);
+                } else if own == me {
+                    between.entry(teller).or_default()[1].push(node as u32);
                 }
             }
         }
-        let message = |(&rank, nodes): (&usize, &[Vec<u32>; 2])| {
-            let [send, receive] = nodes.each_ref().map(|nodes| vec![0.0; 3 * nodes.len()]);
-            Message { rank, send, receive }
-        };
-        Chunks { me, owner, messages: between.iter().map(message).collect(), nodes: between.into_values().collect() }
+        Chunks { me, owner, nodes: Swapped::new(between) }
     }
 
     /// Whether this rank adds what the nodes of a chunk have.
@@ -66,17 +56,8 @@ impl Chunks {
 
     /// Gets values of the nodes of own chunks that other ranks have.
     pub(super) fn fetch(&mut self, exchange: &dyn Exchange, values: &mut [Vec3]) {
-        for (message, [send, _]) in self.messages.iter_mut().zip(&self.nodes) {
-            for (to, &node) in message.send.chunks_exact_mut(3).zip(send) {
-                to.copy_from_slice(values[node as usize].as_slice());
-            }
-        }
-        exchange.swap(&mut self.messages, &mut || {});
-        for (message, [_, receive]) in self.messages.iter().zip(&self.nodes) {
-            for (from, &node) in message.receive.chunks_exact(3).zip(receive) {
-                values[node as usize] = Vec3::from_column_slice(from);
-            }
-        }
+        let get = |values: &[Vec3], node: u32| values[node as usize].into();
+        self.nodes.tell(exchange, values, get, |values, node, from: [f64; 3]| values[node as usize] = from.into());
     }
 
     /// Gives every rank the sums of all chunks, once each has those of its own.

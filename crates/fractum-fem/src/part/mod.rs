@@ -17,7 +17,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use fractum_math::{CHUNK, Vec3};
-use fractum_parallel::{Exchange, gather};
+use fractum_parallel::{Exchange, Told, gather, rank_of, runs_by_weight, runs_of};
 
 use crate::block::{Cells, NodeSlots, Slot};
 use crate::damage::{EdgeDamage, EdgeField};
@@ -25,8 +25,7 @@ use crate::evaluate::Block;
 
 use block_share::BlockShare;
 use chunks::Chunks;
-pub(crate) use plan::runs_of;
-use plan::{Plan, Told, rank_of};
+use plan::{Plan, told};
 pub(crate) use records::Events;
 use records::Records;
 
@@ -95,12 +94,12 @@ impl Part {
     /// The share of a rank, by the blocks of all.
     pub(crate) fn new(exchange: Arc<dyn Exchange>, blocks: &[Block], slots: &NodeSlots) -> Self {
         let weights: Vec<usize> = blocks.iter().map(|block| block.gradients.max(1)).collect();
-        let first = runs_of_blocks(&weights, exchange.size());
+        let first = runs_by_weight(&weights, exchange.size());
         Part {
             plan: Plan::new(slots, &first, exchange.rank()),
             chunks: Chunks::new(slots, &first, exchange.rank()),
-            all: Told::new(slots, &first, &mut (0..slots.len() as u32)),
-            everywhere: Told::none(exchange.size()),
+            all: told(slots, &first, 0..slots.len() as u32),
+            everywhere: Told::new(vec![Vec::new(); exchange.size()]),
             is_everywhere: vec![false; slots.len()],
             moved: Vec::new(),
             records: Records::default(),
@@ -121,7 +120,7 @@ impl Part {
     /// - `everywhere`: nodes that every rank shall move
     /// - `needs`: of numbers of blocks, see [`Records::new`]
     pub(crate) fn begin_stage(&mut self, slots: &NodeSlots, everywhere: &[u32], needs: [bool; 2]) {
-        self.everywhere = Told::none(self.exchange.size());
+        self.everywhere = Told::new(vec![Vec::new(); self.exchange.size()]);
         self.is_everywhere.fill(false);
         self.moved.clone_from(&self.plan.runs);
         self.move_everywhere(slots, everywhere);
@@ -143,7 +142,7 @@ impl Part {
             self.plan.runs[chunk].iter().for_each(|run| moved[run.clone()].fill(true));
             self.moved[chunk] = runs_of(&moved);
         }
-        let told = Told::new(slots, &self.first, &mut new.into_iter());
+        let told = told(slots, &self.first, new.into_iter());
         self.everywhere.append(&told);
         told
     }
@@ -152,8 +151,8 @@ impl Part {
     pub(crate) fn follow(&mut self, slots: &NodeSlots, nodes: &[u32], [displacement, velocity]: [&mut [Vec3]; 2]) {
         let mut told = self.move_everywhere(slots, nodes);
         if !self.is_whole {
-            told.tell(&*self.exchange, displacement);
-            told.tell(&*self.exchange, velocity);
+            tell(&mut told, &*self.exchange, displacement);
+            tell(&mut told, &*self.exchange, velocity);
         }
     }
 
@@ -176,8 +175,7 @@ impl Part {
             blocks: self.own().len(),
             nodes: self.moved.iter().flatten().map(Range::len).sum(),
             shared_nodes: nodes.collect::<BTreeSet<u32>>().len(),
-            bytes: plan.messages.iter().map(|message| size_of_val(&message.send[..])).sum::<usize>()
-                + 3 * size_of::<f64>() * everywhere.nodes[self.exchange.rank()].len(),
+            bytes: 3 * size_of::<f64>() * (plan.sums.sent().count() + everywhere.of(self.exchange.rank()).len()),
             memory: blocks.iter().map(Block::memory).sum(),
             keeps_all: self.exchange.size() > 1 && blocks.iter().all(|block| block.cells.len() > 0),
         }
@@ -185,7 +183,7 @@ impl Part {
 
     /// Where the sums lie that this rank gets.
     pub(crate) fn received(&self) -> impl Iterator<Item = Slot> + '_ {
-        self.plan.slots.iter().flat_map(|[_, receive]| receive).copied()
+        self.plan.sums.received()
     }
 
     /// Blocks whose cells this process evaluates.
@@ -249,15 +247,15 @@ impl Part {
     /// Tells all ranks displacements and velocities of all nodes.
     pub(crate) fn tell_nodes(&mut self, displacement: &mut [Vec3], velocity: &mut [Vec3]) {
         if !std::mem::replace(&mut self.is_whole, true) {
-            self.all.tell(&*self.exchange, displacement);
-            self.all.tell(&*self.exchange, velocity);
+            tell(&mut self.all, &*self.exchange, displacement);
+            tell(&mut self.all, &*self.exchange, velocity);
         }
     }
 
     /// Tells all ranks the forces on the nodes that they move beside their own, once each has those on its own.
     pub(crate) fn tell_forces(&mut self, force: &mut [Vec3]) {
         let told = if self.is_all { &mut self.all } else { &mut self.everywhere };
-        told.tell(&*self.exchange, force);
+        tell(told, &*self.exchange, force);
         if self.sums {
             self.chunks.fetch(&*self.exchange, force);
         }
@@ -271,11 +269,9 @@ impl Part {
         }
     }
 
-    /// Gives every rank the sums over the nodes of all chunks, once each has those of its own; nothing where all ranks have all.
+    /// Gives every rank the sums over the nodes of all chunks, once each has those of its own.
     pub(crate) fn tell_sums<const N: usize>(&self, sums: &mut [[f64; N]]) {
-        if self.sums {
-            self.chunks.tell(&*self.exchange, sums);
-        }
+        self.chunks.tell(&*self.exchange, sums);
     }
 
     /// Tells all ranks the energies of all blocks, which have been summed.
@@ -307,7 +303,7 @@ impl Part {
 
     /// Tells all ranks a value of every node, once each has those of its own blocks.
     pub(crate) fn tell_all(&mut self, values: &mut [Vec3]) {
-        self.all.tell(&*self.exchange, values);
+        tell(&mut self.all, &*self.exchange, values);
     }
 
     /// Has the blocks of this rank evaluated, and gets the sums of the blocks of others at its nodes. What others wait for comes first;
@@ -319,21 +315,19 @@ impl Part {
         blocks: &mut [Block],
         evaluate: impl Fn(&mut [Block], &(dyn Fn(usize) -> bool + Sync)),
     ) {
-        let Part { exchange, plan: Plan { messages, slots, is_outer, .. }, .. } = self;
+        let Part { exchange, plan: Plan { sums, is_outer, .. }, .. } = self;
         evaluate(blocks, &|block| is_outer[block]);
-        for (message, [send, _]) in messages.iter_mut().zip(&*slots) {
-            for (to, slot) in message.send.chunks_exact_mut(3).zip(send) {
-                to.copy_from_slice(&blocks[slot.block()].forces()[slot.local()].0[..3]);
-            }
-        }
-        exchange.swap(messages, &mut || evaluate(blocks, &|block| !is_outer[block]));
-        for (message, [_, receive]) in messages.iter().zip(&*slots) {
-            for (from, slot) in message.receive.chunks_exact(3).zip(receive) {
-                let scratch = blocks[slot.block()].scratch.as_mut();
-                let force = &mut scratch.expect("kept, since this rank has nodes of the block").force;
-                force[slot.local()].0[..3].copy_from_slice(from);
-            }
-        }
+        let force = |slot: Slot| {
+            let [x, y, z, ..] = blocks[slot.block()].forces()[slot.local()].0;
+            [x, y, z]
+        };
+        sums.fill(force);
+        sums.swap(&**exchange, &mut || evaluate(blocks, &|block| !is_outer[block]));
+        sums.read(|slot, from: [f64; 3]| {
+            let scratch = blocks[slot.block()].scratch.as_mut();
+            let force = &mut scratch.expect("kept, since this rank has nodes of the block").force;
+            force[slot.local()].0[..3].copy_from_slice(&from);
+        });
     }
 
     /// Lets go of what only the rank needs that evaluates a block: cells, and sums at nodes that this rank does not have.
@@ -350,40 +344,8 @@ impl Part {
     }
 }
 
-/// First block of each rank, and the end: runs of about the same weight.
-fn runs_of_blocks(weights: &[usize], ranks: usize) -> Vec<usize> {
-    let total: usize = weights.iter().sum();
-    let (mut first, mut sum) = (vec![0], 0);
-    for (block, weight) in weights.iter().enumerate() {
-        // A block belongs to the rank in whose share its middle lies.
-        while first.len() < ranks && (2 * sum + weight) * ranks >= 2 * total * first.len() {
-            first.push(block);
-        }
-        sum += weight;
-    }
-    first.resize(ranks, weights.len());
-    first.push(weights.len());
-    first
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn blocks_are_shared_by_weight_and_every_one_has_a_rank() {
-        assert_eq!(runs_of_blocks(&[1; 8], 4), [0, 2, 4, 6, 8]);
-        assert_eq!(runs_of_blocks(&[6, 1, 1, 1, 1, 2], 2), [0, 1, 6]);
-        assert_eq!(runs_of_blocks(&[5, 5], 4).len(), 5);
-        for ranks in 1..9 {
-            let first = runs_of_blocks(&[3, 1, 4, 1, 5], ranks);
-            assert!(first.is_sorted() && first[0] == 0 && first[ranks] == 5 && first.len() == ranks + 1);
-        }
-    }
-
-    #[test]
-    fn runs_are_those_of_what_is_moved() {
-        assert_eq!(runs_of(&[true, true, false, true]), [0..2, 3..4]);
-        assert_eq!(runs_of(&[false]), []);
-    }
+/// Gives every rank the vectors at some nodes.
+fn tell(told: &mut Told, exchange: &dyn Exchange, values: &mut [Vec3]) {
+    let put = |values: &mut [Vec3], node: usize, from: [f64; 3]| values[node] = from.into();
+    told.tell(exchange, values, |values, node| values[node].into(), put);
 }

@@ -1,8 +1,8 @@
-//! Numbers of blocks that all ranks need where something happens.
+//! Numbers of blocks that all ranks need, in every step or where something happens.
 
 use std::ops::Range;
 
-use fractum_parallel::Exchange;
+use fractum_parallel::{Exchange, gather};
 
 use crate::evaluate::Block;
 
@@ -15,14 +15,15 @@ pub(crate) struct Events {
     pub(crate) broken: bool,
 }
 
-/// What the ranks tell each other of their blocks, see [`record`]; empty where nothing can happen.
+/// What the ranks tell each other of their blocks, see [`record`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Records {
+    /// Something can happen in a block that all ranks must know.
+    has_events: bool,
+    /// Numbers of all blocks and of own ones, where all ranks need them in every step; else empty.
     all: Vec<f64>,
     own: Vec<f64>,
     counts: Vec<usize>,
-    /// All ranks need them in every step.
-    always: bool,
 }
 
 /// Numbers of a block in [`Records`].
@@ -36,37 +37,48 @@ impl Records {
     /// - `has_events`: whether something can happen in a block that all ranks must know; `always`: whether all need the numbers of
     ///   every block in every step
     pub(super) fn new(counts: impl Iterator<Item = usize>, rank: usize, [has_events, always]: [bool; 2]) -> Self {
-        if !has_events && !always {
-            return Records::default();
+        if !always {
+            return Records { has_events, ..Records::default() };
         }
         let counts: Vec<usize> = counts.map(|count| RECORD * count).collect();
-        Records { all: vec![0.0; counts.iter().sum()], own: vec![0.0; counts[rank]], counts, always }
+        Records { has_events, all: vec![0.0; counts.iter().sum()], own: vec![0.0; counts[rank]], counts }
     }
 
-    /// Tells all ranks what they need of every block, where something has happened.
+    /// Tells all ranks what they need of every block, or of those alone in which something has happened.
     pub(super) fn tell(&mut self, exchange: &dyn Exchange, own: Range<usize>, blocks: &mut [Block]) -> Events {
-        let mut events = Events::default();
-        let happened = || blocks[own.clone()].iter().any(Block::has_event);
-        if self.all.is_empty() || !self.always && exchange.any(u64::from(happened())) == 0 {
-            return events;
+        if !self.all.is_empty() {
+            let records = self.own.chunks_exact_mut(RECORD).zip(&blocks[own.clone()]);
+            records.for_each(|(to, block)| to.copy_from_slice(&record(block)));
+            exchange.gather(&self.own, &self.counts, &mut self.all);
+            let all = self.all.as_chunks().0;
+            return take_over(all.iter().copied().enumerate(), own, blocks);
         }
-        let records = self.own.chunks_exact_mut(RECORD).zip(&blocks[own.clone()]);
-        records.for_each(|(to, block)| to.copy_from_slice(&record(block)));
-        exchange.gather(&self.own, &self.counts, &mut self.all);
-        for (index, (block, from)) in blocks.iter_mut().zip(self.all.chunks_exact(RECORD)).enumerate() {
-            let &[power, shock, inverted, edges] = from else { continue };
-            events.inverted |= inverted >= 0.0;
-            events.broken |= edges >= BROKEN;
-            if !own.contains(&index) {
-                (block.viscous_power, block.viscous.shock) = (power, shock);
-                block.inverted = (inverted >= 0.0).then_some(inverted as usize);
-                if let Some(field) = block.edge_field_mut() {
-                    field.woken |= edges % BROKEN >= WOKEN;
-                }
+        let happened = || blocks[own.clone()].iter().any(Block::has_event);
+        if !self.has_events || exchange.any(u64::from(happened())) == 0 {
+            return Events::default();
+        }
+        let with_event = own.clone().filter(|&index| blocks[index].has_event());
+        let mine: Vec<(usize, [f64; RECORD])> = with_event.map(|index| (index, record(&blocks[index]))).collect();
+        take_over(gather(exchange, &mine).into_iter().flatten(), own, blocks)
+    }
+}
+
+/// Takes over what the ranks have told of blocks; what has happened on any of them.
+fn take_over(records: impl Iterator<Item = (usize, [f64; RECORD])>, own: Range<usize>, blocks: &mut [Block]) -> Events {
+    let mut events = Events::default();
+    for (index, [power, shock, inverted, edges]) in records {
+        events.inverted |= inverted >= 0.0;
+        events.broken |= edges >= BROKEN;
+        let block = &mut blocks[index];
+        if !own.contains(&index) {
+            (block.viscous_power, block.viscous.shock) = (power, shock);
+            block.inverted = (inverted >= 0.0).then_some(inverted as usize);
+            if let Some(field) = block.edge_field_mut() {
+                field.woken |= edges % BROKEN >= WOKEN;
             }
         }
-        events
     }
+    events
 }
 
 /// What all ranks need of a block: viscous power [W], part of the shock, a cell that is turned inside out or

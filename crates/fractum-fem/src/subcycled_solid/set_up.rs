@@ -1,12 +1,12 @@
 //! A solid with steps of two sizes: its fine cells, and the nodes that stand twice.
 
 use fractum_math::{CHUNK, HalfSteps, Vec3};
+use fractum_parallel::runs_of;
 
 use super::fine_elements::fine_elements;
 use crate::block::NodeSlots;
 use crate::body::{Body, Formulation};
 use crate::error::SolidError;
-use crate::part::runs_of;
 use crate::solid::Solid;
 use crate::subcycling::Subcycling;
 

@@ -6,13 +6,14 @@ mod leave;
 mod momentum;
 mod piece;
 mod points;
+mod share;
 mod state;
 
 use std::ops::Range;
 
 use fractum_dem::{
     AnyBondLaw, BondEnergy, BondGraph, Bonds, Crack, CrackFaces, Fracture, FractureCriterion, Occasion,
-    ParticleDamping, Particles, PastForces, TimeStep,
+    ParticleDamping, ParticlePart, Particles, PastForces, TimeStep,
 };
 use fractum_fem::LocalDamping;
 use fractum_math::{HalfSteps, Vec3, Work};
@@ -151,6 +152,8 @@ pub struct Bonded {
     dissipation: f64,
     /// Forces of the step before, where that scheme is used.
     past: PastForces,
+    /// What this process moves, where several share the particles.
+    part: Option<Box<ParticlePart>>,
 }
 
 impl Bonded {
@@ -353,12 +356,16 @@ impl Bonded {
     ///
     /// - `measure`: whether to see how close every body is to breaking, too
     pub(crate) fn break_overloaded(&mut self, step: u64, time: f64, measure: bool) {
-        let Bonded { particles, reference, bodies, .. } = self;
+        let Bonded { particles, reference, bodies, part, past, .. } = self;
         let occasion = Occasion { time, event: step as usize, load: 0.0 };
         for BondedBody { bonds, fracture, closest, range, .. } in bodies {
             let Some(fracture) = fracture else { continue };
-            if step.is_multiple_of(STEPS_BETWEEN_SEARCHES) {
+            if step.is_multiple_of(STEPS_BETWEEN_SEARCHES) && fracture.may_have_new_pairs() {
+                part.iter_mut().for_each(|part| part.gather(particles, past));
                 fracture.find_new_pairs(bonds, particles, range.clone());
+                if let Some(part) = part {
+                    part.follow(&fracture.face_particles().collect::<Vec<_>>(), particles, past);
+                }
             }
             if measure && let Some(site) = fracture.closest(bonds, particles) {
                 let place = fracture.position_of(&site, reference);
@@ -366,7 +373,11 @@ impl Bonded {
                     *closest = Some(Closest { ratio: site.ratio, place, time });
                 }
             }
-            fracture.break_overloaded(bonds, particles, occasion);
+            fracture.find_overloaded(bonds, particles);
+            if let Some(part) = part {
+                part.follow(&fracture.found().collect::<Vec<_>>(), particles, past);
+            }
+            fracture.break_found(bonds, particles, occasion);
         }
     }
 
@@ -377,8 +388,9 @@ impl Bonded {
 
     /// Adds the loads of `time`; returns their work in the half step before [J].
     pub(crate) fn add_loads(&mut self, time: f64, dt_before: f64) -> f64 {
-        let Bonded { particles, reference, loads, tied, .. } = self;
-        loads.add_forces(&mut ParticlePoints { particles, reference, tied }, time, dt_before)
+        let Bonded { particles, reference, loads, tied, part, .. } = self;
+        let part = part.as_deref();
+        loads.add_forces(&mut ParticlePoints { particles, reference, tied, part }, time, dt_before)
     }
 
     /// Advances velocities and positions, then puts prescribed motion in the place of free motion.
@@ -393,15 +405,30 @@ impl Bonded {
         measure: bool,
         follow: impl FnOnce(&mut Particles),
     ) -> HalfSteps {
-        let Bonded { particles, reference, bodies, supports, loads, partial, past, dissipation, tied, viscous, .. } =
-            self;
+        let Bonded {
+            particles,
+            reference,
+            bodies,
+            supports,
+            loads,
+            partial,
+            past,
+            dissipation,
+            tied,
+            viscous,
+            part,
+            ..
+        } = self;
         let resistance = viscous_power(particles, viscous);
         let damping = ParticleDamping { local: damping.local, mass_rate: damping.mass_rate, dissipation: *dissipation };
         let counted_twice = if measure { energy_of(particles, tied) } else { 0.0 };
-        let mut points = ParticlePoints { particles, reference, tied };
+        let mut points = ParticlePoints { particles, reference, tied, part: part.as_deref() };
         supports.remember(&points, None);
-        let mut work =
-            points.particles.kick_and_drift(&TimeStep { dt_before, dt_after, damping, measure }, past, partial);
+        let step = TimeStep { dt_before, dt_after, damping, measure };
+        let mut work = match points.part {
+            Some(part) => points.particles.kick_and_drift_part(part, &step, past, partial),
+            None => points.particles.kick_and_drift(&step, past, partial),
+        };
         work += supports.impose(&mut points, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true });
         work.before.damping -= 0.5 * dt_before * resistance;
         work.before.kinetic -= counted_twice;
@@ -413,6 +440,7 @@ impl Bonded {
         }
         work.after.damping -= 0.5 * dt_after * viscous_power(points.particles, viscous);
         work.after.external += 0.5 * dt_after * loads.power(&points);
+        part.iter_mut().for_each(|part| part.tell_ghosts(particles));
         work
     }
 }

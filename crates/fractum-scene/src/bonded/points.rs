@@ -1,7 +1,8 @@
 //! Particles of bonded bodies as boundary conditions see them.
 
-use fractum_dem::Particles;
-use fractum_math::Vec3;
+use fractum_dem::{ParticlePart, Particles};
+use fractum_math::{CHUNK, Vec3};
+use rayon::prelude::*;
 
 use super::Bonded;
 use crate::conditions::{DrivenPoints, Points};
@@ -11,7 +12,11 @@ pub(super) struct ParticlePoints<'a> {
     pub(super) particles: &'a mut Particles,
     pub(super) reference: &'a [Vec3],
     pub(super) tied: &'a [u32],
+    pub(super) part: Option<&'a ParticlePart>,
 }
+
+/// Particles whose momentum is summed before that of others; ranks have whole blocks of so many.
+const BLOCK: usize = 2048;
 
 macro_rules! points {
     ($type:ty) => {
@@ -67,9 +72,23 @@ impl DrivenPoints for ParticlePoints<'_> {
         self.tied.iter().for_each(|&i| force[i as usize] -= *gravity * mass[i as usize]);
     }
 
-    fn momentum(&self, _: &mut [Vec3]) -> Vec3 {
+    fn momentum(&self, partial: &mut [Vec3]) -> Vec3 {
         let Particles { velocity, mass, .. } = &*self.particles;
-        let all: Vec3 = velocity.iter().zip(mass).map(|(v, m)| v * *m).sum();
+        let of_block = |(v, m): (&[Vec3], &[f64])| v.iter().zip(m).map(|(v, m)| v * *m).sum::<Vec3>();
+        let blocks = velocity.par_chunks(BLOCK).zip(mass.par_chunks(BLOCK));
+        let all = match self.part {
+            None => {
+                let chunks = partial.par_iter_mut().zip(velocity.par_chunks(CHUNK).zip(mass.par_chunks(CHUNK)));
+                chunks.for_each(|(sum, (v, m))| *sum = v.chunks(BLOCK).zip(m.chunks(BLOCK)).map(of_block).sum());
+                partial.iter().sum::<Vec3>()
+            }
+            Some(part) => {
+                let mut sums: Vec<[f64; 3]> = blocks.map(|block| of_block(block).into()).collect();
+                part.tell_blocks(BLOCK, &mut sums);
+                let of_chunk = |blocks: &[[f64; 3]]| blocks.iter().map(|&sum| Vec3::from(sum)).sum::<Vec3>();
+                sums.chunks(CHUNK / BLOCK).map(of_chunk).sum()
+            }
+        };
         let tied: Vec3 = self.tied.iter().map(|&i| velocity[i as usize] * mass[i as usize]).sum();
         all - tied
     }

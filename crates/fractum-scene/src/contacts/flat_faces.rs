@@ -81,12 +81,16 @@ impl FlatBodies {
         self.faces.get(usize::from(body)).and_then(Option::as_ref)
     }
 
-    /// Finds where rigid bodies feel particles: faces turn with their particles.
-    pub(super) fn locate(&mut self, particles: &Particles) {
+    /// Finds where rigid bodies feel some of the particles: faces turn with their particles.
+    pub(super) fn locate(&mut self, particles: &Particles, which: impl IntoIterator<Item = usize>) {
         let FlatBodies { shift, arm, place, velocity, .. } = self;
-        for (i, shift) in shift.iter().enumerate() {
+        if shift.is_empty() {
+            return;
+        }
+        for i in which {
+            let shift = shift[i];
             (place[i], velocity[i]) = (particles.position[i], particles.velocity[i]);
-            if *shift != Vec3::zeros() {
+            if shift != Vec3::zeros() {
                 arm[i] = particles.orientation[i] * shift;
                 place[i] += arm[i];
                 velocity[i] += particles.spin[i].cross(&arm[i]);
@@ -167,7 +171,7 @@ impl Contacts {
     ///
     /// - `flat`: only those of flat faces
     pub(super) fn accept_on_rigid_bodies(&mut self, particles: &Particles, flat: bool) -> Vec<Overlap> {
-        self.flat.locate(particles);
+        self.flat.locate(particles, 0..particles.len());
         let Contacts { body, rigid_bodies, on_tools, flat: bodies, .. } = self;
         let Particles { position, velocity, spin, radius, .. } = particles;
         let spheres = bodies.felt(Spheres { position, velocity, spin, radius });

@@ -9,11 +9,12 @@ mod node_contacts;
 mod nodes_on_shape;
 mod nodes_on_surface;
 mod rigid_body;
+mod share;
 mod solid_surface;
 
 use fractum_contact::law::{ContactMemory, ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair};
 use fractum_contact::{SphereContacts, Spheres, SurfaceContacts, Touch};
-use fractum_dem::Particles;
+use fractum_dem::{ParticlePart, Particles};
 use fractum_fem::Solid;
 use fractum_math::{HalfSteps, Vec3, Work};
 use serde::{Deserialize, Serialize};
@@ -227,13 +228,27 @@ impl Contacts {
 
     /// Adds the forces of the moment to particles, rigid bodies and the nodes of solids.
     ///
+    /// - `part`: that of this process, where several share the particles and have done the [searches](Contacts::search) that were due
     /// - `dt` [s]: the step that led here
-    pub(crate) fn add_forces(&mut self, solid: &mut Solid, particles: &mut Particles, dt: f64) -> Work {
+    pub(crate) fn add_forces(
+        &mut self,
+        part: Option<&ParticlePart>,
+        solid: &mut Solid,
+        particles: &mut Particles,
+        dt: f64,
+    ) -> Work {
         let mut work = Work::default();
-        self.flat.locate(particles);
+        let searches = part.is_none();
+        if let Some(part) = part {
+            work += self.add_forces_among(part, particles, dt);
+            let near: Vec<u32> = self.near().collect();
+            self.flat.locate(particles, near.iter().map(|&i| i as usize));
+        } else {
+            self.flat.locate(particles, 0..particles.len());
+        }
         let Particles { position, velocity, spin, radius, mass, force, moment, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
-        if let Some(mut among) = self.among.take() {
+        if let Some(mut among) = self.among.take_if(|_| searches) {
             among.search(&spheres, |i, j| self.law_among(radius, mass, i, j));
             work += among.add_forces(&spheres, force, moment, dt);
             self.among = Some(among);
@@ -253,7 +268,9 @@ impl Contacts {
                 }
             };
             let ground = rigid_body.ground();
-            contacts.search(&ground, &felt);
+            if searches {
+                contacts.search(&ground, &felt);
+            }
             work += contacts.update(&ground, &felt, law, dt);
             contacts.add_to(force, moment);
             flat.add_moments(contacts.touches(), moment);
@@ -265,7 +282,7 @@ impl Contacts {
         }
         for ground in solids {
             let law = |pair: &MaterialPair, i: u32| Hertz::new(pair, radius[i as usize], mass[i as usize]);
-            work += ground.add_forces(solid, &spheres, body, law, dt);
+            work += ground.add_forces(solid, &spheres, body, law, (searches, dt));
             ground.contacts().add_to(force, moment);
             self.node_frequency_square = self.node_frequency_square.max(ground.frequency_square());
         }
@@ -314,7 +331,7 @@ impl Contacts {
     pub fn overlaps(&mut self, solid: &mut Solid, particles: &mut Particles) -> Vec<Overlap> {
         let mut still = self.clone();
         let kept = (particles.force.clone(), particles.moment.clone(), solid.force.clone());
-        still.add_forces(solid, particles, 0.0);
+        still.add_forces(None, solid, particles, 0.0);
         (particles.force, particles.moment, solid.force) = kept;
         let mut found = Vec::new();
         let Particles { position, velocity, spin, radius, .. } = &*particles;

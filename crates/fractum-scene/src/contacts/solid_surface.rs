@@ -1,5 +1,7 @@
 //! The surface of a solid as ground for particles.
 
+use std::ops::Range;
+
 use fractum_contact::law::{
     ContactLaw, ContactMemory, ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair,
 };
@@ -242,21 +244,40 @@ impl SolidSurface {
         self.frequency_square
     }
 
+    /// Whether the skin is used up, by the way of some of the particles and that of the nodes.
+    pub(super) fn is_used_up(&mut self, solid: &Solid, spheres: &Spheres, range: Range<usize>) -> bool {
+        self.locate(solid);
+        let SolidSurface { mesh, points, velocity, contacts, .. } = self;
+        contacts.is_used_up(&Surface::Deformable { surface: mesh, points, velocity }, spheres, range)
+    }
+
+    /// Looks up which particles are near.
+    pub(super) fn renew(&mut self, solid: &Solid, spheres: &Spheres) {
+        self.locate(solid);
+        let SolidSurface { mesh, points, velocity, contacts, felt, .. } = self;
+        let spheres = Spheres { radius: if felt.is_empty() { spheres.radius } else { felt }, ..*spheres };
+        contacts.renew(&Surface::Deformable { surface: mesh, points, velocity }, &spheres);
+    }
+
     /// Finds the contacts of the moment and adds their forces to the nodes, by the weights of the places.
+    ///
+    /// - `searches`: whether to look up which particles are near, where that is due; `dt` [s]: the step that led here
     pub(super) fn add_forces(
         &mut self,
         solid: &mut Solid,
         spheres: &Spheres,
         body_of: &[u16],
         law: impl Fn(&MaterialPair, u32) -> Hertz + Sync,
-        dt: f64,
+        (searches, dt): (bool, f64),
     ) -> Work {
         self.locate(solid);
         let SolidSurface { mesh, nodes, points, velocity, contacts, pairs, felt, .. } = self;
         let spheres = &Spheres { radius: if felt.is_empty() { spheres.radius } else { felt }, ..*spheres };
         let ground = Surface::Deformable { surface: mesh, points, velocity };
         let law_of = |i: u32| law(&pairs[body_of[i as usize] as usize], i);
-        contacts.search(&ground, spheres);
+        if searches {
+            contacts.search(&ground, spheres);
+        }
         let work = contacts.update(&ground, spheres, |i, _| law_of(i), dt);
         let mut fastest: f64 = 0.0;
         for touch in contacts.touches() {

@@ -1,5 +1,7 @@
 //! Criteria over whole bodies: compiled for each criterion, called once for all particles or bonds.
 
+use std::ops::Range;
+
 use fractum_math::Sym3;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -49,6 +51,8 @@ pub(in crate::fracture) struct Neighbourhoods<'a> {
     pub(in crate::fracture) members: &'a [Vec<u32>],
     pub(in crate::fracture) inverse: &'a [f64],
     pub(in crate::fracture) virials: &'a [Sym3],
+    /// First one that is looked at.
+    pub(in crate::fracture) first: usize,
 }
 
 impl Neighbourhoods<'_> {
@@ -85,7 +89,7 @@ pub(in crate::fracture) trait StressBatch: StressCriterion {
     fn virials_reach(&self, virials: &[Sym3], volume: &[f64], fraction: f64, limit: f64, reaching: &mut [bool])
     -> bool;
 
-    /// Stresses of all neighbourhoods, and what the criterion says of them.
+    /// Stresses of neighbourhoods from the first one on, and what the criterion says of them.
     fn search(&self, around: &Neighbourhoods<'_>, stress: &mut [Sym3], limit: f64) -> Vec<BlockSearch>;
 
     /// The same for neighbourhoods of `reaching` particles alone.
@@ -132,7 +136,7 @@ impl<C: StressCriterion> StressBatch for C {
 
     fn search(&self, around: &Neighbourhoods<'_>, stress: &mut [Sym3], limit: f64) -> Vec<BlockSearch> {
         let level = self.level();
-        search_blocks(stress, |i, stress, found| {
+        search_blocks(around.first, stress, |i, stress, found| {
             *stress = around.stress(i, level);
             // Eigenvalues only where they could matter.
             if self.bound(stress) >= limit.min(found.largest()) {
@@ -149,7 +153,7 @@ impl<C: StressCriterion> StressBatch for C {
         limit: f64,
     ) -> Vec<BlockSearch> {
         let level = self.level();
-        search_blocks(stress, |i, stress, found| {
+        search_blocks(around.first, stress, |i, stress, found| {
             if around.any_member(i, level, |member| reaching[member]) {
                 *stress = around.stress(i, level);
                 if self.bound(stress) >= limit {
@@ -160,11 +164,15 @@ impl<C: StressCriterion> StressBatch for C {
     }
 }
 
-/// Looks at all particles and their stresses, block by block.
-fn search_blocks(stress: &mut [Sym3], look: impl Fn(usize, &mut Sym3, &mut BlockSearch) + Sync) -> Vec<BlockSearch> {
+/// Looks at particles from the first one on and their stresses, block by block.
+fn search_blocks(
+    first: usize,
+    stress: &mut [Sym3],
+    look: impl Fn(usize, &mut Sym3, &mut BlockSearch) + Sync,
+) -> Vec<BlockSearch> {
     let block = |(block, stress): (usize, &mut [Sym3])| {
         let mut found = BlockSearch::default();
-        (block * BLOCK..).zip(stress).for_each(|(i, stress)| look(i, stress, &mut found));
+        (first + block * BLOCK..).zip(stress).for_each(|(i, stress)| look(i, stress, &mut found));
         found
     };
     stress.par_chunks_mut(BLOCK).enumerate().map(block).collect()
@@ -183,8 +191,8 @@ pub(in crate::fracture) struct SeenBonds<'a> {
 
 /// A criterion of loads over all bonds.
 pub(in crate::fracture) trait LoadBatch: Sync {
-    /// What the criterion says of all bonds that hold.
-    fn search(&self, bonds: &SeenBonds<'_>, graph: &BondGraph, limit: f64) -> Vec<BlockSearch>;
+    /// What the criterion says of those bonds of a range that hold.
+    fn search(&self, bonds: &SeenBonds<'_>, graph: &BondGraph, range: Range<usize>, limit: f64) -> Vec<BlockSearch>;
 
     /// Whether one of some bonds side by side may have a ratio of at least `limit`.
     fn loads_reach(&self, loads: &LoadLanes, radius: f64, limit: f64) -> bool;
@@ -197,11 +205,11 @@ pub(in crate::fracture) trait LoadBatch: Sync {
 }
 
 impl<C: LoadCriterion> LoadBatch for C {
-    fn search(&self, bonds: &SeenBonds<'_>, graph: &BondGraph, limit: f64) -> Vec<BlockSearch> {
-        let count = graph.pairs().len();
+    fn search(&self, bonds: &SeenBonds<'_>, graph: &BondGraph, range: Range<usize>, limit: f64) -> Vec<BlockSearch> {
         let block = |block: usize| {
             let mut found = BlockSearch::default();
-            for bond in block * BLOCK..((block + 1) * BLOCK).min(count) {
+            let begin = range.start + block * BLOCK;
+            for bond in begin..(begin + BLOCK).min(range.end) {
                 let near = |sizes: LoadSizes| self.ratio_of(&sizes) * (1.0 + ROUND_OFF) >= limit.min(found.largest());
                 if graph.is_live(bond as u32) && (bonds.sizes)(bond as u32).is_none_or(near) {
                     found.add(bond, self.ratio(&(bonds.load)(bond as u32)), limit);
@@ -209,7 +217,7 @@ impl<C: LoadCriterion> LoadBatch for C {
             }
             found
         };
-        (0..count.div_ceil(BLOCK)).into_par_iter().map(block).collect()
+        (0..range.len().div_ceil(BLOCK)).into_par_iter().map(block).collect()
     }
 
     fn loads_reach(&self, loads: &LoadLanes, radius: f64, limit: f64) -> bool {

@@ -1,0 +1,141 @@
+//! The bonds that one of several ranks computes: blocks of its own, whose sums at particles of others it sends.
+
+use std::ops::Range;
+
+use fractum_parallel::gather;
+use rayon::prelude::*;
+
+use super::block::{BOUNDS, Block, VIRIALS, sum_bonds};
+use super::law::BondLaw;
+use super::network::{BLOCK, BondNetwork};
+use super::network_part::NetworkPart;
+use crate::particles::{ParticlePart, Particles};
+
+impl<L: BondLaw> BondNetwork<L> {
+    /// Leaves the blocks of bonds to the ranks that have their first particles.
+    pub fn share_out(&mut self, part: &ParticlePart) {
+        let part = NetworkPart::new(part, &self.blocks);
+        for [block, _] in part.received() {
+            self.blocks[block as usize].make_room_for_details();
+        }
+        self.part = Some(Box::new(part));
+    }
+
+    /// Whether several ranks may share the bonds: a mean strain needs those around its particles, and so does viscosity.
+    pub fn can_be_shared(&self) -> bool {
+        self.mean.is_none()
+    }
+
+    /// Whether bonds remember anything.
+    pub fn has_memory(&self) -> bool {
+        size_of::<L::Memory>() > 0
+    }
+
+    /// Blocks whose bonds this process computes.
+    pub(super) fn own_blocks(&self) -> Range<usize> {
+        self.part.as_ref().map_or(0..self.blocks.len(), |part| part.own())
+    }
+
+    /// Entries of the particles of own blocks, and these blocks.
+    pub(super) fn own_of<'a, T>(&self, of_particles: &'a mut [T]) -> (&'a mut [T], &[Block<L>]) {
+        let own = self.own_blocks();
+        let (begin, end) = (own.start * BLOCK, (own.end * BLOCK).min(of_particles.len()));
+        (&mut of_particles[begin.min(end)..end], &self.blocks[own])
+    }
+
+    /// Bonds of these blocks.
+    pub(crate) fn own_bonds(&self) -> Range<usize> {
+        let begin = |block: usize| self.blocks.get(block).map_or(self.len(), |block| block.first_bond as usize);
+        let Range { start, end } = self.own_blocks();
+        begin(start)..begin(end)
+    }
+
+    /// Sums what is wanted of the own bonds at the present positions, and gets the sums of others at own particles.
+    pub(super) fn sum_own<const FORCES: bool, const DETAIL: u8>(&mut self, particles: &Particles) {
+        let Particles { position, orientation, .. } = particles;
+        let own = self.own_blocks();
+        let BondNetwork { law, blocks, part, .. } = self;
+        let sum = |block: &mut Block<L>| sum_bonds::<L, FORCES, DETAIL>(block, position, orientation, law);
+        let Some(part) = part else {
+            blocks.par_iter_mut().for_each(sum);
+            return;
+        };
+        let some = |blocks: &mut [Block<L>], is_outer: &[bool], outer: bool| {
+            let meant = blocks[own.clone()].par_iter_mut().zip(&is_outer[own.clone()]);
+            meant.filter(|(_, is_outer)| **is_outer == outer).for_each(|(block, _)| sum(block));
+        };
+        some(blocks, part.is_outer(), true);
+        let inner = |blocks: &mut [Block<L>], is_outer: &[bool]| some(blocks, is_outer, false);
+        match (FORCES, DETAIL) {
+            (true, VIRIALS) => part.swap(
+                blocks,
+                |block, slot| joined(block.sums[slot], block.virials[slot]),
+                |block, slot, from: [f64; 12]| (block.sums[slot], block.virials[slot]) = parted(from),
+                inner,
+            ),
+            (true, BOUNDS) => part.swap(
+                blocks,
+                |block, slot| {
+                    let ([x, y, z, a, b, c], [most, least]) = (block.sums[slot], block.virial_bounds[slot]);
+                    [x, y, z, a, b, c, most, least]
+                },
+                |block, slot, [x, y, z, a, b, c, most, least]: [f64; 8]| {
+                    (block.sums[slot], block.virial_bounds[slot]) = ([x, y, z, a, b, c], [most, least]);
+                },
+                inner,
+            ),
+            (true, _) => part.swap(
+                blocks,
+                |block, slot| block.sums[slot],
+                |block, slot, from: [f64; 6]| block.sums[slot] = from,
+                inner,
+            ),
+            (false, _) => part.swap(
+                blocks,
+                |block, slot| block.virials[slot],
+                |block, slot, from: [f64; 6]| block.virials[slot] = from,
+                inner,
+            ),
+        }
+    }
+
+    /// Values of all blocks, by those of own ones.
+    pub(super) fn of_all_blocks<const N: usize>(
+        &self,
+        of: impl Fn(&Block<L>) -> [f64; N] + Sync + Send,
+    ) -> Vec<[f64; N]> {
+        let own = self.own_blocks();
+        let mine: Vec<[f64; N]> = self.blocks[own].par_iter().map(of).collect();
+        let Some(part) = &self.part else { return mine };
+        part.of_all(&mine, self.blocks.len())
+    }
+
+    /// What all ranks name, rank after rank; what this process names where it has all bonds.
+    pub(super) fn named_by_all<T: serde::Serialize + serde::de::DeserializeOwned>(&self, own: &mut Vec<T>) {
+        if let Some(part) = &self.part
+            && part.exchange().any(u64::from(!own.is_empty())) != 0
+        {
+            *own = gather(part.exchange(), own).into_iter().flatten().collect();
+        }
+    }
+
+    /// Brings the memory of all bonds up to date on every rank. All ranks must call it.
+    pub fn gather_memory(&mut self) {
+        let own = self.own_bonds();
+        if let Some(part) = self.part.as_ref().filter(|_| self.has_memory()) {
+            let mine: Vec<L::Memory> = own.clone().map(|bond| self.memory_of(bond)).collect();
+            let all = gather(part.exchange(), &mine).into_iter().flatten().enumerate();
+            for (bond, memory) in all.filter(|(bond, _)| !own.contains(bond)) {
+                self.put_memory(bond, memory);
+            }
+        }
+    }
+}
+
+fn joined(one: [f64; 6], other: [f64; 6]) -> [f64; 12] {
+    std::array::from_fn(|k| if k < 6 { one[k] } else { other[k - 6] })
+}
+
+fn parted(both: [f64; 12]) -> ([f64; 6], [f64; 6]) {
+    (std::array::from_fn(|k| both[k]), std::array::from_fn(|k| both[k + 6]))
+}

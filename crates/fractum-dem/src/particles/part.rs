@@ -1,0 +1,270 @@
+//! The particles that one of several ranks moves.
+//!
+//! A rank has a run of particles, in the order of their numbers, and the bonds whose first particle is one of them. It gets what
+//! the bonds of others sum for its particles, moves these, and tells their motion to ranks whose bonds reach them: such a rank
+//! keeps *ghosts* of them. What needs a particle beside bonds (supports, loads, rigid bodies, crack faces) is done by all
+//! ranks alike: they are told the forces on it, and all move it. The rest is told before anyone looks at it, and out of date between.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use std::sync::Arc;
+
+use fractum_math::{HalfSteps, Rotation, Vec3};
+use fractum_parallel::{Exchange, Swapped, Told, rank_of, runs_by_weight, runs_of};
+use nalgebra::Quaternion;
+
+use super::{BLOCK, Particles, PastForces, SHARED};
+
+/// The share of a rank.
+#[derive(Clone, Debug)]
+pub struct ParticlePart {
+    exchange: Arc<dyn Exchange>,
+    /// First particle of each rank, and the end; each begins a block of bonds.
+    first: Vec<usize>,
+    /// Particles of others that bonds of this rank reach, and the other way round.
+    bonded: Near,
+    /// Those whose motion is told: what contacts may reach beside, without what every rank moves.
+    ghosts: Swapped<u32>,
+    /// Particles that every rank moves.
+    everywhere: Told,
+    is_everywhere: Vec<bool>,
+    /// Runs of those of others among them.
+    of_others: Vec<Range<usize>>,
+    /// The motion of all particles is the present one.
+    is_whole: bool,
+    own: Vec<f64>,
+    all: Vec<f64>,
+}
+
+/// How much a rank has to do and to tell in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ParticleShare {
+    /// Particles of its own.
+    pub particles: usize,
+    /// Particles of others whose motion it is told.
+    pub ghosts: usize,
+    /// Particles that every rank moves.
+    pub everywhere: usize,
+}
+
+/// Particles by the ranks beside: own ones that another rank looks at, and those of it that this one looks at.
+type Near = BTreeMap<usize, [BTreeSet<u32>; 2]>;
+
+/// Place, orientation, velocity and spin.
+const MOTION: usize = 13;
+/// Force and moment.
+const LOAD: usize = 6;
+
+impl ParticlePart {
+    /// The share of a rank. Every rank must have the same particles in the same state.
+    ///
+    /// - `pairs`: the particles of all bonds
+    pub fn new(exchange: Arc<dyn Exchange>, count: usize, pairs: impl Iterator<Item = [u32; 2]> + Clone) -> Self {
+        let mut weights: Vec<usize> = (0..count).step_by(SHARED).map(|start| SHARED.min(count - start)).collect();
+        pairs.clone().for_each(|[first, _]| weights[first as usize / SHARED] += 1);
+        let blocks = runs_by_weight(&weights, exchange.size());
+        let first: Vec<usize> = blocks.iter().map(|block| (block * SHARED).min(count)).collect();
+        let mut bonded = Near::new();
+        add_near(&mut bonded, &first, exchange.rank(), pairs);
+        ParticlePart {
+            ghosts: swapped(&bonded, |_| true),
+            bonded,
+            everywhere: Told::new(vec![Vec::new(); exchange.size()]),
+            is_everywhere: vec![false; count],
+            of_others: Vec::new(),
+            is_whole: true,
+            exchange,
+            first,
+            own: Vec::new(),
+            all: Vec::new(),
+        }
+    }
+
+    /// What joins the ranks.
+    pub fn exchange(&self) -> &Arc<dyn Exchange> {
+        &self.exchange
+    }
+
+    /// First particle of each rank, and the end.
+    pub(crate) fn first(&self) -> &[usize] {
+        &self.first
+    }
+
+    /// Particles of this rank.
+    pub fn own(&self) -> Range<usize> {
+        let rank = self.exchange.rank();
+        self.first[rank]..self.first[rank + 1]
+    }
+
+    /// What this rank does of the work.
+    pub fn share(&self) -> ParticleShare {
+        ParticleShare {
+            particles: self.own().len(),
+            ghosts: self.ghosts.received().count(),
+            everywhere: self.is_everywhere.iter().filter(|is| **is).count(),
+        }
+    }
+
+    /// Tells all ranks motion and forces of particles, and has every rank move them from now on. All ranks must name the same ones.
+    pub fn follow(&mut self, new: &[u32], particles: &mut Particles, past: &mut PastForces) {
+        let new: BTreeSet<u32> = new.iter().copied().filter(|&i| !self.is_everywhere[i as usize]).collect();
+        if new.is_empty() {
+            return;
+        }
+        let mut of_rank = vec![Vec::new(); self.exchange.size()];
+        for &i in &new {
+            self.is_everywhere[i as usize] = true;
+            of_rank[rank_of(&self.first, i as usize)].push(i);
+        }
+        let mut told = Told::new(of_rank);
+        if !self.is_whole {
+            told.tell(&*self.exchange, particles, motion, put_motion);
+        }
+        told.tell(&*self.exchange, particles, load, put_load);
+        if !past.force.is_empty() {
+            told.tell(&*self.exchange, past, past_load, put_past_load);
+        }
+        self.everywhere.append(&told);
+        let own = self.own();
+        let is_others = |(i, is): (usize, &bool)| *is && !own.contains(&i);
+        self.of_others = runs_of(&self.is_everywhere.iter().enumerate().map(is_others).collect::<Vec<_>>());
+        let is_everywhere = &self.is_everywhere;
+        self.ghosts.retain(|i| !is_everywhere[i as usize]);
+    }
+
+    /// Tells the motion of particles that may touch, too, from now on, in the place of what was named before. All ranks must name the
+    /// same pairs, when the motion of all particles is up to date.
+    pub fn set_near(&mut self, pairs: impl Iterator<Item = [u32; 2]>) {
+        let mut near = self.bonded.clone();
+        add_near(&mut near, &self.first, self.exchange.rank(), pairs);
+        self.ghosts = swapped(&near, |i| !self.is_everywhere[i as usize]);
+    }
+
+    /// Tells all ranks the forces on the particles that every rank moves, once each has those on its own.
+    pub fn tell_forces(&mut self, particles: &mut Particles) {
+        self.everywhere.tell(&*self.exchange, particles, load, put_load);
+    }
+
+    /// Particles of other ranks that this one moves as well, in runs.
+    pub(super) fn of_others(&self) -> &[Range<usize>] {
+        &self.of_others
+    }
+
+    /// Tells the motion of own particles to the ranks that have ghosts of them.
+    pub fn tell_ghosts(&mut self, particles: &mut Particles) {
+        let get = |particles: &Particles, i: u32| motion(particles, i as usize);
+        let put = |particles: &mut Particles, i: u32, from| put_motion(particles, i as usize, from);
+        self.ghosts.tell(&*self.exchange, particles, get, put);
+        self.is_whole = false;
+    }
+
+    /// Brings the motion of all particles up to date on every rank, and what it compares forces with. All ranks must call it.
+    pub fn gather(&mut self, particles: &mut Particles, past: &mut PastForces) {
+        if std::mem::replace(&mut self.is_whole, true) {
+            return;
+        }
+        self.gather_values(particles, motion, put_motion);
+        if !past.force.is_empty() {
+            self.gather_values(past, past_load, put_past_load);
+        }
+    }
+
+    /// Brings the forces on all particles up to date on every rank. All ranks must call it.
+    pub fn gather_forces(&mut self, particles: &mut Particles) {
+        self.gather_values(particles, load, put_load);
+    }
+
+    fn gather_values<const N: usize, S>(
+        &mut self,
+        values: &mut S,
+        get: impl Fn(&S, usize) -> [f64; N],
+        put: impl Fn(&mut S, usize, [f64; N]),
+    ) {
+        let range = self.own();
+        let ParticlePart { exchange, first, own, all, .. } = self;
+        own.clear();
+        own.extend(range.clone().flat_map(|i| get(values, i)));
+        let counts: Vec<usize> = first.windows(2).map(|first| N * (first[1] - first[0])).collect();
+        all.resize(counts.iter().sum(), 0.0);
+        exchange.gather(own, &counts, all);
+        for (i, from) in all.as_chunks().0.iter().enumerate().filter(|(i, _)| !range.contains(i)) {
+            put(values, i, *from);
+        }
+    }
+
+    /// Gives every rank the values of all blocks of particles, once each has those of its own.
+    ///
+    /// - `size`: particles of a block, a power of two of at most 2048
+    pub fn tell_blocks<const N: usize>(&self, size: usize, values: &mut [[f64; N]]) {
+        let blocks = |first: usize| first.div_ceil(size);
+        let counts: Vec<usize> = self.first.windows(2).map(|first| N * (blocks(first[1]) - blocks(first[0]))).collect();
+        let Range { start, end } = self.own();
+        let own: Vec<f64> = values[blocks(start)..blocks(end)].iter().flatten().copied().collect();
+        let mut all = vec![0.0; N * values.len()];
+        self.exchange.gather(&own, &counts, &mut all);
+        values.iter_mut().zip(all.as_chunks().0).for_each(|(value, from)| *value = *from);
+    }
+
+    /// The same of what a step has done with each block, by [`Particles::kick_and_drift`].
+    pub(super) fn tell_work(&self, partial: &mut [HalfSteps]) {
+        let numbers =
+            |HalfSteps { before, after }: &HalfSteps| [before.kinetic, before.damping, after.kinetic, after.damping];
+        let mut all: Vec<[f64; 4]> = partial.iter().map(numbers).collect();
+        self.tell_blocks(BLOCK, &mut all);
+        for (work, numbers) in partial.iter_mut().zip(all) {
+            [work.before.kinetic, work.before.damping, work.after.kinetic, work.after.damping] = numbers;
+        }
+    }
+}
+
+/// Adds the particles of pairs that two ranks have.
+fn add_near(near: &mut Near, first: &[usize], me: usize, pairs: impl Iterator<Item = [u32; 2]>) {
+    for pair in pairs {
+        let ranks = pair.map(|i| rank_of(first, i as usize));
+        for (own, other) in [(0, 1), (1, 0)] {
+            if ranks[own] == me && ranks[other] != me {
+                let [send, receive] = near.entry(ranks[other]).or_default();
+                send.insert(pair[own]);
+                receive.insert(pair[other]);
+            }
+        }
+    }
+}
+
+fn swapped(near: &Near, is_told: impl Fn(u32) -> bool) -> Swapped<u32> {
+    let list = |set: &BTreeSet<u32>| set.iter().copied().filter(|&i| is_told(i)).collect();
+    Swapped::new(near.iter().map(|(&rank, sets)| (rank, sets.each_ref().map(list))).collect())
+}
+
+fn motion(particles: &Particles, i: usize) -> [f64; MOTION] {
+    let ([x, y, z], [u, v, w]) = (particles.position[i].into(), particles.velocity[i].into());
+    let ([a, b, c, d], [p, q, r]) = (particles.orientation[i].coords.into(), particles.spin[i].into());
+    [x, y, z, u, v, w, a, b, c, d, p, q, r]
+}
+
+fn put_motion(particles: &mut Particles, i: usize, [x, y, z, u, v, w, a, b, c, d, p, q, r]: [f64; MOTION]) {
+    particles.position[i] = Vec3::new(x, y, z);
+    particles.velocity[i] = Vec3::new(u, v, w);
+    particles.orientation[i] = Rotation::new_unchecked(Quaternion::from_vector([a, b, c, d].into()));
+    particles.spin[i] = Vec3::new(p, q, r);
+}
+
+fn load(particles: &Particles, i: usize) -> [f64; LOAD] {
+    both(particles.force[i], particles.moment[i])
+}
+
+fn put_load(particles: &mut Particles, i: usize, [x, y, z, a, b, c]: [f64; LOAD]) {
+    (particles.force[i], particles.moment[i]) = (Vec3::new(x, y, z), Vec3::new(a, b, c));
+}
+
+fn past_load(past: &PastForces, i: usize) -> [f64; LOAD] {
+    both(past.force[i], past.moment[i])
+}
+
+fn put_past_load(past: &mut PastForces, i: usize, [x, y, z, a, b, c]: [f64; LOAD]) {
+    (past.force[i], past.moment[i]) = (Vec3::new(x, y, z), Vec3::new(a, b, c));
+}
+
+fn both(force: Vec3, moment: Vec3) -> [f64; LOAD] {
+    [force.x, force.y, force.z, moment.x, moment.y, moment.z]
+}

@@ -1,0 +1,119 @@
+//! Contacts of particles that several ranks share.
+//!
+//! Pairs of particles belong to the ranks of both; contacts with rigid bodies and solids are found by all ranks alike.
+
+use std::ops::Range;
+
+use fractum_contact::Spheres;
+use fractum_contact::law::HertzMemory;
+use fractum_dem::{ParticlePart, Particles};
+use fractum_fem::Solid;
+use fractum_math::Work;
+use fractum_parallel::gather;
+
+use super::Contacts;
+
+/// Spheres whose contacts are summed before those of others, as [`fractum_contact::SphereContacts::works`] has them.
+const BLOCK: usize = 1024;
+
+impl Contacts {
+    /// Why ranks cannot share the particles, in words; none where they can.
+    pub(crate) fn cannot_be_shared(&self, solid: &Solid) -> Option<&'static str> {
+        if self.debris.is_some() && solid.has_damage() {
+            Some("particles that may touch discrete elements of solids")
+        } else if self.among.is_some() && !self.watched.is_empty() {
+            Some("forces between bodies of particles that probes ask for")
+        } else {
+            None
+        }
+    }
+
+    /// Which searches are due by the way of some particles: of pairs, then on rigid bodies, then on solids.
+    fn due(&mut self, solid: &Solid, particles: &Particles, range: Range<usize>) -> Vec<bool> {
+        self.flat.locate(particles, range.clone());
+        let Contacts { among, rigid_bodies, on_tools, solids, flat, .. } = self;
+        let spheres = spheres(particles);
+        let felt = flat.felt(spheres);
+        let of_pairs = among.iter().map(|among| among.is_used_up(&spheres, range.clone()));
+        let grounds = rigid_bodies.iter().zip(&*on_tools);
+        let on_bodies = grounds.map(|(body, (contacts, _))| contacts.is_used_up(&body.ground(), &felt, range.clone()));
+        let on_solids = solids.iter_mut().map(|ground| ground.is_used_up(solid, &spheres, range.clone()));
+        of_pairs.chain(on_bodies).chain(on_solids).collect()
+    }
+
+    /// The searches that are due on any rank: none where `false` is all that there is.
+    pub(crate) fn due_on_any(&mut self, part: &ParticlePart, solid: &Solid, particles: &Particles) -> Vec<bool> {
+        let mut due = self.due(solid, particles, part.own());
+        for due in due.chunks_mut(u64::BITS as usize) {
+            let bits = (0..).zip(&*due).fold(0u64, |bits, (k, due)| bits | u64::from(*due) << k);
+            let bits = part.exchange().any(bits);
+            (0..).zip(due).for_each(|(k, due)| *due = bits >> k & 1 == 1);
+        }
+        due
+    }
+
+    /// Does the searches that are due, once all particles are where they are. Particles that rigid bodies and solids may touch.
+    pub(crate) fn search(&mut self, due: &[bool], solid: &Solid, particles: &Particles) -> Vec<u32> {
+        self.flat.locate(particles, 0..particles.len());
+        let spheres = spheres(particles);
+        let mut due = due.iter().copied();
+        if let Some(mut among) = self.among.take() {
+            if due.next() == Some(true) {
+                among.renew(&spheres, |i, j| self.law_among(&particles.radius, &particles.mass, i, j));
+            }
+            self.among = Some(among);
+        }
+        let Contacts { rigid_bodies, on_tools, solids, flat, .. } = self;
+        let felt = flat.felt(spheres);
+        for (rigid_body, (contacts, _)) in rigid_bodies.iter().zip(on_tools) {
+            if due.next() == Some(true) {
+                contacts.renew(&rigid_body.ground(), &felt);
+            }
+        }
+        for ground in solids {
+            if due.next() == Some(true) {
+                ground.renew(solid, &spheres);
+            }
+        }
+        self.near().collect()
+    }
+
+    /// Particles that rigid bodies and solids may touch before the next search, some of them more than once.
+    pub(crate) fn near(&self) -> impl Iterator<Item = u32> {
+        let grounds = self.on_tools.iter().map(|(contacts, _)| contacts);
+        grounds.chain(self.solids.iter().map(|ground| ground.contacts())).flat_map(|contacts| contacts.near())
+    }
+
+    /// Pairs of particles that may touch before the next search.
+    pub(crate) fn near_pairs(&self) -> &[[u32; 2]] {
+        self.among.as_ref().map_or(&[], |among| among.pairs())
+    }
+
+    /// Adds the forces of pairs to the particles of a rank; the energies of all.
+    pub(super) fn add_forces_among(&mut self, part: &ParticlePart, particles: &mut Particles, dt: f64) -> Work {
+        let Some(among) = &mut self.among else { return Work::default() };
+        let Particles { position, velocity, spin, radius, force, moment, .. } = particles;
+        let spheres = Spheres { position, velocity, spin, radius };
+        among.add_forces_on(part.own(), &spheres, force, moment, dt);
+        let numbers = |work: &Work| [work.stored, work.friction, work.damping];
+        let mut all: Vec<[f64; 3]> = among.works().iter().map(numbers).collect();
+        part.tell_blocks(BLOCK, &mut all);
+        for (work, [stored, friction, damping]) in among.works().iter_mut().zip(all) {
+            *work = Work::contact(stored, friction, damping);
+        }
+        among.work()
+    }
+
+    /// Brings the memory of all pairs up to date on every rank. All ranks must call it.
+    pub(crate) fn gather_memories(&mut self, part: &ParticlePart) {
+        if let Some(among) = &mut self.among {
+            let own: Vec<(bool, HertzMemory)> = among.memories(part.own());
+            among.put_memories(gather(&**part.exchange(), &own).into_iter().flatten());
+        }
+    }
+}
+
+fn spheres(particles: &Particles) -> Spheres<'_> {
+    let Particles { position, velocity, spin, radius, .. } = particles;
+    Spheres { position, velocity, spin, radius }
+}

@@ -1,0 +1,43 @@
+//! What several processes tell each other so that probes can be looked at.
+
+use fractum_scene::{NeededPoints, Probe, ProbeNeeds, Scene, Watched};
+
+/// Part of all points up to which those of a probe are followed by every process.
+const WATCHED_PART: usize = 50;
+
+/// What several processes tell each other before a probe is looked at.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Fetch {
+    /// Displacements and velocities of all nodes.
+    pub(crate) nodes: bool,
+    /// Motion of all particles, with what bonds remember.
+    pub(crate) particles: bool,
+    /// Damage of all edges.
+    pub(crate) damage: bool,
+    /// Contacts among all particles.
+    pub(crate) contacts: bool,
+}
+
+/// Points of probes that every process follows, since they are few or held by supports, and what is to be fetched for each probe.
+pub(crate) fn points_of_probes(probes: &[Option<Probe>], scene: &Scene) -> (Watched, Vec<Fetch>) {
+    let mut watched = Watched::default();
+    // Whether points must be fetched, since there are too many to be followed.
+    let follow = |needed: NeededPoints, all: usize, of_supports: bool, watched: &mut Vec<u32>| match needed {
+        NeededPoints::Some(points) if of_supports || points.len() <= all / WATCHED_PART => {
+            watched.extend(points);
+            false
+        }
+        _ => true,
+    };
+    let mut fetch = |probe: &Probe| {
+        let ProbeNeeds { nodes, particles, of_supports, damage, contacts } = probe.needs(scene);
+        Fetch {
+            nodes: follow(nodes, scene.solid.reference.len(), of_supports, &mut watched.nodes),
+            particles: follow(particles, scene.bonded.particles.len(), of_supports, &mut watched.particles),
+            damage,
+            contacts,
+        }
+    };
+    let fetches = probes.iter().map(|probe| probe.as_ref().map(&mut fetch).unwrap_or_default()).collect();
+    (watched, fetches)
+}
