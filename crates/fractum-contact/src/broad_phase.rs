@@ -17,63 +17,95 @@ const UNEVEN: f64 = 3.0;
 /// as the largest of them with its skin, so that the search walks through memory; for radii that differ by more, up to
 /// any ratio, it walks down a tree of boxes.
 pub fn close_pairs(centres: &[Vec3], radii: &[f64], skin: f64) -> Vec<[u32; 2]> {
+    close_pairs_of(centres, radii, skin, |_| true)
+}
+
+/// [`close_pairs`] of which one sphere at least is wanted: cheap where these are few and lie together.
+pub fn close_pairs_of(
+    centres: &[Vec3],
+    radii: &[f64],
+    skin: f64,
+    is_wanted: impl Fn(usize) -> bool + Sync,
+) -> Vec<[u32; 2]> {
     let widest = radii.iter().fold(0.0f64, |a, &b| a.max(b));
     let width = 2.0 * widest + skin;
-    if centres.len() < 2 || width <= 0.0 || !width.is_finite() {
+    let wanted = (0..centres.len()).filter(|&i| radii[i] >= 0.0 && is_wanted(i)).map(|i| centres[i]);
+    let bounds = wanted.fold(None, |bounds: Option<(Vec3, Vec3)>, x| {
+        Some(bounds.map_or((x, x), |(low, high)| (low.inf(&x), high.sup(&x))))
+    });
+    let Some((low, high)) = bounds.filter(|_| centres.len() > 1 && width > 0.0 && width.is_finite()) else {
         return Vec::new();
-    }
+    };
+    let (low, high) = (low.add_scalar(-width), high.add_scalar(width));
+    // Those that are no number are outside.
+    let is_near = |i: usize| radii[i] >= 0.0 && (0..3).all(|k| centres[i][k] >= low[k] && centres[i][k] <= high[k]);
+    let near: Vec<u32> = (0..centres.len()).filter(|&i| is_near(i)).map(|i| i as u32).collect();
+    let spheres = NearSpheres { centres, radii, skin, is_wanted };
     let mean = radii.iter().map(|radius| radius.max(0.0)).sum::<f64>() / radii.len() as f64;
     if widest + 0.5 * skin > UNEVEN * (mean + 0.5 * skin) {
-        return pairs_by_tree(centres, radii, skin);
+        return spheres.pairs_by_tree(&near);
     }
-    pairs_by_grid(centres, radii, skin, width)
+    spheres.pairs_by_grid(&near, width)
 }
 
-fn pairs_by_tree(centres: &[Vec3], radii: &[f64], skin: f64) -> Vec<[u32; 2]> {
-    let around = |i: usize| {
-        let (x, half) = (centres[i], radii[i].max(0.0) + 0.5 * skin);
-        Aabb::from_half_extents(Vector::new(x.x, x.y, x.z), Vector::new(half, half, half))
-    };
-    let boxes: Vec<Aabb> = (0..centres.len()).map(around).collect();
-    let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
-    let pairs_of = |(i, own): (usize, &Aabb)| {
-        let near = |&j: &u32| {
-            let reach = radii[i] + radii[j as usize] + skin;
-            let there = radii[i].min(radii[j as usize]) >= 0.0;
-            there && i < j as usize && (centres[j as usize] - centres[i]).norm_squared() < reach * reach
+/// Spheres of which pairs are looked for.
+struct NearSpheres<'a, W> {
+    centres: &'a [Vec3],
+    radii: &'a [f64],
+    skin: f64,
+    is_wanted: W,
+}
+
+impl<W: Fn(usize) -> bool + Sync> NearSpheres<'_, W> {
+    /// A wanted sphere with another one, if they are near; each pair is found from one side.
+    #[inline]
+    fn pair(&self, i: u32, j: u32) -> Option<[u32; 2]> {
+        let NearSpheres { centres, radii, skin, is_wanted } = self;
+        let [a, b] = [i as usize, j as usize];
+        let reach = radii[a] + radii[b] + skin;
+        let is_near = (centres[b] - centres[a]).norm_squared() < reach * reach;
+        (is_near && (i < j || (i > j && !is_wanted(b)))).then(|| [i.min(j), i.max(j)])
+    }
+
+    fn pairs_by_tree(&self, near: &[u32]) -> Vec<[u32; 2]> {
+        let around = |&i: &u32| {
+            let (x, half) = (self.centres[i as usize], self.radii[i as usize] + 0.5 * self.skin);
+            Aabb::from_half_extents(Vector::new(x.x, x.y, x.z), Vector::new(half, half, half))
         };
-        let mut found: Vec<[u32; 2]> = tree.intersect_aabb(own).filter(near).map(|j| [i as u32, j]).collect();
-        found.sort_unstable();
-        found
-    };
-    boxes.par_iter().enumerate().flat_map_iter(pairs_of).collect()
-}
+        let boxes: Vec<Aabb> = near.iter().map(around).collect();
+        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        let pairs_of = |(&i, own): (&u32, &Aabb)| {
+            tree.intersect_aabb(own).filter_map(|j| self.pair(i, near[j as usize])).collect::<Vec<_>>()
+        };
+        let wanted = near.par_iter().zip(&boxes).filter(|(i, _)| (self.is_wanted)(**i as usize));
+        sorted(wanted.flat_map_iter(pairs_of).collect())
+    }
 
-fn pairs_by_grid(centres: &[Vec3], radii: &[f64], skin: f64, width: f64) -> Vec<[u32; 2]> {
-    let cell_of = |p: &Vec3| p.map(|c| (c / width).floor() as i64);
-    let there = centres.par_iter().enumerate().filter(|(i, _)| radii[*i] >= 0.0);
-    let mut sorted: Vec<([i64; 3], u32)> = there.map(|(i, p)| (cell_of(p).into(), i as u32)).collect();
-    sorted.par_sort_unstable();
-    let pairs_of = |&(cell, i): &([i64; 3], u32)| {
-        let mut found = Vec::new();
-        for dx in -1..=1 {
-            for dy in -1..=1 {
-                // The cells of one column lie side by side in the sorted list.
-                let first = [cell[0] + dx, cell[1] + dy, cell[2] - 1];
-                let last = [cell[0] + dx, cell[1] + dy, cell[2] + 1];
-                let start = sorted.partition_point(|(c, _)| *c < first);
-                for &(_, j) in sorted[start..].iter().take_while(|(c, _)| *c <= last) {
-                    let reach = radii[i as usize] + radii[j as usize] + skin;
-                    let apart = centres[j as usize] - centres[i as usize];
-                    if i < j && apart.norm_squared() < reach * reach {
-                        found.push([i, j]);
-                    }
+    fn pairs_by_grid(&self, near: &[u32], width: f64) -> Vec<[u32; 2]> {
+        let cell_of = |p: &Vec3| p.map(|c| (c / width).floor() as i64);
+        let in_cell = |&i: &u32| (cell_of(&self.centres[i as usize]).into(), i);
+        let mut cells: Vec<([i64; 3], u32)> = near.par_iter().map(in_cell).collect();
+        cells.par_sort_unstable();
+        let pairs_of = |&(cell, i): &([i64; 3], u32)| {
+            let mut found = Vec::new();
+            for dx in -1..=1 {
+                for dy in -1..=1 {
+                    // The cells of one column lie side by side in the sorted list.
+                    let first = [cell[0] + dx, cell[1] + dy, cell[2] - 1];
+                    let last = [cell[0] + dx, cell[1] + dy, cell[2] + 1];
+                    let start = cells.partition_point(|(c, _)| *c < first);
+                    let column = cells[start..].iter().take_while(|(c, _)| *c <= last);
+                    found.extend(column.filter_map(|&(_, j)| self.pair(i, j)));
                 }
             }
-        }
-        found
-    };
-    let mut pairs: Vec<[u32; 2]> = sorted.par_iter().flat_map_iter(pairs_of).collect();
+            found
+        };
+        let wanted = cells.par_iter().filter(|(_, i)| (self.is_wanted)(*i as usize));
+        sorted(wanted.flat_map_iter(pairs_of).collect())
+    }
+}
+
+fn sorted(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
     pairs.par_sort_unstable();
     pairs
 }
@@ -101,7 +133,10 @@ mod tests {
                     }
                 }
             }
-            prop_assert_eq!(close_pairs(&centres, &radii, skin), expected);
+            prop_assert_eq!(&close_pairs(&centres, &radii, skin), &expected);
+            let is_wanted = |i: usize| i % 3 == 1 && centres[i].x < 1.0;
+            expected.retain(|pair| pair.iter().any(|&i| is_wanted(i as usize)));
+            prop_assert_eq!(close_pairs_of(&centres, &radii, skin, is_wanted), expected);
         }
     }
 }

@@ -31,7 +31,7 @@ pub mod surface;
 mod surface_block;
 mod touch;
 
-pub use broad_phase::close_pairs;
+pub use broad_phase::{close_pairs, close_pairs_of};
 pub use error::SurfaceError;
 pub use foot::Foot;
 pub use frame::Frame;

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fractum_dem::ParticleShare;
 use fractum_fem::Share;
-use fractum_io::case::model::{Case, Output, SolverKind};
+use fractum_io::case::model::{BodyKind, BondLawKind, Case, Output, SolverKind};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
 use fractum_io::number::grouped;
 use fractum_io::vtk::Cut;
@@ -193,6 +193,14 @@ fn not_for_ranks(case: &Case) -> Vec<(&Place, &'static str)> {
     if case.solver.kind != SolverKind::Explicit {
         found.push((&case.solver.place, "a solver that is not explicit"));
     }
+    let solid = case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Solid(_)));
+    let is_nonlocal =
+        |kind: &BodyKind| matches!(kind, BodyKind::Bonded(body) if body.law == BondLawKind::LocalNonlocal);
+    let nonlocal = case.bodies.iter().filter(|body| !solid && is_nonlocal(&body.kind));
+    found
+        .extend(nonlocal.map(|body| {
+            (&body.name.place, "bond = \"local-nonlocal\" without a solid, whose cells they would share,")
+        }));
     found.extend(case.solver.subcycling.iter().map(|place| (place, "subcycling")));
     found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat")));
     found

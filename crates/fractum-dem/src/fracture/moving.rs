@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use fractum_contact::close_pairs;
+use fractum_contact::close_pairs_of;
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -383,10 +383,9 @@ impl Fracture {
         let mut known: Vec<[u32; 2]> = pairs.iter().filter(|face| face.stranger).map(|face| face.pair).collect();
         known.sort_unstable();
         let start = range.start as u32;
-        for [i, j] in close_pairs(centres, radii, skin) {
+        for [i, j] in close_pairs_of(centres, radii, skin, |i| lost[i]) {
             let pair = [i + start, j + start];
-            let concerned = lost[i as usize] || lost[j as usize];
-            if concerned && !graph.were_bonded(pair) && known.binary_search(&pair).is_err() {
+            if !graph.were_bonded(pair) && known.binary_search(&pair).is_err() {
                 let rest = radii[i as usize] + radii[j as usize];
                 pairs.push(Face::new(bonds, particles, pair, rest, self.faces, true));
             }

@@ -13,6 +13,7 @@ pub use past_forces::PastForces;
 pub use step::{ParticleDamping, TimeStep};
 
 use fractum_math::{Rotation, Vec3};
+use rayon::prelude::*;
 
 use crate::DemError;
 
@@ -108,8 +109,15 @@ impl Particles {
 
     /// Sets all forces and moments to zero.
     pub fn clear_forces(&mut self) {
-        self.force.fill(Vec3::zeros());
-        self.moment.fill(Vec3::zeros());
+        let loads = self.force.par_chunks_mut(BLOCK).zip(self.moment.par_chunks_mut(BLOCK));
+        loads.for_each(|(force, moment)| clear(force, moment));
+    }
+
+    /// [`Particles::clear_forces`] of what a rank moves.
+    pub fn clear_forces_of_part(&mut self, part: &ParticlePart) {
+        for run in part.moved() {
+            clear(&mut self.force[run.clone()], &mut self.moment[run]);
+        }
     }
 
     /// Kinetic energy of translation and of rotation [J].
@@ -118,6 +126,11 @@ impl Particles {
             0.5 * (self.mass[i] * self.velocity[i].norm_squared() + self.inertia[i] * self.spin[i].norm_squared())
         })
     }
+}
+
+fn clear(force: &mut [Vec3], moment: &mut [Vec3]) {
+    force.fill(Vec3::zeros());
+    moment.fill(Vec3::zeros());
 }
 
 /// An acceleration without its held components.

@@ -150,6 +150,11 @@ impl ParticlePart {
         &self.of_others
     }
 
+    /// All particles that this rank moves, in runs.
+    pub fn moved(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        std::iter::once(self.own()).chain(self.of_others.iter().cloned())
+    }
+
     /// Tells the motion of own particles to the ranks that have ghosts of them.
     pub fn tell_ghosts(&mut self, particles: &mut Particles) {
         let get = |particles: &Particles, i: u32| motion(particles, i as usize);

@@ -326,8 +326,11 @@ impl Bonded {
     /// - `dt` [s]: the step that led here
     /// - `measure`: whether to sum the elastic energy, see [`Bonded::energy`]
     pub(crate) fn update_bond_forces(&mut self, dt: f64, measure: bool) -> Work {
-        let Bonded { particles, bodies, energy, released, dissipated, viscous, .. } = self;
-        particles.clear_forces();
+        let Bonded { particles, bodies, energy, released, dissipated, viscous, part, .. } = self;
+        match part {
+            Some(part) => particles.clear_forces_of_part(part),
+            None => particles.clear_forces(),
+        }
         let mut work = Work::default();
         *released = 0.0;
         viscous.fill(Vec3::zeros());

@@ -1,5 +1,7 @@
 //! Particles of bonded bodies as boundary conditions see them.
 
+use std::ops::Range;
+
 use fractum_dem::{ParticlePart, Particles};
 use fractum_math::{CHUNK, Vec3};
 use rayon::prelude::*;
@@ -68,7 +70,14 @@ impl DrivenPoints for ParticlePoints<'_> {
 
     fn add_weight(&mut self, gravity: &Vec3) {
         let Particles { force, mass, .. } = &mut *self.particles;
-        force.iter_mut().zip(&*mass).for_each(|(force, mass)| *force += *gravity * *mass);
+        let mut add = |run: Range<usize>| {
+            let forces = force[run.clone()].iter_mut().zip(&mass[run]);
+            forces.for_each(|(force, mass)| *force += *gravity * *mass);
+        };
+        match self.part {
+            Some(part) => part.moved().for_each(add),
+            None => add(0..mass.len()),
+        }
         self.tied.iter().for_each(|&i| force[i as usize] -= *gravity * mass[i as usize]);
     }
 
