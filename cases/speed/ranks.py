@@ -3,7 +3,8 @@
 the least time of their steps without output, the ratio, and what is sent; then the largest memory of each of 1, 2 and 4 processes.
 
 Needs numpy, MPI and a build with it: `cargo build --release --features mpi --target-dir target/mpi`, then
-`python3 cases/speed/ranks.py target/mpi/release/fractum`.
+`python3 cases/speed/ranks.py target/mpi/release/fractum`. With `bonded` behind it the times alone, of a cube of 100,000 bonded particles that
+vibrates, and of the same that is torn.
 """
 
 import json
@@ -30,36 +31,67 @@ density = "2400 kg/m^3"
 young_modulus = "30 GPa"
 poisson_ratio = 0.2
 """
+BONDED = """fractum = 1
+bodies = [{ name = "cube", kind = "bonded", material = "glass", shape = "box", size = ["2 mm", "2 mm", "2 mm"], particles = 100000, coordination = 10, seed = 3,
+  initial_velocity = { x = "rate*x/side", y = "-nu*rate*(y/side - 0.5)", z = "-nu*rate*(z/side - 0.5)" } }]
+supports = [{ group = "cube.x-", fix = "x" }, { group = "cube.x+", velocity = { x = "rate" } }]
+solver = { kind = "explicit", end = "0.86 us" }
+output = { history = { every = "43 ns" }, fields = { every = "0.86 us" } }
+[parameters]
+side = "2 mm"
+nu = 0.23
+rate = "1.86 m/s"
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "72 GPa"
+poisson_ratio = "nu"
+"""
+STRENGTH = """
+[materials.glass.fracture]
+tensile_strength = "50 MPa"
+"""
 MPIRUN = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "-n"]
 
 
-def main(program, cells=44, rounds=5):
-    ways = {"one process, two threads": ([], 2), "two processes, one thread each": ([*MPIRUN, "2"], 1)}
-    times = {way: [] for way in ways}
+def main(program, cells=44):
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         write_box(folder / "cube.msh", (cells,) * 3, (1.0,) * 3)
-        (folder / "case.toml").write_text(CASE)
-        hashes = set()
-        for _ in range(rounds):
-            for way, (start, threads) in ways.items():
-                results = folder / "results"
-                command = [*start, program, "run", folder / "case.toml", "-o", results, "--overwrite", "--quiet", "--threads", threads]
-                subprocess.run([str(part) for part in command], check=True, stdout=subprocess.DEVNULL)
-                summary = json.loads((results / "summary.json").read_text())
-                phases = summary["wall"]["phases"]
-                times[way].append(sum(phases.values()) - phases["output"])
-                hashes.add(summary["state_hash"])
-        log = (results / "run.log").read_text()
+        compare(program, folder, CASE)
         memory = {count: peaks(program, folder, count) for count in (1, 2, 4)}
+    for count, each in memory.items():
+        print(f"{count} of one thread: {', '.join(f'{megabytes:.0f}' for megabytes in each)} MB")
+
+
+def bonded(program):
+    for what, case in (("vibrates", BONDED), ("is torn", BONDED + STRENGTH)):
+        with tempfile.TemporaryDirectory() as folder:
+            print(f"the cube {what}")
+            compare(program, pathlib.Path(folder), case)
+
+
+def compare(program, folder, case, rounds=5):
+    """Runs a case by one process with two threads and by two processes in turn, and prints times, ratio and what is sent."""
+    ways = {"one process, two threads": ([], 2), "two processes, one thread each": ([*MPIRUN, "2"], 1)}
+    times = {way: [] for way in ways}
+    (folder / "case.toml").write_text(case)
+    hashes = set()
+    for _ in range(rounds):
+        for way, (start, threads) in ways.items():
+            results = folder / "results"
+            command = [*start, program, "run", folder / "case.toml", "-o", results, "--overwrite", "--quiet", "--threads", threads]
+            subprocess.run([str(part) for part in command], check=True, stdout=subprocess.DEVNULL)
+            summary = json.loads((results / "summary.json").read_text())
+            phases = summary["wall"]["phases"]
+            times[way].append(sum(phases.values()) - phases["output"])
+            hashes.add(summary["state_hash"])
     steps = summary["time"]["steps"]
     for way, all_times in times.items():
         print(f"{way}: {1e3 * min(all_times) / steps:.1f} ms a step, least of {rounds} runs of {steps} steps")
     alone, shared = (min(all_times) for all_times in times.values())
-    print(f"ratio {shared / alone:.2f}; states {'alike' if len(hashes) == 1 else 'DIFFERENT'}")
-    print(next(line for line in log.splitlines() if "of them shared" in line))
-    for count, each in memory.items():
-        print(f"{count} of one thread: {', '.join(f'{megabytes:.0f}' for megabytes in each)} MB")
+    print(f"ratio {shared / alone:.2f}; states {'alike' if len(hashes) == 1 else 'DIFFERENT'}; {summary['counts']['broken_bonds']} bonds broken")
+    log = (results / "run.log").read_text()
+    print(next(line for line in log.splitlines() if "process 0 of 2" in line))
 
 
 def peaks(program, folder, count):
@@ -73,4 +105,4 @@ def peaks(program, folder, count):
 
 
 if __name__ == "__main__":
-    main(pathlib.Path(sys.argv[1]).resolve())
+    (bonded if "bonded" in sys.argv[2:] else main)(pathlib.Path(sys.argv[1]).resolve())

@@ -219,3 +219,39 @@ fn a_state_goes_on_with_any_number_of_ranks() {
         }
     }
 }
+
+/// Every rank saves what it has; together that is the state, and parts of which one is missing are none.
+#[test]
+fn the_parts_of_all_ranks_are_the_state_of_a_single_process() {
+    let viscous = || {
+        let mut scene = breaking();
+        scene.solid.set_viscosity(Viscosity { stiffness_time: 1e-8, ..Viscosity::default() });
+        scene
+    };
+    let standard = || breaking_by_phase_field(ElementKind::T4, Formulation::Standard);
+    let phase_field = || breaking_by_phase_field(ElementKind::T3, Formulation::Smoothed);
+    for made in [&breaking as &(dyn Fn() -> Scene + Sync), &viscous, &standard, &phase_field] {
+        let mut single = made();
+        advance(&mut single, 331);
+        for ranks in RANKS {
+            let save = |exchange: Arc<dyn Exchange>| {
+                on_two_threads(|| {
+                    let mut scene = made();
+                    scene.share_out(exchange, &Watched::default());
+                    advance(&mut scene, 331);
+                    scene.state_in_parts().unwrap()
+                })
+            };
+            let (mut states, mut parts): (Vec<_>, Vec<_>) = std::thread::scope(|scope| {
+                let started: Vec<_> =
+                    threads(ranks).into_iter().map(|exchange| scope.spawn(|| save(exchange))).collect();
+                started.into_iter().map(|thread| thread.join().unwrap()).unzip()
+            });
+            let beside = states.swap_remove(0);
+            let whole = made().joined(beside.clone(), &parts).unwrap();
+            assert!(whole == single.state(), "{ranks} ranks");
+            parts.pop();
+            assert!(made().joined(beside, &parts).is_none(), "{ranks} ranks");
+        }
+    }
+}

@@ -44,7 +44,7 @@ impl Solid {
         SolidState {
             displacement: self.displacement.clone(),
             velocity: self.velocity.clone(),
-            bodies: (0..self.bodies.len()).map(|b| self.body_state(b)).collect(),
+            bodies: (0..self.bodies.len()).map(|b| self.body_state(b, self.edge_damage(b))).collect(),
             dissipated: self.blocks.iter().map(Block::dissipated).collect(),
             viscous_dissipation: self.viscous_dissipation,
             viscous: self.blocks.iter().map(|b| b.viscous.stress.clone()).collect(),
@@ -78,7 +78,7 @@ impl Solid {
         lost
     }
 
-    fn body_state(&self, body: usize) -> BodyState {
+    pub(crate) fn body_state(&self, body: usize, edges: Vec<EdgeDamage>) -> BodyState {
         let model = &self.bodies[body];
         let of = |&(block, cell): &(u32, u32)| match &self.blocks[block as usize].law {
             BlockLaw::Standard(law) => (law.damage[cell as usize], law.stress[cell as usize]),
@@ -86,7 +86,7 @@ impl Solid {
         };
         let elements = if model.standard.is_some() { model.location.iter().map(of).collect() } else { Vec::new() };
         let phase = model.phase.as_ref().map_or_else(Vec::new, |field| field.state().collect());
-        BodyState { alive: model.alive.clone(), edges: self.edge_damage(body), elements, phase }
+        BodyState { alive: model.alive.clone(), edges, elements, phase }
     }
 
     /// Puts a saved state back. The solid must have been built from the same bodies.

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use fractum_fem::Solid;
+use fractum_fem::{Solid, SolidPart};
 use fractum_parallel::Exchange;
 
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneState};
 
 /// Nodes of solids and particles that every rank moves, since they are looked at after every step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -81,6 +81,20 @@ impl Scene {
     /// Brings displacements and velocities of all nodes up to date. All ranks must call it.
     pub fn gather_nodes(&mut self) {
         self.solid.gather_nodes();
+    }
+
+    /// The state in parts: what this rank knows best of the solids, and all the rest. All ranks must call it; none where no solid is
+    /// shared.
+    pub fn state_in_parts(&mut self) -> Option<(SceneState, SolidPart)> {
+        let part = self.solid.state_part().filter(|_| self.solid.body_count() > 0)?;
+        self.gather_particles();
+        self.gather_contacts();
+        Some((self.state_with(self.solid.state_beside_parts()), part))
+    }
+
+    /// A state by its parts, before the first step of a scene from the same case; none if they do not belong to it.
+    pub fn joined(&self, beside: SceneState, parts: &[SolidPart]) -> Option<SceneState> {
+        beside.with_solid(|solid| self.solid.joined(solid, parts))
     }
 
     /// Brings particles and the memory of their bonds up to date. All ranks must call it.

@@ -98,6 +98,13 @@ pub struct SceneState {
     loads: LoadsState,
 }
 
+impl SceneState {
+    /// The same with another state of the solids; none where there is none.
+    pub(crate) fn with_solid(self, solid: impl FnOnce(SolidState) -> Option<SolidState>) -> Option<Self> {
+        Some(SceneState { solid: solid(self.solid)?, ..self })
+    }
+}
+
 /// What a probe counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the names say it
@@ -361,9 +368,13 @@ impl Scene {
 
     /// Everything that changes, for a checkpoint.
     pub fn state(&self) -> SceneState {
+        self.state_with(self.solid.state())
+    }
+
+    pub(crate) fn state_with(&self, solid: SolidState) -> SceneState {
         SceneState {
             clock: self.clock,
-            solid: self.solid.state(),
+            solid,
             debris: self.debris.saved(),
             bonded: (!self.bonded.is_empty()).then(|| self.bonded.state()),
             contacts: (!self.contacts.is_empty()).then(|| self.contacts.state()),

@@ -54,6 +54,11 @@ impl Ranks {
         self.processes
     }
 
+    /// Number of this one, from 0.
+    pub(crate) fn rank(&self) -> usize {
+        self.exchange.as_ref().map_or(0, |exchange| exchange.rank())
+    }
+
     pub(crate) fn exchange(&self) -> Option<&Arc<dyn Exchange>> {
         self.exchange.as_ref()
     }

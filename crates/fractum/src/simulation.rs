@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use fractum_fem::SolidPart;
 use fractum_io::Compression;
 use fractum_io::build::BuiltScene;
 use fractum_io::case::Case;
@@ -81,7 +82,9 @@ pub struct Simulation {
     recorder: Recorder,
     /// Those that run the case together.
     ranks: Arc<Ranks>,
+    /// Where this process writes, and the results folder of all.
     folder: PathBuf,
+    results: PathBuf,
     about: About,
     messages: Messages,
     phases: Phases,
@@ -134,6 +137,11 @@ struct RunState<'a> {
     /// End of the run when it was saved [s].
     end: f64,
     scene: SceneState,
+    /// Files of parts that the processes have written of it; 0 where it is whole.
+    parts: usize,
+    /// These, once they are read.
+    #[serde(skip)]
+    solids: Vec<SolidPart>,
     heat: Option<HeatState>,
     subcycling: Option<SubcyclingState>,
     record: Cow<'a, RecordState>,
@@ -200,12 +208,12 @@ impl Simulation {
                 self.messages.event = advance.event;
             }
             (Err(StepError::Interrupted { .. }), Some((scene, solver))) => {
-                self.save_state(scene, solver)?;
+                self.save_state(scene, 0, solver)?;
                 self.end = Some(End::Interrupted);
             }
             (Err(error), before) => {
                 // The equilibrium before the one that was not found; of motion the last checkpoint remains.
-                before.map_or(Ok(()), |(scene, solver)| self.save_state(scene, solver))?;
+                before.map_or(Ok(()), |(scene, solver)| self.save_state(scene, 0, solver))?;
                 self.end = Some(End::Failed(error));
             }
         }
@@ -327,25 +335,53 @@ impl Simulation {
         self.ranks.together(done)
     }
 
+    /// Saves the state; where processes share solids, each writes what it has of them beside what the first one writes.
     fn save(&mut self) -> Result<(), Failure> {
-        self.scene.gather_ranks();
         self.finish_pieces()?;
-        if !self.ranks.leads() {
-            let clock = self.scene.clock;
-            self.saved = Some(Saved { at: Instant::now(), step: clock.step, time: clock.time });
-            return Ok(());
-        }
-        self.save_state(self.scene.state(), self.solver.state())
+        let (scene, parts) = match self.scene.state_in_parts() {
+            Some((scene, part)) => {
+                let written = self.save_part(&part);
+                self.ranks.together(written)?;
+                (Some(scene), self.ranks.processes().all)
+            }
+            None => {
+                self.scene.gather_ranks();
+                (self.ranks.leads().then(|| self.scene.state()), 0)
+            }
+        };
+        let clock = self.scene.clock;
+        self.saved = Some(Saved { at: Instant::now(), step: clock.step, time: clock.time });
+        let (scene, solver) = (scene.filter(|_| self.ranks.leads()), self.solver.state());
+        scene.map_or(Ok(()), |scene| self.save_state(scene, parts, solver))
     }
 
-    fn save_state(&mut self, scene: SceneState, solver: SolverState) -> Result<(), Failure> {
+    fn save_part(&mut self, part: &SolidPart) -> Result<(), Failure> {
+        let clock = self.scene.clock;
+        let header = Header { identity: self.about.identity.clone(), step: clock.step, time: clock.time };
+        let (folder, process) = (self.results.join("checkpoint"), self.ranks.rank());
+        let write = || checkpoint::save_part(&folder, &header, process, part, Compression::Fast);
+        Ok(self.phases.timed(Part::Output, write)?)
+    }
+
+    /// - `parts`: files that have been written of it
+    fn save_state(&mut self, scene: SceneState, parts: usize, solver: SolverState) -> Result<(), Failure> {
         let clock = scene.clock;
         let (end, later) = (self.end_of_run(), self.later.len());
         let (heat, subcycling) = (self.scene.heat_state(), self.scene.subcycling_state());
         let started = Instant::now();
         let record = self.recorder.sync()?;
         self.phases.add(Part::Output, started.elapsed());
-        let state = RunState { end, scene, heat, subcycling, record: Cow::Borrowed(record), later, solver };
+        let state = RunState {
+            end,
+            scene,
+            parts,
+            solids: Vec::new(),
+            heat,
+            subcycling,
+            record: Cow::Borrowed(record),
+            later,
+            solver,
+        };
         let header = Header { identity: self.about.identity.clone(), step: clock.step, time: clock.time };
         let folder = self.folder.join("checkpoint");
         let write = || checkpoint::save(&folder, &header, &state, Compression::Fast);

@@ -196,6 +196,11 @@ impl Part {
         Arc::clone(&self.exchange)
     }
 
+    /// Nodes that this rank tells the others of, where all are told of all.
+    pub(crate) fn told_nodes(&self) -> &[u32] {
+        self.all.of(self.exchange.rank())
+    }
+
     /// The rank whose block this is.
     pub(crate) fn rank_of(&self, block: usize) -> usize {
         rank_of(&self.first, block)

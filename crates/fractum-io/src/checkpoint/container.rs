@@ -19,7 +19,7 @@ use crate::compress::{Compression, compressor, deflate};
 use crate::memory::{self, TooLarge};
 
 /// Version of the container's format.
-pub const FORMAT: u32 = 3;
+pub const FORMAT: u32 = 4;
 
 /// As PNG's: a transfer that strips the eighth bit or converts line ends is noticed at once.
 const MAGIC: &[u8; 8] = b"\x89FCK\r\n\x1a\n";

@@ -2,7 +2,8 @@
 //!
 //! A checkpoint is `state-<step>.fck` in the folder `checkpoint`. It is written whole or not at all, and the one before
 //! it stays, so that a run killed at any moment finds its last state. Only the program, case and mesh that wrote it may
-//! read it; every byte is covered by a checksum.
+//! read it; every byte is covered by a checksum. Several processes may write parts of it beforehand,
+//! `state-<step>.part-<process>.fck`, each in the same form.
 //!
 //! ```
 //! use fractum_io::Compression;
@@ -154,6 +155,14 @@ pub enum CheckpointError {
         /// The file.
         path: PathBuf,
     },
+    /// A part of another state.
+    #[error("{}: part of the state of step {found}, which is another one; delete both to continue from an older one", path.display())]
+    OtherStep {
+        /// The file.
+        path: PathBuf,
+        /// The step that it is of.
+        found: u64,
+    },
     /// The bytes are whole but hold another kind of state.
     #[error("{}: holds a state of another layout ({reason}); start again with --overwrite", path.display())]
     OtherLayout {
@@ -185,10 +194,59 @@ pub fn save<T: Serialize>(
     state: &T,
     compression: Compression,
 ) -> Result<PathBuf, CheckpointError> {
-    atomic::create_folder(folder)?;
     let path = folder.join(format!("state-{:09}.fck", header.step));
+    write(folder, &path, header, state, compression)?;
+    // The new state is safe: what cannot be removed does no harm.
+    let _ = remove_outdated(folder, header.step);
+    Ok(path)
+}
+
+/// Saves the part of one of several processes, before the first of them saves the state that needs all parts.
+///
+/// # Errors
+/// As [`save`].
+pub fn save_part<T: Serialize>(
+    folder: &Path,
+    header: &Header,
+    process: usize,
+    part: &T,
+    compression: Compression,
+) -> Result<(), CheckpointError> {
+    write(folder, &part_path(folder, header.step, process), header, part, compression)
+}
+
+/// Reads the parts of a state.
+///
+/// # Errors
+/// As [`load`]; [`CheckpointError::OtherStep`] for a part of another state.
+pub fn load_parts<T: DeserializeOwned>(
+    folder: &Path,
+    identity: &Identity,
+    step: u64,
+    count: usize,
+) -> Result<Vec<T>, CheckpointError> {
+    let part = |process: usize| {
+        let path = part_path(folder, step, process);
+        let (header, part) = load(&path, identity)?;
+        if header.step == step { Ok(part) } else { Err(CheckpointError::OtherStep { path, found: header.step }) }
+    };
+    (0..count).map(part).collect()
+}
+
+fn part_path(folder: &Path, step: u64, process: usize) -> PathBuf {
+    folder.join(format!("state-{step:09}.part-{process:04}.fck"))
+}
+
+fn write<T: Serialize>(
+    folder: &Path,
+    path: &Path,
+    header: &Header,
+    state: &T,
+    compression: Compression,
+) -> Result<(), CheckpointError> {
+    atomic::create_folder(folder)?;
     let mut not_storable = None;
-    atomic::write_with(&path, |file| {
+    atomic::write_with(path, |file| {
         container::write(file, header, state, compression).map_err(|error| match error {
             container::Failure::Io(error) => error,
             container::Failure::Serialiser(reason) => {
@@ -200,10 +258,7 @@ pub fn save<T: Serialize>(
     .map_err(|error| match not_storable {
         Some(reason) => CheckpointError::NotStorable { reason },
         None => error.into(),
-    })?;
-    // The new state is safe: what cannot be removed does no harm.
-    let _ = remove_outdated(folder, header.step);
-    Ok(path)
+    })
 }
 
 /// Reads the newest checkpoint in `folder` that is whole and belongs to `identity`; `None` if there is no checkpoint.
@@ -214,6 +269,18 @@ pub fn load_latest<T: DeserializeOwned>(
     folder: &Path,
     identity: &Identity,
 ) -> Result<Option<Loaded<T>>, CheckpointError> {
+    load_latest_with(folder, identity, |_, state| Ok(state))
+}
+
+/// [`load_latest`] of states that need more than one file; a state is passed over like one that is not whole where `complete` fails.
+///
+/// # Errors
+/// As [`load_latest`].
+pub fn load_latest_with<S: DeserializeOwned, T>(
+    folder: &Path,
+    identity: &Identity,
+    complete: impl Fn(&Header, S) -> Result<T, CheckpointError>,
+) -> Result<Option<Loaded<T>>, CheckpointError> {
     let unreadable = |source| CheckpointError::Unreadable { path: folder.to_path_buf(), source };
     let mut found = match checkpoints(folder) {
         Ok(found) => found,
@@ -223,8 +290,9 @@ pub fn load_latest<T: DeserializeOwned>(
     found.sort();
     let mut passed_over = Vec::new();
     for (_, path) in found.into_iter().rev() {
-        match load(&path, identity) {
-            Ok((header, state)) => return Ok(Some(Loaded { header, state, path, passed_over })),
+        let whole = load(&path, identity).and_then(|(header, state)| Ok((complete(&header, state)?, header)));
+        match whole {
+            Ok((state, header)) => return Ok(Some(Loaded { header, state, path, passed_over })),
             Err(error) => passed_over.push(error),
         }
     }
@@ -269,24 +337,32 @@ pub fn newest(folder: &Path) -> Option<(u64, PathBuf)> {
 
 /// Checkpoints in `folder` with their steps.
 fn checkpoints(folder: &Path) -> io::Result<Vec<(u64, PathBuf)>> {
+    files(folder, |name| name.parse().ok())
+}
+
+/// Parts of checkpoints in `folder` with their steps.
+fn parts(folder: &Path) -> io::Result<Vec<(u64, PathBuf)>> {
+    files(folder, |name| name.split_once(".part-")?.0.parse().ok())
+}
+
+/// Files of states whose steps are in their names.
+fn files(folder: &Path, step: impl Fn(&str) -> Option<u64>) -> io::Result<Vec<(u64, PathBuf)>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let name = entry.file_name();
-        let step = name.to_str().and_then(|name| name.strip_prefix("state-")?.strip_suffix(".fck")?.parse().ok());
-        if let Some(step) = step {
-            found.push((step, entry.path()));
-        }
+        let of = |name: &str| step(name.strip_prefix("state-")?.strip_suffix(".fck")?);
+        found.extend(name.to_str().and_then(of).map(|step| (step, entry.path())));
     }
     Ok(found)
 }
 
-/// Removes all but the checkpoint of `step` and the newest before it, and what killed runs left unfinished.
+/// Removes all but the checkpoint of `step` and the newest before it, with their parts, and what killed runs left unfinished.
 fn remove_outdated(folder: &Path, step: u64) -> io::Result<()> {
     let mut found = checkpoints(folder)?;
     found.sort();
     let previous = found.iter().map(|(step, _)| *step).filter(|&other| other < step).max();
-    for (other, path) in found {
+    for (other, path) in found.into_iter().chain(parts(folder)?) {
         if other != step && Some(other) != previous {
             fs::remove_file(path)?;
         }
@@ -322,6 +398,35 @@ mod tests {
             broken: (0..size).map(|i| i % 3 == 0).collect(),
             name: "disc".into(),
         }
+    }
+
+    #[test]
+    fn a_state_in_parts_needs_all_of_them_and_they_go_with_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path();
+        let header = |step| Header { identity: identity(), step, time: 0.0 };
+        let complete = |header: &Header, count: usize| load_parts::<u32>(place, &identity(), header.step, count);
+        let latest = || load_latest_with(place, &identity(), complete);
+        for step in [10, 20, 30] {
+            for process in 0..3 {
+                save_part(place, &header(step), process, &(step as u32 + process as u32), Compression::Fast).unwrap();
+            }
+            // Without the file that names them, parts are no checkpoint.
+            assert_eq!(latest().unwrap().map_or(0, |found| found.header.step), step - 10);
+            save(place, &header(step), &3usize, Compression::Fast).unwrap();
+            assert_eq!(latest().unwrap().unwrap().state, [0, 1, 2].map(|process| step as u32 + process));
+        }
+        assert_eq!(parts(place).unwrap().iter().filter(|(step, _)| *step == 10).count(), 0);
+        assert_eq!(parts(place).unwrap().len(), 6);
+        fs::remove_file(part_path(place, 30, 1)).unwrap();
+        let older = latest().unwrap().unwrap();
+        assert_eq!((older.header.step, older.passed_over.len()), (20, 1));
+        fs::rename(part_path(place, 30, 2), part_path(place, 20, 2)).unwrap();
+        assert!(matches!(latest(), Err(CheckpointError::Unreadable { .. })));
+        assert!(matches!(
+            load_parts::<u32>(place, &identity(), 20, 3),
+            Err(CheckpointError::OtherStep { found: 30, .. })
+        ));
     }
 
     fn identity() -> Identity {

@@ -8,7 +8,7 @@ use std::time::Instant;
 use fractum_io::WriteError;
 use fractum_io::atomic::create_folder;
 use fractum_io::case::{Case, Diagnostic, Diagnostics};
-use fractum_io::checkpoint::{self, Identity, Loaded};
+use fractum_io::checkpoint::{self, CheckpointError, Header, Identity, Loaded};
 use fractum_io::log::RunLog;
 use fractum_io::number::{at_instant, instant_text};
 use fractum_scene::Scene;
@@ -143,7 +143,7 @@ impl Simulation {
         }
         // Rigid bodies are drawn from where they lie at the start.
         let grid = GridLayout::new(&scene, &built.file_order, built.gauges, &case, ranks.cut(&case.output));
-        let put_back = |Loaded { state, .. }: Loaded<RunState>| put_back(state, &mut scene, &mut solver, &case);
+        let put_back = |loaded: Loaded<RunState>| put_back(loaded, &mut scene, &mut solver, &case);
         let resumed = loaded.map(put_back).transpose()?;
         let is_new = resumed.is_none();
         let leads = ranks.leads();
@@ -164,6 +164,7 @@ impl Simulation {
             recorder,
             ranks,
             folder,
+            results,
             about,
             messages,
             phases,
@@ -204,7 +205,12 @@ fn log_start(log: &mut RunLog, path: &Path, about: &About, goes_on: Option<&str>
 ///
 /// - `tells`: whether to tell of states that are passed over
 fn find_checkpoint(folder: &Path, identity: &Identity, tells: bool) -> Result<Loaded<RunState<'static>>, Failure> {
-    let Some(loaded) = checkpoint::load_latest::<RunState>(&folder.join("checkpoint"), identity)? else {
+    let states = folder.join("checkpoint");
+    let complete = |header: &Header, state: RunState<'static>| {
+        let solids = checkpoint::load_parts(&states, identity, header.step, state.parts)?;
+        Ok(RunState { solids, ..state })
+    };
+    let Some(loaded) = checkpoint::load_latest_with(&states, identity, complete)? else {
         let text = format!("{}: no checkpoint to resume from; run without --resume", folder.display());
         return Err(Failure::input(text));
     };
@@ -236,8 +242,14 @@ fn goes_on(case: &Case, loaded: &Loaded<RunState>) -> Result<String, Failure> {
 /// Puts a saved state back into a scene and its solver; what was recorded by then.
 ///
 /// # Errors
-/// [`Failure::Input`] where a run with another end has another solver, or loads that the end decides.
-fn put_back(state: RunState, scene: &mut Scene, solver: &mut Solver, case: &Case) -> Result<RecordState, Failure> {
+/// [`Failure::Input`] where a run with another end has another solver, or loads that the end decides; parts of another solid.
+fn put_back(
+    loaded: Loaded<RunState>,
+    scene: &mut Scene,
+    solver: &mut Solver,
+    case: &Case,
+) -> Result<RecordState, Failure> {
+    let Loaded { state, path, .. } = loaded;
     let is_other = state.end != case.end();
     if is_other && !solver.may_go_on(&state.solver) {
         return Err(Failure::input(
@@ -245,7 +257,9 @@ fn put_back(state: RunState, scene: &mut Scene, solver: &mut Solver, case: &Case
              in proportion to it, and kind = \"auto\" chooses by it; restore the end, or start again with --overwrite",
         ));
     }
-    scene.restore(state.scene);
+    let whole = if state.parts == 0 { Some(state.scene) } else { scene.joined(state.scene, &state.solids) };
+    let damaged = || CheckpointError::Corrupt { path, what: "its parts are not those of this mesh".to_owned() };
+    scene.restore(whole.ok_or_else(damaged)?);
     scene.restore_heat(state.heat);
     scene.restore_subcycling(state.subcycling);
     solver.restore(scene, state.solver);
