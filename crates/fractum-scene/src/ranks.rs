@@ -25,8 +25,13 @@ impl Scene {
         self.particles_cannot_be_shared().filter(|_| self.solid.body_count() == 0)
     }
 
-    /// What has every rank do alike what particles and bonds do, in words; none where they are shared, or not there.
-    pub fn particles_cannot_be_shared(&self) -> Option<&'static str> {
+    /// What has every rank do alike what particles and bonds do, in words; none where they are shared.
+    pub fn keeps_particles_whole(&self) -> Option<&'static str> {
+        let few = || (!self.bonded.has_blocks()).then_some("their number: up to 2048 are not divided");
+        self.particles_cannot_be_shared().or_else(few)
+    }
+
+    fn particles_cannot_be_shared(&self) -> Option<&'static str> {
         self.bonded.cannot_be_shared().or_else(|| self.contacts.cannot_be_shared(&self.solid))
     }
 
@@ -62,7 +67,7 @@ impl Scene {
     ///
     /// - `watched`: nodes and particles that are looked at after every step, where that is more than those of supports that move and of loads
     pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, watched: &Watched) {
-        if !self.bonded.is_empty() && self.particles_cannot_be_shared().is_none() {
+        if self.keeps_particles_whole().is_none() {
             let near: Vec<u32> = watched.particles.iter().copied().chain(self.contacts.near()).collect();
             self.bonded.share_out(Arc::clone(&exchange), near.into_iter());
             self.bonded.set_near(self.contacts.near_pairs());

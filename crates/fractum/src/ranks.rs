@@ -168,7 +168,7 @@ impl Ranks {
                 number(everywhere)
             )
         };
-        let alike = scene.particles_cannot_be_shared().filter(|_| !scene.bonded.is_empty());
+        let alike = scene.keeps_particles_whole().filter(|_| !scene.bonded.is_empty());
         let alike =
             alike.map(|what| format!("every process moves all particles and computes all bonds, because of {what}"));
         let cells = scene.solid.share().filter(|_| scene.solid.body_count() > 0).map(of_cells);

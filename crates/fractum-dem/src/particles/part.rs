@@ -56,6 +56,9 @@ const MOTION: usize = 13;
 const LOAD: usize = 6;
 
 impl ParticlePart {
+    /// Particles that a rank has as a whole.
+    pub const BLOCK: usize = SHARED;
+
     /// The share of a rank. Every rank must have the same particles in the same state.
     ///
     /// - `pairs`: the particles of all bonds

@@ -23,6 +23,11 @@ impl Bonded {
         }
     }
 
+    /// Whether there are so many particles that some can have them and others not.
+    pub(crate) fn has_blocks(&self) -> bool {
+        self.particles.len() > ParticlePart::BLOCK
+    }
+
     /// Leaves a share of particles and bonds to each rank of an exchange. Every rank must have the same ones in the same state.
     ///
     /// - `everywhere`: particles that every rank shall move
