@@ -160,7 +160,9 @@ fn loose_beads_on_a_bonded_block_on_a_plane_have_the_same_bits_on_any_number_of_
 
 #[test]
 fn each_rank_moves_a_share_of_the_particles() {
-    for scene in shared(3, 40, || pulled(BEAM, None, 1.0)) {
+    let criterion = FractureCriterion::BeamRankine(BeamRankine { strength: 2e7, moments: Default::default() });
+    for scene in shared(3, 120, || pulled(BEAM, breaking(Some(criterion), VOLUME), 20.0)) {
+        assert!(scene.counts().broken_bonds > 20);
         let share = scene.bonded.share().unwrap();
         assert!((2048..=2700).contains(&share.particles), "{share:?}");
         assert!(share.ghosts < 700 && share.everywhere == 2 * 196 + 1, "{share:?}");

@@ -67,7 +67,9 @@ pub use fracture::{
     LoadedBonds, Occasion, criterion,
 };
 pub use measure::{Piece, StrainGauge, StrainMeasure, crack_shape, pieces, strain, stress};
-pub use particles::{CentralDifference, ParticleDamping, ParticlePart, ParticleShare, Particles, PastForces, TimeStep};
+pub use particles::{
+    CentralDifference, NearPairs, ParticleDamping, ParticlePart, ParticleShare, Particles, PastForces, TimeStep,
+};
 pub use statics::{
     Batch, Breaking, BreakingOutcome, CriticalLoad, Dof6, Equilibrium, Lattice, LatticeSupports, LoadPoint, LoadStage,
     QuasiStatic, QuasiStaticState, StaticBody, Tolerance, highest_frequency, quasi_static,

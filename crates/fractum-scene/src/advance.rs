@@ -63,7 +63,7 @@ impl Scene {
         let Scene { solid, supports, bonded, contacts, .. } = self;
         let of_node = |i: usize| 0.5 * solid.mass[i] * solid.velocity[i].norm_squared();
         let given = sum_chunks(solid.mass.len(), of_node) + bonded.kinetic_energy() + contacts.kinetic_energy();
-        bonded.particles.start_half_a_step_early(dt);
+        bonded.start_half_a_step_early(dt);
         contacts.start_half_a_step_early(dt);
         for i in 0..solid.mass.len() {
             let half_kick = match solid.own_acceleration(i, dt) {

@@ -60,6 +60,7 @@ impl Scene {
         if !self.bonded.has_outside(&domain) {
             return;
         }
+        self.bonded.gather();
         self.bonded.gather_forces();
         self.gather_contacts();
         let mut touching: Vec<u32> = Vec::new();

@@ -82,9 +82,8 @@ pub struct Simulation {
     recorder: Recorder,
     /// Those that run the case together.
     ranks: Arc<Ranks>,
-    /// Where this process writes, and the results folder of all.
+    /// Where this process writes.
     folder: PathBuf,
-    results: PathBuf,
     about: About,
     messages: Messages,
     phases: Phases,
@@ -99,6 +98,8 @@ pub struct Simulation {
 
 /// What is known of a run before its first step.
 struct About {
+    /// The results folder of all processes.
+    results: PathBuf,
     identity: Identity,
     case_hash: u128,
     origin: Origin,
@@ -358,7 +359,7 @@ impl Simulation {
     fn save_part(&mut self, part: &SolidPart) -> Result<(), Failure> {
         let clock = self.scene.clock;
         let header = Header { identity: self.about.identity.clone(), step: clock.step, time: clock.time };
-        let (folder, process) = (self.results.join("checkpoint"), self.ranks.rank());
+        let (folder, process) = (self.about.results.join("checkpoint"), self.ranks.rank());
         let write = || checkpoint::save_part(&folder, &header, process, part, Compression::Fast);
         Ok(self.phases.timed(Part::Output, write)?)
     }

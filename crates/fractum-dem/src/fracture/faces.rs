@@ -1,7 +1,7 @@
 //! Contact of what bonds held, and of what they never held.
 
 use fractum_contact::law::{ContactMemory, Linear, PairMotion, Rolling};
-use fractum_math::Work;
+use fractum_math::{Vec3, Work};
 use serde::{Deserialize, Serialize};
 
 use crate::bond::Bonds;
@@ -93,9 +93,10 @@ impl Face {
         (particles.position[j] - particles.position[i]).norm() < self.closing
     }
 
-    /// Adds the force of the moment; `dt` is the step that led here [s].
-    pub(crate) fn add_force(&mut self, particles: &mut Particles, dt: f64, work: &mut FaceWork) {
-        let Particles { position, velocity, spin, force, moment, .. } = particles;
+    /// Force of the moment on the second particle [N] and moment on both [N m]; none where they are far apart. `dt` is the step that led
+    /// here [s].
+    pub(crate) fn force(&mut self, particles: &Particles, dt: f64, work: &mut FaceWork) -> Option<[Vec3; 2]> {
+        let Particles { position, velocity, spin, .. } = particles;
         let [i, j] = self.pair.map(|i| i as usize);
         let apart = position[j] - position[i];
         let distance = apart.norm();
@@ -110,7 +111,7 @@ impl Face {
         self.closing = self.closing.max(distance.min(self.rest));
         // Far apart and long so: nothing to forget either.
         if overlap < -self.rest {
-            return;
+            return None;
         }
         let normal = apart / distance;
         let arm = 0.5 * distance;
@@ -119,10 +120,7 @@ impl Face {
             PairMotion { normal, overlap, velocity: velocity[j] - velocity[i] - turning, spin: spin[j] - spin[i], dt };
         let found = self.law.force(&motion, &mut self.memory);
         let twist = normal.cross(&found.on_second) * -arm;
-        force[i] -= found.on_second;
-        force[j] += found.on_second;
-        moment[i] += twist;
-        moment[j] += twist;
         work.contact += found.work();
+        Some([found.on_second, twist])
     }
 }

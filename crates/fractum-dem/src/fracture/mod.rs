@@ -7,6 +7,7 @@ mod moving;
 mod search;
 mod separated;
 mod share;
+mod share_faces;
 
 pub(crate) use crack::facet_area;
 pub use crack::{Crack, Occasion};

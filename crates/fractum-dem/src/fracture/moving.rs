@@ -12,7 +12,7 @@ use super::faces::{CrackFaces, Face, FaceWork};
 use super::search::{Break, FailureSearch, ListedBonds, LoadedBonds};
 use crate::DemError;
 use crate::bond::{BondForces, BondGraph, Bonds, LoadLanes, LoadSizes, Separation};
-use crate::particles::{ParticlePart, Particles};
+use crate::particles::{ParticlePart, Particles, SHARED};
 
 /// Gap up to which strangers are listed, over the smallest radius.
 const SKIN: f64 = 0.5;
@@ -30,13 +30,16 @@ pub struct Fracture {
     pub(super) reference: Vec<Vec3>,
     pub(super) area: f64,
     faces: CrackFaces,
-    pairs: Vec<Face>,
+    pub(super) pairs: Vec<Face>,
     pub(super) cracks: Vec<Crack>,
-    released: f64,
+    pub(super) released: f64,
+    /// Energies of the faces by their first particles, block by block.
+    pub(super) works: Vec<FaceWork>,
     /// What the bonds that broke last still exert, with the index of their crack.
-    acting: Vec<(usize, BondForces)>,
+    pub(super) acting: Vec<(usize, BondForces)>,
     sites: Vec<FailureSite>,
-    breaks: Vec<Break>,
+    /// Bonds to break, and their elastic energies [J].
+    breaks: (Vec<Break>, Vec<f64>),
     /// Scratch: bonds that have separated by their law.
     pub(super) separated: Vec<(u32, Separation)>,
     /// What was kept with the last forces.
@@ -146,9 +149,10 @@ impl Fracture {
             pairs: Vec::new(),
             cracks: Vec::new(),
             released: 0.0,
+            works: vec![FaceWork::default(); particles.len().div_ceil(SHARED)],
             acting: Vec::new(),
             sites: Vec::new(),
-            breaks: Vec::new(),
+            breaks: Default::default(),
             separated: Vec::new(),
             detail: Detail::Nothing,
             steps_with_tensor: 0,
@@ -230,15 +234,9 @@ impl Fracture {
         self.break_found(bonds, particles, occasion)
     }
 
-    /// Leaves the search to ranks. Every rank must have the same body in the same state; from then on each finds what fails of its own
-    /// and all break it, which needs the particles of [`Fracture::found`] on every rank.
-    pub fn share_out(&mut self, part: &ParticlePart, bonds: &Bonds) {
-        self.search.iter_mut().for_each(|search| search.share_out(part, bonds, &self.graph));
-    }
-
     /// Finds what [`Fracture::break_found`] is to break: for every overloaded site what it releases.
     pub fn find_overloaded(&mut self, bonds: &mut Bonds, particles: &Particles) {
-        self.breaks.clear();
+        self.breaks.0.clear();
         let Some(search) = &mut self.search else { return };
         if self.detail == Detail::Bounds {
             if !search.virial_bounds_may_fail(bonds, 1.0) {
@@ -249,19 +247,17 @@ impl Fracture {
         } else {
             self.steps_with_tensor = self.steps_with_tensor.saturating_sub(1);
         }
-        let Fracture { graph, search: Some(search), sites, breaks, .. } = self else { return };
+        let Fracture { graph, search: Some(search), sites, breaks: (breaks, energies), .. } = self else { return };
         search.search_overloaded(&Moving { bonds, particles }, graph, 1.0);
         sites.clear();
         sites.extend_from_slice(search.overloaded());
         for site in sites.iter() {
             search.breaks(site, &Moving { bonds, particles }, graph, breaks);
         }
-        search.breaks_of_all(breaks);
-    }
-
-    /// Particles of the bonds that were found to break.
-    pub fn found(&self) -> impl Iterator<Item = u32> {
-        self.breaks.iter().flat_map(|broken| self.graph.pairs()[broken.bond as usize])
+        let energy = |broken: &Break| bonds.energy_of(broken.bond as usize, particles).total();
+        energies.clear();
+        energies.extend(breaks.iter().map(energy));
+        search.tell_breaks(breaks, energies);
     }
 
     /// Breaks what was found last, or lists what has separated by its law. Returns the number of bonds.
@@ -270,12 +266,12 @@ impl Fracture {
             return self.list_separated(bonds, occasion);
         }
         let before = self.cracks.len();
-        for k in 0..self.breaks.len() {
-            let Break { bond, mode } = self.breaks[k];
+        for k in 0..self.breaks.0.len() {
+            let Break { bond, mode } = self.breaks.0[k];
             if !self.graph.break_bond(bond) {
                 continue;
             }
-            let energy = bonds.energy_of(bond as usize, particles).total();
+            let energy = self.breaks.1[k];
             self.acting.push((self.cracks.len(), bonds.forces_of(bond as usize, particles)));
             let pair = bonds.pairs()[bond as usize];
             let rest = bonds.length(bond as usize);
@@ -291,16 +287,19 @@ impl Fracture {
     /// Books the work that bonds which broke at tⁿ still did in the step after it; one call after each kick.
     ///
     /// - `particles`: with the velocities and spins vⁿ⁺½ of that step
+    /// - `part`: that of this process, where several share the body
     /// - `dt` [s]: the step
-    pub fn book_last_work(&mut self, particles: &Particles, dt: f64) {
-        let Particles { velocity, spin, .. } = particles;
-        for (crack, forces) in self.acting.drain(..) {
-            let [i, j] = self.cracks[crack].pair.map(|i| i as usize);
-            let [first, second] = forces.moment;
-            let power = forces.force.dot(&(velocity[j] - velocity[i])) + first.dot(&spin[i]) + second.dot(&spin[j]);
-            self.cracks[crack].energy -= 0.5 * dt * power;
+    pub fn book_last_work(&mut self, particles: &Particles, part: Option<&ParticlePart>, dt: f64) {
+        let mut acting = std::mem::take(&mut self.acting);
+        let told = part.map(|part| self.tell_powers(part, &acting, particles));
+        for (k, (crack, forces)) in acting.iter().enumerate() {
+            let crack = &mut self.cracks[*crack];
+            let power = told.as_ref().map_or_else(|| power_of(forces, crack.pair, particles), |told| told[k]);
+            crack.energy -= 0.5 * dt * power;
             self.released -= 0.5 * dt * power;
         }
+        acting.clear();
+        self.acting = acting;
     }
 
     /// Takes over bonds that broke at rest, which leave no faces in contact.
@@ -335,11 +334,39 @@ impl Fracture {
 
     /// Adds the forces of crack faces and of strangers that touch; one call per step.
     ///
+    /// - `part`: that of this process, where several share the body
     /// - `dt` [s]: the step that led here
-    pub fn add_contact_forces(&mut self, particles: &mut Particles, dt: f64) -> FaceWork {
-        let mut work = FaceWork::default();
-        self.pairs.iter_mut().for_each(|face| face.add_force(particles, dt, &mut work));
-        work
+    pub fn add_contact_forces(&mut self, particles: &mut Particles, part: Option<&ParticlePart>, dt: f64) -> FaceWork {
+        if self.pairs.is_empty() {
+            return FaceWork::default();
+        }
+        let own = part.map_or(0..particles.len(), ParticlePart::own);
+        let Fracture { pairs, works, .. } = self;
+        works.fill(FaceWork::default());
+        let mut of_others = FaceWork::default();
+        for face in pairs.iter_mut() {
+            let ends = face.pair.map(|i| i as usize);
+            let [first, second] = ends.map(|i| own.contains(&i));
+            if !first && !second {
+                continue;
+            }
+            let work = if first { &mut works[ends[0] / SHARED] } else { &mut of_others };
+            let Some([force, twist]) = face.force(particles, dt, work) else { continue };
+            if first {
+                particles.force[ends[0]] -= force;
+                particles.moment[ends[0]] += twist;
+            }
+            if second {
+                particles.force[ends[1]] += force;
+                particles.moment[ends[1]] += twist;
+            }
+        }
+        part.into_iter().for_each(|part| self.tell_works(part));
+        self.works.iter().fold(FaceWork::default(), |mut sum, work| {
+            sum.contact += work.contact;
+            sum.kinks += work.kinks;
+            sum
+        })
     }
 
     /// Whether [`Fracture::find_new_pairs`] would look for any.
@@ -347,9 +374,9 @@ impl Fracture {
         !self.cracks.is_empty()
     }
 
-    /// Particles of all crack faces, and of strangers that may touch.
-    pub fn face_particles(&self) -> impl Iterator<Item = u32> {
-        self.pairs.iter().flat_map(|face| face.pair)
+    /// Pairs of particles that were never bonded and may touch.
+    pub fn strangers(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.pairs.iter().filter(|face| face.stranger).map(|face| face.pair)
     }
 
     /// Pairs of particles that touch where no bond joins them.
@@ -393,6 +420,13 @@ impl Fracture {
     }
 }
 
+/// Power of the forces and moments of a bond on its particles [W].
+pub(super) fn power_of(forces: &BondForces, pair: [u32; 2], particles: &Particles) -> f64 {
+    let ([i, j], Particles { velocity, spin, .. }) = (pair.map(|i| i as usize), particles);
+    let [first, second] = forces.moment;
+    forces.force.dot(&(velocity[j] - velocity[i])) + first.dot(&spin[i]) + second.dot(&spin[j])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -425,11 +459,11 @@ mod tests {
         let dt = 0.02 * bonds.stable_step(&particles, 0.7);
         fracture.add_bond_forces(&mut bonds, &mut particles);
         fracture.break_overloaded(&mut bonds, &particles, Occasion::default());
-        fracture.book_last_work(&particles, 0.0);
+        fracture.book_last_work(&particles, None, 0.0);
         // What is left of the force once the bond is gone.
         particles.clear_forces();
         fracture.add_bond_forces(&mut bonds, &mut particles);
-        fracture.add_contact_forces(&mut particles, 0.0);
+        fracture.add_contact_forces(&mut particles, None, 0.0);
         let jump = if fracture.cracks().is_empty() { 0.0 } else { particles.force[1].norm() };
         particles.start_half_a_step_early(dt);
         let mut motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
@@ -439,10 +473,10 @@ mod tests {
             let now = motion.kick_drift_and_measure(&mut particles).before.kinetic + potential;
             let start = *start.get_or_insert(now);
             drift = drift.max((now - start).abs() / start);
-            fracture.book_last_work(&particles, dt);
+            fracture.book_last_work(&particles, None, dt);
             particles.clear_forces();
             fracture.add_bond_forces(&mut bonds, &mut particles);
-            let work = fracture.add_contact_forces(&mut particles, dt);
+            let work = fracture.add_contact_forces(&mut particles, None, dt);
             let time = dt * f64::from(step);
             fracture.break_overloaded(&mut bonds, &particles, Occasion { time, ..Occasion::default() });
             stored = work.contact.stored;
@@ -503,10 +537,10 @@ mod tests {
         let mut motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
         for step in 0..40_000 {
             motion.kick_and_drift(&mut particles);
-            fracture.book_last_work(&particles, 0.0);
+            fracture.book_last_work(&particles, None, 0.0);
             particles.clear_forces();
             fracture.add_bond_forces(&mut bonds, &mut particles);
-            work = fracture.add_contact_forces(&mut particles, dt);
+            work = fracture.add_contact_forces(&mut particles, None, dt);
             if step % 20 == 0 {
                 fracture.find_new_pairs(&bonds, &particles, 0..4);
             }

@@ -177,12 +177,17 @@ impl FailureSearch {
         self.part = Some(Box::new(SearchPart::new(part, bonds, graph, rings)));
     }
 
-    /// The bonds that break on any rank, by those of this one.
-    pub(super) fn breaks_of_all(&self, own: &mut Vec<Break>) {
+    /// The bonds that break on any rank, and their energies [J], by those of this one.
+    pub(super) fn tell_breaks(&self, own: &mut Vec<Break>, energies: &mut Vec<f64>) {
         if let Some(part) = &self.part {
-            let mine: Vec<(u32, BreakMode)> = own.iter().map(|Break { bond, mode }| (*bond, *mode)).collect();
+            let with_energy = own.iter().zip(&*energies).map(|(Break { bond, mode }, energy)| (*bond, *mode, *energy));
+            let mine: Vec<(u32, BreakMode, f64)> = with_energy.collect();
             own.clear();
-            own.extend(part.named_by_all(&mine).into_iter().map(|(bond, mode)| Break { bond, mode }));
+            energies.clear();
+            for (bond, mode, energy) in part.named_by_all(&mine) {
+                own.push(Break { bond, mode });
+                energies.push(energy);
+            }
         }
     }
 

@@ -8,7 +8,7 @@ mod step;
 
 pub use central_difference::CentralDifference;
 pub(crate) use kernel::turned;
-pub use part::{ParticlePart, ParticleShare};
+pub use part::{NearPairs, ParticlePart, ParticleShare};
 pub use past_forces::PastForces;
 pub use step::{ParticleDamping, TimeStep};
 

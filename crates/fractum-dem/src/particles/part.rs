@@ -21,9 +21,9 @@ pub struct ParticlePart {
     exchange: Arc<dyn Exchange>,
     /// First particle of each rank, and the end; each begins a block of bonds.
     first: Vec<usize>,
-    /// Particles of others that bonds of this rank reach, and the other way round.
-    bonded: Near,
-    /// Those whose motion is told: what contacts may reach beside, without what every rank moves.
+    /// Particles of others that bonds, contacts and strangers of this rank reach, and the other way round.
+    near: [Near; 3],
+    /// Those whose motion is told: all of these but what every rank moves.
     ghosts: Swapped<u32>,
     /// Particles that every rank moves.
     everywhere: Told,
@@ -50,6 +50,15 @@ pub struct ParticleShare {
 /// Particles by the ranks beside: own ones that another rank looks at, and those of it that this one looks at.
 type Near = BTreeMap<usize, [BTreeSet<u32>; 2]>;
 
+/// Pairs of particles without a bond that may touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NearPairs {
+    /// Contacts of loose particles and between bodies.
+    Contacts = 1,
+    /// Strangers of a broken body, see [`Fracture`](crate::Fracture).
+    Strangers = 2,
+}
+
 /// Place, orientation, velocity and spin.
 const MOTION: usize = 13;
 /// Force and moment.
@@ -70,8 +79,8 @@ impl ParticlePart {
         let mut bonded = Near::new();
         add_near(&mut bonded, &first, exchange.rank(), pairs);
         ParticlePart {
-            ghosts: swapped(&bonded, |_| true),
-            bonded,
+            ghosts: swapped([&bonded], |_| true),
+            near: [bonded, Near::new(), Near::new()],
             everywhere: Told::new(vec![Vec::new(); exchange.size()]),
             is_everywhere: vec![false; count],
             of_others: Vec::new(),
@@ -137,10 +146,11 @@ impl ParticlePart {
 
     /// Tells the motion of particles that may touch, too, from now on, in the place of what was named before. All ranks must name the
     /// same pairs, when the motion of all particles is up to date.
-    pub fn set_near(&mut self, pairs: impl Iterator<Item = [u32; 2]>) {
-        let mut near = self.bonded.clone();
-        add_near(&mut near, &self.first, self.exchange.rank(), pairs);
-        self.ghosts = swapped(&near, |i| !self.is_everywhere[i as usize]);
+    pub fn set_near(&mut self, which: NearPairs, pairs: impl Iterator<Item = [u32; 2]>) {
+        let near = &mut self.near[which as usize];
+        near.clear();
+        add_near(near, &self.first, self.exchange.rank(), pairs);
+        self.ghosts = swapped(&self.near, |i| !self.is_everywhere[i as usize]);
     }
 
     /// Tells all ranks the forces on the particles that every rank moves, once each has those on its own.
@@ -163,6 +173,11 @@ impl ParticlePart {
         let get = |particles: &Particles, i: u32| motion(particles, i as usize);
         let put = |particles: &mut Particles, i: u32, from| put_motion(particles, i as usize, from);
         self.ghosts.tell(&*self.exchange, particles, get, put);
+        self.forget_others();
+    }
+
+    /// Takes note that the motion of particles that this rank does not move is no longer the present one.
+    pub fn forget_others(&mut self) {
         self.is_whole = false;
     }
 
@@ -239,9 +254,13 @@ fn add_near(near: &mut Near, first: &[usize], me: usize, pairs: impl Iterator<It
     }
 }
 
-fn swapped(near: &Near, is_told: impl Fn(u32) -> bool) -> Swapped<u32> {
-    let list = |set: &BTreeSet<u32>| set.iter().copied().filter(|&i| is_told(i)).collect();
-    Swapped::new(near.iter().map(|(&rank, sets)| (rank, sets.each_ref().map(list))).collect())
+fn swapped<'a>(all: impl IntoIterator<Item = &'a Near>, is_told: impl Fn(u32) -> bool) -> Swapped<u32> {
+    let mut between = BTreeMap::<usize, [BTreeSet<u32>; 2]>::new();
+    for (&rank, sets) in all.into_iter().flatten() {
+        let told = between.entry(rank).or_default();
+        (0..2).for_each(|k| told[k].extend(sets[k].iter().copied().filter(|&i| is_told(i))));
+    }
+    Swapped::new(between.into_iter().map(|(rank, sets)| (rank, sets.map(|set| set.into_iter().collect()))).collect())
 }
 
 fn motion(particles: &Particles, i: usize) -> [f64; MOTION] {

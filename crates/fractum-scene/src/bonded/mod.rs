@@ -343,7 +343,7 @@ impl Bonded {
                 continue;
             };
             fracture.add_bond_forces(bonds, particles);
-            let faces = fracture.add_contact_forces(particles, dt);
+            let faces = fracture.add_contact_forces(particles, part.as_deref(), dt);
             work += faces.contact;
             *released += fracture.released();
         }
@@ -361,14 +361,13 @@ impl Bonded {
     pub(crate) fn break_overloaded(&mut self, step: u64, time: f64, measure: bool) {
         let Bonded { particles, reference, bodies, part, past, .. } = self;
         let occasion = Occasion { time, event: step as usize, load: 0.0 };
+        let mut finds_new = false;
         for BondedBody { bonds, fracture, closest, range, .. } in bodies {
             let Some(fracture) = fracture else { continue };
             if step.is_multiple_of(STEPS_BETWEEN_SEARCHES) && fracture.may_have_new_pairs() {
                 part.iter_mut().for_each(|part| part.gather(particles, past));
                 fracture.find_new_pairs(bonds, particles, range.clone());
-                if let Some(part) = part {
-                    part.follow(&fracture.face_particles().collect::<Vec<_>>(), particles, past);
-                }
+                finds_new |= part.is_some();
             }
             if measure && let Some(site) = fracture.closest(bonds, particles) {
                 let place = fracture.position_of(&site, reference);
@@ -376,11 +375,10 @@ impl Bonded {
                     *closest = Some(Closest { ratio: site.ratio, place, time });
                 }
             }
-            fracture.find_overloaded(bonds, particles);
-            if let Some(part) = part {
-                part.follow(&fracture.found().collect::<Vec<_>>(), particles, past);
-            }
-            fracture.break_found(bonds, particles, occasion);
+            fracture.break_overloaded(bonds, particles, occasion);
+        }
+        if finds_new {
+            self.set_strangers();
         }
     }
 
@@ -437,13 +435,14 @@ impl Bonded {
         work.before.kinetic -= counted_twice;
         work.after.kinetic -= counted_twice;
         follow(points.particles);
-        for body in bodies.iter_mut() {
-            body.bonds.book_last_work(points.particles, dt_after);
-            body.fracture.iter_mut().for_each(|fracture| fracture.book_last_work(points.particles, dt_after));
-        }
-        work.after.damping -= 0.5 * dt_after * viscous_power(points.particles, viscous);
         work.after.external += 0.5 * dt_after * loads.power(&points);
         part.iter_mut().for_each(|part| part.tell_ghosts(particles));
+        for body in bodies.iter_mut() {
+            body.bonds.book_last_work(particles, dt_after);
+            let fracture = body.fracture.iter_mut();
+            fracture.for_each(|fracture| fracture.book_last_work(particles, part.as_deref(), dt_after));
+        }
+        work.after.damping -= 0.5 * dt_after * viscous_power(particles, viscous);
         work
     }
 }

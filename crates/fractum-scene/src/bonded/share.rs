@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fractum_dem::{ParticlePart, ParticleShare, Particles};
+use fractum_dem::{NearPairs, ParticlePart, ParticleShare, Particles};
 use fractum_parallel::Exchange;
 
 use super::{Bonded, BondedBody};
@@ -39,9 +39,9 @@ impl Bonded {
             fracture.iter_mut().for_each(|fracture| fracture.share_out(&part, bonds));
         }
         self.part = Some(Box::new(part));
-        let faces = self.bodies.iter().filter_map(|body| body.fracture.as_ref()).flat_map(|f| f.face_particles());
+        self.set_strangers();
         let moved = self.supports.driven().chain(self.held_in_motion()).chain(self.loads.points());
-        let everywhere: Vec<u32> = everywhere.chain(faces).chain(moved).chain(self.tied.iter().copied()).collect();
+        let everywhere: Vec<u32> = everywhere.chain(moved).chain(self.tied.iter().copied()).collect();
         self.follow(&everywhere);
     }
 
@@ -73,15 +73,20 @@ impl Bonded {
         part.iter_mut().for_each(|part| part.tell_forces(particles));
     }
 
+    /// See [`Particles::start_half_a_step_early`]; each rank knows the forces on what it moves.
+    pub(crate) fn start_half_a_step_early(&mut self, dt: f64) {
+        self.particles.start_half_a_step_early(dt);
+        self.part.iter_mut().for_each(|part| part.forget_others());
+    }
+
     /// Brings the motion of all particles up to date on every rank. All ranks must call it.
     pub(crate) fn gather_motion(&mut self) {
         let Bonded { part, particles, past, .. } = self;
         part.iter_mut().for_each(|part| part.gather(particles, past));
     }
 
-    /// Brings motion and forces of all particles up to date on every rank. All ranks must call it.
+    /// Brings the forces on all particles up to date on every rank. All ranks must call it.
     pub(crate) fn gather_forces(&mut self) {
-        self.gather_motion();
         let Bonded { part, particles, .. } = self;
         part.iter_mut().for_each(|part| part.gather_forces(particles));
     }
@@ -89,11 +94,22 @@ impl Bonded {
     /// Brings particles and the memory of bonds up to date on every rank. All ranks must call it.
     pub(crate) fn gather(&mut self) {
         self.gather_motion();
-        self.bodies.iter_mut().for_each(|body| body.bonds.gather_memory());
+        let Bonded { part: Some(part), bodies, .. } = self else { return };
+        for BondedBody { bonds, fracture, .. } in bodies {
+            bonds.gather_memory();
+            fracture.iter_mut().for_each(|fracture| fracture.gather_faces(part));
+        }
     }
 
     /// Tells the motion of particles that may touch from now on, see [`ParticlePart::set_near`].
     pub(crate) fn set_near(&mut self, pairs: &[[u32; 2]]) {
-        self.part.iter_mut().for_each(|part| part.set_near(pairs.iter().copied()));
+        self.part.iter_mut().for_each(|part| part.set_near(NearPairs::Contacts, pairs.iter().copied()));
+    }
+
+    /// The same of particles of broken bodies that may touch others of them.
+    pub(super) fn set_strangers(&mut self) {
+        let Bonded { part: Some(part), bodies, .. } = self else { return };
+        let fractures = bodies.iter().filter_map(|body| body.fracture.as_ref());
+        part.set_near(NearPairs::Strangers, fractures.flat_map(|fracture| fracture.strangers()));
     }
 }

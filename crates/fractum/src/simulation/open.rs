@@ -120,8 +120,13 @@ impl Simulation {
         let identity = identity(&input);
         let plan = Plan::new(&input);
         let Input { case, mesh_hash, built, later, timings, .. } = input;
-        let about =
-            About { identity, case_hash: case.hash(), origin: origin(&case, mesh_hash, options, &folder), plan };
+        let about = About {
+            results: results.clone(),
+            identity,
+            case_hash: case.hash(),
+            origin: origin(&case, mesh_hash, options, &folder),
+            plan,
+        };
         if !options.quiet {
             tell_plan(&about.plan, goes_on, &folder);
         }
@@ -164,7 +169,6 @@ impl Simulation {
             recorder,
             ranks,
             folder,
-            results,
             about,
             messages,
             phases,

@@ -229,10 +229,10 @@ impl MovingSample {
             0.0
         };
         let dt = motion.dt();
-        fracture.book_last_work(particles, dt);
+        fracture.book_last_work(particles, None, dt);
         particles.clear_forces();
         fracture.add_bond_forces(bonds, particles);
-        let faces = fracture.add_contact_forces(particles, dt);
+        let faces = fracture.add_contact_forces(particles, None, dt);
         self.energy.friction += faces.contact.friction + faces.contact.damping;
         self.energy.kinks += faces.kinks;
         self.energy.contact = faces.contact.stored;

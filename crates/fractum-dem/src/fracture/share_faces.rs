@@ -1,0 +1,73 @@
+//! A body that breaks where several ranks share it: crack faces belong to the ranks of both particles, alike; what the others need is
+//! told by the rank of the first.
+
+use fractum_parallel::{gather, rank_of};
+
+use super::faces::Face;
+use super::moving::{Fracture, power_of};
+use crate::bond::{BondForces, Bonds};
+use crate::particles::{ParticlePart, Particles, SHARED};
+
+impl Fracture {
+    /// Leaves search and faces to ranks. Every rank must have the same body in the same state; from then on each finds what fails of its
+    /// own, and all break it.
+    pub fn share_out(&mut self, part: &ParticlePart, bonds: &Bonds) {
+        self.search.iter_mut().for_each(|search| search.share_out(part, bonds, &self.graph));
+    }
+
+    /// Brings all faces up to date on every rank. All ranks must call it.
+    pub fn gather_faces(&mut self, part: &ParticlePart) {
+        if self.pairs.is_empty() {
+            return;
+        }
+        let own = part.own();
+        let is_own = |face: &Face| own.contains(&(face.pair[0] as usize));
+        let mine: Vec<(u32, Face)> =
+            (0..).zip(&self.pairs).filter(|(_, face)| is_own(face)).map(|(k, f)| (k, *f)).collect();
+        for (k, face) in gather(&**part.exchange(), &mine).into_iter().flatten() {
+            self.pairs[k as usize] = face;
+        }
+    }
+
+    /// Gives every rank the energies of all faces.
+    pub(super) fn tell_works(&mut self, part: &ParticlePart) {
+        let numbers = |work: &super::FaceWork| {
+            let super::FaceWork { contact, kinks } = work;
+            [contact.stored, contact.friction, contact.damping, *kinks]
+        };
+        let mut all: Vec<[f64; 4]> = self.works.iter().map(numbers).collect();
+        part.tell_blocks(SHARED, &mut all);
+        for (work, [stored, friction, damping, kinks]) in self.works.iter_mut().zip(all) {
+            (work.contact.stored, work.contact.friction, work.contact.damping) = (stored, friction, damping);
+            work.kinks = kinks;
+        }
+    }
+
+    /// The powers of bonds that broke last, each by the rank that has the first particle [W].
+    pub(super) fn tell_powers(
+        &self,
+        part: &ParticlePart,
+        acting: &[(usize, BondForces)],
+        particles: &Particles,
+    ) -> Vec<f64> {
+        if acting.is_empty() {
+            return Vec::new();
+        }
+        let exchange = &**part.exchange();
+        let rank = |of: &(usize, BondForces)| rank_of(part.first(), self.cracks[of.0].pair[0] as usize);
+        let power = |(crack, forces): &(usize, BondForces)| power_of(forces, self.cracks[*crack].pair, particles);
+        let mine: Vec<f64> = acting.iter().filter(|of| rank(of) == exchange.rank()).map(power).collect();
+        let mut counts = vec![0; exchange.size()];
+        acting.iter().for_each(|of| counts[rank(of)] += 1);
+        let mut all = vec![0.0; acting.len()];
+        exchange.gather(&mine, &counts, &mut all);
+        let begin = |sum: &mut usize, count: &usize| Some(std::mem::replace(sum, *sum + count));
+        let mut next: Vec<usize> = counts.iter().scan(0, begin).collect();
+        let told = |of| {
+            let next = &mut next[rank(of)];
+            *next += 1;
+            all[*next - 1]
+        };
+        acting.iter().map(told).collect()
+    }
+}
