@@ -154,6 +154,8 @@ pub struct ProbeNeeds {
     pub damage: bool,
     /// Whether it looks at contacts among particles.
     pub contacts: bool,
+    /// Bonds (body, bond) whose memory it looks at.
+    pub bonds: Vec<(u32, u32)>,
 }
 
 /// Points that a probe looks at.
@@ -268,7 +270,10 @@ impl Probe {
             Probe::Surface { facets, .. } => ProbeNeeds { nodes: Some(facets.concat()), ..nothing() },
             Probe::Stress { .. } => ProbeNeeds { nodes: Any, damage: true, ..nothing() },
             Probe::Gas { .. } => ProbeNeeds { nodes: Any, ..nothing() },
-            Probe::ParticleStress(_) => ProbeNeeds { particles: Any, ..nothing() },
+            Probe::ParticleStress(probe) => {
+                let (bonds, particles) = probe.looks_at(&scene.bonded);
+                ProbeNeeds { particles: Some(particles), bonds, ..nothing() }
+            }
             Probe::Fragment { .. } | Probe::FragmentSize(_) | Probe::Count(CountKind::Fragments) => all(true),
             Probe::Strain(_) | Probe::Extensometer(_) | Probe::Momentum(_) | Probe::AngularMomentum(_) => all(false),
             Probe::Count(CountKind::BrokenEdges | CountKind::DamagedEdges) | Probe::CrackArea | Probe::Damaged(_) => {

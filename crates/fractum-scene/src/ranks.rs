@@ -102,7 +102,17 @@ impl Scene {
         beside.with_solid(|solid| self.solid.joined(solid, parts))
     }
 
-    /// Brings particles and the memory of their bonds up to date. All ranks must call it.
+    /// Brings the motion of all particles up to date. All ranks must call it.
+    pub fn gather_motion(&mut self) {
+        self.bonded.gather_motion();
+    }
+
+    /// Brings the memory of some bonds (body, bond) up to date. All ranks must name the same ones.
+    pub fn gather_bonds(&mut self, bonds: &[(u32, u32)]) {
+        self.bonded.gather_bonds(bonds);
+    }
+
+    /// Brings particles and what their bonds and crack faces remember up to date. All ranks must call it.
     pub fn gather_particles(&mut self) {
         self.bonded.gather();
     }

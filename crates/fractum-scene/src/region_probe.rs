@@ -38,6 +38,16 @@ impl RegionStress {
         RegionStress { set: set.to_vec(), bonds, volume, between }
     }
 
+    /// The bonds that it looks at (body, bond), and their particles.
+    pub(crate) fn looks_at(&self, bonded: &Bonded) -> (Vec<(u32, u32)>, Vec<u32>) {
+        let bonds: Vec<(u32, u32)> = self.bonds.iter().map(|&(body, bond, _)| (body, bond)).collect();
+        let ends = |&(body, bond): &(u32, u32)| bonded.bodies()[body as usize].bonds.pairs()[bond as usize];
+        let mut particles: Vec<u32> = bonds.iter().flat_map(ends).collect();
+        particles.sort_unstable();
+        particles.dedup();
+        (bonds, particles)
+    }
+
     /// The component [Pa]; tension is positive. Not a number once a particle of the set has left the run.
     pub(crate) fn value(&self, scene: &Scene) -> f64 {
         if self.set.iter().copied().any(scene.has_left(Population::Particles)) {

@@ -6,16 +6,18 @@ use fractum_scene::{NeededPoints, Probe, ProbeNeeds, Scene, Watched};
 const WATCHED_PART: usize = 50;
 
 /// What several processes tell each other before a probe is looked at.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Fetch {
     /// Displacements and velocities of all nodes.
     pub(crate) nodes: bool,
-    /// Motion of all particles, with what bonds remember.
+    /// Motion of all particles.
     pub(crate) particles: bool,
     /// Damage of all edges.
     pub(crate) damage: bool,
     /// Contacts among all particles.
     pub(crate) contacts: bool,
+    /// What these bonds (body, bond) remember.
+    pub(crate) bonds: Vec<(u32, u32)>,
 }
 
 /// Points of probes that every process follows, since they are few or held by supports, and what is to be fetched for each probe.
@@ -30,14 +32,33 @@ pub(crate) fn points_of_probes(probes: &[Option<Probe>], scene: &Scene) -> (Watc
         _ => true,
     };
     let mut fetch = |probe: &Probe| {
-        let ProbeNeeds { nodes, particles, of_supports, damage, contacts } = probe.needs(scene);
+        let ProbeNeeds { nodes, particles, of_supports, damage, contacts, bonds } = probe.needs(scene);
         Fetch {
             nodes: follow(nodes, scene.solid.reference.len(), of_supports, &mut watched.nodes),
             particles: follow(particles, scene.bonded.particles.len(), of_supports, &mut watched.particles),
             damage,
             contacts,
+            bonds,
         }
     };
     let fetches = probes.iter().map(|probe| probe.as_ref().map(&mut fetch).unwrap_or_default()).collect();
     (watched, fetches)
+}
+
+/// Has all processes tell each other what probes look at.
+pub(crate) fn fetch_together<'a>(fetches: impl Iterator<Item = &'a Fetch> + Clone, scene: &mut Scene) {
+    let any = |of: fn(&Fetch) -> bool| fetches.clone().any(of);
+    if any(|fetch| fetch.damage) {
+        scene.gather_damage();
+    }
+    if any(|fetch| fetch.nodes) {
+        scene.gather_nodes();
+    }
+    if any(|fetch| fetch.particles) {
+        scene.gather_motion();
+    }
+    if any(|fetch| fetch.contacts) {
+        scene.gather_contacts();
+    }
+    scene.gather_bonds(&fetches.flat_map(|fetch| &fetch.bonds).copied().collect::<Vec<_>>());
 }

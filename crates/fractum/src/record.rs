@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::columns::{columns, no_probes};
 use crate::course::Course;
 use crate::error::Failure;
-use crate::fetch::{Fetch, points_of_probes};
+use crate::fetch::{Fetch, fetch_together, points_of_probes};
 use crate::frames::{Frame, FrameEntry, GridLayout};
 use crate::gauge_tables;
 use crate::gone::Gone;
@@ -239,20 +239,10 @@ impl Recorder {
         };
         let all = (0..).zip(&self.probes).filter_map(|(index, probe)| Some((index, probe.as_ref()?)));
         let due: Vec<(usize, &Probe)> = all.filter(|(index, probe)| !is_known(*index, probe)).collect();
-        let fetches = |of: fn(&Fetch) -> bool| due.iter().any(|(index, _)| self.fetches.get(*index).is_some_and(of));
-        if fetches(|fetch| fetch.damage) {
-            scene.gather_damage();
-        }
-        if fetches(|fetch| fetch.nodes) {
-            scene.gather_nodes();
-        }
-        if fetches(|fetch| fetch.particles) {
-            scene.gather_particles();
-        }
-        if fetches(|fetch| fetch.contacts) {
-            scene.gather_contacts();
-        }
-        let counts = if fetches(|fetch| fetch.contacts) { scene.counts() } else { counts };
+        let of_due = || due.iter().filter_map(|(index, _)| self.fetches.get(*index));
+        let contacts = of_due().any(|fetch| fetch.contacts);
+        fetch_together(of_due(), scene);
+        let counts = if contacts { scene.counts() } else { counts };
         let probed = ProbedScene::with_counts(scene, counts);
         for index in 0..case.probes.len() {
             let value = match (&case.probes[index].kind, &self.probes[index]) {

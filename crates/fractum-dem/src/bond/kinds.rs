@@ -165,8 +165,8 @@ impl Bonds {
     }
 
     /// See [`BondNetwork::gather_memory`].
-    pub fn gather_memory(&mut self) {
-        each!(self, network => network.gather_memory());
+    pub fn gather_memory(&mut self, bonds: &[u32]) {
+        each!(self, network => network.gather_memory(bonds));
     }
 
     /// Bonds that this process computes; all where there is one.

@@ -119,14 +119,15 @@ impl<L: BondLaw> BondNetwork<L> {
         }
     }
 
-    /// Brings the memory of all bonds up to date on every rank. All ranks must call it.
-    pub fn gather_memory(&mut self) {
+    /// Brings the memory of some bonds up to date on every rank. All ranks must name the same ones.
+    pub fn gather_memory(&mut self, bonds: &[u32]) {
         let own = self.own_bonds();
-        if let Some(part) = self.part.as_ref().filter(|_| self.has_memory()) {
-            let mine: Vec<L::Memory> = own.clone().map(|bond| self.memory_of(bond)).collect();
-            let all = gather(part.exchange(), &mine).into_iter().flatten().enumerate();
-            for (bond, memory) in all.filter(|(bond, _)| !own.contains(bond)) {
-                self.put_memory(bond, memory);
+        if let Some(part) = self.part.as_ref().filter(|_| self.has_memory() && !bonds.is_empty()) {
+            let is_own = |bond: &&u32| own.contains(&(**bond as usize));
+            let mine: Vec<(u32, L::Memory)> =
+                bonds.iter().filter(is_own).map(|&bond| (bond, self.memory_of(bond as usize))).collect();
+            for (bond, memory) in gather(part.exchange(), &mine).into_iter().flatten() {
+                self.put_memory(bond as usize, memory);
             }
         }
     }
