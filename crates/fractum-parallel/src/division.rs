@@ -37,6 +37,12 @@ pub fn runs_of(flags: &[bool]) -> Vec<Range<usize>> {
     runs
 }
 
+/// Items of a round, where at most `limit` go in each.
+#[cfg(any(feature = "mpi", test))]
+pub(crate) fn piece(items: usize, round: usize, limit: usize) -> Range<usize> {
+    (round * limit).min(items)..((round + 1) * limit).min(items)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,6 +58,14 @@ mod tests {
             for rank in 0..ranks {
                 assert!((first[rank]..first[rank + 1]).all(|item| rank_of(&first, item) == rank));
             }
+        }
+    }
+
+    #[test]
+    fn all_items_go_in_rounds_each_once() {
+        for items in [0, 1, 6, 7, 20] {
+            let rounds: Vec<usize> = (0..3).flat_map(|round| piece(items, round, 7)).collect();
+            assert_eq!(rounds, (0..items).collect::<Vec<_>>());
         }
     }
 

@@ -6,6 +6,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 use mpi::{Count, Threading};
 
+use crate::division::piece;
 use crate::exchange::{Exchange, Message};
 
 /// All processes that MPI has started together.
@@ -79,13 +80,23 @@ impl Exchange for World {
 
     fn gather_bytes(&self, own: &[u8]) -> Vec<Vec<u8>> {
         let world = SimpleCommunicator::world();
-        let mut counts: Vec<Count> = vec![0; self.size];
-        world.all_gather_into(&(own.len() as Count), &mut counts[..]);
-        let offsets = offsets(&counts);
-        let mut all = vec![0; counts.iter().map(|&count| count as usize).sum()];
-        world.all_gather_varcount_into(own, &mut PartitionMut::new(&mut all[..], &counts[..], &offsets[..]));
-        let part = |(&first, &count): (&Count, &Count)| all[first as usize..(first + count) as usize].to_vec();
-        offsets.iter().zip(&counts).map(part).collect()
+        let mut lengths: Vec<u64> = vec![0; self.size];
+        world.all_gather_into(&(own.len() as u64), &mut lengths[..]);
+        let lengths: Vec<usize> = lengths.into_iter().map(|length| length as usize).collect();
+        let mut parts: Vec<Vec<u8>> = lengths.iter().map(|&length| Vec::with_capacity(length)).collect();
+        // MPI counts what comes from all ranks by 32 bits.
+        let limit = Count::MAX as usize / self.size;
+        for round in 0..lengths.iter().max().map_or(0, |longest| longest.div_ceil(limit)) {
+            let counts: Vec<Count> = lengths.iter().map(|&length| piece(length, round, limit).len() as Count).collect();
+            let offsets = offsets(&counts);
+            let mut all = vec![0; counts.iter().map(|&count| count as usize).sum()];
+            let own = &own[piece(own.len(), round, limit)];
+            world.all_gather_varcount_into(own, &mut PartitionMut::new(&mut all[..], &counts[..], &offsets[..]));
+            for (part, (&first, &count)) in parts.iter_mut().zip(offsets.iter().zip(&counts)) {
+                part.extend_from_slice(&all[first as usize..(first + count) as usize]);
+            }
+        }
+        parts
     }
 
     fn any(&self, bits: u64) -> u64 {

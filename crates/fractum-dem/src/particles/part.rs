@@ -2,7 +2,7 @@
 //!
 //! A rank has a run of particles, in the order of their numbers, and the bonds whose first particle is one of them. It gets what
 //! the bonds of others sum for its particles, moves these, and tells their motion to ranks whose bonds reach them: such a rank
-//! keeps *ghosts* of them. What needs a particle beside bonds (supports, loads, rigid bodies, crack faces) is done by all
+//! keeps *ghosts* of them. What needs a particle beside bonds and contacts among particles (supports, loads, rigid bodies, ties) is done by all
 //! ranks alike: they are told the forces on it, and all move it. The rest is told before anyone looks at it, and out of date between.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -41,7 +41,7 @@ impl Contacts {
         of_pairs.chain(on_bodies).chain(on_solids).collect()
     }
 
-    /// The searches that are due on any rank: none where `false` is all that there is.
+    /// The same by the way of all particles, of which each rank looks at its own. All ranks must call it.
     pub(crate) fn due_on_any(&mut self, part: &ParticlePart, solid: &Solid, particles: &Particles) -> Vec<bool> {
         let mut due = self.due(solid, particles, part.own());
         for due in due.chunks_mut(u64::BITS as usize) {
