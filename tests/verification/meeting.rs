@@ -35,15 +35,17 @@ fn block_nodes() -> usize {
 }
 
 /// What stands in the way of the block.
-enum Target {
+pub(crate) enum Target {
     /// Another block of tetrahedra.
     Solid,
     /// A free rigid block of facets.
     Facets,
 }
 
-/// A tilted brittle block of 0.1 m flies at 8 m/s onto a free block, and loose particles wait around.
-fn crash(target: Target, particles: bool) -> Scene {
+/// A tilted brittle block of 0.1 m flies at 8 m/s onto a free block, and loose particles fly at both from all around.
+///
+/// - `beads`: their number, and their speed over their distance [1/s]
+pub(crate) fn crash(target: Target, (beads, rate): (usize, f64)) -> Scene {
     let turn = Rotation::from_scaled_axis(Vec3::new(0.4, 0.3, 0.1));
     let (points, elements, facets) = block([4, 4, 4], Vec3::repeat(0.1), 0);
     let mut nodes: Vec<Vec3> = points.iter().map(|x| turn * (x - Vec3::repeat(0.05))).collect();
@@ -84,15 +86,17 @@ fn crash(target: Target, particles: bool) -> Scene {
     surface.dedup();
     let mut bonded = Bonded::default();
     let mut materials = Vec::new();
-    if particles {
-        let ring = |k: usize| {
-            let angle = std::f64::consts::TAU * k as f64 / 24.0;
-            Vec3::new(0.13 * angle.cos(), 0.13 * angle.sin(), 0.02 + 0.025 * (k % 3) as f64)
+    if beads > 0 {
+        let layers = beads.div_ceil(24);
+        let place = |k: usize| {
+            let (layer, spoke) = (k % layers, k / layers);
+            let (angle, radius) = (std::f64::consts::TAU * spoke as f64 / 24.0, 0.13 + 0.018 * layer as f64);
+            Vec3::new(radius * angle.cos(), radius * angle.sin(), 0.02 + 0.025 * (spoke % 3) as f64)
         };
-        let position: Vec<Vec3> = (0..24).map(ring).collect();
-        let mut own = Particles::at_rest(position.clone(), vec![8e-3; 24], 24.0 * 5e-3).unwrap();
+        let position: Vec<Vec3> = (0..beads).map(place).collect();
+        let mut own = Particles::at_rest(position.clone(), vec![8e-3; beads], beads as f64 * 5e-3).unwrap();
         for (velocity, x) in own.velocity.iter_mut().zip(&position) {
-            *velocity = -x * 200.0;
+            *velocity = -x * (rate * 0.13 / x.xy().norm());
         }
         let part = BondedPart {
             name: "beads".into(),
@@ -146,7 +150,7 @@ fn run(scene: &mut Scene, mut seen: impl FnMut(&Scene)) -> ((Vec3, Vec3), (f64, 
 
 #[test]
 fn a_block_that_breaks_on_another_among_loose_particles_keeps_momentum_and_energy() {
-    let mut scene = crash(Target::Solid, true);
+    let mut scene = crash(Target::Solid, (24, 200.0));
     // Pairs of a discrete element that nothing holds and a particle that met from apart: how deep they came.
     let mut depth: HashMap<(u32, usize), Option<f64>> = HashMap::new();
     let (start, change) = run(&mut scene, |scene| {
@@ -177,7 +181,7 @@ fn a_block_that_breaks_on_another_among_loose_particles_keeps_momentum_and_energ
 
 #[test]
 fn a_block_that_breaks_on_free_rigid_facets_keeps_momentum_and_energy() {
-    let mut scene = crash(Target::Facets, false);
+    let mut scene = crash(Target::Facets, (0, 200.0));
     let (start, change) = run(&mut scene, |_| {});
     assert!(scene.counts().removed_elements > 20, "{:?}", scene.counts());
     assert!(change.0 < 1e-12 * start.0.norm(), "{change:?} {start:?}");
@@ -191,7 +195,7 @@ fn meetings_are_the_same_bits_for_any_number_of_threads_and_after_a_saved_state(
     let state = |threads: usize, save: bool| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let mut scene = crash(Target::Solid, true);
+            let mut scene = crash(Target::Solid, (24, 200.0));
             let mut fresh = scene.clone();
             for _ in 0..2000 {
                 scene.step(false).unwrap();
@@ -223,7 +227,7 @@ fn between(scene: &Scene, on: ContactBody, from: ContactBody) -> Vec3 {
 #[test]
 fn forces_between_bodies_are_what_changes_their_momentum() {
     for (target, anvil) in [(Target::Solid, ContactBody::Solid(1)), (Target::Facets, ContactBody::Rigid(0))] {
-        let mut scene = crash(target, true);
+        let mut scene = crash(target, (24, 200.0));
         let (block, beads) = (ContactBody::Solid(0), ContactBody::Particles(0));
         for (on, from) in [(block, anvil), (anvil, block), (block, beads), (beads, anvil)] {
             for axis in 0..3 {
@@ -260,7 +264,7 @@ fn forces_between_bodies_are_what_changes_their_momentum() {
 
 #[test]
 fn the_force_from_a_rigid_body_that_meets_one_body_is_its_reaction() {
-    let mut scene = crash(Target::Facets, false);
+    let mut scene = crash(Target::Facets, (0, 200.0));
     let along = Vec3::new(0.6, 0.0, 0.8);
     let (on, from) = (ContactBody::Solid(0), ContactBody::Rigid(0));
     let probe = ContactProbe { on, from, along: Along::Direction(along) };

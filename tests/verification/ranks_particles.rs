@@ -8,11 +8,13 @@ use fractum_fem::{LocalDamping, Solid};
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    BondFracture, Bonded, BondedPart, ContactMaterial, ContactParameters, Contacts, Domain, ElasticMaterial, FlatFaces,
-    Form, Frame, Gravity, Load, Loads, Motion, NodalForce, RigidBody, Scene, SceneSettings, Shape, Support, Supports,
+    Along, BondFracture, Bonded, BondedPart, ContactBody, ContactMaterial, ContactParameters, ContactProbe, Contacts,
+    Domain, ElasticMaterial, FlatFaces, Form, Frame, Gravity, Load, Loads, Motion, NodalForce, RigidBody, Scene,
+    SceneSettings, Shape, Support, Supports,
 };
 use fractum_tests::{noise, settings};
 
+use crate::meeting::{Target, crash};
 use crate::ranks::{RANKS, bits, same_on_ranks, shared};
 
 const RADIUS: f64 = 0.01;
@@ -156,6 +158,29 @@ fn loose_beads_on_a_bonded_block_on_a_plane_have_the_same_bits_on_any_number_of_
     let single = same_on_ranks(500, beads);
     let counts = single.counts();
     assert!(counts.contacts > 200 && single.left().pieces > 0, "{counts:?} {:?}", single.left());
+}
+
+/// A block that breaks on another one, with beads around whose forces on both are asked for: they meet facets, discrete elements and each other.
+#[test]
+fn beads_around_a_solid_that_breaks_have_the_same_bits_on_any_number_of_ranks() {
+    let probes = [ContactBody::Solid(0), ContactBody::Particles(0)].map(|on| ContactProbe {
+        on,
+        from: ContactBody::Particles(0),
+        along: Along::Direction(Vec3::x()),
+    });
+    let made = || {
+        let mut scene = crash(Target::Solid, (2400, 1500.0));
+        probes.iter().for_each(|probe| scene.contacts.watch(*probe));
+        scene
+    };
+    let single = same_on_ranks(1300, made);
+    let counts = single.counts();
+    assert!(counts.particles > 2400 && counts.contacts > 10, "{counts:?}");
+    let state: serde_json::Value = serde_json::from_str(&bits(&single)).unwrap();
+    let on_debris = state["contacts"]["debris"].as_array().map_or(0, Vec::len);
+    assert!(on_debris > 0, "no bead touches a discrete element");
+    let forces = |scene: &Scene| probes.map(|probe| scene.contacts.force_between(&probe));
+    assert!(shared(3, 1300, made).iter().all(|scene| forces(scene) == forces(&single)), "{:?}", forces(&single));
 }
 
 #[test]

@@ -224,6 +224,17 @@ impl<L: ContactLaw> SphereContacts<L> {
         &self.pairs
     }
 
+    /// Forces of near pairs at the last step, of those whose first spheres are in a range [N].
+    pub fn forces(&self, range: Range<usize>) -> impl Iterator<Item = Vec3> {
+        let own = self.pairs_from(range.start)..self.pairs_from(range.end);
+        own.map(|k| self.loads.get(k).map_or_else(Vec3::zeros, |load| load.force))
+    }
+
+    /// Puts the forces of all near pairs, in their order.
+    pub fn put_forces(&mut self, all: impl Iterator<Item = Vec3>) {
+        self.loads.iter_mut().zip(all).for_each(|(load, force)| load.force = force);
+    }
+
     /// Whether each near pair touches, and what it remembers; of the pairs whose first spheres are in a range.
     pub fn memories(&self, range: Range<usize>) -> Vec<(bool, L::Memory)> {
         let own = self.pairs_from(range.start)..self.pairs_from(range.end);

@@ -22,17 +22,13 @@ impl Scene {
         if self.optional.heat.is_some() {
             return Some("heat");
         }
-        self.particles_cannot_be_shared().filter(|_| self.solid.body_count() == 0)
+        self.bonded.cannot_be_shared().filter(|_| self.solid.body_count() == 0)
     }
 
     /// What has every rank do alike what particles and bonds do, in words; none where they are shared.
     pub fn keeps_particles_whole(&self) -> Option<&'static str> {
         let few = || (!self.bonded.has_blocks()).then_some("their number: up to 2048 are not divided");
-        self.particles_cannot_be_shared().or_else(few)
-    }
-
-    fn particles_cannot_be_shared(&self) -> Option<&'static str> {
-        self.bonded.cannot_be_shared().or_else(|| self.contacts.cannot_be_shared(&self.solid))
+        self.bonded.cannot_be_shared().or_else(few)
     }
 
     /// Whether every step needs sums over all nodes: of what damping takes, or of the momentum that gravity works on.
@@ -125,13 +121,31 @@ impl Scene {
 
     /// Does the searches for contacts of particles that are due on any rank.
     pub(crate) fn search_together(&mut self) {
-        let Scene { bonded, contacts, solid, .. } = self;
-        let due = bonded.with_part(|part, particles| Some(contacts.due_on_any(part?, solid, particles)));
+        let Scene { bonded, contacts, solid, debris, .. } = self;
+        let due = bonded.with_part(|part, particles| Some(contacts.due_on_any(part?, solid, debris, particles)));
         if let Some(due) = due.filter(|due| due.contains(&true)) {
             bonded.gather_motion();
-            let near = contacts.search(&due, solid, &bonded.particles);
-            bonded.follow(&near);
-            bonded.set_near(contacts.near_pairs());
+            contacts.search(&due, solid, debris, &bonded.particles);
+            self.follow_near();
+        }
+    }
+
+    /// Has every rank move the particles that may touch what all ranks look at, and tells the motion of those that may touch each other.
+    pub(crate) fn follow_near(&mut self) {
+        let Scene { bonded, contacts, .. } = self;
+        if !bonded.is_shared() {
+            return;
+        }
+        bonded.follow(&contacts.near().collect::<Vec<_>>());
+        bonded.set_near(contacts.near_pairs());
+    }
+
+    /// Brings the forces between particles up to date, where probes ask for them. All ranks must call it.
+    pub(crate) fn gather_watched(&mut self) {
+        if self.contacts.watches_pairs() {
+            let Scene { bonded, contacts, .. } = self;
+            bonded.gather_motion();
+            bonded.with_part(|part, _| part.into_iter().for_each(|part| contacts.gather_loads(part)));
         }
     }
 

@@ -212,14 +212,15 @@ impl Scene {
 
     /// The forces between bodies that probes ask for.
     pub(crate) fn sum_watched_contacts(&mut self) {
+        self.gather_watched();
         let Scene { contacts, solid, debris, bonded, shape_contacts, .. } = self;
         contacts.sum_watched(&Touching { solid, debris, particles: &bonded.particles, shapes: shape_contacts });
     }
 
     /// - `work`: that of the contacts counted so far
     fn add_contact_forces(&mut self, dt: f64, mut work: Work) -> Work {
+        self.search_together();
         if !self.contacts.is_empty() {
-            self.search_together();
             let Scene { contacts, solid, bonded, .. } = self;
             work += bonded.with_part(|part, particles| contacts.add_forces(part, solid, particles, dt));
         }
@@ -228,7 +229,8 @@ impl Scene {
         }
         work += self.debris.add_forces(&mut self.solid, dt);
         let Scene { contacts, solid, debris, bonded, .. } = self;
-        work += contacts.add_node_forces(solid, debris, &mut bonded.particles, dt);
+        let searches = !bonded.is_shared();
+        work += contacts.add_node_forces(solid, debris, &mut bonded.particles, (searches, dt));
         for ground in &mut self.shape_contacts {
             work += ground.add_forces(self.contacts.rigid_bodies_mut(), &mut self.solid, &mut self.debris, dt);
         }
@@ -257,8 +259,10 @@ impl Scene {
                 }
             }
             self.update_wall_frequency();
+            self.bonded.gather_motion();
             let Scene { contacts, solid, debris, bonded, removals, .. } = self;
             contacts.release(solid, debris, &bonded.particles, &removals.last, before);
+            self.follow_near();
             self.removals.since_check += report.removed;
         }
         // Cells that lost elements may be stiffer for their mass than any before.

@@ -56,6 +56,11 @@ impl Bonded {
         Some(self.part.as_ref()?.share())
     }
 
+    /// Whether several ranks share the particles.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.part.is_some()
+    }
+
     /// The share of this process, where several share the particles, with all particles.
     pub(crate) fn with_part<T>(&mut self, work: impl FnOnce(Option<&ParticlePart>, &mut Particles) -> T) -> T {
         work(self.part.as_deref(), &mut self.particles)

@@ -1,5 +1,7 @@
 //! Discrete elements of solids among particles that have nodes of their own.
 
+use std::ops::Range;
+
 use fractum_contact::law::{ContactLaw, ContactMemory, Linear};
 use fractum_contact::{SphereContacts, Spheres};
 use fractum_dem::Particles;
@@ -64,7 +66,34 @@ impl DebrisAmong {
         self.radius.extend(born.iter().map(|&n| debris.radius(n)));
     }
 
-    fn search(&mut self, solid: &Solid, debris: &Debris, particles: &Particles, made: Made) {
+    /// Whether a search is due by the way of some of the particles, and of all discrete elements.
+    pub(super) fn is_used_up(
+        &mut self,
+        solid: &Solid,
+        debris: &Debris,
+        particles: &Particles,
+        range: Range<usize>,
+    ) -> bool {
+        self.locate(solid, debris, particles);
+        let DebrisAmong { contacts, position, velocity, spin, radius, .. } = self;
+        let spheres = Spheres { position, velocity, spin, radius };
+        contacts.is_used_up(&spheres, range) || contacts.is_used_up(&spheres, particles.len()..spheres.position.len())
+    }
+
+    /// Particles that may touch discrete elements before the next search.
+    pub(super) fn near(&self) -> impl Iterator<Item = u32> {
+        self.contacts.pairs().iter().map(|[particle, _]| *particle)
+    }
+
+    /// - `is_due`: whether to search; by the way of everything if absent
+    pub(super) fn search(
+        &mut self,
+        solid: &Solid,
+        debris: &Debris,
+        particles: &Particles,
+        made: Made,
+        is_due: Option<bool>,
+    ) {
         let DebrisAmong { contacts, position, velocity, spin, radius, .. } = self;
         let count = particles.len();
         let law = |i: u32, j: u32| {
@@ -77,7 +106,10 @@ impl DebrisAmong {
             let surface = material.surface.against(debris.surface(node));
             Some(Linear::between_spheres(e, nu, radii, masses, surface))
         };
-        contacts.search(&Spheres { position, velocity, spin, radius }, law);
+        let spheres = Spheres { position, velocity, spin, radius };
+        if is_due.unwrap_or_else(|| contacts.is_used_up(&spheres, 0..spheres.position.len())) {
+            contacts.renew(&spheres, law);
+        }
     }
 
     /// Takes new discrete elements as they stand.
@@ -85,23 +117,27 @@ impl DebrisAmong {
     /// - `before`: how many there were
     pub(super) fn admit(&mut self, before: usize, solid: &Solid, debris: &Debris, particles: &Particles, made: Made) {
         self.locate(solid, debris, particles);
-        self.search(solid, debris, particles, made);
+        self.search(solid, debris, particles, made, None);
         let DebrisAmong { contacts, position, velocity, spin, radius, .. } = self;
         let first = particles.len() + before;
         contacts.accept_initial_overlap(&Spheres { position, velocity, spin, radius }, |_, j| j as usize >= first);
     }
 
     /// Adds the forces of the moment to nodes and particles.
+    ///
+    /// - `searches`: whether to search where that is due; `dt` [s]: the step that led here
     pub(super) fn add_forces(
         &mut self,
         solid: &mut Solid,
         debris: &mut Debris,
         particles: &mut Particles,
         made: Made,
-        dt: f64,
+        (searches, dt): (bool, f64),
     ) -> Work {
         self.locate(solid, debris, particles);
-        self.search(solid, debris, particles, made);
+        if searches {
+            self.search(solid, debris, particles, made, None);
+        }
         let DebrisAmong { contacts, position, velocity, spin, radius, force, moment, .. } = self;
         for sum in [&mut *force, &mut *moment] {
             sum.clear();

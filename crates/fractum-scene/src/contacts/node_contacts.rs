@@ -63,12 +63,14 @@ impl Contacts {
     }
 
     /// Adds the forces of nodes of solids; after those of the particles, which put rigid bodies and facets in their places.
+    ///
+    /// - `searches`: whether to look up particles near discrete elements, where that is due; `dt` [s]: the step that led here
     pub(crate) fn add_node_forces(
         &mut self,
         solid: &mut Solid,
         debris: &mut Debris,
         particles: &mut Particles,
-        dt: f64,
+        (searches, dt): (bool, f64),
     ) -> Work {
         let mut work = Work::default();
         let mut fastest = self.node_frequency_square;
@@ -90,7 +92,7 @@ impl Contacts {
         }
         if let Some(among) = self.debris.as_mut().filter(|_| !debris.is_empty()) {
             let made = Made { body: &self.body, materials: &self.materials };
-            work += among.add_forces(solid, debris, particles, made, dt);
+            work += among.add_forces(solid, debris, particles, made, (searches, dt));
             fastest = fastest.max(among.frequency_square(solid, debris, particles));
         }
         self.node_frequency_square = fastest;

@@ -12,38 +12,37 @@ use fractum_math::Work;
 use fractum_parallel::gather;
 
 use super::Contacts;
+use super::debris_among::{DebrisAmong, Made};
+use crate::coupling::Debris;
 
 /// Spheres whose contacts are summed before those of others, as [`fractum_contact::SphereContacts::works`] has them.
 const BLOCK: usize = 1024;
 
 impl Contacts {
-    /// Why ranks cannot share the particles, in words; none where they can.
-    pub(crate) fn cannot_be_shared(&self, solid: &Solid) -> Option<&'static str> {
-        if self.debris.is_some() && solid.has_damage() {
-            Some("particles that may touch discrete elements of solids")
-        } else if self.among.is_some() && !self.watched.is_empty() {
-            Some("forces between bodies of particles that probes ask for")
-        } else {
-            None
-        }
-    }
-
-    /// Which searches are due by the way of some particles: of pairs, then on rigid bodies, then on solids.
-    fn due(&mut self, solid: &Solid, particles: &Particles, range: Range<usize>) -> Vec<bool> {
+    /// Which searches are due by the way of some particles: of pairs, then on rigid bodies, on solids, and among discrete elements.
+    fn due(&mut self, solid: &Solid, debris: &Debris, particles: &Particles, range: Range<usize>) -> Vec<bool> {
         self.flat.locate(particles, range.clone());
-        let Contacts { among, rigid_bodies, on_tools, solids, flat, .. } = self;
+        let Contacts { among, rigid_bodies, on_tools, solids, flat, debris: near_debris, .. } = self;
         let spheres = spheres(particles);
         let felt = flat.felt(spheres);
         let of_pairs = among.iter().map(|among| among.is_used_up(&spheres, range.clone()));
         let grounds = rigid_bodies.iter().zip(&*on_tools);
         let on_bodies = grounds.map(|(body, (contacts, _))| contacts.is_used_up(&body.ground(), &felt, range.clone()));
         let on_solids = solids.iter_mut().map(|ground| ground.is_used_up(solid, &spheres, range.clone()));
-        of_pairs.chain(on_bodies).chain(on_solids).collect()
+        let near_debris = near_debris.iter_mut().filter(|_| !debris.is_empty());
+        let of_debris = near_debris.map(|among| among.is_used_up(solid, debris, particles, range.clone()));
+        of_pairs.chain(on_bodies).chain(on_solids).chain(of_debris).collect()
     }
 
     /// The same by the way of all particles, of which each rank looks at its own. All ranks must call it.
-    pub(crate) fn due_on_any(&mut self, part: &ParticlePart, solid: &Solid, particles: &Particles) -> Vec<bool> {
-        let mut due = self.due(solid, particles, part.own());
+    pub(crate) fn due_on_any(
+        &mut self,
+        part: &ParticlePart,
+        solid: &Solid,
+        debris: &Debris,
+        particles: &Particles,
+    ) -> Vec<bool> {
+        let mut due = self.due(solid, debris, particles, part.own());
         for due in due.chunks_mut(u64::BITS as usize) {
             let bits = (0..).zip(&*due).fold(0u64, |bits, (k, due)| bits | u64::from(*due) << k);
             let bits = part.exchange().any(bits);
@@ -52,8 +51,8 @@ impl Contacts {
         due
     }
 
-    /// Does the searches that are due, once all particles are where they are. Particles that rigid bodies and solids may touch.
-    pub(crate) fn search(&mut self, due: &[bool], solid: &Solid, particles: &Particles) -> Vec<u32> {
+    /// Does the searches that are due, once all particles are where they are.
+    pub(crate) fn search(&mut self, due: &[bool], solid: &Solid, debris: &Debris, particles: &Particles) {
         self.flat.locate(particles, 0..particles.len());
         let spheres = spheres(particles);
         let mut due = due.iter().copied();
@@ -75,13 +74,17 @@ impl Contacts {
                 ground.renew(solid, &spheres);
             }
         }
-        self.near().collect()
+        if let Some(among) = self.debris.as_mut().filter(|_| due.next() == Some(true)) {
+            let made = Made { body: &self.body, materials: &self.materials };
+            among.search(solid, debris, particles, made, Some(true));
+        }
     }
 
-    /// Particles that rigid bodies and solids may touch before the next search, some of them more than once.
+    /// Particles that rigid bodies, solids and discrete elements may touch before the next search, some of them more than once.
     pub(crate) fn near(&self) -> impl Iterator<Item = u32> {
         let grounds = self.on_tools.iter().map(|(contacts, _)| contacts);
-        grounds.chain(self.solids.iter().map(|ground| ground.contacts())).flat_map(|contacts| contacts.near())
+        let on_grounds = grounds.chain(self.solids.iter().map(|ground| ground.contacts()));
+        on_grounds.flat_map(|contacts| contacts.near()).chain(self.debris.iter().flat_map(DebrisAmong::near))
     }
 
     /// Pairs of particles that may touch before the next search.
@@ -102,6 +105,19 @@ impl Contacts {
             *work = Work::contact(stored, friction, damping);
         }
         among.work()
+    }
+
+    /// Whether forces of pairs are asked for.
+    pub(crate) fn watches_pairs(&self) -> bool {
+        self.among.is_some() && !self.watched.is_empty()
+    }
+
+    /// Brings the forces of all pairs up to date on every rank. All ranks must call it.
+    pub(crate) fn gather_loads(&mut self, part: &ParticlePart) {
+        if let Some(among) = &mut self.among {
+            let own: Vec<[f64; 3]> = among.forces(part.own()).map(Into::into).collect();
+            among.put_forces(gather(&**part.exchange(), &own).into_iter().flatten().map(Into::into));
+        }
     }
 
     /// Brings the memory of all pairs up to date on every rank. All ranks must call it.
