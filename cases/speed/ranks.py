@@ -3,8 +3,8 @@
 the least time of their steps without output, the ratio, and what is sent; then the largest memory of each of 1, 2 and 4 processes.
 
 Needs numpy, MPI and a build with it: `cargo build --release --features mpi --target-dir target/mpi`, then
-`python3 cases/speed/ranks.py target/mpi/release/fractum`. With `bonded` behind it the times alone, of a cube of 100,000 bonded particles that
-vibrates, and of the same that is torn.
+`python3 cases/speed/ranks.py target/mpi/release/fractum`. With `particles` behind it the times alone, of a cube of 100,000 bonded particles that
+vibrates, of the same that is torn, and of 91,125 loose beads that fall into a box.
 """
 
 import json
@@ -50,6 +50,33 @@ STRENGTH = """
 [materials.glass.fracture]
 tensile_strength = "50 MPa"
 """
+LOOSE = """fractum = 1
+loads = [{ gravity = { z = "-9.81 m/s^2" } }]
+solver = { kind = "explicit", end = "20 ms" }
+output = { history = { every = "1 ms" }, fields = { every = "20 ms" } }
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "10 MPa"
+poisson_ratio = 0.22
+contact = { friction = 0.4, rolling_friction = 0.02, restitution = 0.5 }
+[[bodies]]
+name = "beads"
+kind = "particles"
+material = "glass"
+shape = "box"
+point = ["-60 mm", "-60 mm", "2 mm"]
+size = ["120 mm", "120 mm", "120 mm"]
+particle_radius = "1.1 mm"
+dispersion = 0.2
+[[bodies]]
+name = "walls"
+kind = "rigid"
+shape = "box"
+inside = true
+point = ["-60 mm", "-60 mm", "0 mm"]
+size = ["120 mm", "120 mm", "300 mm"]
+contact = { friction = 0.4, rolling_friction = 0.02, restitution = 0.5 }
+"""
 MPIRUN = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "-n"]
 
 
@@ -63,10 +90,10 @@ def main(program, cells=44):
         print(f"{count} of one thread: {', '.join(f'{megabytes:.0f}' for megabytes in each)} MB")
 
 
-def bonded(program):
-    for what, case in (("vibrates", BONDED), ("is torn", BONDED + STRENGTH)):
+def particles(program):
+    for what, case in (("the cube vibrates", BONDED), ("the cube is torn", BONDED + STRENGTH), ("beads fall into a box", LOOSE)):
         with tempfile.TemporaryDirectory() as folder:
-            print(f"the cube {what}")
+            print(what)
             compare(program, pathlib.Path(folder), case)
 
 
@@ -105,4 +132,4 @@ def peaks(program, folder, count):
 
 
 if __name__ == "__main__":
-    (bonded if "bonded" in sys.argv[2:] else main)(pathlib.Path(sys.argv[1]).resolve())
+    (particles if "particles" in sys.argv[2:] else main)(pathlib.Path(sys.argv[1]).resolve())

@@ -40,6 +40,6 @@ pub use nearest::{Nearest, nearest_facets};
 pub use shape::{Outside, Shape};
 pub use sphere_facet::SurfaceContacts;
 pub use sphere_grid::SphereGrid;
-pub use sphere_sphere::SphereContacts;
+pub use sphere_sphere::{SUMMED_SPHERES, SphereContacts};
 pub use surface::FacetMesh;
 pub use touch::{Spheres, Surface, Touch};

@@ -9,8 +9,10 @@ use crate::broad_phase::close_pairs;
 use crate::law::{ContactLaw, PairMotion};
 use crate::touch::Spheres;
 
-/// Pairs handled as one piece of parallel work, and spheres whose contacts are summed before those of others.
+/// Pairs handled as one piece of parallel work.
 const BLOCK: usize = 1024;
+/// Spheres whose contacts are summed before those of others, by the first spheres of the pairs.
+pub const SUMMED_SPHERES: usize = 1024;
 
 /// Contacts among the spheres of one population, with their memories.
 ///
@@ -137,7 +139,7 @@ impl<L: ContactLaw> SphereContacts<L> {
         }
         self.loads.clear();
         self.works.clear();
-        self.works.resize(spheres.div_ceil(BLOCK), Work::default());
+        self.works.resize(spheres.div_ceil(SUMMED_SPHERES), Work::default());
         self.cut = None;
     }
 
@@ -153,7 +155,7 @@ impl<L: ContactLaw> SphereContacts<L> {
         self.work()
     }
 
-    /// [`SphereContacts::add_forces`] on a range of spheres that begins and ends a block of 1024, or ends with all; energies are those of
+    /// [`SphereContacts::add_forces`] on a range of spheres that begins and ends a block of [`SUMMED_SPHERES`], or ends with all; energies are those of
     /// the pairs whose first spheres are among them.
     pub fn add_forces_on(
         &mut self,
@@ -194,11 +196,11 @@ impl<L: ContactLaw> SphereContacts<L> {
                 *moment += load.moments[usize::from(second)];
             }
         });
-        works[range.start.div_ceil(BLOCK)..range.end.div_ceil(BLOCK)].fill(Work::default());
+        works[range.start.div_ceil(SUMMED_SPHERES)..range.end.div_ceil(SUMMED_SPHERES)].fill(Work::default());
         pairs[own.clone()]
             .iter()
             .zip(&loads[own])
-            .for_each(|(pair, load)| works[pair[0] as usize / BLOCK] += load.work);
+            .for_each(|(pair, load)| works[pair[0] as usize / SUMMED_SPHERES] += load.work);
     }
 
     /// First pair whose first sphere is at or behind one.
@@ -206,7 +208,7 @@ impl<L: ContactLaw> SphereContacts<L> {
         self.pairs.partition_point(|pair| (pair[0] as usize) < sphere)
     }
 
-    /// Energies at the last step, of the pairs whose first spheres are in each block of 1024.
+    /// Energies at the last step, of the pairs whose first spheres are in each block of [`SUMMED_SPHERES`].
     pub fn works(&mut self) -> &mut [Work] {
         &mut self.works
     }
@@ -270,7 +272,7 @@ impl<L: ContactLaw> SphereContacts<L> {
                 force[j] += load.force;
                 moment[i] += load.moments[0];
                 moment[j] += load.moments[1];
-                works[i / BLOCK] += load.work;
+                works[i / SUMMED_SPHERES] += load.work;
             }
         }
         self.work()

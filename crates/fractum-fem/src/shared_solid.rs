@@ -95,13 +95,9 @@ impl Solid {
     /// The same of what damping has taken from the nodes of each chunk, and of their kinetic energy.
     pub(crate) fn tell_work(&mut self) {
         let Some(part) = self.part.as_ref().filter(|part| part.sums) else { return };
-        let numbers =
-            |HalfSteps { before, after }: &HalfSteps| [before.kinetic, before.damping, after.kinetic, after.damping];
-        let mut all: Vec<[f64; 4]> = self.chunk_work.iter().map(numbers).collect();
+        let mut all: Vec<[f64; 4]> = self.chunk_work.iter().map(HalfSteps::of_motion).collect();
         part.tell_sums(&mut all);
-        for (work, numbers) in self.chunk_work.iter_mut().zip(all) {
-            [work.before.kinetic, work.before.damping, work.after.kinetic, work.after.damping] = numbers;
-        }
+        self.chunk_work.iter_mut().zip(all).for_each(|(work, numbers)| work.set_motion(numbers));
     }
 
     /// Brings displacements and velocities of all nodes up to date on every rank. All ranks must call it.

@@ -53,6 +53,19 @@ pub struct HalfSteps {
     pub after: Work,
 }
 
+impl HalfSteps {
+    /// What motion and damping make of both halves: kinetic energy and what damping takes, before and after tⁿ.
+    pub fn of_motion(&self) -> [f64; 4] {
+        let HalfSteps { before, after } = self;
+        [before.kinetic, before.damping, after.kinetic, after.damping]
+    }
+
+    /// Sets what [`HalfSteps::of_motion`] tells.
+    pub fn set_motion(&mut self, numbers: [f64; 4]) {
+        [self.before.kinetic, self.before.damping, self.after.kinetic, self.after.damping] = numbers;
+    }
+}
+
 impl AddAssign for HalfSteps {
     fn add_assign(&mut self, other: Self) {
         self.before += other.before;

@@ -41,6 +41,29 @@ pub trait Exchange: Debug + Send + Sync {
     fn any(&self, bits: u64) -> u64;
 }
 
+/// What all ranks name, rank after rank: a word where none names anything.
+pub fn gather_named<T: Serialize + DeserializeOwned>(exchange: &dyn Exchange, own: &Vec<T>) -> Vec<T> {
+    let is_any = exchange.any(u64::from(!own.is_empty())) != 0;
+    if is_any { gather(exchange, own).into_iter().flatten().collect() } else { Vec::new() }
+}
+
+/// Gives every rank the values of all items, each by the rank that owns it.
+pub fn tell_by_owner<const N: usize>(exchange: &dyn Exchange, owner: impl Fn(usize) -> usize, values: &mut [[f64; N]]) {
+    let mut counts = vec![0; exchange.size()];
+    (0..values.len()).for_each(|item| counts[owner(item)] += N);
+    let own = (0..values.len()).filter(|&item| owner(item) == exchange.rank()).flat_map(|item| values[item]);
+    let own: Vec<f64> = own.collect();
+    let mut all = vec![0.0; N * values.len()];
+    exchange.gather(&own, &counts, &mut all);
+    let begin = |sum: &mut usize, count: &usize| Some(std::mem::replace(sum, *sum + count));
+    let mut next: Vec<usize> = counts.iter().scan(0, begin).collect();
+    for (item, value) in values.iter_mut().enumerate() {
+        let next = &mut next[owner(item)];
+        value.copy_from_slice(&all[*next..*next + N]);
+        *next += N;
+    }
+}
+
 /// Gives every rank the values of all, rank after rank.
 ///
 /// # Panics

@@ -1,6 +1,6 @@
 //! Values of some items that ranks tell each other.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::exchange::{Exchange, Message};
 
@@ -69,6 +69,15 @@ impl<T: Copy> Swapped<T> {
         Swapped { messages: between.keys().map(message).collect(), items: between.into_values().collect() }
     }
 
+    /// The same of sets.
+    pub fn of_sets(between: BTreeMap<usize, [BTreeSet<T>; 2]>) -> Self
+    where
+        T: Ord,
+    {
+        let lists = |(rank, sets): (usize, [BTreeSet<T>; 2])| (rank, sets.map(|set| set.into_iter().collect()));
+        Swapped::new(between.into_iter().map(lists).collect())
+    }
+
     /// What is sent.
     pub fn sent(&self) -> impl Iterator<Item = T> + '_ {
         self.items.iter().flat_map(|[send, _]| send).copied()
@@ -77,11 +86,6 @@ impl<T: Copy> Swapped<T> {
     /// What is received.
     pub fn received(&self) -> impl Iterator<Item = T> + '_ {
         self.items.iter().flat_map(|[_, receive]| receive).copied()
-    }
-
-    /// Leaves out items on both sides.
-    pub fn retain(&mut self, stays: impl Fn(T) -> bool) {
-        self.items.iter_mut().flatten().for_each(|items| items.retain(|&item| stays(item)));
     }
 
     /// Writes the `N` values of each item to be sent.

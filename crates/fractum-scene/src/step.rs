@@ -230,7 +230,7 @@ impl Scene {
         work += self.debris.add_forces(&mut self.solid, dt);
         let Scene { contacts, solid, debris, bonded, .. } = self;
         let searches = !bonded.is_shared();
-        work += contacts.add_node_forces(solid, debris, &mut bonded.particles, (searches, dt));
+        work += contacts.add_node_forces(solid, debris, &mut bonded.particles, searches, dt);
         for ground in &mut self.shape_contacts {
             work += ground.add_forces(self.contacts.rigid_bodies_mut(), &mut self.solid, &mut self.debris, dt);
         }

@@ -60,5 +60,8 @@ pub(crate) fn fetch_together<'a>(fetches: impl Iterator<Item = &'a Fetch> + Clon
     if any(|fetch| fetch.contacts) {
         scene.gather_contacts();
     }
-    scene.gather_bonds(&fetches.flat_map(|fetch| &fetch.bonds).copied().collect::<Vec<_>>());
+    let bonds: Vec<(u32, u32)> = fetches.flat_map(|fetch| &fetch.bonds).copied().collect();
+    if !bonds.is_empty() {
+        scene.gather_bonds(&bonds);
+    }
 }

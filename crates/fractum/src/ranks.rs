@@ -133,12 +133,13 @@ impl Ranks {
     ///
     /// # Errors
     /// [`Failure::Input`] for a scene that cannot be shared.
-    pub(crate) fn share_out(&self, scene: &mut Scene, watched: &Watched) -> Result<(), Failure> {
+    pub(crate) fn share_out(&self, scene: &mut Scene, watched: impl FnOnce(&Scene) -> Watched) -> Result<(), Failure> {
         let Some(exchange) = &self.exchange else { return Ok(()) };
         let refuse =
             |what| Failure::input(format!("{what} cannot be run by several processes yet; run without mpirun"));
         self.together(scene.cannot_be_shared().map_or(Ok(()), |what| Err(refuse(what))))?;
-        scene.share_out(Arc::clone(exchange), watched);
+        let watched = watched(scene);
+        scene.share_out(Arc::clone(exchange), &watched);
         Ok(())
     }
 
@@ -198,17 +199,26 @@ fn not_for_ranks(case: &Case) -> Vec<(&Place, &'static str)> {
     if case.solver.kind != SolverKind::Explicit {
         found.push((&case.solver.place, "a solver that is not explicit"));
     }
-    let solid = case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Solid(_)));
-    let is_nonlocal =
-        |kind: &BodyKind| matches!(kind, BodyKind::Bonded(body) if body.law == BondLawKind::LocalNonlocal);
-    let nonlocal = case.bodies.iter().filter(|body| !solid && is_nonlocal(&body.kind));
-    found
-        .extend(nonlocal.map(|body| {
-            (&body.name.place, "bond = \"local-nonlocal\" without a solid, whose cells they would share,")
-        }));
+    if !case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Solid(_))) {
+        found
+            .extend(case.bodies.iter().filter_map(|body| Some((&body.name.place, undivided_bonds(case, &body.kind)?))));
+    }
     found.extend(case.solver.subcycling.iter().map(|place| (place, "subcycling")));
     found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat")));
     found
+}
+
+/// Bonds of a body that processes cannot divide, where no solid gives them cells to share.
+fn undivided_bonds(case: &Case, kind: &BodyKind) -> Option<&'static str> {
+    let BodyKind::Bonded(body) = kind else { return None };
+    let damps = || case.materials[body.material].interfaces.as_ref().is_some_and(|of| of.value.law.damping_ratio > 0.0);
+    match body.law {
+        BondLawKind::LocalNonlocal => Some("bond = \"local-nonlocal\" without a solid, whose cells they would share,"),
+        BondLawKind::Local if damps() => {
+            Some("bond = \"local\" with damping, without a solid whose cells they would share,")
+        }
+        _ => None,
+    }
 }
 
 #[cfg(test)]

@@ -298,8 +298,7 @@ impl Simulation {
         self.solver.take_over(&mut self.scene, was_moving);
         self.recorder.set_probes(built.probes);
         self.case = Arc::new(case);
-        let watched = self.recorder.watch_points(&self.scene);
-        self.ranks.share_out(&mut self.scene, &watched)
+        self.ranks.share_out(&mut self.scene, |scene| self.recorder.watch_points(scene))
     }
 
     /// An instant in words.

@@ -165,7 +165,7 @@ impl Bonds {
     }
 
     /// See [`BondNetwork::gather_memory`].
-    pub fn gather_memory(&mut self, bonds: &[u32]) {
+    pub fn gather_memory(&mut self, bonds: impl Iterator<Item = u32>) {
         each!(self, network => network.gather_memory(bonds));
     }
 

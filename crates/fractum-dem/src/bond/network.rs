@@ -1,6 +1,7 @@
 use std::ops::Add;
 
 use fractum_math::{Sym3, Vec3};
+use fractum_parallel::gather_named;
 use nalgebra::Matrix6;
 use rayon::prelude::*;
 
@@ -205,7 +206,9 @@ impl<L: BondLaw> BondNetwork<L> {
                 }
             }
         }
-        self.named_by_all(out);
+        if let Some(part) = &self.part {
+            *out = gather_named(part.exchange(), out);
+        }
     }
 
     /// Largest viscous resistance over stiffness of a bond [s]; 0 where there is no resistance.

@@ -21,7 +21,7 @@ impl<L: BondLaw> BondNetwork<L> {
         self.part = Some(Box::new(part));
     }
 
-    /// Whether several ranks may share the bonds: a mean strain needs those around its particles, and so does viscosity.
+    /// Whether several ranks may share the bonds: those beside a mean strain need all bonds around their particles.
     pub fn can_be_shared(&self) -> bool {
         self.mean.is_none()
     }
@@ -110,22 +110,12 @@ impl<L: BondLaw> BondNetwork<L> {
         part.of_all(&mine, self.blocks.len())
     }
 
-    /// What all ranks name, rank after rank; what this process names where it has all bonds.
-    pub(super) fn named_by_all<T: serde::Serialize + serde::de::DeserializeOwned>(&self, own: &mut Vec<T>) {
-        if let Some(part) = &self.part
-            && part.exchange().any(u64::from(!own.is_empty())) != 0
-        {
-            *own = gather(part.exchange(), own).into_iter().flatten().collect();
-        }
-    }
-
     /// Brings the memory of some bonds up to date on every rank. All ranks must name the same ones.
-    pub fn gather_memory(&mut self, bonds: &[u32]) {
+    pub fn gather_memory(&mut self, bonds: impl Iterator<Item = u32>) {
         let own = self.own_bonds();
-        if let Some(part) = self.part.as_ref().filter(|_| self.has_memory() && !bonds.is_empty()) {
-            let is_own = |bond: &&u32| own.contains(&(**bond as usize));
-            let mine: Vec<(u32, L::Memory)> =
-                bonds.iter().filter(is_own).map(|&bond| (bond, self.memory_of(bond as usize))).collect();
+        if let Some(part) = self.part.as_ref().filter(|_| self.has_memory()) {
+            let mine = bonds.filter(|&bond| own.contains(&(bond as usize)));
+            let mine: Vec<(u32, L::Memory)> = mine.map(|bond| (bond, self.memory_of(bond as usize))).collect();
             for (bond, memory) in gather(part.exchange(), &mine).into_iter().flatten() {
                 self.put_memory(bond as usize, memory);
             }

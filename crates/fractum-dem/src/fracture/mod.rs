@@ -2,6 +2,7 @@
 
 mod crack;
 pub mod criterion;
+mod face_contacts;
 mod faces;
 mod moving;
 mod search;

@@ -1,6 +1,7 @@
 //! The search for bonds that must break, in a state at rest or in motion.
 
 use fractum_math::{Sym3, Vec3, sphere_volume};
+use fractum_parallel::gather_named;
 
 use super::criterion::{
     BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule, SeenBonds,
@@ -184,7 +185,7 @@ impl FailureSearch {
             let mine: Vec<(u32, BreakMode, f64)> = with_energy.collect();
             own.clear();
             energies.clear();
-            for (bond, mode, energy) in part.named_by_all(&mine) {
+            for (bond, mode, energy) in gather_named(part.exchange(), &mine) {
                 own.push(Break { bond, mode });
                 energies.push(energy);
             }

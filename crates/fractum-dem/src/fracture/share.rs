@@ -6,8 +6,6 @@ use std::sync::Arc;
 
 use fractum_math::Sym3;
 use fractum_parallel::{Exchange, Swapped, gather, rank_of};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 use super::criterion::FailureSite;
 use crate::bond::{BondGraph, Bonds};
@@ -50,8 +48,7 @@ impl SearchPart {
                 }
             }
         }
-        let list = |(rank, sets): (usize, [BTreeSet<u32>; 2])| (rank, sets.map(|set| set.into_iter().collect()));
-        let virials = Swapped::new(between.into_iter().map(list).collect());
+        let virials = Swapped::of_sets(between);
         SearchPart { particles: part.own(), bonds: bonds.own_bonds(), virials, exchange }
     }
 
@@ -93,12 +90,7 @@ impl SearchPart {
         all.map(site).reduce(|worst, site| if site.ratio > worst.ratio { site } else { worst })
     }
 
-    /// What all ranks name, rank after rank.
-    pub(super) fn named_by_all<T: Serialize + DeserializeOwned>(&self, own: &Vec<T>) -> Vec<T> {
-        if self.any(!own.is_empty()) {
-            gather(&*self.exchange, own).into_iter().flatten().collect()
-        } else {
-            Vec::new()
-        }
+    pub(super) fn exchange(&self) -> &dyn Exchange {
+        &*self.exchange
     }
 }

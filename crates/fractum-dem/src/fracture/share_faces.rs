@@ -1,9 +1,9 @@
 //! A body that breaks where several ranks share it: crack faces belong to the ranks of both particles, alike; what the others need is
 //! told by the rank of the first.
 
-use fractum_parallel::{gather, rank_of};
+use fractum_parallel::{gather, rank_of, tell_by_owner};
 
-use super::faces::Face;
+use super::faces::{Face, FaceWork};
 use super::moving::{Fracture, power_of};
 use crate::bond::{BondForces, Bonds};
 use crate::particles::{ParticlePart, Particles, SHARED};
@@ -31,8 +31,8 @@ impl Fracture {
 
     /// Gives every rank the energies of all faces.
     pub(super) fn tell_works(&mut self, part: &ParticlePart) {
-        let numbers = |work: &super::FaceWork| {
-            let super::FaceWork { contact, kinks } = work;
+        let numbers = |work: &FaceWork| {
+            let FaceWork { contact, kinks } = work;
             [contact.stored, contact.friction, contact.damping, *kinks]
         };
         let mut all: Vec<[f64; 4]> = self.works.iter().map(numbers).collect();
@@ -50,24 +50,12 @@ impl Fracture {
         acting: &[(usize, BondForces)],
         particles: &Particles,
     ) -> Vec<f64> {
-        if acting.is_empty() {
-            return Vec::new();
+        let first = |of: &(usize, BondForces)| self.cracks[of.0].pair[0] as usize;
+        let power = |of: &(usize, BondForces)| [power_of(&of.1, self.cracks[of.0].pair, particles)];
+        let mut powers: Vec<[f64; 1]> = acting.iter().map(power).collect();
+        if !powers.is_empty() {
+            tell_by_owner(&**part.exchange(), |k| rank_of(part.first(), first(&acting[k])), &mut powers);
         }
-        let exchange = &**part.exchange();
-        let rank = |of: &(usize, BondForces)| rank_of(part.first(), self.cracks[of.0].pair[0] as usize);
-        let power = |(crack, forces): &(usize, BondForces)| power_of(forces, self.cracks[*crack].pair, particles);
-        let mine: Vec<f64> = acting.iter().filter(|of| rank(of) == exchange.rank()).map(power).collect();
-        let mut counts = vec![0; exchange.size()];
-        acting.iter().for_each(|of| counts[rank(of)] += 1);
-        let mut all = vec![0.0; acting.len()];
-        exchange.gather(&mine, &counts, &mut all);
-        let begin = |sum: &mut usize, count: &usize| Some(std::mem::replace(sum, *sum + count));
-        let mut next: Vec<usize> = counts.iter().scan(0, begin).collect();
-        let told = |of| {
-            let next = &mut next[rank(of)];
-            *next += 1;
-            all[*next - 1]
-        };
-        acting.iter().map(told).collect()
+        powers.into_iter().flatten().collect()
     }
 }

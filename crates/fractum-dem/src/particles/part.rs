@@ -140,8 +140,7 @@ impl ParticlePart {
         let own = self.own();
         let is_others = |(i, is): (usize, &bool)| *is && !own.contains(&i);
         self.of_others = runs_of(&self.is_everywhere.iter().enumerate().map(is_others).collect::<Vec<_>>());
-        let is_everywhere = &self.is_everywhere;
-        self.ghosts.retain(|i| !is_everywhere[i as usize]);
+        self.choose_ghosts();
     }
 
     /// Tells the motion of particles that may touch, too, from now on, in the place of what was named before. All ranks must name the
@@ -150,6 +149,10 @@ impl ParticlePart {
         let near = &mut self.near[which as usize];
         near.clear();
         add_near(near, &self.first, self.exchange.rank(), pairs);
+        self.choose_ghosts();
+    }
+
+    fn choose_ghosts(&mut self) {
         self.ghosts = swapped(&self.near, |i| !self.is_everywhere[i as usize]);
     }
 
@@ -230,13 +233,9 @@ impl ParticlePart {
 
     /// The same of what a step has done with each block, by [`Particles::kick_and_drift`].
     pub(super) fn tell_work(&self, partial: &mut [HalfSteps]) {
-        let numbers =
-            |HalfSteps { before, after }: &HalfSteps| [before.kinetic, before.damping, after.kinetic, after.damping];
-        let mut all: Vec<[f64; 4]> = partial.iter().map(numbers).collect();
+        let mut all: Vec<[f64; 4]> = partial.iter().map(HalfSteps::of_motion).collect();
         self.tell_blocks(BLOCK, &mut all);
-        for (work, numbers) in partial.iter_mut().zip(all) {
-            [work.before.kinetic, work.before.damping, work.after.kinetic, work.after.damping] = numbers;
-        }
+        partial.iter_mut().zip(all).for_each(|(work, numbers)| work.set_motion(numbers));
     }
 }
 
@@ -260,7 +259,7 @@ fn swapped<'a>(all: impl IntoIterator<Item = &'a Near>, is_told: impl Fn(u32) ->
         let told = between.entry(rank).or_default();
         (0..2).for_each(|k| told[k].extend(sets[k].iter().copied().filter(|&i| is_told(i))));
     }
-    Swapped::new(between.into_iter().map(|(rank, sets)| (rank, sets.map(|set| set.into_iter().collect()))).collect())
+    Swapped::of_sets(between)
 }
 
 fn motion(particles: &Particles, i: usize) -> [f64; MOTION] {

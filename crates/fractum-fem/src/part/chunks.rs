@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use fractum_math::{CHUNK, Vec3};
-use fractum_parallel::{Exchange, Swapped, rank_of};
+use fractum_parallel::{Exchange, Swapped, rank_of, tell_by_owner};
 
 use crate::block::NodeSlots;
 
@@ -62,16 +62,6 @@ impl Chunks {
 
     /// Gives every rank the sums of all chunks, once each has those of its own.
     pub(super) fn tell<const N: usize>(&self, exchange: &dyn Exchange, sums: &mut [[f64; N]]) {
-        let mut counts = vec![0; exchange.size()];
-        self.owner.iter().for_each(|&owner| counts[owner] += N);
-        let own: Vec<f64> = (0..sums.len()).filter(|&chunk| self.is_own(chunk)).flat_map(|chunk| sums[chunk]).collect();
-        let mut all = vec![0.0; N * sums.len()];
-        exchange.gather(&own, &counts, &mut all);
-        let mut next: Vec<usize> =
-            counts.iter().scan(0, |begin, count| Some(std::mem::replace(begin, *begin + count))).collect();
-        for (sum, &owner) in sums.iter_mut().zip(&self.owner) {
-            sum.copy_from_slice(&all[next[owner]..next[owner] + N]);
-            next[owner] += N;
-        }
+        tell_by_owner(exchange, |chunk| self.owner[chunk], sums);
     }
 }

@@ -14,12 +14,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::{CheckpointError, Header};
+use super::{CheckpointError, FORMAT, Header};
 use crate::compress::{Compression, compressor, deflate};
 use crate::memory::{self, TooLarge};
-
-/// Version of the container's format.
-pub const FORMAT: u32 = 4;
 
 /// As PNG's: a transfer that strips the eighth bit or converts line ends is noticed at once.
 const MAGIC: &[u8; 8] = b"\x89FCK\r\n\x1a\n";

@@ -17,8 +17,8 @@ pub(super) struct ParticlePoints<'a> {
     pub(super) part: Option<&'a ParticlePart>,
 }
 
-/// Particles whose momentum is summed before that of others; ranks have whole blocks of so many.
-const BLOCK: usize = 2048;
+/// Particles whose momentum is summed before that of others.
+const BLOCK: usize = ParticlePart::BLOCK;
 
 macro_rules! points {
     ($type:ty) => {

@@ -101,7 +101,7 @@ impl Bonded {
         self.gather_motion();
         let Bonded { part: Some(part), bodies, .. } = self else { return };
         for BondedBody { bonds, fracture, .. } in bodies {
-            bonds.gather_memory(&(0..bonds.len() as u32).collect::<Vec<_>>());
+            bonds.gather_memory(0..bonds.len() as u32);
             fracture.iter_mut().for_each(|fracture| fracture.gather_faces(part));
         }
     }
@@ -109,8 +109,7 @@ impl Bonded {
     /// Brings the memory of some bonds (body, bond) up to date on every rank. All ranks must name the same ones.
     pub(crate) fn gather_bonds(&mut self, bonds: &[(u32, u32)]) {
         for (index, body) in (0..).zip(&mut self.bodies) {
-            let own: Vec<u32> = bonds.iter().filter(|(body, _)| *body == index).map(|(_, bond)| *bond).collect();
-            body.bonds.gather_memory(&own);
+            body.bonds.gather_memory(bonds.iter().filter(|(body, _)| *body == index).map(|(_, bond)| *bond));
         }
     }
 

@@ -85,15 +85,15 @@ impl DebrisAmong {
         self.contacts.pairs().iter().map(|[particle, _]| *particle)
     }
 
-    /// - `is_due`: whether to search; by the way of everything if absent
-    pub(super) fn search(
-        &mut self,
-        solid: &Solid,
-        debris: &Debris,
-        particles: &Particles,
-        made: Made,
-        is_due: Option<bool>,
-    ) {
+    fn search(&mut self, solid: &Solid, debris: &Debris, particles: &Particles, made: Made) {
+        let DebrisAmong { contacts, position, velocity, spin, radius, .. } = &*self;
+        if contacts.is_used_up(&Spheres { position, velocity, spin, radius }, 0..position.len()) {
+            self.renew(solid, debris, particles, made);
+        }
+    }
+
+    /// Renews the list of near pairs, once everything has been located.
+    pub(super) fn renew(&mut self, solid: &Solid, debris: &Debris, particles: &Particles, made: Made) {
         let DebrisAmong { contacts, position, velocity, spin, radius, .. } = self;
         let count = particles.len();
         let law = |i: u32, j: u32| {
@@ -106,10 +106,7 @@ impl DebrisAmong {
             let surface = material.surface.against(debris.surface(node));
             Some(Linear::between_spheres(e, nu, radii, masses, surface))
         };
-        let spheres = Spheres { position, velocity, spin, radius };
-        if is_due.unwrap_or_else(|| contacts.is_used_up(&spheres, 0..spheres.position.len())) {
-            contacts.renew(&spheres, law);
-        }
+        contacts.renew(&Spheres { position, velocity, spin, radius }, law);
     }
 
     /// Takes new discrete elements as they stand.
@@ -117,7 +114,7 @@ impl DebrisAmong {
     /// - `before`: how many there were
     pub(super) fn admit(&mut self, before: usize, solid: &Solid, debris: &Debris, particles: &Particles, made: Made) {
         self.locate(solid, debris, particles);
-        self.search(solid, debris, particles, made, None);
+        self.search(solid, debris, particles, made);
         let DebrisAmong { contacts, position, velocity, spin, radius, .. } = self;
         let first = particles.len() + before;
         contacts.accept_initial_overlap(&Spheres { position, velocity, spin, radius }, |_, j| j as usize >= first);
@@ -132,11 +129,12 @@ impl DebrisAmong {
         debris: &mut Debris,
         particles: &mut Particles,
         made: Made,
-        (searches, dt): (bool, f64),
+        searches: bool,
+        dt: f64,
     ) -> Work {
         self.locate(solid, debris, particles);
         if searches {
-            self.search(solid, debris, particles, made, None);
+            self.search(solid, debris, particles, made);
         }
         let DebrisAmong { contacts, position, velocity, spin, radius, force, moment, .. } = self;
         for sum in [&mut *force, &mut *moment] {

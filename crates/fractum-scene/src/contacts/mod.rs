@@ -282,7 +282,7 @@ impl Contacts {
         }
         for ground in solids {
             let law = |pair: &MaterialPair, i: u32| Hertz::new(pair, radius[i as usize], mass[i as usize]);
-            work += ground.add_forces(solid, &spheres, body, law, (searches, dt));
+            work += ground.add_forces(solid, &spheres, body, law, searches, dt);
             ground.contacts().add_to(force, moment);
             self.node_frequency_square = self.node_frequency_square.max(ground.frequency_square());
         }

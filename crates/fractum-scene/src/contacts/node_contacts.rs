@@ -70,7 +70,8 @@ impl Contacts {
         solid: &mut Solid,
         debris: &mut Debris,
         particles: &mut Particles,
-        (searches, dt): (bool, f64),
+        searches: bool,
+        dt: f64,
     ) -> Work {
         let mut work = Work::default();
         let mut fastest = self.node_frequency_square;
@@ -92,7 +93,7 @@ impl Contacts {
         }
         if let Some(among) = self.debris.as_mut().filter(|_| !debris.is_empty()) {
             let made = Made { body: &self.body, materials: &self.materials };
-            work += among.add_forces(solid, debris, particles, made, (searches, dt));
+            work += among.add_forces(solid, debris, particles, made, searches, dt);
             fastest = fastest.max(among.frequency_square(solid, debris, particles));
         }
         self.node_frequency_square = fastest;

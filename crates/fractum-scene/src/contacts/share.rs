@@ -4,8 +4,8 @@
 
 use std::ops::Range;
 
-use fractum_contact::Spheres;
 use fractum_contact::law::HertzMemory;
+use fractum_contact::{SUMMED_SPHERES, Spheres};
 use fractum_dem::{ParticlePart, Particles};
 use fractum_fem::Solid;
 use fractum_math::Work;
@@ -14,9 +14,6 @@ use fractum_parallel::gather;
 use super::Contacts;
 use super::debris_among::{DebrisAmong, Made};
 use crate::coupling::Debris;
-
-/// Spheres whose contacts are summed before those of others, as [`fractum_contact::SphereContacts::works`] has them.
-const BLOCK: usize = 1024;
 
 impl Contacts {
     /// Which searches are due by the way of some particles: of pairs, then on rigid bodies, on solids, and among discrete elements.
@@ -76,7 +73,7 @@ impl Contacts {
         }
         if let Some(among) = self.debris.as_mut().filter(|_| due.next() == Some(true)) {
             let made = Made { body: &self.body, materials: &self.materials };
-            among.search(solid, debris, particles, made, Some(true));
+            among.renew(solid, debris, particles, made);
         }
     }
 
@@ -100,7 +97,7 @@ impl Contacts {
         among.add_forces_on(part.own(), &spheres, force, moment, dt);
         let numbers = |work: &Work| [work.stored, work.friction, work.damping];
         let mut all: Vec<[f64; 3]> = among.works().iter().map(numbers).collect();
-        part.tell_blocks(BLOCK, &mut all);
+        part.tell_blocks(SUMMED_SPHERES, &mut all);
         for (work, [stored, friction, damping]) in among.works().iter_mut().zip(all) {
             *work = Work::contact(stored, friction, damping);
         }

@@ -268,7 +268,8 @@ impl SolidSurface {
         spheres: &Spheres,
         body_of: &[u16],
         law: impl Fn(&MaterialPair, u32) -> Hertz + Sync,
-        (searches, dt): (bool, f64),
+        searches: bool,
+        dt: f64,
     ) -> Work {
         self.locate(solid);
         let SolidSurface { mesh, nodes, points, velocity, contacts, pairs, felt, .. } = self;
