@@ -9,6 +9,7 @@ mod meeting;
 mod phase_field;
 mod plane;
 mod ranks;
+mod ranks_divided;
 mod ranks_particles;
 mod scene;
 mod statics;

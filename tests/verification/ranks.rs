@@ -23,36 +23,36 @@ fn block() -> (Vec<Vec3>, Body) {
     jittered_box([20, 10, 10], SIZE)
 }
 
-fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, damping: LocalDamping) -> Scene {
+pub(crate) fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, damping: LocalDamping) -> Scene {
     let supports = Supports::new(supports, &solid.reference).unwrap();
     let loads = Loads::new(loads, solid.reference.len());
-    let debris = Debris::new(&solid, vec![ContactParameters::default()]);
+    let debris = Debris::new(&solid, vec![ContactParameters::default(); solid.body_count()]);
     let mut settings = settings(1.0, 1e9);
     settings.damping = damping;
     Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
 }
 
 /// Supports on both ends: one fixed, one that moves along x.
-fn ends(solid: &Solid, speed: f64) -> Vec<Support> {
+pub(crate) fn ends(solid: &Solid, speed: f64) -> Vec<Support> {
     let at = |x: f64| (0..).zip(&solid.reference).filter(|(_, p)| (p.x - x).abs() < 1e-9).map(|(n, _)| n).collect();
     let right: Vec<u32> = at(SIZE.x);
     let moves = Motion::Velocity(Arc::new(move |t: f64, _: &Vec3| speed * (t / 2e-5).min(1.0)));
     vec![Support::new("left", at(0.0), 0, Motion::Fixed), Support::new("right", right, 0, moves)]
 }
 
-fn set_moving(solid: &mut Solid) {
+pub(crate) fn set_moving(solid: &mut Solid) {
     for i in 0..solid.velocity.len() {
         solid.velocity[i] = Vec3::from_fn(|axis, _| noise(3 * i + axis));
     }
 }
 
-fn advance(scene: &mut Scene, steps: u64) {
+pub(crate) fn advance(scene: &mut Scene, steps: u64) {
     for _ in 0..steps {
         scene.step(scene.clock.step.is_multiple_of(13)).unwrap();
     }
 }
 
-fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+pub(crate) fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap().install(work)
 }
 

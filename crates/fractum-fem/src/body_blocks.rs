@@ -5,9 +5,10 @@ use std::sync::{Arc, OnceLock};
 use fractum_math::{Ragged, Vec3};
 
 use crate::body::{Body, BodyEdges, Formulation};
-use crate::body_model::BodyModel;
+use crate::body_model::{BodyModel, Chosen};
 use crate::cell::{Bundle, Class, Geometry};
 use crate::damage::{EdgeField, Softens};
+use crate::divided::{BodyShare, ELSEWHERE};
 use crate::edges_in_step::EdgeCells;
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
@@ -19,13 +20,13 @@ use crate::threshold::Threshold;
 impl BodyModel {
     /// The body with its blocks, whose cells have no geometry yet; `first_block` is the index that its first block will have.
     ///
-    /// - `fine`: elements that take shorter steps; empty where all take the same
+    /// - `chosen`: which cells are made
     pub(crate) fn new(
         body: Body,
         index: usize,
         nodes: &[Vec3],
         volumes: &[f64],
-        fine: &[bool],
+        chosen: Chosen,
         first_block: usize,
     ) -> Result<(Self, Vec<Block>), SolidError> {
         let hooke = Hooke::of(&body);
@@ -46,10 +47,10 @@ impl BodyModel {
             geometry,
             edges: edges.as_ref().filter(|_| smoothed),
             elements_of_edge: &elements_of_edge,
-            fine,
+            chosen,
         };
         let bundles = of_body.blocks(|edge| threshold.as_ref().is_some_and(|t| t.strength[edge as usize].is_finite()));
-        let mut location = vec![(0, 0); if smoothed { edge_count } else { body.elements.len() }];
+        let mut location = vec![(ELSEWHERE, 0); if smoothed { edge_count } else { body.elements.len() }];
         let mut blocks = Vec::with_capacity(bundles.len());
         for bundle in bundles {
             for (cell, &item) in bundle.items.iter().enumerate() {
@@ -87,6 +88,7 @@ impl BodyModel {
             phase,
             reduced_edges,
             largest_length_ratio,
+            divided: None,
         };
         Ok((model, blocks))
     }
@@ -110,14 +112,13 @@ struct CellsOfBody<'a> {
     /// Edges, where these are the cells.
     edges: Option<&'a BodyEdges>,
     elements_of_edge: &'a Ragged,
-    /// Elements that take shorter steps; empty where all take the same.
-    fine: &'a [bool],
+    chosen: Chosen<'a>,
 }
 
 impl CellsOfBody<'_> {
     /// Whether a cell takes shorter steps: an edge with any fine element around it goes with that.
     fn is_fine(&self, item: u32) -> bool {
-        let is_fine = |element: u32| self.fine.get(element as usize).copied().unwrap_or(false);
+        let is_fine = |element: u32| self.chosen.fine.get(element as usize).copied().unwrap_or(false);
         match self.edges {
             Some(_) => self.elements_of_edge.row(item as usize).iter().any(|&element| is_fine(element)),
             None => is_fine(item),
@@ -128,6 +129,9 @@ impl CellsOfBody<'_> {
     ///
     /// - `breaks`: whether an edge may be damaged
     fn blocks(&self, breaks: impl Fn(u32) -> bool) -> Vec<Bundle> {
+        if let Some(share) = self.chosen.share {
+            return self.blocks_of(share);
+        }
         match self.edges {
             Some(edges) => self.geometry.edge_blocks(edges, self.elements_of_edge, |edge| Class {
                 is_fine: self.is_fine(edge),
@@ -135,5 +139,19 @@ impl CellsOfBody<'_> {
             }),
             None => self.geometry.element_blocks(|element| Class { is_fine: self.is_fine(element), is_sound: false }),
         }
+    }
+
+    /// Cells of a rank that has no more of the body than it needs for these.
+    fn blocks_of(&self, share: &BodyShare) -> Vec<Bundle> {
+        let item = |nodes: &[u32; 2]| {
+            let found = match self.edges {
+                Some(edges) => edges.nodes.binary_search(nodes),
+                None => share.numbers.binary_search(&nodes[0]),
+            };
+            found.expect("a rank has the elements of its cells") as u32
+        };
+        let runs: Vec<Vec<u32>> = share.runs.iter().map(|run| run.iter().map(item).collect()).collect();
+        let runs: Vec<&[u32]> = runs.iter().map(Vec::as_slice).collect();
+        self.geometry.bundles(&runs, self.edges.map(|edges| (edges, self.elements_of_edge)))
     }
 }

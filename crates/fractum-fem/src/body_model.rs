@@ -3,6 +3,7 @@ use std::sync::OnceLock;
 use fractum_math::Ragged;
 
 use crate::body::{Body, BodyEdges};
+use crate::divided::{BodyShare, DividedBody};
 use crate::hooke::Hooke;
 use crate::phase::PhaseField;
 use crate::standard::StandardDamage;
@@ -20,7 +21,8 @@ pub(crate) struct BodyModel {
     /// Edges, with damage or in the smoothed formulation.
     pub(crate) edges: Option<BodyEdges>,
     pub(crate) elements_of_edge: Ragged,
-    /// Block and cell of each cell of the body (element, or edge if smoothed).
+    /// Block and cell of each cell of the body (element, or edge if smoothed); [`crate::divided::ELSEWHERE`] and a place among the values of others for
+    /// what this rank does not have.
     pub(crate) location: Vec<(u32, u32)>,
     pub(crate) standard: Option<StandardDamage>,
     pub(crate) phase: Option<Box<PhaseField>>,
@@ -28,4 +30,15 @@ pub(crate) struct BodyModel {
     pub(crate) reduced_edges: usize,
     /// Largest ratio of a characteristic length to the largest one that softening allows.
     pub(crate) largest_length_ratio: f64,
+    /// What this rank knows of the whole body, where it does not have all of it.
+    pub(crate) divided: Option<Box<DividedBody>>,
+}
+
+/// Which cells of a body are made.
+#[derive(Clone, Copy)]
+pub(crate) struct Chosen<'a> {
+    /// Elements that take shorter steps; empty where all take the same.
+    pub(crate) fine: &'a [bool],
+    /// The cells of this rank; none where all are made.
+    pub(crate) share: Option<&'a BodyShare>,
 }

@@ -11,7 +11,7 @@ use crate::element::measure_and_gradients;
 use crate::error::SolidError;
 
 /// Cells per block: its displacements, forces and geometry fit the second-level cache.
-const BLOCK_CELLS: usize = 2048;
+pub(crate) const BLOCK_CELLS: usize = 2048;
 
 /// Blocks of cells with short steps, which are few and evaluated by themselves, so that all threads find work: as many as this, unless
 /// they become as small as [`FEWEST_CELLS`].
@@ -144,10 +144,7 @@ impl Geometry<'_> {
             .map(|e| self.element_nodes(e).iter().map(|&n| self.nodes[n as usize]).sum::<Vec3>())
             .collect();
         let groups = by_class(fractum_mesh::renumber::hilbert_order(&centres), class);
-        chunks(&groups)
-            .into_par_iter()
-            .flat_map(|items| split_to_fit(items, |element| self.row(element, None)))
-            .collect()
+        self.bundles(&chunks(&groups), None)
     }
 
     /// Blocks of edge cells; see [`Class`].
@@ -160,16 +157,22 @@ impl Geometry<'_> {
         let middles: Vec<Vec3> =
             edges.nodes.par_iter().map(|&[i, j]| self.nodes[i as usize] + self.nodes[j as usize]).collect();
         let groups = by_class(fractum_mesh::renumber::hilbert_order(&middles), class);
-        let row = |edge: u32| self.row(edge, Some((edges, elements_of_edge)));
-        chunks(&groups)
-            .into_par_iter()
-            .flat_map(|items| split_to_fit(items, row))
-            .map(|mut bundle| {
+        self.bundles(&chunks(&groups), Some((edges, elements_of_edge)))
+    }
+
+    /// Runs of cells as blocks.
+    ///
+    /// - `edges`: edges and the elements around each, where these are the cells; elements are without
+    pub(crate) fn bundles(&self, runs: &[&[u32]], edges: Option<(&BodyEdges, &Ragged)>) -> Vec<Bundle> {
+        let row = |item: u32| self.row(item, edges);
+        let sorted = |mut bundle: Bundle| {
+            if edges.is_some() {
                 // Cells of one size side by side: the loops over their nodes become predictable.
                 bundle.items.sort_by_cached_key(|&edge| (row(edge).len(), edge));
-                bundle
-            })
-            .collect()
+            }
+            bundle
+        };
+        runs.par_iter().flat_map(|items| split_to_fit(items, row)).map(sorted).collect()
     }
 }
 

@@ -2,8 +2,22 @@
 
 use fractum_math::Vec3;
 use fractum_math::elementary::cbrt;
+use serde::{Deserialize, Serialize};
 
 use crate::body::ElementKind;
+
+/// An element that motion has turned inside out.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InvertedElement {
+    /// Body it belongs to.
+    pub body: usize,
+    /// Its number there.
+    pub element: u32,
+    /// Its present centre [m].
+    pub centre: Vec3,
+    /// Its present volume over that without load; negative inside out.
+    pub volume_ratio: f64,
+}
 
 /// The seven ways a plane cuts a tetrahedron, as sets of its local edges (01)(02)(03)(12)(13)(23).
 pub const CUT_MODES: [&[usize]; 7] =

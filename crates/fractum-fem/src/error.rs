@@ -76,6 +76,9 @@ pub enum SolidError {
         /// How many there may be.
         most: usize,
     },
+    /// What another rank has found that builds a share of the same solid.
+    #[error("{0}")]
+    OfRank(String),
     /// A node that belongs to no element and so has no mass.
     #[error("node {node} belongs to no element of any solid body: it has no mass")]
     MasslessNode {

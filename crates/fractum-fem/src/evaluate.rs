@@ -61,6 +61,12 @@ impl Block {
         }
     }
 
+    /// A block that another rank evaluates, of which this one has no more than nodes that are its own too.
+    pub(crate) fn elsewhere(body: usize, gradients: usize, nodes: Vec<u32>) -> Self {
+        let bundle = Bundle { items: Vec::new(), nodes, gradients };
+        Block::new(bundle, body, BlockLaw::Elastic { energy: None }, false)
+    }
+
     /// Forces of all cells of the block into its scratch.
     pub(crate) fn evaluate(
         &mut self,

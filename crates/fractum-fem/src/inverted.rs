@@ -3,21 +3,9 @@
 use fractum_math::Vec3;
 
 use crate::body::Formulation;
-use crate::element::measure_and_gradients;
+use crate::element::{InvertedElement, measure_and_gradients};
+use crate::evaluate::Block;
 use crate::solid::Solid;
-
-/// An element that motion has turned inside out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct InvertedElement {
-    /// Body it belongs to.
-    pub body: usize,
-    /// Its number there.
-    pub element: u32,
-    /// Its present centre [m].
-    pub centre: Vec3,
-    /// Its present volume over that without load; negative inside out.
-    pub volume_ratio: f64,
-}
 
 impl Solid {
     /// An element of a corotational body that the last forces found turned inside out while it still carried load.
@@ -25,7 +13,15 @@ impl Solid {
     /// Its strain is beyond -1, where the law of small stretches says nothing. Where strains are those of an edge, it is the worst element
     /// around one whose mean deformation is turned inside out.
     pub fn inverted_element(&self) -> Option<InvertedElement> {
-        let (block, cell) = self.blocks.iter().find_map(|block| Some((block, block.inverted?)))?;
+        match self.part.as_ref().filter(|part| part.is_divided()) {
+            Some(part) => part.records.inverted,
+            None => self.inverted_of(&self.blocks),
+        }
+    }
+
+    /// That of the first of some blocks that has one.
+    pub(crate) fn inverted_of(&self, blocks: &[Block]) -> Option<InvertedElement> {
+        let (block, cell) = blocks.iter().find_map(|block| Some((block, block.inverted?)))?;
         let (body, model, item) = (block.body, &self.bodies[block.body], block.items[cell]);
         let one = [item];
         let elements = match model.body.formulation {
@@ -38,6 +34,7 @@ impl Solid {
             let measure = |place: &dyn Fn(usize) -> Vec3| measure_and_gradients(model.body.shape, &nodes.map(place)).0;
             let volume_ratio = measure(&|node| self.position(node)) / measure(&|node| self.reference[node]);
             let centre = nodes[..corners].iter().map(|&n| self.position(n)).sum::<Vec3>() / corners as f64;
+            let element = model.divided.as_ref().map_or(element, |divided| divided.numbers[element as usize]);
             InvertedElement { body, element, centre, volume_ratio }
         };
         let alive = elements.iter().filter(|&&element| model.alive[element as usize]);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use fractum_math::{HalfSteps, Vec3};
-use fractum_parallel::Exchange;
+use fractum_parallel::{Exchange, gather};
 use rayon::prelude::*;
 
 use crate::block::{Cells, Scratch};
@@ -119,6 +119,7 @@ impl Solid {
         part.tell_nodes(&mut self.displacement, &mut self.velocity);
         part.tell_cells(&mut self.blocks, true);
         self.part = Some(part);
+        self.gather_edge_values();
     }
 
     /// What this rank does of the work; none where there is one process.
@@ -194,8 +195,15 @@ impl Solid {
         if measure {
             part.tell_energies(&mut self.blocks);
         }
-        if broken {
+        if broken && !part.is_divided() {
             part.tell_broken(&mut self.blocks);
+        }
+        if part.is_divided() {
+            part.records.inverted = None;
+            if inverted {
+                let own = self.inverted_of(&self.blocks[part.own()]);
+                part.records.inverted = gather(&*part.exchange(), &own).into_iter().flatten().next();
+            }
         }
         self.part = Some(part);
     }

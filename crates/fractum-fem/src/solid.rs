@@ -7,8 +7,10 @@ use rayon::prelude::*;
 use crate::block::NodeSlots;
 use crate::body::{Body, BodyEdges, Formulation};
 pub(crate) use crate::body_model::BodyModel;
+use crate::body_model::Chosen;
 use crate::cell::Geometry;
 use crate::damage::EdgeField;
+use crate::divided::ELSEWHERE;
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::kernel;
@@ -88,7 +90,8 @@ impl Solid {
                     mass[node as usize] += body.elastic.density * volume / corners as f64;
                 }
             }
-            let (model, mut own) = BodyModel::new(body, index, &nodes, &volumes, fine, blocks.len())?;
+            let chosen = Chosen { fine, share: None };
+            let (model, mut own) = BodyModel::new(body, index, &nodes, &volumes, chosen, blocks.len())?;
             blocks.append(&mut own);
             models.push(model);
         }
@@ -96,8 +99,20 @@ impl Solid {
             return Err(SolidError::MasslessNode { node });
         }
         let slots = NodeSlots::new(nodes.len(), blocks.iter().map(|b: &Block| b.cells.nodes.as_slice()))?;
-        let zero = vec![Vec3::zeros(); nodes.len()];
         let part = exchange.map(|exchange| Box::new(Part::new(exchange, &blocks, &slots)));
+        Ok(Solid::of_blocks(nodes, mass, models, blocks, slots, part))
+    }
+
+    /// The solid of blocks whose cells have no geometry yet.
+    pub(crate) fn of_blocks(
+        nodes: Vec<Vec3>,
+        mass: Vec<f64>,
+        bodies: Vec<BodyModel>,
+        blocks: Vec<Block>,
+        slots: NodeSlots,
+        part: Option<Box<Part>>,
+    ) -> Self {
+        let zero = vec![Vec3::zeros(); nodes.len()];
         let mut solid = Solid {
             displacement: zero.clone(),
             initial_displacement: Vec::new(),
@@ -107,7 +122,7 @@ impl Solid {
             chunk_work: vec![HalfSteps::default(); nodes.len().div_ceil(CHUNK)],
             reference: nodes,
             mass,
-            bodies: models,
+            bodies,
             blocks,
             slots,
             viscous_dissipation: 0.0,
@@ -116,7 +131,7 @@ impl Solid {
             subcycling: None,
         };
         solid.make_cells();
-        Ok(solid)
+        solid
     }
 
     /// Gives a node mass beside that of its elements [kg], for ever.
@@ -319,7 +334,7 @@ impl Solid {
     /// Nominal stress [Pa] and damage of every element of a body: means over its edges where it is smoothed.
     pub fn element_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
         let model = &self.bodies[index];
-        self.means(model, |cell| self.cell_field(model, cell))
+        self.means(model, |&at| self.cell_field(index, at))
     }
 
     /// Strain of every element of a body [-], that of thermal expansion included: the mean over its edges where it is smoothed.
@@ -347,7 +362,7 @@ impl Solid {
     /// As [`Solid::element_fields`] of one element.
     pub fn element_field(&self, index: usize, element: u32) -> (Sym3, f64) {
         let model = &self.bodies[index];
-        let cell = |cell: u32| self.cell_field(model, &model.location[cell as usize]);
+        let cell = |cell: u32| self.cell_field(index, model.location[cell as usize]);
         match model.smoothed_edges() {
             None => cell(element),
             Some(edges) => model.mean_of_edges(&edges.of_element[element as usize], cell),
@@ -373,7 +388,12 @@ impl Solid {
         model.alive.iter().enumerate().map(of_element).collect()
     }
 
-    fn cell_field(&self, model: &BodyModel, &at: &(u32, u32)) -> (Sym3, f64) {
+    pub(crate) fn cell_field(&self, index: usize, at: (u32, u32)) -> (Sym3, f64) {
+        let model = &self.bodies[index];
+        if at.0 == ELSEWHERE {
+            let values = model.divided.as_ref().map_or(&[][..], |divided| &divided.values.values);
+            return values.get(at.1 as usize).copied().unwrap_or_default();
+        }
         let (cells, place) = self.cells_with(at);
         let strain = kernel::elastic_strain(&cells, place, &self.displacement, model.body.kinematics);
         let (block, cell) = (&self.blocks[at.0 as usize], at.1 as usize);

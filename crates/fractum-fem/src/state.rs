@@ -86,7 +86,9 @@ impl Solid {
         };
         let elements = if model.standard.is_some() { model.location.iter().map(of).collect() } else { Vec::new() };
         let phase = model.phase.as_ref().map_or_else(Vec::new, |field| field.state().collect());
-        BodyState { alive: model.alive.clone(), edges, elements, phase }
+        // Nothing is removed of a body that no rank has whole.
+        let alive = model.divided.as_ref().map_or_else(|| model.alive.clone(), |divided| vec![true; divided.count]);
+        BodyState { alive, edges, elements, phase }
     }
 
     /// Puts a saved state back. The solid must have been built from the same bodies.
@@ -111,12 +113,15 @@ impl Solid {
                 }
             }
             blocks.iter_mut().for_each(Block::expect_any_damage);
-            model.alive = body.alive;
+            if model.divided.is_none() {
+                model.alive = body.alive;
+            }
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
             self.rebuild_cells_around(index, &removed);
             self.restore_phase(index, &body.phase);
         }
-        for (block, viscous) in self.blocks.iter_mut().zip(state.viscous) {
+        let is_elsewhere = |block: &Block| block.items.is_empty();
+        for (block, viscous) in self.blocks.iter_mut().zip(state.viscous).filter(|(block, _)| !is_elsewhere(block)) {
             block.viscous.stress = viscous;
         }
         for (block, dissipated) in self.blocks.iter_mut().zip(state.dissipated) {

@@ -61,6 +61,7 @@ impl Solid {
     /// The bound over some elements: body, element.
     fn bound(&self, counts: impl Fn(usize, u32) -> bool) -> StableStep {
         let mut worst = StableStep { frequency: 0.0, governing: (0, 0) };
+        let mut worst_trace = 0.0;
         for (body, model) in self.bodies.iter().enumerate() {
             let geometry = Geometry { body: &model.body, nodes: &self.reference };
             let corners = model.body.shape.node_count();
@@ -83,10 +84,11 @@ impl Solid {
                 let frequency = element_frequency(&geometry, hooke, element as usize);
                 if frequency > worst.frequency {
                     worst = StableStep { frequency, governing: (body, element) };
+                    worst_trace = traces[element as usize];
                 }
             }
         }
-        worst
+        self.worst_of_ranks(worst, worst_trace)
     }
 
     /// Largest eigenvalue of M⁻¹K, in the symmetric form M^-½ K M^-½, of nodes that no cell joins to others.

@@ -2,6 +2,7 @@
 //!
 //! - [`read_msh`] and [`write_msh`]: MSH 2.2 and 4.1, ASCII and binary, from bytes and to any writer
 //! - [`read_inp`]: Abaqus input files; [`read_vtu`]: grids of VTK; [`read_mesh`] chooses by the first bytes
+//! - [`joined`]: one mesh of the files into which Gmsh writes its partitions
 //! - [`Mesh`]: points, lines, triangles, quadrilaterals and tetrahedra with named [`Group`]s
 //! - [`topology`]: edges, facets, outward boundary, elements of a node
 //! - [`quality`]: volumes, altitudes, lengths of edges, radius ratios, dihedral angles; [`hints`] says what to mend
@@ -30,6 +31,7 @@ mod abaqus;
 pub mod generate;
 mod gmsh;
 mod hints;
+mod join;
 mod mesh;
 pub mod quality;
 pub mod renumber;
@@ -41,7 +43,8 @@ pub use abaqus::read_inp;
 pub use fractum_math::Vec3;
 pub use gmsh::{MshFormat, read_msh, write_msh};
 pub use hints::hints;
-pub use mesh::{Group, Mesh};
+pub use join::{JoinError, joined};
+pub use mesh::{Group, Mesh, WholeMesh};
 pub use tagged::{MeshError, Place, Problem};
 pub use vtk::read_vtu;
 

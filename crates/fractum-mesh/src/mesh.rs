@@ -1,9 +1,10 @@
 use std::collections::BTreeSet;
 
 use fractum_math::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// Nodes, straight-sided elements and named groups. Elements name nodes by their index in [`Mesh::nodes`].
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mesh {
     /// Coordinates (m, or the unit of the file), in file order; only nodes that some element uses.
     pub nodes: Vec<Vec3>,
@@ -33,11 +34,22 @@ pub struct Mesh {
     pub groups: Vec<Group>,
     /// What the reader skipped, simplified or reoriented, in words for the user.
     pub notices: Vec<String>,
+    /// What is known of the whole mesh where this one lacks some of its tetrahedra; none where it is whole.
+    pub whole: Option<Box<WholeMesh>>,
+}
+
+/// What one of several processes that share a mesh knows of the tetrahedra that others have. Nodes and all other elements are whole.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WholeMesh {
+    /// Number of tetrahedra.
+    pub tetrahedra: usize,
+    /// Of each group the number of its tetrahedra and their nodes, ascending.
+    pub groups: Vec<(usize, Vec<u32>)>,
 }
 
 /// A physical group: elements of one dimension under one name. Each list holds ascending indices into the array of
 /// the same name of the [`Mesh`].
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Group {
     /// The user's name, or `physical-TAG` where the file gives none.
     pub name: String,
@@ -79,16 +91,50 @@ impl Mesh {
     /// The nodes of all elements in the groups of that name, ascending, each once.
     pub fn group_nodes(&self, name: &str) -> Vec<u32> {
         let mut nodes = Vec::new();
-        for group in self.group(name) {
+        for (index, group) in self.groups.iter().enumerate().filter(|(_, group)| group.name == name) {
             push_nodes(&mut nodes, &self.points, &group.points);
             push_nodes(&mut nodes, &self.lines, &group.lines);
             push_nodes(&mut nodes, &self.triangles, &group.triangles);
             push_nodes(&mut nodes, &self.quads, &group.quads);
-            push_nodes(&mut nodes, &self.tetrahedra, &group.tetrahedra);
+            match &self.whole {
+                Some(whole) => nodes.extend(&whole.groups[index].1),
+                None => push_nodes(&mut nodes, &self.tetrahedra, &group.tetrahedra),
+            }
         }
         nodes.sort_unstable();
         nodes.dedup();
         nodes
+    }
+
+    /// Nodes of the tetrahedra of a group that are in this mesh, ascending, each once.
+    pub fn group_nodes_of_tetrahedra(&self, group: &Group) -> Vec<u32> {
+        let mut nodes = Vec::new();
+        push_nodes(&mut nodes, &self.tetrahedra, &group.tetrahedra);
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// Says anew which groups have no elements, once all parts of a mesh are known.
+    pub fn note_empty_groups(&mut self) {
+        self.notices.retain(|notice| !notice.starts_with(EMPTY_GROUPS));
+        let in_whole = |index: usize| self.whole.as_ref().map_or(0, |whole| whole.groups[index].0);
+        let is_empty = |(index, group): &(usize, &Group)| group.element_count() == 0 && in_whole(*index) == 0;
+        let empty = self.groups.iter().enumerate().filter(is_empty).map(|(_, group)| group);
+        self.notices.extend(empty_groups(empty));
+    }
+
+    /// Number of tetrahedra of the whole mesh.
+    pub fn tetrahedron_count(&self) -> usize {
+        self.whole.as_ref().map_or(self.tetrahedra.len(), |whole| whole.tetrahedra)
+    }
+
+    /// Number of tetrahedra in the groups of that name, in the whole mesh.
+    pub fn group_tetrahedra(&self, name: &str) -> usize {
+        let of_group = |(index, group): (usize, &Group)| {
+            self.whole.as_ref().map_or(group.tetrahedra.len(), |whole| whole.groups[index].0)
+        };
+        self.groups.iter().enumerate().filter(|(_, group)| group.name == name).map(of_group).sum()
     }
 
     /// Lowest and highest coordinates; zeros for a mesh without nodes.
@@ -106,6 +152,23 @@ impl Mesh {
 pub(crate) fn bounding_box(points: &[Vec3]) -> (Vec3, Vec3) {
     let Some(&first) = points.first() else { return (Vec3::zeros(), Vec3::zeros()) };
     points.iter().fold((first, first), |(low, high), point| (low.inf(point), high.sup(point)))
+}
+
+/// How the notice of [`empty_groups`] begins.
+const EMPTY_GROUPS: &str = "group(s) without elements: ";
+
+/// A notice of groups without elements; none of none.
+pub(crate) fn empty_groups<'a>(groups: impl Iterator<Item = &'a Group>) -> Option<String> {
+    let empty = groups.map(|group| format!("\"{}\" of dimension {}", group.name, group.dimension));
+    let empty: Vec<String> = empty.collect();
+    (!empty.is_empty()).then(|| format!("{EMPTY_GROUPS}{}", list(&empty)))
+}
+
+/// The first few of many.
+pub(crate) fn list(items: &[String]) -> String {
+    const SHOWN: usize = 8;
+    let more = if items.len() > SHOWN { format!(" and {} more", items.len() - SHOWN) } else { String::new() };
+    format!("{}{more}", items[..items.len().min(SHOWN)].join(", "))
 }
 
 fn push_nodes<const N: usize>(nodes: &mut Vec<u32>, elements: &[[u32; N]], members: &[u32]) {

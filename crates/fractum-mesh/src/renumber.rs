@@ -17,18 +17,33 @@ const BITS: u32 = 20;
 /// Coordinates should be finite; others are taken as lying on the box.
 pub fn hilbert_order(points: &[Vec3]) -> Vec<u32> {
     let (low, high) = bounding_box(points);
-    let extent = (high - low).max();
-    let scale = if extent > 0.0 { f64::from((1u32 << BITS) - 1) / extent } else { 0.0 };
-    let mut keys: Vec<(u64, u32)> = points
-        .par_iter()
-        .enumerate()
-        .map(|(index, point)| {
-            let cell = std::array::from_fn(|axis| (((point[axis] - low[axis]) * scale) as u32).min((1 << BITS) - 1));
-            (hilbert_index(cell), index as u32)
-        })
-        .collect();
+    let curve = HilbertCurve::new(low, high);
+    let mut keys: Vec<(u64, u32)> =
+        points.par_iter().enumerate().map(|(index, point)| (curve.position(point), index as u32)).collect();
     keys.par_sort_unstable();
     keys.into_iter().map(|(_, index)| index).collect()
+}
+
+/// The curve of [`hilbert_order`] through a box.
+#[derive(Clone, Copy, Debug)]
+pub struct HilbertCurve {
+    low: Vec3,
+    scale: f64,
+}
+
+impl HilbertCurve {
+    /// The curve through the smallest cube that holds a box.
+    pub fn new(low: Vec3, high: Vec3) -> Self {
+        let extent = (high - low).max();
+        let scale = if extent > 0.0 { f64::from((1u32 << BITS) - 1) / extent } else { 0.0 };
+        HilbertCurve { low, scale }
+    }
+
+    /// Where a point lies along the curve.
+    pub fn position(&self, point: &Vec3) -> u64 {
+        let cell = |axis: usize| (((point[axis] - self.low[axis]) * self.scale) as u32).min((1 << BITS) - 1);
+        hilbert_index([cell(0), cell(1), cell(2)])
+    }
 }
 
 /// The inverse of a permutation: `invert(order)[order[k]] == k`.
@@ -105,6 +120,7 @@ impl Renumbering {
             tetrahedron_tags: permute(&mesh.tetrahedron_tags, &self.tetrahedra),
             groups: mesh.groups.iter().map(group).collect(),
             notices: mesh.notices.clone(),
+            whole: mesh.whole.clone(),
         }
     }
 

@@ -64,6 +64,29 @@ pub fn tell_by_owner<const N: usize>(exchange: &dyn Exchange, owner: impl Fn(usi
     }
 }
 
+/// Sends words to every rank, and gets those for this one: rank after rank, the own ones among them.
+pub fn post(exchange: &dyn Exchange, mut words: Vec<Vec<u64>>) -> Vec<Vec<u64>> {
+    let (me, size) = (exchange.rank(), exchange.size());
+    let counts: Vec<f64> = words.iter().map(|words| words.len() as f64).collect();
+    let mut all = vec![0.0; size * size];
+    exchange.gather(&counts, &vec![size; size], &mut all);
+    let own = std::mem::take(&mut words[me]);
+    let message = |(rank, words): (usize, Vec<u64>)| {
+        let receive = all[size * rank + me] as usize;
+        // Numbers travel as they are, whatever their bits mean.
+        let send: Vec<f64> = words.into_iter().map(f64::from_bits).collect();
+        (rank != me && send.len() + receive > 0).then(|| Message { rank, send, receive: vec![0.0; receive] })
+    };
+    let mut messages: Vec<Message> = words.into_iter().enumerate().filter_map(message).collect();
+    exchange.swap(&mut messages, &mut || {});
+    let mut received = vec![Vec::new(); size];
+    received[me] = own;
+    for Message { rank, receive, .. } in messages {
+        received[rank] = receive.into_iter().map(f64::to_bits).collect();
+    }
+    received
+}
+
 /// Gives every rank the values of all, rank after rank.
 ///
 /// # Panics

@@ -114,6 +114,11 @@ mod tests {
                     assert_eq!(by_owner, [[2.0, 1.0], [0.0, 2.0], [2.0, 3.0], [1.0, 4.0]]);
                     assert_eq!(crate::exchange::gather_named(&**end, &vec![me; me]), [1, 2, 2]);
                     assert_eq!(crate::exchange::gather_named::<usize>(&**end, &Vec::new()), []);
+                    let words = (0..3).map(|rank| vec![u64::MAX - (10 * me + rank) as u64; (me + rank) % 3]).collect();
+                    let received = crate::exchange::post(&**end, words);
+                    for (rank, words) in received.iter().enumerate() {
+                        assert_eq!(*words, vec![u64::MAX - (10 * rank + me) as u64; (me + rank) % 3]);
+                    }
                     assert_eq!(end.any(1 << me), 0b111);
                     assert_eq!(crate::exchange::gather(&**end, &(me, "rank".to_owned()))[2], (2, "rank".to_owned()));
                 });

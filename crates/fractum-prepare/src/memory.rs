@@ -1,6 +1,7 @@
 //! What the bodies of a case need of memory, before any of them is made.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use fractum_io::case::model::{BodyKind, BondedBody, BondedShape, Case, LooseBody, LooseSource};
 use fractum_io::case::model::{PackingSource, ParticleSize, Region, SolidBody};
@@ -15,6 +16,8 @@ const BONDED_PARTICLE: f64 = 1000.0;
 /// Of a tetrahedron or triangle: standard, smoothed; the second of each where it may be damaged. Somewhat less than bodies of 400,000 to 511,000
 /// keep while they are stepped.
 const ELEMENT: [[f64; 2]; 2] = [[280.0, 550.0], [500.0, 600.0]];
+/// Of a node where several processes share a mesh.
+const NODE: f64 = 300.0;
 /// Part of the memory of solids that several processes share, rather than each having all of it: the cells.
 const SHARED: f64 = 0.5;
 /// Volume of the particles of a packing over that of its shape.
@@ -27,12 +30,26 @@ pub struct Processes {
     pub all: usize,
     /// Those on this machine: they share its memory.
     pub here: usize,
+    /// Number of this one, from 0.
+    pub rank: usize,
+}
+
+impl Processes {
+    /// The same as far as memory goes, each of which does all by itself.
+    pub fn alike(self) -> Self {
+        Processes { all: 1, rank: 0, ..self }
+    }
+
+    /// Which of some items this process takes: each takes some that follow each other.
+    pub fn own(self, items: usize) -> Range<usize> {
+        items * self.rank / self.all..items * (self.rank + 1) / self.all
+    }
 }
 
 impl Default for Processes {
     /// One by itself.
     fn default() -> Self {
-        Processes { all: 1, here: 1 }
+        Processes { all: 1, here: 1, rank: 0 }
     }
 }
 
@@ -43,6 +60,14 @@ impl Default for Processes {
 pub fn check_memory(case: &Case, mesh: &Mesh, processes: Processes) -> Result<(), TooLarge> {
     let needs = case.bodies.iter().map(|body| {
         let (count, of, each) = match &body.kind {
+            BodyKind::Solid(own) if mesh.whole.is_some() => {
+                // This process has what it needs, and every process all nodes.
+                let own_each = ELEMENT[usize::from(own.is_smoothed())][usize::from(own.damage)];
+                let nodes = mesh.group_nodes(&own.group.value).len() as f64 * NODE;
+                let count =
+                    mesh.group(&own.group.value).iter().map(|group| group.tetrahedra.len()).sum::<usize>() as f64;
+                (count, "tetrahedra", own_each + nodes / count.max(1.0))
+            }
             BodyKind::Solid(own) => {
                 let (count, of, each) = solid(own, mesh);
                 // In-situ stress is found by every process.

@@ -81,6 +81,14 @@ pub(crate) fn joined(
 /// Pieces of solids connected by edges that have lost less than `joined_below` of their strength, heaviest first; bodies
 /// without damage hold together as long as their elements. Single nodes are pieces of their own.
 pub fn solid_pieces(solid: &Solid, joined_below: f64) -> Vec<Fragment> {
+    if solid.is_divided() {
+        // Such solids hang together, and nothing breaks them.
+        let bodies = 0..solid.body_count();
+        let (elements, volume) = bodies
+            .map(|body| (solid.element_count(body), solid.volume(body)))
+            .fold((0, 0.0), |(elements, volume), of_body| (elements + of_body.0, volume + of_body.1));
+        return vec![piece(solid, (0..solid.reference.len() as u32).collect(), elements, volume)];
+    }
     let part = joined_nodes(solid, joined_below);
     let mut elements = vec![0usize; part.len()];
     let mut volume = vec![0.0; part.len()];
@@ -111,6 +119,9 @@ pub fn solid_pieces(solid: &Solid, joined_below: f64) -> Vec<Fragment> {
 
 /// Share of the mass of every solid body that is in single nodes.
 pub(crate) fn single_share(solid: &Solid, joined_below: f64) -> Vec<f64> {
+    if solid.is_divided() {
+        return vec![0.0; solid.body_count()];
+    }
     let part = joined_nodes(solid, joined_below);
     let mut members = vec![0u32; part.len()];
     part.iter().for_each(|&place| members[place as usize] += 1);

@@ -99,6 +99,12 @@ pub struct SceneState {
 }
 
 impl SceneState {
+    /// What stands in front of the viscous stress of the solids where a state is written down field by field.
+    pub fn before_viscous_stress(&self) -> impl Serialize + '_ {
+        let SolidState { displacement, velocity, bodies, dissipated, viscous_dissipation, viscous: _ } = &self.solid;
+        (self.clock, displacement, velocity, bodies, dissipated, viscous_dissipation)
+    }
+
     /// The same with another state of the solids; none where there is none.
     pub(crate) fn with_solid(self, solid: impl FnOnce(SolidState) -> Option<SolidState>) -> Option<Self> {
         Some(SceneState { solid: solid(self.solid)?, ..self })
@@ -316,7 +322,7 @@ impl Scene {
     pub fn counts(&self) -> Counts {
         Counts {
             nodes: self.solid.reference.len(),
-            elements: (0..self.solid.body_count()).map(|b| self.solid.body(b).elements.len()).sum(),
+            elements: (0..self.solid.body_count()).map(|b| self.solid.element_count(b)).sum(),
             removed_elements: self.solid.removed_count() - self.removals.left.elements,
             particles: self.debris.len() + self.bonded.particles.len()
                 - self.removals.left.particles(self.solid.reference.len()).count(),

@@ -119,17 +119,26 @@ pub(crate) struct GridLayout {
 }
 
 impl GridLayout {
+    /// Whether frames have pieces, of which every process writes some.
+    pub(crate) fn is_cut(&self) -> bool {
+        self.cut.count > 1
+    }
+
     /// - `cut`: which pieces of solids and particles this process writes
     pub(crate) fn new(scene: &Scene, file_order: &[u32], gauges: Vec<BuiltGauges>, case: &Case, cut: Cut) -> Self {
         let mut place = vec![0u32; file_order.len()];
         for (file, &node) in (0..).zip(file_order) {
             place[node as usize] = file;
         }
+        let writes = cut.is_leading() || cut.count > 1;
         let bodies = (0..scene.solid.body_count())
             .map(|body| {
                 let body = scene.solid.body(body);
                 let corners = body.shape.node_count();
                 let kind = if corners == 4 { CellKind::Tetrahedron } else { CellKind::Triangle };
+                if !writes {
+                    return (kind, Vec::new());
+                }
                 let nodes = body.elements.iter().flat_map(|e| &e[..corners]).map(|&n| place[n as usize]).collect();
                 (kind, nodes)
             })
@@ -223,7 +232,7 @@ impl ElementFields {
             let phases = solid.element_phase(body);
             let strains = if grid.further.strain { solid.element_strains(body) } else { Vec::new() };
             for (element, (stress, damage)) in solid.element_fields(body).into_iter().enumerate() {
-                if !solid.alive(body)[element] {
+                if !solid.alive(body)[element] || !solid.tells_of(body, element) {
                     continue;
                 }
                 kept.extend_from_slice(&nodes[corners * element..corners * (element + 1)]);

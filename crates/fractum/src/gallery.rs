@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
-use fractum_fem::ElementKind;
 use fractum_io::atomic::Group;
 use fractum_io::number::instant_text;
 use fractum_io::picture::{ColourMap, View, robust_range};
 use fractum_math::Vec3;
-use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::{BondedBody, CountKind, Scene};
+use serde::{Deserialize, Serialize};
 
 use crate::cracks::lost_bonds;
 use crate::report::PictureNote;
@@ -20,11 +19,41 @@ use crate::sight::{
 /// Shortest over next side of what is seen from its broad side.
 const FLAT: f64 = 0.35;
 
-/// Damage and stress of the elements behind the facets of the skin.
-#[derive(Default)]
-struct SkinValues {
+/// What is seen of the solids from outside: facets, with damage and first principal stress [Pa] of the elements behind them.
+#[derive(Default, Serialize, Deserialize)]
+pub(crate) struct Skin {
+    facets: Vec<[u32; 3]>,
     damage: Vec<f64>,
     stress: Vec<f64>,
+}
+
+impl Skin {
+    /// That of a scene; of one of several processes that share a mesh its part of it.
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let solid = &scene.solid;
+        let mut skin = Skin::default();
+        for body in 0..solid.body_count() {
+            let fields = solid.element_fields(body);
+            for (nodes, element) in solid.skin(body) {
+                let (stress, damage) = fields[element as usize];
+                skin.facets.push(nodes);
+                skin.damage.push(damage);
+                skin.stress.push(stress.principal_values()[0]);
+            }
+        }
+        skin
+    }
+
+    /// One of several parts.
+    pub(crate) fn joined(parts: Vec<Skin>) -> Self {
+        let add = |mut all: Skin, part: Skin| {
+            all.facets.extend(part.facets);
+            all.damage.extend(part.damage);
+            all.stress.extend(part.stress);
+            all
+        };
+        parts.into_iter().reduce(add).unwrap_or_default()
+    }
 }
 
 /// What all pictures of a scene have in common.
@@ -82,9 +111,10 @@ impl Studio<'_> {
 
 /// Draws the scene for the folder `pictures` of the results; a picture that cannot be drawn is left out.
 ///
+/// - `skin`: that of its solids
 /// - `at_rest`: whether time is a load factor
 /// - `files`: takes the pictures
-pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool, files: &mut Group) -> Vec<PictureNote> {
+pub(crate) fn draw(scene: &Scene, skin: Skin, folder: &Path, at_rest: bool, files: &mut Group) -> Vec<PictureNote> {
     let (solid, bonded) = (&scene.solid, &scene.bonded);
     let size = extent(solid.reference.iter().chain(bonded.reference()));
     let attached = scene.attached_nodes();
@@ -96,11 +126,12 @@ pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool, files: &mut Grou
     let shown = |n: usize| -> [f64; 3] { (solid.reference[n] + solid.displacement_from_start(n) * scale).into() };
     let debris = scene.debris.state();
     let radius = |(&n, &attached): (&u32, &bool)| shown_radius(scene.debris.radius(n), attached);
-    let (skin, values) = skin(scene, &shown);
+    let Skin { facets, damage, stress } = &skin;
+    let points = (0..solid.reference.len()).map(shown).collect();
     let studio = Studio {
         folder,
         sight: Sight {
-            skin,
+            skin: Triangles { points, triangles: facets.clone() },
             debris: Balls {
                 centres: debris.nodes.iter().map(|&n| shown(n as usize)).collect(),
                 radii: debris.nodes.iter().zip(&debris.attached).map(radius).collect(),
@@ -114,7 +145,6 @@ pub(crate) fn draw(scene: &Scene, folder: &Path, at_rest: bool, files: &mut Grou
         view: view_of(size),
         when: format!("{}{}", instant_text(scene.clock.time, at_rest), magnified(scale)),
     };
-    let SkinValues { damage, stress } = &values;
     let none = Field { label: "damage", unit: "1", facets: &[], balls: &[], damage: false };
     let mut notes = Vec::new();
     if damage.iter().any(|&d| d > 0.0) {
@@ -188,38 +218,4 @@ fn broken_bonds(scene: &Scene, studio: &Studio, files: &mut Group) -> Option<Pic
         size: [view.width, view.height],
         ..PictureNote::default()
     })
-}
-
-/// What is seen of the solids from outside.
-fn skin(scene: &Scene, shown: &dyn Fn(usize) -> [f64; 3]) -> (Triangles, SkinValues) {
-    let solid = &scene.solid;
-    let points = (0..solid.reference.len()).map(shown).collect();
-    let mut skin = Triangles { points, triangles: Vec::new() };
-    let mut values = SkinValues::default();
-    for body in 0..solid.body_count() {
-        let model = solid.body(body);
-        let fields = solid.element_fields(body);
-        let alive: Vec<usize> = (0..model.elements.len()).filter(|&e| solid.alive(body)[e]).collect();
-        let mut push = |nodes: [u32; 3], element: usize| {
-            let (stress, damage) = fields[element];
-            skin.triangles.push(nodes);
-            values.damage.push(damage);
-            values.stress.push(stress.principal_values()[0]);
-        };
-        match model.shape {
-            ElementKind::T4 => {
-                let elements: Vec<[u32; 4]> = alive.iter().map(|&e| model.elements[e]).collect();
-                for facet in boundary_of_tetrahedra(&elements) {
-                    push(facet.nodes, alive[facet.element as usize]);
-                }
-            }
-            ElementKind::T3 => {
-                for &element in &alive {
-                    let [a, b, c, _] = model.elements[element];
-                    push([a, b, c], element);
-                }
-            }
-        }
-    }
-    (skin, values)
 }

@@ -1,19 +1,17 @@
 //! From paths to a scene.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fractum_io::build::{BuiltScene, build_shared_scene, check_before_particles, doubts};
-use fractum_io::case::model::MeshSource;
-use fractum_io::case::{Case, Diagnostic, Diagnostics, read_case};
-use fractum_io::memory;
+use fractum_io::case::{Case, Diagnostics, read_case};
 use fractum_mesh::Mesh;
 use fractum_parallel::Exchange;
 
 use crate::columns;
 use crate::course::Course;
 use crate::error::Failure;
+use crate::mesh_files::{JoinedMesh, MeshFiles};
 use crate::plots;
 use fractum_prepare::{BondedBodies, BondedReport, Cache, Processes, check_memory, choose, facets, prepare_bodies};
 
@@ -45,49 +43,80 @@ pub struct Input {
 /// # Errors
 /// [`Failure::Input`] with everything that is wrong; [`Failure::Memory`].
 pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Result<Input, Failure> {
-    read(path, overrides, cache, Processes::default())?.build(None)
+    let processes = Processes::default();
+    read(path, overrides, processes)?.join(None)?.prepare(cache, processes)?.build(None)
 }
 
-/// What the scene of a case is built from.
+/// A case with what this process has read of its mesh.
 pub(crate) struct Source {
     case: Case,
-    mesh: Mesh,
-    mesh_hash: u128,
-    made: BondedBodies,
+    mesh: MeshFiles,
 }
 
-/// Reads a case and its mesh and makes its bonded bodies.
+/// Reads a case and the files of its mesh that are for this process.
 ///
 /// - `processes`: those that run it together
 ///
 /// # Errors
 /// As [`load`].
-pub(crate) fn read(
-    path: &Path,
-    overrides: &[(String, String)],
-    cache: &Cache,
-    processes: Processes,
-) -> Result<Source, Failure> {
+pub(crate) fn read(path: &Path, overrides: &[(String, String)], processes: Processes) -> Result<Source, Failure> {
     let case = read_case(path, overrides)?;
-    let (mesh, mesh_hash) = match &case.mesh {
-        Some(source) => read_mesh(source, processes)?,
-        None => (Mesh::default(), 0),
-    };
-    check_before_particles(&case, &mesh)?;
-    plots::check(&case, &columns::possible_columns(&case))?;
-    check_memory(&case, &mesh, processes)?;
-    let made = prepare_bodies(&case, &mesh, cache)?;
-    Ok(Source { case, mesh, mesh_hash, made })
+    let mesh = MeshFiles::read(&case, processes)?;
+    Ok(Source { case, mesh })
 }
 
 impl Source {
+    /// Makes one mesh of what was read; several processes do it together.
+    ///
+    /// # Errors
+    /// As [`load`]; where all of them look at the same, the same on every rank.
+    pub(crate) fn join(self, exchange: Option<&Arc<dyn Exchange>>) -> Result<Meshed, Failure> {
+        let Source { case, mesh } = self;
+        let mesh = mesh.join(&case, exchange)?;
+        Ok(Meshed { case, mesh })
+    }
+}
+
+/// A case with its mesh.
+pub(crate) struct Meshed {
+    case: Case,
+    mesh: JoinedMesh,
+}
+
+impl Meshed {
+    /// Checks what can be checked without the scene, and makes the bonded bodies.
+    ///
+    /// - `cache`: where packings and beams are kept
+    ///
+    /// # Errors
+    /// As [`load`].
+    pub(crate) fn prepare(self, cache: &Cache, processes: Processes) -> Result<Prepared, Failure> {
+        let Meshed { case, mesh } = self;
+        check_before_particles(&case, &mesh.mesh)?;
+        plots::check(&case, &columns::possible_columns(&case))?;
+        check_memory(&case, &mesh.mesh, processes)?;
+        let made = prepare_bodies(&case, &mesh.mesh, cache)?;
+        Ok(Prepared { case, mesh, made })
+    }
+}
+
+/// What the scene of a case is built from.
+pub(crate) struct Prepared {
+    case: Case,
+    mesh: JoinedMesh,
+    made: BondedBodies,
+}
+
+impl Prepared {
     /// Builds the scene; of several ranks that share its solids all do it together.
     ///
     /// # Errors
     /// As [`load`]; the same on every rank.
     pub(crate) fn build(self, exchange: Option<&Arc<dyn Exchange>>) -> Result<Input, Failure> {
-        let Source { case, mesh, mesh_hash, made } = self;
-        let build = |case: &Case, prepared| build_shared_scene(case, &mesh, prepared, facets(case)?, exchange.cloned());
+        let Prepared { case, mesh: JoinedMesh { mesh, hash: mesh_hash, division, note }, made } = self;
+        let build = |case: &Case, prepared| {
+            build_shared_scene(case, &mesh, prepared, facets(case)?, (exchange.cloned(), division.as_ref()))
+        };
         let mut built = build(&case, made.prepared)?;
         let stage = |stage: &Case| Ok((stage.clone(), build(stage, Vec::new())?));
         let later = case.later.iter().map(stage).collect::<Result<Vec<_>, Diagnostics>>()?;
@@ -103,7 +132,8 @@ impl Source {
         let choice = choose(&case, &mut built);
         let course = Course::of(later.iter().map(|(_, built)| built).chain([&built]));
         plots::check(&case, &columns::columns(&case, &built.scene, course))?;
-        Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, timings: made.timings, choice })
+        let timings = note.into_iter().chain(made.timings).collect();
+        Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, timings, choice })
     }
 }
 
@@ -117,28 +147,4 @@ pub fn cache_of_user() -> Cache {
     let caches = folder("XDG_CACHE_HOME").or_else(|| folder("LOCALAPPDATA"));
     let caches = caches.or_else(|| folder("HOME").map(|home| home.join(".cache")));
     Cache::new(caches.map(|caches| caches.join("fractum")))
-}
-
-/// The mesh in metres, and the hash of its file.
-fn read_mesh(source: &MeshSource, processes: Processes) -> Result<(Mesh, u128), Failure> {
-    let file = &source.file;
-    let fail = |found: String, remedy: &str| {
-        Failure::Input(Diagnostics(vec![Diagnostic::error(&file.place, found).remedy(remedy)]))
-    };
-    // The file and the mesh that is read from it, which is about as large.
-    let length = fs::metadata(&file.value).map_or(0, |known| known.len());
-    memory::require(2 * length * processes.here as u64, format!("reading {}", file.value.display()))?;
-    let bytes = fs::read(&file.value).map_err(|error| {
-        let remedy = match error.kind() {
-            std::io::ErrorKind::NotFound => "paths are taken from the folder of the case file",
-            _ => "check the file and its permissions",
-        };
-        fail(format!("= \"{}\": cannot read the mesh: {error}", file.value.display()), remedy)
-    })?;
-    let mut mesh =
-        fractum_mesh::read_mesh(&bytes).map_err(|error| fail(format!(": {}: {error}", file.value.display()), ""))?;
-    if source.unit != 1.0 {
-        mesh.nodes.iter_mut().for_each(|node| *node *= source.unit);
-    }
-    Ok((mesh, xxhash_rust::xxh3::xxh3_128(&bytes)))
 }

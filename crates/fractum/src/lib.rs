@@ -63,6 +63,7 @@ mod inputs;
 mod interrupt;
 mod last_words;
 mod left;
+mod mesh_files;
 mod needs;
 mod path_frames;
 mod phases;

@@ -141,8 +141,11 @@ impl Plan {
     fn describe_mesh(&mut self, source: &MeshSource, mesh: &Mesh) {
         let (low, high) = mesh.bounding_box();
         let size = high - low;
-        let counts =
-            [(mesh.nodes.len(), "nodes"), (mesh.tetrahedra.len(), "tetrahedra"), (mesh.triangles.len(), "triangles")];
+        let counts = [
+            (mesh.nodes.len(), "nodes"),
+            (mesh.tetrahedron_count(), "tetrahedra"),
+            (mesh.triangles.len(), "triangles"),
+        ];
         let counted = counts.iter().filter(|(count, _)| *count > 0).map(|(count, name)| format!("{count} {name}"));
         let lengths = if size.z > 0.0 { 3 } else { 2 };
         let lengths: Vec<String> = size.iter().take(lengths).map(|&length| quantity(length, "m")).collect();

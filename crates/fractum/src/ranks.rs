@@ -13,6 +13,8 @@ use fractum_io::vtk::Cut;
 use fractum_parallel::{Exchange, gather};
 use fractum_prepare::Processes;
 use fractum_scene::{Scene, Watched};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::error::{ExitCode, Failure};
 use crate::last_words::LastWords;
@@ -45,7 +47,7 @@ impl Ranks {
         let scratch = (exchange.rank() > 0).then(|| std::env::temp_dir().join(name));
         let machines = gather(&*exchange, &exchange.machine());
         let here = machines.iter().filter(|machine| **machine == machines[exchange.rank()]).count();
-        let processes = Processes { all: exchange.size(), here };
+        let processes = Processes { all: exchange.size(), here, rank: exchange.rank() };
         Ranks { exchange: Some(exchange), processes, scratch }
     }
 
@@ -81,9 +83,19 @@ impl Ranks {
     }
 
     /// Which pieces of a frame this process writes.
-    pub(crate) fn cut(&self, output: &Output) -> Cut {
+    ///
+    /// - `is_divided`: whether it has no other elements than those of its own piece
+    pub(crate) fn cut(&self, output: &Output, is_divided: bool) -> Cut {
         let [first, step] = self.exchange.as_ref().map_or([0, 1], |exchange| [exchange.rank(), exchange.size()]);
-        Cut { count: output.frame_pieces, first, step }
+        Cut { count: if is_divided { step } else { output.frame_pieces }, first, step, is_divided }
+    }
+
+    /// What all processes have, that of this one among it.
+    pub(crate) fn gather<T: Serialize + DeserializeOwned>(&self, own: T) -> Vec<T> {
+        match &self.exchange {
+            Some(exchange) => gather(&**exchange, &own),
+            None => vec![own],
+        }
     }
 
     /// The wishes that any process has.

@@ -358,7 +358,7 @@ impl Recorder {
 
     /// Whether processes write pieces of one frame.
     pub(crate) fn shares_frames(&self) -> bool {
-        self.case.output.frame_pieces > 1
+        self.grid.is_cut()
     }
 
     fn frame_of(&self, scene: &Scene) -> Result<Frame, Failure> {

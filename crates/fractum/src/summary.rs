@@ -9,6 +9,8 @@ use fractum_io::expectation::Expectation;
 use fractum_io::summary::{self, Status, Summary};
 use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, passing_size};
 
+use xxhash_rust::xxh3::Xxh3;
+
 use crate::phases::Phases;
 use crate::record::Recorder;
 use crate::series::index_of_max;
@@ -104,6 +106,9 @@ fn fracture_of(body: &BondedBody) -> summary::Fracture {
 
 /// Hash of everything that changes in a scene.
 pub(crate) fn state_hash(scene: &Scene) -> u128 {
+    if scene.solid.is_divided() {
+        return hash_of_divided(scene);
+    }
     let mut bytes = postcard::to_stdvec(&scene.state()).unwrap_or_default();
     if let Some(heat) = scene.heat_state() {
         bytes.extend(postcard::to_stdvec(&heat).unwrap_or_default());
@@ -112,6 +117,22 @@ pub(crate) fn state_hash(scene: &Scene) -> u128 {
         bytes.extend(postcard::to_stdvec(&subcycling).unwrap_or_default());
     }
     xxhash_rust::xxh3::xxh3_128(&bytes)
+}
+
+/// The same where no process has all elements: they take in the viscous stress one after the other. All must call it.
+fn hash_of_divided(scene: &Scene) -> u128 {
+    let state = scene.state();
+    let before = postcard::to_stdvec(&state.before_viscous_stress()).unwrap_or_default();
+    // A list is its length, and what it holds.
+    let bytes = postcard::to_stdvec(&state).unwrap_or_default();
+    let behind = before.len() + postcard::to_stdvec(&scene.solid.state().viscous).map_or(0, |own| own.len());
+    let length = postcard::to_stdvec(&scene.solid.block_count()).unwrap_or_default();
+    let mut hash = Xxh3::new();
+    hash.update(&before);
+    hash.update(&length);
+    scene.solid.each_viscous_block(|stress| hash.update(&postcard::to_stdvec(stress).unwrap_or_default()));
+    hash.update(&bytes[behind..]);
+    hash.digest128()
 }
 
 /// Holds a value of the summary against its reference.

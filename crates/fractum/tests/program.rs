@@ -20,6 +20,7 @@ mod new;
 mod parts;
 mod processor;
 mod ranks;
+mod ranks_mesh;
 mod report;
 mod results_folder;
 mod resume;

@@ -16,12 +16,12 @@ fn bar() -> String {
     format!("{before}[[supports]]{after}")
 }
 
-fn options(place: &Workplace, folder: &str) -> Options {
+pub(crate) fn options(place: &Workplace, folder: &str) -> Options {
     Options { output: Some(place.path(folder)), threads: Some(1), quiet: true, ..Options::default() }
 }
 
 /// Runs a case on several ranks; what each of them comes to.
-fn on_ranks(place: &Workplace, ranks: usize, options: &Options) -> Vec<Result<String, Failure>> {
+pub(crate) fn on_ranks(place: &Workplace, ranks: usize, options: &Options) -> Vec<Result<String, Failure>> {
     let case = place.path("case.toml");
     std::thread::scope(|scope| {
         let start = |exchange| scope.spawn(|| run_shared(&case, options, Ranks::new(exchange)));

@@ -1,11 +1,12 @@
 //! Sums over all nodes: each chunk of nodes has a rank that adds what its nodes have, in their order, and tells all others.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use fractum_math::{CHUNK, Vec3};
-use fractum_parallel::{Exchange, Swapped, rank_of, tell_by_owner};
+use fractum_parallel::{Exchange, Swapped, gather, rank_of, tell_by_owner};
 
 use crate::block::NodeSlots;
+use crate::divided::RanksOfNodes;
 
 /// The chunks of every rank, and their nodes that other ranks have.
 #[derive(Clone, Debug)]
@@ -44,6 +45,35 @@ impl Chunks {
                 } else if own == me {
                     between.entry(teller).or_default()[1].push(node as u32);
                 }
+            }
+        }
+        Chunks { me, owner, nodes: Swapped::new(between) }
+    }
+
+    /// The same where a rank knows no more than which nodes it has, and who else has these. All ranks must call it.
+    pub(super) fn divided(exchange: &dyn Exchange, ranks: &RanksOfNodes, nodes: &BTreeSet<u32>) -> Self {
+        let me = exchange.rank();
+        let count = ranks.lowest.len().div_ceil(CHUNK);
+        let mut own = BTreeMap::<u32, u32>::new();
+        nodes.iter().for_each(|&node| *own.entry(node / CHUNK as u32).or_default() += 1);
+        let mut most = vec![(0, 0); count];
+        for (rank, counts) in gather(exchange, &own).into_iter().enumerate() {
+            for (chunk, nodes) in counts {
+                let most = &mut most[chunk as usize];
+                if nodes > most.1 {
+                    *most = (rank, nodes);
+                }
+            }
+        }
+        let owner: Vec<usize> = most.into_iter().map(|(rank, _)| rank).collect();
+        let mut between = BTreeMap::<usize, [Vec<u32>; 2]>::new();
+        for (node, &teller) in (0..).zip(&ranks.lowest) {
+            let (own, teller) = (owner[node as usize / CHUNK], teller as usize);
+            let has = || ranks.shared.get(&node).is_some_and(|ranks| ranks.contains(&(own as u32)));
+            if teller == me && own != me && !has() {
+                between.entry(own).or_default()[0].push(node);
+            } else if own == me && teller != me && !nodes.contains(&node) {
+                between.entry(teller).or_default()[1].push(node);
             }
         }
         Chunks { me, owner, nodes: Swapped::new(between) }

@@ -21,11 +21,12 @@ use fractum_parallel::{Exchange, Told, gather, rank_of, runs_by_weight, runs_of}
 
 use crate::block::{Cells, NodeSlots, Slot};
 use crate::damage::{EdgeDamage, EdgeField};
+use crate::divided::RanksOfNodes;
 use crate::evaluate::Block;
 
 use block_share::BlockShare;
 use chunks::Chunks;
-use plan::{Plan, told};
+use plan::{AllNodes, Plan, Tellers};
 pub(crate) use records::Events;
 use records::Records;
 
@@ -38,7 +39,7 @@ pub(crate) struct Part {
     /// Sums that ranks with blocks around the same nodes swap.
     plan: Plan,
     /// All nodes.
-    all: Told,
+    all: AllNodes,
     /// Nodes that every rank moves in every step.
     everywhere: Told,
     /// Whether a node is one of them.
@@ -59,7 +60,7 @@ pub(crate) struct Part {
     /// Steps in which every rank moved all nodes, and all steps.
     pub(crate) steps: [u64; 2],
     /// Numbers of every block that all ranks need where something happens.
-    records: Records,
+    pub(crate) records: Records,
 }
 
 /// What steps need of all nodes.
@@ -95,10 +96,37 @@ impl Part {
     pub(crate) fn new(exchange: Arc<dyn Exchange>, blocks: &[Block], slots: &NodeSlots) -> Self {
         let weights: Vec<usize> = blocks.iter().map(|block| block.gradients.max(1)).collect();
         let first = runs_by_weight(&weights, exchange.size());
+        let chunks = Chunks::new(slots, &first, exchange.rank());
+        Part::with(exchange, first, chunks, Tellers::OfSlots, slots)
+    }
+
+    /// The share of a rank that has no more of the blocks of others than their numbers.
+    ///
+    /// - `first`: first block of each rank, and the end
+    pub(crate) fn divided(
+        exchange: Arc<dyn Exchange>,
+        first: Vec<usize>,
+        ranks: RanksOfNodes,
+        blocks: &[Block],
+        slots: &NodeSlots,
+    ) -> Self {
+        let own = blocks[first[exchange.rank()]..first[exchange.rank() + 1]].iter();
+        let nodes: BTreeSet<u32> = own.flat_map(|block| &block.cells.nodes).copied().collect();
+        let chunks = Chunks::divided(&*exchange, &ranks, &nodes);
+        Part::with(exchange, first, chunks, Tellers::Known(ranks.lowest), slots)
+    }
+
+    fn with(
+        exchange: Arc<dyn Exchange>,
+        first: Vec<usize>,
+        chunks: Chunks,
+        tellers: Tellers,
+        slots: &NodeSlots,
+    ) -> Self {
         Part {
             plan: Plan::new(slots, &first, exchange.rank()),
-            chunks: Chunks::new(slots, &first, exchange.rank()),
-            all: told(slots, &first, 0..slots.len() as u32),
+            chunks,
+            all: AllNodes::new(tellers, slots, &first),
             everywhere: Told::new(vec![Vec::new(); exchange.size()]),
             is_everywhere: vec![false; slots.len()],
             moved: Vec::new(),
@@ -142,7 +170,7 @@ impl Part {
             self.plan.runs[chunk].iter().for_each(|run| moved[run.clone()].fill(true));
             self.moved[chunk] = runs_of(&moved);
         }
-        let told = told(slots, &self.first, new.into_iter());
+        let told = self.all.tellers.told(slots, &self.first, new.into_iter());
         self.everywhere.append(&told);
         told
     }
@@ -177,7 +205,9 @@ impl Part {
             shared_nodes: nodes.collect::<BTreeSet<u32>>().len(),
             bytes: 3 * size_of::<f64>() * (plan.sums.sent().count() + everywhere.of(self.exchange.rank()).len()),
             memory: blocks.iter().map(Block::memory).sum(),
-            keeps_all: self.exchange.size() > 1 && blocks.iter().all(|block| block.cells.len() > 0),
+            keeps_all: self.exchange.size() > 1
+                && !self.is_divided()
+                && blocks.iter().all(|block| block.cells.len() > 0),
         }
     }
 
@@ -192,13 +222,18 @@ impl Part {
         self.first[rank]..self.first[rank + 1]
     }
 
+    /// Whether this rank has no more of the blocks of others than their numbers.
+    pub(crate) fn is_divided(&self) -> bool {
+        self.all.are_divided()
+    }
+
     pub(crate) fn exchange(&self) -> Arc<dyn Exchange> {
         Arc::clone(&self.exchange)
     }
 
     /// Nodes that this rank tells the others of, where all are told of all.
     pub(crate) fn told_nodes(&self) -> &[u32] {
-        self.all.of(self.exchange.rank())
+        self.all.told.of(self.exchange.rank())
     }
 
     /// The rank whose block this is.
@@ -252,14 +287,14 @@ impl Part {
     /// Tells all ranks displacements and velocities of all nodes.
     pub(crate) fn tell_nodes(&mut self, displacement: &mut [Vec3], velocity: &mut [Vec3]) {
         if !std::mem::replace(&mut self.is_whole, true) {
-            tell(&mut self.all, &*self.exchange, displacement);
-            tell(&mut self.all, &*self.exchange, velocity);
+            tell(&mut self.all.told, &*self.exchange, displacement);
+            tell(&mut self.all.told, &*self.exchange, velocity);
         }
     }
 
     /// Tells all ranks the forces on the nodes that they move beside their own, once each has those on its own.
     pub(crate) fn tell_forces(&mut self, force: &mut [Vec3]) {
-        let told = if self.is_all { &mut self.all } else { &mut self.everywhere };
+        let told = if self.is_all { &mut self.all.told } else { &mut self.everywhere };
         tell(told, &*self.exchange, force);
         if self.sums {
             self.chunks.fetch(&*self.exchange, force);
@@ -298,6 +333,9 @@ impl Part {
     ///
     /// - `viscous`: viscous stresses too
     pub(crate) fn tell_cells(&mut self, blocks: &mut [Block], viscous: bool) {
+        if self.is_divided() {
+            return self.tell_energies(blocks);
+        }
         let own = self.own();
         let mine: Vec<BlockShare> = blocks[own.clone()].iter().map(|block| BlockShare::of(block, viscous)).collect();
         let shares = gather(&*self.exchange, &mine).into_iter().flatten();
@@ -308,7 +346,7 @@ impl Part {
 
     /// Tells all ranks a value of every node, once each has those of its own blocks.
     pub(crate) fn tell_all(&mut self, values: &mut [Vec3]) {
-        tell(&mut self.all, &*self.exchange, values);
+        tell(&mut self.all.told, &*self.exchange, values);
     }
 
     /// Has the blocks of this rank evaluated, and gets the sums of the blocks of others at its nodes. What others wait for comes first;

@@ -44,14 +44,50 @@ impl Plan {
     }
 }
 
-/// Nodes of which each rank tells those of its blocks that no lower rank has.
-///
-/// - `first`: first block of each rank, and the end
-pub(super) fn told(slots: &NodeSlots, first: &[usize], nodes: impl Iterator<Item = u32>) -> Told {
-    let mut of_rank = vec![Vec::new(); first.len() - 1];
-    for node in nodes {
-        let slot = slots.of(node as usize).next().expect("a node has mass, and so a cell");
-        of_rank[rank_of(first, slot.block())].push(node);
+/// All nodes, with those of which each rank tells.
+#[derive(Clone, Debug)]
+pub(super) struct AllNodes {
+    pub(super) tellers: Tellers,
+    pub(super) told: Told,
+}
+
+impl AllNodes {
+    /// - `first`: first block of each rank, and the end
+    pub(super) fn new(tellers: Tellers, slots: &NodeSlots, first: &[usize]) -> Self {
+        AllNodes { told: tellers.told(slots, first, 0..slots.len() as u32), tellers }
     }
-    Told::new(of_rank)
+
+    /// Whether no rank knows the blocks of all.
+    pub(super) fn are_divided(&self) -> bool {
+        matches!(self.tellers, Tellers::Known(_))
+    }
+}
+
+/// Who tells all others of a node: the lowest rank that has a block there.
+#[derive(Clone, Debug)]
+pub(super) enum Tellers {
+    /// As the blocks of all ranks show.
+    OfSlots,
+    /// The rank of every node.
+    Known(Vec<u32>),
+}
+
+impl Tellers {
+    /// Nodes of which each rank tells all others.
+    ///
+    /// - `first`: first block of each rank, and the end
+    pub(super) fn told(&self, slots: &NodeSlots, first: &[usize], nodes: impl Iterator<Item = u32>) -> Told {
+        let mut of_rank = vec![Vec::new(); first.len() - 1];
+        for node in nodes {
+            let rank = match self {
+                Tellers::OfSlots => {
+                    let slot = slots.of(node as usize).next().expect("a node has mass, and so a cell");
+                    rank_of(first, slot.block())
+                }
+                Tellers::Known(ranks) => ranks[node as usize] as usize,
+            };
+            of_rank[rank].push(node);
+        }
+        Told::new(of_rank)
+    }
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use fractum_parallel::{Exchange, gather};
 
+use crate::element::InvertedElement;
 use crate::evaluate::Block;
 
 /// What happened in a step, on any rank.
@@ -17,13 +18,15 @@ pub(crate) struct Events {
 
 /// What the ranks tell each other of their blocks, see [`record`].
 #[derive(Clone, Debug, Default)]
-pub(super) struct Records {
+pub(crate) struct Records {
     /// Something can happen in a block that all ranks must know.
     has_events: bool,
     /// Numbers of all blocks and of own ones, where all ranks need them in every step; else empty.
     all: Vec<f64>,
     own: Vec<f64>,
     counts: Vec<usize>,
+    /// An element that the last forces found turned inside out, where no rank has all elements.
+    pub(crate) inverted: Option<InvertedElement>,
 }
 
 /// Numbers of a block in [`Records`].
@@ -41,7 +44,13 @@ impl Records {
             return Records { has_events, ..Records::default() };
         }
         let counts: Vec<usize> = counts.map(|count| RECORD * count).collect();
-        Records { has_events, all: vec![0.0; counts.iter().sum()], own: vec![0.0; counts[rank]], counts }
+        Records {
+            has_events,
+            all: vec![0.0; counts.iter().sum()],
+            own: vec![0.0; counts[rank]],
+            counts,
+            inverted: None,
+        }
     }
 
     /// Tells all ranks what they need of every block, or of those alone in which something has happened.

@@ -31,6 +31,17 @@ pub(super) struct Numbering {
 }
 
 impl Numbering {
+    /// The numbers of nodes of a mesh that solid bodies use, along a Hilbert curve; with the nodes of the mesh in that order.
+    pub(super) fn of(nodes: &[Vec3], is_used: &[bool]) -> (Self, Vec<u32>) {
+        let used: Vec<u32> = (0..nodes.len() as u32).filter(|&n| is_used[n as usize]).collect();
+        let points: Vec<Vec3> = used.iter().map(|&n| nodes[n as usize]).collect();
+        let order: Vec<u32> = hilbert_order(&points).into_iter().map(|old| used[old as usize]).collect();
+        let mut scene_node = vec![u32::MAX; nodes.len()];
+        (0..).zip(&order).for_each(|(new, &old)| scene_node[old as usize] = new);
+        let positions = order.iter().map(|&old| nodes[old as usize]).collect();
+        (Numbering { scene_node, positions }, order)
+    }
+
     /// Scene nodes in the order of the file.
     pub(super) fn file_order(&self) -> Vec<u32> {
         self.scene_node.iter().copied().filter(|&n| n != u32::MAX).collect()
@@ -50,7 +61,7 @@ impl<'a> Context<'a> {
             };
             let (tetrahedra, triangles) = (collect(|g| &g.tetrahedra), collect(|g| &g.triangles));
             let place = solid.group.place.clone();
-            let (shape, elements) = if !tetrahedra.is_empty() {
+            let (shape, elements) = if mesh.group_tetrahedra(&solid.group.value) > 0 {
                 (fem::ElementKind::T4, tetrahedra)
             } else if !triangles.is_empty() {
                 (fem::ElementKind::T3, triangles)
@@ -133,21 +144,16 @@ impl<'a> Context<'a> {
     }
 
     /// Nodes of the bodies along a Hilbert curve.
-    pub(super) fn number_nodes(&mut self, parts: &[Part]) -> Option<Numbering> {
-        let mut scene_node = vec![u32::MAX; self.mesh.nodes.len()];
+    pub(super) fn number_nodes(&self, parts: &[Part]) -> Numbering {
+        let mut is_used = vec![false; self.mesh.nodes.len()];
+        let mut mark = |node: u32| is_used[node as usize] = true;
         for part in parts {
-            for element in self.element_nodes(part) {
-                element.iter().for_each(|&n| scene_node[n as usize] = 0);
+            match &self.mesh.whole {
+                Some(_) => self.mesh.group_nodes(&part.body.group.value).into_iter().for_each(&mut mark),
+                None => self.element_nodes(part).into_iter().flatten().for_each(&mut mark),
             }
         }
-        let used: Vec<u32> = (0..scene_node.len() as u32).filter(|&n| scene_node[n as usize] == 0).collect();
-        let points: Vec<Vec3> = used.iter().map(|&n| self.mesh.nodes[n as usize]).collect();
-        let order = hilbert_order(&points);
-        for (new, &old) in (0..).zip(&order) {
-            scene_node[used[old as usize] as usize] = new;
-        }
-        let positions = order.iter().map(|&old| points[old as usize]).collect();
-        Some(Numbering { scene_node, positions })
+        Numbering::of(&self.mesh.nodes, &is_used).0
     }
 
     /// Mesh nodes of the elements of a part; triangles repeat their last node.
@@ -284,12 +290,15 @@ impl<'a> Context<'a> {
         warnings
     }
 
-    pub(super) fn set_initial_velocity(&self, solid: &mut Solid, parts: &[Part]) {
+    pub(super) fn set_initial_velocity(&self, solid: &mut Solid, parts: &[Part], numbering: &Numbering) {
         for (index, part) in parts.iter().enumerate() {
             for (axis, function) in part.body.initial_velocity.iter().enumerate() {
                 let Some(function) = function else { continue };
                 let corners = part.shape.node_count();
-                let nodes: Vec<u32> = solid.body(index).elements.iter().flat_map(|e| &e[..corners]).copied().collect();
+                let nodes: Vec<u32> = match &self.mesh.whole {
+                    Some(_) => self.nodes_of_group(&part.body.group.value, numbering),
+                    None => solid.body(index).elements.iter().flat_map(|e| &e[..corners]).copied().collect(),
+                };
                 for node in nodes {
                     let place = solid.reference[node as usize];
                     solid.velocity[node as usize][axis] = function.value(0.0, place);
@@ -301,6 +310,9 @@ impl<'a> Context<'a> {
     /// Outward facets of all solids (edges of plane bodies repeat their second node), in scene nodes.
     pub(super) fn boundary(&self, parts: &[Part], numbering: &Numbering) -> Vec<[u32; 3]> {
         let scene = |n: u32| numbering.scene_node[n as usize];
+        if let Some(division) = self.division {
+            return division.boundary.all.iter().map(|facet| facet.map(scene)).collect();
+        }
         let elements: Vec<[u32; 4]> = parts.iter().flat_map(|part| self.element_nodes(part)).collect();
         if parts.iter().all(|part| part.shape == fem::ElementKind::T4) {
             topology::boundary_of_tetrahedra(&elements).iter().map(|f| f.nodes.map(scene)).collect()

@@ -33,6 +33,10 @@ impl Context<'_> {
     /// Outward facets of each solid body, in scene nodes; none of plane bodies.
     pub(super) fn facets_of_parts(&self, parts: &[Part], numbering: &Numbering) -> Vec<Vec<[u32; 3]>> {
         let scene = |n: u32| numbering.scene_node[n as usize];
+        if let Some(division) = self.division {
+            let of_body = |facets: &Vec<[u32; 3]>| facets.iter().map(|facet| facet.map(scene)).collect();
+            return division.boundary.of_bodies.iter().map(of_body).collect();
+        }
         let of = |part: &Part| match part.shape {
             fem::ElementKind::T3 => Vec::new(),
             fem::ElementKind::T4 => {
@@ -56,7 +60,8 @@ impl Context<'_> {
     ) -> Option<Scene> {
         let materials = self.contact_materials();
         let pieces = pieces(&scene.solid);
-        let solids_meet = pieces.iter().any(|piece| *piece != pieces[0]);
+        // Those of several processes that share a mesh hang together.
+        let solids_meet = !scene.solid.is_divided() && pieces.iter().any(|piece| *piece != pieces[0]);
         if materials.is_empty() {
             if scene.solid.is_plane() {
                 self.refuse_facets(&rigid_bodies);

@@ -5,6 +5,7 @@ mod bodies;
 mod bonded;
 mod conditions;
 mod contacts;
+mod division;
 mod doubts;
 mod gas;
 mod gauges;
@@ -20,6 +21,7 @@ mod ties;
 
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
+pub use division::{SolidDivision, cannot_divide, divide};
 pub use doubts::doubts;
 pub use gauges::BuiltGauges;
 pub use ppv::PpvStations;
@@ -82,6 +84,8 @@ struct Context<'a> {
     mesh: &'a Mesh,
     /// Of several ranks that share the cells of solids.
     exchange: Option<Arc<dyn Exchange>>,
+    /// What this rank has of the solids, where none has all of them.
+    division: Option<&'a SolidDivision>,
     /// Sets of particles of the bonded bodies.
     particle_sets: Vec<ParticleSets>,
     /// Faces of each body of particles as rigid bodies feel them.
@@ -98,6 +102,7 @@ pub fn check_before_particles(case: &Case, mesh: &Mesh) -> Result<(), Diagnostic
         case,
         mesh,
         exchange: None,
+        division: None,
         particle_sets: Vec::new(),
         flat_faces: Vec::new(),
         diagnostics: Vec::new(),
@@ -119,11 +124,11 @@ pub fn build_scene(
     prepared: Vec<PreparedBody>,
     facets: Vec<PreparedFacets>,
 ) -> Result<BuiltScene, Diagnostics> {
-    build_shared_scene(case, mesh, prepared, facets, None)
+    build_shared_scene(case, mesh, prepared, facets, (None, None))
 }
 
 /// The same, as one of the ranks of an exchange, which all build it: with the cells alone that this rank evaluates, where no other are
-/// needed.
+/// needed. With a division the mesh is that of [`divide`].
 ///
 /// # Errors
 /// As [`build_scene`].
@@ -132,12 +137,12 @@ pub fn build_shared_scene(
     mesh: &Mesh,
     prepared: Vec<PreparedBody>,
     facets: Vec<PreparedFacets>,
-    exchange: Option<Arc<dyn Exchange>>,
+    (exchange, division): (Option<Arc<dyn Exchange>>, Option<&SolidDivision>),
 ) -> Result<BuiltScene, Diagnostics> {
     // The equilibrium with which in-situ stress begins is found by every rank.
     let exchange = exchange.filter(|_| case.in_situ.is_none());
     let (particle_sets, flat_faces, diagnostics) = Default::default();
-    let mut context = Context { case, mesh, exchange, particle_sets, flat_faces, diagnostics };
+    let mut context = Context { case, mesh, exchange, division, particle_sets, flat_faces, diagnostics };
     context.check_before_particles();
     let built = context.build(prepared, facets);
     match built {
@@ -163,14 +168,18 @@ impl<'a> Context<'a> {
         let mut parts = self.solid_parts()?;
         self.take_out(&mut parts, &taken);
         self.without_mistakes()?;
-        let numbering = self.number_nodes(&parts)?;
+        let numbering = self.number_nodes(&parts);
         let mut solid = self.solid(&parts, &numbering)?;
         let mut warnings = self.length_warnings(&solid, &parts);
-        self.set_initial_velocity(&mut solid, &parts);
+        self.set_initial_velocity(&mut solid, &parts, &numbering);
         let boundary = self.boundary(&parts, &numbering);
         let mut boundary_of_parts = self.facets_of_parts(&parts, &numbering);
+        if solid.is_divided() {
+            boundary_of_parts.iter().enumerate().for_each(|(body, facets)| solid.note_skin(body, facets));
+        }
         let surface = Surface::new(&boundary, &parts, &numbering.positions);
-        let (supports, surface_supports, loads) = self.supports_and_loads(&solid, &parts, &numbering, &surface)?;
+        let (supports, surface_supports, loads) =
+            self.supports_and_loads(&solid, &parts, &numbering, &surface, &boundary_of_parts)?;
         let statics = self.statics(&solid, &numbering);
         let ties = self.ties(&solid, &bonded, &taken, &parts, &numbering, &boundary_of_parts);
         // Facets under tied particles matter to what breaks off only.
@@ -223,10 +232,14 @@ impl<'a> Context<'a> {
     fn solid(&mut self, parts: &[Part<'a>], numbering: &Numbering) -> Option<Solid> {
         let bodies = self.solid_bodies(parts, numbering)?;
         let nodes = numbering.positions.clone();
-        let solid = match &self.exchange {
+        let solid = match (&self.exchange, self.division) {
+            (Some(exchange), Some(division)) => {
+                let bodies = bodies.into_iter().zip(division.bodies.iter().cloned()).collect();
+                Solid::divided(nodes, bodies, Arc::clone(exchange))
+            }
             _ if self.case.solver.subcycling.is_some() => Solid::subcycled(nodes, bodies),
-            Some(exchange) => Solid::shared(nodes, bodies, Arc::clone(exchange)),
-            None => Solid::new(nodes, bodies),
+            (Some(exchange), None) => Solid::shared(nodes, bodies, Arc::clone(exchange)),
+            (None, _) => Solid::new(nodes, bodies),
         };
         let mut solid = match solid {
             Ok(solid) => solid,
@@ -255,9 +268,10 @@ impl<'a> Context<'a> {
         parts: &[Part],
         numbering: &Numbering,
         surface: &Surface,
+        boundary_of_parts: &[Vec<[u32; 3]>],
     ) -> Option<(Supports, SurfaceSupports, Loads)> {
         let supports = self.supports(numbering);
-        let (surface_supports, supported) = self.surface_supports(parts, numbering, surface, solid);
+        let (surface_supports, supported) = self.surface_supports(parts, numbering, surface, solid, boundary_of_parts);
         let in_situ = self.in_situ_loads(numbering, surface, solid, supported);
         let points = LoadedPoints::Nodes(numbering, surface);
         let mut loads = self.loads(&points);
@@ -329,13 +343,19 @@ impl<'a> Context<'a> {
 
     /// Nodes of a group that belong to solid bodies, in the scene's numbering, ascending.
     fn group_nodes(&mut self, group: &Spanned<String>, numbering: &Numbering) -> Vec<u32> {
-        let in_file = self.mesh.group_nodes(&group.value);
-        let mut nodes: Vec<u32> =
-            in_file.iter().map(|&n| numbering.scene_node[n as usize]).filter(|&n| n != u32::MAX).collect();
-        nodes.sort_unstable();
+        let nodes = self.nodes_of_group(&group.value, numbering);
         if nodes.is_empty() {
             self.error(&group.place, format!("= \"{}\"", group.value), "a group that touches a solid body");
         }
+        nodes
+    }
+
+    /// The same, none where it touches no solid body.
+    fn nodes_of_group(&self, group: &str, numbering: &Numbering) -> Vec<u32> {
+        let in_file = self.mesh.group_nodes(group);
+        let mut nodes: Vec<u32> =
+            in_file.iter().map(|&n| numbering.scene_node[n as usize]).filter(|&n| n != u32::MAX).collect();
+        nodes.sort_unstable();
         nodes
     }
 

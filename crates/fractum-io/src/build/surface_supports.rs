@@ -19,13 +19,14 @@ impl Context<'_> {
         numbering: &Numbering,
         surface: &Surface,
         solid: &Solid,
+        boundary_of_parts: &[Vec<[u32; 3]>],
     ) -> (SurfaceSupports, Vec<[u32; 3]>) {
         let case = self.case;
         let (mut absorbing, mut elastic, mut all) = (Vec::new(), Vec::new(), Vec::new());
         if case.supports.iter().all(|support| support.surface.is_none()) {
             return (SurfaceSupports::default(), all);
         }
-        let impedances = impedances(parts, solid, surface);
+        let impedances = impedances(parts, solid, surface, boundary_of_parts);
         let outer = is_outer(surface, numbering.positions.len());
         for support in &case.supports {
             let Some(kind) = &support.surface else { continue };
@@ -78,20 +79,26 @@ impl Context<'_> {
 }
 
 /// ρ c_P and ρ c_S of the material behind every facet of the surface [Pa s/m].
-fn impedances(parts: &[Part], solid: &Solid, surface: &Surface) -> HashMap<[u32; 3], [f64; 2]> {
+///
+/// - `boundary_of_parts`: facets of each body in space
+fn impedances(
+    parts: &[Part],
+    solid: &Solid,
+    surface: &Surface,
+    boundary_of_parts: &[Vec<[u32; 3]>],
+) -> HashMap<[u32; 3], [f64; 2]> {
     let mut found = HashMap::new();
     for (index, part) in parts.iter().enumerate() {
         let body = solid.body(index);
         let own = [solid.p_wave_speed(index), body.elastic.s_wave_speed()].map(|speed| body.elastic.density * speed);
-        for &[a, b, c, d] in &body.elements {
-            let sides = match part.shape {
-                ElementKind::T3 => [[a, b, b], [b, c, c], [c, a, a], [a, b, b]],
-                ElementKind::T4 => [[a, b, c], [a, b, d], [a, c, d], [b, c, d]],
-            };
-            found.extend(
-                sides.map(sorted).into_iter().filter(|side| surface.outward(*side).is_some()).map(|s| (s, own)),
-            );
-        }
+        let sides: Vec<[u32; 3]> = match part.shape {
+            ElementKind::T3 => {
+                body.elements.iter().flat_map(|&[a, b, c, _]| [[a, b, b], [b, c, c], [c, a, a]]).collect()
+            }
+            ElementKind::T4 => boundary_of_parts[index].clone(),
+        };
+        let outer = sides.into_iter().map(sorted).filter(|side| surface.outward(*side).is_some());
+        found.extend(outer.map(|side| (side, own)));
     }
     found
 }

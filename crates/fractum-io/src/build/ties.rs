@@ -71,6 +71,9 @@ impl Context<'_> {
             gone.extend(elements);
             gone.sort_unstable();
         }
+        if gone.is_empty() {
+            return;
+        }
         for part in parts.iter_mut().filter(|part| part.shape == ElementKind::T4) {
             part.elements.retain(|e| gone.binary_search(e).is_err());
             if part.elements.is_empty() {

@@ -3,8 +3,9 @@ use std::collections::BTreeMap;
 use super::binary::Layout;
 use super::{entities, names, v2, v4};
 use crate::Mesh;
+use crate::mesh::list;
 use crate::tagged::assemble;
-use crate::tagged::cursor::{Cursor, What, list, quote};
+use crate::tagged::cursor::{Cursor, What, quote};
 use crate::tagged::error::{Fault, MeshError, Problem};
 use crate::tagged::raw::Raw;
 

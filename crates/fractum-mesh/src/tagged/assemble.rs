@@ -54,6 +54,7 @@ pub(crate) fn assemble(mut raw: Raw, bytes: &[u8]) -> Result<Mesh, Fault> {
         tetrahedra: tetrahedra.elements,
         groups,
         notices,
+        whole: None,
     };
     drop_unused_nodes(&mut mesh);
     Ok(mesh)

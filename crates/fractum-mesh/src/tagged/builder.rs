@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::cursor::list;
 use super::element_type::ElementType;
 use super::error::Fault;
 use super::raw::{Membership, PhysicalName, Raw, Records};
+use crate::mesh::list;
 
 /// Makes a raw mesh, element by element.
 #[derive(Default)]

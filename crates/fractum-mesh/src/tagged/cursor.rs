@@ -249,10 +249,3 @@ pub(crate) fn quote(bytes: &[u8]) -> String {
         .collect();
     format!("`{text}`{}", if bytes.len() > LONGEST { "…" } else { "" })
 }
-
-/// The first few of many.
-pub(crate) fn list(items: &[String]) -> String {
-    const SHOWN: usize = 8;
-    let more = if items.len() > SHOWN { format!(" and {} more", items.len() - SHOWN) } else { String::new() };
-    format!("{}{more}", items[..items.len().min(SHOWN)].join(", "))
-}

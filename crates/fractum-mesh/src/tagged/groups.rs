@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::cursor::list;
 use super::element_type::Shape;
 use super::error::Fault;
 use super::raw::{Membership, PhysicalName, Raw, Run};
 use super::table::Tables;
 use crate::Group;
+use crate::mesh::empty_groups;
+use crate::mesh::list;
 
 /// Groups per element, on average, beyond which a file is refused: entities that list thousands of groups could ask
 /// for memory far beyond their own size.
@@ -117,21 +118,14 @@ fn too_many_groups(at: usize) -> Fault {
 }
 
 fn note_empty_groups(raw: &Raw, groups: &[Group], notices: &mut Vec<String>) {
-    let empty: Vec<String> = groups
-        .iter()
-        .filter(|group| group.element_count() == 0)
-        .map(|group| format!("\"{}\" of dimension {}", group.name, group.dimension))
-        .collect();
-    if empty.is_empty() {
-        return;
-    }
+    let Some(notice) = empty_groups(groups.iter().filter(|group| group.element_count() == 0)) else { return };
     let without_tags = |run: &Run| matches!(run.membership, Membership::Physical(0));
     let hint = if raw.runs.iter().all(without_tags) {
         "; MSH 2.2 saved with all elements (Mesh.SaveAll) loses its groups, save without it or as MSH 4.1"
     } else {
         ""
     };
-    notices.push(format!("group(s) without elements: {}{hint}", list(&empty)));
+    notices.push(notice + hint);
 }
 
 fn note_unlisted_entities(raw: &Raw, notices: &mut Vec<String>) {

@@ -195,8 +195,7 @@ impl Plan {
         };
         let closing = body.damage.as_ref().is_some_and(|zone| zone.law.unilateral);
         let closing = if closing { ", cracks close under pressure" } else { "" };
-        let count = body.elements.len();
-        let volume: f64 = (0..count as u32).map(|e| scene.solid.element_volume(index, e)).sum();
+        let (count, volume) = (scene.solid.element_count(index), scene.solid.volume(index));
         self.add(
             "body",
             format!(
@@ -237,7 +236,7 @@ impl Plan {
 
 fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
     let model = scene.solid.body(body);
-    let each = volume / model.elements.len() as f64;
+    let each = volume / scene.solid.element_count(body) as f64;
     match model.shape {
         ElementKind::T4 => cbrt(6.0 * 2f64.sqrt() * each),
         ElementKind::T3 => (4.0 * each / model.thickness / 3f64.sqrt()).sqrt(),

@@ -99,7 +99,7 @@ impl Cost {
                 ElementKind::T4 => &MEMORY_OF_TETRAHEDRON,
             };
             let turning = if body.kinematics == Kinematics::Corotational { TURNING } else { 1.0 };
-            let elements = body.elements.len() as f64;
+            let elements = scene.solid.element_count(index) as f64;
             self.step += 1e-9 * of(&ELEMENT) * turning * elements;
             self.memory += of(memory) * elements;
             self.frame += FRAME[0] * elements;

@@ -30,13 +30,7 @@ impl Simulation {
     /// # Errors
     /// [`Failure::Stopped`] for a step that failed, with its results written all the same; what cannot be written.
     pub fn finish(mut self) -> Result<Outcome, Failure> {
-        let end = match self.end.take() {
-            Some(end) => end,
-            None => {
-                self.save()?;
-                End::Interrupted
-            }
-        };
+        let end = self.take_end()?;
         self.scene.gather_ranks();
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         self.ranks.steps(&self.scene).map_or(Ok(()), |steps| self.messages.log.line(steps))?;
@@ -58,7 +52,8 @@ impl Simulation {
         self.warn_of_merged_bands()?;
         // All files of the end get their names together.
         let mut files = Group::default();
-        let pictures = if self.ranks.leads() { self.draw(&pieces, &mut files)? } else { Vec::new() };
+        let skin = self.skin();
+        let pictures = skin.map_or(Ok(Vec::new()), |skin| self.draw(&pieces, skin, &mut files))?;
         let mut summary = Summary {
             title: self.case.source.title.clone(),
             status,
@@ -110,8 +105,32 @@ impl Simulation {
         }
     }
 
+    /// Why the run is over; one that is not is interrupted, with its state saved.
+    fn take_end(&mut self) -> Result<End, Failure> {
+        if let Some(end) = self.end.take() {
+            return Ok(end);
+        }
+        self.save()?;
+        Ok(End::Interrupted)
+    }
+
+    /// What is seen of the solids, for the process that draws it; those that share a mesh put it together.
+    fn skin(&self) -> Option<gallery::Skin> {
+        let leads = self.ranks.leads();
+        if self.scene.solid.is_divided() {
+            let parts = self.ranks.gather(gallery::Skin::of(&self.scene));
+            return leads.then(|| gallery::Skin::joined(parts));
+        }
+        leads.then(|| gallery::Skin::of(&self.scene))
+    }
+
     /// Cracks, pieces, the pictures of the end and, once the last frame is written, those over time.
-    fn draw(&mut self, pieces: &[fractum_scene::Fragment], files: &mut Group) -> Result<Vec<PictureNote>, Failure> {
+    fn draw(
+        &mut self,
+        pieces: &[fractum_scene::Fragment],
+        skin: gallery::Skin,
+        files: &mut Group,
+    ) -> Result<Vec<PictureNote>, Failure> {
         let (peak, at_rest) = (self.time_of_peak(), self.solver.rests());
         let Simulation { scene, folder, phases, recorder, .. } = self;
         phases.timed(Part::Output, || {
@@ -119,9 +138,12 @@ impl Simulation {
             add_cracks(scene, folder, &recorder.state().removed, files)?;
             let fragments = fragments::to_csv(&fragments_of(&scene.solid, pieces));
             files.add(&folder.join("fragments.csv"), fragments.as_bytes());
-            let mut pictures = gallery::draw(scene, folder, at_rest, files);
+            let mut pictures = gallery::draw(scene, skin, folder, at_rest, files);
             recorder.finish_frame()?;
-            pictures.extend(strip(folder, peak, at_rest, files));
+            // Frames of a mesh that no process has whole may be larger than the memory of one.
+            if !scene.solid.is_divided() {
+                pictures.extend(strip(folder, peak, at_rest, files));
+            }
             Ok(pictures)
         })
     }

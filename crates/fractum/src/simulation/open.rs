@@ -52,11 +52,13 @@ impl Simulation {
             // Before anything is prepared, which may take long.
             folder_of(path, options)?;
             ranks.check(path, &options.overrides)?;
-            read(path, &options.overrides, &options.cache, ranks.processes())
+            read(path, &options.overrides, ranks.processes())
         };
-        // No rank builds, which they do together, before all have read.
+        // What they do together waits until all have done what each does by itself.
         let source = ranks.together(source())?;
-        let input = ranks.together(source.build(ranks.exchange()))?;
+        let meshed = ranks.together(source.join(ranks.exchange()))?;
+        let prepared = ranks.together(meshed.prepare(&options.cache, ranks.processes()))?;
+        let input = ranks.together(prepared.build(ranks.exchange()))?;
         Self::start_shared(input, path, options, started, ranks)
     }
 
@@ -146,7 +148,13 @@ impl Simulation {
             (stage, probes) = (Arc::new(next), built.probes);
         }
         // Rigid bodies are drawn from where they lie at the start.
-        let grid = GridLayout::new(&scene, &built.file_order, built.gauges, &case, ranks.cut(&case.output));
+        let grid = GridLayout::new(
+            &scene,
+            &built.file_order,
+            built.gauges,
+            &case,
+            ranks.cut(&case.output, scene.solid.is_divided()),
+        );
         let put_back = |loaded: Loaded<RunState>| put_back(loaded, &mut scene, &mut solver, &case);
         let resumed = loaded.map(put_back).transpose()?;
         let is_new = resumed.is_none();

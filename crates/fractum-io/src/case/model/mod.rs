@@ -106,8 +106,21 @@ pub struct CaseSource {
 pub struct MeshSource {
     /// Path, relative paths taken from the folder of the case file.
     pub file: Spanned<PathBuf>,
+    /// Number of files that hold a part of the mesh each, see [`MeshSource::files`]; none where one holds it whole.
+    pub parts: Option<usize>,
     /// Length of the mesh's unit [m].
     pub unit: f64,
+}
+
+impl MeshSource {
+    /// The files to read: those of parts have numbers before the ending, `rock.msh` in two parts is `rock_1.msh` and `rock_2.msh`.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let file = &self.file.value;
+        let Some(parts) = self.parts else { return vec![file.clone()] };
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        let ending = file.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
+        (1..=parts).map(|part| file.with_file_name(format!("{stem}_{part}{ending}"))).collect()
+    }
 }
 
 /// Damping of solids and particles; all zero by default.

@@ -217,6 +217,9 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     })
 }
 
+/// Files that a mesh may be in: more than Gmsh makes parts for any machine.
+const MOST_PARTS: u64 = 65_536;
+
 /// The mesh, which must be there where a body is made of it, and has no effect where none is.
 fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>> {
     let meshed = |body: &Body| match &body.kind {
@@ -240,10 +243,13 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
     let table = root.table_or_empty("mesh");
     let file = table.text("file").spanned().required();
     let unit = unit(&table, "unit", Dimension::LENGTH).unwrap_or(1.0);
+    let parts = table
+        .has("parts")
+        .then(|| table.integer("parts").check(|count| (1..=MOST_PARTS).contains(count), "1 to 65536").or(1) as usize);
     table.finish("here");
     let Spanned { value, place } = file?;
     let file = Spanned::new(table_path(root.reader, &value), place);
-    Some(Some(MeshSource { file, unit }))
+    Some(Some(MeshSource { file, parts, unit }))
 }
 
 fn table_path(reader: &Reader, file: &str) -> std::path::PathBuf {

@@ -26,11 +26,13 @@ pub struct Cut {
     pub first: usize,
     /// Distance to the next one, from 1.
     pub step: usize,
+    /// Cells are those of the first piece that is wanted alone, and others have theirs.
+    pub is_divided: bool,
 }
 
 impl Cut {
     /// One piece.
-    pub const WHOLE: Cut = Cut { count: 1, first: 0, step: 1 };
+    pub const WHOLE: Cut = Cut { count: 1, first: 0, step: 1, is_divided: false };
 
     /// Whether the first piece is wanted: by the process that also writes what is not cut.
     pub fn is_leading(self) -> bool {
@@ -112,10 +114,11 @@ impl UnstructuredGrid<'_> {
         let mut place = vec![u32::MAX; points.len()];
         let mut files = Vec::new();
         for piece in cut.wanted() {
-            let range = run(cell_count, piece, cut.count);
+            let range = if cut.is_divided { 0..cell_count } else { run(cell_count, piece, cut.count) };
             let own = blocks_of(cells, &range);
             let mut numbers: Vec<u32> = own.iter().flat_map(|block| block.nodes).copied().collect();
-            let alone = run(points.len(), piece, cut.count).filter(|&point| !is_touched[point]);
+            let points_of_piece = if cut.is_divided { 0..0 } else { run(points.len(), piece, cut.count) };
+            let alone = points_of_piece.filter(|&point| !is_touched[point]);
             numbers.extend(alone.map(|point| point as u32));
             numbers.sort_unstable();
             numbers.dedup();
@@ -304,7 +307,7 @@ mod tests {
             let names = ["Points", "velocity", "held", "stress", "connectivity", "offsets", "TimeValue"];
             let whole = folder.path().join("whole.vtu");
             fs::write(&whole, grid.to_bytes(Compression::Fast).unwrap()).unwrap();
-            let of = |first| grid.pieces(Cut { count, first, step }, Compression::Fast).unwrap();
+            let of = |first| grid.pieces(Cut { count, first, step, is_divided: false }, Compression::Fast).unwrap();
             let pieces: Vec<Pieces> = (0..step).map(of).collect();
             prop_assert_eq!(pieces.iter().map(|of| of.files.len()).sum::<usize>(), count);
             let together = written(folder.path(), &pieces, &names);
@@ -324,7 +327,7 @@ mod tests {
             time: None,
         };
         let folder = tempfile::tempdir().unwrap();
-        let pieces = cloud.pieces(Cut { count: 3, first: 0, step: 1 }, Compression::Fast).unwrap();
+        let pieces = cloud.pieces(Cut { count: 3, first: 0, step: 1, is_divided: false }, Compression::Fast).unwrap();
         let together = written(folder.path(), &[pieces], &["Points", "radius"]);
         assert_eq!((together.vectors("Points"), together.get("radius")), (points, &radius[..]));
     }
@@ -338,7 +341,7 @@ mod tests {
             cell_data: &[Field::integer("body", &[0])],
             time: Some(1.0),
         };
-        let pieces = grid.pieces(Cut { count: 2, first: 1, step: 2 }, Compression::None).unwrap();
+        let pieces = grid.pieces(Cut { count: 2, first: 1, step: 2, is_divided: false }, Compression::None).unwrap();
         let list = String::from_utf8(pieces.index("solid-00003").bytes().to_vec()).unwrap();
         for line in [
             "<VTKFile type=\"PUnstructuredGrid\"",

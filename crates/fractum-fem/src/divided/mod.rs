@@ -1,0 +1,80 @@
+//! Bodies whose elements several ranks share: none has all of them.
+//!
+//! Each rank reads some elements. The cells of all are put in the order that one process gives them, along a curve through each body, and cut
+//! into the same blocks; a rank gets a run of blocks with the elements around their cells. So every sum over blocks has the bits of one process.
+//! Every rank has all nodes. Blocks of others are there with their number and the nodes that this rank has too.
+
+mod boundary;
+mod deal;
+mod edge_values;
+mod nodes;
+mod order;
+
+use std::collections::BTreeMap;
+
+use fractum_math::Sym3;
+
+pub use boundary::{DividedBoundary, divided_boundary};
+pub use deal::deal;
+pub(crate) use edge_values::EdgeValues;
+pub(crate) use nodes::{RanksOfNodes, masses};
+
+use crate::body::Formulation;
+
+/// Elements of a body that this rank has read.
+#[derive(Clone, Copy, Debug)]
+pub struct ReadBody<'a> {
+    /// Whether edges or elements are the cells.
+    pub formulation: Formulation,
+    /// Nodes of the tetrahedra, positively oriented.
+    pub elements: &'a [[u32; 4]],
+    /// What the file calls each of them.
+    pub tags: &'a [u64],
+}
+
+/// What a rank keeps of a body of tetrahedra.
+#[derive(Clone, Debug, Default)]
+pub struct BodyShare {
+    /// Nodes of its elements, positively oriented.
+    pub elements: Vec<[u32; 4]>,
+    /// What the file calls each of them.
+    pub tags: Vec<u64>,
+    /// Number of each in the whole body, ascending.
+    pub numbers: Vec<u32>,
+    /// Elements of the whole body.
+    pub count: usize,
+    /// Which of them this rank tells of: every element has one rank that does.
+    pub is_told: Vec<bool>,
+    /// Ranks whose cells the edges of each element are, in the order of [`fractum_mesh::topology::TETRAHEDRON_EDGES`]; without meaning where elements are
+    /// the cells.
+    pub owners: Vec<[u32; 6]>,
+    /// Cells of this rank, in runs that make a block each, or several where they touch many nodes: edges by their nodes, lower first, or
+    /// elements by their number, twice.
+    pub runs: Vec<Vec<[u32; 2]>>,
+}
+
+/// What a rank knows of a body that it does not have whole.
+#[derive(Clone, Debug)]
+pub(crate) struct DividedBody {
+    /// Number of each element in the whole body.
+    pub(crate) numbers: Vec<u32>,
+    /// Elements of the whole body.
+    pub(crate) count: usize,
+    /// Which of them this rank tells of.
+    pub(crate) is_told: Vec<bool>,
+    /// Volume of the whole body [m³].
+    pub(crate) volume: f64,
+    /// Stress and damage of edges that others evaluate, at the last frame; empty where elements are the cells.
+    pub(crate) values: EdgeValues,
+    /// Facets that are seen from outside, with the number of their element on this rank: of the elements that it tells of.
+    pub(crate) skin: Vec<([u32; 3], u32)>,
+}
+
+/// Block of cells that another rank evaluates, of which this one has no more than its number.
+pub(crate) const ELSEWHERE: u32 = u32::MAX;
+
+/// Slots of the blocks of others at nodes of this rank: nodes of each block.
+pub(crate) type NodesOfOthers = BTreeMap<usize, Vec<u32>>;
+
+/// Stress [Pa] and damage of an edge.
+pub(crate) type EdgeValue = (Sym3, f64);

@@ -1,0 +1,129 @@
+//! What all ranks know of the nodes of bodies that none of them has whole.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use fractum_parallel::{Exchange, post};
+
+use super::{BodyShare, NodesOfOthers};
+use crate::body::Body;
+
+/// Nodes by number: each rank looks after a run of them.
+struct Runs<'a> {
+    exchange: &'a dyn Exchange,
+    count: usize,
+}
+
+impl Runs<'_> {
+    fn first(&self, rank: usize) -> usize {
+        (rank * self.count).div_ceil(self.exchange.size())
+    }
+
+    fn rank(&self, node: u32) -> usize {
+        node as usize * self.exchange.size() / self.count
+    }
+
+    fn own(&self) -> Range<usize> {
+        let rank = self.exchange.rank();
+        self.first(rank)..self.first(rank + 1)
+    }
+
+    /// Gives every rank a value of every node, by who looks after it.
+    fn tell(&self, own: &[f64]) -> Vec<f64> {
+        let counts: Vec<usize> =
+            (0..self.exchange.size()).map(|rank| self.first(rank + 1) - self.first(rank)).collect();
+        let mut all = vec![0.0; self.count];
+        self.exchange.gather(own, &counts, &mut all);
+        all
+    }
+}
+
+/// Mass of every node [kg]: shares of elements body by body in the order of their numbers. All ranks must call it.
+///
+/// - `volumes`: of each element of this rank [m³]
+pub(crate) fn masses(
+    exchange: &dyn Exchange,
+    count: usize,
+    bodies: &[(Body, BodyShare)],
+    volumes: &[Vec<f64>],
+) -> Vec<f64> {
+    let runs = Runs { exchange, count };
+    let mut words = vec![Vec::new(); exchange.size()];
+    for (index, ((body, share), volumes)) in bodies.iter().zip(volumes).enumerate() {
+        let told = (0..volumes.len()).filter(|&element| share.is_told[element]);
+        for element in told {
+            let order = (index as u64) << 32 | u64::from(share.numbers[element]);
+            let part = (body.elastic.density * volumes[element] / 4.0).to_bits();
+            body.elements[element]
+                .iter()
+                .for_each(|&node| words[runs.rank(node)].extend([u64::from(node), order, part]));
+        }
+    }
+    let received = post(exchange, words);
+    let mut parts: Vec<[u64; 3]> = received.iter().flat_map(|words| words.as_chunks().0).copied().collect();
+    parts.sort_unstable();
+    let own = runs.own();
+    let mut sums = vec![0.0; own.len()];
+    parts.iter().for_each(|&[node, _, part]| sums[node as usize - own.start] += f64::from_bits(part));
+    runs.tell(&sums)
+}
+
+/// Which ranks have cells at a node.
+#[derive(Clone, Debug)]
+pub(crate) struct RanksOfNodes {
+    /// The lowest of them, of every node.
+    pub(crate) lowest: Vec<u32>,
+    /// Nodes of this rank that others have too, with these, ascending.
+    pub(crate) shared: BTreeMap<u32, Vec<u32>>,
+}
+
+impl RanksOfNodes {
+    /// - `own`: nodes of the cells of this rank, ascending
+    pub(crate) fn new(exchange: &dyn Exchange, count: usize, own: &[u32]) -> Self {
+        let runs = Runs { exchange, count };
+        let mut words = vec![Vec::new(); exchange.size()];
+        own.iter().for_each(|&node| words[runs.rank(node)].push(u64::from(node)));
+        let after = runs.own();
+        let mut ranks: Vec<Vec<u32>> = vec![Vec::new(); after.len()];
+        for (rank, nodes) in post(exchange, words).iter().enumerate() {
+            nodes.iter().for_each(|&node| ranks[node as usize - after.start].push(rank as u32));
+        }
+        let lowest: Vec<f64> = ranks.iter().map(|ranks| f64::from(ranks.first().copied().unwrap_or(0))).collect();
+        let lowest = runs.tell(&lowest).into_iter().map(|rank| rank as u32).collect();
+        let mut words = vec![Vec::new(); exchange.size()];
+        for (node, ranks) in (after.start as u64..).zip(&ranks) {
+            for &rank in ranks {
+                let others = ranks.iter().filter(|&&other| other != rank);
+                words[rank as usize].extend(others.map(|&other| node << 32 | u64::from(other)));
+            }
+        }
+        let mut shared = BTreeMap::<u32, Vec<u32>>::new();
+        for word in post(exchange, words).concat() {
+            shared.entry((word >> 32) as u32).or_default().push(word as u32);
+        }
+        RanksOfNodes { lowest, shared }
+    }
+
+    /// Nodes of this rank in the blocks of others.
+    ///
+    /// - `blocks`: number and nodes of the blocks of this rank
+    pub(crate) fn of_others<'a>(
+        &self,
+        exchange: &dyn Exchange,
+        blocks: impl Iterator<Item = (usize, &'a [u32])>,
+    ) -> NodesOfOthers {
+        let mut words = vec![Vec::new(); exchange.size()];
+        for (block, nodes) in blocks {
+            for &node in nodes {
+                for &other in self.shared.get(&node).into_iter().flatten() {
+                    words[other as usize].push((block as u64) << 32 | u64::from(node));
+                }
+            }
+        }
+        let mut found = NodesOfOthers::new();
+        for word in post(exchange, words).concat() {
+            found.entry((word >> 32) as usize).or_default().push(word as u32);
+        }
+        found
+    }
+}

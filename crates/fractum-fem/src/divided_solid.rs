@@ -1,0 +1,228 @@
+//! A solid whose bodies are divided among ranks.
+
+use std::sync::Arc;
+
+use fractum_math::{Sym3, Vec3};
+use fractum_mesh::topology::{TETRAHEDRON_FACETS, boundary_of_tetrahedra};
+use fractum_parallel::{Exchange, gather, gather_named};
+
+use crate::block::NodeSlots;
+use crate::body::{Body, ElementKind, Formulation};
+use crate::body_model::{BodyModel, Chosen};
+use crate::cell::Geometry;
+use crate::divided::{BodyShare, DividedBody, ELSEWHERE, EdgeValues, RanksOfNodes, masses};
+use crate::error::SolidError;
+use crate::evaluate::Block;
+use crate::part::Part;
+use crate::solid::Solid;
+use crate::time_step::StableStep;
+
+impl Solid {
+    /// Builds the cells that this rank evaluates of elastic bodies, none of which it has whole. All ranks must call it.
+    ///
+    /// - `nodes`: reference positions of all nodes [m]
+    /// - `bodies`: with the elements of this rank, and their [`BodyShare`] without these
+    ///
+    /// # Errors
+    /// As [`Solid::new`], the same on every rank.
+    pub fn divided(
+        nodes: Vec<Vec3>,
+        bodies: Vec<(Body, BodyShare)>,
+        exchange: Arc<dyn Exchange>,
+    ) -> Result<Self, SolidError> {
+        let volumes: Vec<Result<Vec<f64>, SolidError>> =
+            bodies.iter().map(|(body, _)| Geometry { body, nodes: &nodes }.volumes()).collect();
+        let volumes = together(&*exchange, volumes.into_iter().collect::<Result<Vec<_>, _>>())?;
+        let mass = masses(&*exchange, nodes.len(), &bodies, &volumes);
+        if let Some(node) = mass.iter().position(|&mass| mass <= 0.0) {
+            return Err(SolidError::MasslessNode { node });
+        }
+        let (mut models, mut own) = (Vec::new(), Vec::new());
+        let mut made = Ok(());
+        for (index, ((body, share), volumes)) in bodies.into_iter().zip(&volumes).enumerate() {
+            let chosen = Chosen { fine: &[], share: Some(&share) };
+            match BodyModel::new(body, index, &nodes, volumes, chosen, own.len()) {
+                Ok((mut model, mut blocks)) => {
+                    model.divide(&*exchange, share, volumes);
+                    own.append(&mut blocks);
+                    models.push(model);
+                }
+                Err(error) => made = Err(error),
+            }
+        }
+        together(&*exchange, made)?;
+        let counts = gather(&*exchange, &own.len());
+        let first: Vec<usize> = (0..=counts.len()).map(|rank| counts[..rank].iter().sum()).collect();
+        let before = first[exchange.rank()];
+        for (block, _) in models.iter_mut().flat_map(|model| &mut model.location).filter(|at| at.0 != ELSEWHERE) {
+            *block += before as u32;
+        }
+        let mut of_own: Vec<u32> = own.iter().flat_map(|block: &Block| &block.cells.nodes).copied().collect();
+        of_own.sort_unstable();
+        of_own.dedup();
+        let ranks = RanksOfNodes::new(&*exchange, nodes.len(), &of_own);
+        let blocks = with_others(&*exchange, own, before, &ranks);
+        let slots = NodeSlots::new(nodes.len(), blocks.iter().map(|block| block.cells.nodes.as_slice()))?;
+        let part = Part::divided(exchange, first, ranks, &blocks, &slots);
+        Ok(Solid::of_blocks(nodes, mass, models, blocks, slots, Some(Box::new(part))))
+    }
+
+    /// Whether no rank has all of its elements.
+    pub fn is_divided(&self) -> bool {
+        self.bodies.iter().any(|model| model.divided.is_some())
+    }
+
+    /// Number of blocks of cells of all ranks.
+    pub fn block_count(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Elements of a body on all ranks.
+    pub fn element_count(&self, body: usize) -> usize {
+        let model = &self.bodies[body];
+        model.divided.as_ref().map_or(model.body.elements.len(), |divided| divided.count)
+    }
+
+    /// Volume of a body without load [m³].
+    pub fn volume(&self, body: usize) -> f64 {
+        let sum = || (0..self.bodies[body].body.elements.len() as u32).map(|e| self.element_volume(body, e)).sum();
+        self.bodies[body].divided.as_ref().map_or_else(sum, |divided| divided.volume)
+    }
+
+    /// Viscous stress times volume of the cells of all blocks in their order, those of a rank at a time. All ranks must call it.
+    pub fn each_viscous_block(&self, mut see: impl FnMut(&[Sym3])) {
+        let of = |block: &Block| block.viscous.stress.clone();
+        let Some(part) = self.part.as_ref().filter(|part| part.is_divided()) else {
+            return self.blocks.iter().for_each(|block| see(&block.viscous.stress));
+        };
+        let exchange = part.exchange();
+        for rank in 0..exchange.size() {
+            let own: Vec<Vec<Sym3>> =
+                if rank == exchange.rank() { self.blocks[part.own()].iter().map(of).collect() } else { Vec::new() };
+            gather(&*exchange, &own).concat().iter().for_each(|stress| see(stress));
+        }
+    }
+
+    /// Notes which facets of a body are seen from outside, of the elements that this process tells of.
+    ///
+    /// - `facets`: those of the whole body
+    pub fn note_skin(&mut self, body: usize, facets: &[[u32; 3]]) {
+        let sorted = |mut facet: [u32; 3]| {
+            facet.sort_unstable();
+            facet
+        };
+        let mut outer: Vec<[u32; 3]> = facets.iter().map(|&facet| sorted(facet)).collect();
+        outer.sort_unstable();
+        let model = &mut self.bodies[body];
+        let Some(divided) = &mut model.divided else { return };
+        divided.skin.clear();
+        for (element, nodes) in model.body.elements.iter().enumerate().filter(|(e, _)| divided.is_told[*e]) {
+            let sides = TETRAHEDRON_FACETS.map(|side| side.map(|corner| nodes[corner]));
+            let seen = sides.into_iter().filter(|&side| outer.binary_search(&sorted(side)).is_ok());
+            divided.skin.extend(seen.map(|side| (side, element as u32)));
+        }
+    }
+
+    /// Facets of a body that are seen from outside, each with its element: of the elements that this process tells of.
+    pub fn skin(&self, body: usize) -> Vec<([u32; 3], u32)> {
+        let model = &self.bodies[body];
+        match &model.divided {
+            Some(divided) => divided.skin.clone(),
+            None if model.body.shape == ElementKind::T3 => {
+                let alive = (0..).zip(&model.body.elements).zip(&model.alive).filter(|(_, alive)| **alive);
+                alive.map(|((element, &[a, b, c, _]), _)| ([a, b, c], element)).collect()
+            }
+            None => {
+                let alive: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| **alive).map(|(e, _)| e).collect();
+                let elements: Vec<[u32; 4]> = alive.iter().map(|&e| model.body.elements[e as usize]).collect();
+                let facets = boundary_of_tetrahedra(&elements).into_iter();
+                facets.map(|facet| (facet.nodes, alive[facet.element as usize])).collect()
+            }
+        }
+    }
+
+    /// Whether this process tells of an element of a body: of several ranks that share it one does.
+    pub fn tells_of(&self, body: usize, element: usize) -> bool {
+        self.bodies[body].divided.as_ref().is_none_or(|divided| divided.is_told[element])
+    }
+
+    /// Brings stress and damage of edges up to date that this rank needs of others for the means over the edges of its elements. All ranks must
+    /// call it; of no effect where each has all elements.
+    pub fn gather_edge_values(&mut self) {
+        let Some(exchange) = self.part.as_ref().map(|part| part.exchange()) else { return };
+        for index in 0..self.bodies.len() {
+            let Some(mut divided) = self.bodies[index].divided.take() else { continue };
+            divided.values.swap(&*exchange, |edge| self.cell_field(index, self.bodies[index].location[edge as usize]));
+            self.bodies[index].divided = Some(divided);
+        }
+    }
+
+    /// What governs the step of all ranks, by what governs that of each.
+    ///
+    /// - `trace`: of the stiffness of its element, which decides between equal ones
+    pub(crate) fn worst_of_ranks(&self, worst: StableStep, trace: f64) -> StableStep {
+        let exchange = self.part.as_ref().filter(|_| self.is_divided()).map(|part| part.exchange());
+        let Some(exchange) = exchange else { return worst };
+        let StableStep { frequency, governing: (body, element) } = worst;
+        let number = |divided: &DividedBody| divided.numbers.get(element as usize).copied().unwrap_or(u32::MAX);
+        let number = self.bodies[body].divided.as_deref().map_or(element, number);
+        let all = gather(&*exchange, &(frequency, trace, body, number));
+        let order = |a: &(f64, f64, usize, u32), b: &(f64, f64, usize, u32)| {
+            b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)).then(b.1.total_cmp(&a.1)).then(a.3.cmp(&b.3))
+        };
+        let (frequency, _, body, number) = all.into_iter().min_by(order).expect("one of this rank at least");
+        StableStep { frequency, governing: (body, number) }
+    }
+
+    /// The largest value that any rank has.
+    pub(crate) fn largest_of_ranks(&self, value: f64) -> f64 {
+        let exchange = self.part.as_ref().filter(|_| self.is_divided()).map(|part| part.exchange());
+        exchange.map_or(value, |exchange| gather(&*exchange, &value).into_iter().fold(value, f64::max))
+    }
+}
+
+impl BodyModel {
+    /// Remembers what this rank has of the whole body, once its cells are made.
+    fn divide(&mut self, exchange: &dyn Exchange, share: BodyShare, volumes: &[f64]) {
+        let told = volumes.iter().zip(&share.is_told).filter(|(_, is_told)| **is_told);
+        let volume = gather(exchange, &told.map(|(volume, _)| volume).sum::<f64>()).into_iter().sum();
+        let smoothed = self.body.formulation == Formulation::Smoothed;
+        let values = match self.edges.as_ref().filter(|_| smoothed) {
+            Some(edges) => {
+                let (values, places) = EdgeValues::new(exchange, &share, &self.body.elements, edges);
+                places.into_iter().for_each(|(edge, place)| self.location[edge as usize] = (ELSEWHERE, place));
+                values
+            }
+            None => EdgeValues::default(),
+        };
+        let BodyShare { numbers, count, is_told, .. } = share;
+        self.divided = Some(Box::new(DividedBody { numbers, count, is_told, volume, values, skin: Vec::new() }));
+    }
+}
+
+/// The blocks of this rank among those of all.
+///
+/// - `before`: blocks of lower ranks
+fn with_others(exchange: &dyn Exchange, own: Vec<Block>, before: usize, ranks: &RanksOfNodes) -> Vec<Block> {
+    let nodes = (before..).zip(own.iter().map(|block| block.cells.nodes.as_slice()));
+    let mut of_others = ranks.of_others(exchange, nodes);
+    let known: Vec<(usize, usize)> = own.iter().map(|block| (block.body, block.gradients)).collect();
+    let (mut all, mut own) = (Vec::new(), own.into_iter());
+    for (rank, blocks) in gather(exchange, &known).into_iter().enumerate() {
+        for (body, gradients) in blocks {
+            let block = if rank == exchange.rank() { own.next() } else { None };
+            let other = || Block::elsewhere(body, gradients, of_others.remove(&all.len()).unwrap_or_default());
+            all.push(block.unwrap_or_else(other));
+        }
+    }
+    all
+}
+
+/// What every rank has done, or the error of the first that has one.
+fn together<T>(exchange: &dyn Exchange, done: Result<T, SolidError>) -> Result<T, SolidError> {
+    let own = done.as_ref().err().map(|error| vec![error.to_string()]).unwrap_or_default();
+    match (gather_named(exchange, &own).into_iter().next(), done) {
+        (None, done) => done,
+        (Some(first), _) => Err(SolidError::OfRank(first)),
+    }
+}

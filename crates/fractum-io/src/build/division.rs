@@ -1,0 +1,149 @@
+//! Solids of a mesh that several processes share: each has read some of its tetrahedra, and gets those around its cells.
+
+use fractum_fem::{BodyShare, DividedBoundary, Formulation, ReadBody, deal, divided_boundary};
+use fractum_math::connected;
+use fractum_mesh::{Group, Mesh};
+use fractum_parallel::{Exchange, gather};
+
+use super::bodies::Numbering;
+use crate::case::model::{BodyKind, Case, LoadKind, ProbeKind, SolidBody};
+
+/// What a process has of the solids of a mesh that it shares with others.
+pub struct SolidDivision {
+    /// Of each solid body, without its elements.
+    pub(super) bodies: Vec<BodyShare>,
+    /// In nodes of the mesh.
+    pub(super) boundary: DividedBoundary,
+}
+
+/// Why processes cannot share the mesh of a case, in words; none where they can.
+pub fn cannot_divide(case: &Case) -> Option<String> {
+    let of_body = |name: &str, kind: &BodyKind| match kind {
+        BodyKind::Solid(solid) if solid.damage && case.materials[solid.material].damage.is_some() => {
+            Some(format!("damage of body \"{name}\""))
+        }
+        BodyKind::Solid(_) => None,
+        _ => Some(format!("body \"{name}\", which is no solid")),
+    };
+    let body = case.bodies.iter().find_map(|body| of_body(&body.name.value, &body.kind));
+    let stages = || std::iter::once(case).chain(&case.later);
+    let of_stage = |stage: &Case| {
+        let load = |kind: &LoadKind| matches!(kind, LoadKind::Pressure { in_cracks: Some(_), .. });
+        let flows = &stage.flows;
+        match () {
+            () if stage.solver.subcycling.is_some() => Some("subcycling".to_owned()),
+            () if stage.solver.domain.is_some() => Some("solver.domain".to_owned()),
+            () if stage.loads.iter().any(|own| load(&own.kind)) => Some("pressure in cracks".to_owned()),
+            () if flows.gas.is_some() => Some("gas".to_owned()),
+            () if flows.heat.is_some() => Some("heat".to_owned()),
+            () => None,
+        }
+    };
+    let probe = case.probes.iter().find(|probe| !is_of_nodes(&probe.kind));
+    let output = &case.output;
+    body.or_else(|| stages().find_map(of_stage))
+        .or_else(|| case.in_situ.as_ref().map(|_| "stress in situ".to_owned()))
+        .or_else(|| probe.map(|probe| format!("probe \"{}\", which looks at elements", probe.name.value)))
+        .or_else(|| (!output.gauges.is_empty()).then(|| "gauges".to_owned()))
+        .or_else(|| output.fields.fragment.then(|| "the field of fragments".to_owned()))
+}
+
+/// Whether a probe looks at nodes and at what is known of the whole alone.
+fn is_of_nodes(kind: &ProbeKind) -> bool {
+    matches!(
+        kind,
+        ProbeKind::Reaction { .. }
+            | ProbeKind::Moment { .. }
+            | ProbeKind::Displacement { .. }
+            | ProbeKind::Velocity { .. }
+            | ProbeKind::Rotation { .. }
+            | ProbeKind::Strain { .. }
+            | ProbeKind::Extensometer { .. }
+            | ProbeKind::Load { .. }
+            | ProbeKind::Surface { .. }
+            | ProbeKind::Energy(_)
+            | ProbeKind::Momentum { .. }
+            | ProbeKind::AngularMomentum { .. }
+            | ProbeKind::WaveSpeed { .. }
+            | ProbeKind::Expression(_)
+    )
+}
+
+/// Deals the tetrahedra that all processes have read out to those whose cells they are part of. All processes must call it.
+///
+/// - `mesh`: whole but for its tetrahedra, of which it has those that this process has read; the whole has those of process 0 first, then
+///   those of process 1 and so on
+///
+/// # Errors
+/// Why it cannot be done, in words, the same for every process.
+pub fn divide(case: &Case, mesh: &Mesh, exchange: &dyn Exchange) -> Result<(Mesh, SolidDivision), String> {
+    let whole = mesh.whole.as_ref().expect("the caller knows what others have");
+    let bodies: Vec<&SolidBody> = case
+        .bodies
+        .iter()
+        .filter_map(|body| if let BodyKind::Solid(solid) = &body.kind { Some(solid) } else { None })
+        .collect();
+    let groups: Vec<usize> = bodies
+        .iter()
+        .filter_map(|body| {
+            let is_meant = |(group, whole): (&Group, &(usize, Vec<u32>))| group.name == body.group.value && whole.0 > 0;
+            mesh.groups.iter().zip(&whole.groups).position(is_meant)
+        })
+        .collect();
+    if groups.len() < bodies.len() {
+        return Err("a body without tetrahedra".to_owned());
+    }
+    let nodes_of = |group: &usize| &whole.groups[*group].1;
+    let members = |group: &usize| &mesh.groups[*group].tetrahedra;
+    let mut taken = vec![false; mesh.tetrahedra.len()];
+    let mut again =
+        groups.iter().flat_map(members).map(|&element| std::mem::replace(&mut taken[element as usize], true));
+    if exchange.any(u64::from(again.any(|again| again))) != 0 {
+        return Err("an element that belongs to two bodies".to_owned());
+    }
+    let mut used = vec![false; mesh.nodes.len()];
+    groups.iter().flat_map(nodes_of).for_each(|&node| used[node as usize] = true);
+    if pieces(mesh, groups.iter().flat_map(members), &used, exchange) > 1 {
+        return Err("solids of several pieces, which may meet".to_owned());
+    }
+    let (numbering, order) = Numbering::of(&mesh.nodes, &used);
+    let elements_of =
+        |group: &usize| members(group).iter().map(|&e| mesh.tetrahedra[e as usize]).collect::<Vec<[u32; 4]>>();
+    let in_mesh: Vec<Vec<[u32; 4]>> = groups.iter().map(elements_of).collect();
+    let boundary = divided_boundary(exchange, &in_mesh, mesh.nodes.len());
+    let scene = |element: &[u32; 4]| element.map(|node| numbering.scene_node[node as usize]);
+    let in_scene: Vec<Vec<[u32; 4]>> = in_mesh.iter().map(|elements| elements.iter().map(scene).collect()).collect();
+    drop(in_mesh);
+    let tags_of = |group: &usize| members(group).iter().map(|&e| mesh.tetrahedron_tags[e as usize]).collect::<Vec<_>>();
+    let tags: Vec<Vec<u64>> = groups.iter().map(tags_of).collect();
+    let formulation = |body: &SolidBody| if body.is_smoothed() { Formulation::Smoothed } else { Formulation::Standard };
+    let read = bodies.iter().zip(&in_scene).zip(&tags);
+    let read: Vec<ReadBody> =
+        read.map(|((body, elements), tags)| ReadBody { formulation: formulation(body), elements, tags }).collect();
+    let mut shares = deal(exchange, &numbering.positions, &read);
+    let mut local = Mesh { tetrahedra: Vec::new(), tetrahedron_tags: Vec::new(), ..mesh.clone() };
+    local.groups.iter_mut().for_each(|group| group.tetrahedra.clear());
+    for (&group, share) in groups.iter().zip(&mut shares) {
+        let first = local.tetrahedra.len() as u32;
+        let in_mesh = |element: [u32; 4]| element.map(|node| order[node as usize]);
+        local.tetrahedra.extend(std::mem::take(&mut share.elements).into_iter().map(in_mesh));
+        local.tetrahedron_tags.append(&mut share.tags);
+        local.groups[group].tetrahedra = (first..local.tetrahedra.len() as u32).collect();
+    }
+    Ok((local, SolidDivision { bodies: shares, boundary }))
+}
+
+/// Pieces that do not hang together.
+///
+/// - `elements`: those that this process has read; `used`: nodes of all
+fn pieces<'a>(mesh: &Mesh, elements: impl Iterator<Item = &'a u32>, used: &[bool], exchange: &dyn Exchange) -> usize {
+    let count = mesh.nodes.len();
+    let links = elements.flat_map(|&element| {
+        let [a, others @ ..] = mesh.tetrahedra[element as usize];
+        others.map(|node| [a, node])
+    });
+    let own = connected(count, links);
+    let joined: Vec<[u32; 2]> = (0..).zip(own).filter(|(node, first)| node != first).map(<[u32; 2]>::from).collect();
+    let all = connected(count, gather(exchange, &joined).into_iter().flatten());
+    (0..).zip(all).filter(|&(node, first)| node == first && used[node as usize]).count()
+}

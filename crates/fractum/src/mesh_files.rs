@@ -1,0 +1,181 @@
+//! The mesh of a case from its files: whole, or in parts that several processes read side by side.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use fractum_io::build::{SolidDivision, cannot_divide, divide};
+use fractum_io::case::model::MeshSource;
+use fractum_io::case::{Case, Diagnostic, Diagnostics};
+use fractum_io::memory;
+use fractum_mesh::{JoinError, Mesh, WholeMesh, joined};
+use fractum_parallel::{Exchange, gather};
+use fractum_prepare::Processes;
+use xxhash_rust::xxh3::xxh3_128;
+
+use crate::error::Failure;
+
+/// What a process has read of the mesh of a case, in metres.
+pub(crate) struct MeshFiles {
+    /// That of the files that it has read; empty where the case has no mesh.
+    mesh: Mesh,
+    /// Hashes of these files.
+    hashes: Vec<u128>,
+    /// Other processes have read other files.
+    is_part: bool,
+    /// Why every process has read all files of a mesh in parts.
+    alike: Option<String>,
+    processes: Processes,
+}
+
+/// The mesh of a case, and what this process has of it where several share it.
+#[derive(Default)]
+pub(crate) struct JoinedMesh {
+    /// In metres; empty where the case has none.
+    pub(crate) mesh: Mesh,
+    /// Hash of its files; 0 where the case has none.
+    pub(crate) hash: u128,
+    /// What this process has of the solids, where none has all of them.
+    pub(crate) division: Option<SolidDivision>,
+    /// For the log: who has how much.
+    pub(crate) note: Option<String>,
+}
+
+impl MeshFiles {
+    /// Reads the files of the mesh of a case that are for this process.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for files that cannot be read; [`Failure::Memory`].
+    pub(crate) fn read(case: &Case, processes: Processes) -> Result<Self, Failure> {
+        let Some(source) = &case.mesh else {
+            return Ok(MeshFiles { mesh: Mesh::default(), hashes: Vec::new(), is_part: false, alike: None, processes });
+        };
+        let reason = source.parts.filter(|_| processes.all > 1).and_then(|_| cannot_divide(case));
+        let is_part = source.parts.is_some() && processes.all > 1 && reason.is_none();
+        let (mesh, hashes) = read_files(source, if is_part { processes } else { processes.alike() })?;
+        Ok(MeshFiles { mesh, hashes, is_part, alike: reason, processes })
+    }
+
+    /// Makes one mesh of what all processes have read, and gives each what it needs of the solids. All processes must call it.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for parts that do not fit together.
+    pub(crate) fn join(self, case: &Case, exchange: Option<&Arc<dyn Exchange>>) -> Result<JoinedMesh, Failure> {
+        let MeshFiles { mesh, hashes, is_part, alike, processes } = self;
+        let Some(source) = &case.mesh else { return Ok(JoinedMesh::default()) };
+        let whole = |mesh, hashes: &[u128], alike: Option<String>| {
+            let note = alike.map(|reason| format!("every process has the whole mesh, because of {reason}"));
+            JoinedMesh { mesh, hash: hash(hashes), division: None, note }
+        };
+        let Some(exchange) = exchange.filter(|_| is_part) else { return Ok(whole(mesh, &hashes, alike)) };
+        let hashes = gather(&**exchange, &hashes).concat();
+        let mesh = joined_of_all(mesh, &**exchange).map_err(|error| misfit(source, &error))?;
+        match divide(case, &mesh, &**exchange) {
+            Ok((mesh, division)) => {
+                let (own, all) = (mesh.tetrahedra.len(), mesh.tetrahedron_count());
+                let note = Some(format!("this process has {own} of the {all} tetrahedra of the mesh"));
+                Ok(JoinedMesh { mesh, hash: hash(&hashes), division: Some(division), note })
+            }
+            Err(reason) => {
+                drop(mesh);
+                Ok(whole(read_files(source, processes.alike())?.0, &hashes, Some(reason)))
+            }
+        }
+    }
+}
+
+/// One hash of several; that of one file is its own.
+fn hash(hashes: &[u128]) -> u128 {
+    match hashes {
+        [one] => *one,
+        all => xxh3_128(&all.iter().flat_map(|hash| hash.to_le_bytes()).collect::<Vec<u8>>()),
+    }
+}
+
+/// Reads the files of a process among several: those that follow each other.
+fn read_files(source: &MeshSource, processes: Processes) -> Result<(Mesh, Vec<u128>), Failure> {
+    let files = source.files();
+    let own = processes.own(files.len());
+    let (mut meshes, mut hashes) = (Vec::new(), Vec::new());
+    for file in &files[own] {
+        let (mesh, hash) = read_file(source, file, processes)?;
+        meshes.push(mesh);
+        hashes.push(hash);
+    }
+    let mut mesh = match source.parts {
+        Some(_) => joined(&meshes).map_err(|error| misfit(source, &error))?,
+        None => meshes.pop().unwrap_or_default(),
+    };
+    if source.unit != 1.0 {
+        mesh.nodes.iter_mut().for_each(|node| *node *= source.unit);
+    }
+    Ok((mesh, hashes))
+}
+
+fn read_file(source: &MeshSource, file: &Path, processes: Processes) -> Result<(Mesh, u128), Failure> {
+    // The file and the mesh that is read from it, which is about as large.
+    let length = fs::metadata(file).map_or(0, |known| known.len());
+    memory::require(2 * length * processes.here as u64, format!("reading {}", file.display()))?;
+    let bytes = fs::read(file).map_err(|error| {
+        let remedy = match error.kind() {
+            std::io::ErrorKind::NotFound if source.parts.is_some() => {
+                "mesh.parts = N needs NAME_1.msh to NAME_N.msh beside each other, as Gmsh writes with -part N -part_split"
+            }
+            std::io::ErrorKind::NotFound => "paths are taken from the folder of the case file",
+            _ => "check the file and its permissions",
+        };
+        fail(source, format!("= \"{}\": cannot read the mesh: {error}", file.display()), remedy)
+    })?;
+    let mesh =
+        fractum_mesh::read_mesh(&bytes).map_err(|error| fail(source, format!(": {}: {error}", file.display()), ""))?;
+    Ok((mesh, xxh3_128(&bytes)))
+}
+
+fn fail(source: &MeshSource, found: String, remedy: &str) -> Failure {
+    Failure::Input(Diagnostics(vec![Diagnostic::error(&source.file.place, found).remedy(remedy)]))
+}
+
+fn misfit(source: &MeshSource, error: &JoinError) -> Failure {
+    fail(source, format!(": {}: {error}", source.file.value.display()), "save all parts at once")
+}
+
+/// The mesh of all processes, of whose tetrahedra each keeps those that it has read.
+fn joined_of_all(mut own: Mesh, exchange: &dyn Exchange) -> Result<Mesh, JoinError> {
+    let nodes_of_groups: Vec<(u8, i32, usize, Vec<u32>)> = own
+        .groups
+        .iter()
+        .map(|group| (group.dimension, group.tag, group.tetrahedra.len(), own.group_nodes_of_tetrahedra(group)))
+        .collect();
+    let tetrahedra = std::mem::take(&mut own.tetrahedra);
+    let tags = std::mem::take(&mut own.tetrahedron_tags);
+    let members: Vec<Vec<u32>> = own.groups.iter_mut().map(|group| std::mem::take(&mut group.tetrahedra)).collect();
+    let counts = gather(exchange, &tetrahedra.len());
+    let skeletons = gather(exchange, &own);
+    let mut mesh = joined(&skeletons)?;
+    let number = |skeleton: &Mesh, node: u32| {
+        let found = mesh.node_tags.binary_search(&skeleton.node_tags[node as usize]);
+        found.expect("the nodes of all parts") as u32
+    };
+    let in_mesh = |element: [u32; 4]| element.map(|node| number(&own, node));
+    let mut whole = WholeMesh { tetrahedra: counts.iter().sum(), groups: vec![(0, Vec::new()); mesh.groups.len()] };
+    for (skeleton, groups) in skeletons.iter().zip(gather(exchange, &nodes_of_groups)) {
+        for (dimension, tag, count, nodes) in groups {
+            let index = mesh.groups.iter().position(|group| (group.dimension, group.tag) == (dimension, tag));
+            let known = &mut whole.groups[index.expect("the groups of all parts")];
+            known.0 += count;
+            known.1.extend(nodes.into_iter().map(|node| number(skeleton, node)));
+        }
+    }
+    for (_, nodes) in &mut whole.groups {
+        nodes.sort_unstable();
+        nodes.dedup();
+    }
+    let tetrahedra = tetrahedra.into_iter().map(in_mesh).collect();
+    for (group, members) in own.groups.iter().zip(members) {
+        let known = mesh.groups.iter_mut().find(|known| (known.dimension, known.tag) == (group.dimension, group.tag));
+        known.expect("the groups of all parts").tetrahedra = members;
+    }
+    let mut mesh = Mesh { tetrahedra, tetrahedron_tags: tags, whole: Some(Box::new(whole)), ..mesh };
+    mesh.note_empty_groups();
+    Ok(mesh)
+}

@@ -1,0 +1,203 @@
+//! A mesh in parts, which several ranks read side by side: none of them has all of its elements.
+
+use std::fs;
+
+use fractum::{Options, Ranks, Simulation, run};
+use fractum_io::vtk::{Arrays, read_collection};
+use fractum_math::Vec3;
+use fractum_mesh::generate::structured_box;
+use fractum_mesh::{Group, Mesh, MshFormat};
+use fractum_parallel::threads;
+
+use crate::common::{Workplace, mesh_bytes};
+use crate::ranks::{on_ranks, options};
+
+/// A block of two bodies that is pushed at one end, and absorbs waves at the other.
+const BLOCK: &str = r#"fractum = 1
+title = "A block in parts"
+[mesh]
+file = "bar.msh"
+parts = 3
+[materials.rock]
+density = "2600 kg/m^3"
+young_modulus = "50 GPa"
+poisson_ratio = 0.25
+[[bodies]]
+name = "left"
+kind = "solid"
+group = "left"
+material = "rock"
+[[bodies]]
+name = "right"
+kind = "solid"
+group = "right"
+material = "rock"
+formulation = "standard"
+[[supports]]
+group = "x+"
+absorbing = true
+[[supports]]
+group = "z-"
+fix = "z"
+[[loads]]
+group = "x-"
+pressure = { ramp = [["0 s", "0 MPa"], ["20 us", "5 MPa"], ["60 us", "0 MPa"]] }
+[damping]
+bulk_linear = 0.06
+bulk_quadratic = 1.2
+[[probes]]
+name = "u"
+displacement = { group = "x-", along = "x" }
+[[probes]]
+name = "p"
+momentum = { along = "x" }
+[[probes]]
+name = "support"
+reaction = { group = "z-", along = "z" }
+[solver]
+kind = "explicit"
+end = "0.1 ms"
+[output]
+history = { every = "5 us" }
+fields = { every = "50 us", principal = true }
+"#;
+
+/// The block, with its elements in two groups.
+fn mesh() -> Mesh {
+    let mut mesh = structured_box([16, 8, 8], Vec3::new(0.8, 0.4, 0.4), None);
+    let body = mesh.groups.pop().unwrap();
+    let middle = |e: &u32| mesh.tetrahedra[*e as usize].iter().map(|&n| mesh.nodes[n as usize].x).sum::<f64>() / 4.0;
+    let (left, right) = body.tetrahedra.iter().partition(|e| middle(e) < 0.4);
+    for (name, tag, tetrahedra) in [("left", 1, left), ("right", 2, right)] {
+        mesh.groups.push(Group { name: name.to_owned(), tag, tetrahedra, ..body.clone() });
+    }
+    mesh
+}
+
+/// Elements `begin..end` of a mesh, with all boundary elements, as a file of its own.
+fn part(mesh: &Mesh, begin: u32, end: u32) -> Vec<u8> {
+    let mut part = mesh.clone();
+    part.tetrahedra = mesh.tetrahedra[begin as usize..end as usize].to_vec();
+    part.tetrahedron_tags = mesh.tetrahedron_tags[begin as usize..end as usize].to_vec();
+    for group in &mut part.groups {
+        group.tetrahedra.retain(|element| (begin..end).contains(element));
+        group.tetrahedra.iter_mut().for_each(|element| *element -= begin);
+    }
+    // Nodes that no element of it uses are not read back.
+    mesh_bytes(&part, MshFormat::V4_1Binary)
+}
+
+/// A folder with the block in one file, `whole.msh`, and in three.
+fn workplace(case: &str) -> Workplace {
+    let mesh = mesh();
+    let place = Workplace::with_mesh(case, &[]);
+    fs::write(place.path("whole.msh"), mesh_bytes(&mesh, MshFormat::V4_1Binary)).unwrap();
+    let count = mesh.tetrahedra.len() as u32;
+    for (number, [begin, end]) in [[0, 700], [700, 4000], [4000, count]].into_iter().enumerate() {
+        fs::write(place.path(&format!("bar_{}.msh", number + 1)), part(&mesh, begin, end)).unwrap();
+    }
+    place
+}
+
+#[test]
+fn ranks_that_read_a_part_each_have_the_state_of_one_process() {
+    let place = workplace(BLOCK);
+    let case = place.path("case.toml");
+    let alone = run(&case, &options(&place, "alone")).unwrap().summary;
+    let whole = BLOCK.replace("parts = 3\n", "").replace("bar.msh", "whole.msh");
+    fs::write(place.path("whole.toml"), whole).unwrap();
+    let of_one_file = run(&place.path("whole.toml"), &options(&place, "whole")).unwrap().summary;
+    assert_eq!(alone.hashes.state_hash, of_one_file.hashes.state_hash);
+    let history = |folder: &str| fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
+    for ranks in [2, 3, 5] {
+        let folder = format!("of-{ranks}");
+        for hash in on_ranks(&place, ranks, &options(&place, &folder)) {
+            assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{ranks} ranks");
+        }
+        assert_eq!(history(&folder), history("alone"), "{ranks} ranks");
+        let log = fs::read_to_string(place.path(&folder).join("run.log")).unwrap();
+        assert!(log.contains("of the 6144 tetrahedra of the mesh\n"), "{log}");
+        assert!(place.path(&folder).join("pictures/stress.png").is_file());
+        // Every element is in one of the pieces.
+        let frames = |folder: &str| read_collection(&place.path(folder).join("fields.pvd")).unwrap().entries;
+        for (ours, expected) in frames(&folder).iter().zip(frames("alone")) {
+            assert_eq!(ours.file, expected.file.replace(".v", ".pv"));
+            let read = |folder: &str, file: &str| {
+                let arrays =
+                    Arrays::read(&place.path(folder).join(file), &["Points", "connectivity", "von_mises_stress"]);
+                arrays.unwrap()
+            };
+            let (ours, expected) = (read(&folder, &ours.file), read("alone", &expected.file));
+            assert_eq!(elements(&ours), elements(&expected), "{ranks} ranks");
+        }
+    }
+}
+
+/// Corners and stress of all elements, in an order that does not depend on that of the file.
+fn elements(arrays: &Arrays) -> Vec<(Vec<[u64; 3]>, u64)> {
+    let points: Vec<[f64; 3]> = arrays.vectors("Points");
+    let corner = |node: &u32| points[*node as usize].map(f64::to_bits);
+    let corners = arrays.cells::<4>().into_iter().map(|nodes| nodes.iter().map(corner).collect());
+    let mut elements: Vec<_> =
+        corners.zip(arrays.get("von_mises_stress").iter().map(|stress| stress.to_bits())).collect();
+    elements.sort_unstable();
+    elements
+}
+
+#[test]
+fn a_state_of_parts_is_taken_up_by_any_number_of_ranks() {
+    let place = workplace(BLOCK);
+    let case = place.path("case.toml");
+    let alone = run(&case, &options(&place, "alone")).unwrap().summary;
+    for (from, to) in [(1, 3), (3, 2), (2, 1)] {
+        let folder = format!("from-{from}-to-{to}");
+        let options = options(&place, &folder);
+        std::thread::scope(|scope| {
+            for exchange in threads(from) {
+                scope.spawn(|| {
+                    let mut simulation = Simulation::open_shared(&case, &options, Ranks::new(exchange)).unwrap();
+                    while simulation.time() < 4e-5 {
+                        simulation.step().unwrap();
+                        simulation.record().unwrap();
+                    }
+                    simulation.finish().unwrap();
+                });
+            }
+        });
+        for hash in on_ranks(&place, to, &Options { resume: true, ..options.clone() }) {
+            assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{folder}");
+        }
+    }
+}
+
+#[test]
+fn what_needs_all_elements_has_every_rank_read_all_parts() {
+    let probe = "stress = { group = \"left\", component = \"xx\" }";
+    let place = workplace(&BLOCK.replace("momentum = { along = \"x\" }", probe));
+    let alone = run(&place.path("case.toml"), &options(&place, "alone")).unwrap().summary;
+    for hash in on_ranks(&place, 2, &options(&place, "shared")) {
+        assert_eq!(hash.unwrap(), alone.hashes.state_hash);
+    }
+    let log = fs::read_to_string(place.path("shared/run.log")).unwrap();
+    let why = "every process has the whole mesh, because of probe \"p\", which looks at elements\n";
+    assert!(log.contains(why), "{log}");
+}
+
+#[test]
+fn a_part_that_is_missing_or_of_another_mesh_is_named() {
+    let place = workplace(BLOCK);
+    let other = structured_box([2, 2, 2], Vec3::new(2.0, 2.0, 2.0), None);
+    fs::write(place.path("bar_2.msh"), mesh_bytes(&other, MshFormat::V4_1Binary)).unwrap();
+    let said = |ranks: usize| {
+        let results = on_ranks(&place, ranks, &options(&place, "refused"));
+        results.into_iter().map(|result| result.unwrap_err().to_string()).next().unwrap()
+    };
+    for ranks in [1, 3] {
+        let text = said(ranks);
+        assert!(text.contains("case.toml:4:8: mesh.file: ") && text.contains("parts of one mesh"), "{text}");
+    }
+    fs::remove_file(place.path("bar_2.msh")).unwrap();
+    let text = said(1);
+    assert!(text.contains("bar_2.msh\": cannot read the mesh") && text.contains("-part_split"), "{text}");
+    assert!(!place.path("refused").exists());
+}

@@ -1,0 +1,121 @@
+//! Several ranks share bodies that none of them has whole: each has read some elements, and gets those around its cells.
+
+use std::sync::Arc;
+
+use fractum_fem::{Body, BodyShare, Formulation, Kinematics, LocalDamping, ReadBody, Solid, Viscosity};
+use fractum_math::Vec3;
+use fractum_parallel::{Exchange, threads};
+use fractum_scene::{Gravity, Load, Pressure, Scene, Watched};
+use fractum_tests::{jittered_box, surface};
+
+use crate::ranks::{RANKS, advance, ends, on_two_threads, scene, set_moving};
+
+const SIZE: Vec3 = Vec3::new(0.4, 0.2, 0.2);
+
+/// Two bodies side by side, of edges and of elements as cells.
+fn bodies(kinematics: Kinematics) -> (Vec<Vec3>, Vec<Body>) {
+    let (nodes, body) = jittered_box([20, 10, 10], SIZE);
+    let is_left = |element: &[u32; 4]| element.iter().map(|&n| nodes[n as usize].x).sum::<f64>() < 2.0 * SIZE.x;
+    let (left, right) = body.elements.iter().partition(|element| is_left(element));
+    let of = |elements: Vec<[u32; 4]>, formulation| Body { elements, formulation, kinematics, ..body.clone() };
+    let bodies = vec![of(left, Formulation::Smoothed), of(right, Formulation::Standard)];
+    (nodes, bodies)
+}
+
+/// What a rank has of the bodies, if it has read every third run of elements or so.
+fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> Vec<(Body, BodyShare)> {
+    let (rank, size) = (exchange.rank(), exchange.size());
+    let read = |body: &Body| {
+        let count = body.elements.len();
+        // Unlike lengths, one of them nothing.
+        let begin = |rank: usize| count * rank.saturating_sub(1).pow(2) / (size - 1).pow(2);
+        body.elements[begin(rank)..begin(rank + 1)].to_vec()
+    };
+    let elements: Vec<Vec<[u32; 4]>> = bodies.iter().map(read).collect();
+    let tags: Vec<Vec<u64>> = elements.iter().map(|of| vec![7; of.len()]).collect();
+    let parts = bodies.iter().zip(elements.iter().zip(&tags));
+    let parts: Vec<ReadBody> =
+        parts.map(|(body, (elements, tags))| ReadBody { formulation: body.formulation, elements, tags }).collect();
+    let shares = fractum_fem::deal(&**exchange, nodes, &parts);
+    let boundary = fractum_fem::divided_boundary(&**exchange, &elements, nodes.len());
+    let whole: Vec<[u32; 4]> = bodies.iter().flat_map(|body| &body.elements).copied().collect();
+    let outside = |elements: &[[u32; 4]]| -> Vec<[u32; 3]> {
+        fractum_mesh::topology::boundary_of_tetrahedra(elements).iter().map(|facet| facet.nodes).collect()
+    };
+    assert_eq!(boundary.all, outside(&whole));
+    assert!(bodies.iter().zip(&boundary.of_bodies).all(|(body, of)| *of == outside(&body.elements)));
+    let with_elements = |(body, mut share): (Body, BodyShare)| {
+        let elements = std::mem::take(&mut share.elements);
+        (Body { elements, ..body }, share)
+    };
+    bodies.into_iter().zip(shares).map(with_elements).collect()
+}
+
+/// The scene of a solid of these bodies: `damping`, and whether it is viscous.
+fn loaded(mut solid: Solid, facets: Vec<[u32; 3]>, damping: LocalDamping, viscous: bool) -> Scene {
+    if viscous {
+        solid.set_viscosity(Viscosity { stiffness_time: 1e-8, bulk_linear: 0.06, bulk_quadratic: 1.2 });
+    }
+    set_moving(&mut solid);
+    let value = Arc::new(|t: f64, _: &Vec3| 1e6 * (t / 1e-5).min(1.0));
+    let pressure = Load::Pressure(Pressure { facets, thickness: 0.0, value });
+    let gravity = Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -9.81) });
+    let supports = ends(&solid, 0.1);
+    scene(solid, supports, vec![pressure, gravity], damping)
+}
+
+fn same_as_whole(kinematics: Kinematics, damping: LocalDamping, viscous: bool) {
+    let (nodes, all) = bodies(kinematics);
+    let whole = Solid::new(nodes.clone(), all.clone()).unwrap();
+    let top = |facet: &[u32; 3]| facet.iter().all(|&n| nodes[n as usize].z > 0.199);
+    let facets: Vec<[u32; 3]> = surface(&whole).into_iter().filter(top).collect();
+    let mut single = loaded(whole, facets.clone(), damping, viscous);
+    advance(&mut single, 40);
+    let fields: Vec<_> = (0..2).map(|body| single.solid.element_fields(body)).collect();
+    let run = |exchange: Arc<dyn Exchange>| {
+        on_two_threads(|| {
+            let shares = dealt(&exchange, &nodes, all.clone());
+            let numbers: Vec<Vec<u32>> = shares.iter().map(|(_, share)| share.numbers.clone()).collect();
+            let solid = Solid::divided(nodes.clone(), shares, Arc::clone(&exchange)).unwrap();
+            assert!(solid.is_divided() && (0..2).all(|body| solid.element_count(body) == all[body].elements.len()));
+            let mut scene = loaded(solid, facets.clone(), damping, viscous);
+            assert_eq!(scene.stable_dt(), single.stable_dt());
+            scene.share_out(exchange, &Watched::default());
+            advance(&mut scene, 40);
+            scene.gather_ranks();
+            scene.solid.gather_edge_values();
+            (scene, numbers)
+        })
+    };
+    for ranks in RANKS {
+        let outcomes: Vec<(Scene, Vec<Vec<u32>>)> = std::thread::scope(|scope| {
+            let started: Vec<_> = threads(ranks).into_iter().map(|exchange| scope.spawn(|| run(exchange))).collect();
+            started.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        let mut told = [0; 2];
+        for (rank, (scene, numbers)) in outcomes.iter().enumerate() {
+            let what = format!("rank {rank} of {ranks}");
+            assert!(scene.solid.mass == single.solid.mass, "{what}");
+            assert!(scene.solid.displacement == single.solid.displacement, "{what}");
+            assert!(scene.solid.velocity == single.solid.velocity, "{what}");
+            assert_eq!(scene.ledger(), single.ledger(), "{what}");
+            let count: usize = all.iter().map(|body| body.elements.len()).sum();
+            let has: usize = numbers.iter().map(Vec::len).sum();
+            assert!(4 * has < 3 * count, "{what}: {has} of {count} elements");
+            for body in 0..2 {
+                let own = scene.solid.element_fields(body);
+                for (element, value) in own.iter().enumerate().filter(|(e, _)| scene.solid.tells_of(body, *e)) {
+                    told[body] += 1;
+                    assert_eq!(*value, fields[body][numbers[body][element] as usize], "{what}: {body} {element}");
+                }
+            }
+        }
+        assert_eq!(told, [all[0].elements.len(), all[1].elements.len()]);
+    }
+}
+
+#[test]
+fn bodies_that_no_rank_has_whole_move_with_the_bits_of_one_process() {
+    same_as_whole(Kinematics::Small, LocalDamping::default(), false);
+    same_as_whole(Kinematics::Corotational, LocalDamping { local: 0.1, mass_rate: 20.0 }, true);
+}
