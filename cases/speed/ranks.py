@@ -4,7 +4,8 @@ the least time of their steps without output, the ratio, and what is sent; then 
 
 Needs numpy, MPI and a build with it: `cargo build --release --features mpi --target-dir target/mpi`, then
 `python3 cases/speed/ranks.py target/mpi/release/fractum`. With `particles` behind it the times alone, of a cube of 100,000 bonded particles that
-vibrates, of the same that is torn, and of 91,125 loose beads that fall into a box.
+vibrates, of the same that is torn, and of 91,125 loose beads that fall into a box. With `parts` the memory alone, of a cube of 3,072,000 tetrahedra (or
+of six times the cube of a number behind it) whose mesh is in one file and in four.
 """
 
 import json
@@ -90,6 +91,20 @@ def main(program, cells=44):
         print(f"{count} of one thread: {', '.join(f'{megabytes:.0f}' for megabytes in each)} MB")
 
 
+def parts(program, cells=80):
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        for where, count in (("one file", None), ("four files", 4)):
+            write_box(folder / "cube.msh", (cells,) * 3, (1.0,) * 3, count)
+            mesh = 'mesh = { file = "cube.msh" }'
+            in_files = mesh if count is None else mesh.replace(" }", f", parts = {count} }}")
+            (folder / "case.toml").write_text(CASE.replace(mesh, in_files).replace("0.25 ms", "20 us").replace("0.05 ms", "10 us"))
+            for processes in (1, 4, 8):
+                each = peaks(program, folder, processes)
+                state = json.loads((folder / "memory/summary.json").read_text())["state_hash"]
+                print(f"{where}, {processes} of one thread: {', '.join(f'{megabytes:.0f}' for megabytes in each)} MB; state {state[:8]}")
+
+
 def particles(program):
     for what, case in (("the cube vibrates", BONDED), ("the cube is torn", BONDED + STRENGTH), ("beads fall into a box", LOOSE)):
         with tempfile.TemporaryDirectory() as folder:
@@ -132,4 +147,8 @@ def peaks(program, folder, count):
 
 
 if __name__ == "__main__":
-    (particles if "particles" in sys.argv[2:] else main)(pathlib.Path(sys.argv[1]).resolve())
+    program, what = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:]
+    if what[:1] == ["parts"]:
+        parts(program, *map(int, what[1:]))
+    else:
+        (particles if "particles" in what else main)(program)

@@ -5,10 +5,10 @@ from itertools import permutations
 import numpy as np
 
 
-def write_box(path, cells, size):
-    """Writes a box [0, size] in MSH 2.2.
+def write_box(path, cells, size, parts=None):
+    """Writes a box [0, size] in MSH 2.2, whole or in slabs along x, which are files of their own: PATH_1.msh and so on.
 
-    - `cells`: number of cells along x, y and z; `size` [m]
+    - `cells`: number of cells along x, y and z; `size` [m]; `parts`: number of files
     """
     counts = np.array(cells) + 1
     nodes = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)
@@ -23,18 +23,31 @@ def write_box(path, cells, size):
             on = nodes[tetrahedra][:, :, axis] == at
             facets = tetrahedra[on.sum(axis=1) == 3]
             groups.append((2, name + end, facets[on[on.sum(axis=1) == 3]].reshape(-1, 3)))
+    places = nodes * (np.array(size) / np.array(cells))
+    if parts is None:
+        write_part(path, places, groups, [np.full(len(elements), True) for _, _, elements in groups])
+        return
+    for part in range(parts):
+        # An element belongs to the slab of its cells; a facet of x+ to the last.
+        first, end = (np.array([part, part + 1]) * cells[0]) // parts
+        low = [nodes[elements][:, :, 0].min(axis=1) for _, _, elements in groups]
+        kept = [(first <= x) & ((x < end) | (part == parts - 1)) for x in low]
+        write_part(path.with_name(f"{path.stem}_{part + 1}{path.suffix}"), places, groups, kept)
+
+
+def write_part(path, places, groups, kept):
+    """Writes the elements of each group that are kept, with the nodes that they use."""
+    numbers = np.cumsum([0, *(len(elements) for _, _, elements in groups)])
+    used = np.unique(np.concatenate([elements[keep].ravel() for (_, _, elements), keep in zip(groups, kept)]))
     with open(path, "w", encoding="utf-8") as file:
         file.write(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{len(groups)}\n")
         for tag, (dimension, name, _) in enumerate(groups, 1):
             file.write(f'{dimension} {tag} "{name}"\n')
-        file.write(f"$EndPhysicalNames\n$Nodes\n{len(nodes)}\n")
-        places = nodes * (np.array(size) / np.array(cells))
-        file.writelines(f"{i} {x!r} {y!r} {z!r}\n" for i, (x, y, z) in enumerate(places.tolist(), 1))
-        file.write(f"$EndNodes\n$Elements\n{sum(len(elements) for _, _, elements in groups)}\n")
-        number = 0
-        for tag, (dimension, _, elements) in enumerate(groups, 1):
+        file.write(f"$EndPhysicalNames\n$Nodes\n{len(used)}\n")
+        file.writelines(f"{i + 1} {x!r} {y!r} {z!r}\n" for i, (x, y, z) in zip(used.tolist(), places[used].tolist()))
+        file.write(f"$EndNodes\n$Elements\n{sum(keep.sum() for keep in kept)}\n")
+        for tag, ((dimension, _, elements), keep, first) in enumerate(zip(groups, kept, numbers), 1):
             kind = 4 if dimension == 3 else 2
-            for element in (elements + 1).tolist():
-                number += 1
+            for number, element in zip((np.flatnonzero(keep) + first + 1).tolist(), (elements[keep] + 1).tolist()):
                 file.write(f"{number} {kind} 2 {tag} {tag} {' '.join(map(str, element))}\n")
         file.write("$EndElements\n")

@@ -23,7 +23,7 @@ fn bodies(kinematics: Kinematics) -> (Vec<Vec3>, Vec<Body>) {
 }
 
 /// What a rank has of the bodies, if it has read every third run of elements or so.
-fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> Vec<(Body, BodyShare)> {
+fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> (Vec<Body>, Vec<BodyShare>) {
     let (rank, size) = (exchange.rank(), exchange.size());
     let read = |body: &Body| {
         let count = body.elements.len();
@@ -48,7 +48,7 @@ fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> Vec
         let elements = std::mem::take(&mut share.elements);
         (Body { elements, ..body }, share)
     };
-    bodies.into_iter().zip(shares).map(with_elements).collect()
+    bodies.into_iter().zip(shares).map(with_elements).unzip()
 }
 
 /// The scene of a solid of these bodies: `damping`, and whether it is viscous.
@@ -74,9 +74,9 @@ fn same_as_whole(kinematics: Kinematics, damping: LocalDamping, viscous: bool) {
     let fields: Vec<_> = (0..2).map(|body| single.solid.element_fields(body)).collect();
     let run = |exchange: Arc<dyn Exchange>| {
         on_two_threads(|| {
-            let shares = dealt(&exchange, &nodes, all.clone());
-            let numbers: Vec<Vec<u32>> = shares.iter().map(|(_, share)| share.numbers.clone()).collect();
-            let solid = Solid::divided(nodes.clone(), shares, Arc::clone(&exchange)).unwrap();
+            let (bodies, shares) = dealt(&exchange, &nodes, all.clone());
+            let numbers: Vec<Vec<u32>> = shares.iter().map(|share| share.numbers.clone()).collect();
+            let solid = Solid::divided(nodes.clone(), bodies, &shares, Arc::clone(&exchange)).unwrap();
             assert!(solid.is_divided() && (0..2).all(|body| solid.element_count(body) == all[body].elements.len()));
             let mut scene = loaded(solid, facets.clone(), damping, viscous);
             assert_eq!(scene.stable_dt(), single.stable_dt());

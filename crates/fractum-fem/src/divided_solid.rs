@@ -21,26 +21,27 @@ impl Solid {
     /// Builds the cells that this rank evaluates of elastic bodies, none of which it has whole. All ranks must call it.
     ///
     /// - `nodes`: reference positions of all nodes [m]
-    /// - `bodies`: with the elements of this rank, and their [`BodyShare`] without these
+    /// - `bodies`: with the elements of this rank; `shares`: what else it has of each of them
     ///
     /// # Errors
     /// As [`Solid::new`], the same on every rank.
     pub fn divided(
         nodes: Vec<Vec3>,
-        bodies: Vec<(Body, BodyShare)>,
+        bodies: Vec<Body>,
+        shares: &[BodyShare],
         exchange: Arc<dyn Exchange>,
     ) -> Result<Self, SolidError> {
         let volumes: Vec<Result<Vec<f64>, SolidError>> =
-            bodies.iter().map(|(body, _)| Geometry { body, nodes: &nodes }.volumes()).collect();
+            bodies.iter().map(|body| Geometry { body, nodes: &nodes }.volumes()).collect();
         let volumes = together(&*exchange, volumes.into_iter().collect::<Result<Vec<_>, _>>())?;
-        let mass = masses(&*exchange, nodes.len(), &bodies, &volumes);
+        let mass = masses(&*exchange, nodes.len(), &bodies, shares, &volumes);
         if let Some(node) = mass.iter().position(|&mass| mass <= 0.0) {
             return Err(SolidError::MasslessNode { node });
         }
         let (mut models, mut own) = (Vec::new(), Vec::new());
         let mut made = Ok(());
-        for (index, ((body, share), volumes)) in bodies.into_iter().zip(&volumes).enumerate() {
-            let chosen = Chosen { fine: &[], share: Some(&share) };
+        for (index, ((body, share), volumes)) in bodies.into_iter().zip(shares).zip(&volumes).enumerate() {
+            let chosen = Chosen { fine: &[], share: Some(share) };
             match BodyModel::new(body, index, &nodes, volumes, chosen, own.len()) {
                 Ok((mut model, mut blocks)) => {
                     model.divide(&*exchange, share, volumes);
@@ -183,19 +184,19 @@ impl Solid {
 
 impl BodyModel {
     /// Remembers what this rank has of the whole body, once its cells are made.
-    fn divide(&mut self, exchange: &dyn Exchange, share: BodyShare, volumes: &[f64]) {
+    fn divide(&mut self, exchange: &dyn Exchange, share: &BodyShare, volumes: &[f64]) {
         let told = volumes.iter().zip(&share.is_told).filter(|(_, is_told)| **is_told);
         let volume = gather(exchange, &told.map(|(volume, _)| volume).sum::<f64>()).into_iter().sum();
         let smoothed = self.body.formulation == Formulation::Smoothed;
         let values = match self.edges.as_ref().filter(|_| smoothed) {
             Some(edges) => {
-                let (values, places) = EdgeValues::new(exchange, &share, &self.body.elements, edges);
+                let (values, places) = EdgeValues::new(exchange, share, &self.body.elements, edges);
                 places.into_iter().for_each(|(edge, place)| self.location[edge as usize] = (ELSEWHERE, place));
                 values
             }
             None => EdgeValues::default(),
         };
-        let BodyShare { numbers, count, is_told, .. } = share;
+        let (numbers, count, is_told) = (share.numbers.clone(), share.count, share.is_told.clone());
         self.divided = Some(Box::new(DividedBody { numbers, count, is_told, volume, values, skin: Vec::new() }));
     }
 }

@@ -24,6 +24,11 @@ impl Told {
         &self.items[rank]
     }
 
+    /// Lets go of the memory of messages, which comes again where it is needed.
+    pub fn release(&mut self) {
+        (self.own, self.all) = (Vec::new(), Vec::new());
+    }
+
     /// Tells these items too.
     pub fn append(&mut self, more: &Told) {
         self.items.iter_mut().zip(&more.items).for_each(|(items, more)| items.extend(more));

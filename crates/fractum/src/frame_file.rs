@@ -15,7 +15,12 @@ pub(crate) enum FrameFile {
 
 impl FrameFile {
     /// Elements, in as many pieces as asked for.
-    pub(crate) fn of_grid(grid: &UnstructuredGrid, cut: Cut) -> Result<Self, Failure> {
+    ///
+    /// - `numbers`: those of the points in the whole, where this process has no other elements than those of its piece
+    pub(crate) fn of_grid(grid: &UnstructuredGrid, cut: Cut, numbers: &[i32]) -> Result<Self, Failure> {
+        if cut.is_divided {
+            return grid.own_piece(cut, numbers, Compression::Fast).map(FrameFile::Cut).map_err(unfit);
+        }
         let whole = || grid.pending(Compression::Fast).map(FrameFile::Whole);
         let pieces = || grid.pieces(cut, Compression::Fast).map(FrameFile::Cut);
         if cut.count > 1 { pieces() } else { whole() }.map_err(unfit)

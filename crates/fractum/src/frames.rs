@@ -1,5 +1,6 @@
 //! Frames: what ParaView shows of one instant, a file per population.
 
+use fractum_fem::Solid;
 use fractum_io::build::BuiltGauges;
 use fractum_io::case::model::{BodyKind, Case, FurtherFields};
 use fractum_io::vtk::{CellBlock, CellKind, Cut, Field, PendingFile, PolyCells, PolyData, UnstructuredGrid, Values};
@@ -107,7 +108,10 @@ impl Frame {
 
 /// What stays the same in all frames: the mesh of the solids in the order of the file, the surfaces of rigid bodies, and gauges.
 pub(crate) struct GridLayout {
+    /// Nodes in the order of the file; where no process has all elements those of the elements that this one tells of.
     file_order: Vec<u32>,
+    /// Their numbers in the order of all nodes, in that case.
+    numbers: Vec<i32>,
     /// Connectivity of each body in the order of `file_order`.
     bodies: Vec<(CellKind, Vec<u32>)>,
     /// Number of the material of each body in the case, from 0.
@@ -126,14 +130,19 @@ impl GridLayout {
 
     /// - `cut`: which pieces of solids and particles this process writes
     pub(crate) fn new(scene: &Scene, file_order: &[u32], gauges: Vec<BuiltGauges>, case: &Case, cut: Cut) -> Self {
-        let mut place = vec![0u32; file_order.len()];
-        for (file, &node) in (0..).zip(file_order) {
+        let solid = &scene.solid;
+        let (file_order, numbers) = match solid.is_divided() {
+            true => told_nodes(solid, file_order),
+            false => (file_order.to_vec(), Vec::new()),
+        };
+        let mut place = vec![0u32; solid.reference.len()];
+        for (file, &node) in (0..).zip(&file_order) {
             place[node as usize] = file;
         }
         let writes = cut.is_leading() || cut.count > 1;
-        let bodies = (0..scene.solid.body_count())
+        let bodies = (0..solid.body_count())
             .map(|body| {
-                let body = scene.solid.body(body);
+                let body = solid.body(body);
                 let corners = body.shape.node_count();
                 let kind = if corners == 4 { CellKind::Tetrahedron } else { CellKind::Triangle };
                 if !writes {
@@ -149,7 +158,8 @@ impl GridLayout {
             own.map_or(-1, |body| if let BodyKind::Solid(solid) = &body.kind { solid.material as i32 } else { -1 })
         };
         GridLayout {
-            file_order: file_order.to_vec(),
+            file_order,
+            numbers,
             bodies,
             materials: (0..scene.solid.body_count()).map(material).collect(),
             rigid: RigidSurfaces::new(scene),
@@ -158,6 +168,17 @@ impl GridLayout {
             cut,
         }
     }
+}
+
+/// Nodes of the elements that this process tells of, in the order of the file, with their numbers in that.
+fn told_nodes(solid: &Solid, file_order: &[u32]) -> (Vec<u32>, Vec<i32>) {
+    let mut is_told = vec![false; file_order.len()];
+    for body in 0..solid.body_count() {
+        let elements = solid.body(body).elements.iter().enumerate().filter(|(e, _)| solid.tells_of(body, *e));
+        elements.flat_map(|(_, nodes)| nodes).for_each(|&node| is_told[node as usize] = true);
+    }
+    let told = file_order.iter().zip(0..).filter(|(node, _)| is_told[**node as usize]);
+    told.map(|(&node, number)| (node, number)).unzip()
 }
 
 /// The elements that are left, with displacement, velocity, stress and damage.
@@ -201,7 +222,7 @@ fn solid_file(scene: &Scene, layout: &GridLayout) -> Result<FrameFile, Failure> 
         cell_data: &elements.fields(layout.further),
         time: Some(scene.clock.time),
     };
-    FrameFile::of_grid(&grid, layout.cut)
+    FrameFile::of_grid(&grid, layout.cut, &layout.numbers)
 }
 
 /// What is known of the elements that are left, body after body. Seven digits are plenty for looking at it, and halve what is

@@ -70,16 +70,13 @@ impl MeshFiles {
         let Some(exchange) = exchange.filter(|_| is_part) else { return Ok(whole(mesh, &hashes, alike)) };
         let hashes = gather(&**exchange, &hashes).concat();
         let mesh = joined_of_all(mesh, &**exchange).map_err(|error| misfit(source, &error))?;
-        match divide(case, &mesh, &**exchange) {
+        match divide(case, mesh, &**exchange) {
             Ok((mesh, division)) => {
                 let (own, all) = (mesh.tetrahedra.len(), mesh.tetrahedron_count());
                 let note = Some(format!("this process has {own} of the {all} tetrahedra of the mesh"));
                 Ok(JoinedMesh { mesh, hash: hash(&hashes), division: Some(division), note })
             }
-            Err(reason) => {
-                drop(mesh);
-                Ok(whole(read_files(source, processes.alike())?.0, &hashes, Some(reason)))
-            }
+            Err(reason) => Ok(whole(read_files(source, processes.alike())?.0, &hashes, Some(reason))),
         }
     }
 }

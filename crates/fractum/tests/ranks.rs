@@ -33,6 +33,23 @@ pub(crate) fn on_ranks(place: &Workplace, ranks: usize, options: &Options) -> Ve
     })
 }
 
+/// Runs a case on several ranks up to a time [s], and ends there as if interrupted.
+pub(crate) fn interrupted_on_ranks(place: &Workplace, ranks: usize, options: &Options, until: f64) {
+    let case = place.path("case.toml");
+    std::thread::scope(|scope| {
+        for exchange in threads(ranks) {
+            scope.spawn(|| {
+                let mut simulation = Simulation::open_shared(&case, options, Ranks::new(exchange)).unwrap();
+                while simulation.time() < until {
+                    simulation.step().unwrap();
+                    simulation.record().unwrap();
+                }
+                simulation.finish().unwrap();
+            });
+        }
+    });
+}
+
 /// Files of a results folder that do not tell about the machine and the time.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let below =
@@ -111,18 +128,7 @@ fn a_run_is_continued_by_another_number_of_ranks() {
     for (from, to) in [(1, 3), (3, 2), (2, 1)] {
         let folder = format!("from-{from}-to-{to}");
         let options = options(&place, &folder);
-        std::thread::scope(|scope| {
-            for exchange in threads(from) {
-                scope.spawn(|| {
-                    let mut simulation = Simulation::open_shared(&case, &options, Ranks::new(exchange)).unwrap();
-                    while simulation.time() < 4e-4 {
-                        simulation.step().unwrap();
-                        simulation.record().unwrap();
-                    }
-                    simulation.finish().unwrap();
-                });
-            }
-        });
+        interrupted_on_ranks(&place, from, &options, 4e-4);
         for hash in on_ranks(&place, to, &Options { resume: true, ..options.clone() }) {
             assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{folder}");
         }

@@ -2,15 +2,14 @@
 
 use std::fs;
 
-use fractum::{Options, Ranks, Simulation, run};
+use fractum::{Options, run};
 use fractum_io::vtk::{Arrays, read_collection};
 use fractum_math::Vec3;
 use fractum_mesh::generate::structured_box;
 use fractum_mesh::{Group, Mesh, MshFormat};
-use fractum_parallel::threads;
 
 use crate::common::{Workplace, mesh_bytes};
-use crate::ranks::{on_ranks, options};
+use crate::ranks::{interrupted_on_ranks, on_ranks, options};
 
 /// A block of two bodies that is pushed at one end, and absorbs waves at the other.
 const BLOCK: &str = r#"fractum = 1
@@ -152,18 +151,7 @@ fn a_state_of_parts_is_taken_up_by_any_number_of_ranks() {
     for (from, to) in [(1, 3), (3, 2), (2, 1)] {
         let folder = format!("from-{from}-to-{to}");
         let options = options(&place, &folder);
-        std::thread::scope(|scope| {
-            for exchange in threads(from) {
-                scope.spawn(|| {
-                    let mut simulation = Simulation::open_shared(&case, &options, Ranks::new(exchange)).unwrap();
-                    while simulation.time() < 4e-5 {
-                        simulation.step().unwrap();
-                        simulation.record().unwrap();
-                    }
-                    simulation.finish().unwrap();
-                });
-            }
-        });
+        interrupted_on_ranks(&place, from, &options, 4e-5);
         for hash in on_ranks(&place, to, &Options { resume: true, ..options.clone() }) {
             assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{folder}");
         }

@@ -12,6 +12,8 @@ use crate::body::Formulation;
 
 /// Words of an element on its way.
 const WORDS: usize = 7;
+/// Elements that are packed at a time.
+const PACKED: usize = 1 << 16;
 
 /// Deals the elements that all ranks have read out to those that need them. All ranks must call it, with the same bodies in the same order.
 ///
@@ -40,15 +42,18 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody]) -> Vec
             BodyShare { count: total(body), ..BodyShare::default() }
         })
         .collect();
-    let received = post(exchange, words);
-    let mut elements: Vec<[u64; WORDS]> = received.iter().flat_map(|words| words.as_chunks().0).copied().collect();
-    drop(received);
-    elements.par_sort_unstable();
-    elements.iter().for_each(|words| shares_of(words, &mut shares));
     for run in order.runs() {
         let nodes = |key: &Key| [(key[2] >> 32) as u32, key[2] as u32];
         shares[run[0][0] as usize].runs.push(run.iter().map(nodes).collect());
     }
+    drop(order);
+    let received = post(exchange, words);
+    let packed = |(rank, at): (u32, u32)| -> &[u64; WORDS] { &received[rank as usize].as_chunks().0[at as usize] };
+    let of_rank =
+        |(rank, words): (usize, &Vec<u64>)| (0..(words.len() / WORDS) as u32).map(move |at| (rank as u32, at));
+    let mut elements: Vec<(u32, u32)> = received.iter().enumerate().flat_map(of_rank).collect();
+    elements.par_sort_unstable_by_key(|&at| packed(at)[0]);
+    elements.into_iter().for_each(|at| shares_of(packed(at), &mut shares));
     shares
 }
 
@@ -114,13 +119,16 @@ impl Cells<'_> {
             let number = (self.first + element) as u64;
             (to, [self.index as u64, number, pair(a, b), pair(c, d), self.body.tags[element], of(0), of(2), of(4)])
         };
-        let packed: Vec<_> = (0..self.body.elements.len()).into_par_iter().map(pack).collect();
-        for (to, [body, number, nodes @ .., of_edges]) in packed {
-            for (at, rank) in to.into_iter().enumerate() {
-                // The lowest rank that has it tells of it.
-                let head = body << 33 | number << 1 | u64::from(at == 0);
-                let [a, b, tag, e, f] = nodes;
-                words[rank as usize].extend([head, a, b, tag, e, f, of_edges]);
+        let count = self.body.elements.len();
+        for begin in (0..count).step_by(PACKED) {
+            let packed: Vec<_> = (begin..count.min(begin + PACKED)).into_par_iter().map(pack).collect();
+            for (to, [body, number, nodes @ .., of_edges]) in packed {
+                for (at, rank) in to.into_iter().enumerate() {
+                    // The lowest rank that has it tells of it.
+                    let head = body << 33 | number << 1 | u64::from(at == 0);
+                    let [a, b, tag, e, f] = nodes;
+                    words[rank as usize].extend([head, a, b, tag, e, f, of_edges]);
+                }
             }
         }
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use fractum_parallel::{Exchange, post};
+use rayon::prelude::*;
 
 use super::{BodyShare, NodesOfOthers};
 use crate::body::Body;
@@ -40,31 +41,51 @@ impl Runs<'_> {
 
 /// Mass of every node [kg]: shares of elements body by body in the order of their numbers. All ranks must call it.
 ///
-/// - `volumes`: of each element of this rank [m³]
+/// - `bodies`: with the elements of this rank; `volumes`: of each of them [m³]
 pub(crate) fn masses(
     exchange: &dyn Exchange,
     count: usize,
-    bodies: &[(Body, BodyShare)],
+    bodies: &[Body],
+    shares: &[BodyShare],
     volumes: &[Vec<f64>],
 ) -> Vec<f64> {
+    let told = || {
+        bodies.iter().zip(shares).zip(volumes).enumerate().flat_map(|(index, ((body, share), volumes))| {
+            let told = (0..volumes.len()).filter(|&element| share.is_told[element]);
+            told.map(move |element| {
+                let order = (index as u64) << 32 | u64::from(share.numbers[element]);
+                (body.elements[element], order, body.elastic.density * volumes[element] / 4.0)
+            })
+        })
+    };
+    let mut is_own = vec![false; count];
+    told().for_each(|(nodes, ..)| nodes.iter().for_each(|&node| is_own[node as usize] = true));
+    let own: Vec<u32> = (0..count as u32).filter(|&node| is_own[node as usize]).collect();
+    let ranks = RanksOfNodes::new(exchange, count, &own);
     let runs = Runs { exchange, count };
+    // Where one rank tells of all elements it has them in order; else who looks after the node puts them in order.
+    let mut alone = vec![0.0; count];
     let mut words = vec![Vec::new(); exchange.size()];
-    for (index, ((body, share), volumes)) in bodies.iter().zip(volumes).enumerate() {
-        let told = (0..volumes.len()).filter(|&element| share.is_told[element]);
-        for element in told {
-            let order = (index as u64) << 32 | u64::from(share.numbers[element]);
-            let part = (body.elastic.density * volumes[element] / 4.0).to_bits();
-            body.elements[element]
-                .iter()
-                .for_each(|&node| words[runs.rank(node)].extend([u64::from(node), order, part]));
+    for (nodes, order, part) in told() {
+        for node in nodes {
+            if ranks.shared.contains_key(&node) {
+                words[runs.rank(node)].extend([u64::from(node), order, part.to_bits()]);
+            } else {
+                alone[node as usize] += part;
+            }
         }
     }
+    for node in own.into_iter().filter(|node| !ranks.shared.contains_key(node)) {
+        words[runs.rank(node)].extend([u64::from(node), 0, alone[node as usize].to_bits()]);
+    }
+    drop(alone);
     let received = post(exchange, words);
     let mut parts: Vec<[u64; 3]> = received.iter().flat_map(|words| words.as_chunks().0).copied().collect();
-    parts.sort_unstable();
-    let own = runs.own();
-    let mut sums = vec![0.0; own.len()];
-    parts.iter().for_each(|&[node, _, part]| sums[node as usize - own.start] += f64::from_bits(part));
+    drop(received);
+    parts.par_sort_unstable();
+    let after = runs.own();
+    let mut sums = vec![0.0; after.len()];
+    parts.iter().for_each(|&[node, _, part]| sums[node as usize - after.start] += f64::from_bits(part));
     runs.tell(&sums)
 }
 

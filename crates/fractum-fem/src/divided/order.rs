@@ -1,6 +1,7 @@
 //! The cells of all ranks in one order, and which rank gets which.
 
 use fractum_parallel::{Exchange, post, rank_of};
+use rayon::prelude::*;
 
 use crate::cell::BLOCK_CELLS;
 
@@ -25,8 +26,9 @@ impl Order {
     ///
     /// - `bodies`: how many there are
     pub(super) fn new(exchange: &dyn Exchange, mut named: Vec<Key>, bodies: usize) -> Self {
-        named.sort_unstable();
+        named.par_sort_unstable();
         named.dedup();
+        named.shrink_to_fit();
         let cuts = cuts(exchange, &named);
         let ends: Vec<usize> = cuts.iter().map(|cut| named.partition_point(|key| key < cut)).collect();
         let begins = std::iter::once(0).chain(ends.iter().copied());
@@ -34,7 +36,7 @@ impl Order {
         let words = to_rank.map(|(begin, end)| named[begin..end].as_flattened().to_vec()).collect();
         let asked = post(exchange, words);
         let mut held: Vec<Key> = asked.iter().flat_map(|words| words.as_chunks().0).copied().collect();
-        held.sort_unstable();
+        held.par_sort_unstable();
         held.dedup();
         let ranks_of_held = ranks_of_runs(exchange, &held, bodies);
         let reply = |words: &Vec<u64>| {
@@ -44,14 +46,16 @@ impl Order {
             };
             words.as_chunks().0.iter().map(rank).collect()
         };
-        let ranks = post(exchange, asked.iter().map(reply).collect()).concat();
+        let replies = asked.iter().map(reply).collect();
+        drop(asked);
+        let ranks = post(exchange, replies).into_iter().flatten().map(|rank| rank as u32).collect();
         let mut to_owner = vec![Vec::new(); exchange.size()];
         held.iter().zip(&ranks_of_held).for_each(|(key, &rank)| to_owner[rank as usize].extend(key));
         drop(held);
         let received = post(exchange, to_owner);
         let mut own: Vec<Key> = received.iter().flat_map(|words| words.as_chunks().0).copied().collect();
-        own.sort_unstable();
-        Order { own, named, ranks: ranks.into_iter().map(|rank| rank as u32).collect() }
+        own.par_sort_unstable();
+        Order { own, named, ranks }
     }
 
     /// The rank that evaluates a cell that this one has named.

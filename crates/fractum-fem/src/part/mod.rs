@@ -287,8 +287,8 @@ impl Part {
     /// Tells all ranks displacements and velocities of all nodes.
     pub(crate) fn tell_nodes(&mut self, displacement: &mut [Vec3], velocity: &mut [Vec3]) {
         if !std::mem::replace(&mut self.is_whole, true) {
-            tell(&mut self.all.told, &*self.exchange, displacement);
-            tell(&mut self.all.told, &*self.exchange, velocity);
+            self.tell_all(displacement);
+            self.tell_all(velocity);
         }
     }
 
@@ -347,6 +347,10 @@ impl Part {
     /// Tells all ranks a value of every node, once each has those of its own blocks.
     pub(crate) fn tell_all(&mut self, values: &mut [Vec3]) {
         tell(&mut self.all.told, &*self.exchange, values);
+        if self.is_divided() {
+            // Where memory is short this is more than a share of it.
+            self.all.told.release();
+        }
     }
 
     /// Has the blocks of this rank evaluated, and gets the sums of the blocks of others at its nodes. What others wait for comes first;

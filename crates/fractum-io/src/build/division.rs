@@ -76,7 +76,7 @@ fn is_of_nodes(kind: &ProbeKind) -> bool {
 ///
 /// # Errors
 /// Why it cannot be done, in words, the same for every process.
-pub fn divide(case: &Case, mesh: &Mesh, exchange: &dyn Exchange) -> Result<(Mesh, SolidDivision), String> {
+pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh, SolidDivision), String> {
     let whole = mesh.whole.as_ref().expect("the caller knows what others have");
     let bodies: Vec<&SolidBody> = case
         .bodies
@@ -103,7 +103,7 @@ pub fn divide(case: &Case, mesh: &Mesh, exchange: &dyn Exchange) -> Result<(Mesh
     }
     let mut used = vec![false; mesh.nodes.len()];
     groups.iter().flat_map(nodes_of).for_each(|&node| used[node as usize] = true);
-    if pieces(mesh, groups.iter().flat_map(members), &used, exchange) > 1 {
+    if pieces(&mesh, groups.iter().flat_map(members), &used, exchange) > 1 {
         return Err("solids of several pieces, which may meet".to_owned());
     }
     let (numbering, order) = Numbering::of(&mesh.nodes, &used);
@@ -120,9 +120,10 @@ pub fn divide(case: &Case, mesh: &Mesh, exchange: &dyn Exchange) -> Result<(Mesh
     let read = bodies.iter().zip(&in_scene).zip(&tags);
     let read: Vec<ReadBody> =
         read.map(|((body, elements), tags)| ReadBody { formulation: formulation(body), elements, tags }).collect();
+    let mut local = Mesh { tetrahedra: Vec::new(), tetrahedron_tags: Vec::new(), ..mesh };
+    local.groups.iter_mut().for_each(|group| group.tetrahedra = Vec::new());
     let mut shares = deal(exchange, &numbering.positions, &read);
-    let mut local = Mesh { tetrahedra: Vec::new(), tetrahedron_tags: Vec::new(), ..mesh.clone() };
-    local.groups.iter_mut().for_each(|group| group.tetrahedra.clear());
+    drop((in_scene, tags));
     for (&group, share) in groups.iter().zip(&mut shares) {
         let first = local.tetrahedra.len() as u32;
         let in_mesh = |element: [u32; 4]| element.map(|node| order[node as usize]);

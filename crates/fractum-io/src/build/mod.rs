@@ -233,10 +233,7 @@ impl<'a> Context<'a> {
         let bodies = self.solid_bodies(parts, numbering)?;
         let nodes = numbering.positions.clone();
         let solid = match (&self.exchange, self.division) {
-            (Some(exchange), Some(division)) => {
-                let bodies = bodies.into_iter().zip(division.bodies.iter().cloned()).collect();
-                Solid::divided(nodes, bodies, Arc::clone(exchange))
-            }
+            (Some(exchange), Some(division)) => Solid::divided(nodes, bodies, &division.bodies, Arc::clone(exchange)),
             _ if self.case.solver.subcycling.is_some() => Solid::subcycled(nodes, bodies),
             (Some(exchange), None) => Solid::shared(nodes, bodies, Arc::clone(exchange)),
             (None, _) => Solid::new(nodes, bodies),

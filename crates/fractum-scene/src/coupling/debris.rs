@@ -105,10 +105,12 @@ impl Debris {
     pub fn new(solid: &Solid, surfaces: Vec<ContactParameters>) -> Self {
         let bodies = 0..solid.body_count();
         assert_eq!(surfaces.len(), bodies.len(), "one surface per body");
-        let mut elasticity = vec![(0.0, 0.0); solid.reference.len()];
-        let mut thickness = vec![0.0; solid.reference.len()];
-        let mut body_of = vec![0; solid.reference.len()];
-        for index in bodies.clone().rev() {
+        // Nothing touches solids that no rank has whole.
+        let (touched, count) = if solid.is_divided() { (0..0, 0) } else { (bodies.clone(), solid.reference.len()) };
+        let mut elasticity = vec![(0.0, 0.0); count];
+        let mut thickness = vec![0.0; count];
+        let mut body_of = vec![0; count];
+        for index in touched.rev() {
             let body = solid.body(index);
             let pair = (body.elastic.young_modulus, body.elastic.poisson_ratio);
             let own = if body.shape == fractum_fem::ElementKind::T3 { body.thickness } else { 0.0 };

@@ -26,7 +26,7 @@ pub struct Cut {
     pub first: usize,
     /// Distance to the next one, from 1.
     pub step: usize,
-    /// Cells are those of the first piece that is wanted alone, and others have theirs.
+    /// Who wants the first piece has nothing of others, see [`UnstructuredGrid::own_piece`].
     pub is_divided: bool,
 }
 
@@ -114,11 +114,10 @@ impl UnstructuredGrid<'_> {
         let mut place = vec![u32::MAX; points.len()];
         let mut files = Vec::new();
         for piece in cut.wanted() {
-            let range = if cut.is_divided { 0..cell_count } else { run(cell_count, piece, cut.count) };
+            let range = run(cell_count, piece, cut.count);
             let own = blocks_of(cells, &range);
             let mut numbers: Vec<u32> = own.iter().flat_map(|block| block.nodes).copied().collect();
-            let points_of_piece = if cut.is_divided { 0..0 } else { run(points.len(), piece, cut.count) };
-            let alone = points_of_piece.filter(|&point| !is_touched[point]);
+            let alone = run(points.len(), piece, cut.count).filter(|&point| !is_touched[point]);
             numbers.extend(alone.map(|point| point as u32));
             numbers.sort_unstable();
             numbers.dedup();
@@ -139,6 +138,20 @@ impl UnstructuredGrid<'_> {
             files.push((piece, grid.pending(compression)?));
         }
         let arrays = declared(&with_numbers(point_data), cell_data);
+        Ok(Pieces { files, kind: "UnstructuredGrid".into(), ending: "vtu".into(), arrays, count: cut.count })
+    }
+
+    /// This grid as the first wanted piece of a larger one.
+    ///
+    /// - `numbers`: of its points in the larger one
+    ///
+    /// # Errors
+    /// As [`to_bytes`](Self::to_bytes).
+    pub fn own_piece(&self, cut: Cut, numbers: &[i32], compression: Compression) -> Result<Pieces, VtkError> {
+        let Self { point_data, cell_data, .. } = *self;
+        let with_own: Vec<Field> = point_data.iter().copied().chain([Field::integer(NUMBERS, numbers)]).collect();
+        let files = vec![(cut.first, UnstructuredGrid { point_data: &with_own, ..*self }.pending(compression)?)];
+        let arrays = declared(&with_own, cell_data);
         Ok(Pieces { files, kind: "UnstructuredGrid".into(), ending: "vtu".into(), arrays, count: cut.count })
     }
 }
