@@ -241,6 +241,7 @@ fn each_mistake_has_one_clear_message() {
         ("fractum = 1", "fractum = 2", "1:11: fractum = 2; expected 1, the version this program reads"),
         ("fractum = 1", "", "fractum is missing; expected a whole number"),
         ("end = 1e-3", "", "13:1: solver.end is missing; expected a time such as \"0.2 ms\""),
+        ("file = \"bar.msh\"", "file = \"bar.msh\"\nparts = 0", "4:9: mesh.parts = 0; expected 1 to 65536"),
         ("file = \"bar.msh\"", "file = \"\"", "3:8: mesh.file = \"\"; expected a text that is not empty"),
         (
             "end = 1e-3",

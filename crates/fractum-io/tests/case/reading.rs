@@ -21,6 +21,7 @@ fn a_case_with_every_key_is_read_into_si() {
     let mesh = case.mesh.as_ref().unwrap();
     assert_eq!(mesh.file.value, folder().join("meshes/block.msh"));
     assert_eq!(mesh.unit, 1e-3);
+    assert_eq!(mesh.files(), ["meshes/block_1.msh", "meshes/block_2.msh"].map(|file| folder().join(file)));
     assert_eq!(case.source.parameters["E1"], 42e9);
 
     let [concrete, mortar, cement, grout] = &case.materials[..] else { panic!() };
