@@ -33,7 +33,7 @@ impl Solid {
     /// The process converges from below; the value carries a margin of 2 %. The governing element is the one with the
     /// highest frequency of its own.
     ///
-    /// Where cells take steps of two sizes it is that of those with the longer ones.
+    /// Where cells take steps of two sizes it is that of those with the longer ones. Ranks that share the cells must all call it.
     pub fn stable_step(&mut self) -> StableStep {
         let frequency = 1.02 * self.largest_eigenvalue(|solid, node| !solid.is_fine(node)).sqrt();
         StableStep { frequency, ..self.stable_step_bound() }
@@ -50,7 +50,7 @@ impl Solid {
     }
 
     /// ω_max by the rigorous bound max over elements of their own highest frequency (holds for both formulations and
-    /// through removal).
+    /// through removal). Ranks of which none has all elements must all call it.
     pub fn stable_step_bound(&self) -> StableStep {
         match &self.subcycling {
             Some(subcycling) => self.bound(|body, element| !subcycling.fine_elements[body][element as usize]),

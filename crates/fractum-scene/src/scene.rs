@@ -1,5 +1,5 @@
 use fractum_fem::{LocalDamping, Solid, SolidState, StableStep};
-use fractum_math::Vec3;
+use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::bonded::{Bonded, BondedState};
@@ -103,6 +103,11 @@ impl SceneState {
     pub fn before_viscous_stress(&self) -> impl Serialize + '_ {
         let SolidState { displacement, velocity, bodies, dissipated, viscous_dissipation, viscous: _ } = &self.solid;
         (self.clock, displacement, velocity, bodies, dissipated, viscous_dissipation)
+    }
+
+    /// Viscous stress of the solids, block by block.
+    pub fn viscous_stress(&self) -> &[Vec<Sym3>] {
+        &self.solid.viscous
     }
 
     /// The same with another state of the solids; none where there is none.

@@ -125,7 +125,7 @@ fn hash_of_divided(scene: &Scene) -> u128 {
     let before = postcard::to_stdvec(&state.before_viscous_stress()).unwrap_or_default();
     // A list is its length, and what it holds.
     let bytes = postcard::to_stdvec(&state).unwrap_or_default();
-    let behind = before.len() + postcard::to_stdvec(&scene.solid.state().viscous).map_or(0, |own| own.len());
+    let behind = before.len() + postcard::to_stdvec(state.viscous_stress()).map_or(0, |own| own.len());
     let length = postcard::to_stdvec(&scene.solid.block_count()).unwrap_or_default();
     let mut hash = Xxh3::new();
     hash.update(&before);

@@ -119,6 +119,7 @@ fn ranks_that_read_a_part_each_have_the_state_of_one_process() {
         assert!(place.path(&folder).join("pictures/stress.png").is_file());
         // Every element is in one of the pieces.
         let frames = |folder: &str| read_collection(&place.path(folder).join("fields.pvd")).unwrap().entries;
+        assert_eq!(frames(&folder).len(), 3);
         for (ours, expected) in frames(&folder).iter().zip(frames("alone")) {
             assert_eq!(ours.file, expected.file.replace(".v", ".pv"));
             let read = |folder: &str, file: &str| {
@@ -166,9 +167,14 @@ fn what_needs_all_elements_has_every_rank_read_all_parts() {
     for hash in on_ranks(&place, 2, &options(&place, "shared")) {
         assert_eq!(hash.unwrap(), alone.hashes.state_hash);
     }
-    let log = fs::read_to_string(place.path("shared/run.log")).unwrap();
-    let why = "every process has the whole mesh, because of probe \"p\", which looks at elements\n";
-    assert!(log.contains(why), "{log}");
+    let said = |folder: &str, why: &str| {
+        let log = fs::read_to_string(place.path(folder).join("run.log")).unwrap();
+        assert!(log.contains(&format!("every process has the whole mesh, because of {why}\n")), "{log}");
+    };
+    said("shared", "probe \"p\", which looks at elements");
+    fs::write(place.path("case.toml"), BLOCK.replace("principal = true", "strain = true")).unwrap();
+    on_ranks(&place, 2, &options(&place, "strains")).into_iter().for_each(|hash| drop(hash.unwrap()));
+    said("strains", "the field of strains");
 }
 
 #[test]

@@ -25,6 +25,7 @@ pub(super) struct Part<'a> {
 }
 
 /// The nodes of the scene: those of solid bodies, in an order that keeps neighbours close in memory.
+#[derive(Clone)]
 pub(super) struct Numbering {
     pub(super) scene_node: Vec<u32>,
     pub(super) positions: Vec<Vec3>,
@@ -145,14 +146,12 @@ impl<'a> Context<'a> {
 
     /// Nodes of the bodies along a Hilbert curve.
     pub(super) fn number_nodes(&self, parts: &[Part]) -> Numbering {
-        let mut is_used = vec![false; self.mesh.nodes.len()];
-        let mut mark = |node: u32| is_used[node as usize] = true;
-        for part in parts {
-            match &self.mesh.whole {
-                Some(_) => self.mesh.group_nodes(&part.body.group.value).into_iter().for_each(&mut mark),
-                None => self.element_nodes(part).into_iter().flatten().for_each(&mut mark),
-            }
+        if let Some(division) = self.division {
+            return division.numbering.clone();
         }
+        let mut is_used = vec![false; self.mesh.nodes.len()];
+        let nodes = parts.iter().flat_map(|part| self.element_nodes(part)).flatten();
+        nodes.for_each(|node| is_used[node as usize] = true);
         Numbering::of(&self.mesh.nodes, &is_used).0
     }
 

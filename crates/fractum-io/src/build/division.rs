@@ -14,6 +14,8 @@ pub struct SolidDivision {
     pub(super) bodies: Vec<BodyShare>,
     /// In nodes of the mesh.
     pub(super) boundary: DividedBoundary,
+    /// Of the nodes of all bodies.
+    pub(super) numbering: Numbering,
 }
 
 /// Why processes cannot share the mesh of a case, in words; none where they can.
@@ -46,6 +48,7 @@ pub fn cannot_divide(case: &Case) -> Option<String> {
         .or_else(|| probe.map(|probe| format!("probe \"{}\", which looks at elements", probe.name.value)))
         .or_else(|| (!output.gauges.is_empty()).then(|| "gauges".to_owned()))
         .or_else(|| output.fields.fragment.then(|| "the field of fragments".to_owned()))
+        .or_else(|| output.fields.strain.then(|| "the field of strains".to_owned()))
 }
 
 /// Whether a probe looks at nodes and at what is known of the whole alone.
@@ -131,7 +134,7 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
         local.tetrahedron_tags.append(&mut share.tags);
         local.groups[group].tetrahedra = (first..local.tetrahedra.len() as u32).collect();
     }
-    Ok((local, SolidDivision { bodies: shares, boundary }))
+    Ok((local, SolidDivision { bodies: shares, boundary, numbering }))
 }
 
 /// Pieces that do not hang together.
