@@ -2,13 +2,17 @@
 
 use std::sync::Arc;
 
-use fractum_fem::{Body, BodyShare, Formulation, Kinematics, LocalDamping, ReadBody, Solid, Viscosity};
+use fractum_fem::{
+    Body, BodyShare, CrackFacet, DamageLaw, Formulation, Kinematics, LocalDamping, ReadBody, Regularisation, Solid,
+    Viscosity,
+};
 use fractum_math::Vec3;
 use fractum_parallel::{Exchange, threads};
-use fractum_scene::{Gravity, Load, Pressure, Scene, Watched};
+use fractum_scene::coupling::largest_radii;
+use fractum_scene::{Counts, Gravity, Load, Pressure, Scene, Watched, solid_pieces};
 use fractum_tests::{jittered_box, surface};
 
-use crate::ranks::{RANKS, advance, ends, on_two_threads, scene, set_moving};
+use crate::ranks::{RANKS, advance, bits, ends, on_two_threads, scene, set_moving};
 
 const SIZE: Vec3 = Vec3::new(0.4, 0.2, 0.2);
 
@@ -34,8 +38,12 @@ fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> (Ve
     let elements: Vec<Vec<[u32; 4]>> = bodies.iter().map(read).collect();
     let tags: Vec<Vec<u64>> = elements.iter().map(|of| vec![7; of.len()]).collect();
     let parts = bodies.iter().zip(elements.iter().zip(&tags));
-    let parts: Vec<ReadBody> =
-        parts.map(|(body, (elements, tags))| ReadBody { formulation: body.formulation, elements, tags }).collect();
+    let parts: Vec<ReadBody> = parts
+        .map(|(body, (elements, tags))| {
+            let (formulation, is_whole) = (body.formulation, body.damage.is_some());
+            ReadBody { formulation, elements, tags, is_whole }
+        })
+        .collect();
     let shares = fractum_fem::deal(&**exchange, nodes, &parts);
     let boundary = fractum_fem::divided_boundary(&**exchange, &elements, nodes.len());
     let whole: Vec<[u32; 4]> = bodies.iter().flat_map(|body| &body.elements).copied().collect();
@@ -112,6 +120,69 @@ fn same_as_whole(kinematics: Kinematics, damping: LocalDamping, viscous: bool) {
         }
         assert_eq!(told, [all[0].elements.len(), all[1].elements.len()]);
     }
+}
+
+/// A bar of which the middle breaks, a body of its own between two that do not.
+fn breaking(formulation: Formulation, regularisation: Option<Regularisation>) -> (Vec<Vec3>, Vec<Body>) {
+    let (nodes, body) = jittered_box([24, 8, 8], SIZE);
+    let place = |element: &[u32; 4]| element.iter().map(|&n| nodes[n as usize].x).sum::<f64>() / (4.0 * SIZE.x);
+    let of = |[begin, end]: [f64; 2], formulation| {
+        let elements = body.elements.iter().filter(|element| (begin..end).contains(&place(element)));
+        Body { elements: elements.copied().collect(), formulation, ..body.clone() }
+    };
+    let mut middle = of([0.4, 0.6], formulation).with_damage(DamageLaw::rankine(3e6, 60.0));
+    middle.damage.as_mut().unwrap().regularisation = regularisation;
+    let bodies = vec![of([0.0, 0.4], Formulation::Smoothed), middle, of([0.6, 1.0], Formulation::Standard)];
+    (nodes, bodies)
+}
+
+/// Whatever a rank knows of all that breaks.
+fn broken(scene: &Scene) -> (String, Counts, Vec<f64>, Vec<CrackFacet>, Vec<Vec<u32>>) {
+    let radii = largest_radii(&scene.solid);
+    let pieces = solid_pieces(&scene.solid, 0.05).into_iter().map(|piece| piece.nodes).collect();
+    (bits(scene), scene.counts(), radii, scene.solid.crack_surface().facets, pieces)
+}
+
+fn breaks_as_whole(formulation: Formulation, regularisation: Option<Regularisation>) {
+    let (nodes, all) = breaking(formulation, regularisation);
+    let pulled = |solid: Solid| {
+        let supports = ends(&solid, 10.0);
+        scene(solid, supports, Vec::new(), LocalDamping::default())
+    };
+    let mut single = pulled(Solid::new(nodes.clone(), all.clone()).unwrap());
+    advance(&mut single, 400);
+    let counts = single.counts();
+    assert!(counts.removed_elements > 10 && counts.particles > 10, "{formulation:?}: {counts:?}");
+    let expected = broken(&single);
+    let run = |exchange: Arc<dyn Exchange>| {
+        on_two_threads(|| {
+            let (bodies, shares) = dealt(&exchange, &nodes, all.clone());
+            let solid = Solid::divided(nodes.clone(), bodies, &shares, Arc::clone(&exchange)).unwrap();
+            assert!(solid.is_divided() && solid.connected_pieces(1).is_none());
+            let mut scene = pulled(solid);
+            scene.share_out(exchange, &Watched::default());
+            advance(&mut scene, 400);
+            scene.gather_ranks();
+            // Radii are found together.
+            broken(&scene)
+        })
+    };
+    for ranks in RANKS {
+        let run = &run;
+        std::thread::scope(|scope| {
+            let started: Vec<_> = threads(ranks).into_iter().map(|exchange| scope.spawn(|| run(exchange))).collect();
+            for (rank, thread) in started.into_iter().enumerate() {
+                assert!(thread.join().unwrap() == expected, "{formulation:?}: rank {rank} of {ranks}");
+            }
+        });
+    }
+}
+
+#[test]
+fn a_body_that_breaks_between_divided_ones_has_the_bits_of_one_process() {
+    breaks_as_whole(Formulation::Smoothed, None);
+    breaks_as_whole(Formulation::Standard, None);
+    breaks_as_whole(Formulation::Smoothed, Some(Regularisation { length: None }));
 }
 
 #[test]

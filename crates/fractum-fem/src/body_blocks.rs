@@ -80,6 +80,7 @@ impl BodyModel {
             hooke,
             viscosity: None,
             alive,
+            is_told: Vec::new(),
             volumes: OnceLock::new(),
             edges,
             elements_of_edge,

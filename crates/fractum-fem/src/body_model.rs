@@ -16,6 +16,8 @@ pub(crate) struct BodyModel {
     pub(crate) hooke: Hooke,
     pub(crate) viscosity: Option<BodyViscosity>,
     pub(crate) alive: Vec<bool>,
+    /// Which elements this rank tells of, where bodies are divided among ranks; else empty.
+    pub(crate) is_told: Vec<bool>,
     /// Volumes of the elements without load [m³], once something asks for them.
     pub(crate) volumes: OnceLock<Vec<f64>>,
     /// Edges, with damage or in the smoothed formulation.

@@ -1,16 +1,20 @@
 //! A solid whose bodies are divided among ranks.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use fractum_math::{Sym3, Vec3};
-use fractum_mesh::topology::{TETRAHEDRON_FACETS, boundary_of_tetrahedra};
+use fractum_mesh::topology::{TETRAHEDRON_FACETS, boundary_of_tetrahedra, edges_of_tetrahedra};
 use fractum_parallel::{Exchange, gather, gather_named};
 
 use crate::block::NodeSlots;
 use crate::body::{Body, ElementKind, Formulation};
 use crate::body_model::{BodyModel, Chosen};
 use crate::cell::Geometry;
-use crate::divided::{BodyShare, DividedBody, ELSEWHERE, EdgeValues, RanksOfNodes, masses};
+use crate::divided::{
+    BlockOrder, BodyShare, ConnectedPieces, DividedBody, ELSEWHERE, EdgeValues, GivenToNodes, RanksOfNodes,
+    SharedNodes, connected_pieces, nodal_sums,
+};
 use crate::error::SolidError;
 use crate::evaluate::Block;
 use crate::part::Part;
@@ -18,10 +22,10 @@ use crate::solid::Solid;
 use crate::time_step::StableStep;
 
 impl Solid {
-    /// Builds the cells that this rank evaluates of elastic bodies, none of which it has whole. All ranks must call it.
+    /// Builds the cells that this rank evaluates of bodies of which it has a share. All ranks must call it.
     ///
     /// - `nodes`: reference positions of all nodes [m]
-    /// - `bodies`: with the elements of this rank; `shares`: what else it has of each of them
+    /// - `bodies`: with the elements of this rank; those with damage are whole; `shares`: what else it has of each of them
     ///
     /// # Errors
     /// As [`Solid::new`], the same on every rank.
@@ -34,43 +38,76 @@ impl Solid {
         let volumes: Vec<Result<Vec<f64>, SolidError>> =
             bodies.iter().map(|body| Geometry { body, nodes: &nodes }.volumes()).collect();
         let volumes = together(&*exchange, volumes.into_iter().collect::<Result<Vec<_>, _>>())?;
-        let mass = masses(&*exchange, nodes.len(), &bodies, shares, &volumes);
+        let mut given = Vec::new();
+        for ((body, share), volumes) in bodies.iter().zip(shares).zip(&volumes) {
+            let values = volumes.iter().map(|volume| body.elastic.density * volume / 4.0).collect();
+            given.push(GivenToNodes { share, elements: &body.elements, values });
+        }
+        let mass = nodal_sums(&*exchange, nodes.len(), &given);
+        drop(given);
         if let Some(node) = mass.iter().position(|&mass| mass <= 0.0) {
             return Err(SolidError::MasslessNode { node });
         }
-        let (mut models, mut own) = (Vec::new(), Vec::new());
-        let mut made = Ok(());
+        let (mut models, mut made) = (Vec::new(), Vec::new());
+        let mut done = Ok(());
         for (index, ((body, share), volumes)) in bodies.into_iter().zip(shares).zip(&volumes).enumerate() {
-            let chosen = Chosen { fine: &[], share: Some(share) };
-            match BodyModel::new(body, index, &nodes, volumes, chosen, own.len()) {
-                Ok((mut model, mut blocks)) => {
-                    model.divide(&*exchange, share, volumes);
-                    own.append(&mut blocks);
+            let chosen = Chosen { fine: &[], share: Some(share).filter(|share| !share.is_whole) };
+            match BodyModel::new(body, index, &nodes, volumes, chosen, 0) {
+                Ok((mut model, blocks)) => {
+                    model.divide(&*exchange, share, volumes, nodes.len());
+                    made.push(blocks);
                     models.push(model);
                 }
-                Err(error) => made = Err(error),
+                Err(error) => done = Err(error),
             }
         }
-        together(&*exchange, made)?;
-        let counts = gather(&*exchange, &own.len());
-        let first: Vec<usize> = (0..=counts.len()).map(|rank| counts[..rank].iter().sum()).collect();
-        let before = first[exchange.rank()];
-        for (block, _) in models.iter_mut().flat_map(|model| &mut model.location).filter(|at| at.0 != ELSEWHERE) {
-            *block += before as u32;
+        together(&*exchange, done)?;
+        let cells: Vec<Vec<usize>> =
+            made.iter().map(|blocks: &Vec<Block>| blocks.iter().map(|block| block.items.len()).collect()).collect();
+        let order = BlockOrder::new(&*exchange, shares, &cells);
+        for (body, model) in models.iter_mut().enumerate() {
+            let begin = order.begin_of(body, exchange.rank(), &shares[body]) as u32;
+            model.location.iter_mut().filter(|at| at.0 != ELSEWHERE).for_each(|(block, _)| *block += begin);
         }
-        let mut of_own: Vec<u32> = own.iter().flat_map(|block: &Block| &block.cells.nodes).copied().collect();
+        let own = order.first[exchange.rank()]..order.first[exchange.rank() + 1];
+        let made = made.into_iter().enumerate().flat_map(|(body, blocks)| {
+            let begin = order.begin_of(body, exchange.rank(), &shares[body]);
+            (begin..).zip(blocks)
+        });
+        let made: Vec<(usize, Block)> = made.collect();
+        let of_own = made.iter().filter(|(index, _)| own.contains(index));
+        let mut of_own: Vec<u32> = of_own.flat_map(|(_, block)| &block.cells.nodes).copied().collect();
         of_own.sort_unstable();
         of_own.dedup();
         let ranks = RanksOfNodes::new(&*exchange, nodes.len(), &of_own);
-        let blocks = with_others(&*exchange, own, before, &ranks);
+        let blocks = with_others(&*exchange, made, shares, &ranks);
         let slots = NodeSlots::new(nodes.len(), blocks.iter().map(|block| block.cells.nodes.as_slice()))?;
-        let part = Part::divided(exchange, first, ranks, &blocks, &slots);
+        let part = Part::divided(exchange, order, ranks, &blocks, &slots);
         Ok(Solid::of_blocks(nodes, mass, models, blocks, slots, Some(Box::new(part))))
     }
 
-    /// Whether no rank has all of its elements.
+    /// Whether there are bodies that no rank has whole.
     pub fn is_divided(&self) -> bool {
         self.bodies.iter().any(|model| model.divided.is_some())
+    }
+
+    /// How the elements of a body hang together that no rank has whole; none where each has all of them.
+    pub fn connected_pieces(&self, body: usize) -> Option<&ConnectedPieces> {
+        Some(&self.bodies[body].divided.as_ref()?.pieces)
+    }
+
+    /// Number of an element of this rank in the whole body.
+    pub fn element_number(&self, body: usize, element: u32) -> u32 {
+        let divided = self.bodies[body].divided.as_ref();
+        divided.map_or(element, |divided| divided.numbers[element as usize])
+    }
+
+    /// The element of this rank that has a number in the whole body; none where it does not have that.
+    pub fn element_of_number(&self, body: usize, number: u32) -> Option<u32> {
+        match &self.bodies[body].divided {
+            Some(divided) => divided.numbers.binary_search(&number).ok().map(|element| element as u32),
+            None => Some(number),
+        }
     }
 
     /// Number of blocks of cells of all ranks.
@@ -117,7 +154,7 @@ impl Solid {
         let model = &mut self.bodies[body];
         let Some(divided) = &mut model.divided else { return };
         divided.skin.clear();
-        for (element, nodes) in model.body.elements.iter().enumerate().filter(|(e, _)| divided.is_told[*e]) {
+        for (element, nodes) in model.body.elements.iter().enumerate().filter(|(e, _)| model.is_told[*e]) {
             let sides = TETRAHEDRON_FACETS.map(|side| side.map(|corner| nodes[corner]));
             let seen = sides.into_iter().filter(|&side| outer.binary_search(&sorted(side)).is_ok());
             divided.skin.extend(seen.map(|side| (side, element as u32)));
@@ -137,14 +174,39 @@ impl Solid {
                 let alive: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| **alive).map(|(e, _)| e).collect();
                 let elements: Vec<[u32; 4]> = alive.iter().map(|&e| model.body.elements[e as usize]).collect();
                 let facets = boundary_of_tetrahedra(&elements).into_iter();
-                facets.map(|facet| (facet.nodes, alive[facet.element as usize])).collect()
+                let facets = facets.map(|facet| (facet.nodes, alive[facet.element as usize]));
+                facets.filter(|(_, element)| self.tells_of(body, *element as usize)).collect()
             }
         }
     }
 
     /// Whether this process tells of an element of a body: of several ranks that share it one does.
     pub fn tells_of(&self, body: usize, element: usize) -> bool {
-        self.bodies[body].divided.as_ref().is_none_or(|divided| divided.is_told[element])
+        self.bodies[body].is_told.get(element).is_none_or(|is_told| *is_told)
+    }
+
+    /// Edges of the elements of a body that this process tells of.
+    pub fn told_edges(&self, body: usize) -> Vec<[u32; 2]> {
+        let BodyModel { body, edges, is_told, .. } = &self.bodies[body];
+        if !is_told.contains(&false) {
+            return edges.as_ref().map_or_else(|| body.edges().nodes, |edges| edges.nodes.clone());
+        }
+        let told: Vec<[u32; 4]> =
+            body.elements.iter().zip(is_told).filter(|(_, is_told)| **is_told).map(|(nodes, _)| *nodes).collect();
+        edges_of_tetrahedra(&told).nodes
+    }
+
+    /// The nodes of the elements that ranks tell of; none where each has all elements. All ranks must call it.
+    pub fn shared_nodes(&self) -> Option<SharedNodes> {
+        let part = self.part.as_ref().filter(|part| part.is_divided())?;
+        let told = |model: &BodyModel| {
+            let told = model.body.elements.iter().zip(&model.is_told).filter(|(_, is_told)| **is_told);
+            told.flat_map(|(nodes, _)| *nodes).collect::<Vec<u32>>()
+        };
+        let mut own: Vec<u32> = self.bodies.iter().flat_map(told).collect();
+        own.sort_unstable();
+        own.dedup();
+        Some(SharedNodes::new(part.exchange(), self.reference.len(), &own))
     }
 
     /// Brings stress and damage of edges up to date that this rank needs of others for the means over the edges of its elements. All ranks must
@@ -184,9 +246,13 @@ impl Solid {
 
 impl BodyModel {
     /// Remembers what this rank has of the whole body, once its cells are made.
-    fn divide(&mut self, exchange: &dyn Exchange, share: &BodyShare, volumes: &[f64]) {
-        let told = volumes.iter().zip(&share.is_told).filter(|(_, is_told)| **is_told);
-        let volume = gather(exchange, &told.map(|(volume, _)| volume).sum::<f64>()).into_iter().sum();
+    ///
+    /// - `nodes`: of all bodies
+    fn divide(&mut self, exchange: &dyn Exchange, share: &BodyShare, volumes: &[f64], nodes: usize) {
+        self.is_told.clone_from(&share.is_told);
+        if share.is_whole {
+            return;
+        }
         let smoothed = self.body.formulation == Formulation::Smoothed;
         let values = match self.edges.as_ref().filter(|_| smoothed) {
             Some(edges) => {
@@ -196,27 +262,32 @@ impl BodyModel {
             }
             None => EdgeValues::default(),
         };
-        let (numbers, count, is_told) = (share.numbers.clone(), share.count, share.is_told.clone());
-        self.divided = Some(Box::new(DividedBody { numbers, count, is_told, volume, values, skin: Vec::new() }));
+        let pieces = connected_pieces(exchange, share, &self.body.elements, volumes, nodes);
+        let volume = pieces.volumes.iter().sum();
+        let (numbers, count) = (share.numbers.clone(), share.count);
+        self.divided = Some(Box::new(DividedBody { numbers, count, volume, pieces, values, skin: Vec::new() }));
     }
 }
 
-/// The blocks of this rank among those of all.
+/// The blocks of all ranks among those that this one has made: its own, and those of whole bodies.
 ///
-/// - `before`: blocks of lower ranks
-fn with_others(exchange: &dyn Exchange, own: Vec<Block>, before: usize, ranks: &RanksOfNodes) -> Vec<Block> {
-    let nodes = (before..).zip(own.iter().map(|block| block.cells.nodes.as_slice()));
-    let mut of_others = ranks.of_others(exchange, nodes);
-    let known: Vec<(usize, usize)> = own.iter().map(|block| (block.body, block.gradients)).collect();
-    let (mut all, mut own) = (Vec::new(), own.into_iter());
-    for (rank, blocks) in gather(exchange, &known).into_iter().enumerate() {
-        for (body, gradients) in blocks {
-            let block = if rank == exchange.rank() { own.next() } else { None };
-            let other = || Block::elsewhere(body, gradients, of_others.remove(&all.len()).unwrap_or_default());
-            all.push(block.unwrap_or_else(other));
-        }
+/// - `made`: with their numbers
+fn with_others(
+    exchange: &dyn Exchange,
+    made: Vec<(usize, Block)>,
+    shares: &[BodyShare],
+    ranks: &RanksOfNodes,
+) -> Vec<Block> {
+    let of_divided = || made.iter().filter(|(_, block)| !shares[block.body].is_whole);
+    let mut of_others = ranks.of_others(exchange, of_divided().map(|(at, block)| (*at, block.cells.nodes.as_slice())));
+    let known: Vec<(usize, usize, usize)> =
+        of_divided().map(|(index, block)| (*index, block.body, block.gradients)).collect();
+    let mut all: BTreeMap<usize, Block> = made.into_iter().collect();
+    for (index, body, gradients) in gather(exchange, &known).into_iter().flatten() {
+        let other = || Block::elsewhere(body, gradients, of_others.remove(&index).unwrap_or_default());
+        all.entry(index).or_insert_with(other);
     }
-    all
+    all.into_values().collect()
 }
 
 /// What every rank has done, or the error of the first that has one.

@@ -29,11 +29,10 @@ impl Solid {
         let always_records = self.bodies.iter().any(|model| model.viscosity.is_some());
         let mut part = self.part.take().unwrap_or_else(|| Box::new(Part::new(exchange, &self.blocks, &self.slots)));
         part.begin_stage(&self.slots, everywhere, [has_events, always_records]);
-        part.needs.all = self.needs_all_cells();
+        part.needs.all = self.bodies.iter().any(BodyModel::needs_all_cells);
         part.needs.sums = sums;
-        if !self.needs_all_cells() {
-            part.keep_own(&mut self.blocks);
-        }
+        let Solid { bodies, blocks, .. } = self;
+        part.keep_own(blocks, |block| bodies[block.body].needs_all_cells());
         for model in self.bodies.iter_mut().filter(|model| model.standard.is_none()) {
             let BodyModel { phase, location, .. } = model;
             let rank_of = |edge: u32| part.rank_of(location[edge as usize].0 as usize) as u32;
@@ -42,17 +41,13 @@ impl Solid {
         self.part = Some(part);
     }
 
-    /// Whether every rank needs the cells of all: edges of the standard formulation gather stresses of elements, which every rank
-    /// finds of all nodes.
-    fn needs_all_cells(&self) -> bool {
-        self.bodies.iter().any(|model| model.standard.is_some())
-    }
-
     /// Gives the cells that this process needs a geometry.
     pub(crate) fn make_cells(&mut self) {
-        let own = if self.needs_all_cells() { 0..self.blocks.len() } else { self.own_blocks() };
+        let own = self.own_blocks();
         let Solid { blocks, bodies, reference, part, .. } = self;
-        blocks[own].par_iter_mut().for_each(|block| {
+        let is_needed = |index: usize, block: &Block| own.contains(&index) || bodies[block.body].needs_all_cells();
+        let needed = blocks.par_iter_mut().enumerate().filter(|(index, block)| is_needed(*index, block));
+        needed.for_each(|(_, block)| {
             block.cells = bodies[block.body].cells(reference, &block.items);
             block.scratch = Some(Scratch::new());
             block.edge_field_mut().into_iter().for_each(EdgeField::keep_histories);
@@ -195,7 +190,7 @@ impl Solid {
         if measure {
             part.tell_energies(&mut self.blocks);
         }
-        if broken && !part.is_divided() {
+        if broken {
             part.tell_broken(&mut self.blocks);
         }
         if part.is_divided() {
@@ -218,6 +213,12 @@ impl Solid {
 }
 
 impl BodyModel {
+    /// Whether every rank needs the cells of all: edges of the standard formulation gather stresses of elements, which every rank
+    /// finds of all nodes.
+    fn needs_all_cells(&self) -> bool {
+        self.standard.is_some()
+    }
+
     /// Cells of some items of the body (elements, or edges if smoothed), of the elements that are there.
     fn cells(&self, nodes: &[Vec3], items: &[u32]) -> Cells {
         let edges = self.smoothed_edges().map(|edges| (edges, &self.elements_of_edge));

@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use fractum_fem::Solid;
 use fractum_math::{Vec3, connected};
 
@@ -81,26 +83,25 @@ pub(crate) fn joined(
 /// Pieces of solids connected by edges that have lost less than `joined_below` of their strength, heaviest first; bodies
 /// without damage hold together as long as their elements. Single nodes are pieces of their own.
 pub fn solid_pieces(solid: &Solid, joined_below: f64) -> Vec<Fragment> {
-    if solid.is_divided() {
-        // Such solids hang together, and nothing breaks them.
-        let bodies = 0..solid.body_count();
-        let (elements, volume) = bodies
-            .map(|body| (solid.element_count(body), solid.volume(body)))
-            .fold((0, 0.0), |(elements, volume), of_body| (elements + of_body.0, volume + of_body.1));
-        return vec![piece(solid, (0..solid.reference.len() as u32).collect(), elements, volume)];
-    }
     let part = joined_nodes(solid, joined_below);
     let mut elements = vec![0usize; part.len()];
     let mut volume = vec![0.0; part.len()];
     for body in 0..solid.body_count() {
+        let connected = solid.connected_pieces(body);
+        for &(node, count) in connected.iter().flat_map(|connected| &connected.pieces) {
+            elements[part[node as usize] as usize] += count;
+        }
+        let own = connected.map_or_else(|| Cow::Owned(nodal_volumes(solid, body)), |own| Cow::Borrowed(&own.volumes));
+        volume.iter_mut().zip(&*own).for_each(|(sum, own)| *sum += own);
+        if connected.is_some() {
+            continue;
+        }
         let corners = solid.body(body).shape.node_count();
-        let (alive, volumes) = (solid.alive(body), solid.element_volumes(body));
-        for (index, nodes) in solid.body(body).elements.iter().enumerate().filter(|(e, _)| alive[*e]) {
-            let share = volumes[index] / corners as f64;
-            let of_nodes = nodes[..corners].iter().map(|&node| part[node as usize] as usize);
-            of_nodes.clone().for_each(|place| volume[place] += share);
+        let alive = solid.body(body).elements.iter().zip(solid.alive(body)).filter(|(_, alive)| **alive);
+        for (nodes, _) in alive {
             let first = part[nodes[0] as usize] as usize;
-            elements[first] += usize::from(of_nodes.clone().all(|place| place == first));
+            let is_inside = nodes[..corners].iter().all(|&node| part[node as usize] as usize == first);
+            elements[first] += usize::from(is_inside);
         }
     }
     let mut members: Vec<Vec<u32>> = vec![Vec::new(); part.len()];
@@ -111,21 +112,36 @@ pub fn solid_pieces(solid: &Solid, joined_below: f64) -> Vec<Fragment> {
         .into_iter()
         .enumerate()
         .filter(|(_, nodes)| !nodes.is_empty())
-        .map(|(place, nodes)| piece(solid, nodes, elements[place], volume[place]))
+        .map(|(place, nodes)| {
+            let volume = nodes.iter().map(|&node| volume[node as usize]).sum();
+            piece(solid, nodes, elements[place], volume)
+        })
         .collect();
     pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass).then(a.nodes[0].cmp(&b.nodes[0])));
     pieces
 }
 
+/// What every node has of the volume of a body [m³]: an equal part of each element around it that is still there.
+fn nodal_volumes(solid: &Solid, body: usize) -> Vec<f64> {
+    let corners = solid.body(body).shape.node_count();
+    let (alive, volumes) = (solid.alive(body), solid.element_volumes(body));
+    let mut of_nodes = vec![0.0; solid.reference.len()];
+    for (element, nodes) in solid.body(body).elements.iter().enumerate().filter(|(e, _)| alive[*e]) {
+        let share = volumes[element] / corners as f64;
+        nodes[..corners].iter().for_each(|&node| of_nodes[node as usize] += share);
+    }
+    of_nodes
+}
+
 /// Share of the mass of every solid body that is in single nodes.
 pub(crate) fn single_share(solid: &Solid, joined_below: f64) -> Vec<f64> {
-    if solid.is_divided() {
-        return vec![0.0; solid.body_count()];
-    }
     let part = joined_nodes(solid, joined_below);
     let mut members = vec![0u32; part.len()];
     part.iter().for_each(|&place| members[place as usize] += 1);
     let of_body = |body: usize| {
+        if solid.connected_pieces(body).is_some() {
+            return 0.0;
+        }
         let corners = solid.body(body).shape.node_count();
         let mut nodes: Vec<u32> = solid.body(body).elements.iter().flat_map(|e| &e[..corners]).copied().collect();
         nodes.sort_unstable();
@@ -168,10 +184,14 @@ fn joined_nodes(solid: &Solid, joined_below: f64) -> Vec<u32> {
     connected(solid.reference.len(), links)
 }
 
+/// Pairs of nodes that live elements join.
 fn element_links(solid: &Solid, body: usize) -> impl Iterator<Item = [u32; 2]> + '_ {
+    let connected = solid.connected_pieces(body);
+    let known = connected.into_iter().flat_map(|connected| &connected.links).copied();
     let corners = solid.body(body).shape.node_count();
     let alive = solid.body(body).elements.iter().zip(solid.alive(body)).filter(|(_, alive)| **alive);
-    alive.flat_map(move |(nodes, _)| nodes[1..corners].iter().map(|&node| [nodes[0], node]))
+    let alive = alive.take(if connected.is_some() { 0 } else { usize::MAX });
+    known.chain(alive.flat_map(move |(nodes, _)| nodes[1..corners].iter().map(|&node| [nodes[0], node])))
 }
 
 fn piece(solid: &Solid, nodes: Vec<u32>, elements: usize, volume: f64) -> Fragment {

@@ -113,7 +113,7 @@ impl Prepared {
     /// # Errors
     /// As [`load`]; the same on every rank.
     pub(crate) fn build(self, exchange: Option<&Arc<dyn Exchange>>) -> Result<Input, Failure> {
-        let Prepared { case, mesh: JoinedMesh { mesh, hash: mesh_hash, division, note }, made } = self;
+        let Prepared { case, mesh: JoinedMesh { mesh, hash: mesh_hash, division, notes }, made } = self;
         let build = |case: &Case, prepared| {
             build_shared_scene(case, &mesh, prepared, facets(case)?, (exchange.cloned(), division.as_ref()))
         };
@@ -132,7 +132,7 @@ impl Prepared {
         let choice = choose(&case, &mut built);
         let course = Course::of(later.iter().map(|(_, built)| built).chain([&built]));
         plots::check(&case, &columns::columns(&case, &built.scene, course))?;
-        let timings = note.into_iter().chain(made.timings).collect();
+        let timings = notes.into_iter().chain(made.timings).collect();
         Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, timings, choice })
     }
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use fractum_io::build::{SolidDivision, cannot_divide, divide};
+use fractum_io::build::{SolidDivision, cannot_divide, divide, whole_bodies};
 use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics};
 use fractum_io::memory;
@@ -38,7 +38,7 @@ pub(crate) struct JoinedMesh {
     /// What this process has of the solids, where none has all of them.
     pub(crate) division: Option<SolidDivision>,
     /// For the log: who has how much.
-    pub(crate) note: Option<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 impl MeshFiles {
@@ -65,7 +65,7 @@ impl MeshFiles {
         let Some(source) = &case.mesh else { return Ok(JoinedMesh::default()) };
         let whole = |mesh, hashes: &[u128], alike: Option<String>| {
             let note = alike.map(|reason| format!("every process has the whole mesh, because of {reason}"));
-            JoinedMesh { mesh, hash: hash(hashes), division: None, note }
+            JoinedMesh { mesh, hash: hash(hashes), division: None, notes: note.into_iter().collect() }
         };
         let Some(exchange) = exchange.filter(|_| is_part) else { return Ok(whole(mesh, &hashes, alike)) };
         let hashes = gather(&**exchange, &hashes).concat();
@@ -73,8 +73,10 @@ impl MeshFiles {
         match divide(case, mesh, &**exchange) {
             Ok((mesh, division)) => {
                 let (own, all) = (mesh.tetrahedra.len(), mesh.tetrahedron_count());
-                let note = Some(format!("this process has {own} of the {all} tetrahedra of the mesh"));
-                Ok(JoinedMesh { mesh, hash: hash(&hashes), division: Some(division), note })
+                let whole = whole_bodies(case).into_iter().map(|body| format!("every process has all of {body}"));
+                let notes = std::iter::once(format!("this process has {own} of the {all} tetrahedra of the mesh"));
+                let notes = notes.chain(whole).collect();
+                Ok(JoinedMesh { mesh, hash: hash(&hashes), division: Some(division), notes })
             }
             Err(reason) => Ok(whole(read_files(source, processes.alike())?.0, &hashes, Some(reason))),
         }

@@ -8,7 +8,7 @@ use fractum_math::Vec3;
 use fractum_mesh::generate::structured_box;
 use fractum_mesh::{Group, Mesh, MshFormat};
 
-use crate::common::{Workplace, mesh_bytes};
+use crate::common::{Workplace, files_below, mesh_bytes};
 use crate::ranks::{interrupted_on_ranks, on_ranks, options};
 
 /// A block of two bodies that is pushed at one end, and absorbs waves at the other.
@@ -60,6 +60,28 @@ end = "0.1 ms"
 history = { every = "5 us" }
 fields = { every = "50 us", principal = true }
 "#;
+
+/// The block, of which the left body breaks while its end is pulled and gas pushes on its top, also in cracks.
+fn breaking() -> String {
+    let damage = "[materials.weak]\ndensity = \"2600 kg/m^3\"\nyoung_modulus = \"50 GPa\"\npoisson_ratio = 0.25\n\
+        [materials.weak.damage]\ntensile_strength = \"3 MPa\"\nfracture_energy = \"60 J/m^2\"\n\
+        [[bodies]]\nname = \"left\"\nkind = \"solid\"\ngroup = \"left\"\nmaterial = \"weak\"\n";
+    let left = "[[bodies]]\nname = \"left\"\nkind = \"solid\"\ngroup = \"left\"\nmaterial = \"rock\"\n";
+    let pull = "[[supports]]\ngroup = \"x-\"\nvelocity.x = { ramp = [[\"0 s\", \"0 m/s\"], [\"20 us\", \"-8 m/s\"]] }\n\
+        [[loads]]\ngroup = \"z+\"\npressure = \"0.5 MPa\"\nin_cracks = true\n[damping]";
+    let probes = "[[probes]]\nname = \"removed\"\ncount = \"removed_elements\"\n\
+        [[probes]]\nname = \"area\"\ncrack_area = true\n\
+        [[probes]]\nname = \"front\"\ncrack = { measure = \"front\", along = \"z\" }\n\
+        [[probes]]\nname = \"damaged\"\ndamaged = { measure = \"volume\", group = \"left\" }\n\
+        [[probes]]\nname = \"stress\"\nstress = { group = \"left\", component = \"xx\" }\n\
+        [[probes]]\nname = \"size\"\nfragment_size = 0.5\n[solver]";
+    let gauges = "principal = true, fragment = true }\n[[output.gauges]]\nname = \"top\"\ngroup = \"z+\"\n\
+        from = [\"0.1 m\", \"0.2 m\", \"0.4 m\"]\nto = [\"0.7 m\", \"0.2 m\", \"0.4 m\"]\n\
+        spacing = \"0.1 m\"\nlength = \"0.15 m\"\n";
+    let loads = &BLOCK[BLOCK.find("[[loads]]").unwrap()..BLOCK.find("[damping]").unwrap()];
+    let case = BLOCK.replace(left, damage).replace(loads, "").replace("[damping]", pull);
+    case.replace("[solver]", probes).replace("principal = true }\n", gauges)
+}
 
 /// The block, with its elements in two groups.
 fn mesh() -> Mesh {
@@ -117,19 +139,25 @@ fn ranks_that_read_a_part_each_have_the_state_of_one_process() {
         let log = fs::read_to_string(place.path(&folder).join("run.log")).unwrap();
         assert!(log.contains("of the 6144 tetrahedra of the mesh\n"), "{log}");
         assert!(place.path(&folder).join("pictures/stress.png").is_file());
-        // Every element is in one of the pieces.
-        let frames = |folder: &str| read_collection(&place.path(folder).join("fields.pvd")).unwrap().entries;
-        assert_eq!(frames(&folder).len(), 3);
-        for (ours, expected) in frames(&folder).iter().zip(frames("alone")) {
-            assert_eq!(ours.file, expected.file.replace(".v", ".pv"));
-            let read = |folder: &str, file: &str| {
-                let arrays =
-                    Arrays::read(&place.path(folder).join(file), &["Points", "connectivity", "von_mises_stress"]);
-                arrays.unwrap()
-            };
-            let (ours, expected) = (read(&folder, &ours.file), read("alone", &expected.file));
-            assert_eq!(elements(&ours), elements(&expected), "{ranks} ranks");
-        }
+        assert_same_elements(&place, &folder);
+    }
+}
+
+/// Every element of a frame is in one of the pieces.
+fn assert_same_elements(place: &Workplace, folder: &str) {
+    let is_solid = |file: &str| file.contains("solid");
+    let frames = |folder: &str| {
+        let entries = read_collection(&place.path(folder).join("fields.pvd")).unwrap().entries;
+        entries.into_iter().map(|entry| entry.file).filter(|file| is_solid(file)).collect::<Vec<_>>()
+    };
+    assert_eq!(frames(folder).len(), 3);
+    for (ours, expected) in frames(folder).iter().zip(frames("alone")) {
+        assert_eq!(*ours, expected.replace(".v", ".pv"));
+        let read = |folder: &str, file: &str| {
+            let names = ["Points", "connectivity", "von_mises_stress"];
+            elements(&Arrays::read(&place.path(folder).join(file), &names).unwrap())
+        };
+        assert!(read(folder, ours) == read("alone", &expected), "{folder}: {ours}");
     }
 }
 
@@ -160,8 +188,43 @@ fn a_state_of_parts_is_taken_up_by_any_number_of_ranks() {
 }
 
 #[test]
+fn a_body_that_breaks_is_whole_on_every_rank_and_the_rest_is_not() {
+    let place = workplace(&breaking());
+    let case = place.path("case.toml");
+    let alone = run(&case, &options(&place, "alone")).unwrap().summary;
+    let counts = &alone.counts;
+    assert!(counts.removed_elements > 20 && counts.particles > 20, "{counts:?}");
+    let read = |folder: &str, file: &str| fs::read_to_string(place.path(folder).join(file)).unwrap();
+    for ranks in [2, 3, 5] {
+        let folder = format!("of-{ranks}");
+        for hash in on_ranks(&place, ranks, &options(&place, &folder)) {
+            assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{ranks} ranks");
+        }
+        for file in ["history.csv", "gauges/top-00002.csv", "fragments.csv"] {
+            assert!(read(&folder, file) == read("alone", file), "{ranks} ranks: {file}");
+        }
+        let cracks = |folder: &str| files_below(&place.path(folder), ".vtp").into_iter();
+        let cracks = |folder: &str| cracks(folder).filter(|file| file.display().to_string().contains("cracks-"));
+        assert!(cracks("alone").count() > 0 && cracks(&folder).count() == cracks("alone").count());
+        for (ours, expected) in cracks(&folder).zip(cracks("alone")) {
+            assert!(fs::read(&ours).unwrap() == fs::read(expected).unwrap(), "{}", ours.display());
+        }
+        let log = read(&folder, "run.log");
+        assert!(log.contains("every process has all of body \"left\", because of damage\n"), "{log}");
+        assert!(log.contains("of the 6144 tetrahedra of the mesh\n"), "{log}");
+        assert_same_elements(&place, &folder);
+    }
+    let folder = "from-3-to-2";
+    let options = options(&place, folder);
+    interrupted_on_ranks(&place, 3, &options, 7e-5);
+    for hash in on_ranks(&place, 2, &Options { resume: true, ..options.clone() }) {
+        assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{folder}");
+    }
+}
+
+#[test]
 fn what_needs_all_elements_has_every_rank_read_all_parts() {
-    let probe = "stress = { group = \"left\", component = \"xx\" }";
+    let probe = "stress = { where = \"x < 0.3\", component = \"xx\" }";
     let place = workplace(&BLOCK.replace("momentum = { along = \"x\" }", probe));
     let alone = run(&place.path("case.toml"), &options(&place, "alone")).unwrap().summary;
     for hash in on_ranks(&place, 2, &options(&place, "shared")) {
@@ -171,7 +234,7 @@ fn what_needs_all_elements_has_every_rank_read_all_parts() {
         let log = fs::read_to_string(place.path(folder).join("run.log")).unwrap();
         assert!(log.contains(&format!("every process has the whole mesh, because of {why}\n")), "{log}");
     };
-    said("shared", "probe \"p\", which looks at elements");
+    said("shared", "probe \"p\", which looks at elements of no body alone");
     fs::write(place.path("case.toml"), BLOCK.replace("principal = true", "strain = true")).unwrap();
     on_ranks(&place, 2, &options(&place, "strains")).into_iter().for_each(|hash| drop(hash.unwrap()));
     said("strains", "the field of strains");

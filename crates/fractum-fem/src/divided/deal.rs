@@ -12,6 +12,8 @@ use crate::body::Formulation;
 
 /// Words of an element on its way.
 const WORDS: usize = 7;
+/// Those of an element.
+type Words = [u64; WORDS];
 /// Elements that are packed at a time.
 const PACKED: usize = 1 << 16;
 
@@ -34,27 +36,55 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody]) -> Vec
         .collect();
     let named: Vec<Key> = cells.par_iter().flat_map_iter(|cells| cells.keys()).collect();
     let order = Order::new(exchange, named, bodies.len());
-    let mut words = vec![Vec::new(); exchange.size()];
-    cells.iter().for_each(|cells| cells.pack(&order, &mut words));
+    let is_near = nodes_of_whole(exchange, bodies, nodes.len());
+    let mut words = OnTheirWay { to: vec![Vec::new(); exchange.size()], to_all: Vec::new() };
+    cells.iter().for_each(|cells| cells.pack(&order, &is_near, &mut words));
     let mut shares: Vec<BodyShare> = (0..bodies.len())
         .map(|body| {
             assert!(u32::try_from(total(body)).is_ok(), "a body of {} elements", total(body));
-            BodyShare { count: total(body), ..BodyShare::default() }
+            BodyShare { count: total(body), is_whole: bodies[body].is_whole, ..BodyShare::default() }
         })
         .collect();
+    let mut own = vec![0; bodies.len()];
     for run in order.runs() {
         let nodes = |key: &Key| [(key[2] >> 32) as u32, key[2] as u32];
-        shares[run[0][0] as usize].runs.push(run.iter().map(nodes).collect());
+        let body = run[0][0] as usize;
+        own[body] += run.len();
+        if !bodies[body].is_whole {
+            shares[body].runs.push(run.iter().map(nodes).collect());
+        }
     }
     drop(order);
-    let received = post(exchange, words);
-    let packed = |(rank, at): (u32, u32)| -> &[u64; WORDS] { &received[rank as usize].as_chunks().0[at as usize] };
-    let of_rank =
-        |(rank, words): (usize, &Vec<u64>)| (0..(words.len() / WORDS) as u32).map(move |at| (rank as u32, at));
-    let mut elements: Vec<(u32, u32)> = received.iter().enumerate().flat_map(of_rank).collect();
+    for of_rank in gather(exchange, &own) {
+        shares.iter_mut().zip(of_rank).for_each(|(share, cells)| share.cells.push(cells));
+    }
+    let mut received = post(exchange, words.to);
+    received.extend(gather(exchange, &words.to_all));
+    let packed = |(from, at): (u32, u32)| -> &Words { &received[from as usize].as_chunks().0[at as usize] };
+    let all_from =
+        |(from, words): (usize, &Vec<u64>)| (0..(words.len() / WORDS) as u32).map(move |at| (from as u32, at));
+    let mut elements: Vec<(u32, u32)> = received.iter().enumerate().flat_map(all_from).collect();
     elements.par_sort_unstable_by_key(|&at| packed(at)[0]);
-    elements.into_iter().for_each(|at| shares_of(packed(at), &mut shares));
+    elements.into_iter().for_each(|at| add_to_share(packed(at), exchange.rank(), &mut shares));
     shares
+}
+
+/// Which nodes those of bodies are that every rank needs whole. All ranks must call it.
+fn nodes_of_whole(exchange: &dyn Exchange, bodies: &[ReadBody], count: usize) -> Vec<bool> {
+    let mut is_own = vec![false; count];
+    let whole = bodies.iter().filter(|body| body.is_whole);
+    whole.flat_map(|body| body.elements).flatten().for_each(|&node| is_own[node as usize] = true);
+    let own: Vec<u32> = (0..).zip(&is_own).filter(|(_, is_own)| **is_own).map(|(node, _)| node).collect();
+    let mut is_of_whole = is_own;
+    gather(exchange, &own).into_iter().flatten().for_each(|node| is_of_whole[node as usize] = true);
+    is_of_whole
+}
+
+/// Elements for other ranks.
+struct OnTheirWay {
+    to: Vec<Vec<u64>>,
+    /// Those that every rank gets.
+    to_all: Vec<u64>,
 }
 
 /// The curve through the cells of each body.
@@ -106,28 +136,33 @@ impl Cells<'_> {
     }
 
     /// Writes every element for the ranks that need it: its body and number, its nodes, its tag and the ranks of its edges.
-    fn pack(&self, order: &Order, words: &mut [Vec<u64>]) {
+    ///
+    /// - `is_near`: nodes around which every rank needs all elements
+    fn pack(&self, order: &Order, is_near: &[bool], words: &mut OnTheirWay) {
         let pack = |element: usize| {
             let mut ranks = [0; 6];
-            let found = self.keys_of(element).map(|key| order.rank(&key)).enumerate();
-            let count = found.map(|(at, rank)| ranks[at] = rank).count();
-            let mut to = ranks[..count].to_vec();
-            to.sort_unstable();
-            to.dedup();
+            for (at, key) in self.keys_of(element).enumerate() {
+                // The one rank of an element stands in all places.
+                ranks[at..].fill(order.rank(&key));
+            }
             let [a, b, c, d] = self.body.elements[element];
             let of = |at: usize| pair(ranks[at], ranks[at + 1]);
-            let number = (self.first + element) as u64;
-            (to, [self.index as u64, number, pair(a, b), pair(c, d), self.body.tags[element], of(0), of(2), of(4)])
+            let head = (self.index as u64) << 32 | (self.first + element) as u64;
+            (ranks, [head, pair(a, b), pair(c, d), self.body.tags[element], of(0), of(2), of(4)])
         };
         let count = self.body.elements.len();
         for begin in (0..count).step_by(PACKED) {
-            let packed: Vec<_> = (begin..count.min(begin + PACKED)).into_par_iter().map(pack).collect();
-            for (to, [body, number, nodes @ .., of_edges]) in packed {
-                for (at, rank) in to.into_iter().enumerate() {
-                    // The lowest rank that has it tells of it.
-                    let head = body << 33 | number << 1 | u64::from(at == 0);
-                    let [a, b, tag, e, f] = nodes;
-                    words[rank as usize].extend([head, a, b, tag, e, f, of_edges]);
+            let end = count.min(begin + PACKED);
+            let packed: Vec<([u32; 6], Words)> = (begin..end).into_par_iter().map(pack).collect();
+            for (element, (mut ranks, packed)) in (begin..end).zip(packed) {
+                let is_for_all = self.body.elements[element].iter().any(|&node| is_near[node as usize]);
+                if self.body.is_whole || is_for_all {
+                    words.to_all.extend(packed);
+                    continue;
+                }
+                ranks.sort_unstable();
+                for of_rank in ranks.chunk_by(|a, b| a == b) {
+                    words.to[of_rank[0] as usize].extend(packed);
                 }
             }
         }
@@ -135,16 +170,18 @@ impl Cells<'_> {
 }
 
 /// Adds an element that has arrived to the share of its body.
-fn shares_of(&[head, a, b, tag, e, f, g]: &[u64; WORDS], shares: &mut [BodyShare]) {
-    let share = &mut shares[(head >> 33) as usize];
+fn add_to_share(&[head, a, b, tag, e, f, g]: &Words, me: usize, shares: &mut [BodyShare]) {
+    let share = &mut shares[(head >> 32) as usize];
     let halves = |word: u64| [(word >> 32) as u32, word as u32];
     let ([n0, n1], [n2, n3]) = (halves(a), halves(b));
     share.elements.push([n0, n1, n2, n3]);
     share.tags.push(tag);
-    share.numbers.push((head >> 1) as u32);
-    share.is_told.push(head & 1 == 1);
+    share.numbers.push(head as u32);
     let ([r0, r1], [r2, r3], [r4, r5]) = (halves(e), halves(f), halves(g));
-    share.owners.push([r0, r1, r2, r3, r4, r5]);
+    let owners = [r0, r1, r2, r3, r4, r5];
+    // The lowest rank with a cell of it tells of it.
+    share.is_told.push(owners.iter().min() == Some(&(me as u32)));
+    share.owners.push(owners);
 }
 
 fn pair(a: u32, b: u32) -> u64 {

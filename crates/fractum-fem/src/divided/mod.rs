@@ -3,21 +3,29 @@
 //! Each rank reads some elements. The cells of all are put in the order that one process gives them, along a curve through each body, and cut
 //! into the same blocks; a rank gets a run of blocks with the elements around their cells. So every sum over blocks has the bits of one process.
 //! Every rank has all nodes. Blocks of others are there with their number and the nodes that this rank has too.
+//!
+//! Bodies that break are whole on every rank, which all take out the same elements. Elements of other bodies that have a node of them are on
+//! every rank too: what lies around such nodes is known to all.
 
+mod block_order;
 mod boundary;
 mod deal;
 mod edge_values;
 mod nodes;
 mod order;
+mod pieces;
 
 use std::collections::BTreeMap;
 
 use fractum_math::Sym3;
 
+pub(crate) use block_order::BlockOrder;
 pub use boundary::{DividedBoundary, divided_boundary};
 pub use deal::deal;
 pub(crate) use edge_values::EdgeValues;
-pub(crate) use nodes::{RanksOfNodes, masses};
+pub use nodes::SharedNodes;
+pub(crate) use nodes::{GivenToNodes, RanksOfNodes, nodal_sums};
+pub(crate) use pieces::connected_pieces;
 
 use crate::body::Formulation;
 
@@ -30,6 +38,8 @@ pub struct ReadBody<'a> {
     pub elements: &'a [[u32; 4]],
     /// What the file calls each of them.
     pub tags: &'a [u64],
+    /// Whether every rank needs all of it.
+    pub is_whole: bool,
 }
 
 /// What a rank keeps of a body of tetrahedra.
@@ -43,14 +53,18 @@ pub struct BodyShare {
     pub numbers: Vec<u32>,
     /// Elements of the whole body.
     pub count: usize,
+    /// Whether every rank has all of them.
+    pub is_whole: bool,
     /// Which of them this rank tells of: every element has one rank that does.
     pub is_told: Vec<bool>,
-    /// Ranks whose cells the edges of each element are, in the order of [`fractum_mesh::topology::TETRAHEDRON_EDGES`]; without meaning where elements are
-    /// the cells.
+    /// Ranks whose cells the edges of each element are, in the order of [`fractum_mesh::topology::TETRAHEDRON_EDGES`]; the rank of the
+    /// element where elements are the cells.
     pub owners: Vec<[u32; 6]>,
     /// Cells of this rank, in runs that make a block each, or several where they touch many nodes: edges by their nodes, lower first, or
-    /// elements by their number, twice.
+    /// elements by their number, twice. Of a whole body the blocks are those of one process.
     pub runs: Vec<Vec<[u32; 2]>>,
+    /// Cells of every rank.
+    pub cells: Vec<usize>,
 }
 
 /// What a rank knows of a body that it does not have whole.
@@ -60,14 +74,25 @@ pub(crate) struct DividedBody {
     pub(crate) numbers: Vec<u32>,
     /// Elements of the whole body.
     pub(crate) count: usize,
-    /// Which of them this rank tells of.
-    pub(crate) is_told: Vec<bool>,
     /// Volume of the whole body [m³].
     pub(crate) volume: f64,
+    /// How its elements hang together.
+    pub(crate) pieces: ConnectedPieces,
     /// Stress and damage of edges that others evaluate, at the last frame; empty where elements are the cells.
     pub(crate) values: EdgeValues,
     /// Facets that are seen from outside, with the number of their element on this rank: of the elements that it tells of.
     pub(crate) skin: Vec<([u32; 3], u32)>,
+}
+
+/// How the elements of a body hang together that no rank has whole. None of them ever leaves.
+#[derive(Clone, Debug, Default)]
+pub struct ConnectedPieces {
+    /// Pairs of nodes that link all nodes of a piece.
+    pub links: Vec<[u32; 2]>,
+    /// Lowest node of each piece with the number of its elements, ascending.
+    pub pieces: Vec<(u32, usize)>,
+    /// What every node has of the volume of the body [m³]: an equal part of each element around it.
+    pub volumes: Vec<f64>,
 }
 
 /// Block of cells that another rank evaluates, of which this one has no more than its number.

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
-use fractum_parallel::{Exchange, post};
+use fractum_parallel::{Exchange, Swapped, Told, post};
 use rayon::prelude::*;
 
 use super::{BodyShare, NodesOfOthers};
-use crate::body::Body;
 
 /// Nodes by number: each rank looks after a run of them.
 struct Runs<'a> {
@@ -39,22 +39,25 @@ impl Runs<'_> {
     }
 }
 
-/// Mass of every node [kg]: shares of elements body by body in the order of their numbers. All ranks must call it.
+/// What the elements of a body give their nodes.
+pub(crate) struct GivenToNodes<'a> {
+    pub(crate) share: &'a BodyShare,
+    /// Those of this rank.
+    pub(crate) elements: &'a [[u32; 4]],
+    /// What each of them gives each of its nodes.
+    pub(crate) values: Vec<f64>,
+}
+
+/// What every node has of the elements around it: body by body in the order of their numbers. All ranks must call it.
 ///
-/// - `bodies`: with the elements of this rank; `volumes`: of each of them [m³]
-pub(crate) fn masses(
-    exchange: &dyn Exchange,
-    count: usize,
-    bodies: &[Body],
-    shares: &[BodyShare],
-    volumes: &[Vec<f64>],
-) -> Vec<f64> {
+/// - `count`: how many nodes there are
+pub(crate) fn nodal_sums(exchange: &dyn Exchange, count: usize, bodies: &[GivenToNodes]) -> Vec<f64> {
     let told = || {
-        bodies.iter().zip(shares).zip(volumes).enumerate().flat_map(|(index, ((body, share), volumes))| {
-            let told = (0..volumes.len()).filter(|&element| share.is_told[element]);
+        bodies.iter().enumerate().flat_map(|(index, GivenToNodes { share, elements, values })| {
+            let told = (0..values.len()).filter(|&element| share.is_told[element]);
             told.map(move |element| {
                 let order = (index as u64) << 32 | u64::from(share.numbers[element]);
-                (body.elements[element], order, body.elastic.density * volumes[element] / 4.0)
+                (elements[element], order, values[element])
             })
         })
     };
@@ -87,6 +90,43 @@ pub(crate) fn masses(
     let mut sums = vec![0.0; after.len()];
     parts.iter().for_each(|&[node, _, part]| sums[node as usize - after.start] += f64::from_bits(part));
     runs.tell(&sums)
+}
+
+/// Nodes of elements that several ranks tell of, for values that all elements around a node decide.
+#[derive(Debug)]
+pub struct SharedNodes {
+    exchange: Arc<dyn Exchange>,
+    swapped: Swapped<u32>,
+    told: Told,
+}
+
+impl SharedNodes {
+    /// - `own`: nodes of the elements that this rank tells of, ascending; all ranks must call it
+    pub(crate) fn new(exchange: Arc<dyn Exchange>, count: usize, own: &[u32]) -> Self {
+        let ranks = RanksOfNodes::new(&*exchange, count, own);
+        let mut between = BTreeMap::<usize, [Vec<u32>; 2]>::new();
+        for (&node, others) in &ranks.shared {
+            for &other in others {
+                between.entry(other as usize).or_default().iter_mut().for_each(|nodes| nodes.push(node));
+            }
+        }
+        let mut told = vec![Vec::new(); exchange.size()];
+        (0..).zip(&ranks.lowest).for_each(|(node, &rank)| told[rank as usize].push(node));
+        SharedNodes { exchange, swapped: Swapped::new(between), told: Told::new(told) }
+    }
+
+    /// Leaves the least value of all ranks at each node. All ranks must call it.
+    pub fn take_least(&mut self, values: &mut [f64]) {
+        self.swapped.fill(|node| [values[node as usize]]);
+        self.swapped.swap(&*self.exchange, &mut || ());
+        self.swapped.read(|node, [value]: [f64; 1]| values[node as usize] = values[node as usize].min(value));
+    }
+
+    /// Gives every rank the values of all nodes. All ranks must call it.
+    pub fn tell(&mut self, values: &mut [f64]) {
+        let put = |values: &mut [f64], node: usize, [value]: [f64; 1]| values[node] = value;
+        self.told.tell(&*self.exchange, values, |values, node| [values[node]], put);
+    }
 }
 
 /// Which ranks have cells at a node.

@@ -21,7 +21,7 @@ use fractum_parallel::{Exchange, Told, gather, rank_of, runs_by_weight, runs_of}
 
 use crate::block::{Cells, NodeSlots, Slot};
 use crate::damage::{EdgeDamage, EdgeField};
-use crate::divided::RanksOfNodes;
+use crate::divided::{BlockOrder, RanksOfNodes};
 use crate::evaluate::Block;
 
 use block_share::BlockShare;
@@ -34,8 +34,8 @@ use records::Records;
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
     exchange: Arc<dyn Exchange>,
-    /// Blocks of every rank: from `first[rank]` up to `first[rank + 1]`.
-    first: Vec<usize>,
+    /// Whose block is which, and which of them every rank has, with their cells or without.
+    order: BlockOrder,
     /// Sums that ranks with blocks around the same nodes swap.
     plan: Plan,
     /// All nodes.
@@ -97,42 +97,41 @@ impl Part {
         let weights: Vec<usize> = blocks.iter().map(|block| block.gradients.max(1)).collect();
         let first = runs_by_weight(&weights, exchange.size());
         let chunks = Chunks::new(slots, &first, exchange.rank());
-        Part::with(exchange, first, chunks, Tellers::OfSlots, slots)
+        Part::with(exchange, BlockOrder::of_whole(first), chunks, Tellers::OfSlots, slots)
     }
 
-    /// The share of a rank that has no more of the blocks of others than their numbers.
-    ///
-    /// - `first`: first block of each rank, and the end
+    /// The share of a rank that has no more of the blocks of others than their numbers, but those of whole bodies.
     pub(crate) fn divided(
         exchange: Arc<dyn Exchange>,
-        first: Vec<usize>,
+        order: BlockOrder,
         ranks: RanksOfNodes,
         blocks: &[Block],
         slots: &NodeSlots,
     ) -> Self {
+        let first = &order.first;
         let own = blocks[first[exchange.rank()]..first[exchange.rank() + 1]].iter();
         let nodes: BTreeSet<u32> = own.flat_map(|block| &block.cells.nodes).copied().collect();
         let chunks = Chunks::divided(&*exchange, &ranks, &nodes);
-        Part::with(exchange, first, chunks, Tellers::Known(ranks.lowest), slots)
+        Part::with(exchange, order, chunks, Tellers::Known(ranks.lowest), slots)
     }
 
     fn with(
         exchange: Arc<dyn Exchange>,
-        first: Vec<usize>,
+        order: BlockOrder,
         chunks: Chunks,
         tellers: Tellers,
         slots: &NodeSlots,
     ) -> Self {
         Part {
-            plan: Plan::new(slots, &first, exchange.rank()),
+            plan: Plan::new(slots, &order.first, exchange.rank()),
             chunks,
-            all: AllNodes::new(tellers, slots, &first),
+            all: AllNodes::new(tellers, slots, &order.first),
             everywhere: Told::new(vec![Vec::new(); exchange.size()]),
             is_everywhere: vec![false; slots.len()],
             moved: Vec::new(),
             records: Records::default(),
             exchange,
-            first,
+            order,
             // Setting up looks at everything.
             needs: Needs { all: true, all_next: true, sums: false },
             is_all: false,
@@ -152,7 +151,7 @@ impl Part {
         self.is_everywhere.fill(false);
         self.moved.clone_from(&self.plan.runs);
         self.move_everywhere(slots, everywhere);
-        let counts = self.first.windows(2).map(|first| first[1] - first[0]);
+        let counts = self.order.first.windows(2).map(|first| first[1] - first[0]);
         self.records = Records::new(counts, self.exchange.rank(), needs);
         // What supports hold from now on may have moved before: they do work in the first step.
         self.needs = Needs { all: false, all_next: true, sums: false };
@@ -170,7 +169,7 @@ impl Part {
             self.plan.runs[chunk].iter().for_each(|run| moved[run.clone()].fill(true));
             self.moved[chunk] = runs_of(&moved);
         }
-        let told = self.all.tellers.told(slots, &self.first, new.into_iter());
+        let told = self.all.tellers.told(slots, &self.order.first, new.into_iter());
         self.everywhere.append(&told);
         told
     }
@@ -219,10 +218,10 @@ impl Part {
     /// Blocks whose cells this process evaluates.
     pub(crate) fn own(&self) -> Range<usize> {
         let rank = self.exchange.rank();
-        self.first[rank]..self.first[rank + 1]
+        self.order.first[rank]..self.order.first[rank + 1]
     }
 
-    /// Whether this rank has no more of the blocks of others than their numbers.
+    /// Whether this rank has no more of some blocks of others than their numbers.
     pub(crate) fn is_divided(&self) -> bool {
         self.all.are_divided()
     }
@@ -238,7 +237,7 @@ impl Part {
 
     /// The rank whose block this is.
     pub(crate) fn rank_of(&self, block: usize) -> usize {
-        rank_of(&self.first, block)
+        rank_of(&self.order.first, block)
     }
 
     /// The edges that all ranks name, rank after rank.
@@ -319,7 +318,7 @@ impl Part {
         let own = self.own();
         let energies = |block: &Block| [block.elastic(), block.dissipated()];
         let mine: Vec<f64> = blocks[own.clone()].iter().flat_map(energies).collect();
-        let counts: Vec<usize> = self.first.windows(2).map(|first| 2 * (first[1] - first[0])).collect();
+        let counts: Vec<usize> = self.order.first.windows(2).map(|first| 2 * (first[1] - first[0])).collect();
         let mut all = vec![0.0; 2 * blocks.len()];
         self.exchange.gather(&mine, &counts, &mut all);
         for (index, (block, energies)) in blocks.iter_mut().zip(all.chunks_exact(2)).enumerate() {
@@ -329,18 +328,19 @@ impl Part {
         }
     }
 
-    /// Tells all ranks energies and histories of all cells.
+    /// Tells all ranks energies and histories of all cells; of blocks of which others have no more than their number the energies alone.
     ///
     /// - `viscous`: viscous stresses too
     pub(crate) fn tell_cells(&mut self, blocks: &mut [Block], viscous: bool) {
         if self.is_divided() {
-            return self.tell_energies(blocks);
+            self.tell_energies(blocks);
         }
-        let own = self.own();
-        let mine: Vec<BlockShare> = blocks[own.clone()].iter().map(|block| BlockShare::of(block, viscous)).collect();
+        let (own, whole) = (self.own(), || self.order.whole.iter().cloned().flatten());
+        let mine = whole().filter(|index| own.contains(index));
+        let mine: Vec<BlockShare> = mine.map(|index| BlockShare::of(&blocks[index], viscous)).collect();
         let shares = gather(&*self.exchange, &mine).into_iter().flatten();
-        for (_, (block, share)) in blocks.iter_mut().zip(shares).enumerate().filter(|(index, _)| !own.contains(index)) {
-            share.put(block, viscous);
+        for (index, share) in whole().zip(shares).filter(|(index, _)| !own.contains(index)) {
+            share.put(&mut blocks[index], viscous);
         }
     }
 
@@ -378,10 +378,13 @@ impl Part {
     }
 
     /// Lets go of what only the rank needs that evaluates a block: cells, and sums at nodes that this rank does not have.
-    pub(crate) fn keep_own(&self, blocks: &mut [Block]) {
+    ///
+    /// - `is_needed`: whether this rank needs a block all the same
+    pub(crate) fn keep_own(&self, blocks: &mut [Block], is_needed: impl Fn(&Block) -> bool) {
         let near: BTreeSet<usize> = self.received().map(Slot::block).collect();
         let own = self.own();
-        for (index, block) in blocks.iter_mut().enumerate().filter(|(index, _)| !own.contains(index)) {
+        let others = blocks.iter_mut().enumerate().filter(|(index, block)| !own.contains(index) && !is_needed(block));
+        for (index, block) in others {
             let nodes = std::mem::take(&mut block.cells.nodes);
             block.cells = Cells { nodes, ..Cells::default() };
             block.viscous.forget();

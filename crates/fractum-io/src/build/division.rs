@@ -6,7 +6,7 @@ use fractum_mesh::{Group, Mesh};
 use fractum_parallel::{Exchange, gather};
 
 use super::bodies::Numbering;
-use crate::case::model::{BodyKind, Case, LoadKind, ProbeKind, SolidBody};
+use crate::case::model::{BodyKind, Case, Probe, ProbeKind, SolidBody};
 
 /// What a process has of the solids of a mesh that it shares with others.
 pub struct SolidDivision {
@@ -20,56 +20,76 @@ pub struct SolidDivision {
 
 /// Why processes cannot share the mesh of a case, in words; none where they can.
 pub fn cannot_divide(case: &Case) -> Option<String> {
-    let of_body = |name: &str, kind: &BodyKind| match kind {
-        BodyKind::Solid(solid) if solid.damage && case.materials[solid.material].damage.is_some() => {
-            Some(format!("damage of body \"{name}\""))
-        }
-        BodyKind::Solid(_) => None,
-        _ => Some(format!("body \"{name}\", which is no solid")),
-    };
-    let body = case.bodies.iter().find_map(|body| of_body(&body.name.value, &body.kind));
+    let body = case.bodies.iter().find(|body| !matches!(body.kind, BodyKind::Solid(_)));
     let stages = || std::iter::once(case).chain(&case.later);
-    let of_stage = |stage: &Case| {
-        let load = |kind: &LoadKind| matches!(kind, LoadKind::Pressure { in_cracks: Some(_), .. });
-        let flows = &stage.flows;
-        match () {
-            () if stage.solver.subcycling.is_some() => Some("subcycling".to_owned()),
-            () if stage.solver.domain.is_some() => Some("solver.domain".to_owned()),
-            () if stage.loads.iter().any(|own| load(&own.kind)) => Some("pressure in cracks".to_owned()),
-            () if flows.gas.is_some() => Some("gas".to_owned()),
-            () if flows.heat.is_some() => Some("heat".to_owned()),
-            () => None,
-        }
+    let of_stage = |stage: &Case| match () {
+        () if stage.solver.subcycling.is_some() => Some("subcycling"),
+        () if stage.solver.domain.is_some() => Some("solver.domain"),
+        () if stage.flows.heat.is_some() => Some("heat"),
+        () => None,
     };
-    let probe = case.probes.iter().find(|probe| !is_of_nodes(&probe.kind));
-    let output = &case.output;
-    body.or_else(|| stages().find_map(of_stage))
+    let is_of_bodies = |probe: &&Probe| match looks_at(&probe.kind) {
+        Seen::NoElements => true,
+        Seen::Elements(group) => solids(case).any(|(_, solid)| solid.group.value == group),
+        Seen::AllElements => false,
+    };
+    let probe = || case.probes.iter().find(|probe| !is_of_bodies(probe));
+    let all_whole = || {
+        let reason = |(name, solid)| Some(format!("{} (body \"{name}\")", needed_whole(case, solid)?));
+        solids(case).map(reason).collect::<Option<Vec<_>>>()?.into_iter().next()
+    };
+    body.map(|body| format!("body \"{}\", which is no solid", body.name.value))
+        .or_else(|| stages().find_map(of_stage).map(str::to_owned))
         .or_else(|| case.in_situ.as_ref().map(|_| "stress in situ".to_owned()))
-        .or_else(|| probe.map(|probe| format!("probe \"{}\", which looks at elements", probe.name.value)))
-        .or_else(|| (!output.gauges.is_empty()).then(|| "gauges".to_owned()))
-        .or_else(|| output.fields.fragment.then(|| "the field of fragments".to_owned()))
-        .or_else(|| output.fields.strain.then(|| "the field of strains".to_owned()))
+        .or_else(|| {
+            probe().map(|probe| format!("probe \"{}\", which looks at elements of no body alone", probe.name.value))
+        })
+        .or_else(|| case.output.fields.strain.then(|| "the field of strains".to_owned()))
+        .or_else(all_whole)
 }
 
-/// Whether a probe looks at nodes and at what is known of the whole alone.
-fn is_of_nodes(kind: &ProbeKind) -> bool {
-    matches!(
-        kind,
-        ProbeKind::Reaction { .. }
-            | ProbeKind::Moment { .. }
-            | ProbeKind::Displacement { .. }
-            | ProbeKind::Velocity { .. }
-            | ProbeKind::Rotation { .. }
-            | ProbeKind::Strain { .. }
-            | ProbeKind::Extensometer { .. }
-            | ProbeKind::Load { .. }
-            | ProbeKind::Surface { .. }
-            | ProbeKind::Energy(_)
-            | ProbeKind::Momentum { .. }
-            | ProbeKind::AngularMomentum { .. }
-            | ProbeKind::WaveSpeed { .. }
-            | ProbeKind::Expression(_)
-    )
+/// Solid bodies of a case, with their names.
+fn solids(case: &Case) -> impl Iterator<Item = (&str, &SolidBody)> {
+    case.bodies.iter().filter_map(|body| match &body.kind {
+        BodyKind::Solid(solid) => Some((body.name.value.as_str(), solid)),
+        _ => None,
+    })
+}
+
+/// Why every process needs all of a body, in words; none where it does not.
+fn needed_whole(case: &Case, body: &SolidBody) -> Option<String> {
+    if body.damage && case.materials[body.material].damage.is_some() {
+        return Some("damage".to_owned());
+    }
+    let of_body = |probe: &&Probe| matches!(looks_at(&probe.kind), Seen::Elements(group) if *group == body.group.value);
+    let probe = case.probes.iter().find(of_body)?;
+    Some(format!("probe \"{}\", which looks at its elements", probe.name.value))
+}
+
+/// The bodies of a case that every process has whole, with the reasons, in words; for the log.
+pub fn whole_bodies(case: &Case) -> Vec<String> {
+    let of = |(name, solid)| Some(format!("body \"{name}\", because of {}", needed_whole(case, solid)?));
+    solids(case).filter_map(of).collect()
+}
+
+/// What a probe must know of the elements of solids.
+enum Seen<'a> {
+    /// Nothing, or of bodies with damage alone.
+    NoElements,
+    /// Those of a group.
+    Elements(&'a str),
+    /// All of them.
+    AllElements,
+}
+
+fn looks_at(kind: &ProbeKind) -> Seen<'_> {
+    match kind {
+        ProbeKind::Stress { on, .. } => {
+            on.group.as_ref().map_or(Seen::AllElements, |group| Seen::Elements(&group.value))
+        }
+        ProbeKind::Damaged { group: Some(group), .. } => Seen::Elements(&group.value),
+        _ => Seen::NoElements,
+    }
 }
 
 /// Deals the tetrahedra that all processes have read out to those whose cells they are part of. All processes must call it.
@@ -81,11 +101,7 @@ fn is_of_nodes(kind: &ProbeKind) -> bool {
 /// Why it cannot be done, in words, the same for every process.
 pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh, SolidDivision), String> {
     let whole = mesh.whole.as_ref().expect("the caller knows what others have");
-    let bodies: Vec<&SolidBody> = case
-        .bodies
-        .iter()
-        .filter_map(|body| if let BodyKind::Solid(solid) = &body.kind { Some(solid) } else { None })
-        .collect();
+    let bodies: Vec<&SolidBody> = solids(case).map(|(_, solid)| solid).collect();
     let groups: Vec<usize> = bodies
         .iter()
         .filter_map(|body| {
@@ -121,8 +137,12 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
     let tags: Vec<Vec<u64>> = groups.iter().map(tags_of).collect();
     let formulation = |body: &SolidBody| if body.is_smoothed() { Formulation::Smoothed } else { Formulation::Standard };
     let read = bodies.iter().zip(&in_scene).zip(&tags);
-    let read: Vec<ReadBody> =
-        read.map(|((body, elements), tags)| ReadBody { formulation: formulation(body), elements, tags }).collect();
+    let read: Vec<ReadBody> = read
+        .map(|((body, elements), tags)| {
+            let is_whole = needed_whole(case, body).is_some();
+            ReadBody { formulation: formulation(body), elements, tags, is_whole }
+        })
+        .collect();
     let mut local = Mesh { tetrahedra: Vec::new(), tetrahedron_tags: Vec::new(), ..mesh };
     local.groups.iter_mut().for_each(|group| group.tetrahedra = Vec::new());
     let mut shares = deal(exchange, &numbering.positions, &read);

@@ -92,7 +92,7 @@ struct SpecialPair {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Handed {
     particle: u32,
-    /// As [`Holders`] numbers it.
+    /// Number among the elements of all bodies.
     element: u32,
     /// [N m].
     torque: Vec3,
@@ -106,7 +106,11 @@ impl Debris {
         let bodies = 0..solid.body_count();
         assert_eq!(surfaces.len(), bodies.len(), "one surface per body");
         // Nothing touches solids that no rank has whole.
-        let (touched, count) = if solid.is_divided() { (0..0, 0) } else { (bodies.clone(), solid.reference.len()) };
+        let is_whole = |body| solid.connected_pieces(body).is_none();
+        let (touched, count) = match bodies.clone().any(is_whole) {
+            true => (bodies.clone(), solid.reference.len()),
+            false => (0..0, 0),
+        };
         let mut elasticity = vec![(0.0, 0.0); count];
         let mut thickness = vec![0.0; count];
         let mut body_of = vec![0; count];

@@ -13,16 +13,18 @@ use fractum_math::{Mat3, Ragged, Vec3};
 /// momentum, and its power on the nodes is the power that the contact law sees.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Holders {
-    /// Numbers of the elements of each node: those of the first body, then the next; empty before the first particle.
+    /// Elements of each node: those of the first body, then the next; empty before the first particle.
     elements_of_node: Ragged,
-    /// Number of the first element of each body, and of all.
+    /// First element of each body there, and of all.
     first: Vec<u32>,
+    /// The same if all elements of all bodies are counted, those that this rank does not have too.
+    first_number: Vec<u32>,
 }
 
 /// Nodes of an element and the geometry of its rotation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Holder {
-    /// As [`Holders`] numbers it.
+    /// Its number among the elements of all bodies, of those of all ranks.
     pub(crate) number: u32,
     nodes: [u32; 4],
     corners: usize,
@@ -33,15 +35,16 @@ pub(crate) struct Holder {
 impl Holders {
     /// Finds the elements around all nodes.
     pub(crate) fn new(solid: &Solid) -> Self {
-        let mut first = vec![0];
+        let (mut first, mut first_number) = (vec![0], vec![0]);
         for body in 0..solid.body_count() {
             first.push(first[body] + solid.body(body).elements.len() as u32);
+            first_number.push(first_number[body] + solid.element_count(body) as u32);
         }
         let rows = (0..solid.body_count()).flat_map(|body| {
             let corners = solid.body(body).shape.node_count();
             solid.body(body).elements.iter().map(move |e| &e[..corners])
         });
-        Holders { elements_of_node: Ragged::inverse(solid.reference.len(), rows), first }
+        Holders { elements_of_node: Ragged::inverse(solid.reference.len(), rows), first, first_number }
     }
 
     /// Whether nothing has been looked up yet.
@@ -51,7 +54,7 @@ impl Holders {
 
     /// Whether a live element holds the node.
     pub(crate) fn is_held(&self, solid: &Solid, node: u32) -> bool {
-        self.elements_of_node.row(node as usize).iter().any(|&e| self.is_alive(solid, e))
+        self.elements_of_node.row(node as usize).iter().any(|&e| is_alive(solid, self.place(e)))
     }
 
     /// The first live element of a node that has not collapsed, see [`Holders::element`].
@@ -59,13 +62,22 @@ impl Holders {
     /// - `radius`: of the particle [m]
     pub(crate) fn of(&self, solid: &Solid, node: u32, radius: f64) -> Option<Holder> {
         let elements = self.elements_of_node.row(node as usize).iter();
-        elements.filter(|&&e| self.is_alive(solid, e)).find_map(|&e| self.element(solid, e, radius))
+        let place = |&element: &u32| self.place(element);
+        elements.map(place).filter(|at| is_alive(solid, *at)).find_map(|at| self.at(solid, at, radius))
     }
 
     /// An element by its number, alive or not; none if its J is below the square of the radius about some axis: a
     /// tangential force at the surface of the particle would then turn it faster than the stable step takes into account.
     pub(crate) fn element(&self, solid: &Solid, number: u32, radius: f64) -> Option<Holder> {
-        let (body, element) = self.place(number);
+        let body = self.first_number.partition_point(|&first| first <= number) - 1;
+        // Every rank has the elements around particles.
+        let element = solid.element_of_number(body, number - self.first_number[body])?;
+        self.at(solid, (body, element as usize), radius)
+    }
+
+    /// The same by body and element.
+    fn at(&self, solid: &Solid, (body, element): (usize, usize), radius: f64) -> Option<Holder> {
+        let number = self.first_number[body] + solid.element_number(body, element as u32);
         let corners = solid.body(body).shape.node_count();
         let nodes = solid.body(body).elements[element];
         let live = &nodes[..corners];
@@ -96,15 +108,15 @@ impl Holders {
         near.into_iter().collect()
     }
 
+    /// Body and element of one in the rows of nodes.
     fn place(&self, element: u32) -> (usize, usize) {
         let body = self.first.partition_point(|&f| f <= element) - 1;
         (body, (element - self.first[body]) as usize)
     }
+}
 
-    fn is_alive(&self, solid: &Solid, element: u32) -> bool {
-        let (body, element) = self.place(element);
-        solid.alive(body)[element]
-    }
+fn is_alive(solid: &Solid, (body, element): (usize, usize)) -> bool {
+    solid.alive(body)[element]
 }
 
 impl Holder {

@@ -4,19 +4,18 @@ use fractum_math::Vec3;
 /// Radii of the discrete elements at the nodes: as large as possible without overlap of mesh neighbours [m].
 ///
 /// Each starts at half the distance to its nearest neighbour in the reference configuration; then all grow together,
-/// each by half of its smallest gap, until no room is left. The result does not depend on the order of anything.
+/// each by half of its smallest gap, until no room is left. The result does not depend on the order of anything. Ranks of which none has
+/// all elements must all call it.
 pub fn largest_radii(solid: &Solid) -> Vec<f64> {
-    let mut edges: Vec<[u32; 2]> = Vec::new();
-    for body in 0..solid.body_count() {
-        match solid.body_edges(body) {
-            Some(own) => edges.extend(&own.nodes),
-            None => edges.extend(solid.body(body).edges().nodes),
-        }
-    }
-    grow(&solid.reference, &edges)
+    let edges: Vec<[u32; 2]> = (0..solid.body_count()).flat_map(|body| solid.told_edges(body)).collect();
+    let Some(mut shared) = solid.shared_nodes() else { return grow(&solid.reference, &edges, |_| ()) };
+    let mut radius = grow(&solid.reference, &edges, |values| shared.take_least(values));
+    shared.tell(&mut radius);
+    radius
 }
 
-fn grow(nodes: &[Vec3], edges: &[[u32; 2]]) -> Vec<f64> {
+/// - `take_least`: takes into account, at every node, what edges of other ranks leave
+fn grow(nodes: &[Vec3], edges: &[[u32; 2]], mut take_least: impl FnMut(&mut [f64])) -> Vec<f64> {
     let length: Vec<f64> = edges.iter().map(|&[i, j]| (nodes[i as usize] - nodes[j as usize]).norm()).collect();
     let mut radius = vec![f64::INFINITY; nodes.len()];
     for (&[i, j], &l) in edges.iter().zip(&length) {
@@ -24,6 +23,7 @@ fn grow(nodes: &[Vec3], edges: &[[u32; 2]]) -> Vec<f64> {
             radius[n as usize] = radius[n as usize].min(0.5 * l);
         }
     }
+    take_least(&mut radius);
     let mut gap = vec![0.0; nodes.len()];
     for _ in 0..30 {
         gap.fill(f64::INFINITY);
@@ -33,6 +33,7 @@ fn grow(nodes: &[Vec3], edges: &[[u32; 2]]) -> Vec<f64> {
                 gap[n as usize] = gap[n as usize].min(room);
             }
         }
+        take_least(&mut gap);
         for (r, gap) in radius.iter_mut().zip(&gap) {
             // The last bit of room stays: rounding must not make neighbours overlap.
             *r += 0.5 * (gap - 1e-14 * *r).max(0.0);
@@ -49,7 +50,7 @@ mod tests {
     fn neighbours_never_overlap_and_nobody_could_grow() {
         let nodes: Vec<Vec3> = [0.0, 1.0, 1.4, 3.0].iter().map(|&x| Vec3::x() * x).collect();
         let edges = [[0, 1], [1, 2], [2, 3]];
-        let radius = grow(&nodes, &edges);
+        let radius = grow(&nodes, &edges, |_| ());
         let room =
             |[i, j]: [u32; 2]| (nodes[i as usize] - nodes[j as usize]).norm() - radius[i as usize] - radius[j as usize];
         assert!(edges.iter().all(|&e| room(e) >= 0.0));
