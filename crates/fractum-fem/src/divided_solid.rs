@@ -96,6 +96,15 @@ impl Solid {
         Some(&self.bodies[body].divided.as_ref()?.pieces)
     }
 
+    /// Nodes of a body, those of each of its elements where this rank has all of these.
+    pub fn nodes_of(&self, body: usize) -> impl Iterator<Item = u32> + '_ {
+        let model = &self.bodies[body];
+        let elements = if model.divided.is_some() { &[][..] } else { &model.body.elements };
+        let volumes = model.divided.iter().flat_map(|divided| &divided.pieces.volumes);
+        let nodes = (0..).zip(volumes).filter(|(_, volume)| **volume > 0.0).map(|(node, _)| node);
+        nodes.chain(elements.iter().flatten().copied())
+    }
+
     /// Number of an element of this rank in the whole body.
     pub fn element_number(&self, body: usize, element: u32) -> u32 {
         let divided = self.bodies[body].divided.as_ref();

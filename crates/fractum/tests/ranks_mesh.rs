@@ -222,6 +222,50 @@ fn a_body_that_breaks_is_whole_on_every_rank_and_the_rest_is_not() {
     }
 }
 
+/// What falls onto the block: a rigid ball where its bodies meet, which turns, and spheres.
+const FALLING: &str = r#"[[bodies]]
+name = "ball"
+kind = "rigid"
+shape = "sphere"
+point = ["0.38 m", "0.21 m", "0.501 m"]
+radius = "100 mm"
+free = "xyz"
+free_rotation = true
+mass = "20 kg"
+initial_velocity = { x = "8 m/s", z = "-40 m/s" }
+contact = { friction = 0.4, damping_ratio = 0.1 }
+[[bodies]]
+name = "spheres"
+kind = "particles"
+material = "rock"
+shape = "box"
+point = ["0.5 m", "0.05 m", "0.401 m"]
+size = ["0.25 m", "0.3 m", "0.06 m"]
+particle_radius = "15 mm"
+initial_velocity = { z = "-80 m/s" }
+[[supports]]
+group = "x+""#;
+
+#[test]
+fn what_touches_divided_bodies_is_known_to_every_rank() {
+    let falling = |case: &str| case.replace("[[supports]]\ngroup = \"x+\"", FALLING);
+    for (name, case) in [("elastic", falling(BLOCK)), ("breaking", falling(&breaking()))] {
+        let place = workplace(&case);
+        let alone = run(&place.path("case.toml"), &options(&place, "alone")).unwrap().summary;
+        assert!(alone.counts.contacts > 5, "{name}: {:?}", alone.counts);
+        let read = |folder: &str| fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
+        for ranks in [2, 3, 5] {
+            let folder = format!("of-{ranks}");
+            for hash in on_ranks(&place, ranks, &options(&place, &folder)) {
+                assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{name}: {ranks} ranks");
+            }
+            assert!(read(&folder) == read("alone"), "{name}: {ranks} ranks");
+            let log = fs::read_to_string(place.path(&folder).join("run.log")).unwrap();
+            assert!(!log.contains("every process has the whole mesh"), "{log}");
+        }
+    }
+}
+
 #[test]
 fn what_needs_all_elements_has_every_rank_read_all_parts() {
     let probe = "stress = { where = \"x < 0.3\", component = \"xx\" }";

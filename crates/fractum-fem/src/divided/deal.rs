@@ -21,10 +21,11 @@ const PACKED: usize = 1 << 16;
 ///
 /// - `nodes`: positions of all nodes [m]
 /// - `bodies`: the whole body has the elements of rank 0 first, then those of rank 1 and so on
+/// - `looked_at`: nodes around which every rank needs all elements, beside those of whole bodies; the same on every rank
 ///
 /// # Panics
 /// If a body has more elements than have a number of 32 bits.
-pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody]) -> Vec<BodyShare> {
+pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], looked_at: &[u32]) -> Vec<BodyShare> {
     let counts = gather(exchange, &bodies.iter().map(|body| body.elements.len()).collect::<Vec<_>>());
     let total = |body: usize| counts.iter().map(|counts| counts[body]).sum::<usize>();
     let first: Vec<usize> =
@@ -36,7 +37,8 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody]) -> Vec
         .collect();
     let named: Vec<Key> = cells.par_iter().flat_map_iter(|cells| cells.keys()).collect();
     let order = Order::new(exchange, named, bodies.len());
-    let is_near = nodes_of_whole(exchange, bodies, nodes.len());
+    let mut is_near = nodes_of_whole(exchange, bodies, nodes.len());
+    looked_at.iter().for_each(|&node| is_near[node as usize] = true);
     let mut words = OnTheirWay { to: vec![Vec::new(); exchange.size()], to_all: Vec::new() };
     cells.iter().for_each(|cells| cells.pack(&order, &is_near, &mut words));
     let mut shares: Vec<BodyShare> = (0..bodies.len())

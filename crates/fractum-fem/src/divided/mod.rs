@@ -4,8 +4,8 @@
 //! into the same blocks; a rank gets a run of blocks with the elements around their cells. So every sum over blocks has the bits of one process.
 //! Every rank has all nodes. Blocks of others are there with their number and the nodes that this rank has too.
 //!
-//! Bodies that break are whole on every rank, which all take out the same elements. Elements of other bodies that have a node of them are on
-//! every rank too: what lies around such nodes is known to all.
+//! Bodies that break are whole on every rank, which all take out the same elements. Elements of other bodies that have a node of them, or one
+//! that something else may touch, are on every rank too: what lies around such nodes is known to all.
 
 mod block_order;
 mod boundary;

@@ -60,8 +60,7 @@ impl Context<'_> {
     ) -> Option<Scene> {
         let materials = self.contact_materials();
         let pieces = pieces(&scene.solid);
-        // Those of several processes that share a mesh hang together.
-        let solids_meet = !scene.solid.is_divided() && pieces.iter().any(|piece| *piece != pieces[0]);
+        let solids_meet = pieces.iter().any(|piece| *piece != pieces[0]);
         if materials.is_empty() {
             if scene.solid.is_plane() {
                 self.refuse_facets(&rigid_bodies);

@@ -1,12 +1,14 @@
 //! Solids of a mesh that several processes share: each has read some of its tetrahedra, and gets those around its cells.
 
+use std::collections::BTreeMap;
+
 use fractum_fem::{BodyShare, DividedBoundary, Formulation, ReadBody, deal, divided_boundary};
 use fractum_math::connected;
 use fractum_mesh::{Group, Mesh};
 use fractum_parallel::{Exchange, gather};
 
 use super::bodies::Numbering;
-use crate::case::model::{BodyKind, Case, Probe, ProbeKind, SolidBody};
+use crate::case::model::{Body, BodyKind, BondedShape, Case, PackingSource, Probe, ProbeKind, RigidShape, SolidBody};
 
 /// What a process has of the solids of a mesh that it shares with others.
 pub struct SolidDivision {
@@ -20,7 +22,8 @@ pub struct SolidDivision {
 
 /// Why processes cannot share the mesh of a case, in words; none where they can.
 pub fn cannot_divide(case: &Case) -> Option<String> {
-    let body = case.bodies.iter().find(|body| !matches!(body.kind, BodyKind::Solid(_)));
+    let replaces = |body: &&Body| matches!(&body.kind, BodyKind::Bonded(bonded) if bonded.replaces.is_some());
+    let body = case.bodies.iter().find(replaces);
     let stages = || std::iter::once(case).chain(&case.later);
     let of_stage = |stage: &Case| match () {
         () if stage.solver.subcycling.is_some() => Some("subcycling"),
@@ -30,7 +33,9 @@ pub fn cannot_divide(case: &Case) -> Option<String> {
     };
     let is_of_bodies = |probe: &&Probe| match looks_at(&probe.kind) {
         Seen::NoElements => true,
-        Seen::Elements(group) => solids(case).any(|(_, solid)| solid.group.value == group),
+        Seen::Elements(group) => {
+            case.particle_group(group).is_some() || solids(case).any(|(_, solid)| solid.group.value == group)
+        }
         Seen::AllElements => false,
     };
     let probe = || case.probes.iter().find(|probe| !is_of_bodies(probe));
@@ -38,7 +43,9 @@ pub fn cannot_divide(case: &Case) -> Option<String> {
         let reason = |(name, solid)| Some(format!("{} (body \"{name}\")", needed_whole(case, solid)?));
         solids(case).map(reason).collect::<Option<Vec<_>>>()?.into_iter().next()
     };
-    body.map(|body| format!("body \"{}\", which is no solid", body.name.value))
+    let no_solid = solids(case).next().is_none().then(|| "bodies of which none is a solid".to_owned());
+    body.map(|body| format!("body \"{}\", which replaces a part of a solid", body.name.value))
+        .or(no_solid)
         .or_else(|| stages().find_map(of_stage).map(str::to_owned))
         .or_else(|| case.in_situ.as_ref().map(|_| "stress in situ".to_owned()))
         .or_else(|| {
@@ -122,8 +129,9 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
     }
     let mut used = vec![false; mesh.nodes.len()];
     groups.iter().flat_map(nodes_of).for_each(|&node| used[node as usize] = true);
-    if pieces(&mesh, groups.iter().flat_map(members), &used, exchange) > 1 {
-        return Err("solids of several pieces, which may meet".to_owned());
+    let beside = groups_of_others(case, &mesh);
+    if let Some(&group) = beside.iter().find(|group| groups.contains(group)) {
+        return Err(format!("group \"{}\", which is that of two bodies", mesh.groups[group].name));
     }
     let (numbering, order) = Numbering::of(&mesh.nodes, &used);
     let elements_of =
@@ -143,31 +151,80 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
             ReadBody { formulation: formulation(body), elements, tags, is_whole }
         })
         .collect();
+    // Where two bodies meet too: facets of each by itself are looked for.
+    let touched = if may_touch(case, groups.iter().map(nodes_of)) { &boundary.of_bodies[..] } else { &[] };
+    let touched = touched.iter().flatten().flatten();
+    let mut looked_at: Vec<u32> = touched.map(|&node| numbering.scene_node[node as usize]).collect();
+    looked_at.sort_unstable();
+    looked_at.dedup();
+    let beside: Vec<_> = beside.into_iter().map(|group| (group, all_elements(&mesh, group, exchange))).collect();
     let mut local = Mesh { tetrahedra: Vec::new(), tetrahedron_tags: Vec::new(), ..mesh };
     local.groups.iter_mut().for_each(|group| group.tetrahedra = Vec::new());
-    let mut shares = deal(exchange, &numbering.positions, &read);
+    let mut shares = deal(exchange, &numbering.positions, &read, &looked_at);
     drop((in_scene, tags));
     for (&group, share) in groups.iter().zip(&mut shares) {
-        let first = local.tetrahedra.len() as u32;
         let in_mesh = |element: [u32; 4]| element.map(|node| order[node as usize]);
-        local.tetrahedra.extend(std::mem::take(&mut share.elements).into_iter().map(in_mesh));
-        local.tetrahedron_tags.append(&mut share.tags);
-        local.groups[group].tetrahedra = (first..local.tetrahedra.len() as u32).collect();
+        let elements = std::mem::take(&mut share.elements).into_iter().map(in_mesh);
+        add_elements(&mut local, group, elements.zip(std::mem::take(&mut share.tags)));
+    }
+    for (group, elements) in beside {
+        add_elements(&mut local, group, elements.into_iter());
     }
     Ok((local, SolidDivision { bodies: shares, boundary, numbering }))
 }
 
-/// Pieces that do not hang together.
+/// Adds elements of a group to a mesh, with their tags.
+fn add_elements(mesh: &mut Mesh, group: usize, elements: impl Iterator<Item = ([u32; 4], u64)>) {
+    let first = mesh.tetrahedra.len() as u32;
+    for (element, tag) in elements {
+        mesh.tetrahedra.push(element);
+        mesh.tetrahedron_tags.push(tag);
+    }
+    mesh.groups[group].tetrahedra = (first..mesh.tetrahedra.len() as u32).collect();
+}
+
+/// Groups of tetrahedra that bodies are made of which are no solids.
+fn groups_of_others(case: &Case, mesh: &Mesh) -> Vec<usize> {
+    let whole = mesh.whole.as_ref().expect("the caller knows what others have");
+    let name = |body: &Body| match &body.kind {
+        BodyKind::Rigid(rigid) => match &rigid.shape {
+            RigidShape::Group { group, .. } => Some(group.value.clone()),
+            _ => None,
+        },
+        BodyKind::Bonded(bonded) => match &bonded.packing {
+            PackingSource::Shape { shape, .. } => match &shape.value {
+                BondedShape::Group(group) => Some(group.value.clone()),
+                _ => None,
+            },
+            PackingSource::File(_) => None,
+        },
+        _ => None,
+    };
+    let names: Vec<String> = case.bodies.iter().filter_map(name).collect();
+    let is_meant = |group: &usize| whole.groups[*group].0 > 0 && names.contains(&mesh.groups[*group].name);
+    (0..mesh.groups.len()).filter(is_meant).collect()
+}
+
+/// The elements of a group that all processes have read, in their order, with their tags.
+fn all_elements(mesh: &Mesh, group: usize, exchange: &dyn Exchange) -> Vec<([u32; 4], u64)> {
+    let of = |&e: &u32| (mesh.tetrahedra[e as usize], mesh.tetrahedron_tags[e as usize]);
+    let own: Vec<([u32; 4], u64)> = mesh.groups[group].tetrahedra.iter().map(of).collect();
+    gather(exchange, &own).concat()
+}
+
+/// Whether something may touch the solids: other bodies, or one solid another that it shares no node with.
 ///
-/// - `elements`: those that this process has read; `used`: nodes of all
-fn pieces<'a>(mesh: &Mesh, elements: impl Iterator<Item = &'a u32>, used: &[bool], exchange: &dyn Exchange) -> usize {
-    let count = mesh.nodes.len();
-    let links = elements.flat_map(|&element| {
-        let [a, others @ ..] = mesh.tetrahedra[element as usize];
-        others.map(|node| [a, node])
-    });
-    let own = connected(count, links);
-    let joined: Vec<[u32; 2]> = (0..).zip(own).filter(|(node, first)| node != first).map(<[u32; 2]>::from).collect();
-    let all = connected(count, gather(exchange, &joined).into_iter().flatten());
-    (0..).zip(all).filter(|&(node, first)| node == first && used[node as usize]).count()
+/// - `nodes`: those of each solid
+fn may_touch<'a>(case: &Case, nodes: impl Iterator<Item = &'a Vec<u32>>) -> bool {
+    if case.bodies.iter().any(|body| !matches!(body.kind, BodyKind::Solid(_))) {
+        return true;
+    }
+    let mut first = BTreeMap::<u32, u32>::new();
+    let mut links = Vec::new();
+    let mut count = 0;
+    for (body, nodes) in (0..).zip(nodes) {
+        count = body + 1;
+        links.extend(nodes.iter().map(|&node| [*first.entry(node).or_insert(body), body]));
+    }
+    connected(count as usize, links).into_iter().any(|piece| piece != 0)
 }

@@ -197,7 +197,7 @@ pub fn pieces(solid: &Solid) -> Vec<u32> {
     let mut owner = vec![u32::MAX; solid.reference.len()];
     let mut links = Vec::new();
     for body in 0..solid.body_count() {
-        for &node in solid.body(body).elements.iter().flatten() {
+        for node in solid.nodes_of(body) {
             let first = &mut owner[node as usize];
             if *first == u32::MAX {
                 *first = body as u32;

@@ -105,30 +105,12 @@ impl Debris {
     pub fn new(solid: &Solid, surfaces: Vec<ContactParameters>) -> Self {
         let bodies = 0..solid.body_count();
         assert_eq!(surfaces.len(), bodies.len(), "one surface per body");
-        // Nothing touches solids that no rank has whole.
-        let is_whole = |body| solid.connected_pieces(body).is_none();
-        let (touched, count) = match bodies.clone().any(is_whole) {
-            true => (bodies.clone(), solid.reference.len()),
-            false => (0..0, 0),
-        };
-        let mut elasticity = vec![(0.0, 0.0); count];
-        let mut thickness = vec![0.0; count];
-        let mut body_of = vec![0; count];
-        for index in touched.rev() {
-            let body = solid.body(index);
-            let pair = (body.elastic.young_modulus, body.elastic.poisson_ratio);
-            let own = if body.shape == fractum_fem::ElementKind::T3 { body.thickness } else { 0.0 };
-            for &node in body.elements.iter().flatten() {
-                (elasticity[node as usize], body_of[node as usize]) = (pair, index as u32);
-                thickness[node as usize] = own;
-            }
-        }
         Debris {
             surfaces,
-            body: body_of,
+            body: Vec::new(),
             planar: bodies.clone().all(|b| solid.body(b).shape == fractum_fem::ElementKind::T3),
-            elasticity,
-            thickness,
+            elasticity: Vec::new(),
+            thickness: Vec::new(),
             radius: Vec::new(),
             state: DebrisState::default(),
             particle_of: vec![NONE; solid.reference.len()],
@@ -141,10 +123,25 @@ impl Debris {
         }
     }
 
-    /// Finds the radii; needed before the first contact of any kind.
+    /// Finds radii, bodies and materials of the nodes; needed before the first contact of any kind.
+    ///
+    /// Those of nodes around which a rank does not have all elements are not right; nothing ever touches them.
     pub(crate) fn prepare(&mut self, solid: &Solid) {
-        if self.radius.is_empty() {
-            self.radius = largest_radii(solid);
+        if !self.radius.is_empty() {
+            return;
+        }
+        self.radius = largest_radii(solid);
+        let count = solid.reference.len();
+        (self.body, self.elasticity, self.thickness) = (vec![0; count], vec![(0.0, 0.0); count], vec![0.0; count]);
+        // The first body of a node counts.
+        for index in (0..solid.body_count()).rev() {
+            let body = solid.body(index);
+            let pair = (body.elastic.young_modulus, body.elastic.poisson_ratio);
+            let own = if body.shape == fractum_fem::ElementKind::T3 { body.thickness } else { 0.0 };
+            for &node in body.elements.iter().flatten() {
+                (self.elasticity[node as usize], self.body[node as usize]) = (pair, index as u32);
+                self.thickness[node as usize] = own;
+            }
         }
     }
 
