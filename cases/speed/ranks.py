@@ -5,12 +5,13 @@ the least time of their steps without output, the ratio, and what is sent; then 
 Needs numpy, MPI and a build with it: `cargo build --release --features mpi --target-dir target/mpi`, then
 `python3 cases/speed/ranks.py target/mpi/release/fractum`. With `particles` behind it the times alone, of a cube of 100,000 bonded particles that
 vibrates, of the same that is torn, and of 91,125 loose beads that fall into a box. With `parts` the memory alone, of a cube of 3,072,000 tetrahedra (or
-of six times the cube of a number behind it) whose mesh is in one file and in four.
+of six times the cube of a number behind it) whose mesh is in one file and in four; with `core` of the same, a tenth of which may break.
 """
 
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -31,6 +32,17 @@ output = { history = { every = "0.05 ms" }, fields = { every = "0.25 ms" } }
 density = "2400 kg/m^3"
 young_modulus = "30 GPa"
 poisson_ratio = 0.2
+"""
+# A tenth of the cube may break, and is a body of its own.
+CORE = CASE.replace(
+    "bodies = [",
+    'bodies = [{ name = "core", kind = "solid", group = "core", material = "weak", formulation = "smoothed" }, ',
+)
+CORE += """[materials.weak]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+damage = { tensile_strength = "3 MPa", fracture_energy = "100 J/m^2" }
 """
 BONDED = """fractum = 1
 bodies = [{ name = "cube", kind = "bonded", material = "glass", shape = "box", size = ["2 mm", "2 mm", "2 mm"], particles = 100000, coordination = 10, seed = 3,
@@ -91,14 +103,15 @@ def main(program, cells=44):
         print(f"{count} of one thread: {', '.join(f'{megabytes:.0f}' for megabytes in each)} MB")
 
 
-def parts(program, cells=80):
+def parts(program, case, cells=80):
+    core = round(cells / 10 ** (1 / 3)) if case == CORE else 0
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         for where, count in (("one file", None), ("four files", 4)):
-            write_box(folder / "cube.msh", (cells,) * 3, (1.0,) * 3, count)
+            write_box(folder / "cube.msh", (cells,) * 3, (1.0,) * 3, count, core)
             mesh = 'mesh = { file = "cube.msh" }'
             in_files = mesh if count is None else mesh.replace(" }", f", parts = {count} }}")
-            (folder / "case.toml").write_text(CASE.replace(mesh, in_files).replace("0.25 ms", "20 us").replace("0.05 ms", "10 us"))
+            (folder / "case.toml").write_text(case.replace(mesh, in_files).replace("0.25 ms", "20 us").replace("0.05 ms", "10 us"))
             for processes in (1, 4, 8):
                 each = peaks(program, folder, processes)
                 state = json.loads((folder / "memory/summary.json").read_text())["state_hash"]
@@ -143,12 +156,13 @@ def peaks(program, folder, count):
                "--threads", 1]
     here = pathlib.Path(__file__).parent
     out = subprocess.run([str(part) for part in command], cwd=here, check=True, capture_output=True, text=True).stdout
-    return sorted((float(line.split()[1]) for line in out.splitlines() if line.startswith("peak ")), reverse=True)
+    # Lines of several processes may run into each other.
+    return sorted(map(float, re.findall(r"peak (\d+\.\d+)", out)), reverse=True)
 
 
 if __name__ == "__main__":
     program, what = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:]
-    if what[:1] == ["parts"]:
-        parts(program, *map(int, what[1:]))
+    if what[:1] in (["parts"], ["core"]):
+        parts(program, CORE if what[0] == "core" else CASE, *map(int, what[1:]))
     else:
         (particles if "particles" in what else main)(program)

@@ -5,10 +5,11 @@ from itertools import permutations
 import numpy as np
 
 
-def write_box(path, cells, size, parts=None):
+def write_box(path, cells, size, parts=None, core=0):
     """Writes a box [0, size] in MSH 2.2, whole or in slabs along x, which are files of their own: PATH_1.msh and so on.
 
-    - `cells`: number of cells along x, y and z; `size` [m]; `parts`: number of files
+    - `cells`: number of cells along x, y and z; `size` [m]; `parts`: number of files; `core`: number of cells along each axis from the origin on
+      that are a group `core` of their own instead of `body`
     """
     counts = np.array(cells) + 1
     nodes = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)
@@ -17,7 +18,9 @@ def write_box(path, cells, size, parts=None):
     # Each order of the three axes is a way along the edges of a cell, and a tetrahedron (Kuhn).
     ways = [np.cumsum([0, *strides[list(way)]]) for way in permutations(range(3))]
     tetrahedra = np.concatenate([corners[:, None] + way for way in ways])
-    groups = [(3, "body", tetrahedra)]
+    is_core = (nodes[tetrahedra] <= core).all(axis=(1, 2))
+    groups = [(3, "core", tetrahedra[is_core])] if core else []
+    groups.append((3, "body", tetrahedra[~is_core]))
     for axis, name in enumerate("xyz"):
         for end, at in (("-", 0), ("+", cells[axis])):
             on = nodes[tetrahedra][:, :, axis] == at

@@ -12,7 +12,7 @@ use crate::body::{Body, ElementKind, Formulation};
 use crate::body_model::{BodyModel, Chosen};
 use crate::cell::Geometry;
 use crate::divided::{
-    BlockOrder, BodyShare, ConnectedPieces, DividedBody, ELSEWHERE, EdgeValues, GivenToNodes, RanksOfNodes,
+    BlockOrder, BodyShare, ConnectedPieces, DividedBody, ELSEWHERE, EdgeValue, EdgeValues, GivenToNodes, RanksOfNodes,
     SharedNodes, connected_pieces, nodal_sums,
 };
 use crate::error::SolidError;
@@ -218,13 +218,17 @@ impl Solid {
         Some(SharedNodes::new(part.exchange(), self.reference.len(), &own))
     }
 
-    /// Brings stress and damage of edges up to date that this rank needs of others for the means over the edges of its elements. All ranks must
+    /// Brings stress, damage and strain of edges up to date that this rank needs of others for the means over the edges of its elements. All ranks must
     /// call it; of no effect where each has all elements.
     pub fn gather_edge_values(&mut self) {
         let Some(exchange) = self.part.as_ref().map(|part| part.exchange()) else { return };
         for index in 0..self.bodies.len() {
             let Some(mut divided) = self.bodies[index].divided.take() else { continue };
-            divided.values.swap(&*exchange, |edge| self.cell_field(index, self.bodies[index].location[edge as usize]));
+            divided.values.swap(&*exchange, |edge| {
+                let at = self.bodies[index].location[edge as usize];
+                let (stress, damage) = self.cell_field(index, at);
+                EdgeValue { stress, damage, strain: self.cell_strain(&self.bodies[index], at) }
+            });
             self.bodies[index].divided = Some(divided);
         }
     }

@@ -10,7 +10,7 @@ pub(crate) use crate::body_model::BodyModel;
 use crate::body_model::Chosen;
 use crate::cell::Geometry;
 use crate::damage::EdgeField;
-use crate::divided::ELSEWHERE;
+use crate::divided::{ELSEWHERE, EdgeValue};
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::kernel;
@@ -340,11 +340,7 @@ impl Solid {
     /// Strain of every element of a body [-], that of thermal expansion included: the mean over its edges where it is smoothed.
     pub fn element_strains(&self, index: usize) -> Vec<Sym3> {
         let model = &self.bodies[index];
-        let strain = |&at: &(u32, u32)| {
-            let (cells, cell) = self.cells_with(at);
-            (kernel::total_strain(&cells, cell, &self.displacement, model.body.kinematics), 0.0)
-        };
-        self.means(model, strain).into_iter().map(|(strain, _)| strain).collect()
+        self.means(model, |&at| (self.cell_strain(model, at), 0.0)).into_iter().map(|(strain, _)| strain).collect()
     }
 
     /// What cells hold, as means over the edges of each element where the body is smoothed.
@@ -391,13 +387,22 @@ impl Solid {
     pub(crate) fn cell_field(&self, index: usize, at: (u32, u32)) -> (Sym3, f64) {
         let model = &self.bodies[index];
         if at.0 == ELSEWHERE {
-            let values = model.divided.as_ref().map_or(&[][..], |divided| &divided.values.values);
-            return values.get(at.1 as usize).copied().unwrap_or_default();
+            let EdgeValue { stress, damage, .. } = model.value_elsewhere(at.1);
+            return (stress, damage);
         }
         let (cells, place) = self.cells_with(at);
         let strain = kernel::elastic_strain(&cells, place, &self.displacement, model.body.kinematics);
         let (block, cell) = (&self.blocks[at.0 as usize], at.1 as usize);
         (block.nominal_stress(cell, &model.hooke, strain), block.damage_of(cell))
+    }
+
+    /// Strain of a cell, that of thermal expansion included.
+    pub(crate) fn cell_strain(&self, model: &BodyModel, at: (u32, u32)) -> Sym3 {
+        if at.0 == ELSEWHERE {
+            return model.value_elsewhere(at.1).strain;
+        }
+        let (cells, cell) = self.cells_with(at);
+        kernel::total_strain(&cells, cell, &self.displacement, model.body.kinematics)
     }
 
     /// Centre of an element without load [m].
@@ -412,6 +417,12 @@ impl BodyModel {
     /// Edges that hold the strain of the body; none where its elements do.
     pub(crate) fn smoothed_edges(&self) -> Option<&BodyEdges> {
         self.edges.as_ref().filter(|_| self.body.formulation == Formulation::Smoothed)
+    }
+
+    /// What another rank has told of an edge; nothing of edges of elements that this rank does not tell of.
+    fn value_elsewhere(&self, place: u32) -> EdgeValue {
+        let values = self.divided.as_ref().map_or(&[][..], |divided| &divided.values.values);
+        values.get(place as usize).copied().unwrap_or_default()
     }
 
     /// Mean of stress and damage over the edges of an element.

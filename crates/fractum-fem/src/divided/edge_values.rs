@@ -1,12 +1,16 @@
-//! Stress and damage of edges that other ranks evaluate, for the means over the edges of an element.
+//! Stress, damage and strain of edges that other ranks evaluate, for the means over the edges of an element.
 
 use std::collections::BTreeMap;
 
+use fractum_math::Sym3;
 use fractum_mesh::topology::TETRAHEDRON_EDGES;
 use fractum_parallel::{Exchange, Swapped, post};
 
 use super::{BodyShare, EdgeValue};
 use crate::body::BodyEdges;
+
+/// Numbers of an [`EdgeValue`].
+const NUMBERS: usize = 13;
 
 /// Values of edges that this rank gets of others, and of those that it sends.
 #[derive(Clone, Debug, Default)]
@@ -66,12 +70,15 @@ impl EdgeValues {
     pub(crate) fn swap(&mut self, exchange: &dyn Exchange, value: impl Fn(u32) -> EdgeValue) {
         let Some(swapped) = &mut self.swapped else { return };
         let get = |_: &Vec<EdgeValue>, edge: u32| {
-            let (stress, damage) = value(edge);
-            let [a, b, c, d, e, f] = stress.0;
-            [a, b, c, d, e, f, damage]
+            let EdgeValue { stress, damage, strain } = value(edge);
+            let mut numbers = [damage; NUMBERS];
+            numbers[..6].copy_from_slice(&stress.0);
+            numbers[6..12].copy_from_slice(&strain.0);
+            numbers
         };
-        let put = |values: &mut Vec<EdgeValue>, place: u32, [a, b, c, d, e, f, damage]: [f64; 7]| {
-            values[place as usize] = (fractum_math::Sym3([a, b, c, d, e, f]), damage);
+        let put = |values: &mut Vec<EdgeValue>, place: u32, numbers: [f64; NUMBERS]| {
+            let [stress, strain] = [0, 6].map(|first| Sym3(std::array::from_fn(|k| numbers[first + k])));
+            values[place as usize] = EdgeValue { stress, damage: numbers[12], strain };
         };
         swapped.tell(exchange, &mut self.values, get, put);
     }

@@ -78,7 +78,7 @@ pub(crate) struct DividedBody {
     pub(crate) volume: f64,
     /// How its elements hang together.
     pub(crate) pieces: ConnectedPieces,
-    /// Stress and damage of edges that others evaluate, at the last frame; empty where elements are the cells.
+    /// Values of edges that others evaluate, at the last frame; empty where elements are the cells.
     pub(crate) values: EdgeValues,
     /// Facets that are seen from outside, with the number of their element on this rank: of the elements that it tells of.
     pub(crate) skin: Vec<([u32; 3], u32)>,
@@ -101,5 +101,12 @@ pub(crate) const ELSEWHERE: u32 = u32::MAX;
 /// Slots of the blocks of others at nodes of this rank: nodes of each block.
 pub(crate) type NodesOfOthers = BTreeMap<usize, Vec<u32>>;
 
-/// Stress [Pa] and damage of an edge.
-pub(crate) type EdgeValue = (Sym3, f64);
+/// What frames show of an edge.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct EdgeValue {
+    /// Stress [Pa].
+    pub(crate) stress: Sym3,
+    pub(crate) damage: f64,
+    /// Strain, that of thermal expansion included.
+    pub(crate) strain: Sym3,
+}

@@ -51,7 +51,6 @@ pub fn cannot_divide(case: &Case) -> Option<String> {
         .or_else(|| {
             probe().map(|probe| format!("probe \"{}\", which looks at elements of no body alone", probe.name.value))
         })
-        .or_else(|| case.output.fields.strain.then(|| "the field of strains".to_owned()))
         .or_else(all_whole)
 }
 
