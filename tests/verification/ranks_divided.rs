@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use fractum_fem::{
-    Body, BodyShare, CrackFacet, DamageLaw, Formulation, Kinematics, LocalDamping, ReadBody, Regularisation, Solid,
-    Viscosity,
+    Body, BodyShare, CrackFacet, DamageLaw, Formulation, Kinematics, KnownAround, LocalDamping, ReadBody,
+    Regularisation, Solid, Viscosity,
 };
 use fractum_math::Vec3;
 use fractum_parallel::{Exchange, threads};
@@ -44,7 +44,7 @@ fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> (Ve
             ReadBody { formulation, elements, tags, is_whole }
         })
         .collect();
-    let shares = fractum_fem::deal(&**exchange, nodes, &parts, &[]);
+    let shares = fractum_fem::deal(&**exchange, nodes, &parts, KnownAround::default());
     let boundary = fractum_fem::divided_boundary(&**exchange, &elements, nodes.len());
     let whole: Vec<[u32; 4]> = bodies.iter().flat_map(|body| &body.elements).copied().collect();
     let outside = |elements: &[[u32; 4]]| -> Vec<[u32; 3]> {

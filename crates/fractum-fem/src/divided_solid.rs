@@ -12,11 +12,12 @@ use crate::body::{Body, ElementKind, Formulation};
 use crate::body_model::{BodyModel, Chosen};
 use crate::cell::Geometry;
 use crate::divided::{
-    BlockOrder, BodyShare, ConnectedPieces, DividedBody, ELSEWHERE, EdgeValue, EdgeValues, GivenToNodes, RanksOfNodes,
-    SharedNodes, connected_pieces, nodal_sums,
+    ALONE, BlockOrder, BodyShare, ConnectedPieces, DividedBody, ELSEWHERE, EdgeValue, EdgeValues, GivenToNodes,
+    RanksOfNodes, SharedNodes, connected_pieces, nodal_sums,
 };
 use crate::error::SolidError;
 use crate::evaluate::Block;
+use crate::kernel;
 use crate::part::Part;
 use crate::solid::Solid;
 use crate::time_step::StableStep;
@@ -67,7 +68,7 @@ impl Solid {
         let order = BlockOrder::new(&*exchange, shares, &cells);
         for (body, model) in models.iter_mut().enumerate() {
             let begin = order.begin_of(body, exchange.rank(), &shares[body]) as u32;
-            model.location.iter_mut().filter(|at| at.0 != ELSEWHERE).for_each(|(block, _)| *block += begin);
+            model.location.iter_mut().filter(|at| at.0 < ALONE).for_each(|(block, _)| *block += begin);
         }
         let own = order.first[exchange.rank()]..order.first[exchange.rank() + 1];
         let made = made.into_iter().enumerate().flat_map(|(body, blocks)| {
@@ -233,6 +234,12 @@ impl Solid {
         }
     }
 
+    /// Strain of a cell of which this rank has no more than the elements around it.
+    pub(crate) fn strain_alone(&self, model: &BodyModel, cell: u32) -> Sym3 {
+        let cells = model.cells(&self.reference, &[cell]);
+        kernel::total_strain(&cells, 0, &self.displacement, model.body.kinematics)
+    }
+
     /// What governs the step of all ranks, by what governs that of each.
     ///
     /// - `trace`: of the stiffness of its element, which decides between equal ones
@@ -258,6 +265,12 @@ impl Solid {
 }
 
 impl BodyModel {
+    /// What another rank has told of an edge; nothing of edges of elements that this rank does not tell of.
+    pub(crate) fn value_elsewhere(&self, place: u32) -> EdgeValue {
+        let values = self.divided.as_ref().map_or(&[][..], |divided| &divided.values.values);
+        values.get(place as usize).copied().unwrap_or_default()
+    }
+
     /// Remembers what this rank has of the whole body, once its cells are made.
     ///
     /// - `nodes`: of all bodies
@@ -275,6 +288,17 @@ impl BodyModel {
             }
             None => EdgeValues::default(),
         };
+        for &element in &share.measured {
+            let own = [element];
+            let cells = self.edges.as_ref().filter(|_| smoothed).map(|edges| &edges.of_element[element as usize][..]);
+            for &cell in cells.unwrap_or(&own) {
+                let at = &mut self.location[cell as usize];
+                // Others tell values of frames alone.
+                if at.0 == ELSEWHERE {
+                    *at = (ALONE, cell);
+                }
+            }
+        }
         let pieces = connected_pieces(exchange, share, &self.body.elements, volumes, nodes);
         let volume = pieces.volumes.iter().sum();
         let (numbers, count) = (share.numbers.clone(), share.count);

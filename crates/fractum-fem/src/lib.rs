@@ -75,7 +75,9 @@ pub use crack::{CrackEdge, CrackPlane, Fracture};
 pub use crack_network::{CrackCell, CrackMouth, CrackNetwork, CrackNetworkState, CrackSide};
 pub use crack_surface::{CrackFacet, CrackSurface};
 pub use damage::EdgeDamage;
-pub use divided::{BodyShare, ConnectedPieces, DividedBoundary, ReadBody, SharedNodes, deal, divided_boundary};
+pub use divided::{
+    BodyShare, ConnectedPieces, DividedBoundary, KnownAround, ReadBody, SharedNodes, deal, divided_boundary,
+};
 pub use element::{CUT_MODES, InvertedElement, facet_area};
 pub use error::SolidError;
 pub use material::{Criterion, CriterionKind, DamageLaw, Degradation, Elastic, Softening, Wave};

@@ -220,7 +220,7 @@ impl BodyModel {
     }
 
     /// Cells of some items of the body (elements, or edges if smoothed), of the elements that are there.
-    fn cells(&self, nodes: &[Vec3], items: &[u32]) -> Cells {
+    pub(crate) fn cells(&self, nodes: &[Vec3], items: &[u32]) -> Cells {
         let edges = self.smoothed_edges().map(|edges| (edges, &self.elements_of_edge));
         Geometry { body: &self.body, nodes }.cells(items, edges, |element| self.alive[element as usize])
     }

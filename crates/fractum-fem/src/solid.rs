@@ -10,7 +10,7 @@ pub(crate) use crate::body_model::BodyModel;
 use crate::body_model::Chosen;
 use crate::cell::Geometry;
 use crate::damage::EdgeField;
-use crate::divided::{ELSEWHERE, EdgeValue};
+use crate::divided::{ALONE, ELSEWHERE, EdgeValue};
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::kernel;
@@ -386,9 +386,14 @@ impl Solid {
 
     pub(crate) fn cell_field(&self, index: usize, at: (u32, u32)) -> (Sym3, f64) {
         let model = &self.bodies[index];
-        if at.0 == ELSEWHERE {
-            let EdgeValue { stress, damage, .. } = model.value_elsewhere(at.1);
-            return (stress, damage);
+        match at.0 {
+            ELSEWHERE => {
+                let EdgeValue { stress, damage, .. } = model.value_elsewhere(at.1);
+                return (stress, damage);
+            }
+            // Of a body without damage.
+            ALONE => return (model.hooke.stress(self.strain_alone(model, at.1)), 0.0),
+            _ => {}
         }
         let (cells, place) = self.cells_with(at);
         let strain = kernel::elastic_strain(&cells, place, &self.displacement, model.body.kinematics);
@@ -398,8 +403,10 @@ impl Solid {
 
     /// Strain of a cell, that of thermal expansion included.
     pub(crate) fn cell_strain(&self, model: &BodyModel, at: (u32, u32)) -> Sym3 {
-        if at.0 == ELSEWHERE {
-            return model.value_elsewhere(at.1).strain;
+        match at.0 {
+            ELSEWHERE => return model.value_elsewhere(at.1).strain,
+            ALONE => return self.strain_alone(model, at.1),
+            _ => {}
         }
         let (cells, cell) = self.cells_with(at);
         kernel::total_strain(&cells, cell, &self.displacement, model.body.kinematics)
@@ -417,12 +424,6 @@ impl BodyModel {
     /// Edges that hold the strain of the body; none where its elements do.
     pub(crate) fn smoothed_edges(&self) -> Option<&BodyEdges> {
         self.edges.as_ref().filter(|_| self.body.formulation == Formulation::Smoothed)
-    }
-
-    /// What another rank has told of an edge; nothing of edges of elements that this rank does not tell of.
-    fn value_elsewhere(&self, place: u32) -> EdgeValue {
-        let values = self.divided.as_ref().map_or(&[][..], |divided| &divided.values.values);
-        values.get(place as usize).copied().unwrap_or_default()
     }
 
     /// Mean of stress and damage over the edges of an element.

@@ -73,7 +73,8 @@ impl MeshFiles {
         match divide(case, mesh, &**exchange) {
             Ok((mesh, division)) => {
                 let (own, all) = (mesh.tetrahedra.len(), mesh.tetrahedron_count());
-                let whole = whole_bodies(case).into_iter().map(|body| format!("every process has all of {body}"));
+                let because = |body| format!("every process has all of body \"{body}\", because of damage");
+                let whole = whole_bodies(case).into_iter().map(because);
                 let notes = std::iter::once(format!("this process has {own} of the {all} tetrahedra of the mesh"));
                 let notes = notes.chain(whole).collect();
                 Ok(JoinedMesh { mesh, hash: hash(&hashes), division: Some(division), notes })

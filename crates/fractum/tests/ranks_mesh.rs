@@ -269,16 +269,39 @@ fn what_touches_divided_bodies_is_known_to_every_rank() {
 }
 
 #[test]
-fn what_needs_all_elements_has_every_rank_read_all_parts() {
-    let probe = "stress = { where = \"x < 0.3\", component = \"xx\" }";
-    let place = workplace(&BLOCK.replace("momentum = { along = \"x\" }", probe));
+fn stresses_are_measured_in_divided_bodies_too() {
+    let probes = "stress = { where = \"hypot(x - 0.4 m, z - 0.2 m) < 0.12 m\", component = \"xx\" }\n\
+        [[probes]]\nname = \"right\"\nstress = { group = \"right\", component = \"zz\" }\n\
+        [[probes]]\nname = \"some\"\nstress = { group = \"left\", where = \"x < 0.1 m\", component = \"zx\" }";
+    let smoothed = "material = \"rock\"\nformulation = \"smoothed\"\n[[bodies]]\nname = \"right\"";
+    let case = BLOCK.replace("momentum = { along = \"x\" }", probes);
+    let place = workplace(&case.replace("material = \"rock\"\n[[bodies]]\nname = \"right\"", smoothed));
+    let alone = run(&place.path("case.toml"), &options(&place, "alone")).unwrap().summary;
+    let history = |folder: &str| fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
+    assert!(["p", "right", "some"].iter().all(|name| alone.probes[*name].r#final.abs() > 1e4), "{:?}", alone.probes);
+    for ranks in [2, 3, 5] {
+        let folder = format!("of-{ranks}");
+        for hash in on_ranks(&place, ranks, &options(&place, &folder)) {
+            assert_eq!(hash.unwrap(), alone.hashes.state_hash);
+        }
+        assert!(history(&folder) == history("alone"), "{ranks} ranks");
+        let log = fs::read_to_string(place.path(&folder).join("run.log")).unwrap();
+        assert!(!log.contains("every process has"), "{log}");
+        assert_same_elements(&place, &folder);
+    }
+}
+
+#[test]
+fn where_every_body_may_break_every_rank_reads_all_parts() {
+    let damage =
+        "poisson_ratio = 0.25\n[materials.rock.damage]\ntensile_strength = \"9 MPa\"\nfracture_energy = \"90 J/m^2\"\n";
+    let place = workplace(&BLOCK.replace("poisson_ratio = 0.25\n", damage));
     let alone = run(&place.path("case.toml"), &options(&place, "alone")).unwrap().summary;
     for hash in on_ranks(&place, 2, &options(&place, "shared")) {
         assert_eq!(hash.unwrap(), alone.hashes.state_hash);
     }
     let log = fs::read_to_string(place.path("shared/run.log")).unwrap();
-    let why = "every process has the whole mesh, because of probe \"p\", which looks at elements of no body alone\n";
-    assert!(log.contains(why), "{log}");
+    assert!(log.contains("every process has the whole mesh, because of damage of every body\n"), "{log}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use fractum_parallel::{Exchange, gather, post};
 use rayon::prelude::*;
 
 use super::order::{Key, Order};
-use super::{BodyShare, ReadBody};
+use super::{BodyShare, KnownAround, ReadBody};
 use crate::body::Formulation;
 
 /// Words of an element on its way.
@@ -21,11 +21,10 @@ const PACKED: usize = 1 << 16;
 ///
 /// - `nodes`: positions of all nodes [m]
 /// - `bodies`: the whole body has the elements of rank 0 first, then those of rank 1 and so on
-/// - `looked_at`: nodes around which every rank needs all elements, beside those of whole bodies; the same on every rank
 ///
 /// # Panics
 /// If a body has more elements than have a number of 32 bits.
-pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], looked_at: &[u32]) -> Vec<BodyShare> {
+pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around: KnownAround) -> Vec<BodyShare> {
     let counts = gather(exchange, &bodies.iter().map(|body| body.elements.len()).collect::<Vec<_>>());
     let total = |body: usize| counts.iter().map(|counts| counts[body]).sum::<usize>();
     let first: Vec<usize> =
@@ -38,7 +37,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], looked
     let named: Vec<Key> = cells.par_iter().flat_map_iter(|cells| cells.keys()).collect();
     let order = Order::new(exchange, named, bodies.len());
     let mut is_near = nodes_of_whole(exchange, bodies, nodes.len());
-    looked_at.iter().for_each(|&node| is_near[node as usize] = true);
+    around.touched.iter().chain(around.measured).for_each(|&node| is_near[node as usize] = true);
     let mut words = OnTheirWay { to: vec![Vec::new(); exchange.size()], to_all: Vec::new() };
     cells.iter().for_each(|cells| cells.pack(&order, &is_near, &mut words));
     let mut shares: Vec<BodyShare> = (0..bodies.len())
@@ -68,6 +67,13 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], looked
     let mut elements: Vec<(u32, u32)> = received.iter().enumerate().flat_map(all_from).collect();
     elements.par_sort_unstable_by_key(|&at| packed(at)[0]);
     elements.into_iter().for_each(|at| add_to_share(packed(at), exchange.rank(), &mut shares));
+    let mut is_measured = vec![false; if around.measured.is_empty() { 0 } else { nodes.len() }];
+    around.measured.iter().for_each(|&node| is_measured[node as usize] = true);
+    for share in shares.iter_mut().filter(|share| !share.is_whole && !is_measured.is_empty()) {
+        let all = |element: &[u32; 4]| element.iter().all(|&node| is_measured[node as usize]);
+        let measured = (0..).zip(&share.elements).filter(|(_, element)| all(element)).map(|(number, _)| number);
+        share.measured = measured.collect();
+    }
     shares
 }
 

@@ -65,6 +65,8 @@ pub struct BodyShare {
     pub runs: Vec<Vec<[u32; 2]>>,
     /// Cells of every rank.
     pub cells: Vec<usize>,
+    /// Elements that this rank can measure by itself with all cells of theirs, ascending: it has all elements around their nodes.
+    pub measured: Vec<u32>,
 }
 
 /// What a rank knows of a body that it does not have whole.
@@ -97,6 +99,18 @@ pub struct ConnectedPieces {
 
 /// Block of cells that another rank evaluates, of which this one has no more than its number.
 pub(crate) const ELSEWHERE: u32 = u32::MAX;
+
+/// Cell that another rank evaluates too, and of which this one finds values by itself, by its number in the body.
+pub(crate) const ALONE: u32 = u32::MAX - 1;
+
+/// Nodes around which every rank needs all elements, beside those of whole bodies; the same on every rank.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct KnownAround<'a> {
+    /// What something may touch.
+    pub touched: &'a [u32],
+    /// Nodes of elements that are measured.
+    pub measured: &'a [u32],
+}
 
 /// Slots of the blocks of others at nodes of this rank: nodes of each block.
 pub(crate) type NodesOfOthers = BTreeMap<usize, Vec<u32>>;

@@ -1,14 +1,16 @@
 //! Solids of a mesh that several processes share: each has read some of its tetrahedra, and gets those around its cells.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use fractum_fem::{BodyShare, DividedBoundary, Formulation, ReadBody, deal, divided_boundary};
-use fractum_math::connected;
+use fractum_fem::{BodyShare, DividedBoundary, Formulation, KnownAround, ReadBody, deal, divided_boundary};
+use fractum_math::{Vec3, connected};
 use fractum_mesh::{Group, Mesh};
 use fractum_parallel::{Exchange, gather};
 
 use super::bodies::Numbering;
-use crate::case::model::{Body, BodyKind, BondedShape, Case, PackingSource, Probe, ProbeKind, RigidShape, SolidBody};
+use crate::case::model::{
+    Body, BodyKind, BondedShape, Case, PackingSource, ProbeKind, RigidShape, Selection, SolidBody,
+};
 
 /// What a process has of the solids of a mesh that it shares with others.
 pub struct SolidDivision {
@@ -31,27 +33,13 @@ pub fn cannot_divide(case: &Case) -> Option<String> {
         () if stage.flows.heat.is_some() => Some("heat"),
         () => None,
     };
-    let is_of_bodies = |probe: &&Probe| match looks_at(&probe.kind) {
-        Seen::NoElements => true,
-        Seen::Elements(group) => {
-            case.particle_group(group).is_some() || solids(case).any(|(_, solid)| solid.group.value == group)
-        }
-        Seen::AllElements => false,
-    };
-    let probe = || case.probes.iter().find(|probe| !is_of_bodies(probe));
-    let all_whole = || {
-        let reason = |(name, solid)| Some(format!("{} (body \"{name}\")", needed_whole(case, solid)?));
-        solids(case).map(reason).collect::<Option<Vec<_>>>()?.into_iter().next()
-    };
+    let all_break = || solids(case).all(|(_, solid)| may_break(case, solid)).then(|| "damage of every body".to_owned());
     let no_solid = solids(case).next().is_none().then(|| "bodies of which none is a solid".to_owned());
     body.map(|body| format!("body \"{}\", which replaces a part of a solid", body.name.value))
         .or(no_solid)
         .or_else(|| stages().find_map(of_stage).map(str::to_owned))
         .or_else(|| case.in_situ.as_ref().map(|_| "stress in situ".to_owned()))
-        .or_else(|| {
-            probe().map(|probe| format!("probe \"{}\", which looks at elements of no body alone", probe.name.value))
-        })
-        .or_else(all_whole)
+        .or_else(all_break)
 }
 
 /// Solid bodies of a case, with their names.
@@ -62,40 +50,22 @@ fn solids(case: &Case) -> impl Iterator<Item = (&str, &SolidBody)> {
     })
 }
 
-/// Why every process needs all of a body, in words; none where it does not.
-fn needed_whole(case: &Case, body: &SolidBody) -> Option<String> {
-    if body.damage && case.materials[body.material].damage.is_some() {
-        return Some("damage".to_owned());
-    }
-    let of_body = |probe: &&Probe| matches!(looks_at(&probe.kind), Seen::Elements(group) if *group == body.group.value);
-    let probe = case.probes.iter().find(of_body)?;
-    Some(format!("probe \"{}\", which looks at its elements", probe.name.value))
+/// Whether a body may break: every process needs all of it then.
+fn may_break(case: &Case, body: &SolidBody) -> bool {
+    body.damage && case.materials[body.material].damage.is_some()
 }
 
-/// The bodies of a case that every process has whole, with the reasons, in words; for the log.
-pub fn whole_bodies(case: &Case) -> Vec<String> {
-    let of = |(name, solid)| Some(format!("body \"{name}\", because of {}", needed_whole(case, solid)?));
-    solids(case).filter_map(of).collect()
+/// The bodies of a case that every process has whole.
+pub fn whole_bodies(case: &Case) -> Vec<&str> {
+    solids(case).filter(|(_, solid)| may_break(case, solid)).map(|(name, _)| name).collect()
 }
 
-/// What a probe must know of the elements of solids.
-enum Seen<'a> {
-    /// Nothing, or of bodies with damage alone.
-    NoElements,
-    /// Those of a group.
-    Elements(&'a str),
-    /// All of them.
-    AllElements,
-}
-
-fn looks_at(kind: &ProbeKind) -> Seen<'_> {
-    match kind {
-        ProbeKind::Stress { on, .. } => {
-            on.group.as_ref().map_or(Seen::AllElements, |group| Seen::Elements(&group.value))
-        }
-        ProbeKind::Damaged { group: Some(group), .. } => Seen::Elements(&group.value),
-        _ => Seen::NoElements,
-    }
+/// Elements whose stress probes measure.
+fn measured(case: &Case) -> impl Iterator<Item = &Selection> {
+    case.probes.iter().filter_map(|probe| match &probe.kind {
+        ProbeKind::Stress { on, .. } if case.particle_group(on.group_name()).is_none() => Some(on),
+        _ => None,
+    })
 }
 
 /// Deals the tetrahedra that all processes have read out to those whose cells they are part of. All processes must call it.
@@ -146,20 +116,28 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
     let read = bodies.iter().zip(&in_scene).zip(&tags);
     let read: Vec<ReadBody> = read
         .map(|((body, elements), tags)| {
-            let is_whole = needed_whole(case, body).is_some();
+            let is_whole = may_break(case, body);
             ReadBody { formulation: formulation(body), elements, tags, is_whole }
         })
         .collect();
+    let nodes_in_scene = |nodes: &mut dyn Iterator<Item = u32>| {
+        let mut nodes: Vec<u32> = nodes.map(|node| numbering.scene_node[node as usize]).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    };
     // Where two bodies meet too: facets of each by itself are looked for.
     let touched = if may_touch(case, groups.iter().map(nodes_of)) { &boundary.of_bodies[..] } else { &[] };
-    let touched = touched.iter().flatten().flatten();
-    let mut looked_at: Vec<u32> = touched.map(|&node| numbering.scene_node[node as usize]).collect();
-    looked_at.sort_unstable();
-    looked_at.dedup();
+    let touched = nodes_in_scene(&mut touched.iter().flatten().flatten().copied());
+    let own = nodes_in_scene(&mut groups.iter().flat_map(|&group| measured_nodes(case, &mesh, group)));
+    let measured: BTreeSet<u32> = gather(exchange, &own).into_iter().flatten().collect();
+    let measured: Vec<u32> = measured.into_iter().collect();
+    let named = NamedElements::of(case, &mesh, &groups, exchange);
     let beside: Vec<_> = beside.into_iter().map(|group| (group, all_elements(&mesh, group, exchange))).collect();
     let mut local = Mesh { tetrahedra: Vec::new(), tetrahedron_tags: Vec::new(), ..mesh };
     local.groups.iter_mut().for_each(|group| group.tetrahedra = Vec::new());
-    let mut shares = deal(exchange, &numbering.positions, &read, &looked_at);
+    let around = KnownAround { touched: &touched, measured: &measured };
+    let mut shares = deal(exchange, &numbering.positions, &read, around);
     drop((in_scene, tags));
     for (&group, share) in groups.iter().zip(&mut shares) {
         let in_mesh = |element: [u32; 4]| element.map(|node| order[node as usize]);
@@ -169,7 +147,66 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
     for (group, elements) in beside {
         add_elements(&mut local, group, elements.into_iter());
     }
+    named.put(&mut local, &groups, &shares);
     Ok((local, SolidDivision { bodies: shares, boundary, numbering }))
+}
+
+/// Nodes of the elements of a group, that of a body, that this process has read and whose stress probes measure.
+fn measured_nodes(case: &Case, mesh: &Mesh, group: usize) -> Vec<u32> {
+    let is_measured = |element: u32, on: &Selection| {
+        let is_named = on.group.as_ref().is_none_or(|name| {
+            mesh.group(&name.value).iter().any(|group| group.tetrahedra.binary_search(&element).is_ok())
+        });
+        let nodes = mesh.tetrahedra[element as usize];
+        let middle = || nodes.iter().map(|&node| mesh.nodes[node as usize]).sum::<Vec3>() / 4.0;
+        is_named && on.within.as_ref().is_none_or(|within| within.value.holds_at(middle()))
+    };
+    let elements = mesh.groups[group].tetrahedra.iter().copied();
+    let measured = elements.filter(|&element| measured(case).any(|on| is_measured(element, on)));
+    measured.flat_map(|element| mesh.tetrahedra[element as usize]).collect()
+}
+
+/// Elements of groups that probes name and that are not those of bodies.
+struct NamedElements {
+    /// Group, body and number in that of each.
+    elements: Vec<(usize, usize, u32)>,
+}
+
+impl NamedElements {
+    /// All processes must call it.
+    ///
+    /// - `bodies`: groups of the bodies, of which the whole has the elements of process 0 first, and so on
+    fn of(case: &Case, mesh: &Mesh, bodies: &[usize], exchange: &dyn Exchange) -> Self {
+        let damaged = case.probes.iter().filter_map(|probe| match &probe.kind {
+            ProbeKind::Damaged { group, .. } => group.as_ref(),
+            _ => None,
+        });
+        let names: BTreeSet<&str> =
+            measured(case).filter_map(|on| on.group.as_ref()).chain(damaged).map(|name| name.value.as_str()).collect();
+        let counts: Vec<usize> = bodies.iter().map(|&body| mesh.groups[body].tetrahedra.len()).collect();
+        let before: Vec<Vec<usize>> = gather(exchange, &counts).into_iter().take(exchange.rank()).collect();
+        let mut own = Vec::new();
+        for (group, known) in mesh.groups.iter().enumerate().filter(|(_, group)| names.contains(group.name.as_str())) {
+            for (body, &members) in bodies.iter().enumerate().filter(|(_, members)| **members != group) {
+                let first = before.iter().map(|counts| counts[body]).sum::<usize>();
+                let members = (first as u32..).zip(&mesh.groups[members].tetrahedra);
+                let named = members.filter(|(_, element)| known.tetrahedra.binary_search(element).is_ok());
+                own.extend(named.map(|(number, _)| (group, body, number)));
+            }
+        }
+        NamedElements { elements: gather(exchange, &own).concat() }
+    }
+
+    /// Names those that this process has.
+    fn put(&self, mesh: &mut Mesh, bodies: &[usize], shares: &[BodyShare]) {
+        for &(group, body, number) in &self.elements {
+            if let Ok(place) = shares[body].numbers.binary_search(&number) {
+                let element = mesh.groups[bodies[body]].tetrahedra[place];
+                mesh.groups[group].tetrahedra.push(element);
+            }
+        }
+        mesh.groups.iter_mut().for_each(|group| group.tetrahedra.sort_unstable());
+    }
 }
 
 /// Adds elements of a group to a mesh, with their tags.
