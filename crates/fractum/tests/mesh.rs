@@ -49,6 +49,20 @@ fn a_case_on_an_abaqus_file_has_the_bits_of_that_on_a_gmsh_file() {
 }
 
 #[test]
+fn a_mesh_in_parts_is_told_of_and_converted_as_one() {
+    let workplace = Workplace::new(BREAKING_BAR);
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/charge/parts.msh");
+    let told = workplace.fractum(&["mesh", "info", file, "--parts", "3"]);
+    assert!(told.code == Some(0) && told.stdout.contains("\"core\" (dimension 3, tag 1): 9409 elements"), "{}{}", told.stdout, told.stderr);
+    let ended = workplace.fractum(&["mesh", "convert", file, "one.msh", "--parts", "3"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let mesh = read_msh(&fs::read(workplace.path("one.msh")).unwrap()).unwrap();
+    assert_eq!((mesh.tetrahedra.len(), mesh.group("core").len()), (16640, 1));
+    let wrong = workplace.fractum(&["mesh", "info", file, "--parts", "4"]);
+    assert!(wrong.code == Some(1) && wrong.stderr.contains("parts_4.msh: cannot read the mesh"), "{}", wrong.stderr);
+}
+
+#[test]
 fn the_ending_of_the_output_is_its_format() {
     let workplace = Workplace::new(BREAKING_BAR);
     fs::write(workplace.path("bar.inp"), abaqus(&bar())).unwrap();

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{Subcommand, ValueEnum};
 use fractum::{ExitCode, Failure, say};
+use fractum_io::case::model::part_files;
 use fractum_io::case::read_case;
-use fractum_mesh::{Mesh, MshFormat, read_mesh, write_msh};
+use fractum_mesh::{Mesh, MshFormat, joined, read_mesh, write_msh};
 
 use super::mesh_info::{self, Demand};
 use super::mesh_vtu;
@@ -17,6 +18,9 @@ pub(crate) enum MeshCommand {
     Info {
         /// Gmsh (.msh, 2.2 or 4.1), Abaqus (.inp) or VTK (.vtu).
         file: PathBuf,
+        /// The mesh is in so many files, PART_1.msh and so on: those of Gmsh's partitions.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+        parts: Option<u32>,
         /// Case whose materials say how short edges must be, in the unit that it gives the mesh.
         #[arg(long)]
         case: Option<PathBuf>,
@@ -27,6 +31,9 @@ pub(crate) enum MeshCommand {
         file: PathBuf,
         /// File to write; its ending is the format.
         output: PathBuf,
+        /// The mesh is in so many files, PART_1.msh and so on, which become one.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+        parts: Option<u32>,
         /// Version and encoding of a .msh; msh41-binary if absent.
         #[arg(long, value_enum)]
         to: Option<Target>,
@@ -55,8 +62,8 @@ impl From<Target> for MshFormat {
 /// - `json`: the information as one JSON value
 pub(crate) fn execute(command: MeshCommand, json: bool) -> Result<ExitCode, Failure> {
     match command {
-        MeshCommand::Info { file, case } => {
-            let mesh = read(&file)?;
+        MeshCommand::Info { file, parts, case } => {
+            let mesh = read(&file, parts)?;
             let demand = case.map(|case| read_case(&case, &[])).transpose()?.map(|case| Demand::of(&case));
             if json {
                 say!("{}", mesh_info::json(&file, &mesh, demand.as_ref()));
@@ -64,21 +71,21 @@ pub(crate) fn execute(command: MeshCommand, json: bool) -> Result<ExitCode, Fail
                 say!("{}", mesh_info::text(&file, &mesh, demand.as_ref()));
             }
         }
-        MeshCommand::Convert { file, output, to } => convert(&file, &output, to)?,
+        MeshCommand::Convert { file, output, parts, to } => convert((&file, parts), &output, to)?,
     }
     Ok(ExitCode::Done)
 }
 
-fn convert(file: &Path, output: &Path, to: Option<Target>) -> Result<(), Failure> {
+fn convert((file, parts): (&Path, Option<u32>), output: &Path, to: Option<Target>) -> Result<(), Failure> {
     let wrong = |text: &str| Err(Failure::input(format!("{}: {text}", output.display())));
     let ending = output.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     match (ending.as_str(), to) {
         ("msh", to) => {
-            let mesh = read(file)?;
+            let mesh = read(file, parts)?;
             let format = to.unwrap_or(Target::Msh41Binary).into();
             Ok(fractum_io::atomic::write_with(output, |out| write_msh(&mesh, format, out))?)
         }
-        ("vtu", None) => Ok(fractum_io::atomic::write(output, &mesh_vtu::bytes(&read(file)?)?)?),
+        ("vtu", None) => Ok(fractum_io::atomic::write(output, &mesh_vtu::bytes(&read(file, parts)?)?)?),
         ("vtu", Some(_)) => wrong("--to is for files that end in .msh; leave it out"),
         _ => wrong(
             "ends in neither .msh nor .vtu, the formats that are written; for others write a .msh with --to msh22, then: \
@@ -87,7 +94,15 @@ fn convert(file: &Path, output: &Path, to: Option<Target>) -> Result<(), Failure
     }
 }
 
-fn read(file: &Path) -> Result<Mesh, Failure> {
+/// - `parts`: how many files it is in, where that is not one
+fn read(file: &Path, parts: Option<u32>) -> Result<Mesh, Failure> {
+    let Some(parts) = parts else { return read_one(file) };
+    let files = part_files(file, parts as usize);
+    let meshes = files.iter().map(|file| read_one(file)).collect::<Result<Vec<_>, _>>()?;
+    joined(&meshes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
+}
+
+fn read_one(file: &Path) -> Result<Mesh, Failure> {
     let bytes =
         fs::read(file).map_err(|error| Failure::input(format!("{}: cannot read the mesh: {error}", file.display())))?;
     read_mesh(&bytes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))

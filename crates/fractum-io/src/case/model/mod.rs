@@ -17,7 +17,7 @@ mod solver;
 mod tie;
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use fractum_scene::EnergyKind;
 
@@ -113,14 +113,18 @@ pub struct MeshSource {
 }
 
 impl MeshSource {
-    /// The files to read: those of parts have numbers before the ending, `rock.msh` in two parts is `rock_1.msh` and `rock_2.msh`.
+    /// The files to read.
     pub fn files(&self) -> Vec<PathBuf> {
         let file = &self.file.value;
-        let Some(parts) = self.parts else { return vec![file.clone()] };
-        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-        let ending = file.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
-        (1..=parts).map(|part| file.with_file_name(format!("{stem}_{part}{ending}"))).collect()
+        self.parts.map_or_else(|| vec![file.clone()], |parts| part_files(file, parts))
     }
+}
+
+/// The files of a mesh in parts, with numbers before the ending: `rock.msh` in two parts is `rock_1.msh` and `rock_2.msh`.
+pub fn part_files(file: &Path, parts: usize) -> Vec<PathBuf> {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = file.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
+    (1..=parts).map(|part| file.with_file_name(format!("{stem}_{part}{ending}"))).collect()
 }
 
 /// Damping of solids and particles; all zero by default.
