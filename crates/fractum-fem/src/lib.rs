@@ -38,6 +38,7 @@ mod divided;
 mod divided_solid;
 mod edges_in_step;
 mod element;
+mod element_fields;
 mod error;
 mod evaluate;
 mod expansion;

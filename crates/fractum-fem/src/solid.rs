@@ -10,10 +10,8 @@ pub(crate) use crate::body_model::BodyModel;
 use crate::body_model::Chosen;
 use crate::cell::Geometry;
 use crate::damage::EdgeField;
-use crate::divided::{ALONE, ELSEWHERE, EdgeValue};
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
-use crate::kernel;
 use crate::material::{Wave, rayleigh_wave_speed};
 use crate::part::Part;
 use crate::subcycling::Subcycling;
@@ -331,40 +329,6 @@ impl Solid {
         (self.bodies[index].reduced_edges, self.bodies[index].largest_length_ratio)
     }
 
-    /// Nominal stress [Pa] and damage of every element of a body: means over its edges where it is smoothed.
-    pub fn element_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
-        let model = &self.bodies[index];
-        self.means(model, |&at| self.cell_field(index, at))
-    }
-
-    /// Strain of every element of a body [-], that of thermal expansion included: the mean over its edges where it is smoothed.
-    pub fn element_strains(&self, index: usize) -> Vec<Sym3> {
-        let model = &self.bodies[index];
-        self.means(model, |&at| (self.cell_strain(model, at), 0.0)).into_iter().map(|(strain, _)| strain).collect()
-    }
-
-    /// What cells hold, as means over the edges of each element where the body is smoothed.
-    fn means(&self, model: &BodyModel, of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
-        let cells: Vec<(Sym3, f64)> = model.location.par_iter().map(of_cell).collect();
-        match model.smoothed_edges() {
-            None => cells,
-            Some(edges) => {
-                let mean = |of: &[u32; 6]| model.mean_of_edges(of, |edge| cells[edge as usize]);
-                edges.of_element.par_iter().map(mean).collect()
-            }
-        }
-    }
-
-    /// As [`Solid::element_fields`] of one element.
-    pub fn element_field(&self, index: usize, element: u32) -> (Sym3, f64) {
-        let model = &self.bodies[index];
-        let cell = |cell: u32| self.cell_field(index, model.location[cell as usize]);
-        match model.smoothed_edges() {
-            None => cell(element),
-            Some(edges) => model.mean_of_edges(&edges.of_element[element as usize], cell),
-        }
-    }
-
     /// Damage of the elements of a body: the mean over its edges where it is smoothed, 1 where one has been removed.
     pub fn element_damages(&self, index: usize) -> Vec<f64> {
         let model = &self.bodies[index];
@@ -384,34 +348,6 @@ impl Solid {
         model.alive.iter().enumerate().map(of_element).collect()
     }
 
-    pub(crate) fn cell_field(&self, index: usize, at: (u32, u32)) -> (Sym3, f64) {
-        let model = &self.bodies[index];
-        match at.0 {
-            ELSEWHERE => {
-                let EdgeValue { stress, damage, .. } = model.value_elsewhere(at.1);
-                return (stress, damage);
-            }
-            // Of a body without damage.
-            ALONE => return (model.hooke.stress(self.strain_alone(model, at.1)), 0.0),
-            _ => {}
-        }
-        let (cells, place) = self.cells_with(at);
-        let strain = kernel::elastic_strain(&cells, place, &self.displacement, model.body.kinematics);
-        let (block, cell) = (&self.blocks[at.0 as usize], at.1 as usize);
-        (block.nominal_stress(cell, &model.hooke, strain), block.damage_of(cell))
-    }
-
-    /// Strain of a cell, that of thermal expansion included.
-    pub(crate) fn cell_strain(&self, model: &BodyModel, at: (u32, u32)) -> Sym3 {
-        match at.0 {
-            ELSEWHERE => return model.value_elsewhere(at.1).strain,
-            ALONE => return self.strain_alone(model, at.1),
-            _ => {}
-        }
-        let (cells, cell) = self.cells_with(at);
-        kernel::total_strain(&cells, cell, &self.displacement, model.body.kinematics)
-    }
-
     /// Centre of an element without load [m].
     pub fn element_middle(&self, index: usize, element: u32) -> Vec3 {
         let body = &self.bodies[index].body;
@@ -427,7 +363,7 @@ impl BodyModel {
     }
 
     /// Mean of stress and damage over the edges of an element.
-    fn mean_of_edges(&self, of: &[u32; 6], field: impl Fn(u32) -> (Sym3, f64)) -> (Sym3, f64) {
+    pub(crate) fn mean_of_edges(&self, of: &[u32; 6], field: impl Fn(u32) -> (Sym3, f64)) -> (Sym3, f64) {
         let count = self.body.shape.edge_count();
         let mut sum = (Sym3::ZERO, 0.0);
         for &edge in &of[..count] {

@@ -251,14 +251,12 @@ impl ElementFields {
             let corners = kind.nodes();
             let mut kept = Vec::with_capacity(nodes.len());
             let phases = solid.element_phase(body);
-            let strains = if grid.further.strain { solid.element_strains(body) } else { Vec::new() };
-            for (element, (stress, damage)) in solid.element_fields(body).into_iter().enumerate() {
-                if !solid.alive(body)[element] || !solid.tells_of(body, element) {
-                    continue;
-                }
+            let strains = if grid.further.strain { solid.told_strains(body) } else { Vec::new() };
+            fields.strain.extend(strains.iter().map(|strain| strain.0.map(|e| e as f32)));
+            for (element, (stress, damage)) in solid.told_elements(body).into_iter().zip(solid.told_fields(body)) {
+                let element = element as usize;
                 kept.extend_from_slice(&nodes[corners * element..corners * (element + 1)]);
                 fields.add_stress(stress, grid.further.principal);
-                fields.strain.extend(strains.get(element).map(|strain| strain.0.map(|e| e as f32)));
                 fields.damage.push(damage as f32);
                 fields.phase.extend(phase_field.then(|| phases.as_ref().map_or(0.0, |phases| phases[element] as f32)));
                 fields.body.push(body as i32);

@@ -53,7 +53,12 @@ fn a_mesh_in_parts_is_told_of_and_converted_as_one() {
     let workplace = Workplace::new(BREAKING_BAR);
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/charge/parts.msh");
     let told = workplace.fractum(&["mesh", "info", file, "--parts", "3"]);
-    assert!(told.code == Some(0) && told.stdout.contains("\"core\" (dimension 3, tag 1): 9409 elements"), "{}{}", told.stdout, told.stderr);
+    assert!(
+        told.code == Some(0) && told.stdout.contains("\"core\" (dimension 3, tag 1): 9409 elements"),
+        "{}{}",
+        told.stdout,
+        told.stderr
+    );
     let ended = workplace.fractum(&["mesh", "convert", file, "one.msh", "--parts", "3"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let mesh = read_msh(&fs::read(workplace.path("one.msh")).unwrap()).unwrap();

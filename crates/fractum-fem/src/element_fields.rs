@@ -1,0 +1,123 @@
+//! Stress, strain and damage of elements.
+
+use fractum_math::Sym3;
+use rayon::prelude::*;
+
+use crate::body_model::BodyModel;
+use crate::divided::{ALONE, ELSEWHERE, EdgeValue};
+use crate::kernel;
+use crate::solid::Solid;
+
+impl Solid {
+    /// Nominal stress [Pa] and damage of every element of a body: means over its edges where it is smoothed.
+    pub fn element_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
+        let model = &self.bodies[index];
+        self.means(model, |&at| self.cell_field(index, at))
+    }
+
+    /// Strain of every element of a body [-], that of thermal expansion included: the mean over its edges where it is smoothed.
+    pub fn element_strains(&self, index: usize) -> Vec<Sym3> {
+        let model = &self.bodies[index];
+        self.means(model, |&at| (self.cell_strain(model, at), 0.0)).into_iter().map(|(strain, _)| strain).collect()
+    }
+
+    /// What cells hold, as means over the edges of each element where the body is smoothed.
+    fn means(&self, model: &BodyModel, of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
+        let cells: Vec<(Sym3, f64)> = model.location.par_iter().map(of_cell).collect();
+        match model.smoothed_edges() {
+            None => cells,
+            Some(edges) => {
+                let mean = |of: &[u32; 6]| model.mean_of_edges(of, |edge| cells[edge as usize]);
+                edges.of_element.par_iter().map(mean).collect()
+            }
+        }
+    }
+
+    /// Live elements of a body that this process tells of, ascending.
+    pub fn told_elements(&self, index: usize) -> Vec<u32> {
+        let alive = (0..).zip(&self.bodies[index].alive).filter(|(_, alive)| **alive).map(|(element, _)| element);
+        alive.filter(|&element: &u32| self.tells_of(index, element as usize)).collect()
+    }
+
+    /// As [`Solid::element_fields`], of [`Solid::told_elements`].
+    pub fn told_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
+        let model = &self.bodies[index];
+        self.told_means(index, |&at| self.cell_field(index, at), model)
+    }
+
+    /// As [`Solid::element_strains`], of [`Solid::told_elements`].
+    pub fn told_strains(&self, index: usize) -> Vec<Sym3> {
+        let model = &self.bodies[index];
+        let means = self.told_means(index, |&at| (self.cell_strain(model, at), 0.0), model);
+        means.into_iter().map(|(strain, _)| strain).collect()
+    }
+
+    /// Means of the elements that this process tells of, from the cells alone that they need.
+    fn told_means(
+        &self,
+        index: usize,
+        of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync + Send,
+        model: &BodyModel,
+    ) -> Vec<(Sym3, f64)> {
+        let told = self.told_elements(index);
+        if model.is_told.is_empty() {
+            let all = self.means(model, of_cell);
+            let is_all = told.len() == all.len();
+            return if is_all { all } else { told.into_iter().map(|element| all[element as usize]).collect() };
+        }
+        let Some(edges) = model.smoothed_edges() else {
+            return told.par_iter().map(|&element| of_cell(&model.location[element as usize])).collect();
+        };
+        let mut place = vec![u32::MAX; edges.nodes.len()];
+        let mut needed: Vec<u32> = Vec::new();
+        for edge in told.iter().flat_map(|&element| edges.of_element[element as usize]) {
+            if place[edge as usize] == u32::MAX {
+                place[edge as usize] = needed.len() as u32;
+                needed.push(edge);
+            }
+        }
+        let cells: Vec<(Sym3, f64)> = needed.par_iter().map(|&edge| of_cell(&model.location[edge as usize])).collect();
+        let mean = |&element: &u32| {
+            model.mean_of_edges(&edges.of_element[element as usize], |edge| cells[place[edge as usize] as usize])
+        };
+        told.par_iter().map(mean).collect()
+    }
+
+    /// As [`Solid::element_fields`] of one element.
+    pub fn element_field(&self, index: usize, element: u32) -> (Sym3, f64) {
+        let model = &self.bodies[index];
+        let cell = |cell: u32| self.cell_field(index, model.location[cell as usize]);
+        match model.smoothed_edges() {
+            None => cell(element),
+            Some(edges) => model.mean_of_edges(&edges.of_element[element as usize], cell),
+        }
+    }
+
+    pub(crate) fn cell_field(&self, index: usize, at: (u32, u32)) -> (Sym3, f64) {
+        let model = &self.bodies[index];
+        match at.0 {
+            ELSEWHERE => {
+                let EdgeValue { stress, damage, .. } = model.value_elsewhere(at.1);
+                return (stress, damage);
+            }
+            // Of a body without damage.
+            ALONE => return (model.hooke.stress(self.strain_alone(model, at.1)), 0.0),
+            _ => {}
+        }
+        let (cells, place) = self.cells_with(at);
+        let strain = kernel::elastic_strain(&cells, place, &self.displacement, model.body.kinematics);
+        let (block, cell) = (&self.blocks[at.0 as usize], at.1 as usize);
+        (block.nominal_stress(cell, &model.hooke, strain), block.damage_of(cell))
+    }
+
+    /// Strain of a cell, that of thermal expansion included.
+    pub(crate) fn cell_strain(&self, model: &BodyModel, at: (u32, u32)) -> Sym3 {
+        match at.0 {
+            ELSEWHERE => return model.value_elsewhere(at.1).strain,
+            ALONE => return self.strain_alone(model, at.1),
+            _ => {}
+        }
+        let (cells, cell) = self.cells_with(at);
+        kernel::total_strain(&cells, cell, &self.displacement, model.body.kinematics)
+    }
+}
