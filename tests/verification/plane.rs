@@ -89,7 +89,8 @@ fn particles_of_a_plane_body_are_discs_of_its_thickness() {
     let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
     let body = Body::new("sheet", ElementKind::T3, elements, CONCRETE);
     let solid = Solid::new(mesh.nodes, vec![Body { thickness: 0.07, ..body }]).unwrap();
-    let debris = Debris::new(&solid, vec![ContactParameters::default()]);
+    let mut debris = Debris::new(&solid, vec![ContactParameters::default()]);
+    debris.prepare(&solid);
     assert!((0..solid.reference.len() as u32).all(|node| debris.thickness(node) == 0.07));
     let mass: f64 = solid.mass.iter().sum();
     assert!((mass - 0.07 * CONCRETE.density).abs() < 1e-9);

@@ -43,6 +43,14 @@ impl Numbering {
         (Numbering { scene_node, positions }, order)
     }
 
+    /// Some nodes of the mesh by their numbers in the scene, each once, ascending.
+    pub(super) fn ascending<'a>(&self, nodes: impl IntoIterator<Item = &'a u32>) -> Vec<u32> {
+        let mut nodes: Vec<u32> = nodes.into_iter().map(|&node| self.scene_node[node as usize]).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
     /// Scene nodes in the order of the file.
     pub(super) fn file_order(&self) -> Vec<u32> {
         self.scene_node.iter().copied().filter(|&n| n != u32::MAX).collect()

@@ -123,10 +123,10 @@ impl Debris {
         }
     }
 
-    /// Finds radii, bodies and materials of the nodes; needed before the first contact of any kind.
+    /// Finds radii, bodies and materials of the nodes; needed before the first contact of any kind, and before anyone asks for them.
     ///
     /// Those of nodes around which a rank does not have all elements are not right; nothing ever touches them.
-    pub(crate) fn prepare(&mut self, solid: &Solid) {
+    pub fn prepare(&mut self, solid: &Solid) {
         if !self.radius.is_empty() {
             return;
         }

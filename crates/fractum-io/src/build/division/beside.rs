@@ -1,0 +1,56 @@
+//! What is beside the solids: other bodies, which may be made of tetrahedra too, and may touch them.
+
+use fractum_math::connected;
+use fractum_mesh::Mesh;
+use fractum_parallel::{Exchange, gather};
+
+use crate::case::model::{Body, BodyKind, BondedShape, Case, PackingSource, RigidShape};
+
+/// Groups of tetrahedra that bodies are made of which are no solids.
+pub(super) fn groups_of_others(case: &Case, mesh: &Mesh) -> Vec<usize> {
+    let whole = mesh.whole.as_ref().expect("the caller knows what others have");
+    let name = |body: &Body| match &body.kind {
+        BodyKind::Rigid(rigid) => match &rigid.shape {
+            RigidShape::Group { group, .. } => Some(group.value.clone()),
+            _ => None,
+        },
+        BodyKind::Bonded(bonded) => match &bonded.packing {
+            PackingSource::Shape { shape, .. } => match &shape.value {
+                BondedShape::Group(group) => Some(group.value.clone()),
+                _ => None,
+            },
+            PackingSource::File(_) => None,
+        },
+        _ => None,
+    };
+    let names: Vec<String> = case.bodies.iter().filter_map(name).collect();
+    let is_meant = |group: &usize| whole.groups[*group].0 > 0 && names.contains(&mesh.groups[*group].name);
+    (0..mesh.groups.len()).filter(is_meant).collect()
+}
+
+/// The elements of a group that all processes have read, in their order, with their tags.
+pub(super) fn all_elements(mesh: &Mesh, group: usize, exchange: &dyn Exchange) -> Vec<([u32; 4], u64)> {
+    let of = |&e: &u32| (mesh.tetrahedra[e as usize], mesh.tetrahedron_tags[e as usize]);
+    let own: Vec<([u32; 4], u64)> = mesh.groups[group].tetrahedra.iter().map(of).collect();
+    gather(exchange, &own).concat()
+}
+
+/// Whether something may touch the solids: other bodies, or one solid another that it shares no node with.
+///
+/// - `nodes`: those of each solid; `count`: how many the mesh has
+pub(super) fn may_touch<'a>(case: &Case, nodes: impl Iterator<Item = &'a Vec<u32>>, count: usize) -> bool {
+    if case.bodies.iter().any(|body| !matches!(body.kind, BodyKind::Solid(_))) {
+        return true;
+    }
+    let mut first = vec![u32::MAX; count];
+    let (mut links, mut bodies) = (Vec::new(), 0);
+    for (body, nodes) in (0..).zip(nodes) {
+        bodies = body as usize + 1;
+        for &node in nodes {
+            let first = &mut first[node as usize];
+            *first = body.min(*first);
+            links.extend((*first != body).then_some([*first, body]));
+        }
+    }
+    connected(bodies, links).into_iter().any(|piece| piece != 0)
+}
