@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""Largest displacements by Blake (1952) for elastic.toml: `python3 blake.py` (needs numpy)."""
+"""Largest displacements by Blake (1952) for elastic.toml: `python3 blake.py`, or with another rise [s] behind it (needs numpy)."""
+
+import sys
 
 import numpy as np
 
-E, NU, DENSITY, A, PRESSURE, RISE = 50e9, 0.25, 2600.0, 0.02, 10e6, 12e-6
+E, NU, DENSITY, A, PRESSURE = 50e9, 0.25, 2600.0, 0.02, 10e6
+RISE = float(sys.argv[1]) if len(sys.argv) > 1 else 12e-6
 G = E / (2 * (1 + NU))
 C = np.sqrt(E * (1 - NU) / ((1 + NU) * (1 - 2 * NU)) / DENSITY)
 ALPHA = (1 - 2 * NU) / (1 - NU) * C / A

@@ -23,8 +23,8 @@ pub(crate) struct BodyModel {
     /// Edges, with damage or in the smoothed formulation.
     pub(crate) edges: Option<BodyEdges>,
     pub(crate) elements_of_edge: Ragged,
-    /// Block and cell of each cell of the body (element, or edge if smoothed); [`crate::divided::ELSEWHERE`] and a place among the values of others, or [`crate::divided::ALONE`] and its own number, for
-    /// what this rank does not have.
+    /// Block and cell of each cell of the body (element, or edge if smoothed); for what this rank does not have
+    /// [`crate::divided::ELSEWHERE`] and a place among the values of others, or [`crate::divided::ALONE`] and its own number.
     pub(crate) location: Vec<(u32, u32)>,
     pub(crate) standard: Option<StandardDamage>,
     pub(crate) phase: Option<Box<PhaseField>>,

@@ -97,7 +97,7 @@ impl Solid {
         Some(&self.bodies[body].divided.as_ref()?.pieces)
     }
 
-    /// Nodes of a body, those of each of its elements where this rank has all of these.
+    /// Nodes of a body, some of them more than once.
     pub fn nodes_of(&self, body: usize) -> impl Iterator<Item = u32> + '_ {
         let model = &self.bodies[body];
         let elements = if model.divided.is_some() { &[][..] } else { &model.body.elements };

@@ -15,12 +15,6 @@ impl Solid {
         self.means(model, |&at| self.cell_field(index, at))
     }
 
-    /// Strain of every element of a body [-], that of thermal expansion included: the mean over its edges where it is smoothed.
-    pub fn element_strains(&self, index: usize) -> Vec<Sym3> {
-        let model = &self.bodies[index];
-        self.means(model, |&at| (self.cell_strain(model, at), 0.0)).into_iter().map(|(strain, _)| strain).collect()
-    }
-
     /// What cells hold, as means over the edges of each element where the body is smoothed.
     fn means(&self, model: &BodyModel, of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
         let cells: Vec<(Sym3, f64)> = model.location.par_iter().map(of_cell).collect();
@@ -41,25 +35,19 @@ impl Solid {
 
     /// As [`Solid::element_fields`], of [`Solid::told_elements`].
     pub fn told_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
-        let model = &self.bodies[index];
-        self.told_means(index, |&at| self.cell_field(index, at), model)
+        self.told_means(index, |&at| self.cell_field(index, at))
     }
 
-    /// As [`Solid::element_strains`], of [`Solid::told_elements`].
+    /// Strain of [`Solid::told_elements`], that of thermal expansion included: the mean over its edges where the body is smoothed.
     pub fn told_strains(&self, index: usize) -> Vec<Sym3> {
         let model = &self.bodies[index];
-        let means = self.told_means(index, |&at| (self.cell_strain(model, at), 0.0), model);
+        let means = self.told_means(index, |&at| (self.cell_strain(model, at), 0.0));
         means.into_iter().map(|(strain, _)| strain).collect()
     }
 
     /// Means of the elements that this process tells of, from the cells alone that they need.
-    fn told_means(
-        &self,
-        index: usize,
-        of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync + Send,
-        model: &BodyModel,
-    ) -> Vec<(Sym3, f64)> {
-        let told = self.told_elements(index);
+    fn told_means(&self, index: usize, of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
+        let (model, told) = (&self.bodies[index], self.told_elements(index));
         if model.is_told.is_empty() {
             let all = self.means(model, of_cell);
             let is_all = told.len() == all.len();

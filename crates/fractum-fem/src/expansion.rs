@@ -181,7 +181,7 @@ mod tests {
             let mut solid = cube(smoothed);
             let count = solid.reference.len();
             let free = solid.expand(&vec![100.0; count]);
-            assert!(solid.element_strains(0).iter().all(|strain| strain.0 == [0.0; 6]), "nothing has moved yet");
+            assert!(solid.told_strains(0).iter().all(|strain| strain.0 == [0.0; 6]), "nothing has moved yet");
             // Held in all directions: σ = -E α ΔT/(1 - 2 ν), energy 3/2 V E (α ΔT)²/(1 - 2 ν).
             solid.update_internal_forces(0.0, true);
             let pressure = -30e9 * ALPHA * 100.0 / 0.6;
@@ -198,7 +198,7 @@ mod tests {
             assert!(largest < 1e-9 * pressure.abs() && solid.elastic_energy() < 1e-12 * energy, "{largest}");
             let off =
                 |strain: &Sym3| (0..6).any(|k| (strain.0[k] - if k < 3 { ALPHA * 100.0 } else { 0.0 }).abs() > 1e-15);
-            assert!(!solid.element_strains(0).iter().any(off), "all of it is thermal strain");
+            assert!(!solid.told_strains(0).iter().any(off), "all of it is thermal strain");
         }
     }
 

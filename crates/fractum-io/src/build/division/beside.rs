@@ -9,23 +9,28 @@ use crate::case::model::{Body, BodyKind, BondedShape, Case, PackingSource, Rigid
 /// Groups of tetrahedra that bodies are made of which are no solids.
 pub(super) fn groups_of_others(case: &Case, mesh: &Mesh) -> Vec<usize> {
     let whole = mesh.whole.as_ref().expect("the caller knows what others have");
-    let name = |body: &Body| match &body.kind {
+    let names: Vec<&str> = case.bodies.iter().filter_map(group_of_other).collect();
+    let is_meant = |group: &usize| whole.groups[*group].0 > 0 && names.contains(&mesh.groups[*group].name.as_str());
+    (0..mesh.groups.len()).filter(is_meant).collect()
+}
+
+/// Group of the mesh that a body is made of which is no solid.
+fn group_of_other(body: &Body) -> Option<&str> {
+    let group = match &body.kind {
         BodyKind::Rigid(rigid) => match &rigid.shape {
-            RigidShape::Group { group, .. } => Some(group.value.clone()),
-            _ => None,
+            RigidShape::Group { group, .. } => group,
+            _ => return None,
         },
         BodyKind::Bonded(bonded) => match &bonded.packing {
             PackingSource::Shape { shape, .. } => match &shape.value {
-                BondedShape::Group(group) => Some(group.value.clone()),
-                _ => None,
+                BondedShape::Group(group) => group,
+                _ => return None,
             },
-            PackingSource::File(_) => None,
+            PackingSource::File(_) => return None,
         },
-        _ => None,
+        _ => return None,
     };
-    let names: Vec<String> = case.bodies.iter().filter_map(name).collect();
-    let is_meant = |group: &usize| whole.groups[*group].0 > 0 && names.contains(&mesh.groups[*group].name);
-    (0..mesh.groups.len()).filter(is_meant).collect()
+    Some(&group.value)
 }
 
 /// The elements of a group that all processes have read, in their order, with their tags.

@@ -33,7 +33,7 @@ pub fn cannot_divide(case: &Case) -> Option<String> {
         () if stage.flows.heat.is_some() => Some("heat"),
         () => None,
     };
-    let all_break = || solids(case).all(|(_, solid)| may_break(case, solid)).then(|| "damage of every body".to_owned());
+    let all_break = || solids(case).all(|(_, solid)| solid.damage).then(|| "damage of every body".to_owned());
     let no_solid = solids(case).next().is_none().then(|| "bodies of which none is a solid".to_owned());
     body.map(|body| format!("body \"{}\", which replaces a part of a solid", body.name.value))
         .or(no_solid)
@@ -50,14 +50,9 @@ fn solids(case: &Case) -> impl Iterator<Item = (&str, &SolidBody)> {
     })
 }
 
-/// Whether a body may break: every process needs all of it then.
-fn may_break(case: &Case, body: &SolidBody) -> bool {
-    body.damage && case.materials[body.material].damage.is_some()
-}
-
-/// The bodies of a case that every process has whole.
+/// The bodies of a case that every process has whole: those that may break.
 pub fn whole_bodies(case: &Case) -> Vec<&str> {
-    solids(case).filter(|(_, solid)| may_break(case, solid)).map(|(name, _)| name).collect()
+    solids(case).filter(|(_, solid)| solid.damage).map(|(name, _)| name).collect()
 }
 
 /// Deals the tetrahedra that all processes have read out to those whose cells they are part of. All processes must call it.
@@ -107,9 +102,11 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
     let formulation = |body: &SolidBody| if body.is_smoothed() { Formulation::Smoothed } else { Formulation::Standard };
     let read = bodies.iter().zip(&in_scene).zip(&tags);
     let read: Vec<ReadBody> = read
-        .map(|((body, elements), tags)| {
-            let is_whole = may_break(case, body);
-            ReadBody { formulation: formulation(body), elements, tags, is_whole }
+        .map(|((body, elements), tags)| ReadBody {
+            formulation: formulation(body),
+            elements,
+            tags,
+            is_whole: body.damage,
         })
         .collect();
     // Where two bodies meet too: facets of each by itself are looked for.
