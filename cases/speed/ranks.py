@@ -5,7 +5,7 @@ the least time of their steps without output, the ratio, and what is sent; then 
 Needs numpy, MPI and a build with it: `cargo build --release --features mpi --target-dir target/mpi`, then
 `python3 cases/speed/ranks.py target/mpi/release/fractum`. With `particles` behind it the times alone, of a cube of 100,000 bonded particles that
 vibrates, of the same that is torn, and of 91,125 loose beads that fall into a box. With `parts` the memory alone, of a cube of 3,072,000 tetrahedra (or
-of six times the cube of a number behind it) whose mesh is in one file and in four; with `core` of the same, a tenth of which may break.
+of six times the cube of a number behind it) whose mesh is in one file and in four; with `core` or `breaking` of the same, a tenth or all of which may break.
 """
 
 import json
@@ -38,12 +38,14 @@ CORE = CASE.replace(
     "bodies = [",
     'bodies = [{ name = "core", kind = "solid", group = "core", material = "weak", formulation = "smoothed" }, ',
 )
+DAMAGE = 'damage = { tensile_strength = "3 MPa", fracture_energy = "100 J/m^2" }\n'
 CORE += """[materials.weak]
 density = "2400 kg/m^3"
 young_modulus = "30 GPa"
 poisson_ratio = 0.2
-damage = { tensile_strength = "3 MPa", fracture_energy = "100 J/m^2" }
-"""
+""" + DAMAGE
+# All of it may break.
+BREAKING = CASE + DAMAGE
 BONDED = """fractum = 1
 bodies = [{ name = "cube", kind = "bonded", material = "glass", shape = "box", size = ["2 mm", "2 mm", "2 mm"], particles = 100000, coordination = 10, seed = 3,
   initial_velocity = { x = "rate*x/side", y = "-nu*rate*(y/side - 0.5)", z = "-nu*rate*(z/side - 0.5)" } }]
@@ -162,7 +164,8 @@ def peaks(program, folder, count):
 
 if __name__ == "__main__":
     program, what = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:]
-    if what[:1] in (["parts"], ["core"]):
-        parts(program, CORE if what[0] == "core" else CASE, *map(int, what[1:]))
+    in_parts = {"parts": CASE, "core": CORE, "breaking": BREAKING}
+    if what and what[0] in in_parts:
+        parts(program, in_parts[what[0]], *map(int, what[1:]))
     else:
         (particles if "particles" in what else main)(program)

@@ -43,7 +43,7 @@ fn cut(cells: u32, plane: bool, axes: usize, damage: bool) -> Solid {
     elements.iter().flatten().for_each(|&n| new[n as usize] = 0);
     let kept: Vec<usize> = (0..nodes.len()).filter(|&n| new[n] == 0).collect();
     (0..).zip(&kept).for_each(|(number, &n)| new[n] = number);
-    let elements = elements.into_iter().map(|e| e.map(|n| new[n as usize])).collect();
+    let elements: Vec<_> = elements.into_iter().map(|e| e.map(|n| new[n as usize])).collect();
     let law = softening(10.0);
     let body =
         Body { plane: Plane::Strain, thickness: 0.02, ..Body::new("block", kind, elements, CONCRETE).smoothed() };
@@ -160,9 +160,9 @@ fn part(cells: u32, plane: bool, damage: bool) -> (Solid, Vec<[u32; 3]>, Symmetr
         place.iter_mut().take(axes).for_each(|c| *c = on_plane(*c));
         place
     });
-    let elements = elements.into_iter().map(|e| e.map(|n| new[n as usize])).collect();
+    let elements: Vec<_> = elements.into_iter().map(|e| e.map(|n| new[n as usize])).collect();
     let nodes: Vec<Vec3> = nodes.collect();
-    let mut body = Body { elements, ..body.clone() };
+    let mut body = Body { elements: elements.into(), ..body.clone() };
     let midpoints = body.edge_midpoints(&nodes);
     if let Some(zone) = &mut body.damage {
         // A crack can only run along a plane of symmetry.

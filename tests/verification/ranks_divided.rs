@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use fractum_fem::{
-    Body, BodyShare, CrackFacet, DamageLaw, Formulation, Kinematics, KnownAround, LocalDamping, ReadBody,
-    Regularisation, Solid, Viscosity,
+    Body, BodyShare, CrackEdge, CrackFacet, DamageLaw, EdgeDamage, Formulation, Held, Kinematics, KnownAround,
+    LocalDamping, ReadBody, Regularisation, Solid, Viscosity,
 };
 use fractum_math::Vec3;
 use fractum_parallel::{Exchange, threads};
@@ -12,7 +12,7 @@ use fractum_scene::coupling::largest_radii;
 use fractum_scene::{Counts, Gravity, Load, Pressure, Scene, Watched, solid_pieces};
 use fractum_tests::{jittered_box, surface};
 
-use crate::ranks::{RANKS, advance, bits, ends, on_two_threads, scene, set_moving};
+use crate::ranks::{RANKS, advance, ends, on_two_threads, scene, set_moving};
 
 const SIZE: Vec3 = Vec3::new(0.4, 0.2, 0.2);
 
@@ -21,7 +21,12 @@ fn bodies(kinematics: Kinematics) -> (Vec<Vec3>, Vec<Body>) {
     let (nodes, body) = jittered_box([20, 10, 10], SIZE);
     let is_left = |element: &[u32; 4]| element.iter().map(|&n| nodes[n as usize].x).sum::<f64>() < 2.0 * SIZE.x;
     let (left, right) = body.elements.iter().partition(|element| is_left(element));
-    let of = |elements: Vec<[u32; 4]>, formulation| Body { elements, formulation, kinematics, ..body.clone() };
+    let of = |elements: Vec<[u32; 4]>, formulation| Body {
+        elements: elements.into(),
+        formulation,
+        kinematics,
+        ..body.clone()
+    };
     let bodies = vec![of(left, Formulation::Smoothed), of(right, Formulation::Standard)];
     (nodes, bodies)
 }
@@ -40,13 +45,19 @@ fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> (Ve
     let parts = bodies.iter().zip(elements.iter().zip(&tags));
     let parts: Vec<ReadBody> = parts
         .map(|(body, (elements, tags))| {
-            let (formulation, is_whole) = (body.formulation, body.damage.is_some());
-            ReadBody { formulation, elements, tags, is_whole }
+            let held = match &body.damage {
+                None => Held::Part,
+                Some(zone) if body.formulation == Formulation::Smoothed && zone.regularisation.is_none() => {
+                    Held::Elements
+                }
+                Some(_) => Held::Whole,
+            };
+            ReadBody { formulation: body.formulation, elements, tags, held }
         })
         .collect();
     let shares = fractum_fem::deal(&**exchange, nodes, &parts, KnownAround::default());
     let boundary = fractum_fem::divided_boundary(&**exchange, &elements, nodes.len());
-    let whole: Vec<[u32; 4]> = bodies.iter().flat_map(|body| &body.elements).copied().collect();
+    let whole: Vec<[u32; 4]> = bodies.iter().flat_map(|body| &*body.elements).copied().collect();
     let outside = |elements: &[[u32; 4]]| -> Vec<[u32; 3]> {
         fractum_mesh::topology::boundary_of_tetrahedra(elements).iter().map(|facet| facet.nodes).collect()
     };
@@ -54,7 +65,7 @@ fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> (Ve
     assert!(bodies.iter().zip(&boundary.of_bodies).all(|(body, of)| *of == outside(&body.elements)));
     let with_elements = |(body, mut share): (Body, BodyShare)| {
         let elements = std::mem::take(&mut share.elements);
-        (Body { elements, ..body }, share)
+        (Body { elements: elements.into(), ..body }, share)
     };
     bodies.into_iter().zip(shares).map(with_elements).unzip()
 }
@@ -128,7 +139,7 @@ fn breaking(formulation: Formulation, regularisation: Option<Regularisation>) ->
     let place = |element: &[u32; 4]| element.iter().map(|&n| nodes[n as usize].x).sum::<f64>() / (4.0 * SIZE.x);
     let of = |[begin, end]: [f64; 2], formulation| {
         let elements = body.elements.iter().filter(|element| (begin..end).contains(&place(element)));
-        Body { elements: elements.copied().collect(), formulation, ..body.clone() }
+        Body { elements: Arc::new(elements.copied().collect()), formulation, ..body.clone() }
     };
     let mut middle = of([0.4, 0.6], formulation).with_damage(DamageLaw::rankine(3e6, 60.0));
     middle.damage.as_mut().unwrap().regularisation = regularisation;
@@ -137,14 +148,46 @@ fn breaking(formulation: Formulation, regularisation: Option<Regularisation>) ->
 }
 
 /// Whatever a rank knows of all that breaks.
-fn broken(scene: &Scene) -> (String, Counts, Vec<f64>, Vec<CrackFacet>, Vec<Vec<u32>>) {
-    let radii = largest_radii(&scene.solid);
-    let pieces = solid_pieces(&scene.solid, 0.05).into_iter().map(|piece| piece.nodes).collect();
-    (bits(scene), scene.counts(), radii, scene.solid.crack_surface().facets, pieces)
+#[derive(PartialEq)]
+struct Broken {
+    /// Without histories.
+    state: serde_json::Value,
+    /// Of the edges of all bodies.
+    histories: Vec<EdgeDamage>,
+    counts: Counts,
+    radii: Vec<f64>,
+    facets: Vec<CrackFacet>,
+    pieces: Vec<Vec<u32>>,
+    edges: Vec<CrackEdge>,
+    damages: Vec<Vec<f64>>,
 }
 
-fn breaks_as_whole(formulation: Formulation, regularisation: Option<Regularisation>) {
-    let (nodes, all) = breaking(formulation, regularisation);
+fn broken(scene: &Scene) -> Broken {
+    let solid = &scene.solid;
+    let mut histories = Vec::new();
+    (0..solid.body_count()).for_each(|body| solid.each_history(body, |_| (), |history| histories.push(*history)));
+    let mut state = serde_json::to_value(scene.state()).unwrap();
+    state["solid"]["bodies"]
+        .as_array_mut()
+        .unwrap()
+        .iter_mut()
+        .for_each(|body| body["edges"] = Vec::<u8>::new().into());
+    Broken {
+        state,
+        histories,
+        counts: scene.counts(),
+        radii: largest_radii(solid),
+        facets: solid.crack_surface().facets,
+        pieces: solid_pieces(solid, 0.05).into_iter().map(|piece| piece.nodes).collect(),
+        edges: solid.crack_edges(),
+        damages: (0..solid.body_count())
+            .filter(|&b| solid.body(b).damage.is_some())
+            .map(|b| solid.element_damages(b))
+            .collect(),
+    }
+}
+
+fn breaks_as_whole((nodes, all): (Vec<Vec3>, Vec<Body>), what: &str) {
     let pulled = |solid: Solid| {
         let supports = ends(&solid, 10.0);
         scene(solid, supports, Vec::new(), LocalDamping::default())
@@ -152,13 +195,13 @@ fn breaks_as_whole(formulation: Formulation, regularisation: Option<Regularisati
     let mut single = pulled(Solid::new(nodes.clone(), all.clone()).unwrap());
     advance(&mut single, 400);
     let counts = single.counts();
-    assert!(counts.removed_elements > 10 && counts.particles > 10, "{formulation:?}: {counts:?}");
+    assert!(counts.removed_elements > 10 && counts.particles > 10, "{what}: {counts:?}");
     let expected = broken(&single);
     let run = |exchange: Arc<dyn Exchange>| {
         on_two_threads(|| {
             let (bodies, shares) = dealt(&exchange, &nodes, all.clone());
             let solid = Solid::divided(nodes.clone(), bodies, &shares, Arc::clone(&exchange)).unwrap();
-            assert!(solid.is_divided() && solid.connected_pieces(1).is_none());
+            assert!(solid.is_divided() && solid.connected_pieces(all.len() / 2).is_none());
             let mut scene = pulled(solid);
             scene.share_out(exchange, &Watched::default());
             advance(&mut scene, 400);
@@ -172,7 +215,7 @@ fn breaks_as_whole(formulation: Formulation, regularisation: Option<Regularisati
         std::thread::scope(|scope| {
             let started: Vec<_> = threads(ranks).into_iter().map(|exchange| scope.spawn(|| run(exchange))).collect();
             for (rank, thread) in started.into_iter().enumerate() {
-                assert!(thread.join().unwrap() == expected, "{formulation:?}: rank {rank} of {ranks}");
+                assert!(thread.join().unwrap() == expected, "{what}: rank {rank} of {ranks}");
             }
         });
     }
@@ -180,9 +223,18 @@ fn breaks_as_whole(formulation: Formulation, regularisation: Option<Regularisati
 
 #[test]
 fn a_body_that_breaks_between_divided_ones_has_the_bits_of_one_process() {
-    breaks_as_whole(Formulation::Smoothed, None);
-    breaks_as_whole(Formulation::Standard, None);
-    breaks_as_whole(Formulation::Smoothed, Some(Regularisation { length: None }));
+    breaks_as_whole(breaking(Formulation::Smoothed, None), "smoothed");
+    breaks_as_whole(breaking(Formulation::Standard, None), "standard");
+    breaks_as_whole(breaking(Formulation::Smoothed, Some(Regularisation { length: None })), "phase field");
+}
+
+#[test]
+fn a_body_that_breaks_all_over_has_the_bits_of_one_process() {
+    let (nodes, body) = jittered_box([24, 8, 8], SIZE);
+    let mut body = body.smoothed().with_damage(DamageLaw::rankine(3e6, 60.0));
+    let factor = |p: &Vec3| if (p.x / SIZE.x - 0.5).abs() < 0.1 { 0.8 } else { 1.0 };
+    body.damage.as_mut().unwrap().strength_factor = body.edge_midpoints(&nodes).iter().map(factor).collect();
+    breaks_as_whole((nodes, vec![body]), "all of it");
 }
 
 #[test]

@@ -386,7 +386,7 @@ fn flyer(end: f64) -> Scene {
     let fine = Vec3::new(SIZE.x, SIZE.y, 0.5 * SIZE.z);
     let (others, mut free) = jittered_box(CELLS, fine);
     free.name = "flyer".to_owned();
-    free.elements.iter_mut().flatten().for_each(|node| *node += count);
+    Arc::make_mut(&mut free.elements).iter_mut().flatten().for_each(|node| *node += count);
     let all = nodes.iter().copied().chain(others.iter().map(|p| p + Vec3::z() * 0.2)).collect();
     let mut solid = Solid::new(all, vec![held.smoothed(), free.smoothed()]).unwrap();
     for i in count as usize..solid.velocity.len() {

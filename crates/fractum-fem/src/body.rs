@@ -1,4 +1,5 @@
-use fractum_math::Vec3;
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::material::{DamageLaw, Elastic};
@@ -96,7 +97,7 @@ pub struct Body {
     /// Shape of its elements.
     pub shape: ElementKind,
     /// Node indices of its elements, positively oriented.
-    pub elements: Vec<[u32; 4]>,
+    pub elements: Arc<Vec<[u32; 4]>>,
     /// Elasticity.
     pub elastic: Elastic,
     /// Where strain and stress live.
@@ -117,7 +118,7 @@ impl Body {
         Body {
             name: name.to_owned(),
             shape,
-            elements,
+            elements: Arc::new(elements),
             elastic,
             formulation: Formulation::Standard,
             kinematics: Kinematics::Small,
@@ -148,34 +149,4 @@ impl Body {
     pub(crate) fn depth(&self) -> f64 {
         if self.shape == ElementKind::T3 { self.thickness } else { 1.0 }
     }
-
-    /// The edges of the body, as pairs of node indices, and the edges of each element.
-    pub fn edges(&self) -> BodyEdges {
-        match self.shape {
-            ElementKind::T4 => {
-                let edges = fractum_mesh::topology::edges_of_tetrahedra(&self.elements);
-                BodyEdges { nodes: edges.nodes, of_element: edges.of_element }
-            }
-            ElementKind::T3 => {
-                let triangles: Vec<[u32; 3]> = self.elements.iter().map(|e| [e[0], e[1], e[2]]).collect();
-                let edges = fractum_mesh::topology::edges_of_triangles(&triangles);
-                let of_element = edges.of_element.iter().map(|e| [e[0], e[1], e[2], 0, 0, 0]).collect();
-                BodyEdges { nodes: edges.nodes, of_element }
-            }
-        }
-    }
-
-    /// Midpoints of the edges, in the order that [`DamageZone`] uses [m].
-    pub fn edge_midpoints(&self, nodes: &[Vec3]) -> Vec<Vec3> {
-        self.edges().nodes.iter().map(|&[i, j]| (nodes[i as usize] + nodes[j as usize]) * 0.5).collect()
-    }
-}
-
-/// Edges of a body; triangles use the first three entries of `of_element`.
-#[derive(Clone, Debug)]
-pub struct BodyEdges {
-    /// The two nodes of each edge.
-    pub nodes: Vec<[u32; 2]>,
-    /// The edges of each element.
-    pub of_element: Vec<[u32; 6]>,
 }

@@ -1,19 +1,22 @@
 //! The cells of a body in blocks, with their laws.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use fractum_math::{Ragged, Vec3};
+use fractum_math::Vec3;
 
-use crate::body::{Body, BodyEdges, Formulation};
-use crate::body_model::{BodyModel, Chosen};
+use crate::body::{Body, Formulation};
+use crate::body_model::{BodyModel, Chosen, KnownBody};
 use crate::cell::{Bundle, Class, Geometry};
 use crate::damage::{EdgeField, Softens};
-use crate::divided::{BodyShare, ELSEWHERE};
+use crate::divided::{BodyShare, ELSEWHERE, Held};
+use crate::edges::BodyEdges;
 use crate::edges_in_step::EdgeCells;
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::hooke::Hooke;
 use crate::phase::PhaseField;
+use crate::places::Places;
 use crate::standard::{StandardCells, StandardDamage};
 use crate::threshold::Threshold;
 
@@ -32,29 +35,30 @@ impl BodyModel {
         let hooke = Hooke::of(&body);
         let smoothed = body.formulation == Formulation::Smoothed;
         let geometry = Geometry { body: &body, nodes };
-        let edges = (smoothed || body.damage.is_some()).then(|| body.edges());
-        let edge_count = edges.as_ref().map_or(0, |e| e.nodes.len());
-        let per_element = body.shape.edge_count();
-        let elements_of_edge = edges.as_ref().map_or_else(Ragged::default, |edges| {
-            Ragged::inverse(edge_count, edges.of_element.iter().map(|of| &of[..per_element]))
+        let known = chosen.share.filter(|share| share.held == Held::Elements);
+        let edges = (smoothed || body.damage.is_some()).then(|| match known {
+            Some(share) => BodyEdges::sought(&body, nodes.len(), share.told().collect()),
+            None => body.edges(),
         });
+        let edge_count = edges.as_ref().map_or(0, BodyEdges::len);
+        let softens = body.damage.as_ref().map(|zone| Arc::new(Softens::new(zone, hooke, body.elastic.young_modulus)));
+        let of_body = CellsOfBody { geometry, edges: edges.as_ref().filter(|_| smoothed), chosen };
+        let bundles_of_share = chosen.share.map(|share| of_body.blocks_of(share));
+        let own = bundles_of_share.as_ref().filter(|_| known.is_some()).map(|bundles| items_of(bundles));
         let threshold = match (&body.damage, &edges) {
-            (Some(zone), Some(edges)) => Some(Threshold::new(&body, zone, edges, &elements_of_edge, nodes, volumes)?),
+            (Some(zone), Some(edges)) => Some(Threshold::new(&body, zone, edges, nodes, volumes, own.clone())?),
             _ => None,
         };
-        let softens = body.damage.as_ref().map(|zone| Arc::new(Softens::new(zone, hooke, body.elastic.young_modulus)));
-        let of_body = CellsOfBody {
-            geometry,
-            edges: edges.as_ref().filter(|_| smoothed),
-            elements_of_edge: &elements_of_edge,
-            chosen,
+        let breaks = |edge| threshold.as_ref().is_some_and(|t: &Threshold| t.strength(edge).is_finite());
+        let bundles = bundles_of_share.unwrap_or_else(|| of_body.blocks(breaks));
+        let mut location = match own {
+            Some(own) => Places::Own(own.into_iter().map(|edge| (edge, (ELSEWHERE, 0))).collect()),
+            None => Places::of_cells(if smoothed { edge_count } else { body.elements.len() }),
         };
-        let bundles = of_body.blocks(|edge| threshold.as_ref().is_some_and(|t| t.strength[edge as usize].is_finite()));
-        let mut location = vec![(ELSEWHERE, 0); if smoothed { edge_count } else { body.elements.len() }];
         let mut blocks = Vec::with_capacity(bundles.len());
         for bundle in bundles {
             for (cell, &item) in bundle.items.iter().enumerate() {
-                location[item as usize] = ((first_block + blocks.len()) as u32, cell as u32);
+                location.put(item, ((first_block + blocks.len()) as u32, cell as u32));
             }
             let law = block_law(smoothed, softens.as_ref().zip(threshold.as_ref()), &bundle.items);
             let is_fine = of_body.is_fine(bundle.items[0]);
@@ -66,11 +70,15 @@ impl BodyModel {
             (Some(zone), Some(sizes)) => Some(Box::new(PhaseField::of(&body, zone, sizes, edge_count)?)),
             _ => None,
         };
-        let standard = match (softens, threshold) {
-            (Some(softens), Some(t)) if !smoothed => {
+        let of_others = softens.as_ref().filter(|_| known.is_some());
+        let known =
+            of_others.map(|softens| Box::new(KnownBody { softens: Arc::clone(softens), told: BTreeMap::new() }));
+        let around = edges.as_ref().and_then(BodyEdges::table_of_elements);
+        let standard = match (softens, threshold, around) {
+            (Some(softens), Some(t), Some(around)) if !smoothed => {
                 let mut field = EdgeField::new(softens, (0..edge_count as u32).collect(), &t);
                 field.keep_histories();
-                Some(StandardDamage::new(field, body.shape, elements_of_edge.clone(), body.elements.len()))
+                Some(StandardDamage::new(field, body.shape, around.clone(), body.elements.len()))
             }
             _ => None,
         };
@@ -83,22 +91,29 @@ impl BodyModel {
             is_told: Vec::new(),
             volumes: OnceLock::new(),
             edges,
-            elements_of_edge,
             location,
             standard,
             phase,
             reduced_edges,
             largest_length_ratio,
             divided: None,
+            known,
         };
         Ok((model, blocks))
     }
 }
 
+/// Cells of some blocks, ascending.
+fn items_of(bundles: &[Bundle]) -> Vec<u32> {
+    let mut items: Vec<u32> = bundles.iter().flat_map(|bundle| &bundle.items).copied().collect();
+    items.sort_unstable();
+    items
+}
+
 /// Law of the cells of a block; one that holds an edge that may be damaged holds such edges only.
 fn block_law(smoothed: bool, damage: Option<(&Arc<Softens>, &Threshold)>, items: &[u32]) -> BlockLaw {
     match damage {
-        Some((softens, threshold)) if smoothed && threshold.strength[items[0] as usize].is_finite() => {
+        Some((softens, threshold)) if smoothed && threshold.strength(items[0]).is_finite() => {
             let field = EdgeField::new(softens.clone(), items.to_vec(), threshold);
             BlockLaw::Edges(EdgeCells { field, dissipated: 0.0, energy: None })
         }
@@ -112,7 +127,6 @@ struct CellsOfBody<'a> {
     geometry: Geometry<'a>,
     /// Edges, where these are the cells.
     edges: Option<&'a BodyEdges>,
-    elements_of_edge: &'a Ragged,
     chosen: Chosen<'a>,
 }
 
@@ -121,7 +135,7 @@ impl CellsOfBody<'_> {
     fn is_fine(&self, item: u32) -> bool {
         let is_fine = |element: u32| self.chosen.fine.get(element as usize).copied().unwrap_or(false);
         match self.edges {
-            Some(_) => self.elements_of_edge.row(item as usize).iter().any(|&element| is_fine(element)),
+            Some(edges) => edges.around(item).iter().any(|&element| is_fine(element)),
             None => is_fine(item),
         }
     }
@@ -130,14 +144,10 @@ impl CellsOfBody<'_> {
     ///
     /// - `breaks`: whether an edge may be damaged
     fn blocks(&self, breaks: impl Fn(u32) -> bool) -> Vec<Bundle> {
-        if let Some(share) = self.chosen.share {
-            return self.blocks_of(share);
-        }
         match self.edges {
-            Some(edges) => self.geometry.edge_blocks(edges, self.elements_of_edge, |edge| Class {
-                is_fine: self.is_fine(edge),
-                is_sound: !breaks(edge),
-            }),
+            Some(edges) => {
+                self.geometry.edge_blocks(edges, |edge| Class { is_fine: self.is_fine(edge), is_sound: !breaks(edge) })
+            }
             None => self.geometry.element_blocks(|element| Class { is_fine: self.is_fine(element), is_sound: false }),
         }
     }
@@ -146,13 +156,13 @@ impl CellsOfBody<'_> {
     fn blocks_of(&self, share: &BodyShare) -> Vec<Bundle> {
         let item = |nodes: &[u32; 2]| {
             let found = match self.edges {
-                Some(edges) => edges.nodes.binary_search(nodes),
-                None => share.numbers.binary_search(&nodes[0]),
+                Some(edges) => edges.find(*nodes),
+                None => share.numbers.binary_search(&nodes[0]).ok().map(|element| element as u32),
             };
-            found.expect("a rank has the elements of its cells") as u32
+            found.expect("a rank has the elements of its cells")
         };
         let runs: Vec<Vec<u32>> = share.runs.iter().map(|run| run.iter().map(item).collect()).collect();
         let runs: Vec<&[u32]> = runs.iter().map(Vec::as_slice).collect();
-        self.geometry.bundles(&runs, self.edges.map(|edges| (edges, self.elements_of_edge)))
+        self.geometry.bundles(&runs, self.edges)
     }
 }

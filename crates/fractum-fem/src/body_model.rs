@@ -1,11 +1,13 @@
-use std::sync::OnceLock;
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
 
-use fractum_math::Ragged;
-
-use crate::body::{Body, BodyEdges};
+use crate::body::Body;
+use crate::damage::Softens;
 use crate::divided::{BodyShare, DividedBody};
+use crate::edges::BodyEdges;
 use crate::hooke::Hooke;
 use crate::phase::PhaseField;
+use crate::places::Places;
 use crate::standard::StandardDamage;
 use crate::viscosity::BodyViscosity;
 
@@ -22,10 +24,8 @@ pub(crate) struct BodyModel {
     pub(crate) volumes: OnceLock<Vec<f64>>,
     /// Edges, with damage or in the smoothed formulation.
     pub(crate) edges: Option<BodyEdges>,
-    pub(crate) elements_of_edge: Ragged,
-    /// Block and cell of each cell of the body (element, or edge if smoothed); for what this rank does not have
-    /// [`crate::divided::ELSEWHERE`] and a place among the values of others, or [`crate::divided::ALONE`] and its own number.
-    pub(crate) location: Vec<(u32, u32)>,
+    /// Where its cells are.
+    pub(crate) location: Places,
     pub(crate) standard: Option<StandardDamage>,
     pub(crate) phase: Option<Box<PhaseField>>,
     /// Edges whose strength was lowered to fit their length.
@@ -34,6 +34,16 @@ pub(crate) struct BodyModel {
     pub(crate) largest_length_ratio: f64,
     /// What this rank knows of the whole body, where it does not have all of it.
     pub(crate) divided: Option<Box<DividedBody>>,
+    /// What this rank knows of the cells of others, where it has all elements and no more cells than its own.
+    pub(crate) known: Option<Box<KnownBody>>,
+}
+
+/// What a rank knows of the cells of others of a body that may break and of which it has all elements.
+#[derive(Clone, Debug)]
+pub(crate) struct KnownBody {
+    pub(crate) softens: Arc<Softens>,
+    /// Block and cell of edges of others of which this rank has been told.
+    pub(crate) told: BTreeMap<u32, (u32, u32)>,
 }
 
 /// Which cells of a body are made.

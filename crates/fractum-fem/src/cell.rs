@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use fractum_math::{Ragged, Vec3};
+use fractum_math::Vec3;
 use rayon::prelude::*;
 
 use crate::block::{BLOCK_NODES, Cells, Run};
-use crate::body::{Body, BodyEdges};
+use crate::body::Body;
+use crate::edges::BodyEdges;
 use crate::element::measure_and_gradients;
 use crate::error::SolidError;
 
@@ -102,17 +103,17 @@ impl Geometry<'_> {
 
     /// Cells of some items, which touch at most [`BLOCK_NODES`] nodes.
     ///
-    /// - `edges`: edges and the elements around each, where these are the cells; elements are without
+    /// - `edges`: where these are the cells; elements are without
     /// - `is_alive`: whether an element is still there
     pub(crate) fn cells(
         &self,
         items: &[u32],
-        edges: Option<(&BodyEdges, &Ragged)>,
+        edges: Option<&BodyEdges>,
         is_alive: impl Fn(u32) -> bool + Copy,
     ) -> Cells {
         let rows: Vec<Vec<u32>> = items.iter().map(|&item| self.row(item, edges)).collect();
         build_block(&rows, |cell, nodes, gradients| match edges {
-            Some((_, elements)) => self.edge_domain(nodes, elements.row(items[cell] as usize), is_alive, gradients),
+            Some(edges) => self.edge_domain(nodes, &edges.around(items[cell]), is_alive, gradients),
             None => {
                 let volume = self.element_cell(items[cell], gradients);
                 if is_alive(items[cell]) { volume } else { 0.0 }
@@ -121,9 +122,9 @@ impl Geometry<'_> {
     }
 
     /// Nodes of the cell of an item.
-    fn row(&self, item: u32, edges: Option<(&BodyEdges, &Ragged)>) -> Vec<u32> {
+    fn row(&self, item: u32, edges: Option<&BodyEdges>) -> Vec<u32> {
         match edges {
-            Some((edges, elements)) => self.edge_nodes(edges.nodes[item as usize], elements.row(item as usize)),
+            Some(edges) => self.edge_nodes(edges.nodes(item), &edges.around(item)),
             None => self.element_nodes(item as usize).to_vec(),
         }
     }
@@ -148,22 +149,17 @@ impl Geometry<'_> {
     }
 
     /// Blocks of edge cells; see [`Class`].
-    pub(crate) fn edge_blocks(
-        &self,
-        edges: &BodyEdges,
-        elements_of_edge: &Ragged,
-        class: impl Fn(u32) -> Class,
-    ) -> Vec<Bundle> {
-        let middles: Vec<Vec3> =
-            edges.nodes.par_iter().map(|&[i, j]| self.nodes[i as usize] + self.nodes[j as usize]).collect();
+    pub(crate) fn edge_blocks(&self, edges: &BodyEdges, class: impl Fn(u32) -> Class) -> Vec<Bundle> {
+        let middle = |edge| edges.nodes(edge).map(|node| self.nodes[node as usize]).into_iter().sum();
+        let middles: Vec<Vec3> = (0..edges.len() as u32).into_par_iter().map(middle).collect();
         let groups = by_class(fractum_mesh::renumber::hilbert_order(&middles), class);
-        self.bundles(&chunks(&groups), Some((edges, elements_of_edge)))
+        self.bundles(&chunks(&groups), Some(edges))
     }
 
     /// Runs of cells as blocks.
     ///
-    /// - `edges`: edges and the elements around each, where these are the cells; elements are without
-    pub(crate) fn bundles(&self, runs: &[&[u32]], edges: Option<(&BodyEdges, &Ragged)>) -> Vec<Bundle> {
+    /// - `edges`: where these are the cells; elements are without
+    pub(crate) fn bundles(&self, runs: &[&[u32]], edges: Option<&BodyEdges>) -> Vec<Bundle> {
         let row = |item: u32| self.row(item, edges);
         let sorted = |mut bundle: Bundle| {
             if edges.is_some() {

@@ -5,6 +5,7 @@ use fractum_math::{Sym3, Vec3};
 
 use crate::body::ElementKind;
 use crate::damage::EdgeField;
+use crate::edges::BodyEdges;
 use crate::evaluate::Block;
 use crate::solid::Solid;
 
@@ -112,7 +113,7 @@ impl Solid {
         let mut found = Vec::new();
         for (body, model) in self.bodies.iter().enumerate() {
             // Field and place of each edge; walking through them costs less than sorting those of the blocks.
-            let count = model.edges.as_ref().map_or(0, |edges| edges.nodes.len());
+            let count = model.edges.as_ref().map_or(0, BodyEdges::len);
             let mut places: Vec<Option<(u32, u32)>> = vec![None; count];
             for (index, (_, field)) in (0..).zip(&fields).filter(|(_, (of, _))| *of == body) {
                 let damaged = (0..).zip(&field.state).filter(|(_, state)| state.damage > 0.0);
@@ -134,7 +135,7 @@ impl Solid {
                 field.softens.residual_ratio(state.kappa, field.strength[at], field.length[at]),
             ),
         };
-        let ends = model.edges.iter().flat_map(|edges| edges.nodes[edge as usize]);
+        let ends = model.edges.iter().flat_map(|edges| edges.nodes(edge));
         CrackEdge {
             body,
             edge,
@@ -148,15 +149,20 @@ impl Solid {
     /// Share of an edge in the volume of the elements around it, whether they are still there or not [m³].
     fn volume_of_edge(&self, body: usize, edge: u32) -> f64 {
         let model = &self.bodies[body];
-        let elements = model.elements_of_edge.row(edge as usize);
+        let Some(edges) = &model.edges else { return 0.0 };
+        let elements = edges.around(edge);
         // The cell of an edge that has lost no element knows its volume.
         if model.standard.is_none() && elements.iter().all(|&e| model.alive[e as usize]) {
-            let (cells, cell) = self.cells_with(model.location[edge as usize]);
-            return cells.volume[cell];
+            return match model.location.kept(edge) {
+                Some(at) => {
+                    let (cells, cell) = self.cells_with(at);
+                    cells.volume[cell]
+                }
+                None => model.cells(&self.reference, &[edge]).volume[0],
+            };
         }
         let share = 1.0 / model.body.shape.edge_count() as f64;
-        let volumes = self.element_volumes(body);
-        elements.iter().map(|&e| share * volumes[e as usize]).sum()
+        elements.iter().map(|&e| share * self.element_volume(body, e)).sum()
     }
 
     /// Energy that damage has taken in a body with a phase field over the fracture energy of its area of crack; none without one, or without a crack.

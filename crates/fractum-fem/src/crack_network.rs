@@ -312,8 +312,8 @@ impl Solid {
     pub fn characteristic_length(&self, body: usize, element: u32) -> f64 {
         let model = &self.bodies[body];
         let count = model.body.shape.edge_count();
-        let edges = model.edges.iter().flat_map(|edges| &edges.of_element[element as usize][..count]);
-        let lengths = edges.filter_map(|&edge| self.edge(body, edge)).map(|(field, index)| field.length[index]);
+        let edges = model.edges.iter().flat_map(|edges| edges.of_element(element).into_iter().take(count));
+        let lengths = edges.filter_map(|edge| self.length_of_edge(body, edge));
         let (sum, number) = lengths.fold((0.0, 0.0), |(sum, number), length| (sum + length, number + 1.0));
         if number > 0.0 {
             return sum / number;

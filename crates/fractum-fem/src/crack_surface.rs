@@ -95,8 +95,8 @@ impl Solid {
         let element = model.body.elements[removed as usize];
         let sides = if model.body.shape == ElementKind::T4 { &SIDES_T4[..] } else { &SIDES_T3[..] };
         for &(local, opposite, edge, third) in sides {
-            let around = model.elements_of_edge.row(edges.of_element[removed as usize][edge] as usize);
-            if let Some(behind) = behind(model, around, element[third]) {
+            let around = edges.around(edges.of_element(removed)[edge]);
+            if let Some(behind) = behind(model, &around, element[third]) {
                 let nodes = local.map(|k| element[k]);
                 facets.push(self.crack_facet(body, behind, removed, nodes, element[opposite]));
             }

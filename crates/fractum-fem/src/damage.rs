@@ -207,12 +207,18 @@ pub(crate) struct EdgeField {
 impl EdgeField {
     /// Intact edges of a body, without their histories.
     pub(crate) fn new(softens: Arc<Softens>, edges: Vec<u32>, threshold: &Threshold) -> Self {
-        let strength: Vec<f64> = edges.iter().map(|&e| threshold.strength[e as usize]).collect();
+        let strength = edges.iter().map(|&edge| threshold.strength(edge)).collect();
+        let length = edges.iter().map(|&edge| threshold.length(edge)).collect();
+        EdgeField::of_edges(softens, edges, strength, length)
+    }
+
+    /// The same with strength [Pa] and characteristic length [m] of each.
+    pub(crate) fn of_edges(softens: Arc<Softens>, edges: Vec<u32>, strength: Vec<f64>, length: Vec<f64>) -> Self {
         EdgeField {
             softens,
             state: Vec::new(),
             threshold: Vec::new(),
-            length: edges.iter().map(|&e| threshold.length[e as usize]).collect(),
+            length,
             strength,
             edges,
             damaged: 0,
@@ -314,7 +320,7 @@ impl EdgeField {
     }
 
     /// Has removal look at every broken edge.
-    fn renew_fresh(&mut self) {
+    pub(crate) fn renew_fresh(&mut self) {
         let EdgeField { fresh, state, .. } = self;
         fresh.clear();
         fresh.extend((0..).zip(&*state).filter(|(_, edge)| edge.broken).map(|(index, _)| index));

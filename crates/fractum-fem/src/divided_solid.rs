@@ -1,5 +1,6 @@
 //! A solid whose bodies are divided among ranks.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -12,21 +13,22 @@ use crate::body::{Body, ElementKind, Formulation};
 use crate::body_model::{BodyModel, Chosen};
 use crate::cell::Geometry;
 use crate::divided::{
-    ALONE, BlockOrder, BodyShare, ConnectedPieces, DividedBody, ELSEWHERE, EdgeValue, EdgeValues, GivenToNodes,
+    ALONE, BlockOrder, BodyShare, ConnectedPieces, DividedBody, ELSEWHERE, EdgeValue, EdgeValues, GivenToNodes, Held,
     RanksOfNodes, SharedNodes, connected_pieces, nodal_sums,
 };
 use crate::error::SolidError;
-use crate::evaluate::Block;
+use crate::evaluate::{Block, BlockLaw};
 use crate::kernel;
 use crate::part::Part;
 use crate::solid::Solid;
 use crate::time_step::StableStep;
+use crate::told_edges::ToldEdges;
 
 impl Solid {
     /// Builds the cells that this rank evaluates of bodies of which it has a share. All ranks must call it.
     ///
     /// - `nodes`: reference positions of all nodes [m]
-    /// - `bodies`: with the elements of this rank; those with damage are whole; `shares`: what else it has of each of them
+    /// - `bodies`: with the elements of this rank, those with damage with all; `shares`: what else it has of each of them
     ///
     /// # Errors
     /// As [`Solid::new`], the same on every rank.
@@ -52,7 +54,7 @@ impl Solid {
         let (mut models, mut made) = (Vec::new(), Vec::new());
         let mut done = Ok(());
         for (index, ((body, share), volumes)) in bodies.into_iter().zip(shares).zip(&volumes).enumerate() {
-            let chosen = Chosen { fine: &[], share: Some(share).filter(|share| !share.is_whole) };
+            let chosen = Chosen { fine: &[], share: Some(share).filter(|share| !share.is_whole()) };
             match BodyModel::new(body, index, &nodes, volumes, chosen, 0) {
                 Ok((mut model, blocks)) => {
                     model.divide(&*exchange, share, volumes, nodes.len());
@@ -68,7 +70,7 @@ impl Solid {
         let order = BlockOrder::new(&*exchange, shares, &cells);
         for (body, model) in models.iter_mut().enumerate() {
             let begin = order.begin_of(body, exchange.rank(), &shares[body]) as u32;
-            model.location.iter_mut().filter(|at| at.0 < ALONE).for_each(|(block, _)| *block += begin);
+            model.location.move_blocks(begin);
         }
         let own = order.first[exchange.rank()]..order.first[exchange.rank() + 1];
         let made = made.into_iter().enumerate().flat_map(|(body, blocks)| {
@@ -81,7 +83,7 @@ impl Solid {
         of_own.sort_unstable();
         of_own.dedup();
         let ranks = RanksOfNodes::new(&*exchange, nodes.len(), &of_own);
-        let blocks = with_others(&*exchange, made, shares, &ranks);
+        let blocks = with_others(&*exchange, made, &models, &ranks);
         let slots = NodeSlots::new(nodes.len(), blocks.iter().map(|block| block.cells.nodes.as_slice()))?;
         let part = Part::divided(exchange, order, ranks, &blocks, &slots);
         Ok(Solid::of_blocks(nodes, mass, models, blocks, slots, Some(Box::new(part))))
@@ -89,7 +91,7 @@ impl Solid {
 
     /// Whether there are bodies that no rank has whole.
     pub fn is_divided(&self) -> bool {
-        self.bodies.iter().any(|model| model.divided.is_some())
+        self.part.as_ref().is_some_and(|part| part.is_divided())
     }
 
     /// How the elements of a body hang together that no rank has whole; none where each has all of them.
@@ -177,7 +179,7 @@ impl Solid {
         match &model.divided {
             Some(divided) => divided.skin.clone(),
             None if model.body.shape == ElementKind::T3 => {
-                let alive = (0..).zip(&model.body.elements).zip(&model.alive).filter(|(_, alive)| **alive);
+                let alive = (0..).zip(&*model.body.elements).zip(&model.alive).filter(|(_, alive)| **alive);
                 alive.map(|((element, &[a, b, c, _]), _)| ([a, b, c], element)).collect()
             }
             None => {
@@ -199,7 +201,10 @@ impl Solid {
     pub fn told_edges(&self, body: usize) -> Vec<[u32; 2]> {
         let BodyModel { body, edges, is_told, .. } = &self.bodies[body];
         if !is_told.contains(&false) {
-            return edges.as_ref().map_or_else(|| body.edges().nodes, |edges| edges.nodes.clone());
+            let mut nodes = Vec::new();
+            let edges = edges.as_ref().map_or_else(|| Cow::Owned(body.edges()), Cow::Borrowed);
+            edges.for_each(|_, ends, _| nodes.push(ends));
+            return nodes;
         }
         let told: Vec<[u32; 4]> =
             body.elements.iter().zip(is_told).filter(|(_, is_told)| **is_told).map(|(nodes, _)| *nodes).collect();
@@ -226,7 +231,7 @@ impl Solid {
         for index in 0..self.bodies.len() {
             let Some(mut divided) = self.bodies[index].divided.take() else { continue };
             divided.values.swap(&*exchange, |edge| {
-                let at = self.bodies[index].location[edge as usize];
+                let at = self.bodies[index].location.of(edge);
                 let (stress, damage) = self.cell_field(index, at);
                 EdgeValue { stress, damage, strain: self.cell_strain(&self.bodies[index], at) }
             });
@@ -276,26 +281,25 @@ impl BodyModel {
     /// - `nodes`: of all bodies
     fn divide(&mut self, exchange: &dyn Exchange, share: &BodyShare, volumes: &[f64], nodes: usize) {
         self.is_told.clone_from(&share.is_told);
-        if share.is_whole {
+        if share.held != Held::Part {
             return;
         }
         let smoothed = self.body.formulation == Formulation::Smoothed;
         let values = match self.edges.as_ref().filter(|_| smoothed) {
             Some(edges) => {
                 let (values, places) = EdgeValues::new(exchange, share, &self.body.elements, edges);
-                places.into_iter().for_each(|(edge, place)| self.location[edge as usize] = (ELSEWHERE, place));
+                places.into_iter().for_each(|(edge, place)| self.location.put(edge, (ELSEWHERE, place)));
                 values
             }
             None => EdgeValues::default(),
         };
         for &element in &share.measured {
             let own = [element];
-            let cells = self.edges.as_ref().filter(|_| smoothed).map(|edges| &edges.of_element[element as usize][..]);
-            for &cell in cells.unwrap_or(&own) {
-                let at = &mut self.location[cell as usize];
+            let of = self.edges.as_ref().filter(|_| smoothed).map(|edges| edges.of_element(element));
+            for &cell in of.as_ref().map_or(&own[..], |of| of) {
                 // Others tell values of frames alone.
-                if at.0 == ELSEWHERE {
-                    *at = (ALONE, cell);
+                if self.location.of(cell).0 == ELSEWHERE {
+                    self.location.put(cell, (ALONE, cell));
                 }
             }
         }
@@ -312,16 +316,21 @@ impl BodyModel {
 fn with_others(
     exchange: &dyn Exchange,
     made: Vec<(usize, Block)>,
-    shares: &[BodyShare],
+    models: &[BodyModel],
     ranks: &RanksOfNodes,
 ) -> Vec<Block> {
-    let of_divided = || made.iter().filter(|(_, block)| !shares[block.body].is_whole);
+    let is_divided = |body: usize| models[body].divided.is_some() || models[body].known.is_some();
+    let of_divided = || made.iter().filter(|(_, block)| is_divided(block.body));
     let mut of_others = ranks.of_others(exchange, of_divided().map(|(at, block)| (*at, block.cells.nodes.as_slice())));
     let known: Vec<(usize, usize, usize)> =
         of_divided().map(|(index, block)| (*index, block.body, block.gradients)).collect();
     let mut all: BTreeMap<usize, Block> = made.into_iter().collect();
     for (index, body, gradients) in gather(exchange, &known).into_iter().flatten() {
-        let other = || Block::elsewhere(body, gradients, of_others.remove(&index).unwrap_or_default());
+        let known = models[body].known.as_ref();
+        let law = known.map_or(BlockLaw::Elastic { energy: None }, |known| {
+            BlockLaw::Told(ToldEdges::new(Arc::clone(&known.softens)))
+        });
+        let other = || Block::elsewhere(body, gradients, of_others.remove(&index).unwrap_or_default(), law);
         all.entry(index).or_insert_with(other);
     }
     all.into_values().collect()

@@ -1,10 +1,13 @@
 //! Stress, strain and damage of elements.
 
+use std::collections::BTreeMap;
+
 use fractum_math::Sym3;
 use rayon::prelude::*;
 
 use crate::body_model::BodyModel;
 use crate::divided::{ALONE, ELSEWHERE, EdgeValue};
+use crate::edges::BodyEdges;
 use crate::kernel;
 use crate::solid::Solid;
 
@@ -12,17 +15,18 @@ impl Solid {
     /// Nominal stress [Pa] and damage of every element of a body: means over its edges where it is smoothed.
     pub fn element_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
         let model = &self.bodies[index];
-        self.means(model, |&at| self.cell_field(index, at))
+        self.means(model, |at| self.cell_field(index, at))
     }
 
     /// What cells hold, as means over the edges of each element where the body is smoothed.
-    fn means(&self, model: &BodyModel, of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
-        let cells: Vec<(Sym3, f64)> = model.location.par_iter().map(of_cell).collect();
+    fn means(&self, model: &BodyModel, of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
+        let count = model.smoothed_edges().map_or(model.alive.len(), BodyEdges::len) as u32;
+        let cells: Vec<(Sym3, f64)> = (0..count).into_par_iter().map(|cell| of_cell(model.location.of(cell))).collect();
         match model.smoothed_edges() {
             None => cells,
             Some(edges) => {
-                let mean = |of: &[u32; 6]| model.mean_of_edges(of, |edge| cells[edge as usize]);
-                edges.of_element.par_iter().map(mean).collect()
+                let mean = |element| model.mean_of_edges(&edges.of_element(element), |edge| cells[edge as usize]);
+                (0..model.alive.len() as u32).into_par_iter().map(mean).collect()
             }
         }
     }
@@ -35,18 +39,18 @@ impl Solid {
 
     /// As [`Solid::element_fields`], of [`Solid::told_elements`].
     pub fn told_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
-        self.told_means(index, |&at| self.cell_field(index, at))
+        self.told_means(index, |at| self.cell_field(index, at))
     }
 
     /// Strain of [`Solid::told_elements`], that of thermal expansion included: the mean over its edges where the body is smoothed.
     pub fn told_strains(&self, index: usize) -> Vec<Sym3> {
         let model = &self.bodies[index];
-        let means = self.told_means(index, |&at| (self.cell_strain(model, at), 0.0));
+        let means = self.told_means(index, |at| (self.cell_strain(model, at), 0.0));
         means.into_iter().map(|(strain, _)| strain).collect()
     }
 
     /// Means of the elements that this process tells of, from the cells alone that they need.
-    fn told_means(&self, index: usize, of_cell: impl Fn(&(u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
+    fn told_means(&self, index: usize, of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
         let (model, told) = (&self.bodies[index], self.told_elements(index));
         if model.is_told.is_empty() {
             let all = self.means(model, of_cell);
@@ -54,31 +58,46 @@ impl Solid {
             return if is_all { all } else { told.into_iter().map(|element| all[element as usize]).collect() };
         }
         let Some(edges) = model.smoothed_edges() else {
-            return told.par_iter().map(|&element| of_cell(&model.location[element as usize])).collect();
+            return told.par_iter().map(|&element| of_cell(model.location.of(element))).collect();
         };
-        let mut place = vec![u32::MAX; edges.nodes.len()];
-        let mut needed: Vec<u32> = Vec::new();
-        for edge in told.iter().flat_map(|&element| edges.of_element[element as usize]) {
-            if place[edge as usize] == u32::MAX {
-                place[edge as usize] = needed.len() as u32;
-                needed.push(edge);
-            }
-        }
-        let cells: Vec<(Sym3, f64)> = needed.par_iter().map(|&edge| of_cell(&model.location[edge as usize])).collect();
-        let mean = |&element: &u32| {
-            model.mean_of_edges(&edges.of_element[element as usize], |edge| cells[place[edge as usize] as usize])
-        };
+        let mut needed: Vec<u32> = told.par_iter().flat_map_iter(|&element| edges.of_element(element)).collect();
+        needed.par_sort_unstable();
+        needed.dedup();
+        let place = |edge: u32| needed.binary_search(&edge).expect("one of those of its elements");
+        let cells: Vec<(Sym3, f64)> = needed.par_iter().map(|&edge| of_cell(model.location.of(edge))).collect();
+        let mean = |&element: &u32| model.mean_of_edges(&edges.of_element(element), |edge| cells[place(edge)]);
         told.par_iter().map(mean).collect()
     }
 
     /// As [`Solid::element_fields`] of one element.
     pub fn element_field(&self, index: usize, element: u32) -> (Sym3, f64) {
         let model = &self.bodies[index];
-        let cell = |cell: u32| self.cell_field(index, model.location[cell as usize]);
+        let cell = |cell: u32| self.cell_field(index, model.location.of(cell));
         match model.smoothed_edges() {
             None => cell(element),
-            Some(edges) => model.mean_of_edges(&edges.of_element[element as usize], cell),
+            Some(edges) => model.mean_of_edges(&edges.of_element(element), cell),
         }
+    }
+
+    /// [`Solid::element_damages`] of a body of which this rank has its own cells alone, by what it has been told of others.
+    pub(crate) fn damages_around(&self, index: usize) -> Vec<f64> {
+        let model = &self.bodies[index];
+        let mut damages: Vec<f64> = model.alive.iter().map(|alive| f64::from(u8::from(!alive))).collect();
+        let Some(edges) = &model.edges else { return damages };
+        let fields = self.damaged_fields().filter(|(body, _)| *body == index).map(|(_, field)| field);
+        let damaged = fields.flat_map(|field| {
+            let histories = field.edges.iter().zip(&field.state).filter(|(_, history)| history.damage > 0.0);
+            histories.map(|(&edge, history)| (edge, history.damage))
+        });
+        let damage: BTreeMap<u32, f64> = damaged.collect();
+        let mut around: Vec<u32> = damage.keys().flat_map(|&edge| edges.around(edge).into_owned()).collect();
+        around.sort_unstable();
+        around.dedup();
+        for element in around.into_iter().filter(|&element| model.alive[element as usize]) {
+            let of_edge = |edge: u32| (Sym3::ZERO, damage.get(&edge).copied().unwrap_or(0.0));
+            damages[element as usize] = model.mean_of_edges(&edges.of_element(element), of_edge).1;
+        }
+        damages
     }
 
     pub(crate) fn cell_field(&self, index: usize, at: (u32, u32)) -> (Sym3, f64) {
@@ -88,8 +107,12 @@ impl Solid {
                 let EdgeValue { stress, damage, .. } = model.value_elsewhere(at.1);
                 return (stress, damage);
             }
-            // Of a body without damage.
-            ALONE => return (model.hooke.stress(self.strain_alone(model, at.1)), 0.0),
+            ALONE => {
+                let strain = self.strain_alone(model, at.1);
+                let told =
+                    self.edge(index, at.1).map(|(field, place)| field.nominal_stress(place, &model.hooke, strain));
+                return told.unwrap_or_else(|| (model.hooke.stress(strain), 0.0));
+            }
             _ => {}
         }
         let (cells, place) = self.cells_with(at);

@@ -10,14 +10,19 @@ use crate::damage::EdgeField;
 use crate::edges_in_step::{Advance, EdgeCells, EdgesInStep, FourEdgesInStep};
 use crate::kernel::{self, ElasticCells, ExpandingCells, Viscous};
 use crate::standard::{self, StandardCells};
+use crate::told_edges::{ToldEdge, ToldEdges};
 use crate::viscosity::ViscousCells;
 
 /// How the cells of a block answer to strain.
 #[derive(Clone, Debug)]
 pub(crate) enum BlockLaw {
-    Elastic { energy: Option<f64> },
+    Elastic {
+        energy: Option<f64>,
+    },
     Edges(EdgeCells),
     Standard(StandardCells),
+    /// What was told of the edges of another rank, which evaluates them.
+    Told(ToldEdges),
 }
 
 /// A block of cells of one body.
@@ -62,9 +67,9 @@ impl Block {
     }
 
     /// A block that another rank evaluates, of which this one has no more than nodes that are its own too.
-    pub(crate) fn elsewhere(body: usize, gradients: usize, nodes: Vec<u32>) -> Self {
+    pub(crate) fn elsewhere(body: usize, gradients: usize, nodes: Vec<u32>, law: BlockLaw) -> Self {
         let bundle = Bundle { items: Vec::new(), nodes, gradients };
-        Block::new(bundle, body, BlockLaw::Elastic { energy: None }, false)
+        Block::new(bundle, body, law, false)
     }
 
     /// Forces of all cells of the block into its scratch.
@@ -114,6 +119,7 @@ impl Block {
                 law.energy = start;
                 run(model, cells, scratch, law, viscous)
             }
+            BlockLaw::Told(_) => return,
         };
     }
 
@@ -168,11 +174,45 @@ impl Block {
 
     /// Damage of the edges that its cells are.
     pub(crate) fn edge_field(&self) -> Option<&EdgeField> {
-        if let BlockLaw::Edges(law) = &self.law { Some(&law.field) } else { None }
+        match &self.law {
+            BlockLaw::Edges(law) => Some(&law.field),
+            BlockLaw::Told(told) => Some(&told.field),
+            _ => None,
+        }
     }
 
     pub(crate) fn edge_field_mut(&mut self) -> Option<&mut EdgeField> {
-        if let BlockLaw::Edges(law) = &mut self.law { Some(&mut law.field) } else { None }
+        match &mut self.law {
+            BlockLaw::Edges(law) => Some(&mut law.field),
+            BlockLaw::Told(told) => Some(&mut told.field),
+            _ => None,
+        }
+    }
+
+    /// What was told of its edges, where another rank evaluates them.
+    pub(crate) fn told_edges(&self) -> Option<&ToldEdges> {
+        if let BlockLaw::Told(told) = &self.law { Some(told) } else { None }
+    }
+
+    /// Forgets what was told of its edges, where another rank evaluates them.
+    pub(crate) fn forget_told(&mut self) {
+        if let BlockLaw::Told(told) = &mut self.law {
+            told.forget();
+        }
+    }
+
+    /// Place of a cell in [`Block::edge_field`].
+    pub(crate) fn place_of(&self, cell: u32) -> Option<usize> {
+        self.told_edges().map_or(Some(cell as usize), |told| told.place(cell))
+    }
+
+    /// Takes over what another rank has told of an edge.
+    pub(crate) fn put_edge(&mut self, told: &ToldEdge) {
+        match &mut self.law {
+            BlockLaw::Edges(law) => law.field.put(told.cell as usize, told.history),
+            BlockLaw::Told(own) => own.put(told),
+            _ => {}
+        }
     }
 
     /// The cells of a block of a standard body with damage.
@@ -193,6 +233,7 @@ impl Block {
             BlockLaw::Elastic { energy } => energy.unwrap_or(0.0),
             BlockLaw::Edges(law) => law.energy.unwrap_or(0.0),
             BlockLaw::Standard(law) => law.energy.unwrap_or(0.0),
+            BlockLaw::Told(law) => law.energy.unwrap_or(0.0),
         }
     }
 
@@ -202,6 +243,7 @@ impl Block {
             BlockLaw::Elastic { energy } => *energy = Some(elastic),
             BlockLaw::Edges(law) => (law.energy, law.dissipated) = (Some(elastic), taken),
             BlockLaw::Standard(law) => (law.energy, law.dissipated) = (Some(elastic), taken),
+            BlockLaw::Told(law) => (law.energy, law.dissipated) = (Some(elastic), taken),
         }
     }
 
@@ -210,12 +252,13 @@ impl Block {
             BlockLaw::Elastic { .. } => 0.0,
             BlockLaw::Edges(law) => law.dissipated,
             BlockLaw::Standard(law) => law.dissipated,
+            BlockLaw::Told(law) => law.dissipated,
         }
     }
 
     pub(crate) fn damage_of(&self, cell: usize) -> f64 {
         match &self.law {
-            BlockLaw::Elastic { .. } => 0.0,
+            BlockLaw::Elastic { .. } | BlockLaw::Told(_) => 0.0,
             BlockLaw::Edges(law) => law.field.history(cell).damage,
             BlockLaw::Standard(law) => law.damage[cell],
         }

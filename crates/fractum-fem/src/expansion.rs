@@ -1,5 +1,7 @@
 //! Thermal expansion of cells: their stress belongs to the strain beyond α (T - T₀).
 
+use std::borrow::Cow;
+
 use fractum_math::Sym3;
 use rayon::prelude::*;
 
@@ -139,9 +141,10 @@ fn weights(block: &Block, model: &BodyModel, geometry: &Geometry<'_>) -> Vec<f64
     for (cell, &item) in block.items.iter().enumerate() {
         let own = &mut weights[block.cells.starts[cell] as usize + cell..];
         let one = [item];
+        let of_edge = model.smoothed_edges().map_or(Cow::Borrowed(&[][..]), |edges| edges.around(item));
         let elements = match model.body.formulation {
             Formulation::Standard => &one[..],
-            Formulation::Smoothed => model.elements_of_edge.row(item as usize),
+            Formulation::Smoothed => &of_edge,
         };
         let volumes: Vec<f64> = elements.iter().map(|&e| geometry.element(e as usize).0).collect();
         let share = 1.0 / (corners as f64 * volumes.iter().sum::<f64>());

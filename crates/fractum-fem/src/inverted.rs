@@ -1,5 +1,7 @@
 //! Elements turned inside out.
 
+use std::borrow::Cow;
+
 use fractum_math::Vec3;
 
 use crate::body::Formulation;
@@ -24,9 +26,10 @@ impl Solid {
         let (block, cell) = blocks.iter().find_map(|block| Some((block, block.inverted?)))?;
         let (body, model, item) = (block.body, &self.bodies[block.body], block.items[cell]);
         let one = [item];
+        let of_edge = model.smoothed_edges().map_or(Cow::Borrowed(&[][..]), |edges| edges.around(item));
         let elements = match model.body.formulation {
             Formulation::Standard => &one[..],
-            Formulation::Smoothed => model.elements_of_edge.row(item as usize),
+            Formulation::Smoothed => &of_edge,
         };
         let corners = model.body.shape.node_count();
         let of = |&element: &u32| {

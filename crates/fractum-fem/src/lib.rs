@@ -36,6 +36,7 @@ mod crack_surface;
 mod damage;
 mod divided;
 mod divided_solid;
+mod edges;
 mod edges_in_step;
 mod element;
 mod element_fields;
@@ -51,6 +52,7 @@ mod part;
 mod phase;
 mod phase_damage;
 mod phase_edges;
+mod places;
 mod polar;
 mod reflection;
 mod removal;
@@ -67,6 +69,7 @@ mod taken;
 mod thermal_strain;
 mod threshold;
 mod time_step;
+mod told_edges;
 mod viscosity;
 mod viscous_solid;
 
@@ -77,8 +80,9 @@ pub use crack_network::{CrackCell, CrackMouth, CrackNetwork, CrackNetworkState, 
 pub use crack_surface::{CrackFacet, CrackSurface};
 pub use damage::EdgeDamage;
 pub use divided::{
-    BodyShare, ConnectedPieces, DividedBoundary, KnownAround, ReadBody, SharedNodes, deal, divided_boundary,
+    BodyShare, ConnectedPieces, DividedBoundary, Held, KnownAround, ReadBody, SharedNodes, deal, divided_boundary,
 };
+pub use edges::BodyEdges;
 pub use element::{CUT_MODES, InvertedElement, facet_area};
 pub use error::SolidError;
 pub use material::{Criterion, CriterionKind, DamageLaw, Degradation, Elastic, Softening, Wave};

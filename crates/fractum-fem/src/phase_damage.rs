@@ -28,8 +28,11 @@ impl Solid {
         let model = &self.bodies[body];
         let (field, edges) = (model.phase.as_ref()?, model.edges.as_ref()?);
         let count = model.body.shape.edge_count();
-        let mean = |of: &[u32; 6]| of[..count].iter().map(|&e| field.value[e as usize]).sum::<f64>() / count as f64;
-        Some(edges.of_element.iter().map(mean).collect())
+        let mean = |element| {
+            let of = edges.of_element(element);
+            of[..count].iter().map(|&e| field.value[e as usize]).sum::<f64>() / count as f64
+        };
+        Some((0..model.alive.len() as u32).map(mean).collect())
     }
 
     /// Lets the phase fields follow the displacements of a step; nothing has moved where `dt` is zero.
@@ -53,7 +56,7 @@ impl Solid {
             solid.activate(body, field, &reached);
             let model = &solid.bodies[body];
             if model.standard.is_none() {
-                field.arrange(before, |edge| model.location[edge as usize]);
+                field.arrange(before, |edge| model.location.of(edge));
             }
         });
     }
@@ -132,7 +135,7 @@ impl Solid {
     /// The smoothed cell of an edge, with its number, among those of its block that may be damaged.
     #[inline(always)]
     fn cell_of(&self, model: &BodyModel, edge: u32) -> Option<(&Cells, &EdgeField, usize)> {
-        let (block, cell) = *model.location.get(edge as usize)?;
+        let (block, cell) = model.location.kept(edge)?;
         let block = &self.blocks[block as usize];
         Some((&block.cells, block.edge_field()?, cell as usize))
     }
@@ -144,7 +147,7 @@ impl Solid {
         if let Some(standard) = standard {
             return (&mut standard.field, edge as usize, None);
         }
-        let (block, cell) = location[edge as usize];
+        let (block, cell) = location.of(edge);
         match &mut blocks[block as usize].law {
             BlockLaw::Edges(law) => (&mut law.field, cell as usize, Some(&mut law.dissipated)),
             _ => unreachable!("only edges that may be damaged become active"),
@@ -153,12 +156,13 @@ impl Solid {
 
     /// Volume of an edge [m³]: its share of the elements around it that are there.
     fn edge_volume(&self, model: &BodyModel, edge: u32) -> f64 {
-        let of = |&(block, cell): &(u32, u32)| self.blocks[block as usize].cells.volume[cell as usize];
+        let of = |(block, cell): (u32, u32)| self.blocks[block as usize].cells.volume[cell as usize];
         if model.standard.is_none() {
-            return of(&model.location[edge as usize]);
+            return of(model.location.of(edge));
         }
-        let around = model.elements_of_edge.row(edge as usize);
-        let sum: f64 = around.iter().map(|&element| of(&model.location[element as usize])).sum();
+        let Some(edges) = &model.edges else { return 0.0 };
+        let around = edges.around(edge);
+        let sum: f64 = around.iter().map(|&element| of(model.location.of(element))).sum();
         sum / model.body.shape.edge_count() as f64
     }
 
@@ -184,7 +188,7 @@ impl Solid {
                 let seen = match model.standard {
                     Some(_) => q[first + own.edge as usize],
                     None => {
-                        let (block, cell) = model.location[own.edge as usize];
+                        let (block, cell) = model.location.of(own.edge);
                         q[first_of_block[block as usize] + cell as usize]
                     }
                 };
@@ -199,7 +203,7 @@ impl Solid {
             }
             for own in &field.active {
                 let damage = field.law.damage(own.drive.a1, value[own.edge as usize]);
-                let (block, cell) = model.location[own.edge as usize];
+                let (block, cell) = model.location.of(own.edge);
                 let trial = &mut cells[block as usize][cell as usize];
                 *trial = trial.max(damage);
             }
@@ -221,7 +225,7 @@ impl Solid {
                 let taken = match &solid.bodies[body] {
                     model if model.standard.is_some() => Taken::default(),
                     model => {
-                        let (block, cell) = model.location[own.edge as usize];
+                        let (block, cell) = model.location.of(own.edge);
                         let (cells, cell) = (&solid.blocks[block as usize].cells, cell as usize);
                         let strain = |field: &[Vec3]| Sym3::symmetric_part(&cells.gradient(cell, |node| field[node]));
                         Taken::straight(0.5 * hooke.stress(strain(after)).dot(strain(before))).of(cells.volume[cell])
@@ -250,7 +254,7 @@ fn driven_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], s
     let (mut strains, mut stresses, mut kappa) = ([Sym3::ZERO; FOUR], [Sym3::ZERO; FOUR], Lane::splat(ABOVE_ALL));
     let (mut states, mut softens) = ([None; FOUR], None);
     for (k, own) in active.iter_mut().enumerate() {
-        if !own_blocks.contains(&(model.location[own.edge as usize].0 as usize)) {
+        if !own_blocks.contains(&(model.location.of(own.edge).0 as usize)) {
             continue;
         }
         let Some((cells, field, cell)) = solid.cell_of(model, own.edge) else { continue };
@@ -375,7 +379,8 @@ mod tests {
 
     /// The surface energy of a plane crack: d = 1 where edges cross a plane, the rest as it wants to be.
     fn imposed_crack(mut solid: Solid, place: f64) -> f64 {
-        let ends = solid.body_edges(0).unwrap().nodes.clone();
+        let mut ends = Vec::new();
+        solid.body_edges(0).unwrap().for_each(|_, nodes, _| ends.push(nodes));
         let x = |node: u32| solid.reference[node as usize].x - place;
         let crossed: Vec<bool> = ends.iter().map(|&[i, j]| x(i) * x(j) < 0.0).collect();
         let mut d: Vec<f64> = crossed.iter().map(|&c| f64::from(u8::from(c))).collect();

@@ -47,7 +47,7 @@ impl Solid {
             if strength.is_finite() && !field.is_active(edge) {
                 field.activate(&patch, (edge, self.rank_of_edge(model, edge)), field.law.a1(strength));
                 if model.standard.is_none() {
-                    field.wake_block(model.location[edge as usize].0 as usize);
+                    field.wake_block(model.location.of(edge).0 as usize);
                 }
             }
         }
@@ -55,8 +55,8 @@ impl Solid {
 
     fn patch<'a>(&'a self, model: &'a BodyModel) -> Option<Patch<'a>> {
         let geometry = Geometry { body: &model.body, nodes: &self.reference };
-        let BodyModel { edges, elements_of_edge, alive, .. } = model;
-        Some(Patch { geometry, edges: edges.as_ref()?, elements_of_edge, alive })
+        let BodyModel { edges, alive, .. } = model;
+        Some(Patch { geometry, edges: edges.as_ref()?, alive })
     }
 
     /// Takes the share of removed elements out of the phase field of a body.

@@ -4,9 +4,12 @@ use fractum_math::Sym3;
 
 use crate::body::Formulation;
 use crate::cell::Geometry;
+use crate::damage::EdgeField;
+use crate::divided::ALONE;
 use crate::edges_in_step::{Advance, EdgesInStep};
 use crate::element::cut_modes;
 use crate::evaluate::{Block, BlockLaw};
+use crate::hooke::Hooke;
 use crate::kernel::elastic_strain;
 use crate::solid::{BodyModel, Solid};
 
@@ -40,14 +43,15 @@ impl Solid {
                 continue;
             }
             let touched = self.cells_around(body, &elements);
-            self.bring_cells(&touched);
+            self.bring_cells(body, &elements, &touched);
             let stored: Vec<f64> = touched.iter().map(|&cell| self.stored_energy(cell)).collect();
-            energy += self.step_energy(dt, &touched);
+            energy += self.step_energy(body, dt, &touched);
             self.forget_ahead();
             elements.iter().for_each(|&e| self.bodies[body].alive[e as usize] = false);
             self.rebuild_cells_around(body, &elements);
             self.settle(dt, &touched, &stored);
-            energy -= self.step_energy(dt, &touched);
+            energy -= self.step_energy(body, dt, &touched);
+            self.tell_settled(body, &touched);
         }
         energy
     }
@@ -56,7 +60,7 @@ impl Solid {
     ///
     /// - `stored`: energy of each of these cells with the elements [J]
     fn settle(&mut self, dt: f64, cells: &[(u32, u32)], stored: &[f64]) {
-        for (&(block, cell), &stored) in cells.iter().zip(stored) {
+        for (&(block, cell), &stored) in cells.iter().zip(stored).filter(|((block, _), _)| *block < ALONE) {
             let dt = self.own_step(&self.blocks[block as usize], dt);
             let Solid { blocks, bodies, displacement, velocity, .. } = self;
             let Block { body, cells, law: BlockLaw::Edges(edges), .. } = &mut blocks[block as usize] else { continue };
@@ -67,8 +71,11 @@ impl Solid {
         }
     }
 
-    /// Energy that a cell stores at present [J].
+    /// Energy that a cell stores at present [J]; zero where this rank does not have it.
     fn stored_energy(&self, (block, cell): (u32, u32)) -> f64 {
+        if block >= ALONE {
+            return 0.0;
+        }
         let (block, cell) = (&self.blocks[block as usize], cell as usize);
         let model = &self.bodies[block.body];
         let strain = elastic_strain(&block.cells, cell, &self.displacement, model.body.kinematics);
@@ -82,11 +89,11 @@ impl Solid {
         }
         let mut candidates: Vec<u32> = Vec::new();
         let Solid { bodies, blocks, .. } = self;
-        let BodyModel { standard, elements_of_edge, .. } = &mut bodies[body];
+        let BodyModel { standard, edges: Some(edges), .. } = &mut bodies[body] else { return };
         let cells = blocks.iter_mut().filter(|b| b.body == body).filter_map(Block::edge_field_mut);
         for field in cells.chain(standard.as_mut().map(|standard| &mut standard.field)) {
             let broken = field.fresh.drain(..).map(|index| field.edges[index as usize]);
-            broken.for_each(|edge| candidates.extend(elements_of_edge.row(edge as usize)));
+            broken.for_each(|edge| candidates.extend(&*edges.around(edge)));
         }
         let model = &self.bodies[body];
         let Some(edges) = &model.edges else { return };
@@ -96,7 +103,7 @@ impl Solid {
         candidates.dedup();
         let is_broken = |edge: u32| self.edge(body, edge).is_some_and(|(field, index)| field.history(index).broken);
         let is_cut = |element: u32| {
-            let of = &edges.of_element[element as usize];
+            let of = edges.of_element(element);
             modes.iter().any(|mode| mode.iter().all(|&local| is_broken(of[local])))
         };
         removed.extend(candidates.into_iter().filter(|&e| is_cut(e)).map(|e| (body, e)));
@@ -107,14 +114,14 @@ impl Solid {
         let model = &self.bodies[body];
         match (&model.edges, model.body.formulation) {
             (Some(_), Formulation::Smoothed) => {
-                touched_edges(model, elements).into_iter().map(|edge| model.location[edge as usize]).collect()
+                touched_edges(model, elements).into_iter().map(|edge| model.location.of(edge)).collect()
             }
-            _ => elements.iter().map(|&e| model.location[e as usize]).collect(),
+            _ => elements.iter().map(|&e| model.location.of(e)).collect(),
         }
     }
 
-    /// ½ σ : ε⁰ over these cells, with the present stress and the strain of the step before [J].
-    fn step_energy(&self, dt: f64, cells: &[(u32, u32)]) -> f64 {
+    /// ½ σ : ε⁰ over these cells of a body, with the present stress and the strain of the step before [J].
+    fn step_energy(&self, body: usize, dt: f64, cells: &[(u32, u32)]) -> f64 {
         let Solid { displacement, velocity, .. } = self;
         let of = |&(block, cell): &(u32, u32)| {
             let (block, cell) = (&self.blocks[block as usize], cell as usize);
@@ -124,7 +131,8 @@ impl Solid {
             let stress = block.nominal_stress(cell, &model.hooke, step.strain_now(&block.cells, cell));
             0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
         };
-        cells.iter().map(of).sum()
+        let own = (0..).zip(cells).filter(|(_, (block, _))| *block < ALONE).map(|(place, at)| (place, of(at)));
+        self.of_all_ranks(body, cells.len(), own).into_iter().sum()
     }
 
     /// Recomputes the cells in which dead elements had a share, from the elements that are alive.
@@ -133,7 +141,7 @@ impl Solid {
         let model = &bodies[body];
         if model.body.formulation == Formulation::Standard {
             for &element in elements {
-                let (block, cell) = model.location[element as usize];
+                let (block, cell) = model.location.of(element);
                 blocks[block as usize].cells.volume.get_mut(cell as usize).into_iter().for_each(|volume| *volume = 0.0);
             }
             if model.phase.is_some() {
@@ -141,11 +149,12 @@ impl Solid {
             }
             return;
         }
+        let Some(edges) = &model.edges else { return };
         let geometry = Geometry { body: &model.body, nodes: reference };
         let mut nodes = Vec::new();
         let touched = touched_edges(model, elements);
         for &edge in &touched {
-            let (block, cell) = model.location[edge as usize];
+            let Some((block, cell)) = model.location.kept(edge) else { continue };
             let cells = &mut blocks[block as usize].cells;
             if cells.len() == 0 {
                 continue; // another rank has it
@@ -156,8 +165,8 @@ impl Solid {
             nodes.extend(cells.global_nodes(cell as usize).map(original));
             let range = cells.range(cell as usize);
             let alive = |element: u32| model.alive[element as usize];
-            let around = model.elements_of_edge.row(edge as usize);
-            cells.volume[cell as usize] = geometry.edge_domain(&nodes, around, alive, &mut cells.gradients[range]);
+            let around = edges.around(edge);
+            cells.volume[cell as usize] = geometry.edge_domain(&nodes, &around, alive, &mut cells.gradients[range]);
         }
         self.refresh_phase(body, &touched);
     }
@@ -178,11 +187,8 @@ impl Solid {
             .filter_map(|&(body, element)| {
                 let model = &self.bodies[body];
                 let edges = model.edges.as_ref()?;
-                Some(
-                    edges.of_element[element as usize][..model.body.shape.edge_count()]
-                        .iter()
-                        .map(|&e| edges.nodes[e as usize]),
-                )
+                let of = edges.of_element(element).into_iter().take(model.body.shape.edge_count());
+                Some(of.map(|edge| edges.nodes(edge)))
             })
             .flatten()
             .collect();
@@ -196,10 +202,8 @@ impl Solid {
     pub fn is_live_edge(&self, nodes: [u32; 2]) -> bool {
         self.bodies.iter().any(|model| {
             let Some(edges) = &model.edges else { return false };
-            edges
-                .nodes
-                .binary_search(&nodes)
-                .is_ok_and(|edge| model.elements_of_edge.row(edge).iter().any(|&element| model.alive[element as usize]))
+            let is_alive = |element: &u32| model.alive[*element as usize];
+            edges.find(nodes).is_some_and(|edge| edges.around(edge).iter().any(is_alive))
         })
     }
 
@@ -229,23 +233,31 @@ impl Solid {
 
 impl Block {
     /// Stress of one cell with its damage [Pa].
-    pub(crate) fn nominal_stress(&self, cell: usize, hooke: &crate::hooke::Hooke, strain: Sym3) -> Sym3 {
+    pub(crate) fn nominal_stress(&self, cell: usize, hooke: &Hooke, strain: Sym3) -> Sym3 {
         let full = hooke.stress(strain);
         match &self.law {
-            // With unilateral damage the closed part keeps its stress; an intact edge needs no search for it.
-            BlockLaw::Edges(law) => match law.field.history(cell).damage {
-                0.0 => full,
-                damage => full - law.field.softens.opening_stress(strain) * damage,
-            },
+            BlockLaw::Edges(law) => law.field.nominal_stress(cell, hooke, strain).0,
             _ => full * (1.0 - self.damage_of(cell)),
+        }
+    }
+}
+
+impl EdgeField {
+    /// Stress of one edge with its damage [Pa], and its damage.
+    pub(crate) fn nominal_stress(&self, place: usize, hooke: &Hooke, strain: Sym3) -> (Sym3, f64) {
+        let full = hooke.stress(strain);
+        // With unilateral damage the closed part keeps its stress; an intact edge needs no search for it.
+        match self.history(place).damage {
+            0.0 => (full, 0.0),
+            damage => (full - self.softens.opening_stress(strain) * damage, damage),
         }
     }
 }
 
 fn touched_edges(model: &BodyModel, elements: &[u32]) -> Vec<u32> {
     let count = model.body.shape.edge_count();
-    let of = &model.edges.as_ref().expect("a smoothed body and one with damage have edges").of_element;
-    let mut edges: Vec<u32> = elements.iter().flat_map(|&e| &of[e as usize][..count]).copied().collect();
+    let edges = model.edges.as_ref().expect("a smoothed body and one with damage have edges");
+    let mut edges: Vec<u32> = elements.iter().flat_map(|&e| edges.of_element(e).into_iter().take(count)).collect();
     edges.sort_unstable();
     edges.dedup();
     edges

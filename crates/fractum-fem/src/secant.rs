@@ -169,7 +169,7 @@ impl Solid {
         for model in &self.bodies {
             let Some(standard) = &model.standard else { continue };
             let element = |e: u32| {
-                let (block, cell) = model.location[e as usize];
+                let (block, cell) = model.location.of(e);
                 stress(&self.blocks[block as usize], cell as usize)
             };
             for edge in 0..standard.field.state.len() {
@@ -210,7 +210,7 @@ impl Solid {
         let (index, ratio) = ratios.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let mut edges = self.edge_fields().flat_map(|(body, field)| field.edges.iter().map(move |&edge| (body, edge)));
         let (body, edge) = edges.nth(index)?;
-        let [a, b] = self.bodies[body].edges.as_ref()?.nodes[edge as usize].map(|n| self.reference[n as usize]);
+        let [a, b] = self.bodies[body].edges.as_ref()?.nodes(edge).map(|n| self.reference[n as usize]);
         Some((body, (a + b) * 0.5, ratio))
     }
 
@@ -243,8 +243,9 @@ impl Solid {
             }
             for (block, trial) in self.blocks.iter().zip(&mut trial.cells).filter(|(b, _)| b.body == body) {
                 let of = |(cell, &e): (usize, &u32)| {
-                    let of_element = &edges.of_element[e as usize];
-                    standard.element_damage(of_element, |edge| damage[edge as usize]).max(block.damage_of(cell))
+                    standard
+                        .element_damage(&edges.of_element(e), |edge| damage[edge as usize])
+                        .max(block.damage_of(cell))
                 };
                 *trial = block.items.iter().enumerate().map(of).collect();
             }

@@ -15,6 +15,7 @@ use crate::damage::EdgeField;
 use crate::evaluate::Block;
 use crate::part::{Events, Part, Share};
 use crate::solid::{BodyModel, Solid};
+use crate::told_edges::ToldEdge;
 
 impl Solid {
     /// Leaves a share of the work to each rank of an exchange. Every rank must have the same solid in the same state.
@@ -35,7 +36,7 @@ impl Solid {
         part.keep_own(blocks, |block| bodies[block.body].needs_all_cells());
         for model in self.bodies.iter_mut().filter(|model| model.standard.is_none()) {
             let BodyModel { phase, location, .. } = model;
-            let rank_of = |edge: u32| part.rank_of(location[edge as usize].0 as usize) as u32;
+            let rank_of = |edge: u32| part.rank_of(location.of(edge).0 as usize) as u32;
             phase.iter_mut().for_each(|field| field.share_out(part.exchange(), rank_of));
         }
         self.part = Some(part);
@@ -58,7 +59,7 @@ impl Solid {
 
     /// Rank whose cell an edge is; 0 where each rank finds all edges of the body.
     pub(crate) fn rank_of_edge(&self, model: &BodyModel, edge: u32) -> u32 {
-        let of_cell = |part: &Part| part.rank_of(model.location[edge as usize].0 as usize) as u32;
+        let of_cell = |part: &Part| part.rank_of(model.location.of(edge).0 as usize) as u32;
         self.part.as_deref().filter(|_| model.standard.is_none()).map_or(0, of_cell)
     }
 
@@ -104,7 +105,8 @@ impl Solid {
     /// Brings what this rank has of the damage of others up to date. All ranks must call it.
     pub fn gather_damage(&mut self) {
         let Some(mut part) = self.part.take() else { return };
-        part.tell_cells(&mut self.blocks, false);
+        let told = part.tell_cells(&mut self.blocks, false);
+        note_told(&mut self.bodies, &self.blocks, &told);
         self.part = Some(part);
     }
 
@@ -112,7 +114,8 @@ impl Solid {
     pub fn gather_ranks(&mut self) {
         let Some(mut part) = self.part.take() else { return };
         part.tell_nodes(&mut self.displacement, &mut self.velocity);
-        part.tell_cells(&mut self.blocks, true);
+        let told = part.tell_cells(&mut self.blocks, true);
+        note_told(&mut self.bodies, &self.blocks, &told);
         self.part = Some(part);
         self.gather_edge_values();
     }
@@ -137,9 +140,15 @@ impl Solid {
         (Cow::Owned(self.bodies[block.body].cells(&self.reference, &block.items[cell..=cell])), 0)
     }
 
-    /// Brings cells that several ranks are about to look at up to date, with their histories and nodes. This process keeps their
-    /// blocks from now on.
-    pub(crate) fn bring_cells(&mut self, cells: &[(u32, u32)]) {
+    /// Brings cells of a body that several ranks are about to look at up to date, with their histories and nodes. This process keeps
+    /// their blocks from now on; of a body of which it has its own cells alone no more than the nodes.
+    ///
+    /// - `elements`: those that the cells take part in
+    pub(crate) fn bring_cells(&mut self, body: usize, elements: &[u32], cells: &[(u32, u32)]) {
+        if self.bodies[body].known.is_some() {
+            let nodes = self.bodies[body].nodes_around(elements);
+            return self.follow_nodes(&nodes);
+        }
         let Solid { blocks, bodies, reference, part, .. } = self;
         let Some(part) = part else { return };
         part.tell_edges(blocks, cells);
@@ -153,6 +162,41 @@ impl Solid {
         let nodes = |&(block, cell): &(u32, u32)| blocks[block as usize].cells.global_nodes(cell as usize);
         let nodes: Vec<u32> = cells.iter().flat_map(nodes).map(|node| node as u32).collect();
         self.follow_nodes(&nodes);
+    }
+
+    /// Tells all ranks the histories of cells that removal has changed, where not every rank has found them.
+    pub(crate) fn tell_settled(&mut self, body: usize, cells: &[(u32, u32)]) {
+        if self.bodies[body].known.is_none() {
+            return;
+        }
+        let Solid { blocks, bodies, part, .. } = self;
+        let Some(part) = part else { return };
+        let told = part.tell_edges(blocks, cells);
+        note_told(bodies, blocks, &told);
+    }
+
+    /// Tells all ranks the histories of edges of others that a saved state has changed, and has removal look at those that broke.
+    pub(crate) fn tell_restored(&mut self) {
+        let Solid { blocks, bodies, part, .. } = self;
+        let Some(part) = part.as_ref().filter(|_| bodies.iter().any(|model| model.known.is_some())) else { return };
+        bodies.iter_mut().filter_map(|model| model.known.as_mut()).for_each(|known| known.told.clear());
+        let told = part.tell_changed(blocks);
+        note_told(bodies, blocks, &told);
+        let of_others = blocks.iter_mut().filter(|block| block.told_edges().is_some());
+        of_others.filter_map(Block::edge_field_mut).for_each(EdgeField::renew_fresh);
+    }
+
+    /// Values of cells of a body, each by the rank that has it where not every rank has all.
+    ///
+    /// - `count`: of the cells; `own`: place among them and value of each that this rank has
+    pub(crate) fn of_all_ranks(&self, body: usize, count: usize, own: impl Iterator<Item = (u32, f64)>) -> Vec<f64> {
+        let mut all = vec![0.0; count];
+        let mut put = |(place, value): (u32, f64)| all[place as usize] = value;
+        match self.part.as_ref().filter(|_| self.bodies[body].known.is_some()) {
+            Some(part) => gather(&*part.exchange(), &own.collect::<Vec<_>>()).into_iter().flatten().for_each(put),
+            None => own.for_each(&mut put),
+        }
+        all
     }
 
     /// Blocks whose cells this process evaluates.
@@ -191,7 +235,8 @@ impl Solid {
             part.tell_energies(&mut self.blocks);
         }
         if broken {
-            part.tell_broken(&mut self.blocks);
+            let told = part.tell_broken(&mut self.blocks);
+            note_told(&mut self.bodies, &self.blocks, &told);
         }
         if part.is_divided() {
             part.records.inverted = None;
@@ -212,7 +257,29 @@ impl Solid {
     }
 }
 
+/// Notes where to find edges of others that were told, by their blocks.
+fn note_told(bodies: &mut [BodyModel], blocks: &[Block], told: &[(u32, ToldEdge)]) {
+    for &(block, ToldEdge { edge, cell, .. }) in told {
+        let other = &blocks[block as usize];
+        if let Some(known) = bodies[other.body].known.as_mut().filter(|_| other.told_edges().is_some()) {
+            known.told.insert(edge, (block, cell));
+        }
+    }
+}
+
 impl BodyModel {
+    /// Nodes of all elements, alive or not, around the edges of some elements, ascending.
+    fn nodes_around(&self, elements: &[u32]) -> Vec<u32> {
+        let edges = self.edges.iter().flat_map(|edges| {
+            let of = elements.iter().flat_map(|&element| edges.of_element(element));
+            of.flat_map(|edge| edges.around(edge).into_owned())
+        });
+        let mut nodes: Vec<u32> = edges.flat_map(|element| self.body.elements[element as usize]).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
     /// Whether every rank needs the cells of all: edges of the standard formulation gather stresses of elements, which every rank
     /// finds of all nodes.
     fn needs_all_cells(&self) -> bool {
@@ -221,7 +288,6 @@ impl BodyModel {
 
     /// Cells of some items of the body (elements, or edges if smoothed), of the elements that are there.
     pub(crate) fn cells(&self, nodes: &[Vec3], items: &[u32]) -> Cells {
-        let edges = self.smoothed_edges().map(|edges| (edges, &self.elements_of_edge));
-        Geometry { body: &self.body, nodes }.cells(items, edges, |element| self.alive[element as usize])
+        Geometry { body: &self.body, nodes }.cells(items, self.smoothed_edges(), |element| self.alive[element as usize])
     }
 }

@@ -5,16 +5,18 @@ use fractum_parallel::Exchange;
 use rayon::prelude::*;
 
 use crate::block::NodeSlots;
-use crate::body::{Body, BodyEdges, Formulation};
+use crate::body::{Body, Formulation};
 pub(crate) use crate::body_model::BodyModel;
 use crate::body_model::Chosen;
 use crate::cell::Geometry;
 use crate::damage::EdgeField;
+use crate::edges::BodyEdges;
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::material::{Wave, rayleigh_wave_speed};
 use crate::part::Part;
 use crate::subcycling::Subcycling;
+use crate::threshold::characteristic_length;
 
 /// Finite elements of all solid bodies, with their nodes.
 ///
@@ -210,11 +212,11 @@ impl Solid {
         for model in bodies {
             let BodyModel { standard: Some(standard), alive, location, .. } = model else { continue };
             standard.update_edges(dt, alive, |element| {
-                let (block, cell) = location[element as usize];
+                let (block, cell) = location.of(element);
                 (blocks[block as usize].standard_cells(), cell as usize)
             });
             for element in standard.elements_of_growth() {
-                let (block, cell) = location[element as usize];
+                let (block, cell) = location.of(element);
                 if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
                     law.expect_damage(cell as usize);
                 }
@@ -230,7 +232,8 @@ impl Solid {
             blocks.par_iter_mut().filter(|b| b.body == index).for_each(|block| {
                 let edge = |edge: u32| &standard.field.state[edge as usize];
                 block.take_element_damage(|element| {
-                    let own = &edges.of_element[element as usize][..standard.shape.edge_count()];
+                    let of = edges.of_element(element);
+                    let own = &of[..standard.shape.edge_count()];
                     let least_seen = own.iter().map(|&e| edge(e).kappa).fold(f64::INFINITY, f64::min);
                     (standard.element_damage(own, |e| edge(e).damage), least_seen)
                 });
@@ -283,8 +286,22 @@ impl Solid {
         if let Some(standard) = &model.standard {
             return Some((&standard.field, edge as usize));
         }
-        let &(block, cell) = model.location.get(edge as usize)?;
-        Some((self.blocks[block as usize].edge_field()?, cell as usize))
+        if let Some((block, cell)) = model.location.kept(edge) {
+            return Some((self.blocks[block as usize].edge_field()?, cell as usize));
+        }
+        let &(block, cell) = model.known.as_ref()?.told.get(&edge)?;
+        let told = self.blocks[block as usize].told_edges()?;
+        Some((&told.field, told.place(cell)?))
+    }
+
+    /// Characteristic length of an edge that may be damaged [m]; none of any other.
+    pub(crate) fn length_of_edge(&self, body: usize, edge: u32) -> Option<f64> {
+        let model = &self.bodies[body];
+        let (Some(edges), Some(_)) = (&model.edges, &model.known) else {
+            return self.edge(body, edge).map(|(field, index)| field.length[index]);
+        };
+        // All of its edges may be.
+        Some(characteristic_length(&model.body, &edges.around(edge), |element| self.element_volume(body, element)))
     }
 
     /// Number of bodies.
@@ -332,7 +349,10 @@ impl Solid {
     /// Damage of the elements of a body: the mean over its edges where it is smoothed, 1 where one has been removed.
     pub fn element_damages(&self, index: usize) -> Vec<f64> {
         let model = &self.bodies[index];
-        let mut damage = vec![0.0; model.location.len()];
+        if model.known.is_some() {
+            return self.damages_around(index);
+        }
+        let mut damage = vec![0.0; model.location.all().len()];
         let may_be_damaged = |block: &&Block| block.edge_field().is_none_or(EdgeField::is_damaged);
         for block in self.blocks.iter().filter(|block| block.body == index).filter(may_be_damaged) {
             for (cell, &item) in block.items.iter().enumerate() {
@@ -340,12 +360,12 @@ impl Solid {
             }
         }
         let of_cell = |cell: u32| (Sym3::ZERO, damage[cell as usize]);
-        let of_element = |(element, &alive): (usize, &bool)| match model.smoothed_edges() {
+        let of_element = |(element, &alive): (u32, &bool)| match model.smoothed_edges() {
             _ if !alive => 1.0,
-            None => damage[element],
-            Some(edges) => model.mean_of_edges(&edges.of_element[element], of_cell).1,
+            None => damage[element as usize],
+            Some(edges) => model.mean_of_edges(&edges.of_element(element), of_cell).1,
         };
-        model.alive.iter().enumerate().map(of_element).collect()
+        (0..).zip(&model.alive).map(of_element).collect()
     }
 
     /// Centre of an element without load [m].

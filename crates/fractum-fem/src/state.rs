@@ -1,18 +1,22 @@
 //! What changes in a solid during a run, for checkpoints.
 
 use fractum_math::{Sym3, Vec3};
+use fractum_parallel::gather;
 use serde::{Deserialize, Serialize};
 
 use crate::damage::EdgeDamage;
 use crate::evaluate::{Block, BlockLaw};
 use crate::solid::Solid;
 
+/// Edges whose histories ranks tell each other at a time.
+const TOLD_AT_ONCE: usize = 1 << 17;
+
 /// What changes in a body during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyState {
     /// Elements that are still there.
     pub alive: Vec<bool>,
-    /// Edge histories; empty without damage.
+    /// Edge histories; empty without damage, and where no rank has all of them, see [`Solid::each_history`].
     pub edges: Vec<EdgeDamage>,
     /// Damage and last effective stress of elements (standard formulation with damage).
     pub elements: Vec<(f64, Sym3)>,
@@ -44,18 +48,47 @@ impl Solid {
         SolidState {
             displacement: self.displacement.clone(),
             velocity: self.velocity.clone(),
-            bodies: (0..self.bodies.len()).map(|b| self.body_state(b, self.edge_damage(b))).collect(),
+            bodies: (0..self.bodies.len()).map(|body| self.body_state(body, self.kept_damage(body))).collect(),
             dissipated: self.blocks.iter().map(Block::dissipated).collect(),
             viscous_dissipation: self.viscous_dissipation,
             viscous: self.blocks.iter().map(|b| b.viscous.stress.clone()).collect(),
         }
     }
 
-    /// Edge histories of a body in the order of its edges; empty without damage.
+    fn kept_damage(&self, body: usize) -> Vec<EdgeDamage> {
+        if self.bodies[body].known.is_some() { Vec::new() } else { self.edge_damage(body) }
+    }
+
+    /// Edge histories of a body in the order of its edges, with their number first, those of all ranks a few at a time. All ranks must
+    /// call it.
+    pub fn each_history(&self, body: usize, see_count: impl FnOnce(usize), mut see: impl FnMut(&EdgeDamage)) {
+        let model = &self.bodies[body];
+        let (Some(part), Some(_), Some(edges)) = (&self.part, &model.known, &model.edges) else {
+            let all = self.edge_damage(body);
+            see_count(all.len());
+            return all.iter().for_each(see);
+        };
+        see_count(edges.len());
+        let own = model.location.own();
+        for begin in (0..edges.len()).step_by(TOLD_AT_ONCE) {
+            let at = |edge: usize| own.partition_point(|(own, _)| (*own as usize) < edge);
+            let history = |&(edge, (block, cell)): &(u32, (u32, u32))| {
+                let field = self.blocks[block as usize].edge_field()?;
+                Some((edge, field.history(cell as usize)))
+            };
+            let mine: Vec<(u32, EdgeDamage)> =
+                own[at(begin)..at(begin + TOLD_AT_ONCE)].iter().filter_map(history).collect();
+            let mut all = gather(&*part.exchange(), &mine).concat();
+            all.sort_unstable_by_key(|(edge, _)| *edge);
+            all.iter().for_each(|(_, history)| see(history));
+        }
+    }
+
+    /// Edge histories of a body in the order of its edges, those of this rank and what it has been told of others; empty without damage.
     pub fn edge_damage(&self, body: usize) -> Vec<EdgeDamage> {
         let model = &self.bodies[body];
         let Some(edges) = model.edges.as_ref().filter(|_| model.body.damage.is_some()) else { return Vec::new() };
-        let mut all = vec![EdgeDamage::intact(f64::INFINITY); edges.nodes.len()];
+        let mut all = vec![EdgeDamage::intact(f64::INFINITY); edges.len()];
         for (_, field) in self.edge_fields().filter(|(of, _)| *of == body) {
             (0..).zip(&field.edges).for_each(|(at, &edge)| all[edge as usize] = field.history(at));
         }
@@ -68,7 +101,7 @@ impl Solid {
     pub fn lost_strength(&self, body: usize) -> Vec<f64> {
         let model = &self.bodies[body];
         let Some(edges) = model.edges.as_ref().filter(|_| model.body.damage.is_some()) else { return Vec::new() };
-        let mut lost = vec![0.0; edges.nodes.len()];
+        let mut lost = vec![0.0; edges.len()];
         for (_, field) in self.damaged_fields().filter(|(of, _)| *of == body) {
             for (at, edge) in field.state.iter().enumerate().filter(|(_, edge)| edge.damage > 0.0) {
                 let left = (1.0 - edge.damage) * edge.kappa / field.strength[at];
@@ -84,7 +117,8 @@ impl Solid {
             BlockLaw::Standard(law) => (law.damage[cell as usize], law.stress[cell as usize]),
             _ => (0.0, Sym3::ZERO),
         };
-        let elements = if model.standard.is_some() { model.location.iter().map(of).collect() } else { Vec::new() };
+        let elements =
+            if model.standard.is_some() { model.location.all().iter().map(of).collect() } else { Vec::new() };
         let phase = model.phase.as_ref().map_or_else(Vec::new, |field| field.state().collect());
         // Nothing is removed of a body that no rank has whole.
         let alive = model.divided.as_ref().map_or_else(|| model.alive.clone(), |divided| vec![true; divided.count]);
@@ -101,13 +135,14 @@ impl Solid {
         self.velocity = state.velocity;
         self.viscous_dissipation = state.viscous_dissipation;
         self.forget_ahead();
+        self.blocks.iter_mut().for_each(Block::forget_told);
         for (index, body) in state.bodies.into_iter().enumerate() {
             let Solid { bodies, blocks, .. } = self;
             let model = &mut bodies[index];
             let cells = blocks.iter_mut().filter(|block| block.body == index).filter_map(Block::edge_field_mut);
             let standard = model.standard.as_mut().map(|standard| &mut standard.field);
             cells.chain(standard).for_each(|field| field.restore(&body.edges));
-            for (&(block, cell), saved) in model.location.iter().zip(&body.elements) {
+            for (&(block, cell), saved) in model.location.all().iter().zip(&body.elements) {
                 if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
                     (law.damage[cell as usize], law.stress[cell as usize]) = *saved;
                 }
@@ -120,6 +155,7 @@ impl Solid {
             self.rebuild_cells_around(index, &removed);
             self.restore_phase(index, &body.phase);
         }
+        self.tell_restored();
         let is_elsewhere = |block: &Block| block.items.is_empty();
         for (block, viscous) in self.blocks.iter_mut().zip(state.viscous).filter(|(block, _)| !is_elsewhere(block)) {
             block.viscous.stress = viscous;
@@ -128,6 +164,7 @@ impl Solid {
             match &mut block.law {
                 BlockLaw::Edges(law) => law.dissipated = dissipated,
                 BlockLaw::Standard(law) => law.dissipated = dissipated,
+                BlockLaw::Told(told) => told.dissipated = dissipated,
                 BlockLaw::Elastic { .. } => {}
             }
         }

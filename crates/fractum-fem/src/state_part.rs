@@ -91,7 +91,5 @@ impl Solid {
 }
 
 fn changed(body: usize, field: &EdgeField) -> impl Iterator<Item = (u32, u32, EdgeDamage)> + '_ {
-    let edges = field.edges.iter().zip(&field.state).zip(&field.strength);
-    let changed = edges.filter(|((_, history), strength)| **history != EdgeDamage::intact(**strength));
-    changed.map(move |((&edge, &history), _)| (body as u32, edge, history))
+    field.changed().map(move |place| (body as u32, field.edges[place], field.state[place]))
 }

@@ -1,7 +1,8 @@
-use fractum_math::{Ragged, Vec3};
+use fractum_math::Vec3;
 use rayon::prelude::*;
 
-use crate::body::{Body, BodyEdges, DamageZone, ElementKind, Formulation, Region};
+use crate::body::{Body, DamageZone, ElementKind, Formulation, Region};
+use crate::edges::BodyEdges;
 use crate::element::regular_edge;
 use crate::error::SolidError;
 use crate::phase::PhaseLaw;
@@ -14,10 +15,12 @@ const IN_RESERVE: f64 = 0.9;
 
 /// Strength and characteristic length of the edges of a body.
 pub(crate) struct Threshold {
-    /// Strength of each edge [Pa]; infinite where damage may not occur.
-    pub(crate) strength: Vec<f64>,
-    /// Characteristic length of each edge [m].
-    pub(crate) length: Vec<f64>,
+    /// Edges that it knows, ascending; none where it knows all.
+    known: Option<Vec<u32>>,
+    /// Strength of each of them [Pa]; infinite where damage may not occur.
+    strength: Vec<f64>,
+    /// Characteristic length of each of them [m].
+    length: Vec<f64>,
     /// Edges whose strength was lowered to fit their length.
     pub(crate) reduced_edges: usize,
     /// Largest ratio of a characteristic length to the largest one that softening allows.
@@ -26,92 +29,137 @@ pub(crate) struct Threshold {
     pub(crate) phase_sizes: Option<[f64; 2]>,
 }
 
+/// An edge that is too long for its fracture energy.
+struct TooLong {
+    nodes: [u32; 2],
+    length: f64,
+    /// Of its length to that at which softening snaps back, which is the last.
+    ratio: f64,
+    limit: f64,
+}
+
 impl Threshold {
     /// Characteristic lengths c · mean (regular edge of the sharing elements), and the guard against snap-back.
+    ///
+    /// - `known`: edges that it shall know, ascending; none for all
     pub(crate) fn new(
         body: &Body,
         zone: &DamageZone,
         edges: &BodyEdges,
-        elements_of_edge: &Ragged,
         nodes: &[Vec3],
         volumes: &[f64],
+        known: Option<Vec<u32>>,
     ) -> Result<Self, SolidError> {
-        // Measured on the tension bars of the gallery (aligned, jittered and Delaunay meshes of two sizes), never on other
-        // cases: the middle of the range in which all of them dissipate G_f times the area within 6 %.
-        let factor = match (body.formulation, body.shape) {
-            (Formulation::Smoothed, ElementKind::T4) => 1.09,
-            (Formulation::Smoothed, ElementKind::T3) => 1.124,
-            (Formulation::Standard, ElementKind::T4) => 1.11,
-            (Formulation::Standard, ElementKind::T3) => 1.28,
-        };
-        let length = |edge: usize| {
-            let elements = elements_of_edge.row(edge);
-            let sum: f64 = elements.iter().map(|&e| regular_edge(body.shape, volumes[e as usize] / body.depth())).sum();
-            factor * sum / elements.len() as f64
-        };
-        let count = edges.nodes.len();
-        let length: Vec<f64> = (0..count).into_par_iter().map(length).collect();
+        let of_edge = |around: &[u32]| characteristic_length(body, around, |element| volumes[element as usize]);
+        // Walking through all edges is not done side by side.
+        let all: Option<Vec<f64>> = known
+            .is_none()
+            .then(|| (0..edges.len() as u32).into_par_iter().map(|e| of_edge(&edges.around(e))).collect());
         let phase_sizes = zone.regularisation.map(|regularisation| {
             let size = mean_size(body, zone, edges, volumes);
             [regularisation.length.unwrap_or(SIZES_OF_LENGTH * size), size]
         });
         let phase_length = phase_sizes.map(|[length, _]| length);
         let mut threshold = Threshold {
-            strength: vec![f64::INFINITY; count],
-            length,
+            strength: Vec::new(),
+            length: Vec::new(),
             reduced_edges: 0,
             largest_length_ratio: 0.0,
             phase_sizes,
+            known: None,
         };
-        let mut worst: Option<(usize, f64, f64)> = None;
-        for edge in 0..count {
-            if matches!(&zone.region, Region::Edges(marked) if !marked[edge]) {
-                continue;
+        let mut worst: Option<TooLong> = None;
+        let mut next = known.iter().flatten().peekable();
+        edges.for_each(|edge, ends, around| {
+            let length = all.as_ref().map_or_else(|| of_edge(around), |all| all[edge as usize]);
+            let strength = threshold.arm(body, zone, (edge, ends, phase_length.unwrap_or(length)), &mut worst);
+            if known.is_none() || next.next_if_eq(&&edge).is_some() {
+                threshold.strength.push(strength);
+                threshold.length.push(length);
             }
-            let mut strength = zone.law.tensile_strength * zone.strength_factor.get(edge).copied().unwrap_or(1.0);
-            let (modulus, energy) = (body.elastic.young_modulus, zone.law.fracture_energy);
-            let limit_at = |strength| match phase_length {
-                Some(_) => PhaseLaw::largest_length(modulus, energy, strength),
-                None => zone.law.softening.largest_length(modulus, strength, energy),
-            };
-            let ratio = phase_length.unwrap_or(threshold.length[edge]) / limit_at(strength);
-            if ratio >= 1.0 {
-                threshold.reduced_edges += 1;
-                if worst.is_none_or(|(_, r, _)| ratio > r) {
-                    worst = Some((edge, ratio, limit_at(strength)));
-                }
-                // The limit goes with 1/f_t².
-                strength *= (IN_RESERVE / ratio).sqrt();
-            }
-            threshold.largest_length_ratio = threshold.largest_length_ratio.max(ratio);
-            threshold.strength[edge] = strength;
-        }
-        if let (Some((edge, _, limit)), false) = (worst, zone.reduce_strength_to_fit) {
-            let [i, j] = edges.nodes[edge];
-            let middle = (nodes[i as usize] + nodes[j as usize]) * 0.5;
-            let [x, y, z] = middle.into();
-            if let Some(length) = phase_length {
-                return Err(SolidError::LengthTooLong { body: body.name.clone(), x, y, z, length, limit });
-            }
-            return Err(SolidError::ElementTooLarge {
-                body: body.name.clone(),
-                x,
-                y,
-                z,
-                length: threshold.length[edge],
-                limit,
-                count: threshold.reduced_edges,
-            });
-        }
-        Ok(threshold)
+        });
+        drop(next);
+        threshold.known = known;
+        let Some(TooLong { nodes: [i, j], length, limit, .. }) = worst.filter(|_| !zone.reduce_strength_to_fit) else {
+            return Ok(threshold);
+        };
+        let [x, y, z] = ((nodes[i as usize] + nodes[j as usize]) * 0.5).into();
+        let (body, count) = (body.name.clone(), threshold.reduced_edges);
+        Err(match phase_length {
+            Some(length) => SolidError::LengthTooLong { body, x, y, z, length, limit },
+            None => SolidError::ElementTooLarge { body, x, y, z, length, limit, count },
+        })
     }
+
+    /// Strength of an edge [Pa], lowered to fit its length; infinite where damage may not occur.
+    ///
+    /// - `edge`: with its nodes and the length over which it softens [m]; `worst`: the one that is farthest too long
+    fn arm(
+        &mut self,
+        body: &Body,
+        zone: &DamageZone,
+        (edge, nodes, length): (u32, [u32; 2], f64),
+        worst: &mut Option<TooLong>,
+    ) -> f64 {
+        if matches!(&zone.region, Region::Edges(marked) if !marked[edge as usize]) {
+            return f64::INFINITY;
+        }
+        let strength = zone.law.tensile_strength * zone.strength_factor.get(edge as usize).copied().unwrap_or(1.0);
+        let (modulus, energy) = (body.elastic.young_modulus, zone.law.fracture_energy);
+        let limit = match zone.regularisation {
+            Some(_) => PhaseLaw::largest_length(modulus, energy, strength),
+            None => zone.law.softening.largest_length(modulus, strength, energy),
+        };
+        let ratio = length / limit;
+        self.largest_length_ratio = self.largest_length_ratio.max(ratio);
+        if ratio < 1.0 {
+            return strength;
+        }
+        self.reduced_edges += 1;
+        if worst.as_ref().is_none_or(|worst| ratio > worst.ratio) {
+            *worst = Some(TooLong { nodes, length, ratio, limit });
+        }
+        // The limit goes with 1/f_t².
+        strength * (IN_RESERVE / ratio).sqrt()
+    }
+
+    fn place(&self, edge: u32) -> usize {
+        self.known.as_ref().map_or(edge as usize, |known| known.binary_search(&edge).expect("one of those it knows"))
+    }
+
+    /// Strength of an edge [Pa]; infinite where damage may not occur.
+    pub(crate) fn strength(&self, edge: u32) -> f64 {
+        self.strength[self.place(edge)]
+    }
+
+    /// Characteristic length of an edge [m].
+    pub(crate) fn length(&self, edge: u32) -> f64 {
+        self.length[self.place(edge)]
+    }
+}
+
+/// Characteristic length of an edge [m].
+///
+/// - `around`: its elements; `volume`: of an element [m³]
+pub(crate) fn characteristic_length(body: &Body, around: &[u32], volume: impl Fn(u32) -> f64) -> f64 {
+    // Measured on the tension bars of the gallery (aligned, jittered and Delaunay meshes of two sizes), never on other
+    // cases: the middle of the range in which all of them dissipate G_f times the area within 6 %.
+    let factor = match (body.formulation, body.shape) {
+        (Formulation::Smoothed, ElementKind::T4) => 1.09,
+        (Formulation::Smoothed, ElementKind::T3) => 1.124,
+        (Formulation::Standard, ElementKind::T4) => 1.11,
+        (Formulation::Standard, ElementKind::T3) => 1.28,
+    };
+    let sum: f64 = around.iter().map(|&element| regular_edge(body.shape, volume(element) / body.depth())).sum();
+    factor * sum / around.len() as f64
 }
 
 /// Mean size of the elements in which damage may occur [m].
 fn mean_size(body: &Body, zone: &DamageZone, edges: &BodyEdges, volumes: &[f64]) -> f64 {
     let count = body.shape.edge_count();
     let armed = |edge: u32| !matches!(&zone.region, Region::Edges(marked) if !marked[edge as usize]);
-    let sizes = edges.of_element.iter().zip(volumes).filter(|(of, _)| of[..count].iter().any(|&edge| armed(edge)));
+    let may_break = |element| edges.of_element(element)[..count].iter().any(|&edge| armed(edge));
+    let sizes = (0..).zip(volumes).filter(|(element, _)| may_break(*element));
     let (mut sum, mut elements) = (0.0, 0);
     for (_, volume) in sizes {
         sum += regular_edge(body.shape, volume / body.depth());

@@ -73,18 +73,18 @@ impl Solid {
                 let (_, gradients) = geometry.element(element);
                 gradients[..corners].iter().map(|g| g.norm_squared()).sum::<f64>() * trace_factor * scale
             };
-            let traces: Vec<f64> = (0..model.body.elements.len()).into_par_iter().map(trace).collect();
-            let mut order: Vec<u32> =
-                (0..traces.len() as u32).filter(|&e| model.alive[e as usize] && counts(body, e)).collect();
-            order.par_sort_unstable_by(|&a, &b| traces[b as usize].total_cmp(&traces[a as usize]).then(a.cmp(&b)));
-            for element in order {
-                if traces[element as usize] <= worst.frequency * worst.frequency {
+            let meant = |&e: &u32| model.alive[e as usize] && counts(body, e) && self.tells_of(body, e as usize);
+            let meant: Vec<u32> = (0..model.body.elements.len() as u32).filter(meant).collect();
+            let mut order: Vec<(f64, u32)> = meant.into_par_iter().map(|e| (trace(e as usize), e)).collect();
+            order.par_sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            for (trace, element) in order {
+                if trace <= worst.frequency * worst.frequency {
                     break;
                 }
                 let frequency = element_frequency(&geometry, hooke, element as usize);
                 if frequency > worst.frequency {
                     worst = StableStep { frequency, governing: (body, element) };
-                    worst_trace = traces[element as usize];
+                    worst_trace = trace;
                 }
             }
         }

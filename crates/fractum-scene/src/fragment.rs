@@ -171,13 +171,13 @@ fn joined_nodes(solid: &Solid, joined_below: f64) -> Vec<u32> {
             continue;
         };
         let count = solid.body(body).shape.edge_count();
-        let alive = edges.of_element.iter().zip(solid.alive(body)).filter(|(_, alive)| **alive);
+        let alive = (0..).zip(solid.alive(body)).filter(|(_, alive)| **alive);
         // Elements share edges, each of which links once.
         let mut linked = vec![false; lost.len()];
-        for &edge in alive.flat_map(|(of, _)| &of[..count]) {
-            let edge = edge as usize;
-            if lost[edge] < joined_below && !std::mem::replace(&mut linked[edge], true) {
-                links.push(edges.nodes[edge]);
+        for edge in alive.flat_map(|(element, _)| edges.of_element(element).into_iter().take(count)) {
+            let at = edge as usize;
+            if lost[at] < joined_below && !std::mem::replace(&mut linked[at], true) {
+                links.push(edges.nodes(edge));
             }
         }
     }

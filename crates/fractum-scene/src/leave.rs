@@ -117,7 +117,7 @@ impl Scene {
     fn take_leave(&mut self, leaves: &[bool], piece: &[u32], dt: f64) {
         let mut elements: Vec<(usize, u32)> = Vec::new();
         for body in 0..self.solid.body_count() {
-            let of_body = (0..).zip(&self.solid.body(body).elements).zip(self.solid.alive(body));
+            let of_body = (0..).zip(&*self.solid.body(body).elements).zip(self.solid.alive(body));
             let leaving = of_body.filter(|((_, nodes), alive)| **alive && leaves[nodes[0] as usize]);
             elements.extend(leaving.map(|((element, _), _)| (body, element)));
         }

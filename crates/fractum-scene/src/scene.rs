@@ -1,5 +1,5 @@
-use fractum_fem::{LocalDamping, Solid, SolidState, StableStep};
-use fractum_math::{Sym3, Vec3};
+use fractum_fem::{BodyState, LocalDamping, Solid, SolidState, StableStep};
+use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::bonded::{Bonded, BondedState};
@@ -99,15 +99,27 @@ pub struct SceneState {
 }
 
 impl SceneState {
-    /// What stands in front of the viscous stress of the solids where a state is written down field by field.
-    pub fn before_viscous_stress(&self) -> impl Serialize + '_ {
-        let SolidState { displacement, velocity, bodies, dissipated, viscous_dissipation, viscous: _ } = &self.solid;
-        (self.clock, displacement, velocity, bodies, dissipated, viscous_dissipation)
+    /// What stands in front of the bodies of the solids where a state is written down field by field.
+    pub fn before_bodies(&self) -> impl Serialize + '_ {
+        (self.clock, &self.solid.displacement, &self.solid.velocity)
     }
 
-    /// Viscous stress of the solids, block by block.
-    pub fn viscous_stress(&self) -> &[Vec<Sym3>] {
-        &self.solid.viscous
+    /// Bodies of the solids, in order.
+    pub fn bodies(&self) -> &[BodyState] {
+        &self.solid.bodies
+    }
+
+    /// What stands between the bodies of the solids and the viscous stress in their blocks.
+    pub fn between_bodies_and_stress(&self) -> impl Serialize + '_ {
+        (&self.solid.dissipated, self.solid.viscous_dissipation)
+    }
+
+    /// What stands behind the viscous stress of the solids.
+    pub fn behind_solids(&self) -> impl Serialize + '_ {
+        let touching = (&self.debris, &self.bonded, &self.contacts, &self.shape_contacts);
+        let frequencies = (self.frequency, self.governing, self.removed_since_check);
+        let of_contacts = (self.contact_frequency_square, self.contact_frequency_peak);
+        (touching, (&self.ledger, &self.books), frequencies, of_contacts, (&self.left, &self.loads))
     }
 
     /// The same with another state of the solids; none where there is none.

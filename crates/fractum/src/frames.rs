@@ -112,8 +112,10 @@ pub(crate) struct GridLayout {
     file_order: Vec<u32>,
     /// Their numbers in the order of all nodes, in that case.
     numbers: Vec<i32>,
-    /// Connectivity of each body in the order of `file_order`.
-    bodies: Vec<(CellKind, Vec<u32>)>,
+    /// Place of each node in `file_order`.
+    place: Vec<u32>,
+    /// Cells of each body.
+    kinds: Vec<CellKind>,
     /// Number of the material of each body in the case, from 0.
     materials: Vec<i32>,
     rigid: RigidSurfaces,
@@ -139,19 +141,11 @@ impl GridLayout {
         for (file, &node) in (0..).zip(&file_order) {
             place[node as usize] = file;
         }
-        let writes = cut.is_leading() || cut.count > 1;
-        let bodies = (0..solid.body_count())
-            .map(|body| {
-                let body = solid.body(body);
-                let corners = body.shape.node_count();
-                let kind = if corners == 4 { CellKind::Tetrahedron } else { CellKind::Triangle };
-                if !writes {
-                    return (kind, Vec::new());
-                }
-                let nodes = body.elements.iter().flat_map(|e| &e[..corners]).map(|&n| place[n as usize]).collect();
-                (kind, nodes)
-            })
-            .collect();
+        let kind = |body: usize| match solid.body(body).shape.node_count() {
+            4 => CellKind::Tetrahedron,
+            _ => CellKind::Triangle,
+        };
+        let kinds = (0..solid.body_count()).map(kind).collect();
         let material = |body: usize| {
             let name = &scene.solid.body(body).name;
             let own = case.bodies.iter().find(|of_case| of_case.name.value == *name);
@@ -160,7 +154,8 @@ impl GridLayout {
         GridLayout {
             file_order,
             numbers,
-            bodies,
+            place,
+            kinds,
             materials: (0..scene.solid.body_count()).map(material).collect(),
             rigid: RigidSurfaces::new(scene),
             gauges,
@@ -247,15 +242,15 @@ impl ElementFields {
         let solid = &scene.solid;
         let phase_field = solid.has_phase_fields();
         let mut fields = ElementFields::default();
-        for (body, (kind, nodes)) in grid.bodies.iter().enumerate() {
-            let corners = kind.nodes();
-            let mut kept = Vec::with_capacity(nodes.len());
+        for (body, kind) in grid.kinds.iter().enumerate() {
+            let (corners, nodes) = (kind.nodes(), &solid.body(body).elements);
+            let mut kept = Vec::new();
             let phases = solid.element_phase(body);
             let strains = if grid.further.strain { solid.told_strains(body) } else { Vec::new() };
             fields.strain.extend(strains.iter().map(|strain| strain.0.map(|e| e as f32)));
             for (element, (stress, damage)) in solid.told_elements(body).into_iter().zip(solid.told_fields(body)) {
                 let element = element as usize;
-                kept.extend_from_slice(&nodes[corners * element..corners * (element + 1)]);
+                kept.extend(nodes[element][..corners].iter().map(|&node| grid.place[node as usize]));
                 fields.add_stress(stress, grid.further.principal);
                 fields.damage.push(damage as f32);
                 fields.phase.extend(phase_field.then(|| phases.as_ref().map_or(0.0, |phases| phases[element] as f32)));

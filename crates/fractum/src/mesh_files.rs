@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use fractum_io::build::{SolidDivision, cannot_divide, divide, whole_bodies};
+use fractum_io::build::{SolidDivision, cannot_divide, divide, held_bodies};
 use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics};
 use fractum_io::memory;
@@ -73,10 +73,8 @@ impl MeshFiles {
         match divide(case, mesh, &**exchange) {
             Ok((mesh, division)) => {
                 let (own, all) = (mesh.tetrahedra.len(), mesh.tetrahedron_count());
-                let because = |body| format!("every process has all of body \"{body}\", because of damage");
-                let whole = whole_bodies(case).into_iter().map(because);
                 let notes = std::iter::once(format!("this process has {own} of the {all} tetrahedra of the mesh"));
-                let notes = notes.chain(whole).collect();
+                let notes = notes.chain(held_bodies(case)).collect();
                 Ok(JoinedMesh { mesh, hash: hash(&hashes), division: Some(division), notes })
             }
             Err(reason) => Ok(whole(read_files(source, processes.alike())?.0, &hashes, Some(reason))),

@@ -1,14 +1,15 @@
 //! What a run came to, as `summary.json` holds it.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use fractum_fem::Solid;
+use fractum_fem::{BodyState, Solid};
 use fractum_io::case::model::{Case, Expect, ProbeKind};
 use fractum_io::expectation::Expectation;
 use fractum_io::summary::{self, Status, Summary};
 use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, passing_size};
-
+use serde::Serialize;
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::phases::Phases;
@@ -119,20 +120,28 @@ pub(crate) fn state_hash(scene: &Scene) -> u128 {
     xxhash_rust::xxh3::xxh3_128(&bytes)
 }
 
-/// The same where no process has all elements: they take in the viscous stress one after the other. All must call it.
+/// The same where no process has all cells: they take in histories and viscous stress one after the other. All must call it.
 fn hash_of_divided(scene: &Scene) -> u128 {
-    let state = scene.state();
-    let before = postcard::to_stdvec(&state.before_viscous_stress()).unwrap_or_default();
+    let (state, hash) = (scene.state(), RefCell::new(Xxh3::new()));
+    let bodies = state.bodies();
     // A list is its length, and what it holds.
-    let bytes = postcard::to_stdvec(&state).unwrap_or_default();
-    let behind = before.len() + postcard::to_stdvec(state.viscous_stress()).map_or(0, |own| own.len());
-    let length = postcard::to_stdvec(&scene.solid.block_count()).unwrap_or_default();
-    let mut hash = Xxh3::new();
-    hash.update(&before);
-    hash.update(&length);
-    scene.solid.each_viscous_block(|stress| hash.update(&postcard::to_stdvec(stress).unwrap_or_default()));
-    hash.update(&bytes[behind..]);
-    hash.digest128()
+    add(&hash, &state.before_bodies());
+    add(&hash, &bodies.len());
+    for (index, BodyState { alive, edges: _, elements, phase }) in bodies.iter().enumerate() {
+        add(&hash, alive);
+        scene.solid.each_history(index, |count| add(&hash, &count), |history| add(&hash, history));
+        add(&hash, &(elements, phase));
+    }
+    add(&hash, &state.between_bodies_and_stress());
+    add(&hash, &scene.solid.block_count());
+    scene.solid.each_viscous_block(|stress| add(&hash, &stress));
+    add(&hash, &state.behind_solids());
+    hash.into_inner().digest128()
+}
+
+/// Takes a part of a state into its hash.
+fn add(hash: &RefCell<Xxh3>, part: &impl Serialize) {
+    hash.borrow_mut().update(&postcard::to_stdvec(part).unwrap_or_default());
 }
 
 /// Holds a value of the summary against its reference.

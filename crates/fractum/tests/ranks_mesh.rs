@@ -190,7 +190,7 @@ fn a_state_of_parts_is_taken_up_by_any_number_of_ranks() {
 }
 
 #[test]
-fn a_body_that_breaks_is_whole_on_every_rank_and_the_rest_is_not() {
+fn every_rank_has_the_elements_of_a_body_that_breaks_and_not_the_rest() {
     let place = workplace(&breaking());
     let case = place.path("case.toml");
     let alone = run(&case, &options(&place, "alone")).unwrap().summary;
@@ -212,7 +212,7 @@ fn a_body_that_breaks_is_whole_on_every_rank_and_the_rest_is_not() {
             assert!(fs::read(&ours).unwrap() == fs::read(expected).unwrap(), "{}", ours.display());
         }
         let log = read(&folder, "run.log");
-        assert!(log.contains("every process has all of body \"left\", because of damage\n"), "{log}");
+        assert!(log.contains("every process has all elements of body \"left\", because of damage\n"), "{log}");
         assert!(log.contains("of the 6144 tetrahedra of the mesh\n"), "{log}");
         assert_same_elements(&place, &folder);
     }
@@ -292,16 +292,47 @@ fn stresses_are_measured_in_divided_bodies_too() {
 }
 
 #[test]
-fn where_every_body_may_break_every_rank_reads_all_parts() {
-    let damage =
-        "poisson_ratio = 0.25\n[materials.rock.damage]\ntensile_strength = \"9 MPa\"\nfracture_energy = \"90 J/m^2\"\n";
+fn where_all_may_break_every_rank_has_its_cells_alone() {
+    let scatter = "60 J/m^2\"\nscatter = { distribution = \"weibull\", modulus = 8, seed = 3 }\n";
+    let case = breaking().replace("60 J/m^2\"\n", scatter);
+    let place = workplace(&case.replace("material = \"rock\"\nformulation = \"standard\"", "material = \"weak\""));
+    let alone = run(&place.path("case.toml"), &options(&place, "alone")).unwrap().summary;
+    assert!(alone.counts.removed_elements > 20, "{:?}", alone.counts);
+    let read = |folder: &str, file: &str| fs::read_to_string(place.path(folder).join(file)).unwrap();
+    for ranks in [2, 3, 5] {
+        let folder = format!("of-{ranks}");
+        for hash in on_ranks(&place, ranks, &options(&place, &folder)) {
+            assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{ranks} ranks");
+        }
+        for file in ["history.csv", "fragments.csv"] {
+            assert!(read(&folder, file) == read("alone", file), "{ranks} ranks: {file}");
+        }
+        let log = read(&folder, "run.log");
+        assert!(log.contains("every process has all elements of body \"right\", because of damage\n"), "{log}");
+        assert_same_elements(&place, &folder);
+    }
+    for (from, to) in [(3, 2), (2, 1), (1, 3)] {
+        let folder = format!("from-{from}-to-{to}");
+        let options = options(&place, &folder);
+        interrupted_on_ranks(&place, from, &options, 7e-5);
+        for hash in on_ranks(&place, to, &Options { resume: true, ..options.clone() }) {
+            assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{folder}");
+        }
+    }
+}
+
+#[test]
+fn where_every_body_is_whole_every_rank_reads_all_parts() {
+    let damage = "poisson_ratio = 0.25\n[materials.rock.damage]\ntensile_strength = \"9 MPa\"\n\
+        fracture_energy = \"900 J/m^2\"\nregularisation = \"phase-field\"\n";
     let place = workplace(&BLOCK.replace("poisson_ratio = 0.25\n", damage));
     let alone = run(&place.path("case.toml"), &options(&place, "alone")).unwrap().summary;
     for hash in on_ranks(&place, 2, &options(&place, "shared")) {
         assert_eq!(hash.unwrap(), alone.hashes.state_hash);
     }
     let log = fs::read_to_string(place.path("shared/run.log")).unwrap();
-    assert!(log.contains("every process has the whole mesh, because of damage of every body\n"), "{log}");
+    let reason = "a phase field of body \"left\", damage in the standard formulation of body \"right\"\n";
+    assert!(log.contains(&format!("every process has the whole mesh, because of {reason}")), "{log}");
 }
 
 #[test]

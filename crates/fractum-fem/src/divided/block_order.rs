@@ -32,7 +32,7 @@ impl BlockOrder {
     pub(crate) fn new(exchange: &dyn Exchange, shares: &[BodyShare], made: &[Vec<usize>]) -> Self {
         let own: Vec<usize> = made.iter().map(Vec::len).collect();
         let of_ranks = gather(exchange, &own);
-        let of_body = |(body, share): (usize, &BodyShare)| match share.is_whole {
+        let of_body = |(body, share): (usize, &BodyShare)| match share.is_whole() {
             true => dealt(&share.cells, &made[body]),
             false => of_ranks.iter().map(|counts| counts[body]).collect(),
         };
@@ -41,7 +41,7 @@ impl BlockOrder {
         let mut first = vec![0];
         (0..exchange.size()).for_each(|rank| first.push(first[rank] + of_rank(rank)));
         let mut order = BlockOrder { first, whole: Vec::new(), counts };
-        let whole = shares.iter().enumerate().filter(|(_, share)| share.is_whole);
+        let whole = shares.iter().enumerate().filter(|(_, share)| share.is_whole());
         order.whole = whole.map(|(body, _)| order.begin(body)..order.begin(body + 1)).collect();
         order
     }
@@ -53,7 +53,7 @@ impl BlockOrder {
 
     /// First block of a body that a rank has: its own, or the first of all where it is whole.
     pub(crate) fn begin_of(&self, body: usize, rank: usize, share: &BodyShare) -> usize {
-        let before = if share.is_whole { 0 } else { self.counts[body][..rank].iter().sum() };
+        let before = if share.is_whole() { 0 } else { self.counts[body][..rank].iter().sum() };
         self.begin(body) + before
     }
 }

@@ -7,7 +7,7 @@ use fractum_parallel::{Exchange, gather, post};
 use rayon::prelude::*;
 
 use super::order::{Key, Order};
-use super::{BodyShare, KnownAround, ReadBody};
+use super::{BodyShare, Held, KnownAround, ReadBody};
 use crate::body::Formulation;
 
 /// Words of an element on its way.
@@ -38,12 +38,13 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
     let order = Order::new(exchange, named, bodies.len());
     let mut is_near = nodes_of_whole(exchange, bodies, nodes.len());
     around.touched.iter().chain(around.measured).for_each(|&node| is_near[node as usize] = true);
-    let mut words = OnTheirWay { to: vec![Vec::new(); exchange.size()], to_all: Vec::new() };
+    let none = || vec![Vec::new(); exchange.size()];
+    let mut words = OnTheirWay { to: none(), to_all: Vec::new(), told: none() };
     cells.iter().for_each(|cells| cells.pack(&order, &is_near, &mut words));
     let mut shares: Vec<BodyShare> = (0..bodies.len())
         .map(|body| {
             assert!(u32::try_from(total(body)).is_ok(), "a body of {} elements", total(body));
-            BodyShare { count: total(body), is_whole: bodies[body].is_whole, ..BodyShare::default() }
+            BodyShare { count: total(body), held: bodies[body].held, ..BodyShare::default() }
         })
         .collect();
     let mut own = vec![0; bodies.len()];
@@ -51,13 +52,20 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
         let nodes = |key: &Key| [(key[2] >> 32) as u32, key[2] as u32];
         let body = run[0][0] as usize;
         own[body] += run.len();
-        if !bodies[body].is_whole {
+        if bodies[body].held != Held::Whole {
             shares[body].runs.push(run.iter().map(nodes).collect());
         }
     }
     drop(order);
     for of_rank in gather(exchange, &own) {
         shares.iter_mut().zip(of_rank).for_each(|(share, cells)| share.cells.push(cells));
+    }
+    for (body, share) in bodies.iter().zip(&mut shares).filter(|(body, _)| body.held == Held::Elements) {
+        share.is_told = vec![false; share.count];
+        (share.elements, share.tags) = all_elements(exchange, body);
+    }
+    for word in post(exchange, words.told).into_iter().flatten() {
+        shares[(word >> 32) as usize].is_told[word as u32 as usize] = true;
     }
     let mut received = post(exchange, words.to);
     received.extend(gather(exchange, &words.to_all));
@@ -69,7 +77,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
     elements.into_iter().for_each(|at| add_to_share(packed(at), exchange.rank(), &mut shares));
     let mut is_measured = vec![false; if around.measured.is_empty() { 0 } else { nodes.len() }];
     around.measured.iter().for_each(|&node| is_measured[node as usize] = true);
-    for share in shares.iter_mut().filter(|share| !share.is_whole && !is_measured.is_empty()) {
+    for share in shares.iter_mut().filter(|share| share.held == Held::Part && !is_measured.is_empty()) {
         let all = |element: &[u32; 4]| element.iter().all(|&node| is_measured[node as usize]);
         let measured = (0..).zip(&share.elements).filter(|(_, element)| all(element)).map(|(number, _)| number);
         share.measured = measured.collect();
@@ -80,7 +88,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
 /// Which nodes those of bodies are that every rank needs whole. All ranks must call it.
 fn nodes_of_whole(exchange: &dyn Exchange, bodies: &[ReadBody], count: usize) -> Vec<bool> {
     let mut is_own = vec![false; count];
-    let whole = bodies.iter().filter(|body| body.is_whole);
+    let whole = bodies.iter().filter(|body| body.held != Held::Part);
     whole.flat_map(|body| body.elements).flatten().for_each(|&node| is_own[node as usize] = true);
     let own: Vec<u32> = (0..).zip(&is_own).filter(|(_, is_own)| **is_own).map(|(node, _)| node).collect();
     let mut is_of_whole = is_own;
@@ -88,11 +96,41 @@ fn nodes_of_whole(exchange: &dyn Exchange, bodies: &[ReadBody], count: usize) ->
     is_of_whole
 }
 
+/// The elements of a body that all ranks have read, in their order, with their tags. All ranks must call it.
+fn all_elements(exchange: &dyn Exchange, body: &ReadBody) -> (Vec<[u32; 4]>, Vec<u64>) {
+    let counts = gather(exchange, &body.elements.len());
+    let count: usize = counts.iter().sum();
+    let (mut elements, mut tags) = (vec![[0; 4]; count], vec![0; count]);
+    // In rounds, so that the messages are small beside the elements.
+    for begin in (0..counts.iter().copied().max().unwrap_or(0)).step_by(PACKED) {
+        let of_rank = |&count: &usize| count.min(begin + PACKED) - count.min(begin);
+        let own = begin.min(body.elements.len())..body.elements.len().min(begin + PACKED);
+        let words = body.elements[own.clone()].iter().zip(&body.tags[own]);
+        let words = words.flat_map(|(&[a, b, c, d], &tag)| [pair(a, b), pair(c, d), tag].map(f64::from_bits));
+        let words: Vec<f64> = words.collect();
+        let lengths: Vec<usize> = counts.iter().map(|count| 3 * of_rank(count)).collect();
+        let mut all = vec![0.0; lengths.iter().sum()];
+        exchange.gather(&words, &lengths, &mut all);
+        let (mut rest, mut first) = (all.as_chunks::<3>().0, 0);
+        for rank_count in &counts {
+            let (of_rank, others) = rest.split_at(of_rank(rank_count));
+            for (place, &[ab, cd, tag]) in (first + begin..).zip(of_rank) {
+                let ([a, b], [c, d]) = (halves(ab.to_bits()), halves(cd.to_bits()));
+                (elements[place], tags[place]) = ([a, b, c, d], tag.to_bits());
+            }
+            (rest, first) = (others, first + rank_count);
+        }
+    }
+    (elements, tags)
+}
+
 /// Elements for other ranks.
 struct OnTheirWay {
     to: Vec<Vec<u64>>,
     /// Those that every rank gets.
     to_all: Vec<u64>,
+    /// Body and number of elements that every rank gets otherwise, for the rank that tells of them.
+    told: Vec<Vec<u64>>,
 }
 
 /// The curve through the cells of each body.
@@ -163,8 +201,13 @@ impl Cells<'_> {
             let end = count.min(begin + PACKED);
             let packed: Vec<([u32; 6], Words)> = (begin..end).into_par_iter().map(pack).collect();
             for (element, (mut ranks, packed)) in (begin..end).zip(packed) {
+                if self.body.held == Held::Elements {
+                    let teller = ranks.iter().min().expect("of six edges");
+                    words.told[*teller as usize].push(packed[0]);
+                    continue;
+                }
                 let is_for_all = self.body.elements[element].iter().any(|&node| is_near[node as usize]);
-                if self.body.is_whole || is_for_all {
+                if self.body.held == Held::Whole || is_for_all {
                     words.to_all.extend(packed);
                     continue;
                 }
@@ -180,7 +223,6 @@ impl Cells<'_> {
 /// Adds an element that has arrived to the share of its body.
 fn add_to_share(&[head, a, b, tag, e, f, g]: &Words, me: usize, shares: &mut [BodyShare]) {
     let share = &mut shares[(head >> 32) as usize];
-    let halves = |word: u64| [(word >> 32) as u32, word as u32];
     let ([n0, n1], [n2, n3]) = (halves(a), halves(b));
     share.elements.push([n0, n1, n2, n3]);
     share.tags.push(tag);
@@ -190,6 +232,10 @@ fn add_to_share(&[head, a, b, tag, e, f, g]: &Words, me: usize, shares: &mut [Bo
     // The lowest rank with a cell of it tells of it.
     share.is_told.push(owners.iter().min() == Some(&(me as u32)));
     share.owners.push(owners);
+}
+
+fn halves(word: u64) -> [u32; 2] {
+    [(word >> 32) as u32, word as u32]
 }
 
 fn pair(a: u32, b: u32) -> u64 {

@@ -7,7 +7,7 @@ use fractum_mesh::topology::TETRAHEDRON_EDGES;
 use fractum_parallel::{Exchange, Swapped, post};
 
 use super::{BodyShare, EdgeValue};
-use crate::body::BodyEdges;
+use crate::edges::BodyEdges;
 
 /// Numbers of an [`EdgeValue`].
 const NUMBERS: usize = 13;
@@ -37,7 +37,7 @@ impl EdgeValues {
                 let rank = share.owners[element][at] as usize;
                 if rank != me {
                     let [a, b] = edge.map(|corner| elements[element][corner]);
-                    of_rank[rank].insert([a.min(b), a.max(b)], edges.of_element[element][at]);
+                    of_rank[rank].insert([a.min(b), a.max(b)], edges.of_element(element as u32)[at]);
                 }
             }
         }
@@ -56,7 +56,7 @@ impl EdgeValues {
         for (rank, words) in asked.iter().enumerate().filter(|(_, words)| !words.is_empty()) {
             let number = |&word: &u64| {
                 let nodes = [(word >> 32) as u32, word as u32];
-                edges.nodes.binary_search(&nodes).expect("this rank has the elements around its edges") as u32
+                edges.find(nodes).expect("this rank has the elements around its edges")
             };
             between.entry(rank).or_default()[0].extend(words.iter().map(number));
         }

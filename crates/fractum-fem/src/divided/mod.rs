@@ -4,8 +4,9 @@
 //! into the same blocks; a rank gets a run of blocks with the elements around their cells. So every sum over blocks has the bits of one process.
 //! Every rank has all nodes. Blocks of others are there with their number and the nodes that this rank has too.
 //!
-//! Bodies that break are whole on every rank, which all take out the same elements. Elements of other bodies that have a node of them, or one
-//! that something else may touch, are on every rank too: what lies around such nodes is known to all.
+//! Of bodies that break every rank has all elements, since all take out the same ones; of most of them no more cells than its own, and what it is
+//! told of the edges of others ([`Held`]). Elements of other bodies that have a node of them, or one that something else may touch, are on
+//! every rank too: what lies around such nodes is known to all.
 
 mod block_order;
 mod boundary;
@@ -38,8 +39,20 @@ pub struct ReadBody<'a> {
     pub elements: &'a [[u32; 4]],
     /// What the file calls each of them.
     pub tags: &'a [u64],
-    /// Whether every rank needs all of it.
-    pub is_whole: bool,
+    /// How much of it every rank has.
+    pub held: Held,
+}
+
+/// How much of a body every rank has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Held {
+    /// The elements around its cells.
+    #[default]
+    Part,
+    /// All elements, with its cells of them: those of a body that may break, of smoothed tetrahedra with local damage everywhere.
+    Elements,
+    /// All elements and all cells.
+    Whole,
 }
 
 /// What a rank keeps of a body of tetrahedra.
@@ -49,12 +62,12 @@ pub struct BodyShare {
     pub elements: Vec<[u32; 4]>,
     /// What the file calls each of them.
     pub tags: Vec<u64>,
-    /// Number of each in the whole body, ascending.
+    /// Number of each in the whole body, ascending; empty where it has all of them.
     pub numbers: Vec<u32>,
     /// Elements of the whole body.
     pub count: usize,
-    /// Whether every rank has all of them.
-    pub is_whole: bool,
+    /// How much of it every rank has.
+    pub held: Held,
     /// Which of them this rank tells of: every element has one rank that does.
     pub is_told: Vec<bool>,
     /// Ranks whose cells the edges of each element are, in the order of [`fractum_mesh::topology::TETRAHEDRON_EDGES`]; the rank of the
@@ -67,6 +80,31 @@ pub struct BodyShare {
     pub cells: Vec<usize>,
     /// Elements that this rank can measure by itself with all cells of theirs, ascending: it has all elements around their nodes.
     pub measured: Vec<u32>,
+}
+
+impl BodyShare {
+    /// Whether every rank has all cells.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.held == Held::Whole
+    }
+
+    /// Number of an element of this rank in the whole body.
+    pub(crate) fn number(&self, element: usize) -> u32 {
+        self.numbers.get(element).copied().unwrap_or(element as u32)
+    }
+
+    /// Place of an element of the whole body among those of this rank; none where it does not have that.
+    pub fn place(&self, number: u32) -> Option<usize> {
+        match self.held {
+            Held::Part => self.numbers.binary_search(&number).ok(),
+            Held::Elements | Held::Whole => Some(number as usize),
+        }
+    }
+
+    /// Elements that this rank tells of, ascending.
+    pub(crate) fn told(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..).zip(&self.is_told).filter(|(_, is_told)| **is_told).map(|(element, _)| element)
+    }
 }
 
 /// What a rank knows of a body that it does not have whole.

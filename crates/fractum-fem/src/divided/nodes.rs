@@ -56,7 +56,7 @@ pub(crate) fn nodal_sums(exchange: &dyn Exchange, count: usize, bodies: &[GivenT
         bodies.iter().enumerate().flat_map(|(index, GivenToNodes { share, elements, values })| {
             let told = (0..values.len()).filter(|&element| share.is_told[element]);
             told.map(move |element| {
-                let order = (index as u64) << 32 | u64::from(share.numbers[element]);
+                let order = (index as u64) << 32 | u64::from(share.number(element));
                 (elements[element], order, values[element])
             })
         })

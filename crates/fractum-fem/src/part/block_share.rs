@@ -22,15 +22,12 @@ impl BlockShare {
     pub(super) fn of(block: &Block, viscous: bool) -> Self {
         let (energy, field) = match &block.law {
             BlockLaw::Elastic { energy } => (*energy, None),
+            BlockLaw::Told(told) => (told.energy, None),
             BlockLaw::Edges(law) => (law.energy, Some(&law.field)),
             BlockLaw::Standard(law) => (law.energy, None),
         };
-        let changed = field.into_iter().flat_map(|field| {
-            let edges = (0..).zip(&field.state).zip(&field.strength);
-            edges
-                .filter(|((_, edge), strength)| **edge != EdgeDamage::intact(**strength))
-                .map(|((i, edge), _)| (i, *edge))
-        });
+        let changed =
+            field.into_iter().flat_map(|field| field.changed().map(|place| (place as u32, field.state[place])));
         BlockShare {
             energy,
             dissipated: block.dissipated(),
@@ -46,6 +43,7 @@ impl BlockShare {
         }
         match &mut block.law {
             BlockLaw::Elastic { energy } => *energy = self.energy,
+            BlockLaw::Told(told) => (told.energy, told.dissipated) = (self.energy, self.dissipated),
             BlockLaw::Standard(law) => (law.energy, law.dissipated) = (self.energy, self.dissipated),
             BlockLaw::Edges(law) => {
                 (law.energy, law.dissipated) = (self.energy, self.dissipated);

@@ -20,9 +20,10 @@ use fractum_math::{CHUNK, Vec3};
 use fractum_parallel::{Exchange, Told, gather, rank_of, runs_by_weight, runs_of};
 
 use crate::block::{Cells, NodeSlots, Slot};
-use crate::damage::{EdgeDamage, EdgeField};
+use crate::damage::EdgeField;
 use crate::divided::{BlockOrder, RanksOfNodes};
 use crate::evaluate::Block;
+use crate::told_edges::ToldEdge;
 
 use block_share::BlockShare;
 use chunks::Chunks;
@@ -251,36 +252,35 @@ impl Part {
         self.records.tell(&*self.exchange, own, blocks)
     }
 
-    /// Tells all ranks the edges that have just broken.
-    pub(crate) fn tell_broken(&mut self, blocks: &mut [Block]) {
+    /// Tells all ranks the edges that have just broken, with their blocks.
+    pub(crate) fn tell_broken(&mut self, blocks: &mut [Block]) -> Vec<(u32, ToldEdge)> {
         let own = self.own();
         let of_block = |index: usize| {
             let fresh = blocks[index].edge_field().map_or(&[][..], |field| &field.fresh);
             fresh.iter().map(move |&edge| (index as u32, edge))
         };
         let edges: Vec<(u32, u32)> = own.clone().flat_map(of_block).collect();
-        for (block, edge) in self.tell_edges(blocks, &edges) {
-            let field = blocks[block as usize].edge_field_mut().filter(|_| !own.contains(&(block as usize)));
-            field.into_iter().for_each(|field| field.fresh.push(edge));
+        let told = self.tell_edges(blocks, &edges);
+        for (block, edge) in told.iter().filter(|(block, _)| !own.contains(&(*block as usize))) {
+            let block = &mut blocks[*block as usize];
+            let place = block.place_of(edge.cell).expect("it was told") as u32;
+            block.edge_field_mut().into_iter().for_each(|field| field.fresh.push(place));
         }
+        told
     }
 
     /// Tells all ranks the histories of some edges (block, number), which they may name or not; those that any rank of them has.
-    pub(crate) fn tell_edges(&self, blocks: &mut [Block], edges: &[(u32, u32)]) -> Vec<(u32, u32)> {
+    pub(crate) fn tell_edges(&self, blocks: &mut [Block], edges: &[(u32, u32)]) -> Vec<(u32, ToldEdge)> {
         let own = self.own();
         let mine = edges.iter().filter(|(block, _)| own.contains(&(*block as usize)));
-        let history = |&(block, edge): &(u32, u32)| {
-            let field = blocks[block as usize].edge_field()?;
-            Some((block, edge, field.history(edge as usize)))
-        };
-        let mine: Vec<(u32, u32, EdgeDamage)> = mine.filter_map(history).collect();
+        let told =
+            |&(block, cell): &(u32, u32)| Some((block, blocks[block as usize].edge_field()?.told(cell as usize)));
+        let mine: Vec<(u32, ToldEdge)> = mine.filter_map(told).collect();
         let all = gather(&*self.exchange, &mine).concat();
-        for &(block, edge, history) in all.iter().filter(|(block, ..)| !own.contains(&(*block as usize))) {
-            if let Some(field) = blocks[block as usize].edge_field_mut() {
-                field.put(edge as usize, history);
-            }
+        for (block, edge) in all.iter().filter(|(block, _)| !own.contains(&(*block as usize))) {
+            blocks[*block as usize].put_edge(edge);
         }
-        all.into_iter().map(|(block, edge, _)| (block, edge)).collect()
+        all
     }
 
     /// Tells all ranks displacements and velocities of all nodes.
@@ -328,13 +328,11 @@ impl Part {
         }
     }
 
-    /// Tells all ranks energies and histories of all cells; of blocks of which others have no more than their number the energies alone.
+    /// Tells all ranks energies and histories of all cells; of blocks of which others have no more than their number energies, and
+    /// what [`Part::tell_changed`] tells and returns.
     ///
     /// - `viscous`: viscous stresses too
-    pub(crate) fn tell_cells(&mut self, blocks: &mut [Block], viscous: bool) {
-        if self.is_divided() {
-            self.tell_energies(blocks);
-        }
+    pub(crate) fn tell_cells(&mut self, blocks: &mut [Block], viscous: bool) -> Vec<(u32, ToldEdge)> {
         let (own, whole) = (self.own(), || self.order.whole.iter().cloned().flatten());
         let mine = whole().filter(|index| own.contains(index));
         let mine: Vec<BlockShare> = mine.map(|index| BlockShare::of(&blocks[index], viscous)).collect();
@@ -342,6 +340,22 @@ impl Part {
         for (index, share) in whole().zip(shares).filter(|(index, _)| !own.contains(index)) {
             share.put(&mut blocks[index], viscous);
         }
+        if !self.is_divided() {
+            return Vec::new();
+        }
+        self.tell_energies(blocks);
+        self.tell_changed(blocks)
+    }
+
+    /// Tells all ranks the histories that are no longer those of the start, of blocks of which others have no more than their number.
+    pub(crate) fn tell_changed(&self, blocks: &mut [Block]) -> Vec<(u32, ToldEdge)> {
+        let is_whole = |index: &usize| self.order.whole.iter().any(|whole| whole.contains(index));
+        let changed = self.own().filter(|index| !is_whole(index)).flat_map(|index| {
+            let changed = blocks[index].edge_field().into_iter().flat_map(EdgeField::changed);
+            changed.map(move |cell| (index as u32, cell as u32))
+        });
+        let changed: Vec<(u32, u32)> = changed.collect();
+        self.tell_edges(blocks, &changed)
     }
 
     /// Tells all ranks a value of every node, once each has those of its own blocks.

@@ -10,8 +10,9 @@ use fractum_math::Lane;
 use fractum_mesh::topology::{TETRAHEDRON_EDGES, TRIANGLE_EDGES};
 
 use crate::block::FOUR;
-use crate::body::{BodyEdges, ElementKind};
+use crate::body::ElementKind;
 use crate::cell::Geometry;
+use crate::edges::BodyEdges;
 
 /// Weight of the second term in tetrahedra. Without it two fields cost nothing; chosen so that an imposed plane crack costs
 /// its area in Delaunay's tetrahedra, 0.996 to 1.005 of it.
@@ -119,7 +120,7 @@ impl Rows {
         self.found.clear();
         self.found.push(edge);
         for &element in around {
-            for &other in &edges.of_element[element as usize][..count] {
+            for &other in &edges.of_element(element)[..count] {
                 if !self.found.contains(&other) {
                     self.found.push(other);
                 }
@@ -163,7 +164,8 @@ impl Rows {
         values.iter_mut().for_each(|values| values.0[lane] = 0.0);
         let count = geometry.body.shape.edge_count();
         for &element in around.iter().filter(|&&e| alive[e as usize]) {
-            let of = &edges.of_element[element as usize][..count];
+            let of = edges.of_element(element);
+            let of = &of[..count];
             let own = of.iter().position(|&e| e == columns[0][lane]).expect("an element around an edge has that edge");
             for (&other, value) in of.iter().zip(element_row(geometry, element as usize, own)) {
                 let place = columns.iter().position(|c| c[lane] == other).expect("a row holds the edges around it");

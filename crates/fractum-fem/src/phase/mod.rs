@@ -23,8 +23,9 @@ use fractum_parallel::Exchange;
 use rayon::prelude::*;
 
 use crate::block::FOUR;
-use crate::body::{Body, BodyEdges, DamageZone, ElementKind, Formulation};
+use crate::body::{Body, DamageZone, ElementKind, Formulation};
 use crate::cell::Geometry;
+use crate::edges::BodyEdges;
 use crate::error::SolidError;
 use crate::material::Degradation;
 use crate::taken::Taken;
@@ -179,7 +180,7 @@ impl PhaseField {
     pub(crate) fn activate(&mut self, patch: &Patch<'_>, (edge, rank): (u32, u32), a1: f64) {
         self.slot[edge as usize] = self.active.len() as u32;
         self.awake[edge as usize / AT_LEAST] = true;
-        self.rows.push(&patch.geometry, patch.edges, (edge, patch.elements_of_edge.row(edge as usize)), patch.alive);
+        self.rows.push(&patch.geometry, patch.edges, (edge, &patch.edges.around(edge)), patch.alive);
         self.active.push(ActiveEdge {
             edge,
             rank,
@@ -231,9 +232,9 @@ impl PhaseField {
     /// Takes the share of removed elements out of the rows of these edges.
     pub(crate) fn refresh(&mut self, patch: &Patch<'_>, edges: &[u32]) {
         for &edge in edges.iter().filter(|&&edge| self.slot[edge as usize] != Self::ASLEEP) {
-            let (around, slot) = (patch.elements_of_edge.row(edge as usize), self.slot[edge as usize] as usize);
+            let (around, slot) = (patch.edges.around(edge), self.slot[edge as usize] as usize);
             self.active[slot].rebuilt = true;
-            self.rows.refresh(slot, &patch.geometry, patch.edges, around, patch.alive);
+            self.rows.refresh(slot, &patch.geometry, patch.edges, &around, patch.alive);
         }
     }
 
@@ -431,7 +432,6 @@ impl PhaseLaw {
 pub(crate) struct Patch<'a> {
     pub(crate) geometry: Geometry<'a>,
     pub(crate) edges: &'a BodyEdges,
-    pub(crate) elements_of_edge: &'a fractum_math::Ragged,
     pub(crate) alive: &'a [bool],
 }
 

@@ -89,12 +89,12 @@ impl Solid {
         let mut mass = vec![0.0; self.reference.len()];
         for (index, model) in self.bodies.iter().enumerate() {
             let corners = model.body.shape.node_count();
-            let is_coarse =
-                |item: u32| f64::from(u8::from(!self.blocks[model.location[item as usize].0 as usize].is_fine));
-            for (element, nodes) in (0..).zip(&model.body.elements) {
+            let is_coarse = |item: u32| f64::from(u8::from(!self.blocks[model.location.of(item).0 as usize].is_fine));
+            for (element, nodes) in (0..).zip(&*model.body.elements) {
                 let share = match (&model.edges, model.body.formulation) {
                     (Some(edges), Formulation::Smoothed) => {
-                        let of = &edges.of_element[element as usize][..model.body.shape.edge_count()];
+                        let of = edges.of_element(element);
+                        let of = &of[..model.body.shape.edge_count()];
                         of.iter().map(|&edge| is_coarse(edge)).sum::<f64>() / of.len() as f64
                     }
                     _ => is_coarse(element),

@@ -208,7 +208,9 @@ impl<'a> Context<'a> {
     }
 
     fn damage_zone(&mut self, part: &Part, body: &fem::Body, damage: &Damage, numbering: &Numbering) -> DamageZone {
-        let midpoints = body.edge_midpoints(&numbering.positions);
+        let varies =
+            part.body.damage_where.is_some() || part.body.strength_factor.is_some() || damage.scatter.is_some();
+        let midpoints = if varies { body.edge_midpoints(&numbering.positions) } else { Vec::new() };
         let region = match &part.body.damage_where {
             None => Region::Everywhere,
             Some(condition) => {

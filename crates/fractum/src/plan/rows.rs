@@ -24,12 +24,12 @@ pub(super) fn directions(shape: ElementKind) -> usize {
 
 /// Share of the edges that may be damaged that lie within 5 degrees of the most common directions of the mesh [-].
 pub(super) fn share(body: &Body, nodes: &[Vec3]) -> f64 {
-    let edges = body.edges().nodes;
     let open = |edge: usize| match body.damage.as_ref().map(|zone| &zone.region) {
         Some(Region::Edges(marked)) => marked.get(edge).is_some_and(|&marked| marked),
         _ => true,
     };
-    let armed: Vec<[u32; 2]> = (0..edges.len()).filter(|&edge| open(edge)).map(|edge| edges[edge]).collect();
+    let mut armed: Vec<[u32; 2]> = Vec::new();
+    body.edges().for_each(|edge, ends, _| armed.extend(open(edge as usize).then_some(ends)));
     let every = armed.len().div_ceil(LOOKED_AT).max(1);
     let direction = |[i, j]: &[u32; 2]| (nodes[*j as usize] - nodes[*i as usize]).normalize();
     let all: Vec<Vec3> = armed.iter().step_by(every).map(direction).collect();

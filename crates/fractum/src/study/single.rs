@@ -160,11 +160,11 @@ fn size(scene: &Scene) -> f64 {
     let solid = &scene.solid;
     let (mut length, mut count) = (0.0, 0usize);
     for body in (0..solid.body_count()).map(|body| solid.body(body)) {
-        for [i, j] in body.edges().nodes {
-            let [a, b]: [Vec3; 2] = [i, j].map(|node| solid.reference[node as usize]);
+        body.edges().for_each(|_, ends, _| {
+            let [a, b]: [Vec3; 2] = ends.map(|node| solid.reference[node as usize]);
             length += (b - a).norm();
             count += 1;
-        }
+        });
     }
     if count == 0 {
         let radius = &scene.bonded.particles.radius;

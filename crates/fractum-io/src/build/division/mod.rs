@@ -3,7 +3,7 @@
 mod beside;
 mod probed;
 
-use fractum_fem::{BodyShare, DividedBoundary, Formulation, KnownAround, ReadBody, deal, divided_boundary};
+use fractum_fem::{BodyShare, DividedBoundary, Formulation, Held, KnownAround, ReadBody, deal, divided_boundary};
 use fractum_mesh::{Group, Mesh};
 use fractum_parallel::Exchange;
 
@@ -33,13 +33,17 @@ pub fn cannot_divide(case: &Case) -> Option<String> {
         () if stage.flows.heat.is_some() => Some("heat"),
         () => None,
     };
-    let all_break = || solids(case).all(|(_, solid)| solid.damage).then(|| "damage of every body".to_owned());
+    let all_whole = || {
+        let of = |(name, solid)| Some(format!("{} of body \"{name}\"", whole_for(case, solid)?));
+        let reasons: Option<Vec<String>> = solids(case).map(of).collect();
+        reasons.map(|reasons| reasons.join(", "))
+    };
     let no_solid = solids(case).next().is_none().then(|| "bodies of which none is a solid".to_owned());
     body.map(|body| format!("body \"{}\", which replaces a part of a solid", body.name.value))
         .or(no_solid)
         .or_else(|| stages().find_map(of_stage).map(str::to_owned))
         .or_else(|| case.in_situ.as_ref().map(|_| "stress in situ".to_owned()))
-        .or_else(all_break)
+        .or_else(all_whole)
 }
 
 /// Solid bodies of a case, with their names.
@@ -50,9 +54,34 @@ fn solids(case: &Case) -> impl Iterator<Item = (&str, &SolidBody)> {
     })
 }
 
-/// The bodies of a case that every process has whole: those that may break.
-pub fn whole_bodies(case: &Case) -> Vec<&str> {
-    solids(case).filter(|(_, solid)| solid.damage).map(|(name, _)| name).collect()
+/// What every process has of the bodies that may break, in words.
+pub fn held_bodies(case: &Case) -> Vec<String> {
+    let note = |(name, solid): (&str, &SolidBody)| match (held(case, solid), whole_for(case, solid)) {
+        (Held::Part, _) => None,
+        (_, None) => Some(format!("every process has all elements of body \"{name}\", because of damage")),
+        (_, Some(reason)) => Some(format!("every process has all of body \"{name}\", because of {reason}")),
+    };
+    solids(case).filter_map(note).collect()
+}
+
+/// What every process has of a body.
+fn held(case: &Case, solid: &SolidBody) -> Held {
+    match whole_for(case, solid) {
+        Some(_) => Held::Whole,
+        None if solid.damage => Held::Elements,
+        None => Held::Part,
+    }
+}
+
+/// Why every process has all cells of a body, in words; none where it has its own alone.
+fn whole_for(case: &Case, solid: &SolidBody) -> Option<&'static str> {
+    let damage = case.materials[solid.material].damage.as_ref().filter(|_| solid.damage)?;
+    match () {
+        () if !solid.is_smoothed() => Some("damage in the standard formulation"),
+        () if damage.value.regularisation.is_some() => Some("a phase field"),
+        () if solid.damage_where.is_some() => Some("damage_where"),
+        () => None,
+    }
 }
 
 /// Deals the tetrahedra that all processes have read out to those whose cells they are part of. All processes must call it.
@@ -106,7 +135,7 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
             formulation: formulation(body),
             elements,
             tags,
-            is_whole: body.damage,
+            held: held(case, body),
         })
         .collect();
     // Where two bodies meet too: facets of each by itself are looked for.

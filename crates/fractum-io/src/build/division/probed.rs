@@ -71,7 +71,7 @@ impl NamedElements {
     /// Names those that this process has.
     pub(super) fn put(&self, mesh: &mut Mesh, bodies: &[usize], shares: &[BodyShare]) {
         for &(group, body, number) in &self.elements {
-            if let Ok(place) = shares[body].numbers.binary_search(&number) {
+            if let Some(place) = shares[body].place(number) {
                 let element = mesh.groups[bodies[body]].tetrahedra[place];
                 mesh.groups[group].tetrahedra.push(element);
             }

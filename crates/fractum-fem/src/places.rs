@@ -1,0 +1,61 @@
+//! Where the cells of a body are kept.
+
+use crate::divided::{ALONE, ELSEWHERE};
+
+/// Block and cell of each cell of a body (element, or edge if smoothed); for what this rank does not have [`ELSEWHERE`] and a place among the
+/// values of others, or [`ALONE`] and its own number.
+#[derive(Clone, Debug)]
+pub(crate) enum Places {
+    /// Of every cell.
+    All(Vec<(u32, u32)>),
+    /// Of the cells of this rank, ascending; it finds the values of all others by itself.
+    Own(Vec<(u32, (u32, u32))>),
+}
+
+impl Places {
+    /// Those of cells of which none is kept yet.
+    pub(crate) fn of_cells(count: usize) -> Self {
+        Places::All(vec![(ELSEWHERE, 0); count])
+    }
+
+    pub(crate) fn of(&self, cell: u32) -> (u32, u32) {
+        match self {
+            Places::All(all) => all[cell as usize],
+            Places::Own(own) => own.binary_search_by_key(&cell, |(own, _)| *own).map_or((ALONE, cell), |at| own[at].1),
+        }
+    }
+
+    /// The same where this rank has it, or another block of which it knows.
+    pub(crate) fn kept(&self, cell: u32) -> Option<(u32, u32)> {
+        Some(self.of(cell)).filter(|at| at.0 < ALONE)
+    }
+
+    /// Those of this rank, where it knows no others.
+    pub(crate) fn own(&self) -> &[(u32, (u32, u32))] {
+        if let Places::Own(own) = self { own } else { &[] }
+    }
+
+    pub(crate) fn put(&mut self, cell: u32, at: (u32, u32)) {
+        match self {
+            Places::All(all) => all[cell as usize] = at,
+            Places::Own(own) => match own.binary_search_by_key(&cell, |(own, _)| *own) {
+                Ok(place) => own[place].1 = at,
+                Err(place) => own.insert(place, (cell, at)),
+            },
+        }
+    }
+
+    /// Of every cell; none where this rank knows those of its own alone.
+    pub(crate) fn all(&self) -> &[(u32, u32)] {
+        if let Places::All(all) = self { all } else { &[] }
+    }
+
+    /// Counts blocks from `begin` on.
+    pub(crate) fn move_blocks(&mut self, begin: u32) {
+        let shift = |(block, _): &mut (u32, u32)| *block += if *block < ALONE { begin } else { 0 };
+        match self {
+            Places::All(all) => all.iter_mut().for_each(shift),
+            Places::Own(own) => own.iter_mut().map(|(_, at)| at).for_each(shift),
+        }
+    }
+}
