@@ -25,7 +25,7 @@ impl BodyModel {
     ///
     /// - `chosen`: which cells are made
     pub(crate) fn new(
-        body: Body,
+        mut body: Body,
         index: usize,
         nodes: &[Vec3],
         volumes: &[f64],
@@ -37,7 +37,7 @@ impl BodyModel {
         let geometry = Geometry { body: &body, nodes };
         let known = chosen.share.filter(|share| share.held == Held::Elements);
         let edges = (smoothed || body.damage.is_some()).then(|| match known {
-            Some(share) => BodyEdges::sought(&body, nodes.len(), share.told().collect()),
+            Some(share) => BodyEdges::sought(&body, nodes.len(), share.own_cells()),
             None => body.edges(),
         });
         let edge_count = edges.as_ref().map_or(0, BodyEdges::len);
@@ -46,7 +46,9 @@ impl BodyModel {
         let bundles_of_share = chosen.share.map(|share| of_body.blocks_of(share));
         let own = bundles_of_share.as_ref().filter(|_| known.is_some()).map(|bundles| items_of(bundles));
         let threshold = match (&body.damage, &edges) {
-            (Some(zone), Some(edges)) => Some(Threshold::new(&body, zone, edges, nodes, volumes, own.clone())?),
+            (Some(zone), Some(edges)) => {
+                Some(Threshold::new(&body, zone, edges, nodes, volumes, own.as_deref().zip(chosen.exchange))?)
+            }
             _ => None,
         };
         let breaks = |edge| threshold.as_ref().is_some_and(|t: &Threshold| t.strength(edge).is_finite());
@@ -82,6 +84,10 @@ impl BodyModel {
             }
             _ => None,
         };
+        if let Some(zone) = body.damage.as_mut().filter(|_| known.is_some()) {
+            // Every edge of this rank has its strength.
+            zone.strength_factor = Vec::new();
+        }
         let alive = vec![true; body.elements.len()];
         let model = BodyModel {
             body,

@@ -1,6 +1,8 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
+use fractum_parallel::Exchange;
+
 use crate::body::Body;
 use crate::damage::Softens;
 use crate::divided::{BodyShare, DividedBody};
@@ -47,10 +49,12 @@ pub(crate) struct KnownBody {
 }
 
 /// Which cells of a body are made.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Chosen<'a> {
     /// Elements that take shorter steps; empty where all take the same.
     pub(crate) fine: &'a [bool],
     /// The cells of this rank; none where all are made.
     pub(crate) share: Option<&'a BodyShare>,
+    /// The exchange of the ranks that have the others.
+    pub(crate) exchange: Option<&'a dyn Exchange>,
 }

@@ -54,7 +54,8 @@ impl Solid {
         let (mut models, mut made) = (Vec::new(), Vec::new());
         let mut done = Ok(());
         for (index, ((body, share), volumes)) in bodies.into_iter().zip(shares).zip(&volumes).enumerate() {
-            let chosen = Chosen { fine: &[], share: Some(share).filter(|share| !share.is_whole()) };
+            let chosen =
+                Chosen { fine: &[], share: Some(share).filter(|share| !share.is_whole()), exchange: Some(&*exchange) };
             match BodyModel::new(body, index, &nodes, volumes, chosen, 0) {
                 Ok((mut model, blocks)) => {
                     model.divide(&*exchange, share, volumes, nodes.len());

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use fractum_math::{Ragged, Vec3};
 use fractum_mesh::topology::{TETRAHEDRON_EDGES, edges_of_tetrahedra, edges_of_triangles};
+use rayon::prelude::*;
 
 use crate::body::{Body, ElementKind};
 
@@ -35,21 +36,32 @@ struct Sought {
     around: Ragged,
     /// First edge of which every node is the lower one, and the end.
     first: Vec<u32>,
-    /// Elements that are asked for often, ascending, and their edges.
+    /// Edges that are asked for often, ascending, and their nodes.
     often: Vec<u32>,
-    of_often: Vec<[u32; 6]>,
+    of_often: Vec<[u32; 2]>,
 }
 
 impl Body {
     /// The edges of the body.
-    pub fn edges(&self) -> BodyEdges {
+    pub(crate) fn edges(&self) -> BodyEdges {
         BodyEdges::tables(self)
+    }
+
+    /// Sees the nodes of every edge, in the order that [`crate::DamageZone`] uses, ascending.
+    ///
+    /// - `nodes`: how many there are
+    pub fn each_edge(&self, nodes: usize, mut see: impl FnMut([u32; 2])) {
+        let edges = match self.shape {
+            ElementKind::T4 => BodyEdges::sought(self, nodes, Vec::new()),
+            ElementKind::T3 => BodyEdges::tables(self),
+        };
+        edges.for_each(|_, ends, _| see(ends));
     }
 
     /// Midpoints of the edges, in the order that [`crate::DamageZone`] uses [m].
     pub fn edge_midpoints(&self, nodes: &[Vec3]) -> Vec<Vec3> {
         let mut midpoints = Vec::new();
-        self.edges().for_each(|_, [i, j], _| midpoints.push((nodes[i as usize] + nodes[j as usize]) * 0.5));
+        self.each_edge(nodes.len(), |[i, j]| midpoints.push((nodes[i as usize] + nodes[j as usize]) * 0.5));
         midpoints
     }
 }
@@ -75,17 +87,26 @@ impl BodyEdges {
 
     /// Those of a body of tetrahedra, sought whenever one is asked for.
     ///
-    /// - `nodes`: how many there are; `often`: elements that are asked for often, ascending
-    pub(crate) fn sought(body: &Body, nodes: usize, often: Vec<u32>) -> Self {
+    /// - `nodes`: how many there are; `often`: nodes of edges that are asked for often, ascending
+    pub(crate) fn sought(body: &Body, nodes: usize, often: Vec<[u32; 2]>) -> Self {
         let elements = Arc::clone(&body.elements);
         let around = Ragged::inverse(nodes, elements.iter().map(|nodes| &nodes[..]));
-        let mut sought = Sought { elements, around, first: vec![0], often: Vec::new(), of_often: Vec::new() };
-        for node in 0..nodes as u32 {
-            let count = sought.above(node).len() as u32;
-            sought.first.push(sought.first[node as usize] + count);
-        }
-        sought.of_often = often.iter().map(|&element| sought.of_element(element)).collect();
-        sought.often = often;
+        let mut sought = Sought { elements, around, first: Vec::new(), often: Vec::new(), of_often: Vec::new() };
+        let mut first: Vec<u32> =
+            (0..nodes as u32).into_par_iter().map(|node| sought.above(node).len() as u32).collect();
+        first.push(0);
+        first.iter_mut().fold(0, |sum, count| sum + std::mem::replace(count, sum));
+        sought.first = first;
+        let of_node: Vec<&[[u32; 2]]> = often.chunk_by(|a, b| a[0] == b[0]).collect();
+        let numbers = |of_node: &&[[u32; 2]]| {
+            let above = sought.above(of_node[0][0]);
+            of_node
+                .iter()
+                .map(|&nodes| sought.number(nodes, &above).expect("an edge of the body"))
+                .collect::<Vec<u32>>()
+        };
+        sought.often = of_node.par_iter().flat_map_iter(numbers).collect();
+        sought.of_often = often;
         BodyEdges(Kept::Sought(sought))
     }
 
@@ -118,10 +139,7 @@ impl BodyEdges {
     pub fn of_element(&self, element: u32) -> [u32; 6] {
         match &self.0 {
             Kept::Tables(tables) => tables.of_element[element as usize],
-            Kept::Sought(sought) => match sought.often.binary_search(&element) {
-                Ok(place) => sought.of_often[place],
-                Err(_) => sought.of_element(element),
-            },
+            Kept::Sought(sought) => sought.of_element(element),
         }
     }
 
@@ -166,24 +184,33 @@ impl Sought {
         above
     }
 
-    fn find(&self, [a, b]: [u32; 2]) -> Option<u32> {
-        let place = self.above(a).binary_search(&b).ok()?;
-        Some(self.first[a as usize] + place as u32)
+    /// Number of an edge; none where the nodes have no element in common.
+    ///
+    /// - `above`: nodes above the lower of the two that elements join to it, ascending
+    fn number(&self, [a, b]: [u32; 2], above: &[u32]) -> Option<u32> {
+        Some(self.first[a as usize] + above.binary_search(&b).ok()? as u32)
+    }
+
+    fn find(&self, nodes: [u32; 2]) -> Option<u32> {
+        match self.of_often.binary_search(&nodes) {
+            Ok(place) => Some(self.often[place]),
+            Err(_) => self.number(nodes, &self.above(nodes[0])),
+        }
     }
 
     fn nodes(&self, edge: u32) -> [u32; 2] {
+        if let Ok(place) = self.often.binary_search(&edge) {
+            return self.of_often[place];
+        }
         let node = self.first.partition_point(|&first| first <= edge) - 1;
         [node as u32, self.above(node as u32)[(edge - self.first[node]) as usize]]
     }
 
     fn of_element(&self, element: u32) -> [u32; 6] {
         let nodes = self.elements[element as usize];
-        // Of four nodes three are the lower ones of edges.
-        let above = nodes.map(|node| if nodes.iter().max() == Some(&node) { Vec::new() } else { self.above(node) });
-        TETRAHEDRON_EDGES.map(|[i, j]| {
-            let (lower, upper) = if nodes[i] < nodes[j] { (i, j) } else { (j, i) };
-            let place = above[lower].binary_search(&nodes[upper]).expect("an element joins its nodes");
-            self.first[nodes[lower] as usize] + place as u32
+        TETRAHEDRON_EDGES.map(|ends| {
+            let [a, b] = ends.map(|end| nodes[end]);
+            self.find([a.min(b), a.max(b)]).expect("an element joins its nodes")
         })
     }
 
@@ -220,7 +247,8 @@ mod tests {
         let elastic = Elastic { density: 1.0, young_modulus: 1.0, poisson_ratio: 0.0 };
         let body = Body::new("box", ElementKind::T4, mesh.tetrahedra, elastic);
         let tables = BodyEdges::tables(&body);
-        let sought = BodyEdges::sought(&body, mesh.nodes.len() + 2, vec![3, 17]);
+        let often = [5, 6, 40].map(|edge| tables.nodes(edge)).to_vec();
+        let sought = BodyEdges::sought(&body, mesh.nodes.len() + 2, often);
         assert_eq!(tables.len(), sought.len());
         let mut seen = Vec::new();
         sought.for_each(|edge, nodes, around| seen.push((edge, nodes, around.to_vec())));

@@ -90,7 +90,7 @@ impl Solid {
                     mass[node as usize] += body.elastic.density * volume / corners as f64;
                 }
             }
-            let chosen = Chosen { fine, share: None };
+            let chosen = Chosen { fine, ..Chosen::default() };
             let (model, mut own) = BodyModel::new(body, index, &nodes, &volumes, chosen, blocks.len())?;
             blocks.append(&mut own);
             models.push(model);

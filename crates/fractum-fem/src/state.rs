@@ -4,7 +4,7 @@ use fractum_math::{Sym3, Vec3};
 use fractum_parallel::gather;
 use serde::{Deserialize, Serialize};
 
-use crate::damage::EdgeDamage;
+use crate::damage::{EdgeDamage, EdgeField};
 use crate::evaluate::{Block, BlockLaw};
 use crate::solid::Solid;
 
@@ -95,20 +95,31 @@ impl Solid {
         all
     }
 
-    /// Share of its strength that every edge of a body has lost, 0 to 1, in the order of its edges; empty without damage.
+    /// Sees the nodes of every edge of a body with damage that has an element and has lost less than this share of its strength, 0 to 1.
     ///
-    /// This is 1 − χ of the softening curve; damage measures the loss of stiffness and comes close to 1 long before.
-    pub fn lost_strength(&self, body: usize) -> Vec<f64> {
+    /// The share is 1 − χ of the softening curve; damage measures the loss of stiffness and comes close to 1 long before.
+    pub fn each_joined(&self, body: usize, below: f64, mut see: impl FnMut([u32; 2])) {
         let model = &self.bodies[body];
-        let Some(edges) = model.edges.as_ref().filter(|_| model.body.damage.is_some()) else { return Vec::new() };
-        let mut lost = vec![0.0; edges.len()];
-        for (_, field) in self.damaged_fields().filter(|(of, _)| *of == body) {
-            for (at, edge) in field.state.iter().enumerate().filter(|(_, edge)| edge.damage > 0.0) {
-                let left = (1.0 - edge.damage) * edge.kappa / field.strength[at];
-                lost[field.edges[at] as usize] = (1.0 - left).clamp(0.0, 1.0);
+        let Some(edges) = &model.edges else { return };
+        let fields = self.damaged_fields().filter(|(of, _)| *of == body).map(|(_, field)| field);
+        let lost = |field: &EdgeField, at: usize| {
+            let edge = &field.state[at];
+            let left = (1.0 - edge.damage) * edge.kappa / field.strength[at];
+            (1.0 - left).clamp(0.0, 1.0)
+        };
+        let damaged = fields.flat_map(|field| {
+            let damaged = (0..field.state.len()).filter(|&at| field.state[at].damage > 0.0);
+            damaged.map(move |at| (field.edges[at], lost(field, at)))
+        });
+        let mut apart: Vec<u32> = damaged.filter(|(_, lost)| *lost >= below).map(|(edge, _)| edge).collect();
+        apart.sort_unstable();
+        let mut apart = apart.into_iter().peekable();
+        edges.for_each(|edge, nodes, around| {
+            let is_apart = apart.next_if_eq(&edge).is_some() || below <= 0.0;
+            if !is_apart && around.iter().any(|&element| model.alive[element as usize]) {
+                see(nodes);
             }
-        }
-        lost
+        });
     }
 
     pub(crate) fn body_state(&self, body: usize, edges: Vec<EdgeDamage>) -> BodyState {

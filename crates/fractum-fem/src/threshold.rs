@@ -1,5 +1,7 @@
 use fractum_math::Vec3;
+use fractum_parallel::{Exchange, gather};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::body::{Body, DamageZone, ElementKind, Formulation, Region};
 use crate::edges::BodyEdges;
@@ -29,98 +31,49 @@ pub(crate) struct Threshold {
     pub(crate) phase_sizes: Option<[f64; 2]>,
 }
 
-/// An edge that is too long for its fracture energy.
-struct TooLong {
-    nodes: [u32; 2],
-    length: f64,
-    /// Of its length to that at which softening snaps back, which is the last.
-    ratio: f64,
-    limit: f64,
-}
-
 impl Threshold {
     /// Characteristic lengths c · mean (regular edge of the sharing elements), and the guard against snap-back.
     ///
-    /// - `known`: edges that it shall know, ascending; none for all
+    /// - `known`: edges that it shall know, ascending, where several ranks know some each and all call it; none for all
     pub(crate) fn new(
         body: &Body,
         zone: &DamageZone,
         edges: &BodyEdges,
         nodes: &[Vec3],
         volumes: &[f64],
-        known: Option<Vec<u32>>,
+        known: Option<(&[u32], &dyn Exchange)>,
     ) -> Result<Self, SolidError> {
-        let of_edge = |around: &[u32]| characteristic_length(body, around, |element| volumes[element as usize]);
-        // Walking through all edges is not done side by side.
-        let all: Option<Vec<f64>> = known
-            .is_none()
-            .then(|| (0..edges.len() as u32).into_par_iter().map(|e| of_edge(&edges.around(e))).collect());
+        let (known, exchange) = known.unzip();
+        let of_edge = |edge| characteristic_length(body, &edges.around(edge), |element| volumes[element as usize]);
+        let length: Vec<f64> = match known {
+            Some(known) => known.par_iter().map(|&edge| of_edge(edge)).collect(),
+            None => (0..edges.len() as u32).into_par_iter().map(of_edge).collect(),
+        };
         let phase_sizes = zone.regularisation.map(|regularisation| {
             let size = mean_size(body, zone, edges, volumes);
             [regularisation.length.unwrap_or(SIZES_OF_LENGTH * size), size]
         });
         let phase_length = phase_sizes.map(|[length, _]| length);
-        let mut threshold = Threshold {
-            strength: Vec::new(),
-            length: Vec::new(),
-            reduced_edges: 0,
-            largest_length_ratio: 0.0,
-            phase_sizes,
-            known: None,
-        };
-        let mut worst: Option<TooLong> = None;
-        let mut next = known.iter().flatten().peekable();
-        edges.for_each(|edge, ends, around| {
-            let length = all.as_ref().map_or_else(|| of_edge(around), |all| all[edge as usize]);
-            let strength = threshold.arm(body, zone, (edge, ends, phase_length.unwrap_or(length)), &mut worst);
-            if known.is_none() || next.next_if_eq(&&edge).is_some() {
-                threshold.strength.push(strength);
-                threshold.length.push(length);
-            }
-        });
-        drop(next);
-        threshold.known = known;
-        let Some(TooLong { nodes: [i, j], length, limit, .. }) = worst.filter(|_| !zone.reduce_strength_to_fit) else {
-            return Ok(threshold);
-        };
-        let [x, y, z] = ((nodes[i as usize] + nodes[j as usize]) * 0.5).into();
-        let (body, count) = (body.name.clone(), threshold.reduced_edges);
-        Err(match phase_length {
-            Some(length) => SolidError::LengthTooLong { body, x, y, z, length, limit },
-            None => SolidError::ElementTooLarge { body, x, y, z, length, limit, count },
-        })
-    }
-
-    /// Strength of an edge [Pa], lowered to fit its length; infinite where damage may not occur.
-    ///
-    /// - `edge`: with its nodes and the length over which it softens [m]; `worst`: the one that is farthest too long
-    fn arm(
-        &mut self,
-        body: &Body,
-        zone: &DamageZone,
-        (edge, nodes, length): (u32, [u32; 2], f64),
-        worst: &mut Option<TooLong>,
-    ) -> f64 {
-        if matches!(&zone.region, Region::Edges(marked) if !marked[edge as usize]) {
-            return f64::INFINITY;
+        let (mut lengths, mut strength) = (Lengths::default(), Vec::with_capacity(length.len()));
+        for (place, &length) in length.iter().enumerate() {
+            let edge = known.map_or(place as u32, |known| known[place]);
+            strength.push(lengths.arm(body, zone, edge, phase_length.unwrap_or(length)));
         }
-        let strength = zone.law.tensile_strength * zone.strength_factor.get(edge as usize).copied().unwrap_or(1.0);
-        let (modulus, energy) = (body.elastic.young_modulus, zone.law.fracture_energy);
-        let limit = match zone.regularisation {
-            Some(_) => PhaseLaw::largest_length(modulus, energy, strength),
-            None => zone.law.softening.largest_length(modulus, strength, energy),
-        };
-        let ratio = length / limit;
-        self.largest_length_ratio = self.largest_length_ratio.max(ratio);
-        if ratio < 1.0 {
-            return strength;
+        if let Some(exchange) = exchange {
+            lengths = gather(exchange, &lengths).into_iter().fold(Lengths::default(), Lengths::with);
         }
-        self.reduced_edges += 1;
-        if worst.as_ref().is_none_or(|worst| ratio > worst.ratio) {
-            *worst = Some(TooLong { nodes, length, ratio, limit });
+        let Lengths { reduced_edges, largest_ratio, worst } = lengths;
+        if let Some(TooLong { edge, length, limit, .. }) = worst.filter(|_| !zone.reduce_strength_to_fit) {
+            let [i, j] = edges.nodes(edge);
+            let [x, y, z] = ((nodes[i as usize] + nodes[j as usize]) * 0.5).into();
+            let body = body.name.clone();
+            return Err(match phase_length {
+                Some(length) => SolidError::LengthTooLong { body, x, y, z, length, limit },
+                None => SolidError::ElementTooLarge { body, x, y, z, length, limit, count: reduced_edges },
+            });
         }
-        // The limit goes with 1/f_t².
-        strength * (IN_RESERVE / ratio).sqrt()
+        let known = known.map(<[u32]>::to_vec);
+        Ok(Threshold { known, strength, length, reduced_edges, largest_length_ratio: largest_ratio, phase_sizes })
     }
 
     fn place(&self, edge: u32) -> usize {
@@ -135,6 +88,65 @@ impl Threshold {
     /// Characteristic length of an edge [m].
     pub(crate) fn length(&self, edge: u32) -> f64 {
         self.length[self.place(edge)]
+    }
+}
+
+/// How long edges are for their fracture energy.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Lengths {
+    /// Edges whose strength was lowered to fit their length.
+    reduced_edges: usize,
+    /// Largest ratio of a length to the one at which softening snaps back.
+    largest_ratio: f64,
+    /// The edge with that ratio, the first of several, where it is too large.
+    worst: Option<TooLong>,
+}
+
+/// An edge that is too long for its fracture energy.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct TooLong {
+    edge: u32,
+    length: f64,
+    /// Of its length to that at which softening snaps back, which is the last.
+    ratio: f64,
+    limit: f64,
+}
+
+impl Lengths {
+    /// Strength of an edge [Pa], lowered to fit its length; infinite where damage may not occur.
+    ///
+    /// - `length`: over which it softens [m]
+    fn arm(&mut self, body: &Body, zone: &DamageZone, edge: u32, length: f64) -> f64 {
+        if matches!(&zone.region, Region::Edges(marked) if !marked[edge as usize]) {
+            return f64::INFINITY;
+        }
+        let strength = zone.law.tensile_strength * zone.strength_factor.get(edge as usize).copied().unwrap_or(1.0);
+        let (modulus, energy) = (body.elastic.young_modulus, zone.law.fracture_energy);
+        let limit = match zone.regularisation {
+            Some(_) => PhaseLaw::largest_length(modulus, energy, strength),
+            None => zone.law.softening.largest_length(modulus, strength, energy),
+        };
+        let ratio = length / limit;
+        self.largest_ratio = self.largest_ratio.max(ratio);
+        if ratio < 1.0 {
+            return strength;
+        }
+        self.reduced_edges += 1;
+        if self.worst.as_ref().is_none_or(|worst| ratio > worst.ratio) {
+            self.worst = Some(TooLong { edge, length, ratio, limit });
+        }
+        // The limit goes with 1/f_t².
+        strength * (IN_RESERVE / ratio).sqrt()
+    }
+
+    /// The same of other edges too.
+    fn with(self, other: Self) -> Self {
+        let order = |a: &TooLong, b: &TooLong| b.ratio.total_cmp(&a.ratio).then(a.edge.cmp(&b.edge));
+        Lengths {
+            reduced_edges: self.reduced_edges + other.reduced_edges,
+            largest_ratio: self.largest_ratio.max(other.largest_ratio),
+            worst: self.worst.into_iter().chain(other.worst).min_by(order),
+        }
     }
 }
 

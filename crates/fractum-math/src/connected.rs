@@ -9,18 +9,39 @@ use petgraph::unionfind::UnionFind;
 /// # Panics
 /// If a link names something that is not below `count`.
 pub fn connected(count: usize, links: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
-    let mut sets = UnionFind::<u32>::new(count);
-    for [a, b] in links {
-        sets.union(a, b);
+    let mut parts = Connected::new(count);
+    links.into_iter().for_each(|link| parts.join(link));
+    parts.smallest()
+}
+
+/// Parts that grow link by link.
+pub struct Connected(UnionFind<u32>);
+
+impl Connected {
+    /// Each of `0..count` by itself.
+    pub fn new(count: usize) -> Self {
+        Connected(UnionFind::new(count))
     }
-    let mut labels = sets.into_labeling();
-    let mut smallest = vec![u32::MAX; count];
-    for (member, label) in (0..).zip(&mut labels) {
-        let first = &mut smallest[*label as usize];
-        *first = member.min(*first);
-        *label = *first;
+
+    /// Makes one part of those of two members.
+    ///
+    /// # Panics
+    /// If one is not below the count.
+    pub fn join(&mut self, [a, b]: [u32; 2]) {
+        self.0.union(a, b);
     }
-    labels
+
+    /// For each member the smallest member of its part.
+    pub fn smallest(self) -> Vec<u32> {
+        let mut labels = self.0.into_labeling();
+        let mut smallest = vec![u32::MAX; labels.len()];
+        for (member, label) in (0..).zip(&mut labels) {
+            let first = &mut smallest[*label as usize];
+            *first = member.min(*first);
+            *label = *first;
+        }
+        labels
+    }
 }
 
 /// The same with the parts numbered in the order of their first members: the part of each member, and their number.

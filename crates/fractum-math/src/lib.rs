@@ -25,7 +25,7 @@ mod sym3;
 mod widest;
 mod work;
 
-pub use connected::{connected, numbered_parts};
+pub use connected::{Connected, connected, numbered_parts};
 pub use lanczos::largest_eigenvalue;
 pub use lane::Lane;
 pub use negative_part::{by_component, negative_parts};

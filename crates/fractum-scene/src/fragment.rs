@@ -1,7 +1,7 @@
 use std::borrow::Cow;
 
 use fractum_fem::Solid;
-use fractum_math::{Vec3, connected};
+use fractum_math::{Connected, Vec3, connected};
 
 /// A connected piece of a solid or of a bonded body. A fragment has at least two nodes or particles; what is left are
 /// single ones.
@@ -163,25 +163,15 @@ pub(crate) fn parts(solid: &Solid) -> Vec<u32> {
 
 /// The smallest node that edges with some strength left connect each node to.
 fn joined_nodes(solid: &Solid, joined_below: f64) -> Vec<u32> {
-    let mut links = Vec::new();
+    let mut parts = Connected::new(solid.reference.len());
     for body in 0..solid.body_count() {
-        let lost = solid.lost_strength(body);
-        let Some(edges) = solid.body_edges(body).filter(|_| !lost.is_empty()) else {
-            links.extend(element_links(solid, body));
-            continue;
-        };
-        let count = solid.body(body).shape.edge_count();
-        let alive = (0..).zip(solid.alive(body)).filter(|(_, alive)| **alive);
-        // Elements share edges, each of which links once.
-        let mut linked = vec![false; lost.len()];
-        for edge in alive.flat_map(|(element, _)| edges.of_element(element).into_iter().take(count)) {
-            let at = edge as usize;
-            if lost[at] < joined_below && !std::mem::replace(&mut linked[at], true) {
-                links.push(edges.nodes(edge));
-            }
+        if solid.body(body).damage.is_some() {
+            solid.each_joined(body, joined_below, |nodes| parts.join(nodes));
+        } else {
+            element_links(solid, body).for_each(|nodes| parts.join(nodes));
         }
     }
-    connected(solid.reference.len(), links)
+    parts.smallest()
 }
 
 /// Pairs of nodes that live elements join.

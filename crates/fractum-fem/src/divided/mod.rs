@@ -101,9 +101,11 @@ impl BodyShare {
         }
     }
 
-    /// Elements that this rank tells of, ascending.
-    pub(crate) fn told(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..).zip(&self.is_told).filter(|(_, is_told)| **is_told).map(|(element, _)| element)
+    /// Cells of this rank, ascending.
+    pub(crate) fn own_cells(&self) -> Vec<[u32; 2]> {
+        let mut own = self.runs.concat();
+        own.sort_unstable();
+        own
     }
 }
 

@@ -29,7 +29,11 @@ pub(super) fn share(body: &Body, nodes: &[Vec3]) -> f64 {
         _ => true,
     };
     let mut armed: Vec<[u32; 2]> = Vec::new();
-    body.edges().for_each(|edge, ends, _| armed.extend(open(edge as usize).then_some(ends)));
+    let mut edge = 0;
+    body.each_edge(nodes.len(), |ends| {
+        armed.extend(open(edge).then_some(ends));
+        edge += 1;
+    });
     let every = armed.len().div_ceil(LOOKED_AT).max(1);
     let direction = |[i, j]: &[u32; 2]| (nodes[*j as usize] - nodes[*i as usize]).normalize();
     let all: Vec<Vec3> = armed.iter().step_by(every).map(direction).collect();

@@ -160,7 +160,7 @@ fn size(scene: &Scene) -> f64 {
     let solid = &scene.solid;
     let (mut length, mut count) = (0.0, 0usize);
     for body in (0..solid.body_count()).map(|body| solid.body(body)) {
-        body.edges().for_each(|_, ends, _| {
+        body.each_edge(solid.reference.len(), |ends| {
             let [a, b]: [Vec3; 2] = ends.map(|node| solid.reference[node as usize]);
             length += (b - a).norm();
             count += 1;
