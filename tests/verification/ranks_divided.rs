@@ -52,7 +52,7 @@ fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> (Ve
                 }
                 Some(_) => Held::Whole,
             };
-            ReadBody { formulation: body.formulation, elements, tags, held }
+            ReadBody { formulation: body.formulation, elements, tags, held, sound: &[] }
         })
         .collect();
     let shares = fractum_fem::deal(&**exchange, nodes, &parts, KnownAround::default());

@@ -13,8 +13,8 @@ use crate::body::{Body, ElementKind, Formulation};
 use crate::body_model::{BodyModel, Chosen};
 use crate::cell::Geometry;
 use crate::divided::{
-    ALONE, BlockOrder, BodyShare, ConnectedPieces, DividedBody, ELSEWHERE, EdgeValue, EdgeValues, GivenToNodes, Held,
-    RanksOfNodes, SharedNodes, connected_pieces, nodal_sums,
+    ALONE, BlockOrder, BodyShare, Classes, ConnectedPieces, DividedBody, ELSEWHERE, EdgeValue, EdgeValues,
+    GivenToNodes, Held, RanksOfNodes, SharedNodes, connected_pieces, nodal_sums,
 };
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
@@ -66,19 +66,23 @@ impl Solid {
             }
         }
         together(&*exchange, done)?;
-        let cells: Vec<Vec<usize>> =
-            made.iter().map(|blocks: &Vec<Block>| blocks.iter().map(|block| block.items.len()).collect()).collect();
-        let order = BlockOrder::new(&*exchange, shares, &cells);
-        for (body, model) in models.iter_mut().enumerate() {
-            let begin = order.begin_of(body, exchange.rank(), &shares[body]) as u32;
-            model.location.move_blocks(begin);
+        let cells = |of: &Vec<Block>| of.iter().map(|block| block.items.len()).collect::<Vec<usize>>();
+        let made: Vec<Classes<Block>> =
+            models.iter().zip(made).map(|(model, blocks)| in_classes(blocks, model.known.is_some())).collect();
+        let order =
+            BlockOrder::new(&*exchange, shares, &made.iter().map(|of| of.each_ref().map(cells)).collect::<Vec<_>>());
+        let begin: Vec<[usize; 2]> =
+            (0..models.len()).map(|body| order.begin_of(body, exchange.rank(), &shares[body])).collect();
+        for ((model, [begin, of_others]), [made, _]) in models.iter_mut().zip(&begin).zip(&made) {
+            let first = made.len();
+            let number = |block: usize| if block < first { begin + block } else { of_others + block - first };
+            model.location.move_blocks(|block| number(block as usize) as u32);
         }
         let own = order.first[exchange.rank()]..order.first[exchange.rank() + 1];
-        let made = made.into_iter().enumerate().flat_map(|(body, blocks)| {
-            let begin = order.begin_of(body, exchange.rank(), &shares[body]);
-            (begin..).zip(blocks)
-        });
-        let made: Vec<(usize, Block)> = made.collect();
+        let numbered = |(blocks, begin): (Classes<Block>, [usize; 2])| {
+            blocks.into_iter().zip(begin).flat_map(|(blocks, begin)| (begin..).zip(blocks))
+        };
+        let made: Vec<(usize, Block)> = made.into_iter().zip(begin).flat_map(numbered).collect();
         let of_own = made.iter().filter(|(index, _)| own.contains(index));
         let mut of_own: Vec<u32> = of_own.flat_map(|(_, block)| &block.cells.nodes).copied().collect();
         of_own.sort_unstable();
@@ -309,6 +313,13 @@ impl BodyModel {
         let (numbers, count) = (share.numbers.clone(), share.count);
         self.divided = Some(Box::new(DividedBody { numbers, count, volume, pieces, values, skin: Vec::new() }));
     }
+}
+
+/// Blocks of a body that may be damaged, and the others; all as one class unless this rank has its own alone.
+fn in_classes(mut blocks: Vec<Block>, has_own_alone: bool) -> Classes<Block> {
+    let may_break = blocks.iter().take_while(|block| block.edge_field().is_some()).count();
+    let sound = if has_own_alone { blocks.split_off(may_break) } else { Vec::new() };
+    [blocks, sound]
 }
 
 /// The blocks of all ranks among those that this one has made: its own, and those of whole bodies.

@@ -50,12 +50,16 @@ impl Places {
         if let Places::All(all) = self { all } else { &[] }
     }
 
-    /// Counts blocks from `begin` on.
-    pub(crate) fn move_blocks(&mut self, begin: u32) {
-        let shift = |(block, _): &mut (u32, u32)| *block += if *block < ALONE { begin } else { 0 };
+    /// Gives blocks the numbers that they have among those of all.
+    pub(crate) fn move_blocks(&mut self, number: impl Fn(u32) -> u32) {
+        let renumber = |(block, _): &mut (u32, u32)| {
+            if *block < ALONE {
+                *block = number(*block);
+            }
+        };
         match self {
-            Places::All(all) => all.iter_mut().for_each(shift),
-            Places::Own(own) => own.iter_mut().map(|(_, at)| at).for_each(shift),
+            Places::All(all) => all.iter_mut().for_each(renumber),
+            Places::Own(own) => own.iter_mut().map(|(_, at)| at).for_each(renumber),
         }
     }
 }

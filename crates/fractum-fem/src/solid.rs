@@ -5,7 +5,7 @@ use fractum_parallel::Exchange;
 use rayon::prelude::*;
 
 use crate::block::NodeSlots;
-use crate::body::{Body, Formulation};
+use crate::body::{Body, Formulation, Region};
 pub(crate) use crate::body_model::BodyModel;
 use crate::body_model::Chosen;
 use crate::cell::Geometry;
@@ -300,8 +300,13 @@ impl Solid {
         let (Some(edges), Some(_)) = (&model.edges, &model.known) else {
             return self.edge(body, edge).map(|(field, index)| field.length[index]);
         };
-        // All of its edges may be.
-        Some(characteristic_length(&model.body, &edges.around(edge), |element| self.element_volume(body, element)))
+        let may_break = match model.body.damage.as_ref().map(|zone| &zone.region) {
+            Some(Region::Edges(marked)) => marked[edge as usize],
+            _ => true,
+        };
+        may_break.then(|| {
+            characteristic_length(&model.body, &edges.around(edge), |element| self.element_volume(body, element))
+        })
     }
 
     /// Number of bodies.

@@ -73,11 +73,11 @@ impl Solid {
         for begin in (0..edges.len()).step_by(TOLD_AT_ONCE) {
             let at = |edge: usize| own.partition_point(|(own, _)| (*own as usize) < edge);
             let history = |&(edge, (block, cell)): &(u32, (u32, u32))| {
-                let field = self.blocks[block as usize].edge_field()?;
-                Some((edge, field.history(cell as usize)))
+                let field = self.blocks[block as usize].edge_field();
+                let unbroken = EdgeDamage::intact(f64::INFINITY);
+                (edge, field.map_or(unbroken, |field| field.history(cell as usize)))
             };
-            let mine: Vec<(u32, EdgeDamage)> =
-                own[at(begin)..at(begin + TOLD_AT_ONCE)].iter().filter_map(history).collect();
+            let mine: Vec<(u32, EdgeDamage)> = own[at(begin)..at(begin + TOLD_AT_ONCE)].iter().map(history).collect();
             let mut all = gather(&*part.exchange(), &mine).concat();
             all.sort_unstable_by_key(|(edge, _)| *edge);
             all.iter().for_each(|(_, history)| see(history));

@@ -175,6 +175,22 @@ fn elements(arrays: &Arrays) -> Vec<(Vec<[u64; 3]>, u64, Vec<u64>)> {
 }
 
 #[test]
+fn one_rank_reads_a_mesh_in_one_file_and_deals_it_out() {
+    let case = BLOCK.replace("bar.msh", "whole.msh");
+    let place = workplace(&case.replace("parts = 3", "parts = 1"));
+    fs::write(place.path("whole.toml"), case.replace("parts = 3\n", "")).unwrap();
+    let alone = run(&place.path("whole.toml"), &options(&place, "alone")).unwrap().summary;
+    for ranks in [1, 3] {
+        let folder = format!("of-{ranks}");
+        for hash in on_ranks(&place, ranks, &options(&place, &folder)) {
+            assert_eq!(hash.unwrap(), alone.hashes.state_hash, "{ranks} ranks");
+        }
+    }
+    let log = fs::read_to_string(place.path("of-3/run.log")).unwrap();
+    assert!(log.contains("of the 6144 tetrahedra of the mesh\n"), "{log}");
+}
+
+#[test]
 fn a_state_of_parts_is_taken_up_by_any_number_of_ranks() {
     let place = workplace(BLOCK);
     let case = place.path("case.toml");
@@ -295,7 +311,8 @@ fn stresses_are_measured_in_divided_bodies_too() {
 fn where_all_may_break_every_rank_has_its_cells_alone() {
     let scatter = "60 J/m^2\"\nscatter = { distribution = \"weibull\", modulus = 8, seed = 3 }\n";
     let case = breaking().replace("60 J/m^2\"\n", scatter);
-    let place = workplace(&case.replace("material = \"rock\"\nformulation = \"standard\"", "material = \"weak\""));
+    let partly = "material = \"weak\"\ndamage_where = \"z < 0.3 m\"";
+    let place = workplace(&case.replace("material = \"rock\"\nformulation = \"standard\"", partly));
     let alone = run(&place.path("case.toml"), &options(&place, "alone")).unwrap().summary;
     assert!(alone.counts.removed_elements > 20, "{:?}", alone.counts);
     let read = |folder: &str, file: &str| fs::read_to_string(place.path(folder).join(file)).unwrap();

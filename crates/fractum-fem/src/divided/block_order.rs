@@ -1,4 +1,5 @@
-//! Whose block is which, and how they are numbered: body by body, of each those of the first rank before those of the next.
+//! Whose block is which, and how they are numbered: body by body, of each those that may be damaged before the others, and of either those of the
+//! first rank before those of the next.
 
 use std::ops::Range;
 
@@ -13,9 +14,12 @@ pub(crate) struct BlockOrder {
     pub(crate) first: Vec<usize>,
     /// Those of the bodies that every rank has whole.
     pub(crate) whole: Vec<Range<usize>>,
-    /// Blocks of each body that each rank evaluates; empty where every rank has all bodies whole.
+    /// Blocks of each class that each rank evaluates, two classes for a body; empty where every rank has all bodies whole.
     counts: Vec<Vec<usize>>,
 }
+
+/// Blocks of a body in its two classes: those that may be damaged, or all where no rank has no more cells than its own, and the others.
+pub(crate) type Classes<T> = [Vec<T>; 2];
 
 impl BlockOrder {
     /// That of ranks that have all bodies whole.
@@ -29,32 +33,34 @@ impl BlockOrder {
     /// All ranks must call it.
     ///
     /// - `made`: cells of the blocks of each body, of those of this rank, or of all where it is whole
-    pub(crate) fn new(exchange: &dyn Exchange, shares: &[BodyShare], made: &[Vec<usize>]) -> Self {
-        let own: Vec<usize> = made.iter().map(Vec::len).collect();
+    pub(crate) fn new(exchange: &dyn Exchange, shares: &[BodyShare], made: &[Classes<usize>]) -> Self {
+        let own: Vec<usize> = made.as_flattened().iter().map(Vec::len).collect();
         let of_ranks = gather(exchange, &own);
-        let of_body = |(body, share): (usize, &BodyShare)| match share.is_whole() {
-            true => dealt(&share.cells, &made[body]),
-            false => of_ranks.iter().map(|counts| counts[body]).collect(),
+        let of_class = |(class, made): (usize, &Vec<usize>)| match &shares[class / 2] {
+            share if share.is_whole() => dealt(&share.cells, made),
+            _ => of_ranks.iter().map(|counts| counts[class]).collect(),
         };
-        let counts: Vec<Vec<usize>> = shares.iter().enumerate().map(of_body).collect();
+        let counts: Vec<Vec<usize>> = made.as_flattened().iter().enumerate().map(of_class).collect();
         let of_rank = |rank: usize| counts.iter().map(|counts| counts[rank]).sum::<usize>();
         let mut first = vec![0];
         (0..exchange.size()).for_each(|rank| first.push(first[rank] + of_rank(rank)));
         let mut order = BlockOrder { first, whole: Vec::new(), counts };
         let whole = shares.iter().enumerate().filter(|(_, share)| share.is_whole());
-        order.whole = whole.map(|(body, _)| order.begin(body)..order.begin(body + 1)).collect();
+        order.whole = whole.map(|(body, _)| order.begin(2 * body)..order.begin(2 * body + 2)).collect();
         order
     }
 
-    /// First block of a body.
-    fn begin(&self, body: usize) -> usize {
-        self.counts[..body].iter().flatten().sum()
+    /// First block of a class.
+    fn begin(&self, class: usize) -> usize {
+        self.counts[..class].iter().flatten().sum()
     }
 
-    /// First block of a body that a rank has: its own, or the first of all where it is whole.
-    pub(crate) fn begin_of(&self, body: usize, rank: usize, share: &BodyShare) -> usize {
-        let before = if share.is_whole() { 0 } else { self.counts[body][..rank].iter().sum() };
-        self.begin(body) + before
+    /// First block of each class of a body that a rank has: its own, or the first of all where it is whole.
+    pub(crate) fn begin_of(&self, body: usize, rank: usize, share: &BodyShare) -> [usize; 2] {
+        [2 * body, 2 * body + 1].map(|class| {
+            let before = if share.is_whole() { 0 } else { self.counts[class][..rank].iter().sum() };
+            self.begin(class) + before
+        })
     }
 }
 

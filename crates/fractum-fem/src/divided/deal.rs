@@ -35,7 +35,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
         .map(|(index, curve)| Cells { body: &bodies[index], index, first: first[index], curve, nodes })
         .collect();
     let named: Vec<Key> = cells.par_iter().flat_map_iter(|cells| cells.keys()).collect();
-    let order = Order::new(exchange, named, bodies.len());
+    let order = Order::new(exchange, named, 2 * bodies.len());
     let mut is_near = nodes_of_whole(exchange, bodies, nodes.len());
     around.touched.iter().chain(around.measured).for_each(|&node| is_near[node as usize] = true);
     let none = || vec![Vec::new(); exchange.size()];
@@ -50,7 +50,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
     let mut own = vec![0; bodies.len()];
     for run in order.runs() {
         let nodes = |key: &Key| [(key[2] >> 32) as u32, key[2] as u32];
-        let body = run[0][0] as usize;
+        let body = run[0][0] as usize / 2;
         own[body] += run.len();
         if bodies[body].held != Held::Whole {
             shares[body].runs.push(run.iter().map(nodes).collect());
@@ -173,7 +173,8 @@ impl Cells<'_> {
         let number = (self.first + element) as u32;
         middles(self.body, element, self.nodes).enumerate().map(move |(at, middle)| {
             let [a, b] = if smoothed { edges[at] } else { [number; 2] };
-            [self.index as u64, self.curve.position(&middle), pair(a.min(b), a.max(b))]
+            let is_sound = self.body.sound.get(element).is_some_and(|sound| sound[at]);
+            [(2 * self.index + usize::from(is_sound)) as u64, self.curve.position(&middle), pair(a.min(b), a.max(b))]
         })
     }
 

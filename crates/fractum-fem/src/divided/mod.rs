@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 
 use fractum_math::Sym3;
 
-pub(crate) use block_order::BlockOrder;
+pub(crate) use block_order::{BlockOrder, Classes};
 pub use boundary::{DividedBoundary, divided_boundary};
 pub use deal::deal;
 pub(crate) use edge_values::EdgeValues;
@@ -41,6 +41,8 @@ pub struct ReadBody<'a> {
     pub tags: &'a [u64],
     /// How much of it every rank has.
     pub held: Held,
+    /// Which edges of each of them cannot be damaged, in the order of [`fractum_mesh::topology::TETRAHEDRON_EDGES`]; empty where all can, or none.
+    pub sound: &'a [[bool; 6]],
 }
 
 /// How much of a body every rank has.
@@ -49,7 +51,7 @@ pub enum Held {
     /// The elements around its cells.
     #[default]
     Part,
-    /// All elements, with its cells of them: those of a body that may break, of smoothed tetrahedra with local damage everywhere.
+    /// All elements, with its cells of them: those of a body that may break, of smoothed tetrahedra with local damage.
     Elements,
     /// All elements and all cells.
     Whole,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::cell::BLOCK_CELLS;
 
-/// A cell in the order of all: its body, its place along the curve, and what decides between cells at the same place (the nodes of an edge, the number of
+/// A cell in the order of all: its class (twice its body, or one more if it cannot be damaged where others can), its place along the curve, and what decides between cells at the same place (the nodes of an edge, the number of
 /// an element).
 pub(super) type Key = [u64; 3];
 
@@ -24,8 +24,8 @@ pub(super) struct Order {
 impl Order {
     /// Puts the cells that all ranks name in order and deals them out, in whole runs of [`BLOCK_CELLS`]. All ranks must call it.
     ///
-    /// - `bodies`: how many there are
-    pub(super) fn new(exchange: &dyn Exchange, mut named: Vec<Key>, bodies: usize) -> Self {
+    /// - `classes`: how many there are
+    pub(super) fn new(exchange: &dyn Exchange, mut named: Vec<Key>, classes: usize) -> Self {
         named.par_sort_unstable();
         named.dedup();
         named.shrink_to_fit();
@@ -38,7 +38,7 @@ impl Order {
         let mut held: Vec<Key> = asked.iter().flat_map(|words| words.as_chunks().0).copied().collect();
         held.par_sort_unstable();
         held.dedup();
-        let ranks_of_held = ranks_of_runs(exchange, &held, bodies);
+        let ranks_of_held = ranks_of_runs(exchange, &held, classes);
         let reply = |words: &Vec<u64>| {
             let rank = |key: &Key| {
                 let index = held.binary_search(key).expect("what is asked for is held");
@@ -65,7 +65,7 @@ impl Order {
 
     /// Cells of this rank in runs that make a block each.
     pub(super) fn runs(&self) -> impl Iterator<Item = &[Key]> {
-        self.own.chunk_by(|a, b| a[0] == b[0]).flat_map(|of_body| of_body.chunks(BLOCK_CELLS))
+        self.own.chunk_by(|a, b| a[0] == b[0]).flat_map(|of_class| of_class.chunks(BLOCK_CELLS))
     }
 }
 
@@ -85,19 +85,19 @@ fn cuts(exchange: &dyn Exchange, named: &[Key]) -> Vec<Key> {
 }
 
 /// The rank of each cell that this one holds: that which holds the first of its run.
-fn ranks_of_runs(exchange: &dyn Exchange, held: &[Key], bodies: usize) -> Vec<u32> {
+fn ranks_of_runs(exchange: &dyn Exchange, held: &[Key], classes: usize) -> Vec<u32> {
     let (me, size) = (exchange.rank(), exchange.size());
-    let mut counts = vec![0.0; bodies];
+    let mut counts = vec![0.0; classes];
     held.iter().for_each(|key| counts[key[0] as usize] += 1.0);
-    let mut all = vec![0.0; bodies * size];
-    exchange.gather(&counts, &vec![bodies; size], &mut all);
+    let mut all = vec![0.0; classes * size];
+    exchange.gather(&counts, &vec![classes; size], &mut all);
     let mut ranks = Vec::with_capacity(held.len());
-    for of_body in held.chunk_by(|a, b| a[0] == b[0]) {
-        let body = of_body[0][0] as usize;
+    for of_class in held.chunk_by(|a, b| a[0] == b[0]) {
+        let class = of_class[0][0] as usize;
         let mut first = vec![0];
-        (0..size).for_each(|rank| first.push(first[rank] + all[rank * bodies + body] as usize));
+        (0..size).for_each(|rank| first.push(first[rank] + all[rank * classes + class] as usize));
         let rank = |index: usize| rank_of(&first[..size], (first[me] + index) / BLOCK_CELLS * BLOCK_CELLS) as u32;
-        ranks.extend((0..of_body.len()).map(rank));
+        ranks.extend((0..of_class.len()).map(rank));
     }
     ranks
 }

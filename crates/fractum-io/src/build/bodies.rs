@@ -208,42 +208,8 @@ impl<'a> Context<'a> {
     }
 
     fn damage_zone(&mut self, part: &Part, body: &fem::Body, damage: &Damage, numbering: &Numbering) -> DamageZone {
-        let varies =
-            part.body.damage_where.is_some() || part.body.strength_factor.is_some() || damage.scatter.is_some();
-        let midpoints = if varies { body.edge_midpoints(&numbering.positions) } else { Vec::new() };
-        let region = match &part.body.damage_where {
-            None => Region::Everywhere,
-            Some(condition) => {
-                let marked: Vec<bool> = midpoints.iter().map(|&p| condition.value.holds_at(p)).collect();
-                if marked.iter().all(|m| !m) {
-                    self.error(
-                        &condition.place,
-                        ": no edge of the body fulfils the condition",
-                        "damage somewhere, or damage = false",
-                    );
-                }
-                Region::Edges(marked)
-            }
-        };
-        let mut strength_factor = Vec::new();
-        if part.body.strength_factor.is_some() || damage.scatter.is_some() {
-            strength_factor = vec![1.0; midpoints.len()];
-        }
-        if let Some(factor) = &part.body.strength_factor {
-            for (value, &p) in strength_factor.iter_mut().zip(&midpoints) {
-                *value = factor.value.at(p);
-                if !(*value > 0.0 && value.is_finite()) {
-                    let found = format!(" is {value} at ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
-                    self.error(&factor.place, found, "a positive factor everywhere");
-                    break;
-                }
-            }
-        }
-        if let Some(scatter) = &damage.scatter {
-            for (edge, (value, &p)) in strength_factor.iter_mut().zip(&midpoints).enumerate() {
-                *value *= scatter_factor(scatter, edge as u64, p);
-            }
-        }
+        let (marked, strength_factor) = self.edges_of(part, body, damage, numbering);
+        let region = if part.body.damage_where.is_some() { Region::Edges(marked) } else { Region::Everywhere };
         // Rock that has failed under pressure goes on bearing it.
         let crushes = damage.law.criterion.kind() != CriterionKind::Rankine && self.case.is_blast();
         let unilateral = damage.unilateral.unwrap_or(crushes && body.formulation == Formulation::Smoothed);
@@ -254,6 +220,45 @@ impl<'a> Context<'a> {
             reduce_strength_to_fit: damage.reduce_strength_to_fit,
             regularisation: damage.regularisation,
         }
+    }
+
+    /// Which edges of a body may be damaged where not all may, and factors on the strength of each where it varies.
+    fn edges_of(
+        &mut self,
+        part: &Part,
+        body: &fem::Body,
+        damage: &Damage,
+        numbering: &Numbering,
+    ) -> (Vec<bool>, Vec<f64>) {
+        let SolidBody { damage_where, strength_factor, .. } = part.body;
+        let (mut marked, mut factors) = (Vec::new(), Vec::new());
+        let varies = strength_factor.is_some() || damage.scatter.is_some();
+        if damage_where.is_none() && !varies {
+            return (marked, factors);
+        }
+        let mut wrong = None;
+        let nodes = &numbering.positions;
+        let mut number = 0;
+        body.each_edge(nodes.len(), |[i, j]| {
+            let middle = (nodes[i as usize] + nodes[j as usize]) * 0.5;
+            marked.extend(damage_where.as_ref().map(|condition| condition.value.holds_at(middle)));
+            let by_place = strength_factor.as_ref().map_or(1.0, |factor| factor.value.at(middle));
+            if !(by_place > 0.0 && by_place.is_finite()) {
+                wrong.get_or_insert((by_place, middle));
+            }
+            let by_chance = damage.scatter.as_ref().map_or(1.0, |scatter| scatter_factor(scatter, number, middle));
+            factors.extend(varies.then_some(by_place * by_chance));
+            number += 1;
+        });
+        if let Some(condition) = damage_where.as_ref().filter(|_| !marked.contains(&true)) {
+            let found = ": no edge of the body fulfils the condition";
+            self.error(&condition.place, found, "damage somewhere, or damage = false");
+        }
+        if let Some(((value, p), factor)) = wrong.zip(strength_factor.as_ref()) {
+            let found = format!(" is {value} at ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
+            self.error(&factor.place, found, "a positive factor everywhere");
+        }
+        (marked, factors)
     }
 
     /// Warns where elements are large for their fracture energy, or strength had to be lowered.

@@ -4,8 +4,11 @@ mod beside;
 mod probed;
 
 use fractum_fem::{BodyShare, DividedBoundary, Formulation, Held, KnownAround, ReadBody, deal, divided_boundary};
+use fractum_math::Vec3;
+use fractum_mesh::topology::TETRAHEDRON_EDGES;
 use fractum_mesh::{Group, Mesh};
 use fractum_parallel::Exchange;
+use rayon::prelude::*;
 
 use super::bodies::Numbering;
 use crate::case::model::{Body, BodyKind, Case, SolidBody};
@@ -79,7 +82,6 @@ fn whole_for(case: &Case, solid: &SolidBody) -> Option<&'static str> {
     match () {
         () if !solid.is_smoothed() => Some("damage in the standard formulation"),
         () if damage.value.regularisation.is_some() => Some("a phase field"),
-        () if solid.damage_where.is_some() => Some("damage_where"),
         () => None,
     }
 }
@@ -129,13 +131,22 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
     let tags_of = |group: &usize| members(group).iter().map(|&e| mesh.tetrahedron_tags[e as usize]).collect::<Vec<_>>();
     let tags: Vec<Vec<u64>> = groups.iter().map(tags_of).collect();
     let formulation = |body: &SolidBody| if body.is_smoothed() { Formulation::Smoothed } else { Formulation::Standard };
-    let read = bodies.iter().zip(&in_scene).zip(&tags);
+    let sound: Vec<Vec<[bool; 6]>> = bodies
+        .iter()
+        .zip(&in_scene)
+        .map(|(body, elements)| match held(case, body) {
+            Held::Elements => sound_edges(body, elements, &numbering.positions),
+            Held::Part | Held::Whole => Vec::new(),
+        })
+        .collect();
+    let read = bodies.iter().zip(&in_scene).zip(&tags).zip(&sound);
     let read: Vec<ReadBody> = read
-        .map(|((body, elements), tags)| ReadBody {
+        .map(|(((body, elements), tags), sound)| ReadBody {
             formulation: formulation(body),
             elements,
             tags,
             held: held(case, body),
+            sound,
         })
         .collect();
     // Where two bodies meet too: facets of each by itself are looked for.
@@ -150,7 +161,7 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
     local.groups.iter_mut().for_each(|group| group.tetrahedra = Vec::new());
     let around = KnownAround { touched: &touched, measured: &measured };
     let mut shares = deal(exchange, &numbering.positions, &read, around);
-    drop((in_scene, tags));
+    drop((in_scene, tags, sound));
     for (&group, share) in groups.iter().zip(&mut shares) {
         let in_mesh = |element: [u32; 4]| element.map(|node| order[node as usize]);
         let elements = std::mem::take(&mut share.elements).into_iter().map(in_mesh);
@@ -161,6 +172,18 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
     }
     named.put(&mut local, &groups, &shares);
     Ok((local, SolidDivision { bodies: shares, boundary, numbering }))
+}
+
+/// Which edges of some elements of a body cannot be damaged where others can; empty where all of them can, or none.
+fn sound_edges(body: &SolidBody, elements: &[[u32; 4]], nodes: &[Vec3]) -> Vec<[bool; 6]> {
+    let Some(condition) = &body.damage_where else { return Vec::new() };
+    let is_sound = |element: &[u32; 4]| {
+        TETRAHEDRON_EDGES.map(|ends| {
+            let [a, b] = ends.map(|end| nodes[element[end] as usize]);
+            !condition.value.holds_at((a + b) * 0.5)
+        })
+    };
+    elements.par_iter().map(is_sound).collect()
 }
 
 /// Adds elements of a group to a mesh, with their tags.

@@ -18,7 +18,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("parameters.NAME", K::AnyQuantity, "", "A quantity, or an expression of parameters above it"),
     key("mesh", K::Table, "", "The mesh; required by bodies of mesh groups"),
     key("mesh.file", K::Text, "required", "Gmsh (.msh), Abaqus (.inp) or VTK (.vtu) file, relative to the case file"),
-    key("mesh.parts", K::Integer, "", "The mesh is in so many files, one for each partition of Gmsh (`Mesh.PartitionSplitMeshFiles`): with file = \"rock.msh\" in rock_1.msh, rock_2.msh and so on. Several processes read some each"),
+    key("mesh.parts", K::Integer, "", "The mesh is in so many files, one for each partition of Gmsh (`Mesh.PartitionSplitMeshFiles`): with file = \"rock.msh\" in rock_1.msh, rock_2.msh and so on. Several processes read some each; with parts = 1 one of them reads the file itself, and deals it out"),
     key("mesh.unit", K::Unit(Some(D::LENGTH)), "\"m\"", "Unit of the mesh's coordinates"),
     key("materials", K::NamedTables, "", "Materials by name"),
     key("materials.NAME", K::Table, "", "A material"),

@@ -120,8 +120,12 @@ impl MeshSource {
     }
 }
 
-/// The files of a mesh in parts, with numbers before the ending: `rock.msh` in two parts is `rock_1.msh` and `rock_2.msh`.
+/// The files of a mesh in parts, with numbers before the ending: `rock.msh` in two parts is `rock_1.msh` and `rock_2.msh`. A single part is the file
+/// itself.
 pub fn part_files(file: &Path, parts: usize) -> Vec<PathBuf> {
+    if parts == 1 {
+        return vec![file.to_owned()];
+    }
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     let ending = file.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
     (1..=parts).map(|part| file.with_file_name(format!("{stem}_{part}{ending}"))).collect()
