@@ -91,3 +91,40 @@ impl EdgeField {
         changed.map(|(place, _)| place)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fractum_math::Sym3;
+
+    use super::*;
+    use crate::body::{Body, ElementKind};
+    use crate::hooke::Hooke;
+    use crate::material::{DamageLaw, Elastic};
+
+    #[test]
+    fn edges_stand_in_the_order_of_their_cells_whenever_they_are_told() {
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let body = Body::new("edge", ElementKind::T4, vec![[0, 1, 2, 3]], elastic);
+        let body = body.smoothed().with_damage(DamageLaw::rankine(3e6, 100.0));
+        let softens = Softens::new(body.damage.as_ref().unwrap(), Hooke::of(&body), elastic.young_modulus);
+        let mut told = ToldEdges::new(Arc::new(softens));
+        let edge = |cell: u32, damage: f64| {
+            let history = EdgeDamage { damage, broken: damage > 0.9, ..EdgeDamage::intact(3e6) };
+            ToldEdge { cell, edge: 100 - cell, history, strength: 3e6, length: 0.01 }
+        };
+        told.put(&edge(7, 0.95));
+        told.field.fresh.push(0);
+        for (cell, damage) in [(2, 0.0), (9, 0.5), (7, 0.99), (2, 0.3)] {
+            told.put(&edge(cell, damage));
+        }
+        assert_eq!(told.field.edges, [98, 93, 91]);
+        assert_eq!(told.field.state.iter().map(|edge| edge.damage).collect::<Vec<_>>(), [0.3, 0.99, 0.5]);
+        assert_eq!([2, 3, 9].map(|cell| told.place(cell)), [Some(0), None, Some(2)]);
+        // What broke is found where it stands now.
+        assert_eq!(told.field.fresh, [1]);
+        assert_eq!(told.field.changed().collect::<Vec<_>>(), [0, 1, 2]);
+        assert!(told.field.is_damaged() && told.field.state[0].strain == Sym3::ZERO);
+        told.forget();
+        assert!(told.field.edges.is_empty() && told.place(7).is_none());
+    }
+}

@@ -13,8 +13,6 @@ pub struct Work {
     pub damping: f64,
     /// Taken by friction.
     pub friction: f64,
-    /// Gone through absorbing boundaries.
-    pub absorbed: f64,
     /// Taken by the link between cells with steps of two sizes.
     pub linked: f64,
 }
@@ -38,7 +36,6 @@ impl AddAssign for Work {
         self.external += other.external;
         self.damping += other.damping;
         self.friction += other.friction;
-        self.absorbed += other.absorbed;
         self.linked += other.linked;
     }
 }
@@ -88,25 +85,9 @@ mod tests {
 
     #[test]
     fn every_energy_is_added() {
-        let one = Work {
-            kinetic: 1.0,
-            stored: 2.0,
-            external: 4.0,
-            damping: 8.0,
-            friction: 16.0,
-            absorbed: 32.0,
-            linked: 64.0,
-        };
+        let one = Work { kinetic: 1.0, stored: 2.0, external: 4.0, damping: 8.0, friction: 16.0, linked: 64.0 };
         let sum = HalfSteps { before: one, after: Work::external(1.0) } + HalfSteps { before: one, after: one };
-        let twice = Work {
-            kinetic: 2.0,
-            stored: 4.0,
-            external: 8.0,
-            damping: 16.0,
-            friction: 32.0,
-            absorbed: 64.0,
-            linked: 128.0,
-        };
+        let twice = Work { kinetic: 2.0, stored: 4.0, external: 8.0, damping: 16.0, friction: 32.0, linked: 128.0 };
         assert_eq!(sum.before, twice);
         assert_eq!(sum.after, Work { external: 5.0, ..one });
     }

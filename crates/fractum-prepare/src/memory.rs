@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
+use fractum_io::build::{Held, held};
 use fractum_io::case::model::{BodyKind, BondedBody, BondedShape, Case, LooseBody, LooseSource};
 use fractum_io::case::model::{PackingSource, ParticleSize, Region, SolidBody};
 use fractum_io::memory::{self, TooLarge};
@@ -16,6 +17,8 @@ const BONDED_PARTICLE: f64 = 1000.0;
 /// Of a tetrahedron or triangle: standard, smoothed; the second of each where it may be damaged. Somewhat less than bodies of 400,000 to 511,000
 /// keep while they are stepped.
 const ELEMENT: [[f64; 2]; 2] = [[280.0, 550.0], [500.0, 600.0]];
+/// Of a tetrahedron that may break, on each of several processes that share a mesh, beside those of which it has the cells.
+const KNOWN: f64 = 35.0;
 /// Of a node where several processes share a mesh.
 const NODE: f64 = 300.0;
 /// Part of the memory of solids that several processes share, rather than each having all of it: the cells.
@@ -61,8 +64,12 @@ pub fn check_memory(case: &Case, mesh: &Mesh, processes: Processes) -> Result<()
     let needs = case.bodies.iter().map(|body| {
         let (count, of, each) = match &body.kind {
             BodyKind::Solid(own) if mesh.whole.is_some() => {
-                // This process has what it needs, and every process all nodes.
+                // This process has what it needs, and every process all nodes, and all elements of what may break.
                 let own_each = ELEMENT[usize::from(own.is_smoothed())][usize::from(own.damage)];
+                let own_each = match held(case, own) {
+                    Held::Elements => KNOWN + own_each / processes.all as f64,
+                    Held::Part | Held::Whole => own_each,
+                };
                 let nodes = mesh.group_nodes(&own.group.value).len() as f64 * NODE;
                 let count =
                     mesh.group(&own.group.value).iter().map(|group| group.tetrahedra.len()).sum::<usize>() as f64;

@@ -25,7 +25,6 @@ impl Scene {
         work += self.contacts.move_bodies(time, dt_before, dt_after);
         work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
         self.loads.spend_gas_work(&self.solid, dt_after);
-        work.after += self.optional.surface_supports.absorbed_after(&self.solid, dt_after);
         work
     }
 

@@ -197,7 +197,6 @@ impl AddAssign<Work> for Books {
         self.external += work.external;
         self.damping += work.damping;
         self.friction += work.friction;
-        self.absorbed += work.absorbed;
         self.time_step += work.linked;
     }
 }

@@ -73,7 +73,6 @@ impl Scene {
         }
         let sums = self.needs_sums();
         let mut everywhere: Vec<u32> = self.supports.driven().chain(self.loads.points()).collect();
-        everywhere.extend(self.optional.surface_supports.nodes());
         everywhere.extend(&watched.nodes);
         everywhere.extend(self.nodes_of_others());
         self.solid.share_out(exchange, &everywhere, sums);
@@ -90,6 +89,7 @@ impl Scene {
         let part = self.solid.state_part().filter(|_| self.solid.body_count() > 0)?;
         self.gather_particles();
         self.gather_contacts();
+        self.gather_supports();
         Some((self.state_with(self.solid.state_beside_parts()), part))
     }
 
@@ -117,6 +117,12 @@ impl Scene {
     pub fn gather_contacts(&mut self) {
         let Scene { bonded, contacts, .. } = self;
         bonded.with_part(|part, _| part.into_iter().for_each(|part| contacts.gather_memories(part)));
+    }
+
+    /// Brings the energies of supports on facets up to date. All ranks must call it.
+    fn gather_supports(&mut self) {
+        let Scene { optional, solid, .. } = self;
+        optional.surface_supports.gather(solid);
     }
 
     /// Does the searches for contacts of particles that are due on any rank.
@@ -160,6 +166,7 @@ impl Scene {
         self.solid.gather_ranks();
         self.gather_particles();
         self.gather_contacts();
+        self.gather_supports();
     }
 }
 

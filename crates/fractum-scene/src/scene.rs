@@ -96,6 +96,8 @@ pub struct SceneState {
     contact_frequency_peak: f64,
     left: Left,
     loads: LoadsState,
+    /// What absorbing boundaries have taken at each of their nodes [J].
+    absorbed: Vec<f64>,
 }
 
 impl SceneState {
@@ -119,7 +121,7 @@ impl SceneState {
         let touching = (&self.debris, &self.bonded, &self.contacts, &self.shape_contacts);
         let frequencies = (self.frequency, self.governing, self.removed_since_check);
         let of_contacts = (self.contact_frequency_square, self.contact_frequency_peak);
-        (touching, (&self.ledger, &self.books), frequencies, of_contacts, (&self.left, &self.loads))
+        (touching, (&self.ledger, &self.books), frequencies, of_contacts, (&self.left, &self.loads), &self.absorbed)
     }
 
     /// The same with another state of the solids; none where there is none.
@@ -249,6 +251,8 @@ impl Scene {
         (self.supports, self.settings) = (next.supports, next.settings);
         let before = std::mem::replace(&mut self.loads, next.loads);
         self.loads.follow(before, &self.solid);
+        self.optional.surface_supports.gather(&self.solid);
+        self.books.absorbed += self.optional.surface_supports.absorbed();
         self.optional.surface_supports = next.optional.surface_supports;
         self.removals.domain = next.removals.domain;
     }
@@ -411,6 +415,7 @@ impl Scene {
             contact_frequency_peak: self.frequencies.contact_peak,
             left: self.removals.left.clone(),
             loads: self.loads.state(),
+            absorbed: self.optional.surface_supports.taken().to_vec(),
         }
     }
 
@@ -435,6 +440,7 @@ impl Scene {
         }
         self.ledger = state.ledger;
         self.books = state.books;
+        self.optional.surface_supports.restore(state.absorbed);
         self.frequencies.stable = StableStep { frequency: state.frequency, governing: state.governing };
         self.removals.since_check = state.removed_since_check;
         self.removals.left = state.left;

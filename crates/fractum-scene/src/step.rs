@@ -104,7 +104,7 @@ impl Scene {
             self.loads.add_gas_forces(&mut self.solid, time, elapsed);
             passed(Phase::Gas);
         }
-        let absorbed = self.add_surface_support_forces(first);
+        self.add_surface_support_forces(first);
         let given = if first { self.start_half_a_step_early(dt_before) } else { 0.0 };
         self.let_left_rest();
         self.let_particles_leave(dt_before);
@@ -113,7 +113,6 @@ impl Scene {
         let mut work = self.advance(measure || step_changes, &mut passed); // vⁿ⁺½, uⁿ⁺¹
         work.after.external += expansion;
         work.before.external += load;
-        work.before += absorbed;
 
         self.books += contact;
         if !first {
@@ -131,6 +130,7 @@ impl Scene {
             self.books.time_step += work.before.kinetic - work.after.kinetic;
         }
         self.books += work.after;
+        self.optional.surface_supports.absorb_after(&mut self.solid, dt_after);
         passed(Phase::Motion);
 
         let report = self.release_cut_elements(dt_after);
@@ -169,13 +169,13 @@ impl Scene {
         (self.bonded.add_loads(time, dt_before), faces)
     }
 
-    /// Forces of supports on facets; what the absorbing ones take in the half step before.
-    fn add_surface_support_forces(&mut self, first: bool) -> Work {
+    /// Forces of supports on facets.
+    fn add_surface_support_forces(&mut self, first: bool) {
         let Scene { optional, solid, supports, clock, .. } = self;
         let surface_supports = &mut optional.surface_supports;
         surface_supports.push(solid);
         let dt_kick = 0.5 * (clock.dt_before + clock.dt_after);
-        surface_supports.absorb(solid, supports.held(), [clock.dt_before, dt_kick], first)
+        surface_supports.absorb(solid, supports.held(), [clock.dt_before, dt_kick], first);
     }
 
     /// Breaks the bonds that are overloaded at tⁿ, where there are any that can break.
@@ -285,6 +285,7 @@ impl Scene {
     /// Completes the ledger of tⁿ and holds it against the guard.
     fn close_balance(&mut self) -> Result<(), StepError> {
         let Scene { ledger, solid, bonded, books, contacts, optional, .. } = self;
+        optional.surface_supports.gather(solid);
         let bonds = bonded.energy();
         ledger[EnergyKind::BondTension] = bonds.tension;
         ledger[EnergyKind::BondBending] = bonds.bending;
@@ -297,7 +298,7 @@ impl Scene {
         ledger[EnergyKind::Friction] = books.friction;
         ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
         ledger[EnergyKind::TimeStep] = books.time_step;
-        ledger[EnergyKind::Absorbed] = books.absorbed;
+        ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();
         ledger[EnergyKind::Left] = books.left;
         ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
         if self.clock.step == 0 {

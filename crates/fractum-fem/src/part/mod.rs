@@ -49,6 +49,8 @@ pub(crate) struct Part {
     chunks: Chunks,
     /// Runs of nodes that this rank moves where it does not move all of them, see [`runs_of`].
     moved: Vec<Vec<Range<usize>>>,
+    /// How often these have changed.
+    changes: u64,
     pub(crate) needs: Needs,
     /// Every rank moves all nodes in this step.
     pub(crate) is_all: bool,
@@ -130,6 +132,7 @@ impl Part {
             everywhere: Told::new(vec![Vec::new(); exchange.size()]),
             is_everywhere: vec![false; slots.len()],
             moved: Vec::new(),
+            changes: 0,
             records: Records::default(),
             exchange,
             order,
@@ -162,6 +165,7 @@ impl Part {
 
     /// Has every rank move these nodes in every step; those of them that not every rank has moved before.
     fn move_everywhere(&mut self, slots: &NodeSlots, nodes: &[u32]) -> Told {
+        self.changes += 1;
         let new: BTreeSet<u32> = nodes.iter().copied().filter(|&node| !self.is_everywhere[node as usize]).collect();
         new.iter().for_each(|&node| self.is_everywhere[node as usize] = true);
         let chunks: BTreeSet<usize> = new.iter().map(|&node| node as usize / CHUNK).collect();
@@ -188,6 +192,19 @@ impl Part {
     pub(crate) fn moved(&self, chunk: usize) -> Option<&[Range<usize>]> {
         let moves_all = self.is_all || self.sums && self.chunks.is_own(chunk);
         (!moves_all).then(|| &self.moved[chunk][..])
+    }
+
+    /// How often it has changed which nodes this rank moves.
+    pub(crate) fn changes(&self) -> u64 {
+        self.changes
+    }
+
+    /// Whether this rank moves a node in steps in which it does not move all.
+    ///
+    /// - `sums`: in those with sums over all nodes
+    pub(crate) fn moves(&self, node: u32, sums: bool) -> bool {
+        let (chunk, place) = (node as usize / CHUNK, node as usize % CHUNK);
+        sums && self.chunks.is_own(chunk) || self.moved[chunk].iter().any(|run| run.contains(&place))
     }
 
     /// Runs of nodes of a chunk that blocks of this rank push, counted from the first of the chunk.

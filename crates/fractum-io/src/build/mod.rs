@@ -21,7 +21,7 @@ mod ties;
 
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
-pub use division::{SolidDivision, cannot_divide, divide, held_bodies};
+pub use division::{Held, SolidDivision, cannot_divide, divide, held, held_bodies};
 pub use doubts::doubts;
 pub use gauges::BuiltGauges;
 pub use ppv::PpvStations;

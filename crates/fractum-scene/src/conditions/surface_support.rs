@@ -4,8 +4,8 @@
 //! −ρ c_P v_n n − ρ c_S v_t, which a plane wave at normal incidence does not feel as a border. An elastic one has springs,
 //! −k_n u_n n − k_t u_t. Both are lumped at the nodes, a third of every facet (half of an edge in the plane) each.
 
-use fractum_fem::Solid;
-use fractum_math::{Vec3, Work};
+use fractum_fem::{MovedNodes, Solid};
+use fractum_math::Vec3;
 use nalgebra::Matrix3;
 
 /// A facet on which something outside answers to the motion.
@@ -25,8 +25,11 @@ pub struct SupportedFacet {
 /// Matrices at nodes, the sums over their facets.
 #[derive(Clone, Debug, Default)]
 struct NodeMatrices {
+    /// Ascending.
     nodes: Vec<u32>,
     matrix: Vec<Matrix3<f64>>,
+    /// Those that this process moves.
+    moved: MovedNodes,
 }
 
 impl NodeMatrices {
@@ -50,6 +53,17 @@ impl NodeMatrices {
         }
         own
     }
+
+    /// Has something done for every node that this process moves: its place among the nodes, the node, its matrix.
+    fn for_each_moved(&mut self, solid: &mut Solid, mut act: impl FnMut(&mut Solid, usize, usize, &Matrix3<f64>)) {
+        let NodeMatrices { nodes, matrix, moved } = self;
+        let places = solid.moved_among(nodes, moved);
+        let mut act = |place: usize| act(solid, place, nodes[place] as usize, &matrix[place]);
+        match places {
+            Some(places) => places.iter().for_each(|&place| act(place as usize)),
+            None => (0..nodes.len()).for_each(act),
+        }
+    }
 }
 
 /// All supports on facets of the solids.
@@ -58,9 +72,11 @@ pub struct SurfaceSupports {
     dashpots: NodeMatrices,
     /// Forces of the dashpots at tⁿ [N].
     absorbing: Vec<Vec3>,
+    /// What each of them has taken so far [J]. Every process knows that of the nodes that it moves.
+    taken: Vec<f64>,
     springs: NodeMatrices,
-    /// Energy in the springs at tⁿ [J].
-    stored: f64,
+    /// Energy in each of the springs at tⁿ [J]. Every process knows that of the nodes that it moves.
+    stored: Vec<f64>,
     /// Largest square of a frequency that springs add, K/m [1/s²].
     frequency_square: f64,
 }
@@ -79,9 +95,10 @@ impl SurfaceSupports {
         let frequency_square = springs.nodes.iter().zip(&springs.matrix).map(square).fold(0.0, f64::max);
         SurfaceSupports {
             absorbing: vec![Vec3::zeros(); dashpots.nodes.len()],
+            taken: vec![0.0; dashpots.nodes.len()],
+            stored: vec![0.0; springs.nodes.len()],
             dashpots,
             springs,
-            stored: 0.0,
             frequency_square,
         }
     }
@@ -91,39 +108,54 @@ impl SurfaceSupports {
         self.frequency_square
     }
 
+    /// Brings the energies of all nodes up to date. All processes that share a solid must call it.
+    pub(crate) fn gather(&mut self, solid: &Solid) {
+        for (own, energies) in [(&mut self.dashpots, &mut self.taken), (&mut self.springs, &mut self.stored)] {
+            solid.tell_of_nodes(&own.nodes, &mut own.moved, energies);
+        }
+    }
+
     /// Energy in the springs when their forces were added last [J].
     pub(crate) fn stored(&self) -> f64 {
-        self.stored
+        self.stored.iter().sum::<f64>() + 0.0
+    }
+
+    /// What the dashpots have taken so far [J].
+    pub(crate) fn absorbed(&self) -> f64 {
+        self.taken.iter().sum::<f64>() + 0.0
+    }
+
+    /// What each of the dashpots has taken so far [J], for a checkpoint.
+    pub(crate) fn taken(&self) -> &[f64] {
+        &self.taken
+    }
+
+    /// Puts that back.
+    pub(crate) fn restore(&mut self, taken: Vec<f64>) {
+        self.taken = taken;
     }
 
     /// Adds the forces of the springs.
     pub(crate) fn push(&mut self, solid: &mut Solid) {
-        self.stored = 0.0;
-        for (&node, k) in self.springs.nodes.iter().zip(&self.springs.matrix) {
-            let displacement = solid.displacement_from_start(node as usize);
+        let stored = &mut self.stored;
+        self.springs.for_each_moved(solid, |solid, place, node, k| {
+            let displacement = solid.displacement_from_start(node);
             let force = k * displacement;
-            self.stored += 0.5 * displacement.dot(&force);
-            solid.force[node as usize] -= force;
-        }
+            stored[place] = 0.5 * displacement.dot(&force);
+            solid.force[node] -= force;
+        });
     }
 
-    /// Adds the forces of the dashpots, once all others are known; returns what they take in the half step before tⁿ.
+    /// Adds the forces of the dashpots, once all others are known, and books what they take in the half step before tⁿ.
     ///
     /// They answer to the mean of the velocities before and after, (v⁻ + v⁺)/2, which a system of three unknowns per node
     /// gives: the step stays as large as without them, and what they take is never negative.
     ///
     /// - `held`: bit a is set where axis a of a node is prescribed; empty if none is
-    /// - `first`: at the start the velocities are those of t = 0 and not of a half step before
-    pub(crate) fn absorb(
-        &mut self,
-        solid: &mut Solid,
-        held: &[u8],
-        [dt_before, dt_kick]: [f64; 2],
-        first: bool,
-    ) -> Work {
-        let mut taken = 0.0;
-        for ((&node, c), own) in self.dashpots.nodes.iter().zip(&self.dashpots.matrix).zip(&mut self.absorbing) {
-            let i = node as usize;
+    /// - `first`: at the start the velocities are those of t = 0 and not of a half step before, in which nothing is taken
+    pub(crate) fn absorb(&mut self, solid: &mut Solid, held: &[u8], [dt_before, dt_kick]: [f64; 2], first: bool) {
+        let SurfaceSupports { dashpots, absorbing, taken, .. } = self;
+        dashpots.for_each_moved(solid, |solid, place, i, c| {
             let (before, mass) = (solid.velocity[i], solid.mass[i]);
             let c = among_free_axes(c, held.get(i).copied().unwrap_or(0));
             let mean = if first {
@@ -134,18 +166,20 @@ impl SurfaceSupports {
                 let right = before * (mass / dt_kick) + solid.force[i] * 0.5;
                 matrix.cholesky().map_or(before, |factor| factor.solve(&right))
             };
-            *own = -(c * mean);
-            taken -= 0.5 * dt_before * own.dot(&before);
-            solid.force[i] += *own;
-        }
-        Work { absorbed: taken, ..Work::default() }
+            absorbing[place] = -(c * mean);
+            if !first {
+                taken[place] -= 0.5 * dt_before * absorbing[place].dot(&before);
+            }
+            solid.force[i] += absorbing[place];
+        });
     }
 
-    /// What the dashpots take in the half step after tⁿ, with the velocities after the kick.
-    pub(crate) fn absorbed_after(&self, solid: &Solid, dt_after: f64) -> Work {
-        let power = |(&node, own): (&u32, &Vec3)| own.dot(&solid.velocity[node as usize]);
-        let taken: f64 = self.dashpots.nodes.iter().zip(&self.absorbing).map(power).sum();
-        Work { absorbed: -0.5 * dt_after * taken, ..Work::default() }
+    /// Books what the dashpots take in the half step after tⁿ, with the velocities after the kick.
+    pub(crate) fn absorb_after(&mut self, solid: &mut Solid, dt_after: f64) {
+        let SurfaceSupports { dashpots, absorbing, taken, .. } = self;
+        dashpots.for_each_moved(solid, |solid, place, i, _| {
+            taken[place] -= 0.5 * dt_after * absorbing[place].dot(&solid.velocity[i]);
+        });
     }
 }
 

@@ -3,7 +3,8 @@
 mod beside;
 mod probed;
 
-use fractum_fem::{BodyShare, DividedBoundary, Formulation, Held, KnownAround, ReadBody, deal, divided_boundary};
+pub use fractum_fem::Held;
+use fractum_fem::{BodyShare, DividedBoundary, Formulation, KnownAround, ReadBody, deal, divided_boundary};
 use fractum_math::Vec3;
 use fractum_mesh::topology::TETRAHEDRON_EDGES;
 use fractum_mesh::{Group, Mesh};
@@ -67,8 +68,8 @@ pub fn held_bodies(case: &Case) -> Vec<String> {
     solids(case).filter_map(note).collect()
 }
 
-/// What every process has of a body.
-fn held(case: &Case, solid: &SolidBody) -> Held {
+/// What every process has of a body, where several share a mesh.
+pub fn held(case: &Case, solid: &SolidBody) -> Held {
     match whole_for(case, solid) {
         Some(_) => Held::Whole,
         None if solid.damage => Held::Elements,
