@@ -9,7 +9,7 @@ use crate::body::{Body, Formulation};
 use crate::body_model::{BodyModel, Chosen, KnownBody};
 use crate::cell::{Bundle, Class, Geometry};
 use crate::damage::{EdgeField, Softens};
-use crate::divided::{BodyShare, ELSEWHERE, Held};
+use crate::divided::{BodyShare, Held};
 use crate::edges::BodyEdges;
 use crate::edges_in_step::EdgeCells;
 use crate::error::SolidError;
@@ -25,7 +25,7 @@ impl BodyModel {
     ///
     /// - `chosen`: which cells are made
     pub(crate) fn new(
-        mut body: Body,
+        body: Body,
         index: usize,
         nodes: &[Vec3],
         volumes: &[f64],
@@ -53,10 +53,7 @@ impl BodyModel {
         };
         let breaks = |edge| threshold.as_ref().is_some_and(|t: &Threshold| t.strength(edge).is_finite());
         let bundles = bundles_of_share.unwrap_or_else(|| of_body.blocks(breaks));
-        let mut location = match own {
-            Some(own) => Places::Own(own.into_iter().map(|edge| (edge, (ELSEWHERE, 0))).collect()),
-            None => Places::of_cells(if smoothed { edge_count } else { body.elements.len() }),
-        };
+        let mut location = Places::new(own, if smoothed { edge_count } else { body.elements.len() });
         let mut blocks = Vec::with_capacity(bundles.len());
         for bundle in bundles {
             for (cell, &item) in bundle.items.iter().enumerate() {
@@ -84,10 +81,6 @@ impl BodyModel {
             }
             _ => None,
         };
-        if let Some(zone) = body.damage.as_mut().filter(|_| known.is_some()) {
-            // Every edge of this rank has its strength.
-            zone.strength_factor = Vec::new();
-        }
         let alive = vec![true; body.elements.len()];
         let model = BodyModel {
             body,

@@ -287,6 +287,10 @@ impl BodyModel {
     fn divide(&mut self, exchange: &dyn Exchange, share: &BodyShare, volumes: &[f64], nodes: usize) {
         self.is_told.clone_from(&share.is_told);
         if share.held != Held::Part {
+            if let Some(zone) = self.body.damage.as_mut().filter(|_| share.held == Held::Elements) {
+                // Every edge of this rank has its strength.
+                zone.strength_factor = Vec::new();
+            }
             return;
         }
         let smoothed = self.body.formulation == Formulation::Smoothed;

@@ -14,8 +14,14 @@ pub(crate) enum Places {
 
 impl Places {
     /// Those of cells of which none is kept yet.
-    pub(crate) fn of_cells(count: usize) -> Self {
-        Places::All(vec![(ELSEWHERE, 0); count])
+    ///
+    /// - `own`: cells of this rank, ascending, where it knows no others; `count`: of all
+    pub(crate) fn new(own: Option<Vec<u32>>, count: usize) -> Self {
+        let nowhere = (ELSEWHERE, 0);
+        match own {
+            Some(own) => Places::Own(own.into_iter().map(|cell| (cell, nowhere)).collect()),
+            None => Places::All(vec![nowhere; count]),
+        }
     }
 
     pub(crate) fn of(&self, cell: u32) -> (u32, u32) {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::bonded::{Bonded, BondedState};
 use crate::clock::{Clock, Frequencies, TimeStepSettings};
-use crate::conditions::{Loads, LoadsState, Population, Supports, SurfaceSupports};
+use crate::conditions::{ConditionsState, Loads, Population, Supports, SurfaceSupports};
 use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
@@ -95,9 +95,7 @@ pub struct SceneState {
     contact_frequency_square: f64,
     contact_frequency_peak: f64,
     left: Left,
-    loads: LoadsState,
-    /// What absorbing boundaries have taken at each of their nodes [J].
-    absorbed: Vec<f64>,
+    conditions: ConditionsState,
 }
 
 impl SceneState {
@@ -121,7 +119,7 @@ impl SceneState {
         let touching = (&self.debris, &self.bonded, &self.contacts, &self.shape_contacts);
         let frequencies = (self.frequency, self.governing, self.removed_since_check);
         let of_contacts = (self.contact_frequency_square, self.contact_frequency_peak);
-        (touching, (&self.ledger, &self.books), frequencies, of_contacts, (&self.left, &self.loads), &self.absorbed)
+        (touching, (&self.ledger, &self.books), frequencies, of_contacts, (&self.left, &self.conditions))
     }
 
     /// The same with another state of the solids; none where there is none.
@@ -414,8 +412,7 @@ impl Scene {
             contact_frequency_square: self.frequencies.contact_square,
             contact_frequency_peak: self.frequencies.contact_peak,
             left: self.removals.left.clone(),
-            loads: self.loads.state(),
-            absorbed: self.optional.surface_supports.taken().to_vec(),
+            conditions: ConditionsState::of(&self.loads, &self.optional.surface_supports),
         }
     }
 
@@ -440,13 +437,12 @@ impl Scene {
         }
         self.ledger = state.ledger;
         self.books = state.books;
-        self.optional.surface_supports.restore(state.absorbed);
         self.frequencies.stable = StableStep { frequency: state.frequency, governing: state.governing };
         self.removals.since_check = state.removed_since_check;
         self.removals.left = state.left;
         self.frequencies.contact_square = state.contact_frequency_square;
         self.frequencies.contact_peak = state.contact_frequency_peak;
         self.update_wall_frequency();
-        self.loads.restore(&self.solid, state.loads);
+        state.conditions.put_back(&self.solid, &mut self.loads, &mut self.optional.surface_supports);
     }
 }

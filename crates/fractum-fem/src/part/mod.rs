@@ -47,10 +47,7 @@ pub(crate) struct Part {
     is_everywhere: Vec<bool>,
     /// Who sums over which nodes.
     chunks: Chunks,
-    /// Runs of nodes that this rank moves where it does not move all of them, see [`runs_of`].
-    moved: Vec<Vec<Range<usize>>>,
-    /// How often these have changed.
-    changes: u64,
+    moved: MovedRuns,
     pub(crate) needs: Needs,
     /// Every rank moves all nodes in this step.
     pub(crate) is_all: bool,
@@ -94,6 +91,15 @@ pub struct Share {
     pub keeps_all: bool,
 }
 
+/// What a rank moves.
+#[derive(Clone, Debug, Default)]
+struct MovedRuns {
+    /// Runs of nodes that this rank moves where it does not move all of them, see [`runs_of`].
+    of_chunks: Vec<Vec<Range<usize>>>,
+    /// How often these have changed.
+    changes: u64,
+}
+
 impl Part {
     /// The share of a rank, by the blocks of all.
     pub(crate) fn new(exchange: Arc<dyn Exchange>, blocks: &[Block], slots: &NodeSlots) -> Self {
@@ -131,8 +137,7 @@ impl Part {
             all: AllNodes::new(tellers, slots, &order.first),
             everywhere: Told::new(vec![Vec::new(); exchange.size()]),
             is_everywhere: vec![false; slots.len()],
-            moved: Vec::new(),
-            changes: 0,
+            moved: MovedRuns::default(),
             records: Records::default(),
             exchange,
             order,
@@ -153,7 +158,7 @@ impl Part {
     pub(crate) fn begin_stage(&mut self, slots: &NodeSlots, everywhere: &[u32], needs: [bool; 2]) {
         self.everywhere = Told::new(vec![Vec::new(); self.exchange.size()]);
         self.is_everywhere.fill(false);
-        self.moved.clone_from(&self.plan.runs);
+        self.moved.of_chunks.clone_from(&self.plan.runs);
         self.move_everywhere(slots, everywhere);
         let counts = self.order.first.windows(2).map(|first| first[1] - first[0]);
         self.records = Records::new(counts, self.exchange.rank(), needs);
@@ -165,14 +170,14 @@ impl Part {
 
     /// Has every rank move these nodes in every step; those of them that not every rank has moved before.
     fn move_everywhere(&mut self, slots: &NodeSlots, nodes: &[u32]) -> Told {
-        self.changes += 1;
+        self.moved.changes += 1;
         let new: BTreeSet<u32> = nodes.iter().copied().filter(|&node| !self.is_everywhere[node as usize]).collect();
         new.iter().for_each(|&node| self.is_everywhere[node as usize] = true);
         let chunks: BTreeSet<usize> = new.iter().map(|&node| node as usize / CHUNK).collect();
         for chunk in chunks {
             let mut moved: Vec<bool> = self.is_everywhere.chunks(CHUNK).nth(chunk).expect("of a node").to_vec();
             self.plan.runs[chunk].iter().for_each(|run| moved[run.clone()].fill(true));
-            self.moved[chunk] = runs_of(&moved);
+            self.moved.of_chunks[chunk] = runs_of(&moved);
         }
         let told = self.all.tellers.told(slots, &self.order.first, new.into_iter());
         self.everywhere.append(&told);
@@ -191,12 +196,12 @@ impl Part {
     /// Runs of nodes of a chunk that this rank moves in this step, counted from the first of the chunk; none where it moves all.
     pub(crate) fn moved(&self, chunk: usize) -> Option<&[Range<usize>]> {
         let moves_all = self.is_all || self.sums && self.chunks.is_own(chunk);
-        (!moves_all).then(|| &self.moved[chunk][..])
+        (!moves_all).then(|| &self.moved.of_chunks[chunk][..])
     }
 
     /// How often it has changed which nodes this rank moves.
     pub(crate) fn changes(&self) -> u64 {
-        self.changes
+        self.moved.changes
     }
 
     /// Whether this rank moves a node in steps in which it does not move all.
@@ -204,7 +209,7 @@ impl Part {
     /// - `sums`: in those with sums over all nodes
     pub(crate) fn moves(&self, node: u32, sums: bool) -> bool {
         let (chunk, place) = (node as usize / CHUNK, node as usize % CHUNK);
-        sums && self.chunks.is_own(chunk) || self.moved[chunk].iter().any(|run| run.contains(&place))
+        sums && self.chunks.is_own(chunk) || self.moved.of_chunks[chunk].iter().any(|run| run.contains(&place))
     }
 
     /// Runs of nodes of a chunk that blocks of this rank push, counted from the first of the chunk.
@@ -218,7 +223,7 @@ impl Part {
         let nodes = self.received().map(|slot| blocks[slot.block()].cells.nodes[slot.local()]);
         Share {
             blocks: self.own().len(),
-            nodes: self.moved.iter().flatten().map(Range::len).sum(),
+            nodes: self.moved.of_chunks.iter().flatten().map(Range::len).sum(),
             shared_nodes: nodes.collect::<BTreeSet<u32>>().len(),
             bytes: 3 * size_of::<f64>() * (plan.sums.sent().count() + everywhere.of(self.exchange.rank()).len()),
             memory: blocks.iter().map(Block::memory).sum(),
