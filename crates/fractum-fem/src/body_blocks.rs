@@ -38,7 +38,7 @@ impl BodyModel {
         let known = chosen.share.filter(|share| share.held == Held::Elements);
         let edges = (smoothed || body.damage.is_some()).then(|| match known {
             Some(share) => BodyEdges::sought(&body, nodes.len(), share.own_cells()),
-            None => body.edges(),
+            None => BodyEdges::tables(&body),
         });
         let edge_count = edges.as_ref().map_or(0, BodyEdges::len);
         let softens = body.damage.as_ref().map(|zone| Arc::new(Softens::new(zone, hooke, body.elastic.young_modulus)));

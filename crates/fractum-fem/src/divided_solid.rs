@@ -16,6 +16,7 @@ use crate::divided::{
     ALONE, BlockOrder, BodyShare, Classes, ConnectedPieces, DividedBody, ELSEWHERE, EdgeValue, EdgeValues,
     GivenToNodes, Held, RanksOfNodes, SharedNodes, connected_pieces, nodal_sums,
 };
+use crate::edges::BodyEdges;
 use crate::error::SolidError;
 use crate::evaluate::{Block, BlockLaw};
 use crate::kernel;
@@ -207,7 +208,7 @@ impl Solid {
         let BodyModel { body, edges, is_told, .. } = &self.bodies[body];
         if !is_told.contains(&false) {
             let mut nodes = Vec::new();
-            let edges = edges.as_ref().map_or_else(|| Cow::Owned(body.edges()), Cow::Borrowed);
+            let edges = edges.as_ref().map_or_else(|| Cow::Owned(BodyEdges::tables(body)), Cow::Borrowed);
             edges.for_each(|_, ends, _| nodes.push(ends));
             return nodes;
         }

@@ -42,11 +42,6 @@ struct Sought {
 }
 
 impl Body {
-    /// The edges of the body.
-    pub(crate) fn edges(&self) -> BodyEdges {
-        BodyEdges::tables(self)
-    }
-
     /// Sees the nodes of every edge, in the order that [`crate::DamageZone`] uses, ascending.
     ///
     /// - `nodes`: how many there are
@@ -68,7 +63,7 @@ impl Body {
 
 impl BodyEdges {
     /// Those of a body, in tables.
-    fn tables(body: &Body) -> Self {
+    pub(crate) fn tables(body: &Body) -> Self {
         let (nodes, of_element): (_, Vec<[u32; 6]>) = match body.shape {
             ElementKind::T4 => {
                 let edges = edges_of_tetrahedra(&body.elements);

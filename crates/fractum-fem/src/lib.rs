@@ -81,7 +81,8 @@ pub use crack_network::{CrackCell, CrackMouth, CrackNetwork, CrackNetworkState, 
 pub use crack_surface::{CrackFacet, CrackSurface};
 pub use damage::EdgeDamage;
 pub use divided::{
-    BodyShare, ConnectedPieces, DividedBoundary, Held, KnownAround, ReadBody, SharedNodes, deal, divided_boundary,
+    BodyShare, ConnectedPieces, DividedBoundary, Held, KnownAround, ReadBody, SharedNodes, all_elements, deal,
+    divided_boundary,
 };
 pub use edges::BodyEdges;
 pub use element::{CUT_MODES, InvertedElement, facet_area};

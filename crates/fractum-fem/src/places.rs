@@ -44,10 +44,10 @@ impl Places {
     pub(crate) fn put(&mut self, cell: u32, at: (u32, u32)) {
         match self {
             Places::All(all) => all[cell as usize] = at,
-            Places::Own(own) => match own.binary_search_by_key(&cell, |(own, _)| *own) {
-                Ok(place) => own[place].1 = at,
-                Err(place) => own.insert(place, (cell, at)),
-            },
+            Places::Own(own) => {
+                let place = own.binary_search_by_key(&cell, |(own, _)| *own).expect("a cell of this rank");
+                own[place].1 = at;
+            }
         }
     }
 

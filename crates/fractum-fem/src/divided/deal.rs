@@ -62,7 +62,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
     }
     for (body, share) in bodies.iter().zip(&mut shares).filter(|(body, _)| body.held == Held::Elements) {
         share.is_told = vec![false; share.count];
-        (share.elements, share.tags) = all_elements(exchange, body);
+        (share.elements, share.tags) = all_elements(exchange, body.elements, body.tags);
     }
     for word in post(exchange, words.told).into_iter().flatten() {
         shares[(word >> 32) as usize].is_told[word as u32 as usize] = true;
@@ -96,16 +96,18 @@ fn nodes_of_whole(exchange: &dyn Exchange, bodies: &[ReadBody], count: usize) ->
     is_of_whole
 }
 
-/// The elements of a body that all ranks have read, in their order, with their tags. All ranks must call it.
-fn all_elements(exchange: &dyn Exchange, body: &ReadBody) -> (Vec<[u32; 4]>, Vec<u64>) {
-    let counts = gather(exchange, &body.elements.len());
+/// Elements that all ranks have read, in the order of the ranks, with their tags. All ranks must call it.
+///
+/// - `own`, `tags`: those that this rank has read
+pub fn all_elements(exchange: &dyn Exchange, own: &[[u32; 4]], tags: &[u64]) -> (Vec<[u32; 4]>, Vec<u64>) {
+    let counts = gather(exchange, &own.len());
     let count: usize = counts.iter().sum();
-    let (mut elements, mut tags) = (vec![[0; 4]; count], vec![0; count]);
+    let (mut elements, mut all_tags) = (vec![[0; 4]; count], vec![0; count]);
     // In rounds, so that the messages are small beside the elements.
     for begin in (0..counts.iter().copied().max().unwrap_or(0)).step_by(PACKED) {
         let of_rank = |&count: &usize| count.min(begin + PACKED) - count.min(begin);
-        let own = begin.min(body.elements.len())..body.elements.len().min(begin + PACKED);
-        let words = body.elements[own.clone()].iter().zip(&body.tags[own]);
+        let round = begin.min(own.len())..own.len().min(begin + PACKED);
+        let words = own[round.clone()].iter().zip(&tags[round]);
         let words = words.flat_map(|(&[a, b, c, d], &tag)| [pair(a, b), pair(c, d), tag].map(f64::from_bits));
         let words: Vec<f64> = words.collect();
         let lengths: Vec<usize> = counts.iter().map(|count| 3 * of_rank(count)).collect();
@@ -116,12 +118,12 @@ fn all_elements(exchange: &dyn Exchange, body: &ReadBody) -> (Vec<[u32; 4]>, Vec
             let (of_rank, others) = rest.split_at(of_rank(rank_count));
             for (place, &[ab, cd, tag]) in (first + begin..).zip(of_rank) {
                 let ([a, b], [c, d]) = (halves(ab.to_bits()), halves(cd.to_bits()));
-                (elements[place], tags[place]) = ([a, b, c, d], tag.to_bits());
+                (elements[place], all_tags[place]) = ([a, b, c, d], tag.to_bits());
             }
             (rest, first) = (others, first + rank_count);
         }
     }
-    (elements, tags)
+    (elements, all_tags)
 }
 
 /// Elements for other ranks.

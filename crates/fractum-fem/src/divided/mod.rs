@@ -22,7 +22,7 @@ use fractum_math::Sym3;
 
 pub(crate) use block_order::{BlockOrder, Classes};
 pub use boundary::{DividedBoundary, divided_boundary};
-pub use deal::deal;
+pub use deal::{all_elements, deal};
 pub(crate) use edge_values::EdgeValues;
 pub use nodes::SharedNodes;
 pub(crate) use nodes::{GivenToNodes, RanksOfNodes, nodal_sums};

@@ -1,8 +1,9 @@
 //! What is beside the solids: other bodies, which may be made of tetrahedra too, and may touch them.
 
+use fractum_fem::all_elements;
 use fractum_math::connected;
 use fractum_mesh::Mesh;
-use fractum_parallel::{Exchange, gather};
+use fractum_parallel::Exchange;
 
 use crate::case::model::{Body, BodyKind, BondedShape, Case, PackingSource, RigidShape};
 
@@ -34,10 +35,10 @@ fn group_of_other(body: &Body) -> Option<&str> {
 }
 
 /// The elements of a group that all processes have read, in their order, with their tags.
-pub(super) fn all_elements(mesh: &Mesh, group: usize, exchange: &dyn Exchange) -> Vec<([u32; 4], u64)> {
+pub(super) fn elements_of(mesh: &Mesh, group: usize, exchange: &dyn Exchange) -> (Vec<[u32; 4]>, Vec<u64>) {
     let of = |&e: &u32| (mesh.tetrahedra[e as usize], mesh.tetrahedron_tags[e as usize]);
-    let own: Vec<([u32; 4], u64)> = mesh.groups[group].tetrahedra.iter().map(of).collect();
-    gather(exchange, &own).concat()
+    let (own, tags): (Vec<[u32; 4]>, Vec<u64>) = mesh.groups[group].tetrahedra.iter().map(of).unzip();
+    all_elements(exchange, &own, &tags)
 }
 
 /// Whether something may touch the solids: other bodies, or one solid another that it shares no node with.

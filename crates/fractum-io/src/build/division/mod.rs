@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::bodies::Numbering;
 use crate::case::model::{Body, BodyKind, Case, SolidBody};
-use beside::{all_elements, groups_of_others, may_touch};
+use beside::{groups_of_others, may_touch};
 use probed::{NamedElements, measured_nodes};
 
 /// What a process has of the solids of a mesh that it shares with others.
@@ -157,7 +157,7 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
     let measured = measured_nodes(case, &mesh, &groups, exchange);
     let measured = numbering.ascending(&measured);
     let named = NamedElements::of(case, &mesh, &groups, exchange);
-    let beside: Vec<_> = beside.into_iter().map(|group| (group, all_elements(&mesh, group, exchange))).collect();
+    let beside: Vec<_> = beside.into_iter().map(|group| (group, beside::elements_of(&mesh, group, exchange))).collect();
     let mut local = Mesh { tetrahedra: Vec::new(), tetrahedron_tags: Vec::new(), ..mesh };
     local.groups.iter_mut().for_each(|group| group.tetrahedra = Vec::new());
     let around = KnownAround { touched: &touched, measured: &measured };
@@ -168,8 +168,8 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
         let elements = std::mem::take(&mut share.elements).into_iter().map(in_mesh);
         add_elements(&mut local, group, elements.zip(std::mem::take(&mut share.tags)));
     }
-    for (group, elements) in beside {
-        add_elements(&mut local, group, elements.into_iter());
+    for (group, (elements, tags)) in beside {
+        add_elements(&mut local, group, elements.into_iter().zip(tags));
     }
     named.put(&mut local, &groups, &shares);
     Ok((local, SolidDivision { bodies: shares, boundary, numbering }))
