@@ -41,7 +41,7 @@ impl BodyModel {
             None => BodyEdges::tables(&body),
         });
         let edge_count = edges.as_ref().map_or(0, BodyEdges::len);
-        let softens = body.damage.as_ref().map(|zone| Arc::new(Softens::new(zone, hooke, body.elastic.young_modulus)));
+        let softens = body.damage.as_ref().map(|zone| Arc::new(Softens::new(&body, zone)));
         let of_body = CellsOfBody { geometry, edges: edges.as_ref().filter(|_| smoothed), chosen };
         let bundles_of_share = chosen.share.map(|share| of_body.blocks_of(share));
         let own = bundles_of_share.as_ref().filter(|_| known.is_some()).map(|bundles| items_of(bundles));

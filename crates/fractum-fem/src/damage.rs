@@ -6,9 +6,10 @@ use fractum_math::{Lane, Sym3, negative_parts};
 use serde::{Deserialize, Serialize};
 
 use crate::block::FOUR;
-use crate::body::DamageZone;
+use crate::body::{Body, DamageZone};
 use crate::hooke::Hooke;
 use crate::material::{Criterion, DamageLaw, Softening, equivalent_stresses};
+use crate::restraint::{Restraint, Seen};
 use crate::taken::Taken;
 use crate::threshold::Threshold;
 
@@ -22,6 +23,10 @@ pub struct EdgeDamage {
     pub kappa: f64,
     /// Damage d, 0 to 1.
     pub damage: f64,
+    /// Sum of the lateral principal stresses at the onset of damage [Pa]; infinite before.
+    pub lateral: f64,
+    /// Part of the largest effective principal stress that belonged to the opening when κ last grew.
+    pub share: f64,
     /// Strain at the last step, kept from the onset of damage on.
     pub strain: Sym3,
     /// Whether the residual stress ratio has fallen to the limit.
@@ -31,7 +36,14 @@ pub struct EdgeDamage {
 impl EdgeDamage {
     /// An edge that nothing has happened to yet.
     pub(crate) fn intact(strength: f64) -> Self {
-        EdgeDamage { kappa: strength, damage: 0.0, strain: Sym3::ZERO, broken: false }
+        EdgeDamage {
+            kappa: strength,
+            damage: 0.0,
+            lateral: f64::INFINITY,
+            share: 1.0,
+            strain: Sym3::ZERO,
+            broken: false,
+        }
     }
 
     /// What the cheap test compares with: never passed by a damaged edge.
@@ -45,7 +57,7 @@ impl EdgeDamage {
 pub(crate) struct Softens {
     pub(crate) criterion: Criterion,
     pub(crate) hooke: Hooke,
-    young_modulus: f64,
+    pub(crate) restraint: Restraint,
     softening: Softening,
     fracture_energy: f64,
     residual: f64,
@@ -56,13 +68,13 @@ pub(crate) struct Softens {
 }
 
 impl Softens {
-    pub(crate) fn new(zone: &DamageZone, hooke: Hooke, young_modulus: f64) -> Self {
+    pub(crate) fn new(body: &Body, zone: &DamageZone) -> Self {
         let &DamageLaw { criterion, softening, fracture_energy, residual, unilateral, rate_time, .. } = &zone.law;
         let regularised = zone.regularisation.is_some();
         Softens {
             criterion,
-            hooke,
-            young_modulus,
+            hooke: Hooke::of(body),
+            restraint: Restraint::of(body),
             softening,
             fracture_energy,
             residual,
@@ -124,13 +136,13 @@ impl Softens {
     /// Equivalent stress of an edge [Pa]; zero without a search for eigenvalues where it stays below its history, or was searched before the forces of a step
     /// of motion, since the phase field has damaged it.
     #[inline(always)]
-    pub(crate) fn seen(&self, edge: &EdgeDamage, stress: Sym3, dt: f64) -> f64 {
-        if self.was_searched(edge, dt) { 0.0 } else { self.seen_at_all(edge, stress) }
+    pub(crate) fn equivalent(&self, edge: &EdgeDamage, stress: Sym3, dt: f64) -> f64 {
+        if self.was_searched(edge, dt) { 0.0 } else { self.equivalent_at_all(edge, stress) }
     }
 
     /// The same whatever was searched before.
     #[inline(always)]
-    pub(crate) fn seen_at_all(&self, edge: &EdgeDamage, stress: Sym3) -> f64 {
+    pub(crate) fn equivalent_at_all(&self, edge: &EdgeDamage, stress: Sym3) -> f64 {
         let Softens { criterion, .. } = self;
         let below = criterion.surely_below(stress, edge.kappa) || criterion.is_below_by_minors(stress, edge.kappa);
         if below { 0.0 } else { criterion.equivalent_stress(stress) }
@@ -138,7 +150,7 @@ impl Softens {
 
     /// The same of four edges, of which `below` are of no interest.
     #[inline(always)]
-    pub(crate) fn seen_by_four(
+    pub(crate) fn equivalent_of_four(
         &self,
         edges: &[EdgeDamage],
         stresses: &[Sym3; FOUR],
@@ -160,23 +172,31 @@ impl Softens {
 
     /// Part of the strength that is left by the softening curve.
     pub(crate) fn residual_ratio(&self, kappa: f64, strength: f64, length: f64) -> f64 {
-        self.softening.residual_ratio(kappa, strength, length, self.young_modulus, self.fracture_energy)
+        self.softening.residual_ratio(kappa, strength, length, self.restraint.modulus, self.fracture_energy)
     }
 
-    /// Advances the history of an edge to the equivalent stress `q`; returns the growth of damage.
+    /// What an edge sees whose equivalent stress is `q` [Pa].
     #[inline(always)]
-    pub(crate) fn load(&self, edge: &mut EdgeDamage, q: f64, strength: f64, length: f64, dt: f64) -> f64 {
-        if q <= edge.kappa {
+    pub(crate) fn see(&self, edge: &EdgeDamage, stress: Sym3, q: f64) -> Seen {
+        self.restraint.seen(&self.criterion, [edge.kappa, edge.lateral], stress, q)
+    }
+
+    /// Advances the history of an edge to what it sees; returns the growth of damage.
+    #[inline(always)]
+    pub(crate) fn load(&self, edge: &mut EdgeDamage, seen: Seen, strength: f64, length: f64, dt: f64) -> f64 {
+        if seen.stress <= edge.kappa {
             return 0.0;
         }
+        (edge.share, edge.lateral) = (seen.share, edge.lateral.min(seen.lateral));
         if self.regularised {
-            edge.kappa = q;
+            edge.kappa = seen.stress;
             return 0.0;
         }
-        edge.kappa += (q - edge.kappa) * if self.rate_time > 0.0 { (dt / self.rate_time).min(1.0) } else { 1.0 };
+        edge.kappa +=
+            (seen.stress - edge.kappa) * if self.rate_time > 0.0 { (dt / self.rate_time).min(1.0) } else { 1.0 };
         let chi = self.residual_ratio(edge.kappa, strength, length);
         let before = edge.damage;
-        edge.damage = before.max(1.0 - strength / edge.kappa * chi);
+        edge.damage = before.max(1.0 - seen.share * (strength / edge.kappa * chi));
         edge.broken = edge.broken || chi <= self.residual;
         edge.damage - before
     }
@@ -255,15 +275,15 @@ impl EdgeField {
         self.state.get(index).copied().unwrap_or_else(|| EdgeDamage::intact(self.strength[index]))
     }
 
-    /// Advances the history of an edge to the equivalent stress `q` [Pa]; returns the growth of damage.
+    /// Advances the history of an edge to what it sees; returns the growth of damage.
     #[inline(always)]
-    pub(crate) fn load(&mut self, index: usize, q: f64, dt: f64) -> f64 {
+    pub(crate) fn load(&mut self, index: usize, seen: Seen, dt: f64) -> f64 {
         let edge = &mut self.state[index];
-        if q <= edge.kappa {
+        if seen.stress <= edge.kappa {
             return 0.0;
         }
         let was_broken = edge.broken;
-        let growth = self.softens.load(edge, q, self.strength[index], self.length[index], dt);
+        let growth = self.softens.load(edge, seen, self.strength[index], self.length[index], dt);
         self.woken |= edge.damage == 0.0;
         if edge.broken && !was_broken {
             self.fresh.push(index as u32);
@@ -278,21 +298,15 @@ impl EdgeField {
         histories.filter(|((_, state), strength)| state.kappa > **strength).map(|((&edge, _), _)| edge)
     }
 
-    /// Raises the largest equivalent stress of an edge to `q` [Pa]; its damage is that of a phase field.
-    pub(crate) fn see(&mut self, index: usize, q: f64) {
-        if q > self.state[index].kappa {
-            self.state[index].kappa = q;
-            self.note(index);
-        }
-    }
-
     /// Raises the damage of an edge to that of the phase field; returns the growth.
-    pub(crate) fn soften(&mut self, index: usize, damage: f64) -> f64 {
+    ///
+    /// - `stiffness`: ω(d)
+    pub(crate) fn soften(&mut self, index: usize, stiffness: f64) -> f64 {
         let edge = &mut self.state[index];
-        let growth = (damage - edge.damage).max(0.0);
+        let growth = (1.0 - edge.share * stiffness - edge.damage).max(0.0);
         edge.damage += growth;
-        // The stress never exceeds (1 - d) κ.
-        let parted = (1.0 - edge.damage) * edge.kappa <= self.softens.residual * self.strength[index];
+        // The stress across the crack never exceeds ω κ.
+        let parted = stiffness * edge.kappa <= self.softens.residual * self.strength[index];
         if parted && !edge.broken {
             edge.broken = true;
             self.fresh.push(index as u32);
@@ -331,11 +345,11 @@ impl EdgeField {
         self.state[index].kappa
     }
 
-    /// Damage that an edge would have after the equivalent stress `q` [Pa].
-    pub(crate) fn trial(&self, index: usize, q: f64) -> f64 {
+    /// Damage that an edge would have after what it sees.
+    pub(crate) fn trial(&self, index: usize, seen: Seen) -> f64 {
         let mut edge = self.state[index];
-        if q > self.onset(index) {
-            self.softens.load(&mut edge, q, self.strength[index], self.length[index], 0.0);
+        if seen.stress > self.onset(index) {
+            self.softens.load(&mut edge, seen, self.strength[index], self.length[index], 0.0);
         }
         edge.damage
     }
@@ -377,7 +391,7 @@ mod tests {
         let law = DamageLaw { unilateral, ..DamageLaw::rankine(3e6, 100.0) };
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
         let body = Body::new("edge", ElementKind::T4, vec![[0, 1, 2, 3]], elastic).with_damage(law);
-        Softens::new(body.damage.as_ref().unwrap(), Hooke::of(&body), elastic.young_modulus)
+        Softens::new(&body, body.damage.as_ref().unwrap())
     }
 
     proptest! {

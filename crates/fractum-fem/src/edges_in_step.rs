@@ -105,7 +105,8 @@ impl EdgesInStep<'_> {
         let EdgeCells { field, dissipated, energy } = &mut *self.edges;
         let volume = self.cells.volume[cell];
         let EdgeDamage { damage: damage_before, strain: kept, .. } = field.state[cell];
-        let growth = field.load(cell, q, self.step.dt);
+        let seen = field.softens.see(&field.state[cell], stress, q);
+        let growth = field.load(cell, seen, self.step.dt);
         if growth > 0.0 {
             // An edge that was intact has kept no strain.
             let before = if damage_before == 0.0 { self.step.strain_before(self.cells, cell) } else { kept };
@@ -185,7 +186,7 @@ widest! {
 #[inline(always)]
 fn loaded_one(edges: &mut EdgesInStep<'_>, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 {
     let EdgeField { softens, state, .. } = &edges.edges.field;
-    let q = softens.seen(&state[cell], stress, edges.step.dt);
+    let q = softens.equivalent(&state[cell], stress, edges.step.dt);
     let closed = softens.closed_stress(strain);
     edges.advance(cell, strain, (stress, closed), q)
 }
@@ -213,7 +214,7 @@ fn loaded_four(
     stresses: &[Sym3; FOUR],
 ) -> [Sym3; FOUR] {
     let EdgeField { softens, state, .. } = &edges.edges.field;
-    let q = softens.seen_by_four(&state[first..first + FOUR], stresses, below, edges.step.dt);
+    let q = softens.equivalent_of_four(&state[first..first + FOUR], stresses, below, edges.step.dt);
     let closed = softens.closed_stresses(strains);
     let mut scaled = [Sym3::ZERO; FOUR];
     for k in 0..FOUR {

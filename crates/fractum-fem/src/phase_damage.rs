@@ -9,6 +9,7 @@ use crate::edges_in_step::{Advance, EdgeCells};
 use crate::evaluate::BlockLaw;
 use crate::material::equivalent_stresses;
 use crate::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, PhaseField};
+use crate::restraint::{Restraint, Seen};
 use crate::solid::{BodyModel, Solid};
 use crate::taken::Taken;
 
@@ -68,7 +69,7 @@ impl Solid {
         if let Some(standard) = &mut bodies[body].standard {
             for edge in field.active.iter().map(|own| own.edge) {
                 if let Some((step, true)) = field.change(edge) {
-                    standard.field.soften(edge as usize, step.damage);
+                    standard.field.soften(edge as usize, step.stiffness);
                 }
             }
             return;
@@ -78,11 +79,11 @@ impl Solid {
             let BlockLaw::Edges(EdgeCells { field: cells, dissipated, .. }) = &mut block.law else { return };
             for cell in 0..cells.edges.len() {
                 let Some((step, grown)) = field.change(cells.edges[cell]) else { continue };
-                cells.see(cell, step.seen);
+                cells.load(cell, step.seen, 0.0);
                 if !grown {
                     continue;
                 }
-                let growth = cells.soften(cell, step.damage);
+                let growth = cells.soften(cell, step.stiffness);
                 if growth > 0.0 {
                     *dissipated += step.taken.by(growth);
                 }
@@ -101,7 +102,7 @@ impl Solid {
     /// What drives the active edges at the present displacements.
     fn drive(&self, body: usize, field: &mut PhaseField, dt: f64) {
         let model = &self.bodies[body];
-        let compliance = 0.5 / model.body.elastic.young_modulus;
+        let compliance = 0.5 / Restraint::of(&model.body).modulus;
         let PhaseField { active, steps, .. } = field;
         if let Some(standard) = &model.standard {
             active.par_iter_mut().with_min_len(AT_LEAST).for_each(|own| {
@@ -166,10 +167,10 @@ impl Solid {
         sum / model.body.shape.edge_count() as f64
     }
 
-    /// Finds the phase fields once every edge has seen its equivalent stress `q`, and replaces the trial damage of the cells that are edges.
+    /// Finds the phase fields once every edge has seen what it sees, and replaces the trial damage of the cells that are edges.
     ///
     /// - `values`: d of the edges of every body, from which the search starts
-    pub(crate) fn trial_phases(&self, q: &[f64], cells: &mut [Vec<f64>], values: &mut [Vec<f64>]) {
+    pub(crate) fn trial_phases(&self, seen: &[Seen], cells: &mut [Vec<f64>], values: &mut [Vec<f64>]) {
         if !self.has_phase_fields() {
             return;
         }
@@ -183,17 +184,17 @@ impl Solid {
         for (body, (model, value)) in self.bodies.iter().zip(values).enumerate() {
             let first = first(model.standard.as_ref().map_or(0, |standard| standard.field.state.len()));
             let Some(field) = &model.phase else { continue };
-            let compliance = 0.5 / model.body.elastic.young_modulus;
+            let compliance = 0.5 / Restraint::of(&model.body).modulus;
+            let seen_by = |edge: u32| match model.standard {
+                Some(_) => seen[first + edge as usize],
+                None => {
+                    let (block, cell) = model.location.of(edge);
+                    seen[first_of_block[block as usize] + cell as usize]
+                }
+            };
             let drive = |own: &ActiveEdge| {
-                let seen = match model.standard {
-                    Some(_) => q[first + own.edge as usize],
-                    None => {
-                        let (block, cell) = model.location.of(own.edge);
-                        q[first_of_block[block as usize] + cell as usize]
-                    }
-                };
                 let known = self.edge(body, own.edge).map_or(0.0, |(cells, cell)| cells.state[cell].kappa);
-                let (kappa, volume) = (known.max(seen), self.edge_volume(model, own.edge));
+                let (kappa, volume) = (known.max(seen_by(own.edge).stress), self.edge_volume(model, own.edge));
                 Drive { volume, energy: kappa * kappa * compliance, ..own.drive }
             };
             let drives: Vec<Drive> = field.active.iter().map(drive).collect();
@@ -202,10 +203,10 @@ impl Solid {
                 continue;
             }
             for own in &field.active {
-                let damage = field.law.damage(own.drive.a1, value[own.edge as usize]);
+                let stiffness = field.law.stiffness(own.drive.a1, value[own.edge as usize]);
                 let (block, cell) = model.location.of(own.edge);
                 let trial = &mut cells[block as usize][cell as usize];
-                *trial = trial.max(damage);
+                *trial = trial.max(1.0 - seen_by(own.edge).share * stiffness);
             }
         }
     }
@@ -232,7 +233,7 @@ impl Solid {
                     }
                 };
                 let (cells, cell, dissipated) = solid.history_of(body, own.edge);
-                let growth = cells.soften(cell, law.damage(own.drive.a1, d));
+                let growth = cells.soften(cell, law.stiffness(own.drive.a1, d));
                 if let Some(dissipated) = dissipated {
                     *dissipated += taken.by(growth);
                 }
@@ -249,7 +250,7 @@ widest! {
 #[inline(always)]
 fn driven_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], steps: &mut [EdgeStep]) {
     let model = &solid.bodies[body];
-    let compliance = 0.5 / model.body.elastic.young_modulus;
+    let compliance = 0.5 / Restraint::of(&model.body).modulus;
     let (step, own_blocks) = (solid.advance_of(model, dt), solid.own_blocks());
     let (mut strains, mut stresses, mut kappa) = ([Sym3::ZERO; FOUR], [Sym3::ZERO; FOUR], Lane::splat(ABOVE_ALL));
     let (mut states, mut softens) = ([None; FOUR], None);
@@ -270,8 +271,9 @@ fn driven_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], s
     let closed = softens.closed_stresses(&strains);
     for (k, (own, edge_step)) in active.iter_mut().zip(steps).enumerate() {
         let Some(state) = states[k] else { continue };
-        edge_step.seen = if q[k] > kappa.0[k] { q[k] } else { 0.0 };
-        let kappa = kappa.0[k].max(edge_step.seen);
+        let seen = softens.see(state, stresses[k], q[k]);
+        edge_step.seen = if seen.stress > kappa.0[k] { seen } else { Seen::NOTHING };
+        let kappa = kappa.0[k].max(edge_step.seen.stress);
         own.drive.energy = kappa * kappa * compliance;
         edge_step.is_intact = state.damage == 0.0;
         if !edge_step.is_intact {

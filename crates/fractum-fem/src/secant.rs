@@ -8,6 +8,7 @@ use fractum_math::{Mat3, Ragged, Sym3, Vec3};
 use crate::body::{Formulation, Kinematics};
 use crate::damage::EdgeDamage;
 use crate::evaluate::{Block, BlockLaw};
+use crate::restraint::{Restraint, Seen};
 use crate::solid::{BodyModel, Solid};
 use crate::taken::Taken;
 
@@ -41,12 +42,16 @@ pub struct DamagePoint {
     pub body: usize,
     /// Largest equivalent stress so far [Pa].
     pub kappa: f64,
-    /// Equivalent stress over which softening takes place, E G_f/(l f_t) [Pa].
+    /// Equivalent stress over which softening takes place, E' G_f/(l f_t) [Pa].
     pub softening: f64,
     /// Whether it is broken.
     pub broken: bool,
     /// Damage so far.
     pub damage: f64,
+    /// Sum of the lateral principal stresses at the onset of damage [Pa]; infinite before.
+    pub lateral: f64,
+    /// Part of the largest effective principal stress that belonged to the opening when κ last grew.
+    pub share: f64,
 }
 
 /// Why a solid cannot be treated by secant stiffness.
@@ -147,10 +152,11 @@ impl Solid {
         for (body, field) in self.edge_fields() {
             let model = &self.bodies[body].body;
             let energy = model.damage.as_ref().map_or(0.0, |zone| zone.law.fracture_energy);
-            for (index, &EdgeDamage { broken, damage, .. }) in field.state.iter().enumerate() {
+            for (index, &EdgeDamage { broken, damage, lateral, share, .. }) in field.state.iter().enumerate() {
                 let kappa = field.onset(index);
-                let softening = model.elastic.young_modulus * energy / (field.length[index] * field.strength[index]);
-                points.push(DamagePoint { body, kappa, softening, broken, damage });
+                let softening =
+                    field.softens.restraint.modulus * energy / (field.length[index] * field.strength[index]);
+                points.push(DamagePoint { body, kappa, softening, broken, damage, lateral, share });
             }
         }
         points
@@ -183,19 +189,27 @@ impl Solid {
         }
     }
 
-    /// Equivalent stress of each of these effective stresses by the criterion of its body [Pa]; zero where it surely
-    /// stays below `threshold`.
-    pub fn equivalent_stresses(
+    /// What each of these edges sees under its effective stress; nothing where the equivalent stress surely stays below
+    /// `threshold` [Pa].
+    pub fn see(
         &self,
         points: &[DamagePoint],
         stresses: &[Sym3],
         threshold: impl Fn(&DamagePoint) -> f64,
-        q: &mut Vec<f64>,
+        seen: &mut Vec<Seen>,
     ) {
-        q.clear();
-        q.extend(points.iter().zip(stresses).map(|(point, &stress)| {
+        seen.clear();
+        seen.extend(points.iter().zip(stresses).map(|(point, &stress)| {
+            let model = &self.bodies[point.body];
             let criterion = self.criterion(point.body);
-            if criterion.surely_below(stress, threshold(point)) { 0.0 } else { criterion.equivalent_stress(stress) }
+            if criterion.surely_below(stress, threshold(point)) {
+                return Seen { share: point.share, ..Seen::NOTHING };
+            }
+            let (q, history) = (criterion.equivalent_stress(stress), [point.kappa, point.lateral]);
+            match Restraint::of(&model.body).seen(criterion, history, stress, q) {
+                seen if seen.stress > point.kappa => seen,
+                seen => Seen { share: point.share, ..seen },
+            }
         }));
     }
 
@@ -203,10 +217,10 @@ impl Solid {
     /// stress over the one at which damage begins. None where nothing may be damaged or all stress is far from it.
     pub fn most_strained_edge(&self) -> Option<(usize, Vec3, f64)> {
         let points = self.damage_points();
-        let (mut stresses, mut q) = (Vec::new(), Vec::new());
+        let (mut stresses, mut seen) = (Vec::new(), Vec::new());
         self.effective_stresses(&self.displacement, &mut stresses);
-        self.equivalent_stresses(&points, &stresses, |point| point.kappa, &mut q);
-        let ratios = q.iter().zip(&points).map(|(q, point)| q / point.kappa);
+        self.see(&points, &stresses, |point| point.kappa, &mut seen);
+        let ratios = seen.iter().zip(&points).map(|(seen, point)| seen.stress / point.kappa);
         let (index, ratio) = ratios.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let mut edges = self.edge_fields().flat_map(|(body, field)| field.edges.iter().map(move |&edge| (body, edge)));
         let (body, edge) = edges.nth(index)?;
@@ -219,27 +233,30 @@ impl Solid {
         &zone.expect("a damage point belongs to a body with damage").law.criterion
     }
 
-    /// Damage of the cells once every edge has seen its equivalent stress `q`.
-    pub fn trial_damage(&self, q: &[f64], trial: &mut CellDamage) {
+    /// Damage of the cells once every edge has seen this.
+    pub fn trial_damage(&self, seen: &[Seen], trial: &mut CellDamage) {
         trial.cells.resize(self.blocks.len(), Vec::new());
         let mut of_edges =
-            self.edge_fields().flat_map(|(_, field)| (0..field.state.len()).map(move |i| (field, i))).zip(q);
+            self.edge_fields().flat_map(|(_, field)| (0..field.state.len()).map(move |i| (field, i))).zip(seen);
         let mut next = |count: usize, damage: &mut Vec<f64>| {
             damage.clear();
-            damage.extend(of_edges.by_ref().take(count).map(|((field, index), &q)| field.trial(index, q)));
+            damage.extend(of_edges.by_ref().take(count).map(|((field, index), &seen)| field.trial(index, seen)));
         };
         for (block, trial) in self.blocks.iter().zip(&mut trial.cells) {
             if let Some(field) = block.edge_field() {
                 next(field.state.len(), trial);
             }
         }
-        self.trial_phases(q, &mut trial.cells, &mut trial.phases);
+        self.trial_phases(seen, &mut trial.cells, &mut trial.phases);
         let mut damage = Vec::new();
+        let mut first = self.blocks.iter().filter_map(Block::edge_field).map(|field| field.state.len()).sum::<usize>();
         for (body, model) in self.bodies.iter().enumerate() {
             let (Some(standard), Some(edges)) = (&model.standard, &model.edges) else { continue };
             next(standard.field.state.len(), &mut damage);
+            let of_body = &seen[first..first + standard.field.state.len()];
+            first += of_body.len();
             if let Some(field) = &model.phase {
-                field.raise(&trial.phases[body], &mut damage);
+                field.raise(&trial.phases[body], |edge| of_body[edge as usize].share, &mut damage);
             }
             for (block, trial) in self.blocks.iter().zip(&mut trial.cells).filter(|(b, _)| b.body == body) {
                 let of = |(cell, &e): (usize, &u32)| {
@@ -252,22 +269,22 @@ impl Solid {
         }
     }
 
-    /// Lets every edge see the equivalent stress `q`, as the solid goes straight from the displacements `before` to
+    /// Lets every edge see this, as the solid goes straight from the displacements `before` to
     /// `after`.
     ///
     /// What damage takes on the way is booked; [`Solid::update_internal_forces`] at `after` then finds nothing new.
     ///
-    /// - `trial`: the damage of these equivalent stresses
-    pub fn raise_history(&mut self, q: &[f64], trial: &CellDamage, before: &[Vec3], after: &[Vec3]) {
+    /// - `trial`: the damage that this brings
+    pub fn raise_history(&mut self, seen: &[Seen], trial: &CellDamage, before: &[Vec3], after: &[Vec3]) {
         let Solid { blocks, bodies, .. } = self;
         let mut next = 0;
         for block in blocks {
             let hooke = bodies[block.body].hooke;
             let BlockLaw::Edges(law) = &mut block.law else { continue };
             for cell in 0..law.field.state.len() {
-                let seen = q[next];
+                let seen = seen[next];
                 next += 1;
-                if seen <= law.field.onset(cell) {
+                if seen.stress <= law.field.onset(cell) {
                     continue;
                 }
                 let strain = |field: &[Vec3]| Sym3::symmetric_part(&block.cells.gradient(cell, |node| field[node]));
@@ -278,7 +295,7 @@ impl Solid {
         }
         for standard in bodies.iter_mut().filter_map(|model| model.standard.as_mut()) {
             for edge in 0..standard.field.state.len() {
-                standard.field.load(edge, q[next], 0.0);
+                standard.field.load(edge, seen[next], 0.0);
                 next += 1;
             }
         }

@@ -191,12 +191,13 @@ impl StandardDamage {
                     if !may_load(elements) {
                         continue;
                     }
-                    let q = softens.seen_at_all(edge, mean_stress(elements));
+                    let stress = mean_stress(elements);
+                    let q = softens.equivalent_at_all(edge, stress);
                     if q == 0.0 {
                         continue;
                     }
                     let was_broken = edge.broken;
-                    let growth = softens.load(edge, q, strength[index], length[index], dt);
+                    let growth = softens.load(edge, softens.see(edge, stress, q), strength[index], length[index], dt);
                     run.loaded = true;
                     run.grown[word] |= u64::from(growth > 0.0) << place;
                     run.broke.extend((edge.broken && !was_broken).then_some(index as u32));

@@ -8,6 +8,7 @@ use crate::edges::BodyEdges;
 use crate::element::regular_edge;
 use crate::error::SolidError;
 use crate::phase::PhaseLaw;
+use crate::restraint::Restraint;
 
 /// Element sizes in the length of a phase field by default: of one size motion leaves the family of solutions, more costs accuracy.
 const SIZES_OF_LENGTH: f64 = 2.0;
@@ -121,7 +122,7 @@ impl Lengths {
             return f64::INFINITY;
         }
         let strength = zone.law.tensile_strength * zone.strength_factor.get(edge as usize).copied().unwrap_or(1.0);
-        let (modulus, energy) = (body.elastic.young_modulus, zone.law.fracture_energy);
+        let (modulus, energy) = (Restraint::of(body).modulus, zone.law.fracture_energy);
         let limit = match zone.regularisation {
             Some(_) => PhaseLaw::largest_length(modulus, energy, strength),
             None => zone.law.softening.largest_length(modulus, strength, energy),

@@ -106,7 +106,7 @@ mod tests {
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
         let body = Body::new("edge", ElementKind::T4, vec![[0, 1, 2, 3]], elastic);
         let body = body.smoothed().with_damage(DamageLaw::rankine(3e6, 100.0));
-        let softens = Softens::new(body.damage.as_ref().unwrap(), Hooke::of(&body), elastic.young_modulus);
+        let softens = Softens::new(&body, body.damage.as_ref().unwrap());
         let mut told = ToldEdges::new(Arc::new(softens));
         let edge = |cell: u32, damage: f64| {
             let history = EdgeDamage { damage, broken: damage > 0.9, ..EdgeDamage::intact(3e6) };

@@ -28,6 +28,7 @@ use crate::cell::Geometry;
 use crate::edges::BodyEdges;
 use crate::error::SolidError;
 use crate::material::Degradation;
+use crate::restraint::{Restraint, Seen};
 use crate::taken::Taken;
 use laplacian::Rows;
 use ranks::Told;
@@ -52,7 +53,7 @@ pub(crate) struct PhaseLaw {
     /// c [J/m].
     gradient: f64,
     /// 4 E G_f/(π b) [Pa²], a₁ times f_t².
-    stiffness: f64,
+    strength_scale: f64,
 }
 
 impl PhaseLaw {
@@ -63,18 +64,18 @@ impl PhaseLaw {
             size,
             resistance: 2.0 * fracture_energy / (PI * length),
             gradient: 2.0 * length * fracture_energy / PI,
-            stiffness: 4.0 * young_modulus * fracture_energy / (PI * length),
+            strength_scale: 4.0 * young_modulus * fracture_energy / (PI * length),
         }
     }
 
     pub(crate) fn a1(&self, strength: f64) -> f64 {
-        self.stiffness / (strength * strength)
+        self.strength_scale / (strength * strength)
     }
 
-    /// Damage of an edge, 1 - ω.
+    /// Part of the stress across a crack that is left, ω.
     #[inline(always)]
-    pub(crate) fn damage(&self, a1: f64, d: f64) -> f64 {
-        1.0 - self.degradation.stiffness(a1, d)
+    pub(crate) fn stiffness(&self, a1: f64, d: f64) -> f64 {
+        self.degradation.stiffness(a1, d)
     }
 
     /// Largest b of an edge of this strength [m].
@@ -111,16 +112,16 @@ pub(crate) struct ActiveEdge {
 }
 
 /// What an active edge of smoothed cells sees and gives in a step of motion; the standard formulation keeps the one and books the other itself.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct EdgeStep {
-    /// Equivalent stress now where it is the largest so far [Pa], else zero.
-    pub(crate) seen: f64,
+    /// What it sees now, where that is more than ever before.
+    pub(crate) seen: Seen,
     /// What damage takes if it grows [J].
     pub(crate) taken: Taken,
     /// The edge had no damage at the step before, and `taken` is not known yet.
     pub(crate) is_intact: bool,
-    /// Damage now, where d has grown.
-    pub(crate) damage: f64,
+    /// ω now, where d has grown.
+    pub(crate) stiffness: f64,
 }
 
 /// The phase field of a body.
@@ -191,7 +192,7 @@ impl PhaseField {
             spread: false,
             rebuilt: false,
         });
-        self.steps.push(EdgeStep::default());
+        self.steps.push(EdgeStep { seen: Seen::NOTHING, taken: Taken::default(), is_intact: false, stiffness: 1.0 });
     }
 
     /// Some edge of a block of cells takes part from now on.
@@ -307,7 +308,7 @@ impl PhaseField {
         active.par_iter().zip(steps).with_min_len(AT_LEAST).for_each(|(own, step)| {
             let d = value[own.edge as usize];
             if d > own.old && own.rank == rank {
-                step.damage = law.damage(own.drive.a1, d);
+                step.stiffness = law.stiffness(own.drive.a1, d);
                 if step.is_intact {
                     step.taken = taken(own);
                 }
@@ -320,7 +321,7 @@ impl PhaseField {
         let slot = self.slot[edge as usize];
         let own = self.active.get(slot as usize)?;
         let (step, grown) = (&self.steps[slot as usize], self.value[edge as usize] > own.old);
-        (own.rank == self.rank() && (grown || step.seen > 0.0)).then_some((step, grown))
+        (own.rank == self.rank() && (grown || step.seen.stress > 0.0)).then_some((step, grown))
     }
 
     /// Takes d over.
@@ -342,10 +343,13 @@ impl PhaseField {
     }
 
     /// Raises the damage of edges of the body to that of these values.
-    pub(crate) fn raise(&self, value: &[f64], damage: &mut [f64]) {
+    ///
+    /// - `share`: part of the largest principal stress that belongs to the opening of an edge
+    pub(crate) fn raise(&self, value: &[f64], share: impl Fn(u32) -> f64, damage: &mut [f64]) {
         for own in &self.active {
             let damage = &mut damage[own.edge as usize];
-            *damage = damage.max(self.law.damage(own.drive.a1, value[own.edge as usize]));
+            let stiffness = self.law.stiffness(own.drive.a1, value[own.edge as usize]);
+            *damage = damage.max(1.0 - share(own.edge) * stiffness);
         }
     }
 
@@ -461,7 +465,7 @@ impl PhaseField {
             (Formulation::Standard, ElementKind::T4) => -0.13,
         };
         let fracture_energy = zone.law.fracture_energy * (1.0 + lost * size / length);
-        let law = PhaseLaw::new(degradation, [length, size], body.elastic.young_modulus, fracture_energy);
+        let law = PhaseLaw::new(degradation, [length, size], Restraint::of(body).modulus, fracture_energy);
         Ok(PhaseField::new(law, edges))
     }
 }

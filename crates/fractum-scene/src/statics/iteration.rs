@@ -1,6 +1,6 @@
 //! The fixed-point iteration of one step.
 
-use fractum_fem::{DamagePoint, Solid};
+use fractum_fem::{DamagePoint, Seen, Solid};
 use fractum_math::Vec3;
 
 use super::contact::Spring;
@@ -9,12 +9,17 @@ use super::{Control, Edges, GROWTH, ITERATIONS, MONOTONE_ITERATIONS, NO_FORCE, R
 use crate::error::StepError;
 use crate::scene::Scene;
 
+/// Share of an opening below which no extrapolation goes.
+const LEAST_SHARE: f64 = 1e-3;
+
 impl StaticSolver {
     /// Whether the state found lies beyond states that are no equilibrium: some edge went further down its softening curve
     /// than any step of a path takes it.
     pub(super) fn jumps(&self, points: &[DamagePoint]) -> bool {
-        let far = |(point, q): (&DamagePoint, &f64)| !point.broken && *q > path::limit(point, GROWTH[2]) * (1.0 + 1e-9);
-        self.settings.control == Control::Time && points.iter().zip(&self.edges.q).any(far)
+        let far = |(point, seen): (&DamagePoint, &Seen)| {
+            !point.broken && seen.stress > path::limit(point, GROWTH[2]) * (1.0 + 1e-9)
+        };
+        self.settings.control == Control::Time && points.iter().zip(&self.edges.seen).any(far)
     }
 
     /// Iterates to equilibrium from the present state; the new load parameter, with the displacements in the response and
@@ -63,12 +68,15 @@ impl StaticSolver {
                 self.largest_forces = self.largest_forces.max(forces);
                 return Ok(Some((present + tau, iteration)));
             }
-            let Edges { q, loading, image } = &mut self.edges;
+            let Edges { seen, loading, image } = &mut self.edges;
             image.clear();
-            image.extend(points.iter().zip(&*q).map(|(point, q)| (q / point.kappa).max(1.0)));
+            image.extend(points.iter().zip(&*seen).map(|(point, seen)| (seen.stress / point.kappa).max(1.0)));
+            image.extend(seen.iter().map(|seen| seen.share));
             if !monotone {
                 self.anderson.next(loading, image);
-                loading.iter_mut().for_each(|ratio| *ratio = ratio.max(1.0));
+                let (ratios, shares) = loading.split_at_mut(points.len());
+                ratios.iter_mut().for_each(|ratio| *ratio = ratio.max(1.0));
+                shares.iter_mut().for_each(|share| *share = share.clamp(LEAST_SHARE, 1.0));
                 self.set_trial(&scene.solid, points);
             } else if self.jumps(points) {
                 return Ok(None);
@@ -87,11 +95,12 @@ impl StaticSolver {
         self.anderson.reset();
         self.edges.loading.clear();
         self.edges.loading.resize(points.len(), 1.0);
+        self.edges.loading.extend(points.iter().map(|point| point.share));
         if ahead && self.pace.trend.len() == points.len() {
             for ((ratio, trend), point) in self.edges.loading.iter_mut().zip(&self.pace.trend).zip(points) {
                 *ratio = if point.damage > 0.0 { 1.0 + trend * growth } else { 1.0 };
             }
-            self.edges.q.resize(points.len(), 0.0);
+            self.edges.seen.resize(points.len(), Seen::NOTHING);
             self.set_trial(&scene.solid, points);
         }
         self.touching.place.clone_from(&scene.solid.displacement);
@@ -99,11 +108,12 @@ impl StaticSolver {
 
     /// Takes the damage of the trial from the loading of the edges.
     fn set_trial(&mut self, solid: &Solid, points: &[DamagePoint]) {
-        let Edges { q, loading, .. } = &mut self.edges;
-        for ((q, ratio), point) in q.iter_mut().zip(&*loading).zip(points) {
-            *q = ratio * point.kappa;
+        let Edges { seen, loading, .. } = &mut self.edges;
+        let (ratios, shares) = loading.split_at(points.len());
+        for (((seen, ratio), share), point) in seen.iter_mut().zip(ratios).zip(shares).zip(points) {
+            (seen.stress, seen.share) = (ratio * point.kappa, *share);
         }
-        solid.trial_damage(q, &mut self.trial);
+        solid.trial_damage(seen, &mut self.trial);
     }
 
     /// Finds what touches in the last iterate, and brings the matrix up to date.
@@ -156,14 +166,15 @@ impl StaticSolver {
         for (a, &b) in start_stress.iter_mut().zip(&*slope_stress) {
             *a += b * tau;
         }
-        let Edges { q, loading, .. } = &mut self.edges;
-        solid.equivalent_stresses(points, start_stress, |point| point.kappa, q);
+        let Edges { seen, loading, .. } = &mut self.edges;
+        solid.see(points, start_stress, |point| point.kappa, seen);
         if monotone {
-            for ((q, ratio), point) in q.iter_mut().zip(&*loading).zip(points) {
-                *q = q.max(ratio * point.kappa);
+            let (ratios, shares) = loading.split_at(points.len());
+            for (((seen, ratio), share), point) in seen.iter_mut().zip(ratios).zip(shares).zip(points) {
+                (seen.stress, seen.share) = (seen.stress.max(ratio * point.kappa), seen.share.min(*share));
             }
         }
-        solid.trial_damage(q, &mut self.trial);
+        solid.trial_damage(seen, &mut self.trial);
     }
 
     /// Gives the system places for all pairs of nodes that touch.

@@ -20,7 +20,7 @@ mod static_dynamic;
 mod support_check;
 mod system;
 
-use fractum_fem::CellDamage;
+use fractum_fem::{CellDamage, Seen};
 use fractum_math::{Sym3, Vec3};
 use fractum_sparse::SparseError;
 use serde::{Deserialize, Serialize};
@@ -111,9 +111,9 @@ struct Touching {
 /// What the edges see.
 #[derive(Clone, Debug, Default)]
 struct Edges {
-    /// Equivalent stresses.
-    q: Vec<f64>,
-    /// Equivalent stresses over κ, at least 1: those that the damage of the trial comes from, and those that it brings.
+    /// What they see.
+    seen: Vec<Seen>,
+    /// Equivalent stresses over κ, at least 1, then the shares of their openings: those that the damage of the trial comes from, and those that it brings.
     loading: Vec<f64>,
     image: Vec<f64>,
 }
@@ -249,14 +249,18 @@ impl StaticSolver {
             {
                 self.pace.trend.clear();
                 self.pace.trend.extend(
-                    self.edges.q.iter().zip(&points).map(|(q, point)| (q / point.kappa - 1.0).max(0.0) / growth),
+                    self.edges
+                        .seen
+                        .iter()
+                        .zip(&points)
+                        .map(|(seen, point)| (seen.stress / point.kappa - 1.0).max(0.0) / growth),
                 );
                 if !monotone && iterations <= ITERATIONS[1] {
                     self.pace.growth = (1.4 * self.pace.growth).min(GROWTH[2]);
                     self.pace.part = (2.0 * self.pace.part).min(1.0);
                 }
                 let before = scene.solid.displacement.clone();
-                scene.solid.raise_history(&self.edges.q, &self.trial, &before, &self.response.start);
+                scene.solid.raise_history(&self.edges.seen, &self.trial, &before, &self.response.start);
                 return scene.accept_equilibrium(&self.response.start, time, &mut self.applied);
             }
             let smallest = match self.settings.control {

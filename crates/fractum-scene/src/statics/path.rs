@@ -22,12 +22,12 @@ pub(super) fn largest_step(
     longest: f64,
 ) -> Option<f64> {
     let mut stresses = Vec::with_capacity(points.len());
-    let mut q = Vec::with_capacity(points.len());
+    let mut seen = Vec::with_capacity(points.len());
     let mut worst = |tau: f64| -> (f64, usize) {
         stresses.clear();
         stresses.extend(start.iter().zip(slope).map(|(&a, &b)| a + b * tau));
-        solid.equivalent_stresses(points, &stresses, |point| limit(point, growth), &mut q);
-        let ratio = |i: usize| if points[i].broken { 0.0 } else { q[i] / limit(&points[i], growth) };
+        solid.see(points, &stresses, |point| limit(point, growth), &mut seen);
+        let ratio = |i: usize| if points[i].broken { 0.0 } else { seen[i].stress / limit(&points[i], growth) };
         (0..points.len()).map(|i| (ratio(i), i)).fold((0.0, usize::MAX), |a, b| if b.0 > a.0 { b } else { a })
     };
     let mut tau = longest;
@@ -39,9 +39,9 @@ pub(super) fn largest_step(
         // Slope of the worst edge alone, by a difference towards where the root must lie.
         let h = 1e-6 * (tau.abs() + 1e-3 * longest.abs());
         let one = |tau: f64| {
-            let mut q = Vec::with_capacity(1);
-            solid.equivalent_stresses(&points[edge..=edge], &[start[edge] + slope[edge] * tau], |_| 0.0, &mut q);
-            q[0] / limit(&points[edge], growth)
+            let mut seen = Vec::with_capacity(1);
+            solid.see(&points[edge..=edge], &[start[edge] + slope[edge] * tau], |_| 0.0, &mut seen);
+            seen[0].stress / limit(&points[edge], growth)
         };
         let rise = (ratio - one(tau - h)) / h;
         if rise.is_nan() || rise <= 0.0 {
