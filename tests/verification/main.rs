@@ -6,6 +6,7 @@ mod fracture_balance;
 mod gas;
 mod leaving;
 mod meeting;
+mod phase_bar;
 mod phase_field;
 mod plane;
 mod ranks;

@@ -3,6 +3,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::material::{DamageLaw, Elastic};
+use crate::restraint::Restraint;
 
 /// Kind of all elements of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -70,7 +71,7 @@ pub enum Region {
 /// Damage regularised by a cohesive phase field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Regularisation {
-    /// Length b [m]: a crack is a band of width π b; none is twice the mean size of the elements where damage may occur.
+    /// Length b [m]: a crack is a band of width π b; none is twice the size of the elements where cracks are expected.
     pub length: Option<f64>,
 }
 
@@ -113,6 +114,11 @@ pub struct Body {
 }
 
 impl Body {
+    /// Modulus that turns the effective stress of an edge into the opening of its crack, E' [Pa].
+    pub(crate) fn opening_modulus(&self) -> f64 {
+        Restraint::of(self).modulus
+    }
+
     /// An elastic body of plain elements with small strains.
     pub fn new(name: &str, shape: ElementKind, elements: Vec<[u32; 4]>, elastic: Elastic) -> Self {
         Body {

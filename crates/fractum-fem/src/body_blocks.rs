@@ -65,10 +65,7 @@ impl BodyModel {
         }
         let (reduced_edges, largest_length_ratio) =
             threshold.as_ref().map_or((0, 0.0), |t| (t.reduced_edges, t.largest_length_ratio));
-        let phase = match (&body.damage, threshold.as_ref().and_then(|t| t.phase_sizes)) {
-            (Some(zone), Some(sizes)) => Some(Box::new(PhaseField::of(&body, zone, sizes, edge_count)?)),
-            _ => None,
-        };
+        let phase = threshold.as_ref().and_then(|t| t.phase).map(|law| Box::new(PhaseField::new(law, edge_count)));
         let of_others = softens.as_ref().filter(|_| known.is_some());
         let known =
             of_others.map(|softens| Box::new(KnownBody { softens: Arc::clone(softens), told: BTreeMap::new() }));

@@ -6,6 +6,7 @@ use fractum_math::{Sym3, Vec3};
 use crate::body::ElementKind;
 use crate::damage::EdgeField;
 use crate::edges::BodyEdges;
+use crate::element::regular_edge;
 use crate::evaluate::Block;
 use crate::solid::Solid;
 
@@ -176,6 +177,29 @@ impl Solid {
         let needed = zone.law.fracture_energy * self.crack_edges().iter().map(area).sum::<f64>();
         let taken: f64 = self.blocks.iter().filter(|block| block.body == body).map(Block::dissipated).sum();
         (needed > 0.0).then(|| taken / needed)
+    }
+
+    /// Mean size of the elements along the cracks of a body with a phase field [m]; none without one, or without a crack.
+    pub fn size_along_cracks(&self, body: usize) -> Option<f64> {
+        let model = &self.bodies[body];
+        let cracked = self.element_phase(body)?;
+        let sizes = self.element_volumes(body).iter().zip(cracked).filter(|(_, phase)| *phase > 0.5);
+        let sizes = sizes.map(|(volume, _)| regular_edge(model.body.shape, volume / model.body.depth()));
+        let (sum, count) = sizes.fold((0.0, 0.0), |(sum, count), size| (sum + size, count + 1.0));
+        (count > 0.0).then(|| sum / count)
+    }
+
+    /// Share of its volume that a body with a phase field has lost to its cracks, and the width π b of a band [m]; none without a phase field, or
+    /// where several processes have parts of the body.
+    pub fn lost_to_bands(&self, body: usize) -> Option<(f64, f64)> {
+        let model = &self.bodies[body];
+        let field = model.phase.as_ref().filter(|_| model.divided.is_none())?;
+        let (mut whole, mut lost) = (0.0, 0.0);
+        for (volume, alive) in self.element_volumes(body).iter().zip(&model.alive) {
+            whole += volume;
+            lost += if *alive { 0.0 } else { *volume };
+        }
+        Some((lost / whole, std::f64::consts::PI * field.law.length))
     }
 
     /// Whether the solid is plane.

@@ -37,23 +37,27 @@ pub enum SolidError {
     },
     /// A phase field whose length is too long for the fracture energy.
     #[error(
-        "body {body}: the regularisation length is {length:.4e} m; at ({x:.4e}, {y:.4e}, {z:.4e}) m it must stay below 8/(3π) E Gf/ft² = {limit:.4e} m: \
-         refine the mesh where damage may occur or set a smaller length (twice the element size), raise fracture_energy or lower tensile_strength, or set \
-         reduce_strength_to_fit = true"
+        "body {body}: the phase field has the length b = {length:.4e} m; with the strength at ({x:.4e}, {y:.4e}, {z:.4e}) m it may be {limit:.4e} m at most, since \
+         with a longer one damage spreads through the body without load (elements there: {size:.4e} m; b is twice that by default): take elements below \
+         {:.4e} m where cracks go, bound the damage to where elements are small (damage_where), raise fracture_energy, set regularisation = \"none\" (local \
+         damage), or set reduce_strength_to_fit = true",
+        0.5 * limit
     )]
     LengthTooLong {
         /// Name of the body.
         body: String,
-        /// Position of the worst edge [m].
+        /// Position of the strongest edge [m].
         x: f64,
-        /// Position of the worst edge [m].
+        /// Position of the strongest edge [m].
         y: f64,
-        /// Position of the worst edge [m].
+        /// Position of the strongest edge [m].
         z: f64,
         /// Length b of the body [m].
         length: f64,
         /// The largest length possible [m].
         limit: f64,
+        /// Mean size of the elements where cracks go [m].
+        size: f64,
     },
     /// A phase field in a body that cannot have one.
     #[error("body {body}: no phase field with {reason}; expected {expected}, or no regularisation")]

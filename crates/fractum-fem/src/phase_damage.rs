@@ -9,7 +9,7 @@ use crate::edges_in_step::{Advance, EdgeCells};
 use crate::evaluate::BlockLaw;
 use crate::material::equivalent_stresses;
 use crate::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, PhaseField};
-use crate::restraint::{Restraint, Seen};
+use crate::restraint::Seen;
 use crate::solid::{BodyModel, Solid};
 use crate::taken::Taken;
 
@@ -102,7 +102,7 @@ impl Solid {
     /// What drives the active edges at the present displacements.
     fn drive(&self, body: usize, field: &mut PhaseField, dt: f64) {
         let model = &self.bodies[body];
-        let compliance = 0.5 / Restraint::of(&model.body).modulus;
+        let compliance = 0.5 / model.body.opening_modulus();
         let PhaseField { active, steps, .. } = field;
         if let Some(standard) = &model.standard {
             active.par_iter_mut().with_min_len(AT_LEAST).for_each(|own| {
@@ -184,7 +184,7 @@ impl Solid {
         for (body, (model, value)) in self.bodies.iter().zip(values).enumerate() {
             let first = first(model.standard.as_ref().map_or(0, |standard| standard.field.state.len()));
             let Some(field) = &model.phase else { continue };
-            let compliance = 0.5 / Restraint::of(&model.body).modulus;
+            let compliance = 0.5 / model.body.opening_modulus();
             let seen_by = |edge: u32| match model.standard {
                 Some(_) => seen[first + edge as usize],
                 None => {
@@ -250,7 +250,7 @@ widest! {
 #[inline(always)]
 fn driven_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], steps: &mut [EdgeStep]) {
     let model = &solid.bodies[body];
-    let compliance = 0.5 / Restraint::of(&model.body).modulus;
+    let compliance = 0.5 / model.body.opening_modulus();
     let (step, own_blocks) = (solid.advance_of(model, dt), solid.own_blocks());
     let (mut strains, mut stresses, mut kappa) = ([Sym3::ZERO; FOUR], [Sym3::ZERO; FOUR], Lane::splat(ABOVE_ALL));
     let (mut states, mut softens) = ([None; FOUR], None);

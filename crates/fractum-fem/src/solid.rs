@@ -345,8 +345,8 @@ impl Solid {
         &self.bodies[index].alive
     }
 
-    /// Edges of a body whose strength was lowered to fit their length, and the largest ratio of a characteristic
-    /// length to the one at which softening snaps back.
+    /// Edges of a body whose strength was lowered to fit their length, and the largest ratio of a length to the largest one
+    /// possible: a characteristic length to that at which softening snaps back, that of a phase field to the longest it may be.
     pub fn length_report(&self, index: usize) -> (usize, f64) {
         (self.bodies[index].reduced_edges, self.bodies[index].largest_length_ratio)
     }

@@ -3,15 +3,17 @@ use fractum_parallel::{Exchange, gather};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::body::{Body, DamageZone, ElementKind, Formulation, Region};
+use crate::body::{Body, DamageZone, ElementKind, Formulation, Region, Regularisation};
 use crate::edges::BodyEdges;
 use crate::element::regular_edge;
 use crate::error::SolidError;
 use crate::phase::PhaseLaw;
-use crate::restraint::Restraint;
 
 /// Element sizes in the length of a phase field by default: of one size motion leaves the family of solutions, more costs accuracy.
 const SIZES_OF_LENGTH: f64 = 2.0;
+
+/// Largest size over the small ones that counts as the same: an irregular mesh of one size reaches 1.5 times its tenth percentile.
+const ONE_SIZE: f64 = 1.5;
 
 /// Characteristic length that an edge of lowered or raised strength has at most, over the one at which softening snaps back.
 const IN_RESERVE: f64 = 0.9;
@@ -26,10 +28,10 @@ pub(crate) struct Threshold {
     length: Vec<f64>,
     /// Edges whose strength was lowered to fit their length.
     pub(crate) reduced_edges: usize,
-    /// Largest ratio of a characteristic length to the largest one that softening allows.
+    /// Largest ratio of a length to the largest one possible: at which softening snaps back, or that a phase field may have.
     pub(crate) largest_length_ratio: f64,
-    /// Length of the phase field, where there is one, and mean size of the elements in which it may occur [m].
-    pub(crate) phase_sizes: Option<[f64; 2]>,
+    /// The law of the phase field, where there is one.
+    pub(crate) phase: Option<PhaseLaw>,
 }
 
 impl Threshold {
@@ -50,15 +52,15 @@ impl Threshold {
             Some(known) => known.par_iter().map(|&edge| of_edge(edge)).collect(),
             None => (0..edges.len() as u32).into_par_iter().map(of_edge).collect(),
         };
-        let phase_sizes = zone.regularisation.map(|regularisation| {
-            let size = mean_size(body, zone, edges, volumes);
-            [regularisation.length.unwrap_or(SIZES_OF_LENGTH * size), size]
-        });
-        let phase_length = phase_sizes.map(|[length, _]| length);
+        let law = |regularisation: Regularisation| {
+            let size = size_where_cracks_go(body, zone, edges, volumes);
+            PhaseLaw::of(body, zone, [regularisation.length.unwrap_or(SIZES_OF_LENGTH * size), size])
+        };
+        let phase = zone.regularisation.map(law).transpose()?;
         let (mut lengths, mut strength) = (Lengths::default(), Vec::with_capacity(length.len()));
         for (place, &length) in length.iter().enumerate() {
             let edge = known.map_or(place as u32, |known| known[place]);
-            strength.push(lengths.arm(body, zone, edge, phase_length.unwrap_or(length)));
+            strength.push(lengths.arm(body, zone, edge, phase.as_ref().ok_or(length)));
         }
         if let Some(exchange) = exchange {
             lengths = gather(exchange, &lengths).into_iter().fold(Lengths::default(), Lengths::with);
@@ -68,13 +70,13 @@ impl Threshold {
             let [i, j] = edges.nodes(edge);
             let [x, y, z] = ((nodes[i as usize] + nodes[j as usize]) * 0.5).into();
             let body = body.name.clone();
-            return Err(match phase_length {
-                Some(length) => SolidError::LengthTooLong { body, x, y, z, length, limit },
+            return Err(match &phase {
+                Some(law) => SolidError::LengthTooLong { body, x, y, z, length, limit, size: law.size },
                 None => SolidError::ElementTooLarge { body, x, y, z, length, limit, count: reduced_edges },
             });
         }
         let known = known.map(<[u32]>::to_vec);
-        Ok(Threshold { known, strength, length, reduced_edges, largest_length_ratio: largest_ratio, phase_sizes })
+        Ok(Threshold { known, strength, length, reduced_edges, largest_length_ratio: largest_ratio, phase })
     }
 
     fn place(&self, edge: u32) -> usize {
@@ -97,7 +99,7 @@ impl Threshold {
 struct Lengths {
     /// Edges whose strength was lowered to fit their length.
     reduced_edges: usize,
-    /// Largest ratio of a length to the one at which softening snaps back.
+    /// Largest ratio of a length to the largest one possible.
     largest_ratio: f64,
     /// The edge with that ratio, the first of several, where it is too large.
     worst: Option<TooLong>,
@@ -108,7 +110,7 @@ struct Lengths {
 struct TooLong {
     edge: u32,
     length: f64,
-    /// Of its length to that at which softening snaps back, which is the last.
+    /// Of its length to the largest one possible, which is the last [m].
     ratio: f64,
     limit: f64,
 }
@@ -116,16 +118,16 @@ struct TooLong {
 impl Lengths {
     /// Strength of an edge [Pa], lowered to fit its length; infinite where damage may not occur.
     ///
-    /// - `length`: over which it softens [m]
-    fn arm(&mut self, body: &Body, zone: &DamageZone, edge: u32, length: f64) -> f64 {
+    /// - `over`: the phase field by which it softens, or without one its length [m]
+    fn arm(&mut self, body: &Body, zone: &DamageZone, edge: u32, over: Result<&PhaseLaw, f64>) -> f64 {
         if matches!(&zone.region, Region::Edges(marked) if !marked[edge as usize]) {
             return f64::INFINITY;
         }
         let strength = zone.law.tensile_strength * zone.strength_factor.get(edge as usize).copied().unwrap_or(1.0);
-        let (modulus, energy) = (Restraint::of(body).modulus, zone.law.fracture_energy);
-        let limit = match zone.regularisation {
-            Some(_) => PhaseLaw::largest_length(modulus, energy, strength),
-            None => zone.law.softening.largest_length(modulus, strength, energy),
+        let (modulus, energy) = (body.opening_modulus(), zone.law.fracture_energy);
+        let (length, limit) = match over {
+            Ok(law) => (law.length, law.largest_length(strength)),
+            Err(length) => (length, zone.law.softening.largest_length(modulus, strength, energy)),
         };
         let ratio = length / limit;
         self.largest_ratio = self.largest_ratio.max(ratio);
@@ -136,8 +138,8 @@ impl Lengths {
         if self.worst.as_ref().is_none_or(|worst| ratio > worst.ratio) {
             self.worst = Some(TooLong { edge, length, ratio, limit });
         }
-        // The limit goes with 1/f_t².
-        strength * (IN_RESERVE / ratio).sqrt()
+        // The limit goes with 1/f_t²; that of a phase field has a reserve of its own.
+        strength * (if over.is_ok() { 1.0 } else { IN_RESERVE } / ratio).sqrt()
     }
 
     /// The same of other edges too.
@@ -167,16 +169,16 @@ pub(crate) fn characteristic_length(body: &Body, around: &[u32], volume: impl Fn
     factor * sum / around.len() as f64
 }
 
-/// Mean size of the elements in which damage may occur [m].
-fn mean_size(body: &Body, zone: &DamageZone, edges: &BodyEdges, volumes: &[f64]) -> f64 {
+/// Mean size of the elements where cracks are expected [m]: of those that may be damaged the small ones, up to
+/// [`ONE_SIZE`] times the size that a tenth of them stays below. Whoever grades a mesh makes elements small where it will crack.
+fn size_where_cracks_go(body: &Body, zone: &DamageZone, edges: &BodyEdges, volumes: &[f64]) -> f64 {
     let count = body.shape.edge_count();
     let armed = |edge: u32| !matches!(&zone.region, Region::Edges(marked) if !marked[edge as usize]);
     let may_break = |element| edges.of_element(element)[..count].iter().any(|&edge| armed(edge));
     let sizes = (0..).zip(volumes).filter(|(element, _)| may_break(*element));
-    let (mut sum, mut elements) = (0.0, 0);
-    for (_, volume) in sizes {
-        sum += regular_edge(body.shape, volume / body.depth());
-        elements += 1;
-    }
-    sum / f64::from(elements.max(1))
+    let mut sizes: Vec<f64> = sizes.map(|(_, volume)| regular_edge(body.shape, volume / body.depth())).collect();
+    sizes.sort_unstable_by(f64::total_cmp);
+    let Some(small) = sizes.get(sizes.len() / 10) else { return 0.0 };
+    let taken = &sizes[..sizes.partition_point(|size| *size <= ONE_SIZE * small)];
+    taken.iter().sum::<f64>() / taken.len() as f64
 }

@@ -242,6 +242,24 @@ pub enum StepError {
         /// Estimated stable step [s].
         limit: f64,
     },
+    /// The cracks of a phase field have taken most of a body.
+    #[error(
+        "step {step}, t = {time:.6e} s: body {body} has lost {:.0} % of its volume to cracks: they lie nearer to each other than the bands of its phase \
+         field are wide ({width:.3e} m), and leave no fragments - take a smaller length on smaller elements, or regularisation = \"none\" (local damage)",
+        100.0 * share
+    )]
+    NoFragments {
+        /// Step number.
+        step: u64,
+        /// Time [s].
+        time: f64,
+        /// Name of the body.
+        body: String,
+        /// Of its volume, lost.
+        share: f64,
+        /// Width of a band [m].
+        width: f64,
+    },
     /// The energy balance does not close.
     #[error(
         "step {step}, t = {time:.6e} s: the energy balance is off by {relative:.2e} of the energy put in (limit {allowed:.0e}); largest kinetic \

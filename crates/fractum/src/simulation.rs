@@ -233,6 +233,10 @@ impl Simulation {
             let Simulation { recorder, scene, phases, .. } = self;
             phases.timed(Part::Output, || recorder.row(scene, measured, is_last))?;
             self.messages.warn_of_balance(&self.scene, self.case.solver.balance_warning, self.solver.rests())?;
+            if let Err(error) = self.scene.refuse_bands_without_fragments() {
+                self.end = Some(End::Failed(error));
+                return Ok(());
+            }
             if let Some(why) = self.falls_below() {
                 self.end_stage(why)?;
             }

@@ -34,8 +34,21 @@ impl Degradation {
         Degradation { endless: end.is_none(), a2, a3 }
     }
 
-    /// a₁ below which the curve snaps back in one dimension; b is then 8/(3π) E G_f/f_t² or more.
-    pub const LEAST_A1: f64 = 1.5;
+    /// a₁ above which an unloaded point stays intact, so that b must be below 4/(π a₁) E G_f/f_t².
+    ///
+    /// With Y at its floor f_t²/2E the energy of a point without gradient, over f_t²/2E, is F(d) = ω(d) + ½ a₁ (2d - d²). With
+    /// P = 1 + a₂ d + a₃ d², F(d) ≥ F(0) where a₁ ≥ B(d) = \[2P/(2 - d) - (1 - d)^p\]/(d P). Were some F(d) lower, a front of
+    /// damage would run from any crack through the body without load. B(0) = a₂ + p + ½ = 2 (2 s)^(2/3) with the initial
+    /// slope s of the softening curve over f_t²/G_f, and B(1) = 2; curves with a late kink have the largest B in between.
+    pub fn least_a1(&self) -> f64 {
+        const PARTS: u32 = 4096;
+        let bound = |d: f64| {
+            let (shape, [power, ..]) = (1.0 + d * (self.a2 + d * self.a3), self.powers(Lane::splat(d)));
+            (2.0 * shape / (2.0 - d) - power.0[0]) / (d * shape)
+        };
+        let p = if self.endless { 2.5 } else { 2.0 };
+        (1..=PARTS).map(|i| bound(f64::from(i) / f64::from(PARTS))).fold(self.a2 + p + 0.5, f64::max)
+    }
 
     /// (1-d)^p and its derivatives.
     #[inline(always)]
@@ -154,7 +167,39 @@ mod tests {
         }
     }
 
+    /// The energy of an unloaded point, over f_t²/2E.
+    fn unloaded(law: Degradation, a1: f64, d: f64) -> f64 {
+        law.stiffness(a1, d) + 0.5 * a1 * d * (2.0 - d)
+    }
+
+    #[test]
+    fn least_a1_follows_from_the_initial_slope() {
+        for (softening, slope, length) in [
+            (Softening::Exponential, 1.0f64, 0.401),
+            (Softening::PETERSSON, 5.0 / 6.0, 0.453),
+            (Softening::Linear, 0.5, 0.637),
+        ] {
+            let least = curve(softening).least_a1();
+            assert!((least / (2.0 * (2.0 * slope).powf(2.0 / 3.0)) - 1.0).abs() < 1e-9, "{softening:?}: {least}");
+            assert!((4.0 / (std::f64::consts::PI * least) - length).abs() < 5e-4, "{softening:?}");
+        }
+    }
+
     proptest! {
+        /// Over all kinks: above the least a₁ nothing lies below d = 0, and a little below it something does.
+        #[test]
+        fn an_unloaded_point_stays_intact_above_the_least_a1_alone(
+            stress in 0.01f64..0.99, fraction in 0.01f64..0.99, kind in 0usize..3, above in 1.001f64..30.0,
+        ) {
+            let kinked = Softening::Bilinear { stress, opening: 2.0 * fraction / (stress + fraction) };
+            let law = curve([Softening::Exponential, Softening::Linear, kinked][kind]);
+            let least = law.least_a1();
+            prop_assert!(least >= 2.0 - 1e-12);
+            let lowest = |a1: f64| (1..2000).map(|i| unloaded(law, a1, f64::from(i) / 2000.0)).fold(f64::INFINITY, f64::min);
+            prop_assert!(lowest(above * least) > 1.0, "{}", lowest(above * least));
+            prop_assert!(lowest(0.99 * least) < 1.0, "{}", lowest(0.99 * least));
+        }
+
         #[test]
         fn stiffness_falls_and_its_derivatives_are_those_of_differences(d in 1e-4f64..0.999, a1 in 1.5f64..500.0) {
             for softening in ALL {

@@ -278,27 +278,14 @@ impl<'a> Context<'a> {
                     &part.place,
                     format!(": strength lowered on {reduced} edges that are too long for the fracture energy"),
                 ));
-            } else if ratio > 0.25 {
-                let (what, advice) = match solid.phase_sizes(index) {
-                    None => (
-                        "longest element",
-                        "elements below a quarter of that length resolve the softening; refine where cracks are expected",
-                    ),
-                    Some(_) => (
-                        "length of the phase field",
-                        "below a quarter of it the band is narrow beside the softening zone; refine where cracks are expected",
-                    ),
-                };
-                warnings.push(
-                    Diagnostic::warning(
-                        &part.place,
-                        format!(
-                            ": the {what} reaches {:.0} % of the length at which softening snaps back",
-                            100.0 * ratio
-                        ),
-                    )
-                    .remedy(advice),
+            } else if solid.phase_sizes(index).is_none() && ratio > 0.25 {
+                let found = format!(
+                    ": the longest element reaches {:.0} % of the length at which softening snaps back",
+                    100.0 * ratio
                 );
+                warnings.push(Diagnostic::warning(&part.place, found).remedy(
+                    "elements below a quarter of that length resolve the softening; refine where cracks are expected",
+                ));
             }
         }
         warnings

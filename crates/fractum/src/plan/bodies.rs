@@ -6,6 +6,7 @@ use fractum_fem::{ElementKind, Formulation, Kinematics, Plane};
 use fractum_io::case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody};
 use fractum_io::number::quantity;
 use fractum_math::elementary::cbrt;
+use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_prepare::{BondedReport, FoundStrengths, InterfaceReport, Joints, Origin};
 use fractum_scene::Scene;
 
@@ -212,15 +213,23 @@ impl Plan {
             self.add(
                 "",
                 format!(
-                    "process zone E Gf/ft\u{b2} = {}; {} at {:.1} % of the snap-back length",
+                    "process zone E Gf/ft\u{b2} = {}; {} at {:.1} % of the {}",
                     quantity(zone, "m"),
-                    if d.regularisation.is_some() { "length of the phase field" } else { "longest element" },
-                    100.0 * ratio
+                    if d.regularisation.is_some() { "length b of the phase field" } else { "longest element" },
+                    100.0 * ratio,
+                    if d.regularisation.is_some() { "longest possible" } else { "snap-back length" }
                 ),
             );
             if let Some([length, size]) = scene.solid.phase_sizes(index) {
-                let sizes = length / size;
-                self.add("", format!("phase field of length {}, {sizes:.1} elements", quantity(length, "m")));
+                let depth = smallest_extent(body, &scene.solid.reference);
+                self.add("", format!(
+                    "phase field of length b = {}, {:.1} of the elements where cracks are expected ({}); b is {:.1} % of the smallest extent of the body, {}: in bending across it a peak without notch is about that much too high (0.9 to 1.2 times)",
+                    quantity(length, "m"),
+                    length / size,
+                    quantity(size, "m"),
+                    100.0 * length / depth,
+                    quantity(depth, "m")
+                ));
             }
             // A phase field does not follow rows.
             let in_rows = if d.regularisation.is_none() { rows::share(body, &scene.solid.reference) } else { 0.0 };
@@ -232,6 +241,23 @@ impl Plan {
             }
         }
     }
+}
+
+/// Smallest extent of a body, of a plane one in its plane, along its principal axes [m].
+fn smallest_extent(body: &fractum_fem::Body, nodes: &[Vec3]) -> f64 {
+    let corners = || body.elements.iter().flat_map(|e| &e[..body.shape.node_count()]).map(|&n| nodes[n as usize]);
+    let count = corners().count() as f64;
+    let centre = corners().sum::<Vec3>() / count;
+    let spread: Mat3 = corners().map(|p| (p - centre) * (p - centre).transpose()).sum();
+    let (_, axes) = Sym3::symmetric_part(&spread).eigen();
+    let extent = |axis: usize| {
+        let along = corners().map(|p| p.dot(&axes.column(axis)));
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        high - low
+    };
+    let mut extents = [0, 1, 2].map(extent);
+    extents.sort_by(f64::total_cmp);
+    if body.shape == ElementKind::T3 { extents[1] } else { extents[0] }
 }
 
 fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {

@@ -222,9 +222,21 @@ impl Simulation {
         Ok(())
     }
 
-    /// Warns of phase fields whose bands are sheared or pressed, as those of two cracks are that have become one.
+    /// Warns of phase fields whose length is short for the elements that cracks went through, or whose bands are sheared or pressed, as those of two cracks are that have become one.
     fn warn_of_merged_bands(&mut self) -> Result<(), Failure> {
         let solid = &self.scene.solid;
+        for body in 0..solid.body_count() {
+            let Some(([length, _], size)) = solid.phase_sizes(body).zip(solid.size_along_cracks(body)) else {
+                continue;
+            };
+            if length < LEAST_SIZES * size {
+                let name = &solid.body(body).name;
+                self.messages.warn(format!(
+                    "warning: body \"{name}\": its cracks ran through elements of {size:.2e} m, and the length of its phase field, {length:.2e} m, is {:.1} of them: a band needs {LEAST_SIZES} at least; refine the mesh where the cracks went, or set a longer length",
+                    length / size
+                ))?;
+            }
+        }
         let bodies = (0..solid.body_count()).filter_map(|body| {
             let [length, _] = solid.phase_sizes(body)?;
             Some((&solid.body(body).name, solid.cost_of_bands(body)?, length))
@@ -240,6 +252,8 @@ impl Simulation {
     }
 }
 
+/// Elements that the length of a phase field must span.
+const LEAST_SIZES: f64 = 1.5;
 /// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is at most 1.1.
 const SHEARED: f64 = 1.3;
 /// Share of a body's mass in single nodes above which its fragments tell little.

@@ -189,7 +189,9 @@ fn solid(draw: &mut Draw, kind: &'static str) -> RandomScene {
 /// `[materials.stuff.damage]`: strong enough for its elements, tough over decades.
 fn damage(draw: &mut Draw, kind: &str, material: &Elastic, strain: f64, edge: f64) -> String {
     let strength = material.young_modulus * strain;
-    let toughness = strength * strain * edge * draw.decades(3.0, 100.0);
+    // The length of a phase field is bounded, two elements by default.
+    let least = if kind == "phase field" { 8.0 } else { 3.0 };
+    let toughness = strength * strain * edge * draw.decades(least, 100.0);
     let softening = draw.one_of(&["exponential", "linear"]);
     let mut text = format!(
         "[materials.stuff.damage]\ncriterion = \"rankine\"\ntensile_strength = \"{} Pa\"\nfracture_energy = \"{} J/m^2\"\n\

@@ -1,0 +1,164 @@
+//! A bar under a phase field over the whole range of its length: strength, energy, damage beside the crack, and the refusal beyond.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use fractum_fem::{
+    Body, DamageLaw, DamageZone, Elastic, ElementKind, Plane, Region, Regularisation, Softening, Solid, SolidError,
+};
+use fractum_math::Vec3;
+use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
+use fractum_scene::coupling::Debris;
+use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSettings, StaticSolver};
+use fractum_scene::{ContactParameters, EnergyKind, Loads, Motion, Scene, Support, Supports};
+use fractum_tests::{CONCRETE, settings};
+
+/// Cells of the bar, across and along, and their size [m].
+const ACROSS: u32 = 2;
+const ALONG: u32 = 34;
+const SIZE: f64 = 0.004;
+/// Half of the part that is weaker [m], and by how much.
+const HALF: f64 = 4.0 * SIZE;
+const WEAKER: f64 = 0.9;
+const FRACTURE_ENERGY: f64 = 100.0;
+const YOUNG: f64 = CONCRETE.young_modulus;
+
+/// Softening curves with their initial slopes over f_t²/G_f.
+const CURVES: [(Softening, f64); 3] =
+    [(Softening::Exponential, 1.0), (Softening::PETERSSON, 5.0 / 6.0), (Softening::Linear, 0.5)];
+
+/// Length b that a bar of these elements has by default [m].
+fn length(kind: ElementKind) -> f64 {
+    2.0 * SIZE * if kind == ElementKind::T3 { (2.0 / 3f64.sqrt()).sqrt() } else { 2f64.sqrt().cbrt() }
+}
+
+/// The strength at which that length is a part of the longest possible [Pa].
+fn strength(kind: ElementKind, slope: f64, part: f64) -> f64 {
+    let least_a1 = 2.0 * (2.0 * slope).powf(2.0 / 3.0) + 0.5;
+    (4.0 / (PI * least_a1) * YOUNG * FRACTURE_ENERGY * part / length(kind)).sqrt()
+}
+
+fn body(kind: ElementKind, law: DamageLaw, reduce: bool) -> (Vec<Vec3>, Body) {
+    let jitter = Some(Jitter { fraction: 0.15, seed: 3 });
+    let extent = [ALONG, ACROSS, ACROSS].map(|cells| SIZE * f64::from(cells));
+    let (nodes, elements) = match kind {
+        ElementKind::T3 => {
+            let mesh = structured_rectangle([ALONG, ACROSS], [extent[0], extent[1]], jitter);
+            (mesh.nodes, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect())
+        }
+        ElementKind::T4 => {
+            let mesh = structured_box([ALONG, ACROSS, ACROSS], Vec3::from(extent), jitter);
+            (mesh.nodes, mesh.tetrahedra)
+        }
+    };
+    let body = Body::new("bar", kind, elements, Elastic { poisson_ratio: 0.0, ..CONCRETE }).smoothed();
+    let body = Body { plane: Plane::Stress, thickness: extent[2], ..body };
+    let factor = |p: &Vec3| if (p.x - 0.5 * extent[0]).abs() < HALF { WEAKER } else { 1.0 };
+    let zone = DamageZone {
+        law,
+        region: Region::Everywhere,
+        strength_factor: body.edge_midpoints(&nodes).iter().map(factor).collect(),
+        reduce_strength_to_fit: reduce,
+        regularisation: Some(Regularisation { length: None }),
+    };
+    (nodes, Body { damage: Some(zone), ..body })
+}
+
+/// Strength over that of the weak part, energy of the crack over G_f A, and the largest damage far from it, of a bar that is torn.
+fn torn(kind: ElementKind, law: DamageLaw) -> [f64; 3] {
+    let (nodes, body) = body(kind, law.clone(), false);
+    let solid = Solid::new(nodes, vec![body]).unwrap();
+    let end = SIZE * f64::from(ALONG);
+    let at = |keep: &dyn Fn(&Vec3) -> bool| -> Vec<u32> {
+        (0..solid.reference.len() as u32).filter(|&n| keep(&solid.reference[n as usize])).collect()
+    };
+    let pull = 20.0 * (law.tensile_strength / YOUNG * end + FRACTURE_ENERGY / law.tensile_strength);
+    let right = at(&|p| p.x > end - 1e-9);
+    let corner = at(&|p| p.norm() < 1e-9);
+    let side = at(&|p| p.x < 1e-9 && p.z < 1e-9);
+    let supports = vec![
+        Support::new("left", at(&|p| p.x < 1e-9), 0, Motion::Fixed),
+        Support::new("corner", corner, 1, Motion::Fixed),
+        Support::new("side", side, 2, Motion::Fixed),
+        Support::new("right", right.clone(), 0, Motion::Displacement(Arc::new(move |t, _| pull * t))),
+    ];
+    let supports = Supports::new(supports, &solid.reference).unwrap();
+    let (loads, count) = (Loads::new(Vec::new(), solid.reference.len()), solid.body_count());
+    let debris = Debris::new(&solid, vec![ContactParameters::default(); count]);
+    let mut scene = Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(1.0, f64::INFINITY));
+    let statics = StaticSettings {
+        control: Control::Path,
+        step: 0.02,
+        end: 1.0,
+        most_steps: 2000,
+        tolerance: 1e-5,
+        linear_tolerance: 1e-12,
+        linear: LinearSolver::Direct,
+        no_equilibrium: NoEquilibrium::Stop,
+        damping: None,
+    };
+    let mut solver = StaticSolver::new(&scene, statics).unwrap();
+    let places = scene.supports().places(&right);
+    let (mut peak, mut now) = (0.0f64, 0.0);
+    while !solver.is_finished(&scene) && now >= 0.01 * peak {
+        solver.step(&mut scene).unwrap();
+        now = scene.supports().reaction(&places, &Vec3::x());
+        peak = peak.max(now);
+    }
+    assert!(now < 0.01 * peak, "{kind:?} {law:?}: torn");
+    let ledger = scene.ledger();
+    assert!(ledger.residual_max_relative < 1e-3, "{kind:?} {law:?}: {ledger:?}");
+    let area = (SIZE * f64::from(ACROSS)).powi(2);
+    let far = HALF + 4.0 * length(kind);
+    let solid = &scene.solid;
+    let corners = kind.node_count();
+    let place =
+        |e: &[u32; 4]| e[..corners].iter().map(|&n| solid.reference[n as usize].x).sum::<f64>() / corners as f64;
+    let elements = solid.body(0).elements.iter().zip(solid.element_damages(0));
+    let beside = elements.filter(|(e, _)| (place(e) - 0.5 * end).abs() > far);
+    [
+        peak / (area * WEAKER * law.tensile_strength),
+        (ledger[EnergyKind::Damage] + ledger[EnergyKind::Removed]) / (area * FRACTURE_ENERGY),
+        beside.map(|(_, damage)| damage).fold(0.0, f64::max),
+    ]
+}
+
+#[test]
+fn a_bar_has_its_strength_and_energy_at_any_length_that_is_allowed() {
+    for kind in [ElementKind::T3, ElementKind::T4] {
+        for (softening, slope) in CURVES {
+            for part in [0.1, 0.5, 0.94] {
+                let strength = strength(kind, slope, part);
+                let law = DamageLaw { softening, ..DamageLaw::rankine(strength, FRACTURE_ENERGY) };
+                let [peak, energy, beside] = torn(kind, law);
+                let name = format!("{kind:?} {softening:?} {part}: {peak:.4} {energy:.4} {beside:.1e}");
+                println!("{name}");
+                assert!((peak - 1.0).abs() < 0.02, "{name}");
+                assert!((energy - 1.0).abs() < 0.05, "{name}");
+                assert!(beside < 0.01, "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_longer_one_is_refused_or_its_strength_lowered() {
+    for kind in [ElementKind::T3, ElementKind::T4] {
+        for (softening, slope) in CURVES {
+            let strength = strength(kind, slope, 1.1);
+            let law = DamageLaw { softening, ..DamageLaw::rankine(strength, FRACTURE_ENERGY) };
+            let (nodes, refused) = body(kind, law.clone(), false);
+            let Err(error) = Solid::new(nodes, vec![refused]) else { panic!("{kind:?} {softening:?}: refused") };
+            assert!(matches!(error, SolidError::LengthTooLong { .. }), "{error}");
+            let text = error.to_string();
+            for remedy in
+                ["elements below", "damage_where", "fracture_energy", "regularisation", "reduce_strength_to_fit"]
+            {
+                assert!(text.contains(remedy), "{text}");
+            }
+            let (nodes, lowered) = body(kind, law, true);
+            let solid = Solid::new(nodes, vec![lowered]).unwrap();
+            assert!(solid.length_report(0).0 > 0, "{kind:?} {softening:?}");
+        }
+    }
+}
