@@ -152,7 +152,7 @@ fn a_longer_one_is_refused_or_its_strength_lowered() {
             assert!(matches!(error, SolidError::LengthTooLong { .. }), "{error}");
             let text = error.to_string();
             for remedy in
-                ["elements below", "damage_where", "fracture_energy", "regularisation", "reduce_strength_to_fit"]
+                ["elements below", "damage_where", "fracture_energy", "local damage", "reduce_strength_to_fit"]
             {
                 assert!(text.contains(remedy), "{text}");
             }

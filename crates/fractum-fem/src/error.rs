@@ -37,10 +37,10 @@ pub enum SolidError {
     },
     /// A phase field whose length is too long for the fracture energy.
     #[error(
-        "body {body}: the phase field has the length b = {length:.4e} m; with the strength at ({x:.4e}, {y:.4e}, {z:.4e}) m it may be {limit:.4e} m at most, since \
-         with a longer one damage spreads through the body without load (elements there: {size:.4e} m; b is twice that by default): take elements below \
-         {:.4e} m where cracks go, bound the damage to where elements are small (damage_where), raise fracture_energy, set regularisation = \"none\" (local \
-         damage), or set reduce_strength_to_fit = true",
+        "body {body}: the phase field has the length b = {length:.4e} m; with the strength at ({x:.4e}, {y:.4e}, {z:.4e}) m it may be {limit:.4e} m at most: a \
+         longer one lets damage spread through the body without load. b is twice the element size where cracks are expected, {size:.4e} m, unless it is given: \
+         take elements below {:.4e} m there, bound the damage to where elements are small (damage_where), raise fracture_energy, take local damage \
+         (regularisation = \"none\"), or set reduce_strength_to_fit = true",
         0.5 * limit
     )]
     LengthTooLong {

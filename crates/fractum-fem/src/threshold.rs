@@ -182,3 +182,37 @@ fn size_where_cracks_go(body: &Body, zone: &DamageZone, edges: &BodyEdges, volum
     let taken = &sizes[..sizes.partition_point(|size| *size <= ONE_SIZE * small)];
     taken.iter().sum::<f64>() / taken.len() as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use fractum_mesh::generate::{Jitter, structured_rectangle};
+
+    use super::*;
+    use crate::material::{DamageLaw, Elastic};
+    use crate::solid::Solid;
+
+    /// Length and element size of a plate of 40 x 10 cells of 10 mm, whose points are moved along x.
+    fn sizes(jitter: Option<Jitter>, moved: impl Fn(f64) -> f64) -> [f64; 2] {
+        let mesh = structured_rectangle([40, 10], [0.4, 0.1], jitter);
+        let nodes = mesh.nodes.iter().map(|p| Vec3::new(moved(p.x), p.y, p.z)).collect();
+        let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let mut body = Body::new("plate", ElementKind::T3, elements, elastic).smoothed();
+        body = body.with_damage(DamageLaw::rankine(3e6, 1000.0));
+        body.damage.as_mut().unwrap().regularisation = Some(Regularisation { length: None });
+        Solid::new(nodes, vec![body]).unwrap().phase_sizes(0).unwrap()
+    }
+
+    #[test]
+    fn length_of_a_phase_field_is_two_elements_of_the_refined_part() {
+        let one = 0.01 * (2.0 / 3f64.sqrt()).sqrt();
+        for seed in 1..4 {
+            let [length, size] = sizes(Some(Jitter { fraction: 0.2, seed }), |x| x);
+            assert!((size / one - 1.0).abs() < 0.02 && (length / size - 2.0).abs() < 1e-12, "{size} of {one}");
+            // Four times as long outside the middle fifth: 1.96 times the refined size in the mean of all.
+            let graded = |x: f64| x + 3.0 * ((x - 0.24).max(0.0) - (0.16 - x).max(0.0));
+            let [_, size] = sizes(Some(Jitter { fraction: 0.2, seed }), graded);
+            assert!((size / one - 1.0).abs() < 0.05, "{size} of {one}");
+        }
+    }
+}
