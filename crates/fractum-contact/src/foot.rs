@@ -16,9 +16,19 @@ pub struct Foot {
     pub distance: f64,
     /// Mean curvature of the ground there [1/m], positive where it bulges towards the sphere.
     pub curvature: f64,
-    /// Share of its force that acts, 0 to 1: below 1 where a concave edge is so shallow that two contacts are
-    /// almost one.
+    /// Factor of its force: 1 of a contact, -1 of a pass between two, at which they count once from there on.
     pub weight: f64,
-    /// The other contact that it is most nearly one with, by its place among the feet.
-    pub twin: Option<u32>,
+    /// Factor of its energy.
+    pub energy: f64,
+    /// Whether only the elastic force along the normal acts, without memory: places around a hollow.
+    pub elastic: bool,
+}
+
+impl Foot {
+    /// A contact.
+    ///
+    /// - `offset` [m]: vector from the centre; `normal`: unit vector into the ground; `distance` [m] along it
+    pub(crate) fn contact(feature: u32, facet: u32, offset: Vec3, normal: Vec3, distance: f64) -> Self {
+        Foot { feature, facet, offset, normal, distance, curvature: 0.0, weight: 1.0, energy: 1.0, elastic: false }
+    }
 }

@@ -3,7 +3,7 @@
 use fractum_math::Vec3;
 
 use crate::foot::Foot;
-use crate::passes::Passes;
+use crate::passes::{Passes, Patch};
 use crate::surface::{FacetMesh, Feature};
 
 /// Distance between two places, over the radius, below which they are one; it only has to be above rounding.
@@ -17,13 +17,16 @@ const SAME: f64 = 1e-11;
 ///    into facets, and all in a corner.
 /// 2. *Distance*: contacts are taken from the nearest on; between parts that share no edge, one that does not rise above
 ///    the tangent plane of a nearer one is covered by it (Santasusana 2016; Oñate et al. 2017).
-/// 3. *Weight*: where the surface is concave a further contact appears at a finite overlap if the edge is so shallow that
-///    the sphere reaches it. Contacts i and j of a part are separated by a pass: the distance p at which one would have to
-///    cross the surface between them, over the lowest edges on the way. Each counts with s_i/(s_i + Σ φ_ij s_j); its
-///    standing s is the least of 2 (p - d_i)/((p - d_i) + (p - d_j)), at most 1: zero where it appears. The unity
-///    φ_ij = (r - p)/(r - d), with the nearer of both distances, is one in a plane and zero where the sphere does not reach
-///    the pass. So the force has no jump and does not depend on the cut of the surface, and a plane that is bent by
-///    rounding is one plane.
+/// 3. *Energy*: the energy of a sphere is ∫ F(r - s) n(s) ds from 0 to r, with the force F of the law at an overlap and the number
+///    n(s) of separate pieces that a ball of radius s about the centre cuts out of the surface. A piece begins at a contact and two become one at the pass
+///    between them, the place at which one has to cross the surface from one to the other: each contact adds its energy U(r - d), each
+///    pass that joins two contacts takes U(r - p). The force is the derivative: each distance acts at its own place, with the
+///    sign of its energy. A contact that appears on a concave edge does so together with its pass, at one place, so that both cancel; two walls
+///    that the sphere cannot cross between are two, a plane is one however it is cut or bent by rounding.
+/// 4. *Hollows*: pieces may close to a ring around the bottom of a hollow, over a last pass at p; from the bottom at q on the ring is filled. Which of
+///    the passes of a ring is the last changes with the place of the sphere, and the force would jump there. Where the hollow is shallow, r - q above half of r - p, the
+///    energy is less by U(r - p) - U(r - q), which sets all passes of the ring equal; of deeper ones, and of holes, none of it is taken, and between both
+///    a part (see `Passes`).
 #[derive(Clone, Debug, Default)]
 pub struct DoubleHierarchy {
     found: Vec<Foot>,
@@ -52,7 +55,7 @@ impl DoubleHierarchy {
             if square < radius * radius {
                 let distance = square.sqrt();
                 let normal = if distance > 0.0 { offset / distance } else { offset };
-                found.push(Foot { feature, facet, offset, normal, distance, curvature: 0.0, weight: 1.0, twin: None });
+                found.push(Foot::contact(feature, facet, offset, normal, distance));
             }
         }
         if found.len() > 1 {
@@ -69,8 +72,8 @@ impl DoubleHierarchy {
                 feet.push(*foot);
             }
         }
-        if feet.len() > 1 {
-            passes.weigh(feet, found, surface, points, centre, radius);
+        if found.len() > 1 {
+            passes.add_to(feet, &Patch { found, candidates, surface, points, centre, radius });
         }
     }
 }

@@ -39,7 +39,7 @@ pub(crate) fn foot_from_inside(
     let corners = surface.corners(facet);
     let edge = (points[corners[1] as usize] - points[corners[0] as usize]).norm();
     let normal = if distance > ON_THE_SURFACE * edge { -offset / distance } else { -outward.normalize() };
-    Some(Foot { feature, facet, offset, normal, distance: -distance, curvature: 0.0, weight: 1.0, twin: None })
+    Some(Foot::contact(feature, facet, offset, normal, -distance))
 }
 
 /// Direction out of the body at a feature.

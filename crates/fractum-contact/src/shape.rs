@@ -118,7 +118,7 @@ pub struct Outside {
 }
 
 fn foot(feature: u32, normal: Vec3, distance: f64, curvature: f64) -> Foot {
-    Foot { feature, facet: feature, offset: normal * distance, normal, distance, curvature, weight: 1.0, twin: None }
+    Foot { curvature, ..Foot::contact(feature, feature, normal * distance, normal, distance) }
 }
 
 /// Unit vector and length; `otherwise` where there is no length.

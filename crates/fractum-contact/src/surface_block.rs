@@ -86,37 +86,45 @@ impl<L: ContactLaw> Block<L> {
     }
 
     /// Finds which contact of the last step each foot continues: the one on the same feature; or else the one on the
-    /// same part of the surface that points most nearly the same way and that nothing else continues; or else, on an
-    /// edge so shallow that both are one, the one beside it.
+    /// same part of the surface that points most nearly the same way and that nothing else continues. A contact that appears together
+    /// with a pass continues, as that does, the one beside it: both cancel at first.
     fn follow(&mut self, ground: &Surface, old: Range<usize>) {
         let Block { feet, before, origin, taken, .. } = self;
         let before = &before[old.clone()];
-        let part = |foot: &Foot| ground.part(foot.facet);
         taken.clear();
         taken.resize(before.len(), false);
         origin.clear();
+        let is_like = |foot: &Foot, touch: &Touch<L::Memory>| {
+            !foot.elastic && !touch.elastic && (touch.weight > 0.0) == (foot.weight > 0.0)
+        };
         for foot in feet.iter() {
-            let same = before.iter().position(|t| t.feature == foot.feature);
+            let same = before.iter().position(|t| t.feature == foot.feature && is_like(foot, t));
             if let Some(k) = same {
                 taken[k] = true;
             }
             origin.push(same);
         }
-        for (foot, from) in feet.iter().zip(origin.iter_mut()).filter(|(_, from)| from.is_none()) {
-            let mut best = SAME_CONTACT;
-            for (k, touch) in before.iter().enumerate().filter(|(k, t)| !taken[*k] && t.part == part(foot)) {
+        let nearest = |foot: &Foot, among: &dyn Fn(usize, &Touch<L::Memory>) -> bool| {
+            let (mut best, mut from) = (SAME_CONTACT, None);
+            for (k, touch) in before.iter().enumerate().filter(|(k, t)| among(*k, t)) {
                 let likeness = touch.normal.dot(&foot.normal);
-                if likeness > best {
-                    (best, *from) = (likeness, Some(k));
+                if touch.part == ground.part(foot.facet) && likeness > best {
+                    (best, from) = (likeness, Some(k));
                 }
             }
-            if let Some(k) = *from {
-                taken[k] = true;
+            from
+        };
+        let mut new = [false; 2];
+        for (foot, from) in feet.iter().zip(origin.iter_mut()).filter(|(foot, from)| !foot.elastic && from.is_none()) {
+            *from = nearest(foot, &|k, touch| !taken[k] && is_like(foot, touch));
+            match *from {
+                Some(k) => taken[k] = true,
+                None => new[usize::from(foot.weight > 0.0)] = true,
             }
         }
-        for i in 0..feet.len() {
-            if let (None, Some(twin)) = (origin[i], feet[i].twin) {
-                origin[i] = origin[twin as usize];
+        if new == [true; 2] {
+            for (foot, from) in feet.iter().zip(origin.iter_mut()).filter(|(f, from)| !f.elastic && from.is_none()) {
+                *from = nearest(foot, &|_, touch| touch.is_contact());
             }
         }
         for from in origin.iter_mut().flatten() {
@@ -141,9 +149,13 @@ impl<L: ContactLaw> Block<L> {
             }
             let place = spheres.position[i] + foot.offset;
             let (ground_velocity, ground_spin) = ground.motion_at(foot.feature, &place);
-            let velocity = ground_velocity - spheres.velocity[i] - spheres.spin[i].cross(&foot.offset);
             let overlap = spheres.radius[i] - foot.distance;
-            let spin = ground_spin - spheres.spin[i];
+            let (velocity, spin) = if foot.elastic {
+                (Vec3::zeros(), Vec3::zeros())
+            } else {
+                let velocity = ground_velocity - spheres.velocity[i] - spheres.spin[i].cross(&foot.offset);
+                (velocity, ground_spin - spheres.spin[i])
+            };
             let motion = PairMotion { normal: foot.normal, overlap, velocity, spin, dt };
             let force = law(sphere, foot.curvature).force(&motion, &mut memory);
             let moment = -foot.offset.cross(&force.on_second) - force.couple_on_second;
@@ -151,9 +163,9 @@ impl<L: ContactLaw> Block<L> {
                 force: -force.on_second * foot.weight,
                 moment: moment * foot.weight,
                 couple: -force.couple_on_second * foot.weight,
-                stored: force.stored * foot.weight,
-                friction: force.friction * foot.weight,
-                damping: force.damping * foot.weight,
+                stored: force.stored * foot.energy,
+                friction: force.friction * foot.energy,
+                damping: force.damping * foot.energy,
                 ..unloaded(ground, sphere, foot, overlap, memory)
             });
         }
@@ -170,6 +182,7 @@ fn unloaded<M>(ground: &Surface, sphere: u32, foot: &Foot, overlap: f64, memory:
         overlap,
         normal: foot.normal,
         weight: foot.weight,
+        elastic: foot.elastic,
         memory,
         force: Vec3::zeros(),
         moment: Vec3::zeros(),
@@ -211,7 +224,7 @@ impl<L: ContactLaw> Block<L> {
             let facets = &self.facets[self.starts[k] as usize..self.starts[k + 1] as usize];
             find_feet(ground, facets, centre, radius, depth, &mut self.hierarchy, &mut self.feet);
             for foot in &self.feet {
-                if self.touches[first..].iter().any(|t| t.feature == foot.feature) {
+                if foot.elastic || self.touches[first..].iter().any(|t| t.feature == foot.feature) {
                     continue;
                 }
                 let overlap = radius - foot.distance;

@@ -67,6 +67,7 @@ pub struct Touch<M> {
     pub overlap: f64,
     pub(crate) normal: Vec3,
     pub(crate) weight: f64,
+    pub(crate) elastic: bool,
     pub(crate) memory: M,
     /// Force on the sphere [N]; the ground feels the opposite at the contact.
     pub force: Vec3,
@@ -77,6 +78,13 @@ pub struct Touch<M> {
     pub(crate) stored: f64,
     pub(crate) friction: f64,
     pub(crate) damping: f64,
+}
+
+impl<M> Touch<M> {
+    /// Whether this is a contact, and not what several contacts of a sphere share.
+    pub fn is_contact(&self) -> bool {
+        self.weight > 0.0 && !self.elastic
+    }
 }
 
 impl Surface<'_> {

@@ -113,7 +113,7 @@ impl Hertz {
             damping: 5f64.sqrt() * pair.surface.damping_ratio * (effective_mass * normal).sqrt(),
             damping_share: (tangential / (1.5 * normal)).sqrt(),
             friction: pair.surface.friction,
-            rolling: Rolling { arm: pair.surface.rolling_friction * effective_radius },
+            rolling: Rolling::new(pair.surface.rolling_friction, effective_radius, effective_mass),
             flat: false,
         }
     }
@@ -129,7 +129,7 @@ impl Hertz {
             damping: 2.0 * surface.damping_ratio * (effective_mass * normal).sqrt(),
             damping_share: (tangential / normal).sqrt(),
             friction: surface.friction,
-            rolling: Rolling { arm: surface.rolling_friction * arm },
+            rolling: Rolling::new(surface.rolling_friction, arm, effective_mass),
             flat: true,
         }
     }
@@ -163,7 +163,8 @@ impl ContactLaw for Hertz {
         if overlap <= 0.0 {
             *memory = HertzMemory { overlap_offset, ..HertzMemory::default() };
             return ContactForce {
-                damping: 0.5 * (old.damper * approach + old.drag.dot(&across)) * motion.dt,
+                damping: 0.5 * (old.damper * approach + old.drag.dot(&across)) * motion.dt
+                    + old.rolling.last_damping(motion),
                 friction: old_spring + old.rolling.stored(),
                 ..ContactForce::default()
             };
@@ -213,6 +214,7 @@ impl ContactLaw for Hertz {
             force.couple_on_second = rolled.on_second;
             force.stored += rolled.stored;
             force.friction += rolled.friction;
+            force.damping += rolled.damping;
         }
         force
     }

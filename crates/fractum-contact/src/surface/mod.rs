@@ -170,6 +170,16 @@ impl FacetMesh {
         }
     }
 
+    /// Feature number of an edge.
+    pub(crate) fn edge_feature(&self, edge: u32) -> u32 {
+        self.facets.len() as u32 + edge
+    }
+
+    /// Feature number of a point.
+    pub(crate) fn point_feature(&self, point: u32) -> u32 {
+        (self.facets.len() + self.edges.len()) as u32 + point
+    }
+
     /// Closest place of a facet to `x`: its feature and the vector from `x` to it.
     #[inline]
     pub(crate) fn closest(&self, facet: u32, points: &[Vec3], x: &Vec3) -> (u32, Vec3) {
@@ -181,8 +191,8 @@ impl FacetMesh {
         };
         let number = match place {
             Place::Inside => facet,
-            Place::Side(k) => self.facets.len() as u32 + self.facet_edges[self.facets.offset(facet as usize) + k],
-            Place::Corner(k) => (self.facets.len() + self.edges.len()) as u32 + corners[k],
+            Place::Side(k) => self.edge_feature(self.facet_edges[self.facets.offset(facet as usize) + k]),
+            Place::Corner(k) => self.point_feature(corners[k]),
         };
         (number, offset)
     }

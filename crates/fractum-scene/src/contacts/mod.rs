@@ -219,7 +219,7 @@ impl Contacts {
 
     /// Contacts at the last step.
     pub(crate) fn touching(&self) -> usize {
-        let ground = |contacts: &SurfaceContacts<Hertz>| contacts.touches().count();
+        let ground = |contacts: &SurfaceContacts<Hertz>| contacts.touches().filter(|t| t.is_contact()).count();
         self.among.as_ref().map_or(0, |among| among.touching().count())
             + self.on_tools.iter().map(|(contacts, _)| ground(contacts)).sum::<usize>()
             + self.solids.iter().map(|solid| ground(solid.contacts())).sum::<usize>()
@@ -342,7 +342,7 @@ impl Contacts {
         }
         let deepest = |contacts: &SurfaceContacts<Hertz>, other: OverlapWith| -> Vec<Overlap> {
             // What was taken up as it stands bears nothing.
-            let loaded = |t: &&Touch<HertzMemory>| t.force != Vec3::zeros();
+            let loaded = |t: &&Touch<HertzMemory>| t.is_contact() && t.force != Vec3::zeros();
             let of = |t: &Touch<HertzMemory>| Overlap { particle: t.sphere, other: other.clone(), depth: t.overlap };
             contacts.touches().filter(loaded).map(of).collect()
         };
