@@ -1,12 +1,12 @@
 //! Several crates against theory, without files. One test program: a new file is a line here.
 
+mod bars;
 mod crack_pressure;
 mod element;
 mod fracture_balance;
 mod gas;
 mod leaving;
 mod meeting;
-mod phase_bar;
 mod phase_field;
 mod plane;
 mod ranks;

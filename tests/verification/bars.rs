@@ -1,4 +1,4 @@
-//! A bar under a phase field over the whole range of its length: strength, energy, damage beside the crack, and the refusal beyond.
+//! Bars that are torn: strength and energy for any Poisson's ratio, and over the whole range of the length of a phase field, with the refusal beyond.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -13,9 +13,9 @@ use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSetting
 use fractum_scene::{ContactParameters, EnergyKind, Loads, Motion, Scene, Support, Supports};
 use fractum_tests::{CONCRETE, settings};
 
-/// Cells of the bar, across and along, and their size [m].
-const ACROSS: u32 = 2;
-const ALONG: u32 = 34;
+/// Cells of a bar under a phase field, along and across.
+const LONG: [u32; 2] = [34, 2];
+/// Size of cells [m].
 const SIZE: f64 = 0.004;
 /// Half of the part that is weaker [m], and by how much.
 const HALF: f64 = 4.0 * SIZE;
@@ -38,37 +38,65 @@ fn strength(kind: ElementKind, slope: f64, part: f64) -> f64 {
     (4.0 / (PI * least_a1) * YOUNG * FRACTURE_ENERGY * part / length(kind)).sqrt()
 }
 
-fn body(kind: ElementKind, law: DamageLaw, reduce: bool) -> (Vec<Vec3>, Body) {
-    let jitter = Some(Jitter { fraction: 0.15, seed: 3 });
-    let extent = [ALONG, ACROSS, ACROSS].map(|cells| SIZE * f64::from(cells));
-    let (nodes, elements) = match kind {
+/// A bar along x that is weaker in its middle.
+struct Bar {
+    kind: ElementKind,
+    plane: Plane,
+    poisson_ratio: f64,
+    /// Cells along and across.
+    cells: [u32; 2],
+    /// Half of the part that is weaker [m].
+    half: f64,
+    seed: u64,
+    law: DamageLaw,
+    is_regularised: bool,
+    reduce_strength_to_fit: bool,
+}
+
+impl Bar {
+    /// One under a phase field of the default length.
+    fn regularised(kind: ElementKind, law: DamageLaw) -> Self {
+        let (cells, half) = (LONG, HALF);
+        let (is_regularised, reduce_strength_to_fit) = (true, false);
+        let (plane, poisson_ratio, seed) = (Plane::Stress, 0.0, 3);
+        Bar { kind, plane, poisson_ratio, cells, half, seed, law, is_regularised, reduce_strength_to_fit }
+    }
+}
+
+fn body(bar: &Bar) -> (Vec<Vec3>, Body) {
+    let jitter = Some(Jitter { fraction: 0.15, seed: bar.seed });
+    let [along, across] = bar.cells;
+    let extent = [along, across, across].map(|cells| SIZE * f64::from(cells));
+    let (nodes, elements) = match bar.kind {
         ElementKind::T3 => {
-            let mesh = structured_rectangle([ALONG, ACROSS], [extent[0], extent[1]], jitter);
+            let mesh = structured_rectangle([along, across], [extent[0], extent[1]], jitter);
             (mesh.nodes, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect())
         }
         ElementKind::T4 => {
-            let mesh = structured_box([ALONG, ACROSS, ACROSS], Vec3::from(extent), jitter);
+            let mesh = structured_box([along, across, across], Vec3::from(extent), jitter);
             (mesh.nodes, mesh.tetrahedra)
         }
     };
-    let body = Body::new("bar", kind, elements, Elastic { poisson_ratio: 0.0, ..CONCRETE }).smoothed();
-    let body = Body { plane: Plane::Stress, thickness: extent[2], ..body };
-    let factor = |p: &Vec3| if (p.x - 0.5 * extent[0]).abs() < HALF { WEAKER } else { 1.0 };
+    let elastic = Elastic { poisson_ratio: bar.poisson_ratio, ..CONCRETE };
+    let body = Body::new("bar", bar.kind, elements, elastic).smoothed();
+    let body = Body { plane: bar.plane, thickness: extent[2], ..body };
+    let factor = |p: &Vec3| if (p.x - 0.5 * extent[0]).abs() < bar.half { WEAKER } else { 1.0 };
     let zone = DamageZone {
-        law,
+        law: bar.law.clone(),
         region: Region::Everywhere,
         strength_factor: body.edge_midpoints(&nodes).iter().map(factor).collect(),
-        reduce_strength_to_fit: reduce,
-        regularisation: Some(Regularisation { length: None }),
+        reduce_strength_to_fit: bar.reduce_strength_to_fit,
+        regularisation: bar.is_regularised.then_some(Regularisation { length: None }),
     };
     (nodes, Body { damage: Some(zone), ..body })
 }
 
 /// Strength over that of the weak part, energy of the crack over G_f A, and the largest damage far from it, of a bar that is torn.
-fn torn(kind: ElementKind, law: DamageLaw) -> [f64; 3] {
-    let (nodes, body) = body(kind, law.clone(), false);
+fn torn(bar: &Bar) -> [f64; 3] {
+    let (nodes, body) = body(bar);
+    let Bar { kind, cells: [along, across], law, .. } = bar;
     let solid = Solid::new(nodes, vec![body]).unwrap();
-    let end = SIZE * f64::from(ALONG);
+    let end = SIZE * f64::from(*along);
     let at = |keep: &dyn Fn(&Vec3) -> bool| -> Vec<u32> {
         (0..solid.reference.len() as u32).filter(|&n| keep(&solid.reference[n as usize])).collect()
     };
@@ -108,8 +136,8 @@ fn torn(kind: ElementKind, law: DamageLaw) -> [f64; 3] {
     assert!(now < 0.01 * peak, "{kind:?} {law:?}: torn");
     let ledger = scene.ledger();
     assert!(ledger.residual_max_relative < 1e-3, "{kind:?} {law:?}: {ledger:?}");
-    let area = (SIZE * f64::from(ACROSS)).powi(2);
-    let far = HALF + 4.0 * length(kind);
+    let area = (SIZE * f64::from(*across)).powi(2);
+    let far = bar.half + 4.0 * length(*kind);
     let solid = &scene.solid;
     let corners = kind.node_count();
     let place =
@@ -130,7 +158,7 @@ fn a_bar_has_its_strength_and_energy_at_any_length_that_is_allowed() {
             for part in [0.1, 0.5, 0.94] {
                 let strength = strength(kind, slope, part);
                 let law = DamageLaw { softening, ..DamageLaw::rankine(strength, FRACTURE_ENERGY) };
-                let [peak, energy, beside] = torn(kind, law);
+                let [peak, energy, beside] = torn(&Bar::regularised(kind, law));
                 let name = format!("{kind:?} {softening:?} {part}: {peak:.4} {energy:.4} {beside:.1e}");
                 println!("{name}");
                 assert!((peak - 1.0).abs() < 0.02, "{name}");
@@ -147,7 +175,8 @@ fn a_longer_one_is_refused_or_its_strength_lowered() {
         for (softening, slope) in CURVES {
             let strength = strength(kind, slope, 1.1);
             let law = DamageLaw { softening, ..DamageLaw::rankine(strength, FRACTURE_ENERGY) };
-            let (nodes, refused) = body(kind, law.clone(), false);
+            let bar = Bar::regularised(kind, law);
+            let (nodes, refused) = body(&bar);
             let Err(error) = Solid::new(nodes, vec![refused]) else { panic!("{kind:?} {softening:?}: refused") };
             assert!(matches!(error, SolidError::LengthTooLong { .. }), "{error}");
             let text = error.to_string();
@@ -156,9 +185,43 @@ fn a_longer_one_is_refused_or_its_strength_lowered() {
             {
                 assert!(text.contains(remedy), "{text}");
             }
-            let (nodes, lowered) = body(kind, law, true);
+            let (nodes, lowered) = body(&Bar { reduce_strength_to_fit: true, ..bar });
             let solid = Solid::new(nodes, vec![lowered]).unwrap();
             assert!(solid.length_report(0).0 > 0, "{kind:?} {softening:?}");
+        }
+    }
+}
+
+/// A crack costs G_f times its area and the bar bears its strength, whatever Poisson's ratio: a band that opens is held sideways by its neighbours.
+#[test]
+fn a_crack_costs_its_fracture_energy_at_any_poissons_ratio() {
+    let kinds = [
+        (ElementKind::T3, Plane::Strain, [12, 6]),
+        (ElementKind::T3, Plane::Stress, [12, 6]),
+        (ElementKind::T4, Plane::Strain, [7, 4]),
+    ];
+    for (kind, plane, cells) in kinds {
+        let of = |poisson_ratio| {
+            let bar = Bar {
+                kind,
+                plane,
+                poisson_ratio,
+                cells,
+                half: 1.2 * SIZE,
+                seed: 5,
+                law: DamageLaw::rankine(3e6, FRACTURE_ENERGY),
+                is_regularised: false,
+                reduce_strength_to_fit: false,
+            };
+            let [peak, energy, _] = torn(&bar);
+            println!("{kind:?} {plane:?} {poisson_ratio}: peak {peak:.4}, energy {energy:.4}");
+            [peak, energy]
+        };
+        let [_, without] = of(0.0);
+        for poisson_ratio in [0.15, 0.3, 0.45] {
+            let [peak, energy] = of(poisson_ratio);
+            assert!((peak - 1.0).abs() < 0.02, "{kind:?} {plane:?} {poisson_ratio}: {peak}");
+            assert!((energy / without - 1.0).abs() < 0.08, "{kind:?} {plane:?} {poisson_ratio}: {energy} for {without}");
         }
     }
 }
