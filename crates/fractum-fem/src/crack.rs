@@ -238,7 +238,7 @@ mod tests {
     /// Energy over that of the area of a band across a plate, whose faces part by this vector as they reach ten times the strength.
     fn cost_of_a_band(part: Vec3) -> f64 {
         let mesh = structured_rectangle([6, 21], [0.06, 0.21], None);
-        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
         let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
         let law = DamageLaw::rankine(3e6, 100.0);
         let mut body = Body::new("plate", ElementKind::T3, elements, elastic).smoothed().with_damage(law);
@@ -258,12 +258,12 @@ mod tests {
         solid.cost_of_bands(0).unwrap()
     }
 
-    /// Both bands see the same equivalent stress, and store ½ τ²/G and ½ σ² (1 - ν²)/E under it.
+    /// Without lateral contraction both bands see the same equivalent stress, and store ½ τ²/G and ½ σ²/E under it.
     #[test]
     fn a_sheared_band_costs_more_than_one_that_opens() {
-        let open = cost_of_a_band(Vec3::y() * (1.0 - 0.2 * 0.2));
-        let sheared = cost_of_a_band(Vec3::x() * 2.0 * (1.0 + 0.2));
-        assert!((sheared / open - 2.0 / (1.0 - 0.2)).abs() < 1e-6, "{sheared} {open}");
+        let open = cost_of_a_band(Vec3::y());
+        let sheared = cost_of_a_band(Vec3::x() * 2.0);
+        assert!((sheared / open - 2.0).abs() < 1e-6, "{sheared} {open}");
         assert!(open > 0.5 && open < 1.15, "{open}");
     }
 

@@ -109,14 +109,17 @@ impl Restraint {
     }
 }
 
+/// Cosine of the mean angle between the opening of a crack and the strain of its triangles, 35 degrees.
+const OBLIQUE_COSINE: f64 = 0.819;
+
 /// By how much the share of triangles is raised per share that is lost to restraint.
 ///
 /// A crack through triangles zigzags. The strain of a triangle is that of an opening w across a plane whose normal n is another direction, with the
 /// cosine c between both, and its largest principal stress exceeds the stress w·s·n/w that does work on the opening, by (λ c + μ (1 + c))/(λ c² + μ (1 + c²)). What of
-/// this depends on Poisson's ratio is given back where neighbours hold the band wholly. Bars torn with ν from 0.1 to 0.45 in both plane states agree with
-/// 45 degrees; those of tetrahedra, whose edges average over more directions, with none.
+/// this depends on Poisson's ratio is given back where neighbours hold the band wholly. Bars torn with ν from 0 to 0.45 in both plane states lose 0.13 of
+/// their energy at most with 0 degrees, and gain 0.12 with 45; those of tetrahedra, whose edges average over more directions, need none.
 fn oblique(lambda: f64, mu: f64) -> f64 {
-    let c = std::f64::consts::FRAC_1_SQRT_2;
+    let c = OBLIQUE_COSINE;
     let excess = |lambda: f64| (lambda * c + mu * (1.0 + c)) / (lambda * c * c + mu * (1.0 + c * c));
     let held = 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu).powi(2);
     if held < 1.0 { (excess(lambda) / excess(0.0) - 1.0) / (1.0 - held) } else { 0.0 }
@@ -203,7 +206,7 @@ mod tests {
             prop_assert!((across - curve).abs() < 1e-6 * STRENGTH, "{across} for {curve}");
         }
 
-        /// Every criterion sees a crack that began in uniaxial tension as the others do.
+        /// Every criterion sees a crack that began in uniaxial tension as the others do; but that one without cut-off, which lateral tension spares a little.
         #[test]
         fn every_criterion_sees_the_opening_of_a_crack_in_tension(
             nu in 0.0f64..0.49, held in 0.0f64..1.0, opening in 0.0f64..20.0, in_plane in any::<bool>(),
@@ -221,7 +224,9 @@ mod tests {
                 let side = -nu * onset - (1.0 - held) * nu * more;
                 let (seen, _) = see(&softens, &edge, Sym3([onset + more, side, thick(side), 0.0, 0.0, 0.0]));
                 let expected = STRENGTH * (1.0 + opening);
-                prop_assert!((seen.stress / expected - 1.0).abs() < 1e-6, "{kind:?}: {} for {expected}", seen.stress);
+                let spared = if kind == CriterionKind::PureMohrCoulomb { 0.02 } else { 1e-6 };
+                let ratio = seen.stress / expected;
+                prop_assert!(ratio < 1.0 + 1e-6 && ratio > 1.0 - spared, "{kind:?}: {ratio}");
             }
         }
 

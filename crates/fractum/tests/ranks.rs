@@ -157,8 +157,13 @@ fn kinds() -> Vec<(&'static str, String)> {
     let standard = BREAKING_BAR.replacen("kinematics =", "formulation = \"standard\"\nkinematics =", 1);
     let beads = "[[bodies]]\nname = \"beads\"\nkind = \"particles\"\nmaterial = \"concrete\"\nshape = \"box\"\n\
         point = [\"10 cm\", \"12.5 cm\", \"2 cm\"]\nsize = [\"20 cm\", \"6 cm\", \"8 cm\"]\nparticle_radius = \"1 cm\"\nseed = 1\n[[supports]]";
-    let with_phase_field =
-        |case: &str| case.replacen("fracture_energy", "regularisation = \"phase-field\"\nfracture_energy", 1);
+    let with_phase_field = |case: &str| {
+        case.replacen(
+            "fracture_energy",
+            "regularisation = \"phase-field\"\nreduce_strength_to_fit = true\nfracture_energy",
+            1,
+        )
+    };
     vec![
         ("rigid floor", BREAKING_BAR.into()),
         ("phase field", with_phase_field(BREAKING_BAR)),
