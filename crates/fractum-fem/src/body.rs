@@ -3,7 +3,6 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::material::{DamageLaw, Elastic};
-use crate::restraint::Restraint;
 
 /// Kind of all elements of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -114,11 +113,6 @@ pub struct Body {
 }
 
 impl Body {
-    /// Modulus that turns the effective stress of an edge into the opening of its crack, E' [Pa].
-    pub(crate) fn opening_modulus(&self) -> f64 {
-        Restraint::of(self).modulus
-    }
-
     /// An elastic body of plain elements with small strains.
     pub fn new(name: &str, shape: ElementKind, elements: Vec<[u32; 4]>, elastic: Elastic) -> Self {
         Body {

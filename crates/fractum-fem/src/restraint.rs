@@ -6,6 +6,13 @@ use crate::body::{Body, ElementKind};
 use crate::hooke::Hooke;
 use crate::material::{Criterion, CriterionKind};
 
+impl Body {
+    /// Modulus that turns the effective stress of an edge into the opening of its crack, E' [Pa].
+    pub(crate) fn opening_modulus(&self) -> f64 {
+        Restraint::of(self).modulus
+    }
+}
+
 /// What an edge sees in a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {

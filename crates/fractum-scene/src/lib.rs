@@ -5,6 +5,7 @@
 //! [`SceneState`], one value that can be saved and put back bit for bit.
 
 mod advance;
+mod bands;
 mod bonded;
 mod clock;
 mod conditions;

@@ -9,14 +9,10 @@ use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
 use crate::domain::{Domain, Left};
-use crate::error::StepError;
 use crate::fragment::{Fragment, joined, single_share, solid_pieces};
 use crate::gas::Gas;
 use crate::heat::Heat;
 use crate::ledger::{Books, Ledger};
-
-/// Share of the volume of a body that its bands may take: with more it has no fragments left to speak of.
-const MOSTLY_LOST: f64 = 0.5;
 
 /// One simulation: bodies, boundary conditions, clock and ledger.
 #[derive(Clone)]
@@ -393,17 +389,6 @@ impl Scene {
     /// Share of the mass of every solid body that has come apart into single nodes.
     pub fn single_share(&self) -> Vec<f64> {
         single_share(&self.solid, self.settings.joined_below)
-    }
-
-    /// Fails where the cracks of a phase field have taken most of a body, instead of leaving its fragments.
-    ///
-    /// # Errors
-    /// [`StepError::NoFragments`].
-    pub fn refuse_bands_without_fragments(&self) -> Result<(), StepError> {
-        let lost = |body| Some((body, self.solid.lost_to_bands(body).filter(|(share, _)| *share > MOSTLY_LOST)?));
-        let Some((body, (share, width))) = (0..self.solid.body_count()).find_map(lost) else { return Ok(()) };
-        let (step, time, body) = (self.clock.step, self.clock.time, self.solid.body(body).name.clone());
-        Err(StepError::NoFragments { step, time, body, share, width })
     }
 
     /// Everything that changes, for a checkpoint.
