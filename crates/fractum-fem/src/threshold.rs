@@ -160,7 +160,7 @@ pub(crate) fn characteristic_length(body: &Body, around: &[u32], volume: impl Fn
     // Measured on tension bars of the gallery (aligned, jittered and Delaunay meshes of two sizes) and on bars without lateral
     // contraction, never on other cases: the middle of the range in which all of them dissipate G_f times the area.
     let factor = match (body.formulation, body.shape) {
-        (Formulation::Smoothed, ElementKind::T4) => 1.18,
+        (Formulation::Smoothed, ElementKind::T4) => 1.2,
         (Formulation::Smoothed, ElementKind::T3) => 1.124,
         (Formulation::Standard, ElementKind::T4) => 1.2,
         (Formulation::Standard, ElementKind::T3) => 1.28,

@@ -98,7 +98,6 @@ mod tests {
 
     use super::*;
     use crate::body::{Body, ElementKind};
-    use crate::hooke::Hooke;
     use crate::material::{DamageLaw, Elastic};
 
     #[test]
