@@ -272,7 +272,7 @@ fn the_force_is_the_derivative_of_one_energy() {
 }
 
 /// Largest error of the energy of a bead that bounces in a trough, over that of its fall: kinetic, of its height and of the contact.
-fn energy_error(degrees: f64, radius: f64, law: impl ContactLaw + Sync, mass: f64, dt: f64, time: f64) -> f64 {
+fn energy_error(degrees: f64, radius: f64, law: impl ContactLaw, mass: f64, dt: f64, time: f64) -> f64 {
     let slope = f64::tan((0.5 * (180.0 - degrees)).to_radians());
     let mesh = sheet(2, 1, false, |x: f64| slope * x.abs(), &[-1.0, 0.0, 1.0]);
     let frame = Frame::at_rest();
