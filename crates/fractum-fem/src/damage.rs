@@ -298,6 +298,12 @@ impl EdgeField {
         histories.filter(|((_, state), strength)| state.kappa > **strength).map(|((&edge, _), _)| edge)
     }
 
+    /// Lets an edge that the phase field has found already see this.
+    pub(crate) fn see(&mut self, index: usize, seen: Seen) {
+        self.softens.load(&mut self.state[index], seen, self.strength[index], self.length[index], 0.0);
+        self.note(index);
+    }
+
     /// Raises the damage of an edge to that of the phase field; returns the growth.
     ///
     /// - `stiffness`: ω(d)

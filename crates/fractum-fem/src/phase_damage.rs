@@ -79,7 +79,7 @@ impl Solid {
             let BlockLaw::Edges(EdgeCells { field: cells, dissipated, .. }) = &mut block.law else { return };
             for cell in 0..cells.edges.len() {
                 let Some((step, grown)) = field.change(cells.edges[cell]) else { continue };
-                cells.load(cell, step.seen, 0.0);
+                cells.see(cell, step.seen);
                 if !grown {
                     continue;
                 }

@@ -256,20 +256,21 @@ fn room_below(criterion: &Criterion, stress: Sym3, threshold: f64) -> f64 {
     if below > by_norm { below } else { by_norm }
 }
 
+/// Every kind.
+#[cfg(test)]
+pub(crate) const KINDS: &[CriterionKind] = &[
+    CriterionKind::Rankine,
+    CriterionKind::MohrCoulomb,
+    CriterionKind::PureMohrCoulomb,
+    CriterionKind::DruckerPrager,
+    CriterionKind::Mazars,
+    CriterionKind::ModifiedMohrCoulomb,
+];
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
-
-    /// Every kind.
-    const KINDS: &[CriterionKind] = &[
-        CriterionKind::Rankine,
-        CriterionKind::MohrCoulomb,
-        CriterionKind::PureMohrCoulomb,
-        CriterionKind::DruckerPrager,
-        CriterionKind::Mazars,
-        CriterionKind::ModifiedMohrCoulomb,
-    ];
 
     fn criterion(kind: CriterionKind) -> Criterion {
         Criterion::new(kind, 35f64.to_radians(), 10.0, 0.2)

@@ -5,6 +5,8 @@ mod degradation;
 mod softening;
 mod wave;
 
+#[cfg(test)]
+pub(crate) use criterion::KINDS;
 pub(crate) use criterion::equivalent_stresses;
 pub use criterion::{Criterion, CriterionKind};
 pub use degradation::Degradation;
