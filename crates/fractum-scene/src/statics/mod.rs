@@ -240,9 +240,15 @@ impl StaticSolver {
         let intact = points.iter().all(|point| point.damage == 0.0);
         let mut monotone = false;
         let mut by_damage = self.settings.control == Control::Path;
+        let at_onset = intact && by_damage && path::is_at_onset(&scene.solid, &points, ONSET);
+        let mut up_to_onset = false;
         loop {
             let longest = (self.settings.end - scene.clock.time).min(self.settings.step * self.pace.part);
-            let growth = if intact { ONSET } else { self.pace.growth };
+            let growth = match intact && !at_onset {
+                true if up_to_onset => -ONSET,
+                true => ONSET,
+                false => self.pace.growth,
+            };
             let found = self.iterate(scene, &points, longest, growth, by_damage, monotone)?;
             if let Some((time, iterations)) = found
                 && !self.jumps(&points)
@@ -263,6 +269,11 @@ impl StaticSolver {
                 scene.solid.raise_history(&self.edges.seen, &self.trial, &before, &self.response.start);
                 return scene.accept_equilibrium(&self.response.start, time, &mut self.applied);
             }
+            // A peak at the onset of damage, after which nothing holds, is not to be stepped over.
+            if growth == ONSET && by_damage {
+                up_to_onset = true;
+                continue;
+            }
             let smallest = match self.settings.control {
                 Control::Time => self.pace.part <= SMALLEST_PART,
                 Control::Opening(_) if !by_damage => {
@@ -270,7 +281,7 @@ impl StaticSolver {
                     by_damage = self.pace.part <= SMALLEST_OPENING;
                     false
                 }
-                Control::Path | Control::Opening(_) => self.pace.growth <= GROWTH[1] || intact,
+                Control::Path | Control::Opening(_) => self.pace.growth <= GROWTH[1] || growth.abs() == ONSET,
             };
             if smallest && monotone {
                 return Err(scene.no_equilibrium());

@@ -8,11 +8,21 @@ pub(super) fn limit(point: &DamagePoint, growth: f64) -> f64 {
     point.kappa + growth * point.kappa.max(point.softening)
 }
 
+/// Whether an intact edge stands `onset` below its strength, as [`limit`] measures it.
+pub(super) fn is_at_onset(solid: &Solid, points: &[DamagePoint], onset: f64) -> bool {
+    let least = |point: &DamagePoint| limit(point, -onset) * (1.0 - 1e-10);
+    let (mut stresses, mut seen) = (Vec::new(), Vec::new());
+    solid.effective_stresses(&solid.displacement, &mut stresses);
+    solid.see(points, &stresses, least, &mut seen);
+    seen.iter().zip(points).any(|(seen, point)| seen.stress >= least(point))
+}
+
 /// The largest τ ≤ `longest` at which no edge that is not broken yet sees more than `growth` lets it; none if every τ
 /// does.
 ///
 /// The equivalent stresses are convex in τ, and so is their maximum over the edges: Newton's method from the right
-/// comes down to the upper root without passing it.
+/// comes down to the upper root without passing it. Lateral restraint, once it begins to act on an edge, makes it see less; a step may then
+/// end a little before that root.
 pub(super) fn largest_step(
     solid: &Solid,
     points: &[DamagePoint],
