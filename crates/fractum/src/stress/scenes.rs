@@ -190,7 +190,7 @@ fn solid(draw: &mut Draw, kind: &'static str) -> RandomScene {
 fn damage(draw: &mut Draw, kind: &str, material: &Elastic, strain: f64, edge: f64) -> String {
     let strength = material.young_modulus * strain;
     // The length of a phase field is bounded, two elements by default.
-    let least = if kind == "phase field" { 8.0 } else { 3.0 };
+    let least = if kind == "phase field" { 9.0 } else { 3.0 };
     let toughness = strength * strain * edge * draw.decades(least, 100.0);
     let softening = draw.one_of(&["exponential", "linear"]);
     let mut text = format!(

@@ -44,7 +44,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("materials.NAME.damage.scatter.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
     key("materials.NAME.damage.reduce_strength_to_fit", K::Flag, "false", "Lower ft where an element is too large for Gf, instead of refusing it"),
     key("materials.NAME.damage.regularisation", K::Choice(regularisations), "\"none\"", "Damage as a cohesive phase field, whose cracks do not feel the mesh"),
-    key("materials.NAME.damage.length", K::Quantity(D::LENGTH), "twice the element size where cracks are expected", "With regularisation: length b of the phase field, > 0, at most 0.346 (exponential), 0.385 (bilinear, default kink) or 0.509 (linear) E Gf/ft²; a crack is a band about 3 b wide"),
+    key("materials.NAME.damage.length", K::Quantity(D::LENGTH), "twice the element size where cracks are expected", "With regularisation: length b of the phase field, > 0, at most 0.320 (exponential), 0.353 (bilinear, default kink) or 0.455 (linear) E Gf/ft²; a crack is a band about 3 b wide"),
     key("materials.NAME.damage.unilateral", K::Flag, "by the scene", "Stiffness recovers where cracks close; default: true in smoothed bodies in motion under pressure pulses or gas whose criterion has a compressive strength, else false"),
     key("materials.NAME.damage.rate_time", K::Quantity(D::TIME), "\"0 s\"", "Time constant of the damage-rate limiter, ≥ 0; 0 is off"),
     key("materials.NAME.bonds", K::Table, "", "Beams of bonded bodies, as `fractum calibrate` writes them; without this table they are calibrated"),
