@@ -153,6 +153,7 @@ fn torn(bar: &Bar) -> [f64; 3] {
 
 #[test]
 fn a_bar_has_its_strength_and_energy_at_any_length_that_is_allowed() {
+    let mut missed = Vec::new();
     for kind in [ElementKind::T3, ElementKind::T4] {
         for (softening, slope) in CURVES {
             for part in [0.1, 0.5, 0.99] {
@@ -161,12 +162,13 @@ fn a_bar_has_its_strength_and_energy_at_any_length_that_is_allowed() {
                 let [peak, energy, beside] = torn(&Bar::regularised(kind, law));
                 let name = format!("{kind:?} {softening:?} {part}: {peak:.4} {energy:.4} {beside:.1e}");
                 println!("{name}");
-                assert!((peak - 1.0).abs() < 0.02, "{name}");
-                assert!((energy - 1.0).abs() < 0.05, "{name}");
-                assert!(beside < 0.01, "{name}");
+                if (peak - 1.0).abs() >= 0.02 || (energy - 1.0).abs() >= 0.05 || beside >= 0.01 {
+                    missed.push(name);
+                }
             }
         }
     }
+    assert!(missed.is_empty(), "{missed:#?}");
 }
 
 #[test]
