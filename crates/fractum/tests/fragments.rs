@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::common::{BREAKING_BAR, Workplace, bar, history, mesh_bytes, run};
+use crate::common::{BREAKING_BAR, Workplace, bar, history, mesh_bytes, run, summary};
 use fractum_math::Vec3;
 use fractum_mesh::generate::structured_box;
 use fractum_mesh::{Group, Mesh, MshFormat};
@@ -37,6 +37,25 @@ fn a_body_in_single_nodes_is_warned_of() {
         "{}",
         ended.stderr
     );
+}
+
+#[test]
+fn a_phase_field_whose_bands_leave_no_fragments_is_told() {
+    // All of the bar is stretched at once, so that it breaks nearly everywhere.
+    let mut case = BREAKING_BAR
+        .replace("fracture_energy", "regularisation = \"phase-field\"\nreduce_strength_to_fit = true\nfracture_energy")
+        .replace("{ y = \"-0.1 m/s\" }", "{ x = \"(x/30 cm - 1)*50 m/s\" }");
+    for (slow, fast) in [("-0.2 m/s", "-50 m/s"), ("0.2 m/s", "50 m/s")] {
+        case = case.replace(
+            &format!("[[\"0 s\", \"0 m/s\"], [\"0.2 ms\", \"{slow}\"]]"),
+            &format!("[[\"0 s\", \"{fast}\"], [\"0.2 ms\", \"{fast}\"]]"),
+        );
+    }
+    let place = Workplace::new(&case);
+    let ended = place.fractum(&["run", "case.toml", "-o", "results"]);
+    assert_ne!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stderr.contains("leave no fragments") && ended.stderr.contains("phase field"), "{}", ended.stderr);
+    assert!(summary(&place, "results")["status"] == "stopped", "{}", ended.stderr);
 }
 
 /// The bar with a block of its own beyond its end.
