@@ -38,6 +38,6 @@ pub mod study;
 pub use compress::Compression;
 pub use error::{ReadError, WriteError};
 pub use output::{
-    OutputError, attenuation, expectation, fragments, history, log, origin, picture, plot, report, summary, verified,
-    vtk,
+    OutputError, attenuation, beside, expectation, fragments, history, log, origin, picture, plot, report, summary,
+    verified, vtk,
 };

@@ -189,7 +189,7 @@ impl Grid {
 }
 
 /// A number in 0..1 that depends on seed and counter only (SplitMix64: Steele, Lea, Flood, OOPSLA 2014).
-fn unit_interval(seed: u64, counter: u64) -> f64 {
+pub(crate) fn unit_interval(seed: u64, counter: u64) -> f64 {
     let mut z = seed.wrapping_add(counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -33,6 +33,7 @@ mod gmsh;
 mod hints;
 mod join;
 mod mesh;
+mod neighbour;
 pub mod quality;
 pub mod renumber;
 mod tagged;
@@ -45,6 +46,7 @@ pub use gmsh::{MshFormat, read_msh, write_msh};
 pub use hints::hints;
 pub use join::{JoinError, joined};
 pub use mesh::{Group, Mesh, WholeMesh};
+pub use neighbour::{halved, scrambled};
 pub use tagged::{MeshError, Place, Problem};
 pub use vtk::read_vtu;
 

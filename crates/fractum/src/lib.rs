@@ -65,6 +65,7 @@ mod last_words;
 mod left;
 mod mesh_files;
 mod needs;
+pub mod neighbours;
 mod path_frames;
 mod phases;
 pub mod plan;

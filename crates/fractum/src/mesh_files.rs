@@ -8,7 +8,7 @@ use fractum_io::build::{SolidDivision, cannot_divide, divide, held_bodies};
 use fractum_io::case::model::MeshSource;
 use fractum_io::case::{Case, Diagnostic, Diagnostics};
 use fractum_io::memory;
-use fractum_mesh::{JoinError, Mesh, WholeMesh, joined};
+use fractum_mesh::{JoinError, Mesh, WholeMesh, halved, joined, scrambled};
 use fractum_parallel::{Exchange, gather};
 use fractum_prepare::Processes;
 use xxhash_rust::xxh3::xxh3_128;
@@ -52,6 +52,14 @@ impl MeshFiles {
         };
         let reason = source.parts.filter(|_| processes.all > 1).and_then(|_| cannot_divide(case));
         let is_part = source.parts.is_some() && processes.all > 1 && reason.is_none();
+        if is_part && (source.scramble.is_some() || source.halvings > 0) {
+            let remedy = "leave out mesh.parts, or write the mesh first and cut it then";
+            return Err(fail(
+                source,
+                ": parts that several processes read are neither halved nor scrambled".to_owned(),
+                remedy,
+            ));
+        }
         let (mesh, hashes) = read_files(source, if is_part { processes } else { processes.alike() })?;
         Ok(MeshFiles { mesh, hashes, is_part, alike: reason, processes })
     }
@@ -106,6 +114,14 @@ fn read_files(source: &MeshSource, processes: Processes) -> Result<(Mesh, Vec<u1
     };
     if source.unit != 1.0 {
         mesh.nodes.iter_mut().for_each(|node| *node *= source.unit);
+    }
+    if let Some((share, seed)) = source.scramble {
+        mesh = scrambled(&mesh, share, seed);
+    }
+    for _ in 0..source.halvings {
+        let bytes = 8 * 100 * mesh.element_count() as u64 * processes.here as u64;
+        memory::require(bytes, "halving the edges of the mesh".to_owned())?;
+        mesh = halved(&mesh);
     }
     Ok((mesh, hashes))
 }

@@ -131,7 +131,7 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
 }
 
 /// The selected cases that expect something, in the order of their names.
-fn selected(selection: &Selection) -> Result<Vec<(PathBuf, Case)>, Failure> {
+pub(crate) fn selected(selection: &Selection) -> Result<Vec<(PathBuf, Case)>, Failure> {
     let mut paths = Vec::new();
     find_cases(&selection.cases, &mut paths).map_err(|error| {
         Failure::input(format!(
@@ -147,7 +147,7 @@ fn selected(selection: &Selection) -> Result<Vec<(PathBuf, Case)>, Failure> {
     let mut cases = Vec::new();
     for path in paths {
         let case = read_case(&path, &[])?;
-        if !case.expect.is_empty() && (case.source.verify_quick || !selection.quick) {
+        if !case.expect.is_empty() && (case.source.verify.quick || !selection.quick) {
             cases.push((path, case));
         }
     }
@@ -155,7 +155,7 @@ fn selected(selection: &Selection) -> Result<Vec<(PathBuf, Case)>, Failure> {
 }
 
 impl Selection {
-    fn name_of(&self, path: &Path) -> String {
+    pub(crate) fn name_of(&self, path: &Path) -> String {
         path.strip_prefix(&self.cases).unwrap_or(path).with_extension("").display().to_string()
     }
 }

@@ -1,8 +1,11 @@
 //! The quick part of the gallery meets its references.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use fractum::neighbours::{neighbours, unsaid};
 use fractum::verify::{Selection, verify};
+use fractum_io::beside::{End, Row};
+use fractum_io::case::read_case;
 
 #[test]
 fn quick_cases_meet_their_references() {
@@ -28,4 +31,54 @@ fn quick_cases_meet_their_references() {
     assert!(lines.len() > 40, "{} references were checked", lines.len());
     assert!(missed.is_empty(), "{missed:#?}");
     assert!(output.path().join("verify.json").is_file());
+}
+
+fn cases() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases")
+}
+
+#[test]
+fn a_share_of_the_gallery_holds_beside_itself() {
+    let output = tempfile::tempdir().unwrap();
+    let selection = Selection {
+        cases: cases(),
+        names: ["lame-static", "kirsch-static/medium", "pressurised-crack/coarse", "rigid-ball"]
+            .map(String::from)
+            .to_vec(),
+        quick: false,
+        output: output.path().to_owned(),
+        jobs: 2,
+        threads: Some(1),
+        cache: fractum_prepare::Cache::new(None),
+    };
+    let rows = neighbours(&selection, true).unwrap();
+    let holds = rows.iter().filter(|row| row.end == End::Holds).count();
+    let fails: Vec<_> = rows.iter().filter(|row| matches!(row.end, End::Fails | End::Open | End::Unsaid)).collect();
+    assert!(holds > 40 && fails.is_empty(), "{holds} hold; {fails:#?}");
+    // Powers of two change no digit: nothing in the program has a size of its own.
+    let same = |row: &&Row| row.kind == "size" && row.end == End::Holds && ["1", "Pa"].contains(&row.unit.as_str());
+    let sized: Vec<&Row> = rows.iter().filter(same).collect();
+    assert!(sized.len() > 4);
+    for row in sized {
+        assert_eq!(row.value, row.at_home, "{} {} {}", row.case, row.neighbour, row.quantity);
+    }
+}
+
+#[test]
+fn a_case_that_promises_something_says_something_of_each_neighbour() {
+    let (mut silent, mut count) = (Vec::new(), 0);
+    for folder in std::fs::read_dir(cases()).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+        for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.extension().is_none_or(|ending| ending != "toml") || path.ends_with("study.toml") {
+                continue;
+            }
+            let case = read_case(&path, &[]).unwrap();
+            let promise = &case.source.verify.promise;
+            if promise.holds_for.is_some() || !promise.excepted.is_empty() {
+                count += case.expect.len();
+                silent.extend(unsaid(&case).into_iter().map(|row| format!("{}: {row}", path.display())));
+            }
+        }
+    }
+    assert!(count > 50 && silent.is_empty(), "of {count} references: {silent:#?}");
 }

@@ -46,6 +46,7 @@ mod place;
 mod quantity;
 mod read;
 mod reader;
+mod scale;
 mod schema;
 mod time_function;
 mod tree;

@@ -10,6 +10,7 @@ use super::diagnostic::MOST_LISTED;
 use super::expression::{Compiled, ExpressionError, Named, Names, Op, Type, compile};
 use super::key_kind::KeyKind;
 use super::keys::{Unknown, describe};
+use super::scale::Scale;
 use super::tree::{Entry, Node, Value, join};
 use super::unit::Dimension;
 use super::{Choice, Diagnostic, Place, Severity, nearest};
@@ -23,6 +24,8 @@ const MOST_NAMES: usize = 20;
 pub(super) struct Reader {
     /// Folder of the case file.
     pub(super) folder: PathBuf,
+    /// By how much all lengths are larger than written: `verify.scale`.
+    pub(super) scale: Scale,
     /// Parameters read so far.
     pub(super) parameters: RefCell<BTreeMap<String, Parameter>>,
     /// Tables read from other files: name as written, contents.
@@ -47,6 +50,7 @@ impl Reader {
     pub(super) fn new(folder: PathBuf) -> Self {
         Self {
             folder,
+            scale: Scale(1.0),
             parameters: RefCell::default(),
             tables: RefCell::default(),
             diagnostics: RefCell::default(),
@@ -138,7 +142,7 @@ impl Reader {
     /// A constant quantity of this dimension.
     pub(super) fn quantity(&self, node: &Node, dimension: Dimension) -> Option<f64> {
         let (value, kind) = self.constant(node, &dimension.expected())?;
-        self.check_dimension(node, kind, dimension).then_some(value)
+        self.check_dimension(node, kind, dimension).then_some(value * self.scale.of_bare(kind, dimension))
     }
 
     /// Whether a type fits a dimension; notes it where not.
@@ -191,6 +195,10 @@ impl Names for ParameterNames<'_> {
         let parameter = parameters.get_mut(name)?;
         parameter.used = true;
         Some(Ok(Named { op: Op::Constant(parameter.value), kind: parameter.kind }))
+    }
+
+    fn scale_of(&self, dimension: Dimension) -> f64 {
+        self.reader.scale.of(dimension)
     }
 
     fn all(&self) -> Vec<String> {

@@ -99,6 +99,12 @@ impl Dimension {
         Some(Self { halves })
     }
 
+    /// Twice the power with which such a quantity grows with a body whose lengths and times grow alike, while stresses and densities stay.
+    pub(super) fn halves_of_length(self) -> i32 {
+        let [kg, m, s, _] = self.halves.map(i32::from);
+        3 * kg + m + s
+    }
+
     fn combine(self, other: Self, f: fn(i8, i8) -> Option<i8>) -> Option<Self> {
         let mut halves = [0; 4];
         for (i, result) in halves.iter_mut().enumerate() {

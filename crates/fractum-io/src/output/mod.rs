@@ -5,6 +5,7 @@
 //! number of threads; only what tells of the clock differs.
 
 pub mod attenuation;
+pub mod beside;
 pub mod expectation;
 pub mod fragments;
 pub mod history;

@@ -11,7 +11,7 @@ use fractum_math::{Sym3, Vec3};
 use fractum_pack::Convention;
 use fractum_scene::CrackMeasure;
 
-use crate::{SMALL, folder, good};
+use crate::{SMALL, folder, good, parse};
 
 #[test]
 fn a_case_with_every_key_is_read_into_si() {
@@ -172,4 +172,85 @@ fn risky_settings_are_warned_of() {
     assert_eq!(warned(&often("1 min")), Vec::<String>::new());
     let jump = format!("{SMALL}[[supports]]\ngroup = \"a\"\ndisplacement.x = \"1 mm\"\n");
     assert_eq!(warned(&jump), ["supports[0].displacement.x"]);
+}
+
+#[test]
+fn a_larger_case_has_the_same_stresses_velocities_and_densities() {
+    let text = SMALL.replace("poisson_ratio", "contact_modulus = \"2*E\"\npoisson_ratio")
+        + r#"[parameters]
+E = "105 GPa"
+[[supports]]
+group = "end"
+displacement = { x = "2 mm*sin(t/1 ms)*x/5 cm", y = 3e-3 }
+[[loads]]
+group = "end"
+force = { x = "if(t > 0.5 ms, 8 kN, 0)" }
+[[probes]]
+name = "pull"
+reaction = { group = "end", along = "x" }
+[[probes]]
+name = "work"
+expression = "max(pull)*1 mm"
+[[expect]]
+quantity = "work"
+value = "5 J"
+tolerance = "1 %"
+source = "none"
+"#;
+    let (one, two) = (good(&text, &[]), good(&text, &[("verify.scale", "2.0")]));
+    let of = |case: &fractum_io::case::Case| (case.materials[0].density, case.materials[0].contact_modulus);
+    assert_eq!(of(&one), of(&two));
+    assert_eq!((two.solver.end, two.mesh.as_ref().unwrap().unit), (2e-3, 2.0));
+    let moved = |case: &fractum_io::case::Case, axis: usize, t: f64, x: f64| match &case.supports[0].motion[axis] {
+        Some(Spanned { value: Motion::Displacement(function), .. }) => function.value(t, Vec3::new(x, 0.0, 0.0)),
+        other => panic!("{other:?}"),
+    };
+    for axis in 0..2 {
+        assert_eq!(moved(&two, axis, 1.4e-3, 0.06), 2.0 * moved(&one, axis, 0.7e-3, 0.03), "{axis}");
+    }
+    let LoadKind::Force { force, .. } = &two.loads[0].kind else { panic!() };
+    assert_eq!(force[0].as_ref().unwrap().value.value(1.1e-3, Vec3::zeros()), 32e3);
+    let bound = |case: &fractum_io::case::Case| case.expect[0].bound;
+    let Bound::Near { value, relative, .. } = bound(&two) else { panic!() };
+    assert_eq!((value, relative), (40.0, Some(0.01)));
+    assert!(parse(&text, &[("verify.scale", "0")]).is_err() && parse(&text, &[("verify.scale", "two")]).is_err());
+}
+
+#[test]
+fn neighbours_follow_from_the_case() {
+    use fractum_io::case::model::Saying;
+    let text = SMALL.replace("poisson_ratio = 0.3", "poisson_ratio = \"nu\"")
+        + "[parameters]\nnu = 0.3\n[[expect]]\nquantity = \"counts.nodes\"\nabove = 1\nsource = \"none\"\n\
+           [verify]\nholds_for = [\"mesh\", \"finer\"]\nexcepted = [\"poisson_ratio 0.4: too soft\"]\n\
+           [[verify.neighbours]]\nname = \"finer\"\nset = [\"mesh.file=fine.msh\"]\n";
+    let case = good(&text, &[]);
+    let verify = &case.source.verify;
+    let names: Vec<String> = verify.neighbours.iter().map(|neighbour| neighbour.name()).collect();
+    let expected = [
+        "poisson_ratio 0",
+        "poisson_ratio 0.1",
+        "poisson_ratio 0.4",
+        "safety 0.6",
+        "safety 0.9",
+        "mesh",
+        "half",
+        "size 1/1024",
+        "size 1024",
+        "finer",
+    ];
+    assert_eq!(names, expected);
+    assert_eq!(verify.neighbours[0].set, [("nu".to_owned(), "0".to_owned())]);
+    let said: Vec<_> = verify.neighbours.iter().map(|neighbour| verify.says(&case.expect[0], neighbour)).collect();
+    assert_eq!(
+        (said[0], said[2], said[5], said[9]),
+        (Saying::Nothing, Saying::Excepted("too soft"), Saying::Holds, Saying::Holds)
+    );
+    for neighbour in &verify.neighbours {
+        let set: Vec<(&str, &str)> = neighbour.set.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
+        good(&text, &set);
+    }
+    let wrong = |from: &str, to: &str| parse(&text.replace(from, to), &[]).unwrap_err().to_string();
+    assert!(wrong("\"mesh\", ", "\"mash\", ").contains("did you mean \"mesh\"?"));
+    assert!(wrong(": too soft", "").contains("has no reason"));
+    assert!(wrong("mesh.file=", "mesh.file ").contains("sets nothing"));
 }

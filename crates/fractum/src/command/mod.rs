@@ -86,6 +86,12 @@ enum Command {
         /// Threads per case; all cores by default.
         #[arg(long, value_parser = thread_count)]
         threads: Option<usize>,
+        /// The neighbours of every case, such as another seed or Poisson's ratio, instead of the cases themselves.
+        #[arg(long, conflicts_with = "stress")]
+        neighbours: bool,
+        /// Only the neighbours for which a reference is promised to hold.
+        #[arg(long, requires = "neighbours")]
+        promised: bool,
         /// Random scenes of every kind of body instead of the gallery.
         #[arg(long, conflicts_with_all = ["names", "quick"])]
         stress: bool,
@@ -208,14 +214,9 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
             let settings = fractum::stress::Settings { scenes, first, blasts, seed, output, threads, cache: cache() };
             if steps { measure_steps(&settings, baseline.as_deref()) } else { run_random_scenes(&settings) }
         }
-        Command::Verify { names, quick, cases, output, jobs, threads, .. } => {
+        Command::Verify { names, quick, cases, output, jobs, threads, neighbours, promised, .. } => {
             let selection = fractum::verify::Selection { cases, names, quick, output, jobs, threads, cache: cache() };
-            fractum::verify::verify(&selection).and_then(|lines| {
-                match lines.iter().filter(|l| !l.expectation.pass).count() {
-                    0 => Ok(ExitCode::Done),
-                    failed => Err(Failure::Unmet(format!("{failed} of {} references are not met", lines.len()))),
-                }
-            })
+            if neighbours { run_neighbours(&selection, promised) } else { run_gallery(&selection) }
         }
         Command::Study(arguments) => study::run(*arguments),
         Command::Sweep { command } => sweep::run(command),
@@ -237,6 +238,22 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         report(&failure, json);
         failure.exit_code()
     })
+}
+
+fn run_gallery(selection: &fractum::verify::Selection) -> Result<ExitCode, Failure> {
+    let lines = fractum::verify::verify(selection)?;
+    match lines.iter().filter(|line| !line.expectation.pass).count() {
+        0 => Ok(ExitCode::Done),
+        failed => Err(Failure::Unmet(format!("{failed} of {} references are not met", lines.len()))),
+    }
+}
+
+fn run_neighbours(selection: &fractum::verify::Selection, only_promised: bool) -> Result<ExitCode, Failure> {
+    let rows = fractum::neighbours::neighbours(selection, only_promised)?;
+    match rows.iter().filter(|row| row.end == fractum_io::beside::End::Fails).count() {
+        0 => Ok(ExitCode::Done),
+        failed => Err(Failure::Unmet(format!("{failed} references do not hold beside their case"))),
+    }
 }
 
 fn run_random_scenes(settings: &fractum::stress::Settings) -> Result<ExitCode, Failure> {

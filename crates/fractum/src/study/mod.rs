@@ -47,6 +47,16 @@ pub struct Settings {
 /// [`Failure::Write`] where something cannot be written, [`Failure::Interrupted`] after Ctrl-C, with the tables of what has
 /// finished. A run that is refused or stops itself is a line of the tables.
 pub fn study(study: &Study, settings: &Settings) -> Result<Vec<Run>, Failure> {
+    let (runs, ended) = runs(study, settings)?;
+    write(study, &runs, settings)?;
+    ended.map(|()| runs)
+}
+
+/// Runs what has not finished yet: all runs, and what kept those that are open from their end.
+///
+/// # Errors
+/// [`Failure::Write`] where the folder of the study cannot be made.
+pub(crate) fn runs(study: &Study, settings: &Settings) -> Result<(Vec<Run>, Result<(), Failure>), Failure> {
     atomic::create_folder(&settings.output)?;
     let under_way = UnderWay::new();
     let slots: Vec<Mutex<Option<Run>>> = study.runs.iter().map(|_| Mutex::new(None)).collect();
@@ -80,13 +90,13 @@ pub fn study(study: &Study, settings: &Settings) -> Result<Vec<Run>, Failure> {
     let open = |planned: &fractum_io::study::plan::Planned| Run { planned: planned.clone(), ..Run::default() };
     let runs: Vec<Run> =
         slots.into_iter().zip(&study.runs).map(|(slot, planned)| take(slot).unwrap_or_else(|| open(planned))).collect();
-    write(study, &runs, settings)?;
-    drop(under_way);
-    match take(wrong) {
+    let ended = match take(wrong) {
         Some(failure) => Err(failure),
         None if is_interrupted() => Err(Failure::Interrupted),
-        None => Ok(runs),
-    }
+        None => Ok(()),
+    };
+    drop(under_way);
+    Ok((runs, ended))
 }
 
 /// Hash of this program, by which what another build has found is told from its own results.

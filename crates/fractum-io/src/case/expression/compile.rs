@@ -172,7 +172,8 @@ impl<'t> Compiler<'t, '_> {
         let unit = unit_after_number(self.tokens, &mut self.at, self.names)?;
         let value = unit.of(digits).filter(|value| value.is_finite());
         let value = value.ok_or_else(|| ExpressionError::new(offset, "the number is too large"))?;
-        self.code.push(Op::Constant(value));
+        let scale = if self.at == start { 1.0 } else { self.names.scale_of(unit.dimension) };
+        self.code.push(Op::Constant(value * scale));
         Ok(if self.at == start { Type::BARE } else { Type::number(unit.dimension) })
     }
 

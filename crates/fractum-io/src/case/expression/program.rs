@@ -104,6 +104,11 @@ impl Program {
         Self { code: Box::new([Op::Constant(value)]) }
     }
 
+    /// The program whose values are larger by a factor; `None` where it needs too deep a stack.
+    pub(crate) fn times(self, factor: f64) -> Option<Self> {
+        Self::new([&self.code[..], &[Op::Constant(factor), Op::Binary(Binary::Multiply)]].concat())
+    }
+
     /// Value for the given inputs; an input that is not there counts as NaN.
     pub(crate) fn evaluate(&self, inputs: &[f64]) -> f64 {
         let mut stack = [0.0f64; STACK];

@@ -89,6 +89,11 @@ pub(crate) trait Names {
     /// Its meaning, for use; `None` where there is no such name.
     fn find(&mut self, name: &str) -> Option<Result<Named, String>>;
 
+    /// By how much a number with a unit of this dimension is larger than written.
+    fn scale_of(&self, _dimension: Dimension) -> f64 {
+        1.0
+    }
+
     /// All names, for suggestions.
     fn all(&self) -> Vec<String>;
 

@@ -15,6 +15,7 @@ mod probe;
 mod rigid;
 mod solver;
 mod tie;
+mod verify;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -39,6 +40,7 @@ pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, 
 pub use rigid::{RigidBody, RigidShape};
 pub use solver::{Control, InitialOverlap, Opening, Solver, SolverKind, StaticOptions, StopWhen, TimeStep};
 pub use tie::Tie;
+pub use verify::{NEIGHBOURS, Neighbour, Promise, Saying, Verify};
 
 use super::{Diagnostic, Dimension, Spanned};
 
@@ -95,8 +97,8 @@ pub struct CaseSource {
     pub parameters: BTreeMap<String, f64>,
     /// Name of the stage that the case is; empty where there is one only.
     pub stage: String,
-    /// Whether `fractum verify --quick` runs this case.
-    pub verify_quick: bool,
+    /// How `fractum verify` takes this case.
+    pub verify: Verify,
     pub(super) hash_but_end: u128,
     pub(super) warnings: Vec<Diagnostic>,
 }
@@ -110,6 +112,10 @@ pub struct MeshSource {
     pub parts: Option<usize>,
     /// Length of the mesh's unit [m].
     pub unit: f64,
+    /// How often all edges are halved.
+    pub halvings: u32,
+    /// Random moves of inner nodes: share of the shortest edge [-], and seed.
+    pub scramble: Option<(f64, u64)>,
 }
 
 impl MeshSource {
@@ -197,6 +203,8 @@ pub struct Expect {
     pub source: String,
     /// Remark, may be empty.
     pub note: String,
+    /// What it promises of the neighbours of the case.
+    pub promise: Promise,
 }
 
 /// What a value is held against, in SI.

@@ -198,7 +198,7 @@ fn shape(table: &Table<'_>, kind: Kind) -> Option<BondedShape> {
         Kind::Stl => {
             let file = file(table, "file");
             let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
-            BondedShape::Stl { file: file?, unit: unit?.unwrap_or(1.0) }
+            BondedShape::Stl { file: file?, unit: unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH)) }
         }
     })
 }

@@ -1,6 +1,7 @@
 //! `[[expect]]`.
 
 use super::probes::{ReadProbe, ReadProbes};
+use super::verify;
 use crate::case::model::{Bound, Expect, summary_quantities};
 use crate::case::reader::Table;
 use crate::case::tree::Value;
@@ -25,8 +26,9 @@ fn expect(table: Table<'_>, probes: &ReadProbes) -> Option<Expect> {
     let source = table.text("source").required();
     let note = table.text("note").or(String::new());
     let bound = bound(&table, dimension);
+    let promise = verify::promise(&table);
     table.finish("here");
-    Some(Expect { quantity: quantity?, unit: dimension?.symbol(), bound: bound?, source: source?, note })
+    Some(Expect { quantity: quantity?, unit: dimension?.symbol(), bound: bound?, source: source?, note, promise })
 }
 
 enum Found {

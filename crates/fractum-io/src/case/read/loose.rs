@@ -33,7 +33,7 @@ fn from_table(table: &Table<'_>) -> Option<LooseSource> {
     }
     let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
     let file = file(table, "file");
-    Some(LooseSource::Table { file: file?, unit: unit?.unwrap_or(1.0) })
+    Some(LooseSource::Table { file: file?, unit: unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH)) })
 }
 
 fn cloud(table: &Table<'_>) -> Option<LooseSource> {

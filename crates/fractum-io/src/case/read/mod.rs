@@ -28,6 +28,7 @@ mod table_file;
 mod ties;
 mod time_functions;
 mod vectors;
+mod verify;
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -36,8 +37,11 @@ use std::path::Path;
 
 use super::expression::parse_unit;
 use super::keys::remove_unknown;
-use super::model::{Body, BodyKind, BondedShape, Case, CaseSource, Flows, MeshSource, PackingSource, RigidShape};
+use super::model::{
+    Body, BodyKind, BondedShape, Case, CaseSource, Flows, MeshSource, PackingSource, RigidShape, Verify,
+};
 use super::reader::{Reader, Table};
+use super::scale::Scale;
 use super::tree::{self, Node, Value};
 use super::unit::Dimension;
 use super::{Diagnostic, Diagnostics, Place, Severity, Spanned, continued};
@@ -98,13 +102,14 @@ fn foreign(bytes: &[u8]) -> Option<&'static str> {
 pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Result<Case, Diagnostics> {
     let file = path.display().to_string();
     let mut root = tree::parse(text, &file).map_err(|errors| sorted(errors, &file))?;
-    let reader = Reader::new(path.parent().unwrap_or(Path::new("")).to_path_buf());
+    let mut reader = Reader::new(path.parent().unwrap_or(Path::new("")).to_path_buf());
     for (name, value) in overrides {
         let node = tree::parse_override(name, value);
         if let Err(error) = override_value(&mut root, name, node) {
             reader.note(*error);
         }
     }
+    reader.scale = Scale(verify::scale(&root));
     remove_unknown(&mut root, "", &mut |unknown| reader.note_unknown(unknown));
 
     let source = CaseSource {
@@ -115,7 +120,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
         tables: Vec::new(),
         parameters: BTreeMap::new(),
         stage: String::new(),
-        verify_quick: false,
+        verify: Verify::default(),
         hash_but_end: continued::hash(&root),
         warnings: Vec::new(),
     };
@@ -192,12 +197,17 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let plots = plots::read(&table, &probes);
     let output = solver::output(&table, solver.as_ref().map(|solver| solver.end), plots);
     let expect = expect::read(&table, &probes);
-    let verify = table.table_or_empty("verify");
-    let verify_quick = verify.flag("quick").or(false);
-    verify.finish("here");
+    let around = verify::Around {
+        root,
+        materials: &materials,
+        bodies: bodies.as_deref(),
+        solver: solver.as_ref(),
+        staged: !stage.is_empty(),
+    };
+    let verify = verify::read(&table, &around, expect.as_deref());
     table.finish("here");
     version?;
-    let source = CaseSource { parameters, stage, verify_quick, title, ..source };
+    let source = CaseSource { parameters, stage, verify, title, ..source };
     Some(Case {
         source,
         mesh: mesh?,
@@ -242,14 +252,25 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
     }
     let table = root.table_or_empty("mesh");
     let file = table.text("file").spanned().required();
-    let unit = unit(&table, "unit", Dimension::LENGTH).unwrap_or(1.0);
+    let unit = unit(&table, "unit", Dimension::LENGTH).unwrap_or(root.reader.scale.of(Dimension::LENGTH));
+    let halvings = table.integer("halvings").check(|count| *count <= 6, "0 to 6").or(0) as u32;
+    let scramble = table.table("scramble").map(|table| {
+        let share = table.quantity("share").check(|share| *share > 0.0 && *share <= 0.5, "above 0 and at most 0.5");
+        let (share, seed) = (share.required(), table.integer("seed").or(1));
+        table.finish("here");
+        share.map(|share| (share, seed))
+    });
     let parts = table
         .has("parts")
         .then(|| table.integer("parts").check(|count| (1..=MOST_PARTS).contains(count), "1 to 65536").or(1) as usize);
     table.finish("here");
     let Spanned { value, place } = file?;
     let file = Spanned::new(table_path(root.reader, &value), place);
-    Some(Some(MeshSource { file, parts, unit }))
+    let scramble = match scramble {
+        Some(None) => return None,
+        known => known.flatten(),
+    };
+    Some(Some(MeshSource { file, parts, unit, halvings, scramble }))
 }
 
 fn table_path(reader: &Reader, file: &str) -> std::path::PathBuf {
@@ -270,7 +291,7 @@ fn unit(table: &Table<'_>, name: &'static str, dimension: Dimension) -> Option<f
             table.reader.note(note.expected(format!("a unit of {}, such as \"{dimension}\"", dimension.phrase())));
             return None;
         }
-        Some(unit.size())
+        Some(unit.size() * table.reader.scale.of(dimension))
     });
     read.given()
 }

@@ -264,6 +264,10 @@ impl Names for ProbeNames<'_> {
         }))
     }
 
+    fn scale_of(&self, dimension: Dimension) -> f64 {
+        self.parameters.scale_of(dimension)
+    }
+
     fn all(&self) -> Vec<String> {
         if self.parameters.reader.has_many_mistakes() {
             return Vec::new();

@@ -129,7 +129,11 @@ fn shape(table: &Table<'_>, kind: Kind) -> Option<RigidShape> {
         Kind::Stl => {
             let file = file(table, "file");
             let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
-            RigidShape::Stl { file: file?, unit: unit?.unwrap_or(1.0), point: start? }
+            RigidShape::Stl {
+                file: file?,
+                unit: unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH)),
+                point: start?,
+            }
         }
     })
 }

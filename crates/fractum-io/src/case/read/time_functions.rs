@@ -85,8 +85,8 @@ fn points(table: &Table<'_>, name: &'static str, dimension: Dimension) -> Option
 
 /// A CSV file of time and value.
 fn file(table: &Table<'_>, dimension: Dimension) -> Option<Vec<(f64, f64)>> {
-    let time_unit = unit(table, "time_unit", Dimension::TIME).unwrap_or(1.0);
-    let value_unit = unit(table, "value_unit", dimension).unwrap_or(1.0);
+    let time_unit = unit(table, "time_unit", Dimension::TIME).unwrap_or(table.reader.scale.of(Dimension::TIME));
+    let value_unit = unit(table, "value_unit", dimension).unwrap_or(table.reader.scale.of(dimension));
     let name = table.text("table").spanned().required()?;
     let points = table_file::read(table.reader, &name)?;
     let points: Vec<_> = points.into_iter().map(|(time, value)| (time * time_unit, value * value_unit)).collect();

@@ -138,12 +138,20 @@ pub(super) fn expression(
 ) -> Option<(Field, Type)> {
     let Value::Text(text) = &node.value else {
         let (value, kind) = reader.constant(node, &dimension.expected())?;
-        return Some((Field::constant(value), kind));
+        return Some((Field::constant(value * reader.scale.of_bare(kind, dimension)), kind));
     };
     let compiled = reader.compile(node, text, &mut reader.names(variables), false)?;
     if compiled.program.constant().is_some_and(|value| !value.is_finite()) {
         reader.note(Diagnostic::error(&node.place, node.found()).expected("a finite number"));
         return None;
     }
-    Some((Field(compiled.program), compiled.kind))
+    let scale = reader.scale.of_bare(compiled.kind, dimension);
+    if scale == 1.0 {
+        return Some((Field(compiled.program), compiled.kind));
+    }
+    let larger = compiled.program.times(scale);
+    if larger.is_none() {
+        reader.note(Diagnostic::error(&node.place, node.found()).expected("an expression that is less deeply nested"));
+    }
+    Some((Field(larger?), compiled.kind))
 }
