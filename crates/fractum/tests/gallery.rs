@@ -42,7 +42,7 @@ fn a_share_of_the_gallery_holds_beside_itself() {
     let output = tempfile::tempdir().unwrap();
     let selection = Selection {
         cases: cases(),
-        names: ["lame-static", "kirsch-static/medium", "pressurised-crack/coarse", "rigid-ball"]
+        names: ["lame-static", "pressurised-crack/coarse", "cantilever-static/plane-depth-2-standard"]
             .map(String::from)
             .to_vec(),
         quick: false,
@@ -80,5 +80,5 @@ fn a_case_that_promises_something_says_something_of_each_neighbour() {
             }
         }
     }
-    assert!(count > 50 && silent.is_empty(), "of {count} references: {silent:#?}");
+    assert!(count > 10 && silent.is_empty(), "of {count} references: {silent:#?}");
 }

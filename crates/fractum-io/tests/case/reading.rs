@@ -176,7 +176,7 @@ fn risky_settings_are_warned_of() {
 
 #[test]
 fn a_larger_case_has_the_same_stresses_velocities_and_densities() {
-    let text = SMALL.replace("poisson_ratio", "contact_modulus = \"2*E\"\npoisson_ratio")
+    let text = SMALL.replace("poisson_ratio", "contact = { young_modulus = \"2*E\" }\npoisson_ratio")
         + r#"[parameters]
 E = "105 GPa"
 [[supports]]
