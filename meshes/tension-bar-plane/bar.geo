@@ -1,12 +1,12 @@
-// Plane bar of 100 x 20 mm along x, centred on the origin. Lengths in metres.
+// Plane bar L x H along x, centred on the origin. Lengths in metres.
 SetFactory("Built-in");
 
 DefineConstant[
+  L = 0.1            // length
+  H = 0.02           // depth
   h = 0.004          // element size
   algorithm = 5      // 5: Delaunay; 6: frontal, rows of nearly equilateral triangles; 0: squares cut by alternating diagonals
 ];
-
-L = 0.1; H = 0.02;
 
 Point(1) = {-L/2, -H/2, 0, h};
 Point(2) = {L/2, -H/2, 0, h};

@@ -90,6 +90,7 @@ fn body(bar: &Bar) -> (Vec<Vec3>, Body) {
         law: bar.law.clone(),
         region: Region::Everywhere,
         strength_factor: body.edge_midpoints(&nodes).iter().map(factor).collect(),
+        strength_by_chance: Vec::new(),
         reduce_strength_to_fit: bar.reduce_strength_to_fit,
         regularisation: bar.is_regularised.then_some(Regularisation { length: None }),
     };

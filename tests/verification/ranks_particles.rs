@@ -60,7 +60,12 @@ fn body(name: &str, cells: [usize; 3], from: Vec3, speed: f64, law: impl Into<An
 }
 
 fn breaking(criterion: Option<FractureCriterion>, volume: f64) -> Option<BondFracture> {
-    Some(BondFracture { criterion, faces: CrackFaces { friction: 0.3, damping_ratio: 0.0 }, volume })
+    Some(BondFracture {
+        criterion,
+        faces: CrackFaces { friction: 0.3, damping_ratio: 0.0 },
+        volume,
+        strength_factors: Vec::new(),
+    })
 }
 
 /// A scene of particles alone.

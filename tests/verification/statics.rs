@@ -93,6 +93,7 @@ fn bar(formulation: Formulation) -> Solid {
         law: soft(),
         region,
         strength_factor: Vec::new(),
+        strength_by_chance: Vec::new(),
         reduce_strength_to_fit: false,
         regularisation: None,
     };

@@ -83,6 +83,8 @@ pub struct DamageZone {
     pub region: Region,
     /// Factor on the tensile strength of each edge, in the order of [`Body::edge_midpoints`]; empty means 1.
     pub strength_factor: Vec<f64>,
+    /// A further factor that each edge has by chance; empty means 1. What it adds is cut where the edge is too long for it.
+    pub strength_by_chance: Vec<f64>,
     /// Lower the strength of edges too long for their fracture energy, instead of refusing the body.
     pub reduce_strength_to_fit: bool,
     /// Damage as a phase field instead of edge by edge.
@@ -139,6 +141,7 @@ impl Body {
             law,
             region: Region::Everywhere,
             strength_factor: Vec::new(),
+            strength_by_chance: Vec::new(),
             reduce_strength_to_fit: false,
             regularisation: None,
         };

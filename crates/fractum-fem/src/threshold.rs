@@ -123,12 +123,22 @@ impl Lengths {
         if matches!(&zone.region, Region::Edges(marked) if !marked[edge as usize]) {
             return f64::INFINITY;
         }
-        let strength = zone.law.tensile_strength * zone.strength_factor.get(edge as usize).copied().unwrap_or(1.0);
+        let factor = |factors: &[f64]| factors.get(edge as usize).copied().unwrap_or(1.0);
+        let given = zone.law.tensile_strength * factor(&zone.strength_factor);
+        let mut strength = given * factor(&zone.strength_by_chance);
         let (modulus, energy) = (body.opening_modulus(), zone.law.fracture_energy);
-        let (length, limit) = match over {
-            Ok(law) => (law.length, law.largest_length(strength)),
-            Err(length) => (length, zone.law.softening.largest_length(modulus, strength, energy)),
+        // The limit goes with 1/f_t²; that of a phase field has a reserve of its own.
+        let (length, reserve) = over.map_or_else(|length| (length, IN_RESERVE), |law| (law.length, 1.0));
+        let limit_of = |strength| match over {
+            Ok(law) => law.largest_length(strength),
+            Err(_) => zone.law.softening.largest_length(modulus, strength, energy),
         };
+        let fits = |strength: f64| strength * (reserve / (length / limit_of(strength))).sqrt();
+        if strength > given {
+            strength = strength.min(fits(strength)).max(given);
+        }
+        // Elements must be small enough for the strength given: what chance adds is not asked of them.
+        let limit = limit_of(strength.min(given));
         let ratio = length / limit;
         self.largest_ratio = self.largest_ratio.max(ratio);
         if ratio < 1.0 {
@@ -138,8 +148,7 @@ impl Lengths {
         if self.worst.as_ref().is_none_or(|worst| ratio > worst.ratio) {
             self.worst = Some(TooLong { edge, length, ratio, limit });
         }
-        // The limit goes with 1/f_t²; that of a phase field has a reserve of its own.
-        strength * (if over.is_ok() { 1.0 } else { IN_RESERVE } / ratio).sqrt()
+        fits(strength)
     }
 
     /// The same of other edges too.

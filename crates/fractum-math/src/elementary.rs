@@ -93,6 +93,11 @@ pub fn exp_m1(x: f64) -> f64 {
     libm::expm1(x)
 }
 
+/// Gamma function Γ(x), for x > 0.
+pub fn gamma(x: f64) -> f64 {
+    libm::tgamma(x)
+}
+
 /// √(x² + y²) without overflow.
 pub fn hypot(x: f64, y: f64) -> f64 {
     libm::hypot(x, y)

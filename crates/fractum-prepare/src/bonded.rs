@@ -179,7 +179,12 @@ impl Maker<'_> {
         all.reports.push(BondedReport { fracture, ..self.report(&made.sample, mass, packing_from, joints) });
         let faces = CrackFaces { friction: material.contact.friction, damping_ratio: material.contact.damping_ratio };
         let (fraction, volume) = (made.sample.fraction, made.sample.measured_volume());
-        let breaks = |found: FoundStrengths| BondFracture { criterion: Some(found.criterion), faces, volume };
+        let breaks = |found: FoundStrengths| BondFracture {
+            criterion: Some(found.criterion),
+            faces,
+            volume,
+            strength_factors: Vec::new(),
+        };
         all.prepared.push(PreparedBody {
             fraction,
             fracture: fracture.map(breaks),

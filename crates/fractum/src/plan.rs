@@ -6,6 +6,7 @@ mod estimate;
 mod gauges;
 mod heat;
 mod rows;
+mod strength;
 mod time_step;
 mod wrap;
 
@@ -88,6 +89,7 @@ impl Plan {
             plan.describe_mesh(source, mesh);
         }
         plan.describe_bodies(case, scene, bonded);
+        plan.describe_scatter(case, &built.weibull);
         plan.describe_ties(&built.ties);
         if !case.source.stage.is_empty() {
             plan.add("stage", &case.source.stage);

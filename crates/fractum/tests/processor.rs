@@ -44,8 +44,10 @@ fn a_softening_bar_at_equilibrium_has_the_bits_of_an_older_processor() {
 
 #[test]
 fn debris_with_scattered_strengths_has_the_bits_of_an_older_processor() {
-    let scattered =
-        BREAKING_BAR.replace("distribution = \"uniform\"\nwidth = 0.1", "distribution = \"weibull\"\nmodulus = 8");
+    let scattered = BREAKING_BAR.replace(
+        "distribution = \"uniform-per-edge\"\nwidth = 0.1",
+        "distribution = \"weibull-per-edge\"\nmodulus = 8",
+    );
     assert!(scattered.contains("weibull"));
     assert_same_bits_on_an_older_processor(&scattered);
 }

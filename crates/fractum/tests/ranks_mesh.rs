@@ -309,7 +309,7 @@ fn stresses_are_measured_in_divided_bodies_too() {
 
 #[test]
 fn where_all_may_break_every_rank_has_its_cells_alone() {
-    let scatter = "60 J/m^2\"\nscatter = { distribution = \"weibull\", modulus = 8, seed = 3 }\n";
+    let scatter = "60 J/m^2\"\nscatter = { distribution = \"weibull\", modulus = 8, reference_volume = \"1 L\", correlation_length = \"10 cm\", seed = 3 }\n";
     let case = breaking().replace("60 J/m^2\"\n", scatter);
     let partly = "material = \"weak\"\ndamage_where = \"z < 0.3 m\"";
     let place = workplace(&case.replace("material = \"rock\"\nformulation = \"standard\"", partly));

@@ -127,6 +127,16 @@ impl Fracture {
         Ok(Fracture::with_search(graph, Some(search), particles, faces, area))
     }
 
+    /// The same with strengths of their own for particles.
+    ///
+    /// - `factors`: on the strength of each, > 0; none where all have the same
+    pub fn with_strength_factors(mut self, factors: &[f64]) -> Self {
+        if let Some(search) = &mut self.search {
+            search.set_strength_factors(factors, &self.graph);
+        }
+        self
+    }
+
     pub(super) fn with_search(
         graph: BondGraph,
         search: Option<FailureSearch>,

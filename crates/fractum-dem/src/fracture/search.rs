@@ -4,7 +4,7 @@ use fractum_math::{Sym3, Vec3, sphere_volume};
 use fractum_parallel::gather_named;
 
 use super::criterion::{
-    BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule, SeenBonds,
+    BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule, SeenBonds, weakness_of,
 };
 use super::share::SearchPart;
 use crate::DemError;
@@ -53,6 +53,10 @@ pub struct FailureSearch {
     inverse: Vec<f64>,
     /// Interior volume fraction; one where the criterion takes the spheres' own volume.
     fraction: f64,
+    /// What multiplies the ratio of each site, one over the factor on its strength; empty where all have the same.
+    weakness: Vec<f64>,
+    /// The largest of them.
+    weakest: f64,
     /// Members of each neighbourhood, for level 2 only.
     members: Vec<Vec<u32>>,
     virials: Vec<Sym3>,
@@ -107,6 +111,8 @@ impl FailureSearch {
             volume,
             inverse: vec![0.0; stressed],
             fraction,
+            weakness: Vec::new(),
+            weakest: 1.0,
             members: vec![Vec::new(); listed],
             virials: vec![Sym3::ZERO; stressed],
             virial_bounds: vec![[0.0; 2]; stressed],
@@ -119,6 +125,19 @@ impl FailureSearch {
         };
         search.gather_all(graph);
         Ok(search)
+    }
+
+    /// Gives particles strengths of their own; a bond has that of the weaker of its two.
+    ///
+    /// - `factors`: on the strength of each particle, > 0; none where all have the same
+    pub(crate) fn set_strength_factors(&mut self, factors: &[f64], graph: &BondGraph) {
+        let of_particles = factors.iter().map(|factor| factor.recip());
+        let of_bond = |pair: &[u32; 2]| pair.map(|i| factors[i as usize].recip()).into_iter().fold(0.0, f64::max);
+        self.weakness = match self.criterion.level() {
+            None if !factors.is_empty() => graph.pairs().iter().map(of_bond).collect(),
+            _ => of_particles.collect(),
+        };
+        self.weakest = self.weakness.iter().copied().reduce(f64::max).unwrap_or(1.0);
     }
 
     /// Members and volumes of all neighbourhoods anew.
@@ -223,14 +242,21 @@ impl FailureSearch {
             reaching,
             listed,
             part,
+            weakness,
+            weakest,
             ..
         } = self;
+        // Before the strength of each site is looked at.
+        let any_limit = limit / *weakest;
         self.overloaded.clear();
         self.worst = None;
         match criterion.rule() {
             Rule::Load(criterion) => {
-                body.list_by_loads(&|loads, radius| criterion.loads_reach(loads, radius, limit), listed);
-                let site = |&bond: &u32| FailureSite { index: bond, ratio: criterion.ratio_of_bond(&body.load(bond)) };
+                body.list_by_loads(&|loads, radius| criterion.loads_reach(loads, radius, any_limit), listed);
+                let site = |&bond: &u32| {
+                    let ratio = criterion.ratio_of_bond(&body.load(bond)) * weakness_of(weakness, bond as usize);
+                    FailureSite { index: bond, ratio }
+                };
                 let live = listed.iter().filter(|&&bond| graph.is_live(bond));
                 self.overloaded.extend(live.map(site).filter(|site| site.ratio >= limit));
             }
@@ -238,12 +264,12 @@ impl FailureSearch {
                 body.virials(virials);
                 let own = part.as_ref().map_or(0..virials.len(), |part| part.particles());
                 let (virial, volume) = (&virials[own.clone()], &volume[own.clone()]);
-                let mut any = criterion.virials_reach(virial, volume, *fraction, limit, &mut reaching[own.clone()]);
+                let mut any = criterion.virials_reach(virial, volume, *fraction, any_limit, &mut reaching[own.clone()]);
                 if let Some(part) = part {
                     any |= part.tell(virials, reaching);
                 }
                 if any {
-                    let around = Neighbourhoods { graph, members, inverse, virials, first: own.start };
+                    let around = Neighbourhoods { graph, members, inverse, virials, weakness, first: own.start };
                     let found = criterion.search_among(&around, reaching, &mut stress[own], limit);
                     found.iter().for_each(|block| self.overloaded.extend_from_slice(&block.overloaded));
                 }
@@ -254,6 +280,7 @@ impl FailureSearch {
     /// Whether [`Bonds::virial_bounds`] allow a site a ratio of at least `limit`: cheaper still, without a tensor, and a coarser bound.
     pub fn virial_bounds_may_fail(&mut self, bonds: &Bonds, limit: f64) -> bool {
         let Rule::Stress(criterion) = self.criterion.rule() else { return true };
+        let limit = limit / self.weakest;
         bonds.virial_bounds(&mut self.virial_bounds);
         let own = self.part.as_ref().map_or(0..self.volume.len(), |part| part.particles());
         let own_reach =
@@ -267,16 +294,17 @@ impl FailureSearch {
         let criterion = self.criterion;
         let found = match criterion.rule() {
             Rule::Load(criterion) => {
-                let seen = SeenBonds { load: &|bond| body.load(bond), sizes: &|bond| body.sizes(bond) };
+                let weakness = &self.weakness[..];
+                let seen = SeenBonds { load: &|bond| body.load(bond), sizes: &|bond| body.sizes(bond), weakness };
                 let own = self.part.as_ref().map_or(0..graph.pairs().len(), |part| part.bonds());
                 criterion.search(&seen, graph, own, limit)
             }
             Rule::Stress(criterion) => {
                 body.virials(&mut self.virials);
-                let FailureSearch { members, inverse, virials, stress, part, reaching, .. } = self;
+                let FailureSearch { members, inverse, virials, weakness, stress, part, reaching, .. } = self;
                 let own = part.as_ref().map_or(0..virials.len(), |part| part.particles());
                 part.iter_mut().for_each(|part| _ = part.tell(virials, reaching));
-                let around = Neighbourhoods { graph, members, inverse, virials, first: own.start };
+                let around = Neighbourhoods { graph, members, inverse, virials, weakness, first: own.start };
                 criterion.search(&around, &mut stress[own], limit)
             }
         };

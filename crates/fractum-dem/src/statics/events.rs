@@ -32,6 +32,8 @@ pub struct Breaking<'a> {
     pub pairs: &'a [[u32; 2]],
     /// Particle radii [m].
     pub radius: &'a [f64],
+    /// Factors on the strength of the particles, > 0; none where all have the same.
+    pub strength_factors: &'a [f64],
     /// Volume fraction of the interior of the packing.
     pub fraction: f64,
     /// Volume of the body, that the facets of its bonds share [m³].
@@ -145,7 +147,8 @@ impl QuasiStatic {
         what: &Breaking<'_>,
     ) -> Result<Self, DemError> {
         let graph = BondGraph::new(lattice.len(), what.pairs);
-        let search = FailureSearch::new(what.criterion, &graph, what.radius, what.fraction)?;
+        let mut search = FailureSearch::new(what.criterion, &graph, what.radius, what.fraction)?;
+        search.set_strength_factors(what.strength_factors, &graph);
         let area = facet_area(what.volume, lattice.position(), what.pairs);
         Ok(QuasiStatic {
             graph,
@@ -342,6 +345,7 @@ mod tests {
             criterion,
             pairs: &pairs,
             radius: &radius,
+            strength_factors: &[],
             fraction: 0.52,
             volume: n as f64,
             displacement: 1e-3,
@@ -371,6 +375,7 @@ mod tests {
             criterion: FractureCriterion::BeamRankine(BeamRankine { strength: 2e5, moments: Default::default() }),
             pairs: &pairs,
             radius: &[0.5; 4],
+            strength_factors: &[],
             fraction: 0.5,
             volume: 3.0,
             displacement: 1e-3,

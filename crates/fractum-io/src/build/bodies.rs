@@ -3,16 +3,13 @@
 use fractum_fem as fem;
 use fractum_fem::{CriterionKind, DamageLaw, DamageZone, Elastic, Formulation, Plane, Region, Solid};
 use fractum_math::Vec3;
-use fractum_math::elementary::{ln, pow};
 use fractum_mesh::renumber::hilbert_order;
 use fractum_mesh::topology;
-use rand::SeedableRng;
-use rand_distr::{Distribution as _, OpenClosed01, Uniform};
-use rand_pcg::Pcg64Mcg;
 
 use super::{Context, use_in_words};
-use crate::case::model::{BodyKind, Damage, Distribution, GroupUse, Scatter, SolidBody};
+use crate::case::model::{BodyKind, Damage, GroupUse, SolidBody};
 use crate::case::{Diagnostic, Place};
+use crate::number::quantity;
 
 /// A solid body of the case with its elements in the mesh.
 pub(super) struct Part<'a> {
@@ -175,9 +172,15 @@ impl<'a> Context<'a> {
         part.elements.iter().map(of).collect()
     }
 
-    pub(super) fn solid_bodies(&mut self, parts: &[Part<'a>], numbering: &Numbering) -> Option<Vec<fem::Body>> {
+    /// - `boundary`: free facets of all solids
+    pub(super) fn solid_bodies(
+        &mut self,
+        parts: &[Part<'a>],
+        numbering: &Numbering,
+        boundary: &[[u32; 3]],
+    ) -> Option<Vec<fem::Body>> {
         let mut bodies = Vec::new();
-        for part in parts {
+        for (index, part) in parts.iter().enumerate() {
             let material = &self.case.materials[part.body.material];
             let elastic = Elastic {
                 density: material.density,
@@ -200,15 +203,23 @@ impl<'a> Context<'a> {
                         "the smoothed formulation, which alone can close cracks; remove one of the two",
                     );
                 }
-                body.damage = Some(self.damage_zone(part, &body, &damage.value, numbering));
+                body.damage = Some(self.damage_zone((part, index), &body, &damage.value, numbering, boundary));
             }
             bodies.push(body);
         }
         self.diagnostics.is_empty().then_some(bodies)
     }
 
-    fn damage_zone(&mut self, part: &Part, body: &fem::Body, damage: &Damage, numbering: &Numbering) -> DamageZone {
-        let (marked, strength_factor) = self.edges_of(part, body, damage, numbering);
+    fn damage_zone(
+        &mut self,
+        (part, index): (&Part, usize),
+        body: &fem::Body,
+        damage: &Damage,
+        numbering: &Numbering,
+        boundary: &[[u32; 3]],
+    ) -> DamageZone {
+        let (marked, [strength_factor, strength_by_chance]) =
+            self.edges_of((part, index), body, damage, numbering, boundary);
         let region = if part.body.damage_where.is_some() { Region::Edges(marked) } else { Region::Everywhere };
         // Rock that has failed under pressure goes on bearing it.
         let crushes = damage.law.criterion.kind() != CriterionKind::Rankine && self.case.is_blast();
@@ -217,48 +228,10 @@ impl<'a> Context<'a> {
             law: DamageLaw { unilateral, ..damage.law.clone() },
             region,
             strength_factor,
+            strength_by_chance,
             reduce_strength_to_fit: damage.reduce_strength_to_fit,
             regularisation: damage.regularisation,
         }
-    }
-
-    /// Which edges of a body may be damaged where not all may, and factors on the strength of each where it varies.
-    fn edges_of(
-        &mut self,
-        part: &Part,
-        body: &fem::Body,
-        damage: &Damage,
-        numbering: &Numbering,
-    ) -> (Vec<bool>, Vec<f64>) {
-        let SolidBody { damage_where, strength_factor, .. } = part.body;
-        let (mut marked, mut factors) = (Vec::new(), Vec::new());
-        let varies = strength_factor.is_some() || damage.scatter.is_some();
-        if damage_where.is_none() && !varies {
-            return (marked, factors);
-        }
-        let mut wrong = None;
-        let nodes = &numbering.positions;
-        let mut number = 0;
-        body.each_edge(nodes.len(), |[i, j]| {
-            let middle = (nodes[i as usize] + nodes[j as usize]) * 0.5;
-            marked.extend(damage_where.as_ref().map(|condition| condition.value.holds_at(middle)));
-            let by_place = strength_factor.as_ref().map_or(1.0, |factor| factor.value.at(middle));
-            if !(by_place > 0.0 && by_place.is_finite()) {
-                wrong.get_or_insert((by_place, middle));
-            }
-            let by_chance = damage.scatter.as_ref().map_or(1.0, |scatter| scatter_factor(scatter, number, middle));
-            factors.extend(varies.then_some(by_place * by_chance));
-            number += 1;
-        });
-        if let Some(condition) = damage_where.as_ref().filter(|_| !marked.contains(&true)) {
-            let found = ": no edge of the body fulfils the condition";
-            self.error(&condition.place, found, "damage somewhere, or damage = false");
-        }
-        if let Some(((value, p), factor)) = wrong.zip(strength_factor.as_ref()) {
-            let found = format!(" is {value} at ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
-            self.error(&factor.place, found, "a positive factor everywhere");
-        }
-        (marked, factors)
     }
 
     /// Warns where elements are large for their fracture energy, or strength had to be lowered.
@@ -291,6 +264,24 @@ impl<'a> Context<'a> {
         warnings
     }
 
+    /// Warns where a body would be stronger by its few flaws than its elements allow.
+    pub(super) fn weibull_warnings(&self, solid: &Solid, parts: &[Part]) -> Vec<Diagnostic> {
+        let warning = |(index, part): (usize, &Part)| {
+            let report = self.weibull.iter().find(|report| report.body == part.name)?;
+            let strength = self.case.materials[part.body.material].damage.as_ref()?.value.law.tensile_strength;
+            let (_, ratio) = solid.length_report(index);
+            let most = strength * (1.0 / ratio).sqrt();
+            let expected = report.mean * (1.0 + report.variation);
+            (expected > most).then(|| {
+                let [expected, most] = [expected, most].map(|value| quantity(value, "Pa"));
+                let found = format!(": by its flaws bodies like this bear up to {expected}, and its elements {most}");
+                Diagnostic::warning(&part.place, found)
+                    .remedy("smaller elements; their largest size goes with one over the strength squared")
+            })
+        };
+        parts.iter().enumerate().filter_map(warning).collect()
+    }
+
     pub(super) fn set_initial_velocity(&self, solid: &mut Solid, parts: &[Part], numbering: &Numbering) {
         for (index, part) in parts.iter().enumerate() {
             for (axis, function) in part.body.initial_velocity.iter().enumerate() {
@@ -321,22 +312,6 @@ impl<'a> Context<'a> {
             let triangles: Vec<[u32; 3]> = elements.iter().map(|e| [e[0], e[1], e[2]]).collect();
             let edges = topology::boundary_of_triangles(&triangles);
             edges.iter().map(|e| [scene(e.nodes[0]), scene(e.nodes[1]), scene(e.nodes[1])]).collect()
-        }
-    }
-}
-
-/// The factor of one edge: its own stream of the named generator PCG-64 MCG, so that edges are independent.
-fn scatter_factor(scatter: &Scatter, edge: u64, midpoint: Vec3) -> f64 {
-    let place = midpoint.iter().fold(scatter.seed, |hash, c| (hash ^ c.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    let mut generator = Pcg64Mcg::seed_from_u64(place ^ edge);
-    match scatter.distribution {
-        // Parameters were checked with the case; 1 would be "no scatter".
-        Distribution::Weibull { modulus } => {
-            let survival: f64 = OpenClosed01.sample(&mut generator);
-            pow(-ln(survival), 1.0 / modulus)
-        }
-        Distribution::Uniform { width } => {
-            Uniform::new_inclusive(1.0 - width, 1.0 + width).map_or(1.0, |d| d.sample(&mut generator))
         }
     }
 }

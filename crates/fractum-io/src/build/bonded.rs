@@ -58,6 +58,7 @@ impl Context<'_> {
         for ((index, body, material, groups, initial_velocity), mut made) in bodies.zip(prepared) {
             let count = made.particles.len() as u32;
             set_initial_velocity(&mut made.particles, initial_velocity);
+            self.scatter_particles(&body.name.value, &case.materials[material], &mut made);
             let mut sets = vec![(String::new(), (start..start + count).collect::<Vec<u32>>())];
             sets.extend(made.walls.into_iter().map(|(name, set)| (name, set.iter().map(|i| i + start).collect())));
             for (name, condition) in groups {

@@ -15,6 +15,7 @@ mod ppv;
 mod precheck;
 mod probes;
 mod statics;
+mod strength;
 mod subcycling;
 mod surface_supports;
 mod ties;
@@ -26,6 +27,7 @@ pub use doubts::doubts;
 pub use gauges::BuiltGauges;
 pub use ppv::PpvStations;
 pub use statics::may_rest;
+pub use strength::WeibullReport;
 pub use ties::TieReport;
 
 use std::sync::Arc;
@@ -72,6 +74,8 @@ pub struct BuiltScene {
     pub boundary: Vec<[u32; 3]>,
     /// Ties of bonded bodies to solids.
     pub ties: Vec<TieReport>,
+    /// Bodies with Weibull's strength, solids first.
+    pub weibull: Vec<WeibullReport>,
     /// Whether heat is conducted alone.
     pub conducts_alone: bool,
     /// Doubts that building it has shown, which do not keep the scene from running; not those of [`doubts`] about the case.
@@ -90,6 +94,7 @@ struct Context<'a> {
     particle_sets: Vec<ParticleSets>,
     /// Faces of each body of particles as rigid bodies feel them.
     flat_faces: Vec<Option<FlatFaces>>,
+    weibull: Vec<WeibullReport>,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -105,6 +110,7 @@ pub fn check_before_particles(case: &Case, mesh: &Mesh) -> Result<(), Diagnostic
         division: None,
         particle_sets: Vec::new(),
         flat_faces: Vec::new(),
+        weibull: Vec::new(),
         diagnostics: Vec::new(),
     };
     context.check_before_particles();
@@ -141,8 +147,8 @@ pub fn build_shared_scene(
 ) -> Result<BuiltScene, Diagnostics> {
     // The equilibrium with which in-situ stress begins is found by every rank.
     let exchange = exchange.filter(|_| case.in_situ.is_none());
-    let (particle_sets, flat_faces, diagnostics) = Default::default();
-    let mut context = Context { case, mesh, exchange, division, particle_sets, flat_faces, diagnostics };
+    let (particle_sets, flat_faces, weibull, diagnostics) = Default::default();
+    let mut context = Context { case, mesh, exchange, division, particle_sets, flat_faces, weibull, diagnostics };
     context.check_before_particles();
     let built = context.build(prepared, facets);
     match built {
@@ -169,10 +175,11 @@ impl<'a> Context<'a> {
         self.take_out(&mut parts, &taken);
         self.without_mistakes()?;
         let numbering = self.number_nodes(&parts);
-        let mut solid = self.solid(&parts, &numbering)?;
-        let mut warnings = self.length_warnings(&solid, &parts);
-        self.set_initial_velocity(&mut solid, &parts, &numbering);
         let boundary = self.boundary(&parts, &numbering);
+        let mut solid = self.solid(&parts, &numbering, &boundary)?;
+        let mut warnings = self.length_warnings(&solid, &parts);
+        warnings.extend(self.weibull_warnings(&solid, &parts));
+        self.set_initial_velocity(&mut solid, &parts, &numbering);
         let mut boundary_of_parts = self.facets_of_parts(&parts, &numbering);
         if solid.is_divided() {
             boundary_of_parts.iter().enumerate().for_each(|(body, facets)| solid.note_skin(body, facets));
@@ -218,6 +225,7 @@ impl<'a> Context<'a> {
             elements: parts.into_iter().map(|part| part.elements).collect(),
             boundary,
             ties: ties.reports,
+            weibull: std::mem::take(&mut self.weibull),
             conducts_alone: self.case.solver.kind == SolverKind::Heat,
             warnings,
         })
@@ -229,8 +237,8 @@ impl<'a> Context<'a> {
     }
 
     /// The elements of all solid bodies.
-    fn solid(&mut self, parts: &[Part<'a>], numbering: &Numbering) -> Option<Solid> {
-        let bodies = self.solid_bodies(parts, numbering)?;
+    fn solid(&mut self, parts: &[Part<'a>], numbering: &Numbering, boundary: &[[u32; 3]]) -> Option<Solid> {
+        let bodies = self.solid_bodies(parts, numbering, boundary)?;
         let nodes = numbering.positions.clone();
         let solid = match (&self.exchange, self.division) {
             (Some(exchange), Some(division)) => Solid::divided(nodes, bodies, &division.bodies, Arc::clone(exchange)),

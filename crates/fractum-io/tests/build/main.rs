@@ -8,6 +8,7 @@ mod gas;
 mod heat;
 mod selection;
 mod sides;
+mod weibull;
 
 use std::path::Path;
 

@@ -50,7 +50,7 @@ pub struct BondedPart {
 }
 
 /// When the bonds of a body break, and what happens then.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct BondFracture {
     /// The criterion, with its own strengths; none where bonds separate by their law.
     pub criterion: Option<FractureCriterion>,
@@ -58,6 +58,8 @@ pub struct BondFracture {
     pub faces: CrackFaces,
     /// Volume of the body [m³].
     pub volume: f64,
+    /// Factors on the strength of its particles, > 0; none where all have the same.
+    pub strength_factors: Vec<f64>,
 }
 
 /// How close a body came to its first or next broken bond.
@@ -183,11 +185,18 @@ impl Bonded {
             plans.push((name, range, (pairs, shares, law), [density, fraction], fracture));
         }
         all.reference = all.particles.position.clone();
-        for (name, range, (pairs, shares, law), [density, fraction], plan) in plans {
+        for (name, range, (pairs, shares, law), [density, fraction], mut plan) in plans {
             let bonds = Bonds::with_shares(&all.particles, &pairs, &shares, law)?;
-            let fracture = match plan {
-                Some(BondFracture { criterion: Some(criterion), faces, volume }) => {
-                    Some(Fracture::new(&bonds, &all.particles, criterion, faces, fraction, volume)?)
+            if let Some(plan) = plan.as_mut().filter(|plan| !plan.strength_factors.is_empty()) {
+                // A criterion looks at the particles of all bodies.
+                let mut factors = vec![1.0; all.particles.len()];
+                factors[range.clone()].copy_from_slice(&plan.strength_factors);
+                plan.strength_factors = factors;
+            }
+            let fracture = match &plan {
+                Some(BondFracture { criterion: Some(criterion), faces, volume, strength_factors }) => {
+                    let fracture = Fracture::new(&bonds, &all.particles, *criterion, *faces, fraction, *volume)?;
+                    Some(fracture.with_strength_factors(strength_factors))
                 }
                 Some(plan) => Some(Fracture::of_law(&bonds, &all.particles, plan.faces, plan.volume)),
                 None => None,

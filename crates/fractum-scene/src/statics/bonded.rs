@@ -82,12 +82,13 @@ impl BondedStatics {
         let prescribed = bonded.supports.proportional(&bonded.reference, settings.end)?;
         prescribed.iter().for_each(|&(particle, axis, value)| supports.set(particle, axis, value));
         let guess = vec![[0.0; 6]; all.len()];
-        let plan = body.plan;
+        let plan = body.plan.as_ref();
         let what = Breaking {
             // Without a fracture nothing reaches this strength.
             criterion: plan.and_then(|plan| plan.criterion).unwrap_or(UNBREAKABLE),
             pairs: body.bonds.pairs(),
             radius: &all.radius,
+            strength_factors: plan.map_or(&[][..], |plan| &plan.strength_factors),
             fraction: body.fraction,
             volume: plan.map_or(1.0, |plan| plan.volume),
             displacement: 1.0,

@@ -31,7 +31,7 @@ criterion = "rankine"
 tensile_strength = "3 MPa"
 fracture_energy = "100 J/m^2"
 [materials.concrete.damage.scatter]
-distribution = "uniform"
+distribution = "uniform-per-edge"
 width = 0.1
 seed = 3
 [materials.concrete.contact]

@@ -101,6 +101,7 @@ pub fn break_sample(sample: &Sample, test: Failure, options: &FailureOptions) ->
         criterion: options.criterion,
         pairs: &sample.network.pairs,
         radius: &sample.packing.radius,
+        strength_factors: &[],
         fraction: sample.fraction,
         volume: sample.measured_volume(),
         displacement,

@@ -45,12 +45,20 @@ impl BlockSearch {
     }
 }
 
+/// One over the factor on the strength of a site.
+#[inline]
+pub(in crate::fracture) fn weakness_of(weakness: &[f64], site: usize) -> f64 {
+    weakness.get(site).copied().unwrap_or(1.0)
+}
+
 /// The neighbourhoods over which stress is taken, and the virials of their particles.
 pub(in crate::fracture) struct Neighbourhoods<'a> {
     pub(in crate::fracture) graph: &'a BondGraph,
     pub(in crate::fracture) members: &'a [Vec<u32>],
     pub(in crate::fracture) inverse: &'a [f64],
     pub(in crate::fracture) virials: &'a [Sym3],
+    /// One over the factor on the strength of each; empty where all are 1.
+    pub(in crate::fracture) weakness: &'a [f64],
     /// First one that is looked at.
     pub(in crate::fracture) first: usize,
 }
@@ -138,9 +146,10 @@ impl<C: StressCriterion> StressBatch for C {
         let level = self.level();
         search_blocks(around.first, stress, |i, stress, found| {
             *stress = around.stress(i, level);
+            let weakness = weakness_of(around.weakness, i);
             // Eigenvalues only where they could matter.
-            if self.bound(stress) >= limit.min(found.largest()) {
-                found.add(i, self.ratio(stress), limit);
+            if self.bound(stress) * weakness >= limit.min(found.largest()) {
+                found.add(i, self.ratio(stress) * weakness, limit);
             }
         })
     }
@@ -156,8 +165,9 @@ impl<C: StressCriterion> StressBatch for C {
         search_blocks(around.first, stress, |i, stress, found| {
             if around.any_member(i, level, |member| reaching[member]) {
                 *stress = around.stress(i, level);
-                if self.bound(stress) >= limit {
-                    found.add(i, self.ratio(stress), limit);
+                let weakness = weakness_of(around.weakness, i);
+                if self.bound(stress) * weakness >= limit {
+                    found.add(i, self.ratio(stress) * weakness, limit);
                 }
             }
         })
@@ -187,6 +197,8 @@ pub(in crate::fracture) struct SeenBonds<'a> {
     pub(in crate::fracture) load: &'a (dyn Fn(u32) -> BondLoad + Sync),
     /// The same, to rounding and without directions, where it is known already.
     pub(in crate::fracture) sizes: &'a (dyn Fn(u32) -> Option<LoadSizes> + Sync),
+    /// One over the factor on the strength of each; empty where all are 1.
+    pub(in crate::fracture) weakness: &'a [f64],
 }
 
 /// A criterion of loads over all bonds.
@@ -210,9 +222,11 @@ impl<C: LoadCriterion> LoadBatch for C {
             let mut found = BlockSearch::default();
             let begin = range.start + block * BLOCK;
             for bond in begin..(begin + BLOCK).min(range.end) {
-                let near = |sizes: LoadSizes| self.ratio_of(&sizes) * (1.0 + ROUND_OFF) >= limit.min(found.largest());
+                let weakness = weakness_of(bonds.weakness, bond);
+                let reach = |sizes: &LoadSizes| self.ratio_of(sizes) * weakness * (1.0 + ROUND_OFF);
+                let near = |sizes: LoadSizes| reach(&sizes) >= limit.min(found.largest());
                 if graph.is_live(bond as u32) && (bonds.sizes)(bond as u32).is_none_or(near) {
-                    found.add(bond, self.ratio(&(bonds.load)(bond as u32)), limit);
+                    found.add(bond, self.ratio(&(bonds.load)(bond as u32)) * weakness, limit);
                 }
             }
             found

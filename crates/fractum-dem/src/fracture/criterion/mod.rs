@@ -13,7 +13,7 @@ mod mohr_coulomb;
 mod principal;
 
 pub use batch::FailureSite;
-pub(super) use batch::{LoadBatch, Neighbourhoods, SeenBonds, StressBatch};
+pub(super) use batch::{LoadBatch, Neighbourhoods, SeenBonds, StressBatch, weakness_of};
 pub use beam_rankine::BeamRankine;
 pub use drucker_prager::DruckerPrager;
 pub use hydrostatic::Hydrostatic;

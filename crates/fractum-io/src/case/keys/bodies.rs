@@ -41,10 +41,13 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("materials.NAME.damage.softening.kink_stress", K::Quantity(D::NONE), "1/3", "Bilinear only: stress at the kink over ft, within 0 and 1 (Petersson 1981)"),
     key("materials.NAME.damage.softening.kink_opening", K::Quantity(D::NONE), "2/9", "Bilinear only: opening at the kink over the last opening, within 0 and 1 (Petersson 1981)"),
     key("materials.NAME.damage.residual", K::Quantity(D::NONE), "0.02", "Stress over strength at which an edge is broken, within 0 and 1"),
-    key("materials.NAME.damage.scatter", K::Table, "", "Random scatter of the tensile strength, drawn per edge"),
-    key("materials.NAME.damage.scatter.distribution", K::Choice(distributions), "required", "Distribution of the factor on the strength"),
-    key("materials.NAME.damage.scatter.modulus", K::Quantity(D::NONE), "", "Weibull only, required there: modulus, > 0"),
-    key("materials.NAME.damage.scatter.width", K::Quantity(D::NONE), "", "Uniform only, required there: half width around 1, within 0 and 1"),
+    key("materials.NAME.damage.scatter", K::Table, "", "Random scatter of the tensile strength"),
+    key("materials.NAME.damage.scatter.distribution", K::Choice(distributions), "required", "weibull: by flaws in a volume or on the free surface, the same on any mesh; weibull-per-edge, uniform-per-edge: a factor that every edge draws for itself, so that finer meshes are weaker and scatter less"),
+    key("materials.NAME.damage.scatter.modulus", K::Quantity(D::NONE), "", "weibull and weibull-per-edge, required there: modulus, > 0"),
+    key("materials.NAME.damage.scatter.reference_volume", K::Quantity(D::VOLUME), "", "weibull, required there or reference_area: volume of the specimens of which 63 % are weaker than tensile_strength, > 0"),
+    key("materials.NAME.damage.scatter.reference_area", K::Quantity(D::AREA), "", "weibull: instead, their free surface, on which all flaws lie (glass), > 0"),
+    key("materials.NAME.damage.scatter.correlation_length", K::Quantity(D::LENGTH), "π E Gf/(2 f²) of a flaw of strength f", "weibull: diameter of the place that a flaw weakens, the same for all flaws, > 0; the element around it where that is larger"),
+    key("materials.NAME.damage.scatter.width", K::Quantity(D::NONE), "", "uniform-per-edge only, required there: half width around 1, within 0 and 1"),
     key("materials.NAME.damage.scatter.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
     key("materials.NAME.damage.reduce_strength_to_fit", K::Flag, "false", "Lower ft where an element is too large for Gf, instead of refusing it"),
     key("materials.NAME.damage.regularisation", K::Choice(regularisations), "\"none\"", "Damage as a cohesive phase field, whose cracks do not feel the mesh"),
@@ -77,6 +80,11 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("materials.NAME.fracture.friction_angle", K::Angle, "\"35 deg\"", "mohr-coulomb only: angle of internal friction, from 0 to below 90 deg"),
     key("materials.NAME.fracture.level", K::Integer, "1", "Over which particles stress is taken: 0 the particle, 1 those bonded to it too, 2 their partners too; not for beam and hydrostatic"),
     key("materials.NAME.fracture.moments", K::Choice(names::<EndMoments>), "\"mean\"", "beam only: which bending moment counts"),
+    key("materials.NAME.fracture.scatter", K::Table, "", "Random scatter of the strength of particles by Weibull's flaws in the volume"),
+    key("materials.NAME.fracture.scatter.modulus", K::Quantity(D::NONE), "required", "Weibull modulus, > 0"),
+    key("materials.NAME.fracture.scatter.reference_volume", K::Quantity(D::VOLUME), "required", "Volume of the specimens of which 63 % are weaker than the strength given, > 0"),
+    key("materials.NAME.fracture.scatter.correlation_length", K::Quantity(D::LENGTH), "4 particle diameters (ft/f)² of a flaw of strength f", "Diameter of the place that a flaw weakens, the same for all flaws, > 0; the particle around it where that is larger"),
+    key("materials.NAME.fracture.scatter.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
     key("materials.NAME.contact", K::Table, "", "Contact of particles of this material, and of the discrete elements it leaves behind"),
     key("materials.NAME.contact.friction", K::Quantity(D::NONE), "0.5", "Coulomb friction coefficient, ≥ 0"),
     key("materials.NAME.contact.rolling_friction", K::Quantity(D::NONE), "0", "Coefficient of rolling friction, ≥ 0: couple over normal force and reduced radius"),
@@ -164,7 +172,7 @@ fn areas() -> Vec<&'static str> {
 }
 
 fn distributions() -> Vec<&'static str> {
-    vec!["weibull", "uniform"]
+    vec!["weibull", "weibull-per-edge", "uniform-per-edge"]
 }
 
 fn body_kinds() -> Vec<&'static str> {

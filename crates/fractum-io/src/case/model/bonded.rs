@@ -5,6 +5,7 @@ use fractum_dem::{InterfaceFailure, LocalBond};
 use fractum_math::Vec3;
 use fractum_pack::{Arrangement, Convention, Domain};
 
+use super::Scatter;
 use crate::case::choice::choice;
 use crate::case::{Field, Spanned};
 
@@ -185,6 +186,8 @@ pub struct BondFailure {
     pub tensile_strength: Option<f64>,
     /// Strength in compression as the case gives it [Pa]; `None` = the criterion has its usual one, if any.
     pub compressive_strength: Option<f64>,
+    /// Weibull's scatter of the strength of particles.
+    pub scatter: Option<Scatter>,
 }
 
 choice!(EndMoments { "mean" => Mean, "largest" => Largest });

@@ -33,7 +33,7 @@ pub use gas::{Gas, GasHole, GasLaw};
 pub use gauges::Gauges;
 pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
 pub use loose::{LooseBody, LooseSource, Region};
-pub use material::{Damage, Distribution, Material, Scatter};
+pub use material::{Damage, Distribution, Material, Reference, Scatter, Weibull};
 pub use plot::{Plot, PlotReference, PlotScale};
 pub use ppv::{Ppv, Scaling, StationLine};
 pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take, load_of};

@@ -27,7 +27,7 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
         table.quantity("tensile_strength").positive().usual(&STRENGTH).required()
     };
     let Some(kind) = kind else {
-        table.pass_over(&["compressive_strength", "friction_angle", "level", "moments"]);
+        table.pass_over(&["compressive_strength", "friction_angle", "level", "moments", "scatter"]);
         table.finish("here");
         return None;
     };
@@ -54,12 +54,14 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
         numbers.moments = table.choice("moments").or(EndMoments::Mean);
     }
     check_slip(&table, kind, &numbers);
+    let scatter = table.table("scatter").map(super::scatter::of_particles);
     table.finish("here");
     let tensile_strength = strength?;
     Some(BondFailure {
         criterion: (kind.make)(&numbers),
         tensile_strength: (!own).then_some(tensile_strength),
         compressive_strength: numbers.compressive_strength,
+        scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,
     })
 }
 

@@ -2,7 +2,7 @@
 
 use super::fracture::{FRICTION_ANGLE, read_friction_angle};
 use super::presence::optional;
-use crate::case::model::{Damage, Distribution, Material, Scatter};
+use crate::case::model::{Damage, Material};
 use crate::case::reader::Table;
 use crate::case::usual::{DENSITY, FRACTURE_ENERGY, STRENGTH, YOUNG_MODULUS};
 use crate::case::{Diagnostic, Spanned};
@@ -94,7 +94,7 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
     let compressive_strength = compressive_strength(&table, criterion, friction_angle, tensile_strength);
     let softening = softening(&table);
     let residual = table.quantity("residual").between(0.0, 1.0).or(0.02);
-    let scatter = table.table("scatter").map(scatter);
+    let scatter = table.table("scatter").map(super::scatter::of_edges);
     let reduce_strength_to_fit = table.flag("reduce_strength_to_fit").or(false);
     let regularisation = regularisation(&table);
     let unilateral = optional(&table, "unilateral", |key| table.flag(key).given());
@@ -192,32 +192,6 @@ fn softening(damage: &Table<'_>) -> Option<Softening> {
     };
     table.finish("here");
     softening
-}
-
-fn scatter(table: Table<'_>) -> Option<Scatter> {
-    #[derive(Clone, Copy)]
-    enum Kind {
-        Weibull,
-        Uniform,
-    }
-    let kind = table.one_of("distribution", &[("weibull", Kind::Weibull), ("uniform", Kind::Uniform)]).required();
-    let distribution = match kind {
-        Some(Kind::Weibull) => {
-            table.refuse("width", "with this distribution");
-            table.quantity("modulus").positive().required().map(|modulus| Distribution::Weibull { modulus })
-        }
-        Some(Kind::Uniform) => {
-            table.refuse("modulus", "with this distribution");
-            table.quantity("width").between(0.0, 1.0).required().map(|width| Distribution::Uniform { width })
-        }
-        None => {
-            table.pass_over(&["modulus", "width"]);
-            None
-        }
-    };
-    let seed = table.integer("seed").or(1);
-    table.finish("here");
-    Some(Scatter { distribution: distribution?, seed })
 }
 
 /// Young's modulus of contacts; `Some(None)` where nothing is said.

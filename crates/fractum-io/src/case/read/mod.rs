@@ -22,6 +22,7 @@ mod probe_kinds;
 mod probes;
 mod ratios;
 mod rigid;
+mod scatter;
 mod solver;
 mod stages;
 mod table_file;
