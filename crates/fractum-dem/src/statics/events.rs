@@ -330,6 +330,17 @@ mod tests {
     }
 
     fn pull(size: [usize; 3], criterion: FractureCriterion, limit: f64, residual: f64) -> BreakingOutcome {
+        pull_scattered(size, criterion, &[], limit, residual)
+    }
+
+    /// - `strength_factors`: of the particles
+    fn pull_scattered(
+        size: [usize; 3],
+        criterion: FractureCriterion,
+        strength_factors: &[f64],
+        limit: f64,
+        residual: f64,
+    ) -> BreakingOutcome {
         let (position, pairs) = bar(size);
         let n = position.len();
         let face = size[1] * size[2];
@@ -345,7 +356,7 @@ mod tests {
             criterion,
             pairs: &pairs,
             radius: &radius,
-            strength_factors: &[],
+            strength_factors,
             fraction: 0.52,
             volume: n as f64,
             displacement: 1e-3,
@@ -406,6 +417,29 @@ mod tests {
             let broken: f64 = outcome.cracks.iter().map(|c| c.energy).sum();
             // Sudden equilibria release more than the broken bonds had.
             assert!(last.work > broken && last.work.is_finite());
+        }
+    }
+
+    #[test]
+    fn a_bar_breaks_first_where_its_particles_are_weak() {
+        let (position, pairs) = bar([6, 3, 3]);
+        let beam = FractureCriterion::BeamRankine(BeamRankine { strength: 2e5, moments: Default::default() });
+        for criterion in [principal(Level::Own), principal(Level::Neighbours), beam] {
+            let first = |factors: &[f64]| {
+                let outcome = pull_scattered([6, 3, 3], criterion, factors, f64::INFINITY, 1e-8);
+                (outcome.first.unwrap().load, outcome.peak.load, outcome.cracks[0].bond)
+            };
+            let (load, peak, _) = first(&[]);
+            let half = first(&vec![0.5; position.len()]);
+            assert!((half.0 / load - 0.5).abs() < 1e-6 && (half.1 / peak - 0.5).abs() < 1e-6, "{half:?}, {load}");
+            let weak = position.len() / 2 + 1;
+            let mut factors = vec![1.0; position.len()];
+            factors[weak] = 0.4;
+            let (one, _, bond) = first(&factors);
+            assert!(one < 0.7 * load && one > 0.3 * load, "{one} of {load}");
+            let around =
+                |i: u32| i as usize == weak || pairs.iter().any(|p| p.contains(&i) && p.contains(&(weak as u32)));
+            assert!(pairs[bond as usize].into_iter().any(around), "bond {bond}");
         }
     }
 

@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
-use fractum_io::build::{BuiltScene, build_scene};
+use fractum_dem::criterion::{BeamRankine, FractureCriterion};
+use fractum_dem::{BeamSection, CrackFaces, Particles};
+use fractum_io::build::{BuiltScene, PreparedBody, build_scene};
 use fractum_io::case::parse_case;
 use fractum_math::Vec3;
 use fractum_math::elementary::gamma;
 use fractum_mesh::Mesh;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
+use fractum_scene::BondFracture;
 use proptest::prelude::*;
 
 /// A body that is tough enough for elements of any size.
@@ -178,6 +181,129 @@ fn elements_smaller_than_a_weak_spot_share_its_strength() {
         alike += usize::from((near.1 - factor).abs() < 1e-12);
     }
     assert!(alike as f64 > 0.6 * coarse.len() as f64, "{alike} of {}", coarse.len());
+}
+
+#[test]
+fn a_body_far_from_the_origin_has_its_volume_and_its_own_draw() {
+    const SEEDS: u64 = 200;
+    let moved = |mesh: &Mesh| {
+        let mut mesh = mesh.clone();
+        mesh.nodes.iter_mut().for_each(|node| *node += Vec3::new(4.5e5, 5.1e6, -2e3));
+        mesh
+    };
+    let bar = |seed| Bar { modulus: 5.0, reference: ("reference_volume", 4e-6), length: 0.005, seed };
+    let [one, other] = [bar_in_space(1.0, 1), bar_in_space(2.0, 2)];
+    let half = Mesh { nodes: other.nodes.iter().map(|node| node * 0.5).collect(), ..other };
+    let [near, far, finer] = [one.clone(), moved(&one), moved(&half)].map(|mesh| {
+        let built: Vec<BuiltScene> = (0..SEEDS).map(|seed| build(bar(seed), "", &mesh)).collect();
+        let strengths: Vec<f64> = built.iter().map(weakest).collect();
+        (built[0].weibull[0].measure, strengths)
+    });
+    assert!((near.0 / 4e-6 - 1.0).abs() < 1e-12 && (far.0 / 4e-6 - 1.0).abs() < 1e-5, "{} {}", near.0, far.0);
+    for ((found, error), expected) in statistics(&far.1).iter().zip(theory(5.0, 1.0)) {
+        assert!((found - expected).abs() < 3.5 * error, "{found} for {expected} ± {error}");
+    }
+    let same = |a: &[f64], b: &[f64]| a.iter().zip(b).filter(|(a, b)| (*a / *b - 1.0).abs() < 1e-9).count();
+    assert_eq!(same(&far.1, &finer.1), SEEDS as usize);
+    assert_eq!(same(&near.1, &far.1), 0);
+}
+
+#[test]
+fn strong_places_ask_nothing_of_the_mesh() {
+    let mesh = plane_bar(1.0, 1);
+    let warnings = |fracture_energy: &str, scatter: bool| {
+        let case = CASE
+            .replace("fracture_energy = 1e6", &format!("fracture_energy = {fracture_energy}"))
+            .replace("REFERENCE", "reference_volume = 16e-6")
+            .replace("MODULUS", "3")
+            .replace("LENGTH", "0.008")
+            .replace("SEED", "5")
+            .replace("BODY", SHEET)
+            .replace("SIDES", "xy");
+        let plain = |case: &str| {
+            let [before, rest] = [0, 1].map(|i| case.split("[materials.c.damage.scatter]").nth(i).unwrap());
+            format!("{before}[[bodies]]{}", rest.split_once("[[bodies]]").unwrap().1)
+        };
+        let case = if scatter { case } else { plain(&case) };
+        let case = parse_case(&case, Path::new("case.toml"), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+        let built = build_scene(&case, &mesh, Vec::new(), Vec::new()).unwrap_or_else(|errors| panic!("{errors}"));
+        let (reduced, ratio) = built.scene.solid.length_report(0);
+        assert_eq!(reduced, 0);
+        if scatter {
+            let strongest = factors(&built).iter().map(|(_, factor)| *factor).fold(0.0, f64::max);
+            assert!(strongest > 1.3, "{strongest}");
+        }
+        (ratio, built.warnings.iter().map(ToString::to_string).collect::<String>())
+    };
+    // Elements of 5 mm, of up to 24 and 96 % of the length that f₀ allows.
+    for (fracture_energy, is_told) in [("6.0", false), ("1.5", true)] {
+        let [(plain, without), (scattered, with)] = [false, true].map(|scatter| warnings(fracture_energy, scatter));
+        assert!(scattered <= plain * (1.0 + 1e-12) && scattered > 0.9 * plain, "{scattered} {plain}");
+        assert_eq!(without.contains("snaps back"), is_told, "{without}");
+        assert_eq!(with.contains("snaps back"), is_told, "{with}");
+        assert_eq!(with.contains("by its flaws"), is_told, "{with}");
+    }
+}
+
+#[test]
+fn particles_are_weak_by_the_volume_of_their_body() {
+    const SEEDS: u64 = 300;
+    let case = |seed: u64, reference: f64| {
+        format!(
+            r#"fractum = 1
+[materials.c]
+density = 2400
+young_modulus = 30e9
+poisson_ratio = 0.2
+[materials.c.fracture]
+criterion = "beam"
+tensile_strength = 3e6
+scatter = {{ modulus = 5, reference_volume = {reference:e}, seed = {seed} }}
+[[bodies]]
+name = "brick"
+kind = "bonded"
+material = "c"
+shape = "box"
+size = ["16 mm", "16 mm", "16 mm"]
+[solver]
+end = "1 ms"
+"#
+        )
+    };
+    // Their spheres fill half of the body.
+    let places = (0..512u32).map(|i| [i % 8, i / 8 % 8, i / 64].map(|c| 2e-3 * f64::from(c)));
+    let position: Vec<Vec3> = places.map(Vec3::from).collect();
+    let volume = 512.0 * 8e-9;
+    let strength = |seed: u64, reference: f64| {
+        let case = parse_case(&case(seed, reference), Path::new("case.toml"), &[]);
+        let case = case.unwrap_or_else(|errors| panic!("{errors}"));
+        let fracture = BondFracture {
+            criterion: Some(FractureCriterion::BeamRankine(BeamRankine { strength: 3e6, moments: Default::default() })),
+            faces: CrackFaces { friction: 0.3, damping_ratio: 0.0 },
+            volume,
+            strength_factors: Vec::new(),
+        };
+        let made = PreparedBody {
+            particles: Particles::at_rest(position.clone(), vec![1e-3; 512], 1e-2).unwrap(),
+            pairs: (0..512).filter(|i| i % 8 < 7).map(|i| [i, i + 1]).collect(),
+            law: BeamSection { radius: 0.6e-3, young_modulus: 30e9, poisson_ratio: 0.2 }.into(),
+            shares: Vec::new(),
+            walls: Vec::new(),
+            shift_to_walls: Vec::new(),
+            fraction: 0.6,
+            fracture: Some(fracture),
+            replaced: Vec::new(),
+        };
+        let built = build_scene(&case, &Mesh::default(), vec![made], Vec::new());
+        let built = built.unwrap_or_else(|errors| panic!("{errors}"));
+        built.weibull[0].weakest.expect("a body of this size has a flaw").0 / 3e6
+    };
+    for reference in [1.0 * volume, 0.1 * volume] {
+        let strengths: Vec<f64> = (0..SEEDS).map(|seed| strength(seed, reference)).collect();
+        for ((found, error), expected) in statistics(&strengths).iter().zip(theory(5.0, reference / volume)) {
+            assert!((found - expected).abs() < 3.5 * error, "{reference}: {found} for {expected} ± {error}");
+        }
+    }
 }
 
 proptest! {

@@ -168,3 +168,77 @@ impl FlawField {
         Pcg64Mcg::seed_from_u64(hash)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Flaws below a level in a box, of one seed after the other.
+    fn fields(axes: usize, low: Vec3, side: f64, level: f64) -> impl Iterator<Item = Vec<Flaw>> {
+        let bounds = Bounds { low, high: low + Vec3::repeat(side) };
+        (0..4000).map(move |seed| {
+            let mut found = Vec::new();
+            FlawField::new(seed, axes, 2.0).each_below(&bounds, level, &mut |flaw| found.push(flaw));
+            found
+        })
+    }
+
+    #[test]
+    fn numbers_of_flaws_are_poissons_wherever_the_box_lies() {
+        for (axes, expected) in [(2, 0.5 * 0.5 * 2.0 * 8.0), (3, 0.5f64.powi(3) * 2.0 * 8.0)] {
+            for low in [Vec3::zeros(), Vec3::new(-0.2, -130.1, 63.9), Vec3::new(4.5e5, 5.1e6, -2e3)] {
+                let (mut sum, mut squares) = (0.0, 0.0);
+                fields(axes, low, 0.5, 8.0).for_each(|found| {
+                    sum += found.len() as f64;
+                    squares += (found.len() as f64 - expected).powi(2);
+                });
+                let (mean, variance) = (sum / 4000.0, squares / 4000.0);
+                assert!((mean / expected - 1.0).abs() < 3.5 / (4000.0 * expected).sqrt(), "{axes}, {low}: {mean}");
+                let error = (2.0f64 + 1.0 / expected).sqrt() / 4000f64.sqrt();
+                assert!((variance / expected - 1.0).abs() < 3.5 * error, "{axes}, {low}: {variance} for {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_weakest_flaw_has_an_exponential_level_and_any_place() {
+        let low = Vec3::new(12.3, -7.0, 2.0);
+        let (mut levels, mut middle, mut count) = (0.0, Vec3::zeros(), 0.0);
+        for found in fields(3, low, 0.8, 20.0) {
+            let weakest = found.iter().min_by(|a, b| a.level.total_cmp(&b.level)).expect("20 flaws on average");
+            levels += weakest.level;
+            middle += (weakest.place - low) / 0.8;
+            count += 1.0;
+        }
+        let expected = 1.0 / (2.0 * 0.8f64.powi(3));
+        assert!((levels / count / expected - 1.0).abs() < 3.5 / f64::sqrt(count), "{}", levels / count);
+        assert!((middle / count - Vec3::repeat(0.5)).amax() < 3.5 * (1.0 / 12.0 / count).sqrt(), "{middle}");
+    }
+
+    #[test]
+    fn parts_of_a_box_have_its_flaws() {
+        let field = FlawField::new(7, 3, 2.0);
+        let in_box = |low: Vec3, high: Vec3, level: f64| {
+            let mut found = Vec::new();
+            field.each_below(&Bounds { low, high }, level, &mut |flaw| found.push(flaw.numbers()));
+            found.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            found
+        };
+        let (low, high, cut) = (Vec3::new(-3.0, 1.0, 700.0), Vec3::new(2.0, 4.0, 703.0), -0.37);
+        let whole = in_box(low, high, 5.0);
+        let mut parts = in_box(low, Vec3::new(cut, high.y, high.z), 5.0);
+        parts.extend(in_box(Vec3::new(cut, low.y, low.z), high, 5.0));
+        parts.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        assert!(whole.len() > 300 && whole == parts);
+        let weak: Vec<_> = whole.iter().copied().filter(|flaw| flaw[3] < 2.0).collect();
+        assert_eq!(weak, in_box(low, high, 2.0));
+    }
+
+    #[test]
+    fn weaker_flaws_reach_farther_by_griffith() {
+        let reach = Reach::of_crack(0.02, 5.0);
+        // Half of the strength: level 1/32, four times the size.
+        assert!((reach.at(1.0 / 32.0) / 0.04 - 1.0).abs() < 1e-12);
+        assert_eq!(Reach::of_length(0.02).at(1e-3), 0.01);
+    }
+}

@@ -1,6 +1,5 @@
 //! The weak spots of a body: what flaws do to the edges around them.
 
-use fractum_fem::ElementKind;
 use fractum_math::Vec3;
 use fractum_parallel::{Exchange, gather};
 use rayon::prelude::*;
