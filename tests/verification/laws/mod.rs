@@ -334,7 +334,9 @@ fn contact<L: ContactLaw>(draw: &mut Draw, law: L, radius: f64, surface: Contact
         hold(within, || format!("friction {tangential} of {along} at step {step}, coefficient {}", surface.friction))?;
         let scale = force.stored.max(before.stored).max(largest);
         hold(force.stored >= 0.0, || format!("stores {}", force.stored))?;
-        hold(force.friction >= -1e-9 * scale, || format!("friction gives {} back at step {step}", force.friction))?;
+        hold(force.friction >= -1e-9 * scale, || {
+            format!("friction gives {} of {scale} back at step {step}", force.friction)
+        })?;
         let difference = (turn * force.on_second - force_turned.on_second).norm();
         hold(difference <= 1e-6 * (size + normal_stiffness * deepest), || {
             format!("turned axes change {difference} of {size}")

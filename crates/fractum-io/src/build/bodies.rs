@@ -194,7 +194,7 @@ impl<'a> Context<'a> {
             body.formulation = part.body.formulation;
             body.kinematics = part.body.kinematics;
             body.plane = part.body.plane.as_ref().map_or(Plane::Strain, |plane| plane.value);
-            body.thickness = part.body.thickness.as_ref().map_or(1.0, |t| t.value);
+            body.thickness = part.body.depth;
             if let Some(damage) = material.damage.as_ref().filter(|_| part.body.damage) {
                 if damage.value.unilateral == Some(true) && body.formulation == Formulation::Standard {
                     self.error(

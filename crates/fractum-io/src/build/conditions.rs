@@ -184,7 +184,7 @@ pub(super) struct Surface<'a> {
 impl<'a> Surface<'a> {
     pub(super) fn new(boundary: &'a [[u32; 3]], parts: &[Part], positions: &'a [Vec3]) -> Self {
         let plane = parts.iter().find(|part| part.shape == ElementKind::T3);
-        let thickness = plane.map_or(0.0, |part| part.body.thickness.as_ref().map_or(1.0, |t| t.value));
+        let thickness = plane.map_or(0.0, |part| part.body.depth);
         let by_nodes = boundary.iter().map(|&facet| (sorted(facet), facet)).collect();
         Surface { facets: boundary, by_nodes, thickness, positions }
     }

@@ -5,6 +5,7 @@ mod frequency;
 mod leave;
 mod momentum;
 mod piece;
+mod plan;
 mod points;
 mod share;
 mod state;
@@ -12,8 +13,8 @@ mod state;
 use std::ops::Range;
 
 use fractum_dem::{
-    AnyBondLaw, BondEnergy, BondGraph, Bonds, Crack, CrackFaces, Fracture, FractureCriterion, Occasion,
-    ParticleDamping, ParticlePart, Particles, PastForces, TimeStep,
+    AnyBondLaw, BondEnergy, BondGraph, Bonds, Crack, Fracture, Occasion, ParticleDamping, ParticlePart, Particles,
+    PastForces, TimeStep,
 };
 use fractum_fem::LocalDamping;
 use fractum_math::{HalfSteps, Vec3, Work};
@@ -22,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use crate::conditions::{Kick, Load, Loads, Support, Supports};
 use crate::error::SceneError;
 use momentum::{energy_of, viscous_power};
+pub use plan::BondFracture;
 use points::ParticlePoints;
 pub use state::BondedState;
 
@@ -47,19 +49,6 @@ pub struct BondedPart {
     pub fraction: f64,
     /// When its bonds break; never where there is nothing.
     pub fracture: Option<BondFracture>,
-}
-
-/// When the bonds of a body break, and what happens then.
-#[derive(Clone, Debug)]
-pub struct BondFracture {
-    /// The criterion, with its own strengths; none where bonds separate by their law.
-    pub criterion: Option<FractureCriterion>,
-    /// What crack faces do.
-    pub faces: CrackFaces,
-    /// Volume of the body [m³].
-    pub volume: f64,
-    /// Factors on the strength of its particles, > 0; none where all have the same.
-    pub strength_factors: Vec<f64>,
 }
 
 /// How close a body came to its first or next broken bond.
@@ -187,11 +176,8 @@ impl Bonded {
         all.reference = all.particles.position.clone();
         for (name, range, (pairs, shares, law), [density, fraction], mut plan) in plans {
             let bonds = Bonds::with_shares(&all.particles, &pairs, &shares, law)?;
-            if let Some(plan) = plan.as_mut().filter(|plan| !plan.strength_factors.is_empty()) {
-                // A criterion looks at the particles of all bodies.
-                let mut factors = vec![1.0; all.particles.len()];
-                factors[range.clone()].copy_from_slice(&plan.strength_factors);
-                plan.strength_factors = factors;
+            if let Some(plan) = &mut plan {
+                plan.take_place(range.clone(), all.particles.len());
             }
             let fracture = match &plan {
                 Some(BondFracture { criterion: Some(criterion), faces, volume, strength_factors }) => {

@@ -44,6 +44,8 @@ pub struct SolidBody {
     pub plane: Option<Spanned<Plane>>,
     /// Thickness [m], > 0, for two-dimensional meshes only (`None` there = 1 m); the place is there to refuse it in 3D.
     pub thickness: Option<Spanned<f64>>,
+    /// The thickness, or what stands for it where none is given [m].
+    pub depth: f64,
     /// Initial velocity [m/s] along x, y, z; `None` = at rest.
     pub initial_velocity: [Option<Field>; 3],
     /// Whether damage may occur at all: the material has it, and the body does not switch it off.

@@ -110,7 +110,8 @@ mod tests {
         let nu = Neighbour { kind: "poisson_ratio".into(), value: "0.3".into(), set: Vec::new() };
         let no = Saying::Excepted("why");
         type Words<'a> = &'a [&'a str];
-        let rows: [((Words, Words), (Option<Words>, Words), Saying); 11] = [
+        type Row<'a> = ((Words<'a>, Words<'a>), (Option<Words<'a>>, Words<'a>), Saying<'a>);
+        let rows: [Row; 11] = [
             ((&[], &[]), (None, &[]), Saying::Nothing),
             ((&["poisson_ratio"], &[]), (None, &[]), Saying::Holds),
             ((&["poisson_ratio 0.3"], &[]), (None, &[]), Saying::Holds),

@@ -10,6 +10,7 @@ use super::vectors::{condition, field, initial_velocity};
 use crate::case::Diagnostic;
 use crate::case::model::{Body, BodyKind, Material, SolidBody};
 use crate::case::reader::Table;
+use crate::case::unit::Dimension;
 use fractum_fem::{Formulation, Kinematics, Plane};
 
 /// Reads all bodies against the materials read before; nothing where one of them is wrong.
@@ -132,6 +133,7 @@ fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut
     let kinematics = table.choice("kinematics").or(Kinematics::Small);
     let plane = table.choice::<Plane>("plane").spanned().given();
     let thickness = table.quantity("thickness").positive().spanned().given();
+    let depth = thickness.as_ref().map_or(table.reader.scale.of(Dimension::LENGTH), |thickness| thickness.value);
     let initial_velocity = initial_velocity(table);
     Some(SolidBody {
         group: group?,
@@ -140,6 +142,7 @@ fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut
         kinematics,
         plane,
         thickness,
+        depth,
         initial_velocity: initial_velocity?,
         damage,
         damage_where: damage_where?,

@@ -1,0 +1,29 @@
+//! How a bonded body breaks.
+
+use std::ops::Range;
+
+use fractum_dem::{CrackFaces, FractureCriterion};
+
+/// When the bonds of a body break, and what happens then.
+#[derive(Clone, Debug)]
+pub struct BondFracture {
+    /// The criterion, with its own strengths; none where bonds separate by their law.
+    pub criterion: Option<FractureCriterion>,
+    /// What crack faces do.
+    pub faces: CrackFaces,
+    /// Volume of the body [m³].
+    pub volume: f64,
+    /// Factors on the strength of its particles, > 0; none where all have the same.
+    pub strength_factors: Vec<f64>,
+}
+
+impl BondFracture {
+    /// Gives the factors of a body the places of its particles among those of all bodies, at which a criterion looks.
+    pub(super) fn take_place(&mut self, own: Range<usize>, count: usize) {
+        if !self.strength_factors.is_empty() {
+            let mut factors = vec![1.0; count];
+            factors[own].copy_from_slice(&self.strength_factors);
+            self.strength_factors = factors;
+        }
+    }
+}
