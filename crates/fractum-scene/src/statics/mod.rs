@@ -45,6 +45,8 @@ use linear_system::LinearSystem;
 const GROWTH: [f64; 3] = [0.05, 0.01, 0.25];
 /// The step that finds the onset of damage goes no further than this.
 const ONSET: f64 = 1e-8;
+/// How near to its strength an edge is at its onset: an iteration finds that state to its own tolerance only.
+const NEAR_ONSET: f64 = 1e-4;
 /// Damage below which an edge counts as intact: a phase field that was tried leaves some of rounding size.
 const INTACT: f64 = 1e-12;
 /// Accelerated iterations before a step is cut, and below which the next one may be larger.
@@ -243,7 +245,7 @@ impl StaticSolver {
         let mut monotone = false;
         let by_path = self.settings.control == Control::Path;
         let mut by_damage = by_path;
-        let at_onset = intact && by_path && path::is_at_onset(&scene.solid, &points, ONSET);
+        let at_onset = intact && by_path && path::is_at_onset(&scene.solid, &points, NEAR_ONSET);
         let mut held = true;
         loop {
             let longest = (self.settings.end - scene.clock.time).min(self.settings.step * self.pace.part);

@@ -8,9 +8,9 @@ pub(super) fn limit(point: &DamagePoint, growth: f64) -> f64 {
     point.kappa + growth * point.kappa.max(point.softening)
 }
 
-/// Whether an intact edge stands `onset` below its strength, as [`limit`] measures it.
-pub(super) fn is_at_onset(solid: &Solid, points: &[DamagePoint], onset: f64) -> bool {
-    let least = |point: &DamagePoint| limit(point, -onset) * (1.0 - 1e-10);
+/// Whether an edge stands `near` to its strength at most, as [`limit`] measures it.
+pub(super) fn is_at_onset(solid: &Solid, points: &[DamagePoint], near: f64) -> bool {
+    let least = |point: &DamagePoint| limit(point, -near);
     let (mut stresses, mut seen) = (Vec::new(), Vec::new());
     solid.effective_stresses(&solid.displacement, &mut stresses);
     solid.see(points, &stresses, least, &mut seen);

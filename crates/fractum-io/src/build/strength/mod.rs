@@ -46,6 +46,31 @@ pub struct WeibullReport {
     pub weakest: Option<(f64, Vec3)>,
 }
 
+impl WeibullReport {
+    /// That of a body without name.
+    ///
+    /// - `strength` [Pa] and `measure` [m³], [m²] of the body; `[radius, size]`: of a weak spot, and of an element or particle [m]
+    fn of(
+        weibull: &Weibull,
+        strength: f64,
+        measure: f64,
+        [radius, size]: [f64; 2],
+        weakest: Option<flaws::Flaw>,
+    ) -> Self {
+        WeibullReport {
+            body: String::new(),
+            measure,
+            reference: weibull.reference,
+            correlation_length: 2.0 * radius,
+            grows: weibull.correlation_length.is_none(),
+            sizes: 2.0 * radius / size,
+            mean: strength * weibull.mean(measure),
+            variation: weibull.variation(),
+            weakest: weakest.map(|flaw| (strength * weibull.factor(flaw.level), flaw.place)),
+        }
+    }
+}
+
 /// A solid body whose edges are given their strength.
 struct Edges<'a> {
     body: &'a Body,
@@ -146,24 +171,14 @@ impl Context<'_> {
         let mut flaws = places.flaws_below(edges, most);
         flaws.retain(|(element, _)| edges.of_element(*element as usize).next().is_some());
         let (levels, weakest) = weakest_of_edges(exchange, edges, &flaws, (reach, most), is_told);
-        let factor = |level: f64| pow(level, 1.0 / weibull.modulus);
         let strength = damage.law.tensile_strength;
         let size = match edges.body.shape {
             ElementKind::T4 => cbrt(6.0 * 2f64.sqrt() * total.size),
             ElementKind::T3 => (4.0 * total.size / 3f64.sqrt()).sqrt(),
         };
-        self.weibull.push(WeibullReport {
-            body: edges.body.name.clone(),
-            measure: total.measure,
-            reference: weibull.reference,
-            correlation_length: 2.0 * reach.radius,
-            grows: weibull.correlation_length.is_none(),
-            sizes: 2.0 * reach.radius / size,
-            mean: strength * weibull.mean(total.measure),
-            variation: weibull.variation(),
-            weakest: weakest.map(|flaw| (strength * factor(flaw.level), flaw.place)),
-        });
-        levels.into_iter().map(factor).collect()
+        let report = WeibullReport::of(weibull, strength, total.measure, [reach.radius, size], weakest);
+        self.weibull.push(WeibullReport { body: edges.body.name.clone(), ..report });
+        levels.into_iter().map(|level| weibull.factor(level)).collect()
     }
 }
 

@@ -1,6 +1,5 @@
 //! Strength of the particles of bonded bodies by chance.
 
-use fractum_math::elementary::pow;
 use fractum_math::{Vec3, sphere_volume};
 use rayon::prelude::*;
 
@@ -46,19 +45,9 @@ impl Context<'_> {
         };
         let flaws: Vec<(u32, Flaw)> = (0..radii.len()).into_par_iter().flat_map_iter(of_particle).collect();
         let (levels, weakest) = weakest_of_particles(centres, &flaws, (reach, most));
-        let factor = |level: f64| pow(level, 1.0 / weibull.modulus);
-        fracture.strength_factors = levels.into_iter().map(factor).collect();
+        fracture.strength_factors = levels.into_iter().map(|level| weibull.factor(level)).collect();
         let strength = failure.value.tensile_strength.unwrap_or(failure.value.criterion.numbers().tensile_strength);
-        self.weibull.push(WeibullReport {
-            body: body.to_owned(),
-            measure: fracture.volume,
-            reference: weibull.reference,
-            correlation_length: 2.0 * reach.radius,
-            grows: weibull.correlation_length.is_none(),
-            sizes: 2.0 * reach.radius / mean_diameter,
-            mean: strength * weibull.mean(fracture.volume),
-            variation: weibull.variation(),
-            weakest: weakest.map(|flaw| (strength * factor(flaw.level), flaw.place)),
-        });
+        let report = WeibullReport::of(weibull, strength, fracture.volume, [reach.radius, mean_diameter], weakest);
+        self.weibull.push(WeibullReport { body: body.to_owned(), ..report });
     }
 }

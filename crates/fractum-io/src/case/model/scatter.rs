@@ -67,6 +67,11 @@ impl Reference {
 }
 
 impl Weibull {
+    /// Strength of a flaw over f₀, of which that many weaker ones are expected in the reference volume or area.
+    pub fn factor(&self, level: f64) -> f64 {
+        pow(level, 1.0 / self.modulus)
+    }
+
     /// Mean strength of bodies of this volume [m³] or area [m²] under uniform tension, over f₀: (V₀/V)^(1/m) Γ(1 + 1/m).
     pub fn mean(&self, measure: f64) -> f64 {
         pow(self.reference.measure() / measure, 1.0 / self.modulus) * gamma(1.0 + 1.0 / self.modulus)
