@@ -68,21 +68,21 @@ const LAWS: &[Row] = &[
         law: "contact, linear, spheres",
         holds: |draw| {
             let law = linear_spheres(draw);
-            contact(draw, law)
+            contact(draw, law, false)
         },
     },
     Row {
         law: "contact, linear, discs",
         holds: |draw| {
             let law = linear_discs(draw);
-            contact(draw, law)
+            contact(draw, law, false)
         },
     },
     Row {
         law: "contact, Hertz and Mindlin",
         holds: |draw| {
             let law = hertz(draw);
-            contact(draw, law)
+            contact(draw, law, true)
         },
     },
     Row { law: "gas, perfect", holds: |draw| gas(perfect(draw)) },
@@ -239,11 +239,11 @@ fn criterion(draw: &mut Draw, kind: CriterionKind) -> Held {
     hold(!hidden, || format!("{law}: the bound hides {} above {threshold}", q(one)))
 }
 
-/// Friction, rolling friction and damping.
+/// Friction, rolling friction (none in half of the draws) and damping.
 fn surface(draw: &mut Draw) -> ContactParameters {
     ContactParameters {
         friction: draw.between(0.0, 1.5),
-        rolling_friction: draw.between(0.0, 0.3),
+        rolling_friction: draw.between(-0.3, 0.3).max(0.0),
         damping_ratio: draw.between(0.0, 1.0),
     }
 }
@@ -282,7 +282,13 @@ fn hertz(draw: &mut Draw) -> (Hertz, f64, ContactParameters) {
 
 /// A pair that meets, slides and rolls, and parts: it never pulls, friction stays within Coulomb's cone, nothing is given back that was
 /// taken, in the end no energy is left in it, and turned axes change nothing.
-fn contact<L: ContactLaw>(draw: &mut Draw, (law, radius, surface): (L, f64, ContactParameters)) -> Held {
+///
+/// - `by_remainder`: whether friction is booked as what is left of the work of mean forces
+fn contact<L: ContactLaw>(
+    draw: &mut Draw,
+    (law, radius, surface): (L, f64, ContactParameters),
+    by_remainder: bool,
+) -> Held {
     let deepest = radius * draw.over_decades(1e-6, 1e-3);
     let turn = draw.turn();
     let normal = draw.vector().normalize();
@@ -316,8 +322,9 @@ fn contact<L: ContactLaw>(draw: &mut Draw, (law, radius, surface): (L, f64, Cont
         hold(within, || format!("friction {tangential} of {along} at step {step}, coefficient {}", surface.friction))?;
         let scale = force.stored.max(before.stored).max(largest);
         hold(force.stored >= 0.0, || format!("stores {}", force.stored))?;
-        // Its work is that of the mean force of a step. Of the step in which two part, 1e-5 is left over at most (Hertz and Mindlin).
-        let rounding = if force.stored == 0.0 { 2e-5 } else { 1e-9 };
+        // A spring across or against rolling that turns over within a step, while what it can bear shrinks, has a mean force that does work
+        // the other way: 1e-5 of the largest energy. The slip of linear springs takes it as none.
+        let rounding = if by_remainder || surface.rolling_friction > 0.0 { 2e-5 } else { 1e-9 };
         hold(force.friction >= -rounding * scale, || {
             format!("friction gives {} of {scale} back at step {step}", force.friction)
         })?;
