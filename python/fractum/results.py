@@ -29,6 +29,11 @@ class Results:
             return json.load(file)
 
     @property
+    def warnings(self):
+        """All warnings of case and run: dictionaries with `code`, `text`, `where` and `remedy`."""
+        return self.summary["warnings"]
+
+    @property
     def probes(self):
         """Last values of the probes by name."""
         return {name: probe["final"] for name, probe in self.summary["probes"].items()}

@@ -35,7 +35,7 @@ def _inner(value):
     return json.dumps(value)
 
 
-def run(case, set=None, output=None, threads=None, resume=False, quiet=True, overwrite=False):
+def run(case, set=None, output=None, threads=None, resume=False, quiet=True, overwrite=False, strict=False):
     """Runs a case to its end, as `fractum run` does; its `Results`.
 
     - `set`: parameters or dotted keys with their values: `{"velocity": "2 mm/s", "solver.safety": 0.5}`
@@ -43,12 +43,13 @@ def run(case, set=None, output=None, threads=None, resume=False, quiet=True, ove
     - `threads`: all cores by default; results do not depend on it
     - `resume`: go on from the last checkpoint
     - `overwrite`: replace results that the folder holds
-    - `quiet`: no plan and no progress line
+    - `quiet`: no plan and no progress line; warnings are shown all the same
+    - `strict`: warnings are errors
 
     Raises `CaseError`, `StoppedError`, `MachineError`. Ctrl-C saves the state and raises `KeyboardInterrupt`; the run goes
     on with `resume=True`.
     """
-    folder, interrupted = _core.run(case, overrides(set), output, threads, (resume, overwrite), quiet)
+    folder, interrupted = _core.run(case, overrides(set), output, threads, (resume, overwrite), (quiet, strict))
     if interrupted:
         raise KeyboardInterrupt(f"state saved in {folder}")
     return Results(folder)

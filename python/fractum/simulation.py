@@ -125,8 +125,8 @@ class Simulation:
     >>> simulation.results.history
     """
 
-    def __init__(self, case, set=None, output=None, threads=None, resume=False, quiet=True, overwrite=False):
-        self._core = _core.Core(case, overrides(set), output, threads, (resume, overwrite), quiet)
+    def __init__(self, case, set=None, output=None, threads=None, resume=False, quiet=True, overwrite=False, strict=False):
+        self._core = _core.Core(case, overrides(set), output, threads, (resume, overwrite), (quiet, strict))
         self.results = None
         self.nodes = Nodes(self._core.nodes)
         self.particles = Particles(self._core.particles)
@@ -185,6 +185,12 @@ class Simulation:
     def state_hash(self):
         """Hash of everything that changes, as `summary.json` has it for the end of a run."""
         return self._core.state_hash()
+
+    @property
+    def warnings(self):
+        """All warnings so far, as those of `Results`."""
+        names = ("code", "text", "where", "remedy")
+        return [dict(zip(names, warning)) for warning in self._core.warnings()]
 
     @property
     def probes(self):

@@ -9,6 +9,7 @@ use std::time::Instant;
 use fractum::{Failure, Input, Options, Simulation, cache_of_user, load};
 use fractum_io::case::model::ProbeKind;
 use fractum_io::summary::hash_text;
+use fractum_io::warning::Warning;
 use fractum_math::Vec3;
 use fractum_scene::{EnergyKind, Population, Scene};
 use pyo3::buffer::PyBuffer;
@@ -129,10 +130,10 @@ impl Core {
         output: Option<PathBuf>,
         threads: Option<usize>,
         begin: (bool, bool),
-        quiet: bool,
+        told: (bool, bool),
     ) -> PyResult<Self> {
-        let (resume, overwrite) = begin;
-        let options = Options { output, threads, overrides: set, resume, overwrite, quiet, cache: cache_of_user() };
+        let ((resume, overwrite), (quiet, strict)) = (begin, told);
+        let options = Options { output, threads, overrides: set, resume, overwrite, quiet, strict, cache: cache_of_user() };
         let (pool, looks) = (pool(py, threads)?, pool(py, threads)?);
         let opened = watch(py, &pool, || {
             let started = Instant::now();
@@ -217,6 +218,14 @@ impl Core {
     /// Hash of everything that changes.
     fn state_hash(&self, py: Python<'_>) -> PyResult<String> {
         self.with(py, |simulation| Ok(hash_text(simulation.state_hash())))
+    }
+
+    /// All warnings so far: code, text, place and remedy of each.
+    fn warnings(&self, py: Python<'_>) -> PyResult<Vec<[String; 4]>> {
+        let parts = |warning: &Warning| {
+            [warning.code.name(), &warning.text, &warning.place, &warning.remedy].map(str::to_owned)
+        };
+        self.with(py, |simulation| Ok(simulation.warnings().iter().map(parts).collect()))
     }
 
     /// The energies at the last row of the history [J], and the counts of everything.

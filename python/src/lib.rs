@@ -32,10 +32,10 @@ fn run(
     output: Option<PathBuf>,
     threads: Option<usize>,
     begin: (bool, bool),
-    quiet: bool,
+    told: (bool, bool),
 ) -> PyResult<(PathBuf, bool)> {
-    let (resume, overwrite) = begin;
-    let options = Options { output, threads, overrides: set, resume, overwrite, quiet, cache: cache_of_user() };
+    let ((resume, overwrite), (quiet, strict)) = (begin, told);
+    let options = Options { output, threads, overrides: set, resume, overwrite, quiet, strict, cache: cache_of_user() };
     // A thread that waits for those of the run.
     let host = pool(py, Some(1))?;
     let outcome = watch(py, &host, || fractum::run(&case, &options))?.map_err(|failure| raise(py, &failure))?;

@@ -196,6 +196,12 @@ impl<L: ContactLaw> SurfaceContacts<L> {
         self.blocks.iter().flat_map(|block| &block.touches)
     }
 
+    /// Spheres that press on the ground, with the overlaps that bear [m]: those beyond what was accepted at the start.
+    pub fn pressed(&self) -> impl Iterator<Item = (u32, f64)> {
+        let contacts = self.touches().filter(|touch| touch.is_contact() && touch.force != Vec3::zeros());
+        contacts.map(|touch| (touch.sphere, touch.overlap - L::overlap_offset(&touch.memory)))
+    }
+
     /// Adds forces and moments to the spheres.
     pub fn add_to(&self, force: &mut [Vec3], moment: &mut [Vec3]) {
         for touch in self.touches() {

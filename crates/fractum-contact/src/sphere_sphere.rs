@@ -317,6 +317,17 @@ impl<L: ContactLaw> SphereContacts<L> {
         self.pairs.iter().map(move |&pair| (pair, depth(pair))).filter(|(_, depth)| *depth > 0.0)
     }
 
+    /// Pairs that touched at the last step, with the depth to which each is pressed together now [m]: its overlap beyond what
+    /// was accepted at the start.
+    pub fn pressed<'a>(&'a self, spheres: &'a Spheres) -> impl Iterator<Item = ([u32; 2], f64)> + 'a {
+        let depth = |k: usize| {
+            let [i, j] = self.pairs[k].map(|id| id as usize);
+            let apart = (spheres.position[j] - spheres.position[i]).norm();
+            spheres.radius[i] + spheres.radius[j] - apart - L::overlap_offset(&self.memories[k])
+        };
+        (0..self.pairs.len()).filter(|&k| self.touching[k]).map(move |k| (self.pairs[k], depth(k)))
+    }
+
     /// Contacts that remember something, for a checkpoint.
     pub fn state(&self) -> Vec<([u32; 2], L::Memory)> {
         let known = (0..self.pairs.len()).filter(|&k| self.touching[k]);

@@ -18,7 +18,8 @@ pub struct LocalDamping {
 }
 
 impl LocalDamping {
-    pub(crate) fn is_off(&self) -> bool {
+    /// Whether nothing is damped.
+    pub fn is_off(&self) -> bool {
         self.local == 0.0 && self.mass_rate == 0.0
     }
 }

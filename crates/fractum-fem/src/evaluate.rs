@@ -41,6 +41,8 @@ pub(crate) struct Block {
     pub(crate) viscous_power: f64,
     /// Viscous stress of the cells; empty without viscosity.
     pub(crate) viscous: ViscousCells,
+    /// Work that the whole of the present change of temperatures does at the stresses of the last step [J].
+    pub(crate) expansion_work: f64,
     /// A corotational cell that is turned inside out and still carries.
     pub(crate) inverted: Option<usize>,
     /// Whether its cells take shorter steps than others, see [`crate::subcycling`].
@@ -61,6 +63,7 @@ impl Block {
             scratch: None,
             viscous_power: 0.0,
             viscous,
+            expansion_work: 0.0,
             inverted: None,
             is_fine,
         }
@@ -82,7 +85,10 @@ impl Block {
         measure: bool,
     ) {
         let is_plain = self.is_plain(model);
-        let Block { cells, scratch: Some(scratch), law, viscous_power, viscous, inverted, .. } = self else { return };
+        let Block { cells, scratch: Some(scratch), law, viscous_power, viscous, expansion_work, inverted, .. } = self
+        else {
+            return;
+        };
         if let BlockLaw::Standard(law) = law
             && is_plain
             && !measure
@@ -97,7 +103,7 @@ impl Block {
             viscous.begin_step();
         }
         let start = measure.then_some(0.0);
-        (*viscous_power, *inverted) = match law {
+        (*viscous_power, *inverted, *expansion_work) = match law {
             BlockLaw::Elastic { energy } => {
                 let mut law = ElasticCells { hooke: model.hooke, energy: start };
                 let outcome = run(model, cells, scratch, &mut law, viscous);
@@ -281,18 +287,22 @@ impl Block {
     }
 }
 
-/// Runs the cells with the law, beyond their thermal strains where they have some; see [`run_law`].
+/// Runs the cells with the law, beyond their thermal strains where they have some; see [`run_law`]. Returns the work of the
+/// present change of temperatures too [J].
 fn run<L: kernel::CellLaw>(
     model: &BodyModel,
     cells: &Cells,
     scratch: &mut Scratch,
     law: &mut L,
     viscous: &mut ViscousCells,
-) -> (f64, Option<usize>) {
-    match &cells.thermal {
-        Some(thermal) => run_law(model, cells, scratch, &mut ExpandingCells { law, thermal }, viscous),
-        None => run_law(model, cells, scratch, law, viscous),
-    }
+) -> (f64, Option<usize>, f64) {
+    let Some(thermal) = &cells.thermal else {
+        let (power, inverted) = run_law(model, cells, scratch, law, viscous);
+        return (power, inverted, 0.0);
+    };
+    let mut expanding = ExpandingCells { law, thermal, work: 0.0 };
+    let (power, inverted) = run_law(model, cells, scratch, &mut expanding, viscous);
+    (power, inverted, expanding.work)
 }
 
 /// Runs the cheapest kernel that the body allows; returns the viscous power [W] and a cell that is turned inside out.

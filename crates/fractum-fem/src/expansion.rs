@@ -28,69 +28,46 @@ impl Solid {
                 coefficient: coefficients[block.body],
                 unit: Sym3([1.0, 1.0, model.hooke.zz, 0.0, 0.0, 0.0]),
                 weights: weights(block, model, &geometry),
-                now: zero.clone(),
-                before: zero,
-                work: 0.0,
+                start: zero.clone(),
+                change: zero,
+                passed: [0.0; 2],
             }));
         });
     }
 
     /// Takes over temperatures T - T₀ of the nodes [K] as if they had always been so.
     pub fn start_expanded(&mut self, rise: &[f64]) {
-        self.blocks.par_iter_mut().for_each(|block| {
-            block.expand(rise);
-            block.forget_expansion();
-        });
+        self.blocks.par_iter_mut().for_each(|block| block.begin_change([rise; 2]));
     }
 
-    /// Takes over temperatures T - T₀ of the nodes [K] for the next step; returns the work of the expansion at the present
-    /// stresses in half a step, -½ Σ V σ : Δεᵗ [J]. [`Solid::finish_expansion`] does the other half.
-    pub fn expand(&mut self, rise: &[f64]) -> f64 {
+    /// Begins a change of temperatures, along which [`Solid::expand_to`] leads.
+    ///
+    /// - `rises`: T - T₀ of the nodes now, and at the end of the change [K]
+    pub fn begin_expansion(&mut self, rises: [&[f64]; 2]) {
         let Solid { blocks, bodies, displacement, .. } = self;
         blocks.par_iter_mut().for_each(|block| {
-            let Block { cells, .. } = &*block;
-            if cells.thermal.is_none() {
-                return;
-            }
-            let model = &bodies[block.body];
-            let traces: f64 = (0..cells.len())
-                .map(|cell| {
-                    let change = block.change_of(cell, rise);
-                    let strain = elastic_strain(&block.cells, cell, displacement, model.body.kinematics);
-                    -0.5 * cells.volume[cell] * block.nominal_stress(cell, &model.hooke, strain).dot(change)
-                })
-                .sum();
-            block.expand(rise);
-            if let Some(own) = &mut block.cells.thermal {
-                own.work = traces;
-            }
-        });
-        self.expansion_work()
-    }
-
-    /// The other half of the work of [`Solid::expand`], at the stresses of the step after it [J].
-    pub fn finish_expansion(&mut self) -> f64 {
-        let Solid { blocks, bodies, displacement, .. } = self;
-        blocks.par_iter_mut().for_each(|block| {
+            block.begin_change(rises);
             let Some(own) = &block.cells.thermal else { return };
             let model = &bodies[block.body];
-            let work: f64 = (0..block.cells.len())
-                .map(|cell| {
-                    let change = own.unit * (own.now[cell] - own.before[cell]);
-                    let strain = elastic_strain(&block.cells, cell, displacement, model.body.kinematics);
-                    -0.5 * block.cells.volume[cell] * block.nominal_stress(cell, &model.hooke, strain).dot(change)
-                })
-                .sum();
-            block.forget_expansion();
-            if let Some(own) = &mut block.cells.thermal {
-                own.work = work;
-            }
+            let work = |cell: usize| {
+                let strain = elastic_strain(&block.cells, cell, displacement, model.body.kinematics);
+                let change = own.unit * own.change[cell];
+                -block.cells.volume[cell] * block.nominal_stress(cell, &model.hooke, strain).dot(change)
+            };
+            block.expansion_work = (0..block.cells.len()).map(work).sum();
         });
-        self.expansion_work()
     }
 
-    fn expansion_work(&self) -> f64 {
-        self.blocks.iter().filter_map(|block| Some(block.cells.thermal.as_ref()?.work)).sum()
+    /// Leads thermal strains to a part of the present change of temperatures, 0 to 1, for the step that follows.
+    pub fn expand_to(&mut self, part: f64) {
+        for own in self.blocks.iter_mut().filter_map(|block| block.cells.thermal.as_mut()) {
+            own.passed = [own.passed[1], part];
+        }
+    }
+
+    /// Work that the whole of the present change of temperatures does at the stresses of the last step, -Σ V σ : Δεᵗ [J].
+    pub fn expansion_work(&self) -> f64 {
+        self.blocks.iter().map(|block| block.expansion_work).sum()
     }
 
     /// Heat that an element conducts per conductivity, as its local edges and ∫ -∇Nᵢ·∇Nⱼ dV of each [m].
@@ -105,25 +82,14 @@ impl Solid {
 }
 
 impl Block {
-    /// Thermal strain that a cell gets beyond the present one at other temperatures.
-    fn change_of(&self, cell: usize, rise: &[f64]) -> Sym3 {
-        let Some(own) = &self.cells.thermal else { return Sym3::ZERO };
-        own.unit * (strain_at(own, &self.cells, cell, rise) - own.now[cell])
-    }
-
-    fn expand(&mut self, rise: &[f64]) {
+    fn begin_change(&mut self, rises: [&[f64]; 2]) {
         let Some(mut own) = self.cells.thermal.take() else { return };
         for cell in 0..self.cells.len() {
-            let now = strain_at(&own, &self.cells, cell, rise);
-            (own.before[cell], own.now[cell]) = (own.now[cell], now);
+            let [start, end] = rises.map(|rise| strain_at(&own, &self.cells, cell, rise));
+            (own.start[cell], own.change[cell]) = (start, end - start);
         }
+        own.passed = [0.0; 2];
         self.cells.thermal = Some(own);
-    }
-
-    fn forget_expansion(&mut self) {
-        if let Some(own) = &mut self.cells.thermal {
-            own.before.copy_from_slice(&own.now);
-        }
     }
 }
 
@@ -183,7 +149,10 @@ mod tests {
         for smoothed in [false, true] {
             let mut solid = cube(smoothed);
             let count = solid.reference.len();
-            let free = solid.expand(&vec![100.0; count]);
+            let [cold, hot] = [0.0, 100.0].map(|rise| vec![rise; count]);
+            solid.begin_expansion([&cold, &hot]);
+            let free = 0.5 * solid.expansion_work();
+            solid.expand_to(1.0);
             assert!(solid.told_strains(0).iter().all(|strain| strain.0 == [0.0; 6]), "nothing has moved yet");
             // Held in all directions: σ = -E α ΔT/(1 - 2 ν), energy 3/2 V E (α ΔT)²/(1 - 2 ν).
             solid.update_internal_forces(0.0, true);
@@ -193,7 +162,7 @@ mod tests {
             let energy = -1.5 * pressure * ALPHA * 100.0;
             assert!((solid.elastic_energy() / energy - 1.0).abs() < 1e-12);
             // Half of the work at no stress, half at the full one.
-            let work = free + solid.finish_expansion();
+            let work = free + 0.5 * solid.expansion_work();
             assert!(free == 0.0 && (work / energy - 1.0).abs() < 1e-12, "{work} {energy}");
             solid.displacement = solid.reference.iter().map(|x| x * (ALPHA * 100.0)).collect();
             solid.update_internal_forces(0.0, true);

@@ -58,6 +58,15 @@ impl CellLaw for ElasticCells {
 pub(crate) struct ExpandingCells<'a, L> {
     pub(crate) law: &'a mut L,
     pub(crate) thermal: &'a ThermalStrain,
+    /// Work that the whole of the present change of temperatures does at these stresses [J].
+    pub(crate) work: f64,
+}
+
+impl<L> ExpandingCells<'_, L> {
+    #[inline(always)]
+    fn book(&mut self, cell: usize, scaled_stress: Sym3) {
+        self.work -= self.thermal.change[cell] * scaled_stress.dot(self.thermal.unit);
+    }
 }
 
 impl<L: CellLaw> CellLaw for ExpandingCells<'_, L> {
@@ -65,7 +74,9 @@ impl<L: CellLaw> CellLaw for ExpandingCells<'_, L> {
 
     #[inline(always)]
     fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
-        self.law.scaled_stress(cell, self.thermal.elastic(cell, strain), volume)
+        let stress = self.law.scaled_stress(cell, self.thermal.elastic(cell, strain), volume);
+        self.book(cell, stress);
+        stress
     }
 
     #[inline(always)]
@@ -74,7 +85,11 @@ impl<L: CellLaw> CellLaw for ExpandingCells<'_, L> {
         for k in 0..FOUR {
             elastic[k] = self.thermal.elastic(first + k, strains[k]);
         }
-        self.law.scaled_stresses(first, &elastic, volumes)
+        let stresses = self.law.scaled_stresses(first, &elastic, volumes);
+        for k in 0..FOUR {
+            self.book(first + k, stresses[k]);
+        }
+        stresses
     }
 
     #[inline(always)]

@@ -43,6 +43,7 @@ mod element_fields;
 mod error;
 mod evaluate;
 mod expansion;
+mod extremes;
 mod four_turns;
 mod hooke;
 mod inverted;
@@ -88,6 +89,7 @@ pub use divided::{
 pub use edges::BodyEdges;
 pub use element::{CUT_MODES, InvertedElement, facet_area};
 pub use error::SolidError;
+pub use extremes::{Extreme, Extremes};
 pub use material::{Criterion, CriterionKind, DamageLaw, Degradation, Elastic, Softening, Wave};
 pub use moved_nodes::MovedNodes;
 pub use part::Share;

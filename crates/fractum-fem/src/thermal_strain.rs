@@ -9,24 +9,29 @@ pub(crate) struct ThermalStrain {
     pub(crate) unit: Sym3,
     /// Parts of the local nodes of each cell in its temperature, in the order of the local nodes of the cells.
     pub(crate) weights: Vec<f64>,
-    /// α (T - T₀) of each cell.
-    pub(crate) now: Vec<f64>,
-    /// The same at the step before.
-    pub(crate) before: Vec<f64>,
-    /// Work that the last change of temperatures does in half a step [J].
-    pub(crate) work: f64,
+    /// α (T - T₀) of each cell where the present change of temperatures began.
+    pub(crate) start: Vec<f64>,
+    /// What the whole change adds to it.
+    pub(crate) change: Vec<f64>,
+    /// Parts of the change that had passed at the step before, and now.
+    pub(crate) passed: [f64; 2],
 }
 
 impl ThermalStrain {
     /// Strain of a cell that stress belongs to.
     #[inline(always)]
     pub(crate) fn elastic(&self, cell: usize, strain: Sym3) -> Sym3 {
-        strain - self.unit * self.now[cell]
+        self.beyond(cell, strain, self.passed[1])
     }
 
     /// The same at the step before.
     #[inline(always)]
     pub(crate) fn elastic_before(&self, cell: usize, strain: Sym3) -> Sym3 {
-        strain - self.unit * self.before[cell]
+        self.beyond(cell, strain, self.passed[0])
+    }
+
+    #[inline(always)]
+    fn beyond(&self, cell: usize, strain: Sym3, passed: f64) -> Sym3 {
+        strain - self.unit * (self.start[cell] + passed * self.change[cell])
     }
 }

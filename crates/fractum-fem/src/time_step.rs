@@ -1,6 +1,6 @@
 //! The largest stable step of central differences, 2/ω_max.
 
-use fractum_math::{Mat3, Vec3, largest_eigenvalue};
+use fractum_math::{Mat3, Vec3, largest_eigenvalue, sum_chunks};
 use nalgebra::{Matrix6, SMatrix};
 use rayon::prelude::*;
 
@@ -39,7 +39,21 @@ impl Solid {
         StableStep { frequency, ..self.stable_step_bound() }
     }
 
-    /// The same of the cells with the shorter steps; none where all take the same.
+    /// Frequency of the present motion, √(v·K v / v·M v) [rad/s]: that of a vibration whose velocities these are, 0 where nothing
+    /// moves or all moves alike. Ranks that share the cells must all call it.
+    pub fn motion_frequency(&mut self) -> f64 {
+        let root: Vec<f64> = self.inverse_mass.iter().map(|m| m.sqrt()).collect();
+        let scaled: Vec<Vec3> =
+            self.velocity.iter().zip(&root).map(|(v, r)| if *r > 0.0 { v / *r } else { Vec3::zeros() }).collect();
+        let energy = sum_chunks(scaled.len(), |node| scaled[node].norm_squared());
+        if energy == 0.0 {
+            return 0.0;
+        }
+        let stiff = self.scaled_stiffness(&scaled, &root);
+        (sum_chunks(scaled.len(), |node| scaled[node].dot(&stiff[node])) / energy).max(0.0).sqrt()
+    }
+
+    /// As [`Solid::stable_step`], of the cells with the shorter steps; none where all take the same.
     pub fn fine_stable_step(&mut self, bound: bool) -> Option<StableStep> {
         let fine = self.subcycling.as_ref()?.fine_elements.clone();
         let worst = self.bound(|body, element| fine[body][element as usize]);

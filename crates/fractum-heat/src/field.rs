@@ -76,17 +76,6 @@ impl HeatField {
         &self.temperature
     }
 
-    /// Mean over points, weighted by their heat capacities [K].
-    pub fn mean(&self, points: impl Iterator<Item = u32>) -> f64 {
-        let (mut sum, mut weight) = (0.0, 0.0);
-        for point in points {
-            let capacity = self.network.capacity()[point as usize];
-            sum += capacity * self.temperature[point as usize];
-            weight += capacity;
-        }
-        sum / weight
-    }
-
     /// Time of the temperatures [s].
     pub fn time(&self) -> f64 {
         self.time

@@ -9,7 +9,7 @@
 //! - [`study`] says what a study runs, and what its runs say together
 //!
 //! Beside them: [`checkpoint`] (stop and go on, bit for bit), [`atomic`] (files that are whole or absent), [`number`]
-//! (numbers and units as text), [`memory`] (what does not fit is refused), [`error`].
+//! (numbers and units as text), [`warning`] (the list of warnings), [`memory`] (what does not fit is refused), [`error`].
 //!
 //! ```
 //! use fractum_io::history::{self, Column, History};
@@ -34,6 +34,7 @@ pub mod memory;
 pub mod number;
 mod output;
 pub mod study;
+pub mod warning;
 
 pub use compress::Compression;
 pub use error::{ReadError, WriteError};

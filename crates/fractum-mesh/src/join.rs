@@ -27,6 +27,12 @@ pub enum JoinError {
         /// Its names.
         names: [String; 2],
     },
+    /// An element that two parts hold.
+    #[error("tetrahedron {tag} is in two parts; expected each part once")]
+    Doubled {
+        /// The file's tag of the element.
+        tag: u64,
+    },
 }
 
 /// The mesh of some parts: nodes in the order of their tags, elements in the order of the parts.
@@ -52,6 +58,7 @@ pub fn joined(parts: &[Mesh]) -> Result<Mesh, JoinError> {
     let (quads, quad_tags) =
         join.once(|mesh| (&mesh.quads, &mesh.quad_tags), |group| &group.quads, |group| &mut group.quads);
     let (tetrahedra, tetrahedron_tags) = join.all();
+    refuse_doubled(&tetrahedron_tags)?;
     let mut notices: Vec<String> = Vec::new();
     for notice in parts.iter().flat_map(|part| &part.notices) {
         if !notices.contains(notice) {
@@ -77,6 +84,14 @@ pub fn joined(parts: &[Mesh]) -> Result<Mesh, JoinError> {
     };
     mesh.note_empty_groups();
     Ok(mesh)
+}
+
+/// Elements of space belong to one part each.
+fn refuse_doubled(tags: &[u64]) -> Result<(), JoinError> {
+    let mut sorted = tags.to_vec();
+    sorted.sort_unstable();
+    let doubled = sorted.windows(2).find(|pair| pair[0] == pair[1]);
+    doubled.map_or(Ok(()), |pair| Err(JoinError::Doubled { tag: pair[0] }))
 }
 
 /// The groups of all parts, without elements.
@@ -231,5 +246,8 @@ mod tests {
         parts[2].groups[0].name = "other".to_owned();
         let error = joined(&parts).unwrap_err().to_string();
         assert!(error.contains("is \"") && error.contains("\"other\" in another"), "{error}");
+        let (_, parts) = self::parts();
+        let error = joined(&[parts[0].clone(), parts[1].clone(), parts[0].clone()]).unwrap_err().to_string();
+        assert!(error.starts_with("tetrahedron") && error.contains("is in two parts"), "{error}");
     }
 }

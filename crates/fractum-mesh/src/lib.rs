@@ -42,7 +42,7 @@ mod vtk;
 
 pub use abaqus::read_inp;
 pub use fractum_math::Vec3;
-pub use gmsh::{MshFormat, read_msh, write_msh};
+pub use gmsh::{MshFormat, partitions, read_msh, write_msh};
 pub use hints::hints;
 pub use join::{JoinError, joined};
 pub use mesh::{Group, Mesh, WholeMesh};

@@ -12,6 +12,7 @@ use fractum_io::case::model::{
     BodyKind, BondLawKind, BondedBody, BondedShape, Case, Material, PackingSource, ParticleSize,
 };
 use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
+use fractum_io::warning::Code;
 use fractum_mesh::{Mesh, topology};
 use fractum_pack::{
     Arrangement, Certificate, ClosedSurface, Convention, Domain, PackError, PackSize, PackSpec, Packing,
@@ -210,7 +211,7 @@ impl Maker<'_> {
             let wrong = self.refuse(&self.name.place, format!(": {error}"));
             return Err(Box::new(wrong.remedy(REFUSED)));
         }
-        let warning = Diagnostic::warning(&self.name.place, format!(": {error}"));
+        let warning = Diagnostic::warning(Code::Packing, &self.name.place, format!(": {error}"));
         Ok(Some(warning.remedy("fractum pack shows the whole certificate")))
     }
 

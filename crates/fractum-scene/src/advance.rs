@@ -21,26 +21,38 @@ impl Scene {
             self.advance_together(measure)
         };
         work += self.debris.turn(&self.solid, dt_before, dt_after, measure);
-        work += self.move_bonded(time, dt_before, dt_after, measure);
+        work += self.move_bonded(measure);
         work += self.contacts.move_bodies(time, dt_before, dt_after);
         work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
         self.loads.spend_gas_work(&self.solid, dt_after);
+        self.book_late_damping(&work);
         work
+    }
+
+    /// Keeps apart what damping of nodes and particles takes in the second half of a run.
+    fn book_late_damping(&mut self, work: &HalfSteps) {
+        if self.settings.damping.is_off() || self.clock.time < 0.5 * self.settings.time_step.end {
+            return;
+        }
+        let before = if self.clock.begins_motion() { 0.0 } else { work.before.damping };
+        self.books.late_damping += before + work.after.damping;
     }
 
     /// Advances all nodes by the same step.
     fn advance_together(&mut self, measure: bool) -> HalfSteps {
         let Clock { time, dt_before, dt_after, .. } = self.clock;
+        let begins = self.clock.begins_motion();
         let (damping, Scene { solid, supports, .. }) = (self.settings.damping, self);
         supports.remember(solid, None);
         let mut work = solid.kick_and_drift(dt_before, dt_after, damping, supports.held(), measure);
-        work += supports.impose(solid, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true });
+        work += supports.impose(solid, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true, begins });
         work
     }
 
     /// Advances the nodes that need it by short steps, and the others by one.
     fn advance_in_parts(&mut self, measure: bool) -> HalfSteps {
         let Clock { time, dt_before, dt_after, .. } = self.clock;
+        let begins = self.clock.begins_motion();
         let (damping, Scene { solid, supports, .. }) = (self.settings.damping, self);
         let held = supports.shared_held();
         let step = WholeStep { dt_before, dt_after, damping, held: &held, measure };
@@ -50,8 +62,9 @@ impl Scene {
                 HalfSteps::default()
             }
             Prescribe::Impose { fine, since, dt_before, dt_after } => {
+                let (time, is_first) = (time + since, since == 0.0);
                 let kick =
-                    Kick { time: time + since, dt_before, dt_after, is_fine: Some(fine), is_first: since == 0.0 };
+                    Kick { time, dt_before, dt_after, is_fine: Some(fine), is_first, begins: begins && is_first };
                 supports.impose(solid, &kick)
             }
         })

@@ -1,4 +1,4 @@
-use fractum_fem::StableStep;
+use fractum_fem::{Solid, StableStep};
 use serde::{Deserialize, Serialize};
 
 /// How the time step is chosen.
@@ -59,6 +59,8 @@ pub(crate) struct Frequencies {
     pub(crate) stable: StableStep,
     /// Of the cells with short steps, where others take long ones.
     pub(crate) fine: Option<StableStep>,
+    /// Of the given velocities, where they meet what may be damaged; 0 where they ask for nothing.
+    pub(crate) motion: f64,
     /// Square of that of nodes on rigid shapes [1/s²].
     pub(crate) walls_square: f64,
     /// Square of that of discrete elements in contact, rounded up; the step is for it [1/s²].
@@ -68,8 +70,17 @@ pub(crate) struct Frequencies {
 }
 
 impl Frequencies {
+    /// Those of solids before their first step.
+    ///
+    /// - `bound`: whether the rigorous bound of the elements is taken
+    pub(crate) fn of_solid(solid: &mut Solid, bound: bool) -> Self {
+        let stable = if bound { solid.stable_step_bound() } else { solid.stable_step() };
+        let motion = if solid.has_damage() { solid.motion_frequency() } else { 0.0 };
+        Frequencies { motion, ..Self::of(stable, solid.fine_stable_step(bound)) }
+    }
+
     /// Those of solids without contact.
     pub(crate) fn of(stable: StableStep, fine: Option<StableStep>) -> Self {
-        Frequencies { stable, fine, walls_square: 0.0, contact_square: 0.0, contact_peak: 0.0 }
+        Frequencies { stable, fine, motion: 0.0, walls_square: 0.0, contact_square: 0.0, contact_peak: 0.0 }
     }
 }

@@ -60,8 +60,8 @@ impl Scene {
         }
     }
 
-    /// Conducts heat for the step that follows, where its own step is due; returns the work of the expansion at the present
-    /// stresses [J].
+    /// Conducts heat for the step that follows, where its own step is due, and expands bodies by it; returns half of the work of
+    /// the expansion, at the present stresses [J].
     ///
     /// - `passed`: is told what was done before, and the conduction
     pub(crate) fn conduct(&mut self, dt: f64, passed: &mut impl FnMut(Phase)) -> Result<f64, StepError> {
@@ -69,13 +69,13 @@ impl Scene {
         let (target, end) = (time + dt, self.settings.time_step.end);
         let Scene { optional, solid, bonded, .. } = self;
         let Some(heat) = &mut optional.heat else { return Ok(0.0) };
-        if !heat.is_due(target + dt) && target < end * (1.0 - 1e-9) {
-            return Ok(0.0);
-        }
         passed(Phase::Motion);
-        heat.conduct_to(target, solid, bonded).map_err(|reason| StepError::Heat { step, time, reason })?;
-        let work = heat.expand(solid, bonded);
-        passed(Phase::Heat);
+        let conducted = heat.conduct_for([time, target, end], solid, bonded);
+        let conducted = conducted.map_err(|reason| StepError::Heat { step, time, reason })?;
+        let work = heat.expand(target, solid, bonded);
+        if conducted || heat.expands() {
+            passed(Phase::Heat);
+        }
         Ok(work)
     }
 

@@ -190,6 +190,8 @@ pub(crate) struct Books {
     pub(crate) absorbed: f64,
     pub(crate) time_step: f64,
     pub(crate) left: f64,
+    /// Part of `damping` that damping of nodes and particles has taken in the second half of the run.
+    pub(crate) late_damping: f64,
 }
 
 impl AddAssign<Work> for Books {

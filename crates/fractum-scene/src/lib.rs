@@ -5,6 +5,7 @@
 //! [`SceneState`], one value that can be saved and put back bit for bit.
 
 mod advance;
+mod audit;
 mod bands;
 mod bonded;
 mod clock;
@@ -36,6 +37,7 @@ mod step;
 mod subcycling;
 mod time_function;
 mod velocity_station;
+mod watch;
 
 pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest};
 pub use clock::{Clock, TimeStepSettings};
@@ -70,3 +72,4 @@ pub use step::{Phase, StepReport};
 pub use subcycling::SubcyclingState;
 pub use time_function::TimeFunction;
 pub use velocity_station::{PeakVelocity, VelocityStation};
+pub use watch::{Notice, Noticed, Site};

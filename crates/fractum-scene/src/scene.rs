@@ -13,6 +13,7 @@ use crate::fragment::{Fragment, joined, single_share, solid_pieces};
 use crate::gas::Gas;
 use crate::heat::Heat;
 use crate::ledger::{Books, Ledger};
+use crate::watch::Watch;
 
 /// One simulation: bodies, boundary conditions, clock and ledger.
 #[derive(Clone)]
@@ -48,6 +49,8 @@ pub(crate) struct Optional {
     pub(crate) surface_supports: SurfaceSupports,
     /// Heat in solids and bonded bodies.
     pub(crate) heat: Option<Box<Heat>>,
+    /// What was noticed beyond the models of the scene.
+    pub(crate) watch: Watch,
 }
 
 /// Elements that have left the solids.
@@ -183,8 +186,7 @@ impl Scene {
         settings: SceneSettings,
     ) -> Self {
         let bound = settings.time_step.element_bound || solid.reference.is_empty();
-        let stable = if bound { solid.stable_step_bound() } else { solid.stable_step() };
-        let fine = solid.fine_stable_step(bound);
+        let frequencies = Frequencies::of_solid(&mut solid, bound);
         solid.set_copies_off();
         if !shape_contacts.is_empty() {
             debris.prepare(&solid);
@@ -205,7 +207,7 @@ impl Scene {
             settings,
             ledger: Ledger::default(),
             books: Books::default(),
-            frequencies: Frequencies::of(stable, fine),
+            frequencies,
             removals: Removals::default(),
         };
         scene.update_wall_frequency();

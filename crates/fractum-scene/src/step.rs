@@ -201,13 +201,13 @@ impl Scene {
         !self.contacts.is_empty() || self.has_contacts()
     }
 
-    pub(crate) fn move_bonded(&mut self, time: f64, dt_before: f64, dt_after: f64, measure: bool) -> HalfSteps {
+    pub(crate) fn move_bonded(&mut self, measure: bool) -> HalfSteps {
         if self.bonded.is_empty() {
             return HalfSteps::default();
         }
-        let Scene { bonded, ties, solid, settings, .. } = self;
+        let Scene { bonded, ties, solid, settings, clock, .. } = self;
         let follow = |particles: &mut Particles| ties.follow(solid, particles);
-        bonded.advance(time, dt_before, dt_after, settings.damping, measure, follow)
+        bonded.advance(*clock, settings.damping, measure, follow)
     }
 
     /// The forces between bodies that probes ask for.

@@ -2,6 +2,7 @@ use fractum_io::case::{Diagnostic, Diagnostics};
 use fractum_io::checkpoint::CheckpointError;
 use fractum_io::memory::TooLarge;
 use fractum_io::picture::PictureError;
+use fractum_io::warning::Warning;
 use fractum_io::{OutputError, WriteError};
 use fractum_scene::StepError;
 
@@ -31,6 +32,14 @@ pub enum Failure {
     Stopped {
         /// Why.
         error: StepError,
+        /// Results folder, and which state was saved last.
+        saved: String,
+    },
+    /// The run was asked to take warnings for errors, and met one.
+    #[error("{warning}; last good state saved in {saved}")]
+    Strict {
+        /// The warning.
+        warning: Warning,
         /// Results folder, and which state was saved last.
         saved: String,
     },
@@ -74,20 +83,14 @@ impl ExitCode {
 impl Failure {
     /// A mistake in the input that has no place in a case file.
     pub fn input(message: impl Into<String>) -> Self {
-        Failure::Input(Diagnostics(vec![Diagnostic {
-            severity: fractum_io::case::Severity::Error,
-            place: None,
-            found: message.into(),
-            expected: String::new(),
-            remedy: String::new(),
-        }]))
+        Failure::Input(Diagnostics(vec![Diagnostic::without_place(message)]))
     }
 
     /// The exit code that tells a script what kind of failure this is.
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Failure::Input(_) | Failure::Unmet(_) | Failure::Picture(_) => ExitCode::Input,
-            Failure::Stopped { .. } => ExitCode::Stopped,
+            Failure::Stopped { .. } | Failure::Strict { .. } => ExitCode::Stopped,
             Failure::Elsewhere(code) => *code,
             Failure::Interrupted => ExitCode::Interrupted,
             Failure::Write(WriteError::Busy { .. }) => ExitCode::Input,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use fractum_io::build::{SolidDivision, cannot_divide, divide, held_bodies};
 use fractum_io::case::model::MeshSource;
-use fractum_io::case::{Case, Diagnostic, Diagnostics};
+use fractum_io::case::{Case, Diagnostic, Diagnostics, Place};
 use fractum_io::memory;
 use fractum_mesh::{JoinError, Mesh, WholeMesh, halved, joined, scrambled};
 use fractum_parallel::{Exchange, gather};
@@ -140,6 +140,15 @@ fn read_file(source: &MeshSource, file: &Path, processes: Processes) -> Result<(
         };
         fail(source, format!("= \"{}\": cannot read the mesh: {error}", file.display()), remedy)
     })?;
+    let cut = fractum_mesh::partitions(&bytes);
+    if let (Some(cut), Some(parts)) = (cut.filter(|_| source.parts > Some(1)), source.parts)
+        && cut != parts
+    {
+        let found = format!("= {parts}: {} is of a mesh that was cut into {cut} parts", file.display());
+        let place = Place { key: "mesh.parts".to_owned(), ..source.file.place.clone() };
+        let error = Diagnostic::error(&place, found).remedy(format!("set parts = {cut}, or save all parts at once"));
+        return Err(Failure::Input(Diagnostics(vec![error])));
+    }
     let mesh =
         fractum_mesh::read_mesh(&bytes).map_err(|error| fail(source, format!(": {}: {error}", file.display()), ""))?;
     Ok((mesh, xxh3_128(&bytes)))

@@ -29,8 +29,6 @@ pub struct Notes {
     pub case_file: String,
     /// The plan.
     pub plan: String,
-    /// What the user should know.
-    pub warnings: Vec<String>,
     /// Pictures in the folder `pictures`.
     pub pictures: Vec<PictureNote>,
     /// Materials and settings: what and its value.
@@ -136,7 +134,6 @@ fn page(folder: &Path, place: impl Fn(&str) -> PathBuf) -> Result<String, Failur
         pictures,
         inputs: notes.inputs,
         plan: notes.plan,
-        warnings: notes.warnings,
         case_file: notes.case_file,
         versions: [
             ("fractum", summary.fractum.clone()),

@@ -1,6 +1,8 @@
 //! One run that can be driven step by step.
 
+mod audit;
 mod drive;
+mod end;
 mod finish;
 mod messages;
 mod open;
@@ -18,9 +20,10 @@ use fractum_io::build::BuiltScene;
 use fractum_io::case::Case;
 use fractum_io::checkpoint::{self, Header, Identity};
 use fractum_io::log::Snapshot;
-use fractum_io::number::{at_instant, percent};
+use fractum_io::number::at_instant;
 use fractum_io::origin::Origin;
-use fractum_io::summary::{Status, Summary};
+use fractum_io::summary::Summary;
+use fractum_io::warning::Warning;
 use fractum_prepare::Cache;
 use fractum_scene::{EnergyKind, HeatState, Scene, SceneState, StepError, SubcyclingState};
 use serde::{Deserialize, Serialize};
@@ -34,6 +37,7 @@ use crate::ranks::Ranks;
 use crate::record::{RecordState, Recorder};
 use crate::series::index_of_max;
 use crate::solver::{Measured, Solver, SolverState};
+use end::End;
 use messages::Messages;
 pub use origin::for_shell;
 pub(crate) use origin::kept_hash;
@@ -53,6 +57,8 @@ pub struct Options {
     pub overwrite: bool,
     /// No plan and no progress line.
     pub quiet: bool,
+    /// Warnings are errors: of the case before the run, else they end it.
+    pub strict: bool,
     /// Where packings and beams of bonded bodies are kept.
     pub cache: Cache,
 }
@@ -106,24 +112,6 @@ struct About {
     plan: Plan,
 }
 
-/// Why a run is over.
-enum End {
-    /// With the reason, in words.
-    Finished(String),
-    Interrupted,
-    Failed(StepError),
-}
-
-impl End {
-    fn status(&self) -> Status {
-        match self {
-            End::Finished(_) => Status::Completed,
-            End::Interrupted => Status::Interrupted,
-            End::Failed(_) => Status::Stopped,
-        }
-    }
-}
-
 /// The last checkpoint of this run.
 #[derive(Clone, Copy)]
 struct Saved {
@@ -145,6 +133,8 @@ struct RunState<'a> {
     solids: Vec<SolidPart>,
     heat: Option<HeatState>,
     subcycling: Option<SubcyclingState>,
+    /// What the steps so far have brought.
+    warnings: Cow<'a, [Warning]>,
     record: Cow<'a, RecordState>,
     /// Stages that were still to come.
     later: usize,
@@ -182,6 +172,11 @@ impl Simulation {
         let index = self.case.probes.iter().position(|probe| probe.name.value == name)?;
         let record = self.recorder.state();
         Some((&record.times, &record.series[index]))
+    }
+
+    /// All warnings so far, those of the case and those of the steps.
+    pub fn warnings(&self) -> &[Warning] {
+        self.messages.warnings()
     }
 
     /// Whether the run is over: its end is reached, it was interrupted, or a step failed.
@@ -227,12 +222,13 @@ impl Simulation {
     /// # Errors
     /// [`Failure`] where something cannot be written.
     pub fn record(&mut self) -> Result<(), Failure> {
+        self.audit_now_and_then()?;
         if let Some(measured) = self.measured.take() {
             // Of motion one more row follows at the end.
             let is_last = self.later.is_empty() && !self.solver.moves() && self.solver.is_finished(&self.scene);
             let Simulation { recorder, scene, phases, .. } = self;
             phases.timed(Part::Output, || recorder.row(scene, measured, is_last))?;
-            self.messages.warn_of_balance(&self.scene, self.case.solver.balance_warning, self.solver.rests())?;
+            self.audit_balance()?;
             if let Err(error) = self.scene.refuse_bands_without_fragments() {
                 self.end = Some(End::Failed(error));
                 return Ok(());
@@ -310,26 +306,6 @@ impl Simulation {
         at_instant(time, self.solver.rests())
     }
 
-    /// Why there is no further step.
-    fn last_step(&self) -> String {
-        let (time, end) = (self.time(), self.case.solver.end);
-        match time >= end * (1.0 - 1e-9) {
-            true => format!("{} is the end of the run", self.instant(end)),
-            false => format!("last step at {}, before its end at {}", self.instant(time), self.instant(end)),
-        }
-    }
-
-    /// The early end that the stage asks for, and why it is reached.
-    fn falls_below(&self) -> Option<String> {
-        let stop = self.case.solver.stop_when.as_ref()?;
-        let record = self.recorder.state();
-        let (values, time) = (&record.series[stop.probe], record.times.last().copied().unwrap_or(0.0));
-        let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let fallen = largest > 0.0 && time >= stop.after && values.last().is_some_and(|&v| v < stop.below * largest);
-        let (name, part) = (&self.case.probes[stop.probe].name.value, percent(stop.below));
-        fallen.then(|| format!("{name} fell below {part} of its largest value at {}", self.instant(time)))
-    }
-
     /// Waits until the pieces of frames that all processes write are on the disk.
     fn finish_pieces(&mut self) -> Result<(), Failure> {
         if !self.recorder.shares_frames() {
@@ -382,6 +358,7 @@ impl Simulation {
             solids: Vec::new(),
             heat,
             subcycling,
+            warnings: Cow::Borrowed(self.messages.of_steps()),
             record: Cow::Borrowed(record),
             later,
             solver,

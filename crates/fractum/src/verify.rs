@@ -167,6 +167,7 @@ fn verified(selection: &Selection, path: &Path, case: &Case) -> Result<Vec<Verif
         output: Some(selection.output.join(&name)),
         threads: selection.threads,
         quiet: true,
+        strict: false,
         overwrite: true,
         cache: selection.cache.clone(),
         ..Options::default()

@@ -33,7 +33,7 @@ fn a_body_in_single_nodes_is_warned_of() {
     let ended = place.fractum(&["run", "case.toml", "-o", "results"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     assert!(
-        ended.stderr.contains("warning: body \"bar\"") && ended.stderr.contains("single nodes"),
+        ended.stderr.contains("body \"bar\": warning: ") && ended.stderr.contains("single nodes"),
         "{}",
         ended.stderr
     );

@@ -31,5 +31,7 @@ mod study;
 mod sweep;
 mod terminal;
 mod tied;
+mod told;
 mod vtk_frames;
+mod warnings;
 mod wrong_input;

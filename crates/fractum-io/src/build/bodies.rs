@@ -10,6 +10,7 @@ use super::{Context, use_in_words};
 use crate::case::model::{BodyKind, Damage, GroupUse, SolidBody};
 use crate::case::{Diagnostic, Place};
 use crate::number::quantity;
+use crate::warning::Code;
 
 /// A solid body of the case with its elements in the mesh.
 pub(super) struct Part<'a> {
@@ -242,21 +243,19 @@ impl<'a> Context<'a> {
             if let Some([length, size]) = solid.phase_sizes(index).filter(|[length, size]| *length < 1.5 * size) {
                 let found = format!(": phase field of length {length:.3e} m on elements of {size:.3e} m");
                 warnings.push(
-                    Diagnostic::warning(&part.place, found)
+                    Diagnostic::warning(Code::PhaseFieldLength, &part.place, found)
                         .remedy("at least one and a half elements; two are the default"),
                 );
             }
             if reduced > 0 {
-                warnings.push(Diagnostic::warning(
-                    &part.place,
-                    format!(": strength lowered on {reduced} edges that are too long for the fracture energy"),
-                ));
+                let found = format!(": strength lowered on {reduced} edges that are too long for the fracture energy");
+                let note = Diagnostic::warning(Code::StrengthLowered, &part.place, found);
+                warnings.push(note.remedy("refine the mesh where cracks are expected"));
             } else if solid.phase_sizes(index).is_none() && ratio > 0.25 {
-                let found = format!(
-                    ": the longest element reaches {:.0} % of the length at which softening snaps back",
-                    100.0 * ratio
-                );
-                warnings.push(Diagnostic::warning(&part.place, found).remedy(
+                let percent = 100.0 * ratio;
+                let found =
+                    format!(": the longest element reaches {percent:.0} % of the length at which softening snaps back");
+                warnings.push(Diagnostic::warning(Code::CoarseMesh, &part.place, found).remedy(
                     "elements below a quarter of that length resolve the softening; refine where cracks are expected",
                 ));
             }
@@ -275,7 +274,7 @@ impl<'a> Context<'a> {
             (expected > most).then(|| {
                 let [expected, most] = [expected, most].map(|value| quantity(value, "Pa"));
                 let found = format!(": by its flaws bodies like this bear up to {expected}, and its elements {most}");
-                Diagnostic::warning(&part.place, found)
+                Diagnostic::warning(Code::CoarseMesh, &part.place, found)
                     .remedy("smaller elements; their largest size goes with one over the strength squared")
             })
         };

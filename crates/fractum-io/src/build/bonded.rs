@@ -13,6 +13,7 @@ use super::conditions::{LoadedPoints, motion_of};
 use super::probes::is_held;
 use crate::case::model::{BodyKind, Material, ProbeKind, Selection, TimeStep};
 use crate::case::{Diagnostic, Field, Spanned};
+use crate::warning::Code;
 
 /// The particles of a bonded or loose body, made outside: packed or read, bonded and calibrated.
 #[derive(Clone, Debug)]
@@ -152,7 +153,7 @@ impl Context<'_> {
             } else if particles.len() < whole {
                 let count = whole - particles.len();
                 let found = format!("= \"{}\": {count} of its {whole} particles are tied to a solid", group.value);
-                let warning = Diagnostic::warning(&group.place, found);
+                let warning = Diagnostic::warning(Code::SupportOnTie, &group.place, found);
                 warnings.push(
                     warning.remedy("they follow it, and the support holds the others; support the solid as well"),
                 );

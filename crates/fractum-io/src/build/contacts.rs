@@ -13,6 +13,7 @@ use super::{Context, function};
 use crate::case::model::{self, Body, BodyKind, InitialOverlap, LoadKind, ProbeKind, RigidShape};
 use crate::case::{Diagnostic, Spanned};
 use crate::number::quantity;
+use crate::warning::Code;
 
 /// Depth of an overlap over the radius of the particle at the start that is reported.
 const DEEP: f64 = 1e-6;
@@ -128,7 +129,7 @@ impl Context<'_> {
                 (Ok(surface), _) => solids.push(surface.without(tied.iter().copied(), &scene.bonded.particles.radius)),
                 (Err(error), Some(doubts)) => {
                     let found = format!(": other solids pass through it: {error}");
-                    doubts.push(Diagnostic::warning(&part.place, found));
+                    doubts.push(Diagnostic::warning(Code::ContactSurface, &part.place, found));
                 }
                 (Err(error), None) => self.error(&part.place, format!(": particles cannot touch it: {error}"), ""),
             }
@@ -177,7 +178,7 @@ impl Context<'_> {
             name(worst.particle),
             quantity(worst.depth, "m")
         );
-        Some(Diagnostic::warning(&self.whole_case(), found).remedy(remedy))
+        Some(Diagnostic::warning(Code::InitialOverlap, &self.whole_case(), found).remedy(remedy))
     }
 
     /// Nodes of solids that are in other bodies at the start.
@@ -205,7 +206,7 @@ impl Context<'_> {
             quantity(at.z, "m"),
             quantity(*depth, "m")
         );
-        Some(Diagnostic::warning(&self.whole_case(), found).remedy(self.overlap_remedy()))
+        Some(Diagnostic::warning(Code::InitialOverlap, &self.whole_case(), found).remedy(self.overlap_remedy()))
     }
 
     fn overlap_remedy(&self) -> &'static str {

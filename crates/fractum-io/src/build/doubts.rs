@@ -8,9 +8,11 @@ use fractum_math::Vec3;
 use fractum_math::elementary::log10;
 use fractum_mesh::Mesh;
 
+use super::model_doubts::doubts_of_model;
 use crate::case::model::{BodyKind, Case, LoadKind, Motion, SolidBody};
 use crate::case::{Diagnostic, LONGEST_ZONE, Spanned, TimeFunction};
 use crate::number::{push_shortest, quantity};
+use crate::warning::Code;
 
 /// Largest extent of a body that is loaded as a specimen is [m]: a mesh beyond it is probably in millimetres.
 const LARGE: f64 = 15.0;
@@ -54,6 +56,7 @@ pub fn doubts(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
             stages(case).flat_map(|(stage, during)| doubts_of_motion(stage, during, size)),
         ));
     }
+    doubts.extend(doubts_of_model(case, mesh));
     doubts
 }
 
@@ -86,7 +89,7 @@ fn extent(mesh: &Mesh, nodes: &[u32]) -> f64 {
 fn doubt_of_unit(case: &Case, size: f64) -> Option<Diagnostic> {
     let source = case.mesh.as_ref()?;
     let found = format!("= \"{}\": its solids are {} large", source.file.value.display(), quantity(size, "m"));
-    let note = Diagnostic::warning(&source.file.place, found);
+    let note = Diagnostic::warning(Code::UnitOfLength, &source.file.place, found);
     if source.unit == 1.0 && size > LARGE && !is_of_the_field(case) {
         let note = note.expected("coordinates in metres, the unit where mesh.unit names no other");
         return Some(note.remedy("if they are in millimetres, set mesh.unit = \"mm\""));
@@ -147,7 +150,8 @@ fn doubt_of_origin(case: &Case, mesh: &Mesh, bodies: &[(&SolidBody, f64)]) -> Op
         bits.max(0.0),
         quantity(shortest, "m")
     );
-    let note = Diagnostic::warning(&source.file.place, found).expected(format!("{BITS} bits at least"));
+    let note =
+        Diagnostic::warning(Code::FarFromOrigin, &source.file.place, found).expected(format!("{BITS} bits at least"));
     Some(note.remedy("move the origin into the body"))
 }
 
@@ -161,7 +165,8 @@ fn doubt_of_zone(case: &Case, body: &SolidBody, size: f64) -> Option<Diagnostic>
     }
     let [zone, size] = [zone, size].map(|length| quantity(length, "m"));
     let found = format!("gives a process zone E Gf/ft^2 of {zone} in a body of {size}");
-    let note = Diagnostic::warning(&damage.place, found).expected(format!("a body of more than 1/{ZONES} of the zone"));
+    let note = Diagnostic::warning(Code::ProcessZone, &damage.place, found)
+        .expected(format!("a body of more than 1/{ZONES} of the zone"));
     Some(note.remedy("check tensile_strength, fracture_energy and mesh.unit; such a body yields without a crack"))
 }
 
@@ -216,7 +221,7 @@ fn doubts_of_load(kind: &LoadKind, during: [f64; 2]) -> Vec<Diagnostic> {
             _ => return None,
         };
         let found = format!("is {} at most during the run", quantity(value, unit));
-        Some(Diagnostic::warning(&function.place, found).expected(expected).remedy(remedy))
+        Some(Diagnostic::warning(Code::UnitOfLoad, &function.place, found).expected(expected).remedy(remedy))
     };
     kind.functions().into_iter().filter_map(doubt).collect()
 }
@@ -234,7 +239,8 @@ fn doubts_of_motion(case: &Case, during: [f64; 2], size: f64) -> Vec<Diagnostic>
         }
         let [way, size] = [way, size].map(|length| quantity(length, "m"));
         let found = format!("moves a body of {size} by {way}");
-        let note = Diagnostic::warning(&motion.place, found).expected("a motion smaller than the body");
+        let note =
+            Diagnostic::warning(Code::UnitOfMotion, &motion.place, found).expected("a motion smaller than the body");
         Some(note.remedy(format!("did you mean {unit}, or another solver.end?")))
     };
     case.supports.iter().flat_map(|support| support.motion.iter().flatten()).filter_map(doubt).collect()

@@ -2,6 +2,7 @@
 //! reported with its place in the case file.
 
 mod bodies;
+mod body_doubts;
 mod bonded;
 mod conditions;
 mod contacts;
@@ -11,6 +12,7 @@ mod gas;
 mod gauges;
 mod heat;
 mod in_situ;
+mod model_doubts;
 mod ppv;
 mod precheck;
 mod probes;

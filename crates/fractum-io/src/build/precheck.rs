@@ -9,6 +9,7 @@ use super::Context;
 use crate::case::model::{Body, BodyKind, BondLawKind, GroupUse, Motion, ProbeKind, Selection, SolverKind};
 use crate::case::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
 use crate::number::quantity;
+use crate::warning::Code;
 
 /// Steps that a run can count without losing time to rounding.
 const MOST_STEPS: f64 = 1e15;
@@ -17,6 +18,7 @@ impl Context<'_> {
     /// Checks what case and mesh tell by themselves.
     pub(super) fn check_before_particles(&mut self) {
         self.check_groups();
+        self.check_quadrilaterals();
         self.check_particle_sets();
         self.check_time_functions();
         self.check_bonded_statics();
@@ -81,6 +83,23 @@ impl Context<'_> {
                 diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
             }
             self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Plane bodies are of triangles alone.
+    fn check_quadrilaterals(&mut self) {
+        for body in &self.case.bodies {
+            let BodyKind::Solid(solid) = &body.kind else { continue };
+            let groups = self.mesh.group(&solid.group.value);
+            let [quads, triangles, tetrahedra] = groups.iter().fold([0; 3], |[quads, triangles, tetrahedra], group| {
+                [quads + group.quads.len(), triangles + group.triangles.len(), tetrahedra + group.tetrahedra.len()]
+            });
+            if quads > 0 && tetrahedra == 0 && self.mesh.whole.is_none() {
+                let all = quads + triangles;
+                let found = format!("= \"{}\": {quads} of its {all} elements are quadrilaterals", solid.group.value);
+                let error = Diagnostic::error(&solid.group.place, found).expected("triangles");
+                self.diagnostics.push(error.remedy("mesh it without recombination (Mesh.RecombineAll = 0 in Gmsh)"));
+            }
         }
     }
 
@@ -224,7 +243,7 @@ impl Context<'_> {
                 self.diagnostics.push(Diagnostic::error(&step.place, found).remedy(remedy));
                 return;
             }
-            warnings.push(Diagnostic::warning(&step.place, found).remedy(remedy));
+            warnings.push(Diagnostic::warning(Code::TimeStep, &step.place, found).remedy(remedy));
         }
         let steps = solver.end / dt;
         if steps.is_nan() || steps > MOST_STEPS {

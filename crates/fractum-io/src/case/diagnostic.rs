@@ -5,6 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::Place;
+use crate::warning::{Code, Warning};
 
 /// How serious a diagnostic is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -21,6 +22,8 @@ pub enum Severity {
 pub struct Diagnostic {
     /// How serious it is.
     pub severity: Severity,
+    /// What a warning is of; errors have none.
+    pub code: Option<Code>,
     /// Where it stands; `None` where no file could be read.
     pub place: Option<Place>,
     /// What was found there: `= 0.62` for the value of a key, else a phrase that follows the key: `is missing`, or
@@ -35,18 +38,39 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error; `found` follows the key of the place.
     pub fn error(place: &Place, found: impl Into<String>) -> Self {
+        Self { place: Some(place.clone()), ..Self::without_place(found) }
+    }
+
+    /// A warning; `found` follows the key of the place.
+    pub fn warning(code: Code, place: &Place, found: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, code: Some(code), ..Self::error(place, found) }
+    }
+
+    /// A mistake that has no place in a case file.
+    pub fn without_place(found: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
-            place: Some(place.clone()),
+            code: None,
+            place: None,
             found: found.into(),
             expected: String::new(),
             remedy: String::new(),
         }
     }
 
-    /// A warning; `found` follows the key of the place.
-    pub fn warning(place: &Place, found: impl Into<String>) -> Self {
-        Self { severity: Severity::Warning, ..Self::error(place, found) }
+    /// The warning as results show it; none of an error.
+    pub fn to_warning(&self) -> Option<Warning> {
+        let place = self.place.as_ref().map_or(String::new(), |place| printable(&place.to_string()));
+        Some(Warning::new(self.code?, place, self.text()).remedy(printable(&self.remedy)))
+    }
+
+    /// Key, what was found there, and what was expected.
+    fn text(&self) -> String {
+        let key = self.place.as_ref().map_or("", |place| place.key.as_str());
+        // What begins with a stop belongs to the key: `mesh.file: cannot be read`.
+        let gap = if key.is_empty() || self.found.starts_with([':', ',', '.']) { "" } else { " " };
+        let expected = if self.expected.is_empty() { String::new() } else { format!("; expected {}", self.expected) };
+        printable(&format!("{key}{gap}{}{expected}", self.found))
     }
 
     /// Adds what would have been right.
@@ -71,21 +95,11 @@ impl fmt::Display for Diagnostic {
         if self.severity == Severity::Warning {
             write!(f, "warning: ")?;
         }
-        if let Some(place) = &self.place
-            && !place.key.is_empty()
-        {
-            // What begins with a stop belongs to the key: `mesh.file: cannot be read`.
-            let gap = if self.found.starts_with([':', ',', '.']) { "" } else { " " };
-            write!(f, "{}{gap}", printable(&place.key))?;
-        }
-        write!(f, "{}", printable(&self.found))?;
-        if !self.expected.is_empty() {
-            write!(f, "; expected {}", printable(&self.expected))?;
-        }
+        write!(f, "{}", self.text())?;
         if !self.remedy.is_empty() {
             write!(f, "; {}", printable(&self.remedy))?;
         }
-        Ok(())
+        self.code.map_or(Ok(()), |code| write!(f, " [{code}]"))
     }
 }
 
@@ -103,6 +117,11 @@ pub struct Diagnostics(pub Vec<Diagnostic>);
 pub(crate) const MOST_LISTED: usize = 20;
 
 impl Diagnostics {
+    /// The same with every warning as an error.
+    pub fn as_errors(self) -> Self {
+        Self(self.0.into_iter().map(|one| Diagnostic { severity: Severity::Error, ..one }).collect())
+    }
+
     /// The first of many, mistakes before warnings, with the count of the others. Warnings alone are all listed: the case
     /// runs, and nothing of it is an error.
     pub(crate) fn of_many(mut diagnostics: Vec<Diagnostic>) -> Self {
@@ -152,17 +171,17 @@ mod tests {
             diagnostic.to_string(),
             "cases/beam.toml:14:17: materials.concrete.poisson_ratio = 0.62; expected between -1 and 0.5"
         );
-        let diagnostic = Diagnostic::warning(&place, "= \"a\nb\"").remedy("do this");
+        let diagnostic = Diagnostic::warning(Code::NoEffect, &place, "= \"a\nb\"").remedy("do this");
         assert_eq!(
             diagnostic.to_string(),
-            "cases/beam.toml:14:17: warning: materials.concrete.poisson_ratio = \"a\\nb\"; do this"
+            "cases/beam.toml:14:17: warning: materials.concrete.poisson_ratio = \"a\\nb\"; do this [no-effect]"
         );
         assert_eq!(
             Diagnostic::error(&place, ": too stiff").to_string(),
             "cases/beam.toml:14:17: materials.concrete.poisson_ratio: too stiff"
         );
         let json = serde_json::to_value(Diagnostics(vec![diagnostic])).unwrap();
-        assert_eq!(json[0]["severity"], "warning");
+        assert_eq!((&json[0]["severity"], &json[0]["code"]), (&"warning".into(), &"no-effect".into()));
         assert_eq!(json[0]["place"]["line"], 14);
     }
 
@@ -172,13 +191,15 @@ mod tests {
 
     #[test]
     fn warnings_alone_are_all_listed() {
-        let warnings: Vec<Diagnostic> = (1..=23).map(|line| Diagnostic::warning(&place(line), "is odd")).collect();
+        let warnings: Vec<Diagnostic> =
+            (1..=23).map(|line| Diagnostic::warning(Code::NoEffect, &place(line), "is odd")).collect();
         assert_eq!(Diagnostics::of_many(warnings.clone()).0, warnings);
     }
 
     #[test]
     fn warnings_do_not_hide_mistakes() {
-        let mut many: Vec<Diagnostic> = (1..=30).map(|line| Diagnostic::warning(&place(line), "is odd")).collect();
+        let mut many: Vec<Diagnostic> =
+            (1..=30).map(|line| Diagnostic::warning(Code::NoEffect, &place(line), "is odd")).collect();
         let wrong = [31, 32].map(|line| Diagnostic::error(&place(line), "is wrong"));
         many.extend(wrong.clone());
         let listed = Diagnostics::of_many(many.clone()).0;

@@ -14,6 +14,7 @@ use super::scale::Scale;
 use super::tree::{Entry, Node, Value, join};
 use super::unit::Dimension;
 use super::{Choice, Diagnostic, Place, Severity, nearest};
+use crate::warning::Code;
 pub(super) use reading::Reading;
 use reading::State;
 
@@ -420,7 +421,7 @@ impl<'a> Table<'a> {
     pub(super) fn set_aside(&self, name: &str, why: &str) {
         if let Some((entry, used)) = self.entries.iter().find(|(entry, _)| entry.name == name) {
             used.set(true);
-            self.reader.note(Diagnostic::warning(&entry.key_place, format!("has no effect {why}")));
+            self.reader.note(Diagnostic::warning(Code::NoEffect, &entry.key_place, format!("has no effect {why}")));
         }
     }
 
@@ -433,7 +434,7 @@ impl<'a> Table<'a> {
     fn no_effect(&self, entry: &Entry, why: &str) {
         let found = format!("has no effect {why}");
         self.reader.note(if self.is_overridden() && !entry.node.place.is_override() {
-            Diagnostic::warning(&entry.key_place, found)
+            Diagnostic::warning(Code::NoEffect, &entry.key_place, found)
         } else {
             Diagnostic::error(&entry.key_place, found).remedy("remove it")
         });
@@ -441,10 +442,8 @@ impl<'a> Table<'a> {
 
     /// Reports the keys that nobody asked for: they have no effect, for the reason given.
     pub(super) fn finish(self, why: &str) {
-        for (entry, used) in &self.entries {
-            if !used.get() {
-                self.no_effect(entry, why);
-            }
+        for (entry, _) in self.entries.iter().filter(|(_, used)| !used.get()) {
+            self.no_effect(entry, why);
         }
     }
 }

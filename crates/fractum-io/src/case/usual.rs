@@ -3,6 +3,7 @@
 use super::tree::{Node, Value};
 use super::{Diagnostic, Place};
 use crate::number::{push_shortest, quantity};
+use crate::warning::Code;
 
 /// What values of a quantity are usual.
 pub(super) struct Usual {
@@ -84,7 +85,7 @@ impl Usual {
         let size = quantity(value, self.unit);
         let found =
             if place == node.place { format!("{}, which is {size}", node.found()) } else { format!("is {size}") };
-        let doubt = Diagnostic::warning(&place, found).expected(self.words);
+        let doubt = Diagnostic::warning(Code::UnusualValue, &place, found).expected(self.words);
         Some(match meant {
             Some(meant) => doubt.remedy(format!("did you mean \"{meant}\"?")),
             None => doubt.remedy("give the number with its unit"),

@@ -34,7 +34,7 @@ use crate::atomic::{self, UNFINISHED};
 use crate::compress::Compression;
 
 /// Version of the container's format.
-pub const FORMAT: u32 = 6;
+pub const FORMAT: u32 = 7;
 
 /// What a state belongs to. A state of another program version, case or mesh is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

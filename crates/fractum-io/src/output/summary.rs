@@ -15,6 +15,7 @@ use crate::number::or_null;
 use crate::output::attenuation::Attenuation;
 use crate::output::expectation::Expectation;
 use crate::output::origin::Origin;
+use crate::warning::Warning;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -55,14 +56,14 @@ pub struct Summary {
     /// What became of the bonds of each body whose bonds can break.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fracture: Vec<Fracture>,
-    /// Sizes of the fragments; none where there are none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fragment_sizes: Option<FragmentSizes>,
-    /// Largest velocities against scaled distance, and their power laws.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub ppv: Vec<Attenuation>,
+    /// Sizes of the fragments, and velocities of the ground.
+    #[serde(flatten)]
+    pub breakage: Breakage,
     /// Sizes at the end.
     pub counts: Counts,
+    /// What is doubtful in the case, and what the run found while it went.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
     /// Simulated time.
     pub time: Time,
     /// Time on the clock.
@@ -76,6 +77,17 @@ pub struct Hashes {
     pub case_hash: String,
     /// Of the final state.
     pub state_hash: String,
+}
+
+/// What a body breaks into, and what the ground around feels.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Breakage {
+    /// Sizes of the fragments; none where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fragment_sizes: Option<FragmentSizes>,
+    /// Largest velocities against scaled distance, and their power laws.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ppv: Vec<Attenuation>,
 }
 
 /// A probe over the run.
@@ -265,6 +277,7 @@ pub(super) fn json<T: Serialize + ?Sized>(value: &T) -> String {
 mod tests {
     use super::*;
     use crate::case::model::{Bound, summary_quantities};
+    use crate::warning::Code;
 
     fn example() -> Summary {
         let mut summary =
@@ -273,6 +286,7 @@ mod tests {
         summary.probes.insert("load".into(), probe);
         let bound = Bound::Near { value: 10_000.0, tolerance: 500.0, relative: Some(0.05) };
         summary.expect.push(Expectation::hold("strength", "Pa", 10_200.0, bound, "a paper"));
+        summary.warnings.push(Warning::new(Code::Unused, "case.toml:3:1", "is not used"));
         summary.hashes.case_hash = hash_text(0xff);
         summary.wall.phases.insert("solid".into(), 1.25);
         summary
@@ -317,6 +331,11 @@ mod tests {
             "bonds",
             "broken_bonds",
             "fragments",
+            "warnings",
+            "code",
+            "text",
+            "where",
+            "remedy",
             "time",
             "steps",
             "dt",

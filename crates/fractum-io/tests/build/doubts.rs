@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use fractum_io::build::doubts;
 use fractum_io::case::{Severity, parse_case, read_case};
+use fractum_io::warning::Code;
 use fractum_math::Vec3;
 use fractum_mesh::generate::structured_box;
 use fractum_mesh::{Group, Mesh, read_msh};
@@ -46,7 +47,10 @@ fn no_case_of_the_gallery_and_no_template_is_doubted() {
             mesh.nodes.iter_mut().for_each(|node| *node *= unit);
             mesh
         });
-        doubted.extend(doubts(&case, mesh).iter().map(ToString::to_string));
+        // These have two elements through the thickness, to show what that costs, or far from where they are looked at.
+        let is_thin = ["depth-2", "ball-on-edge"].iter().any(|name| path.to_string_lossy().contains(name));
+        let told = doubts(&case, mesh).into_iter().filter(|doubt| !(is_thin && doubt.code == Some(Code::ThinMesh)));
+        doubted.extend(told.map(|doubt| doubt.to_string()));
     }
     assert!(meshes.len() > 60, "{} meshes", meshes.len());
     assert!(checked > 150, "{checked} cases");
@@ -72,6 +76,9 @@ group = "x+"
 displacement = { x = "0.1 mm * t / 1 ms" }
 [solver]
 end = "1 ms"
+[[supports]]
+group = "x-"
+fix = "yz"
 "#;
 
 /// What is said of a bar with one text in place of another: warnings of the case, and doubts about a mesh of this length.
@@ -118,7 +125,7 @@ fn a_parameter_is_doubted_where_it_stands() {
     let [doubt] = case.warnings() else { panic!("{:?}", case.warnings()) };
     let text = doubt.to_string();
     assert!(text.starts_with("case.toml:2:27: warning: parameters.strength is 3 Pa"), "{text}");
-    assert!(text.ends_with("did you mean \"3 MPa\"?"), "{text}");
+    assert!(text.ends_with("did you mean \"3 MPa\"? [unusual-value]"), "{text}");
 }
 
 #[test]
@@ -165,11 +172,12 @@ fn what_lasts_shorter_than_the_looks_of_a_long_run_is_not_doubted() {
         let support = format!("velocity = {{ x = {velocity} }}");
         loaded(&support, "gravity = { y = \"-9.81 m/s^2\" }", "0.2 s")
     };
-    let blow = "{ ramp = [[\"0 s\", \"10 m/s\"], [\"50 us\", \"10 m/s\"], [\"60 us\", \"0 m/s\"]] }";
+    let blow =
+        "{ ramp = [[\"0 s\", \"0 m/s\"], [\"10 us\", \"10 m/s\"], [\"50 us\", \"10 m/s\"], [\"60 us\", \"0 m/s\"]] }";
     for right in [blow, "\"10 m/s*sin(2*pi*t/10 ms)\""] {
         assert_eq!(velocity(right), [""; 0], "{right}");
     }
-    let there_and_back = "{ ramp = [[\"0 s\", \"20 m/s\"], [\"0.1 s\", \"20 m/s\"], [\"0.101 s\", \"-20 m/s\"]] }";
+    let there_and_back = "{ ramp = [[\"0 s\", \"0 m/s\"], [\"1 ms\", \"20 m/s\"], [\"0.1005 s\", \"20 m/s\"], [\"0.1015 s\", \"-20 m/s\"]] }";
     let said = velocity(there_and_back);
     assert!(said.len() == 1 && said[0].contains("moves a body of 400 mm by 2 m"), "{said:?}");
 }

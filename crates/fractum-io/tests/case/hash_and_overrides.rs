@@ -44,7 +44,8 @@ fn what_is_switched_off_may_keep_its_settings() {
     };
     let found = notices(&text, &[("bodies[0].damage", "false")]);
     assert_eq!(found.len(), 2, "{found:#?}");
-    assert!(found.iter().all(|found| found.contains("warning: bodies[0].") && found.ends_with("has no effect while damage = false")));
+    assert!(found.iter().all(|found| found.contains("warning: bodies[0].")
+        && found.ends_with("has no effect while damage = false [no-effect]")));
     let elastic = text.replacen("\ndamage = true\n", "\ndamage = false\n", 1);
     assert_eq!(notices(&elastic, &[]).len(), 2, "the file itself may say so");
     let pure = notices(&text, &[("materials.concrete.damage.tension_cutoff", "false")]);

@@ -5,11 +5,13 @@
 mod binary;
 mod entities;
 mod names;
+mod partitions;
 mod read;
 mod sink;
 mod v2;
 mod v4;
 mod write;
 
+pub use partitions::partitions;
 pub use read::read_msh;
 pub use write::{MshFormat, write_msh};

@@ -20,6 +20,7 @@ use fractum_fem::LocalDamping;
 use fractum_math::{HalfSteps, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
+use crate::clock::Clock;
 use crate::conditions::{Kick, Load, Loads, Support, Supports};
 use crate::error::SceneError;
 use momentum::{energy_of, viscous_power};
@@ -394,13 +395,12 @@ impl Bonded {
     /// - `follow`: takes tied particles to their places
     pub(crate) fn advance(
         &mut self,
-        time: f64,
-        dt_before: f64,
-        dt_after: f64,
+        clock: Clock,
         damping: LocalDamping,
         measure: bool,
         follow: impl FnOnce(&mut Particles),
     ) -> HalfSteps {
+        let (Clock { time, dt_before, dt_after, .. }, begins) = (clock, clock.begins_motion());
         let Bonded {
             particles,
             reference,
@@ -425,7 +425,8 @@ impl Bonded {
             Some(part) => points.particles.kick_and_drift_part(part, &step, past, partial),
             None => points.particles.kick_and_drift(&step, past, partial),
         };
-        work += supports.impose(&mut points, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true });
+        work +=
+            supports.impose(&mut points, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true, begins });
         work.before.damping -= 0.5 * dt_before * resistance;
         work.before.kinetic -= counted_twice;
         work.after.kinetic -= counted_twice;

@@ -64,6 +64,8 @@ pub(crate) struct Kick {
     pub(crate) is_fine: Option<bool>,
     /// Whether it is at tⁿ, the instant of all results.
     pub(crate) is_first: bool,
+    /// Whether nothing has moved before: what then jumps to its velocity takes an impulse, which is no force to report.
+    pub(crate) begins: bool,
 }
 
 /// All supports of one population: the nodes of solids, or the particles.
@@ -261,7 +263,7 @@ impl Supports {
 
     /// Gives the prescribed axes their motion, after the kick and drift, and finds the reactions.
     pub(crate) fn impose(&mut self, points: &mut impl DrivenPoints, kick: &Kick) -> HalfSteps {
-        let Kick { time, dt_before, dt_after, is_fine, is_first } = *kick;
+        let Kick { time, dt_before, dt_after, is_fine, is_first, begins } = *kick;
         let mut work = HalfSteps::default();
         let dt_kick = 0.5 * (dt_before + dt_after);
         let counts = |set: &&mut Support| is_fine.is_none_or(|is_fine| set.is_fine == is_fine);
@@ -283,7 +285,8 @@ impl Supports {
                 let total = points.mass(i) * change / dt_kick;
                 let force = total - points.force_left_out(i, axis);
                 if is_first {
-                    *reaction = force;
+                    let jump = if begins { velocity - before } else { 0.0 };
+                    *reaction = force - points.mass(i) * jump / dt_kick;
                 }
                 points.set_motion(i, axis, velocity, change * dt_after);
                 work.before.external += 0.5 * force * before * dt_before;

@@ -32,6 +32,7 @@ pub use solid_surface::SolidSurface;
 use crate::bonded::Bonded;
 use crate::coupling::Debris;
 use crate::time_function::TimeFunction;
+use crate::watch::Site;
 use debris_among::DebrisAmong;
 use nodes_on_surface::NodesOnSurface;
 use rigid_body::RigidBodyState;
@@ -355,6 +356,21 @@ impl Contacts {
         }
         found.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.particle.cmp(&b.particle)));
         found
+    }
+
+    /// The particles that are pressed together, or on a body, most deeply: the overlap over the smaller radius [-].
+    pub(crate) fn deepest(&self, particles: &Particles) -> Option<(Site, f64)> {
+        let Particles { position, velocity, spin, radius, .. } = particles;
+        let spheres = Spheres { position, velocity, spin, radius };
+        let among = self.among.iter().flat_map(|among| among.pressed(&spheres));
+        let share = |[i, j]: [u32; 2], depth: f64| depth / radius[i as usize].min(radius[j as usize]);
+        let among = among.map(|(pair, depth)| (Site::Particles(pair), share(pair, depth)));
+        let grounds = self.on_tools.iter().map(|(contacts, _)| contacts);
+        let grounds = grounds.chain(self.solids.iter().map(SolidSurface::contacts));
+        let on_ground = grounds.flat_map(|contacts| contacts.pressed());
+        let on_ground =
+            on_ground.map(|(particle, depth)| (Site::Particle(particle), depth / radius[particle as usize]));
+        among.chain(on_ground).reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 
     /// Everything that changes, for a checkpoint.

@@ -3,20 +3,26 @@
 use fractum_fem::Solid;
 use serde::{Deserialize, Serialize};
 
+use super::step::SAME_TIME;
 use crate::bonded::Bonded;
 
-/// How temperatures expand bodies.
+/// How temperatures expand bodies. Between two steps of conduction temperatures change in proportion to time: a jump would
+/// shake the bodies, and damping would brake them for it.
 #[derive(Clone, Debug)]
 pub(super) struct Expansion {
     /// Temperature at which nothing is stressed [K].
     stress_free: f64,
-    /// T - T₀ of the nodes [K].
-    rise: Vec<f64>,
+    /// T - T₀ of the nodes where the present change began, and where it ends [K].
+    rises: [Vec<f64>; 2],
     bonds: Vec<ExpandingBonds>,
-    /// Temperatures before the last change [K].
-    before: Vec<f64>,
-    /// Half of the work of the last change is still to be booked.
-    pending: bool,
+    /// Temperatures where the present change began [K]; it ends at those of the field.
+    from: Vec<f64>,
+    /// Temperatures now [K].
+    pub(super) now: Vec<f64>,
+    /// When the present change began and when it ends [s].
+    span: [f64; 2],
+    /// Parts of the change that had passed at the step before, and now.
+    passed: [f64; 2],
     /// All work booked so far [J].
     pub(super) work: f64,
 }
@@ -36,8 +42,9 @@ struct ExpandingBonds {
 /// What changes in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ExpansionState {
-    before: Vec<f64>,
-    pending: bool,
+    from: Vec<f64>,
+    span: [f64; 2],
+    passed: [f64; 2],
     work: f64,
 }
 
@@ -60,63 +67,94 @@ impl Expansion {
             let lengths: Vec<f64> = (0..own.len()).map(|bond| own.length(bond)).collect();
             ExpandingBonds { body, coefficient, before: lengths.clone(), lengths }
         });
+        let zero = vec![0.0; solid.reference.len()];
         Some(Expansion {
             stress_free,
-            rise: vec![0.0; solid.reference.len()],
+            rises: [zero.clone(), zero],
             bonds: bonds.collect(),
-            before: Vec::new(),
-            pending: false,
+            from: Vec::new(),
+            now: Vec::new(),
+            span: [0.0; 2],
+            passed: [0.0; 2],
             work: 0.0,
         })
     }
 
     /// Takes over temperatures as if they had always been so.
-    pub(super) fn start(&mut self, solid: &mut Solid, bonded: &mut Bonded, temperature: &[f64]) {
-        self.set_rise(temperature);
-        solid.start_expanded(&self.rise);
-        let particles = &temperature[self.rise.len()..];
-        for own in &mut self.bonds {
-            own.set_lengths(bonded, particles, self.stress_free);
-            own.forget(bonded);
-        }
-        self.before = temperature.to_vec();
+    ///
+    /// - `time`: when [s]
+    pub(super) fn start(&mut self, time: f64, solid: &mut Solid, bonded: &mut Bonded, temperature: &[f64]) {
+        (self.from, self.now, self.span) = (temperature.to_vec(), temperature.to_vec(), [time; 2]);
+        self.find_rises(temperature);
+        solid.start_expanded(&self.rises[0]);
+        self.set_lengths(bonded);
+        self.bonds.iter_mut().for_each(|own| own.forget(bonded));
     }
 
-    /// Takes over temperatures for the next step; returns half of the work of the expansion [J].
-    pub(super) fn expand(&mut self, solid: &mut Solid, bonded: &mut Bonded, temperature: &[f64]) -> f64 {
-        self.set_rise(temperature);
-        let particles = &temperature[self.rise.len()..];
-        let mut work = solid.expand(&self.rise);
-        for own in &mut self.bonds {
-            own.forget(bonded);
-            own.set_lengths(bonded, particles, self.stress_free);
-            work += own.half_work(bonded);
-        }
-        self.pending = true;
-        self.work += work;
-        work
+    /// Whether the present change ends before a time [s].
+    pub(super) fn ends_before(&self, time: f64) -> bool {
+        time > self.span[1] + SAME_TIME * (self.span[1] - self.span[0])
+    }
+
+    /// Begins a change from the present temperatures to those of the field.
+    ///
+    /// - `span`: when it begins and when it ends [s]
+    pub(super) fn begin(&mut self, span: [f64; 2], solid: &mut Solid, temperature: &[f64]) {
+        self.from.copy_from_slice(&self.now);
+        (self.span, self.passed) = (span, [0.0; 2]);
+        self.find_rises(temperature);
+        let [from, to] = &self.rises;
+        solid.begin_expansion([from, to]);
+    }
+
+    /// Leads temperatures to a time of the present change [s], for the step that follows; returns half of the work of the
+    /// expansion, at the present stresses [J].
+    pub(super) fn lead(&mut self, time: f64, solid: &mut Solid, bonded: &mut Bonded, temperature: &[f64]) -> f64 {
+        let [begin, end] = self.span;
+        let part = if end > begin { ((time - begin) / (end - begin)).min(1.0) } else { 1.0 };
+        self.passed = [self.passed[1], part];
+        self.find_now(temperature);
+        solid.expand_to(part);
+        self.bonds.iter_mut().for_each(|own| own.forget(bonded));
+        self.set_lengths(bonded);
+        self.half_work(solid, bonded)
     }
 
     /// The other half of the work, at the stresses of the step after it [J].
-    pub(super) fn finish(&mut self, solid: &mut Solid, bonded: &mut Bonded, temperature: &[f64]) -> f64 {
-        if !std::mem::take(&mut self.pending) {
-            return 0.0;
-        }
-        let mut work = solid.finish_expansion();
-        for own in &mut self.bonds {
+    pub(super) fn finish(&mut self, solid: &Solid, bonded: &mut Bonded) -> f64 {
+        self.half_work(solid, bonded)
+    }
+
+    fn half_work(&mut self, solid: &Solid, bonded: &mut Bonded) -> f64 {
+        let [before, now] = self.passed;
+        let mut work = 0.5 * (now - before) * solid.expansion_work();
+        for own in &self.bonds {
             work += own.half_work(bonded);
         }
-        self.before.copy_from_slice(temperature);
         self.work += work;
         work
     }
 
-    fn set_rise(&mut self, temperature: &[f64]) {
-        self.rise.iter_mut().zip(temperature).for_each(|(rise, t)| *rise = t - self.stress_free);
+    fn find_rises(&mut self, temperature: &[f64]) {
+        for (rises, temperatures) in self.rises.iter_mut().zip([self.from.as_slice(), temperature]) {
+            rises.iter_mut().zip(temperatures).for_each(|(rise, t)| *rise = t - self.stress_free);
+        }
+    }
+
+    fn find_now(&mut self, temperature: &[f64]) {
+        let part = self.passed[1];
+        let ends = self.from.iter().zip(temperature);
+        self.now.iter_mut().zip(ends).for_each(|(now, (from, to))| *now = from + part * (to - from));
+    }
+
+    fn set_lengths(&mut self, bonded: &mut Bonded) {
+        let Expansion { bonds, now, rises, stress_free, .. } = self;
+        let particles = &now[rises[0].len()..];
+        bonds.iter_mut().for_each(|own| own.set_lengths(bonded, particles, *stress_free));
     }
 
     pub(super) fn state(&self) -> ExpansionState {
-        ExpansionState { before: self.before.clone(), pending: self.pending, work: self.work }
+        ExpansionState { from: self.from.clone(), span: self.span, passed: self.passed, work: self.work }
     }
 
     /// Puts a saved state back.
@@ -129,11 +167,17 @@ impl Expansion {
         temperature: &[f64],
         state: ExpansionState,
     ) {
-        self.start(solid, bonded, &state.before);
-        if state.pending {
-            self.expand(solid, bonded, temperature);
+        let ExpansionState { from, span, passed, work } = state;
+        self.now.copy_from_slice(&from);
+        self.begin(span, solid, temperature);
+        for part in passed {
+            self.passed = [self.passed[1], part];
+            solid.expand_to(part);
+            self.find_now(temperature);
+            self.bonds.iter_mut().for_each(|own| own.forget(bonded));
+            self.set_lengths(bonded);
         }
-        ExpansionState { before: self.before, pending: self.pending, work: self.work } = state;
+        self.work = work;
     }
 }
 

@@ -49,12 +49,23 @@ impl Heat {
     /// - `of_particles`: whether they are particles, not nodes
     pub fn temperature_of(&self, of_particles: bool, points: &[u32], take: TemperatureTake) -> f64 {
         let first = if of_particles { self.nodes as u32 } else { 0 };
-        let all = self.field.temperature();
+        let all = self.temperature();
         let own = points.iter().map(|&point| all[(first + point) as usize]);
         match take {
-            TemperatureTake::Mean => self.field.mean(points.iter().map(|point| first + point)),
+            TemperatureTake::Mean => self.mean(points.iter().map(|point| first + point)),
             TemperatureTake::Lowest => own.fold(f64::INFINITY, f64::min),
             TemperatureTake::Highest => own.fold(f64::NEG_INFINITY, f64::max),
         }
+    }
+
+    /// Mean of the temperatures of points, weighted by their capacities [K].
+    fn mean(&self, points: impl Iterator<Item = u32>) -> f64 {
+        let (capacities, all) = (self.field.network().capacity(), self.temperature());
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for point in points {
+            sum += capacities[point as usize] * all[point as usize];
+            weight += capacities[point as usize];
+        }
+        sum / weight
     }
 }

@@ -114,7 +114,7 @@ impl Heat {
             false => Expansion::new(solid, bonded, &coefficient(&solids), &coefficient(&of_bonded), stress_free),
         };
         if let Some(expansion) = &mut expansion {
-            expansion.start(solid, bonded, field.temperature());
+            expansion.start(0.0, solid, bonded, field.temperature());
         }
         let stable = settings.safety * field.stable_step() * if expansion.is_some() { SMOOTH } else { 1.0 };
         let solver = settings.implicit.then(ImplicitHeat::default);
@@ -124,12 +124,17 @@ impl Heat {
 
     /// Temperatures of the nodes [K].
     pub fn of_nodes(&self) -> &[f64] {
-        &self.field.temperature()[..self.nodes]
+        &self.temperature()[..self.nodes]
     }
 
     /// Temperatures of the particles [K].
     pub fn of_particles(&self) -> &[f64] {
-        &self.field.temperature()[self.nodes..]
+        &self.temperature()[self.nodes..]
+    }
+
+    /// Temperatures of all points now [K]: those of the field may be ahead.
+    fn temperature(&self) -> &[f64] {
+        self.expansion.as_ref().map_or(self.field.temperature(), |expansion| &expansion.now)
     }
 
     /// Where the heat came from and is.

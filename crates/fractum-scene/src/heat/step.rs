@@ -6,7 +6,7 @@ use super::Heat;
 use crate::bonded::Bonded;
 
 /// Relative difference of two times that is rounding.
-const SAME_TIME: f64 = 1e-9;
+pub(super) const SAME_TIME: f64 = 1e-9;
 
 impl Heat {
     /// Advances temperatures to a time [s] in equal steps of at most the stable one.
@@ -41,21 +41,50 @@ impl Heat {
         self.stale = false;
     }
 
-    /// Whether a step is due before the time `later` [s].
-    pub(crate) fn is_due(&self, later: f64) -> bool {
-        later > self.field.time() + self.step * (1.0 + SAME_TIME)
+    /// Conducts for the step of motion from `time` to `target` [s], where a step of conduction is due; whether it was.
+    ///
+    /// Where temperatures expand bodies they are found ahead, so that they can change in proportion to time until then.
+    ///
+    /// - `end`: of the run [s]
+    pub(crate) fn conduct_for(
+        &mut self,
+        [time, target, end]: [f64; 3],
+        solid: &mut Solid,
+        bonded: &Bonded,
+    ) -> Result<bool, String> {
+        let own = self.field.time();
+        let Some(expansion) = &self.expansion else {
+            let waits = target + (target - time) <= own + self.step * (1.0 + SAME_TIME);
+            if waits && target < end * (1.0 - SAME_TIME) {
+                return Ok(false);
+            }
+            return self.conduct_to(target, solid, bonded).map(|()| true);
+        };
+        if !expansion.ends_before(target) {
+            return Ok(false);
+        }
+        let ahead = (own + self.step).min(end).max(target);
+        self.conduct_to(ahead, solid, bonded)?;
+        if let Some(expansion) = &mut self.expansion {
+            expansion.begin([time, ahead], solid, self.field.temperature());
+        }
+        Ok(true)
     }
 
-    /// Expands bodies by the present temperatures, see [`Solid::expand`]; returns half of the work [J].
-    pub(crate) fn expand(&mut self, solid: &mut Solid, bonded: &mut Bonded) -> f64 {
+    /// Expands bodies by the temperatures of a time [s], for the step that follows; returns half of the work [J].
+    pub(crate) fn expand(&mut self, time: f64, solid: &mut Solid, bonded: &mut Bonded) -> f64 {
         let Heat { expansion, field, .. } = self;
-        expansion.as_mut().map_or(0.0, |expansion| expansion.expand(solid, bonded, field.temperature()))
+        expansion.as_mut().map_or(0.0, |expansion| expansion.lead(time, solid, bonded, field.temperature()))
     }
 
     /// The other half of the work of the last expansion [J].
-    pub(crate) fn finish_expansion(&mut self, solid: &mut Solid, bonded: &mut Bonded) -> f64 {
-        let Heat { expansion, field, .. } = self;
-        expansion.as_mut().map_or(0.0, |expansion| expansion.finish(solid, bonded, field.temperature()))
+    pub(crate) fn finish_expansion(&mut self, solid: &Solid, bonded: &mut Bonded) -> f64 {
+        self.expansion.as_mut().map_or(0.0, |expansion| expansion.finish(solid, bonded))
+    }
+
+    /// Whether temperatures expand bodies.
+    pub(crate) fn expands(&self) -> bool {
+        self.expansion.is_some()
     }
 
     /// Elements have left.

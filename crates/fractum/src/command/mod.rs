@@ -24,6 +24,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use fractum::cache_of_user as cache;
 use fractum::terminal::{Stream, Tone, toned};
 use fractum::{ExitCode, Failure, Options, Outcome, Ranks, say, tell};
+use fractum_io::case::Diagnostics;
 use fractum_io::summary::{Fracture, Probe, Status};
 
 /// Fracture of solids: finite elements with damage, discrete elements, and the transition between them.
@@ -58,6 +59,9 @@ enum Command {
         /// Replace a value of [parameters].
         #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
         set: Vec<(String, String)>,
+        /// Take warnings for errors.
+        #[arg(long)]
+        strict: bool,
     },
     /// Write a case that runs as it stands, with its mesh, into a folder.
     #[command(after_help = help::NEW)]
@@ -99,7 +103,7 @@ enum Command {
         #[arg(long, requires = "stress")]
         blasts: bool,
         /// The largest stable step of every kind of scene instead of random ones.
-        #[arg(long, requires = "stress", conflicts_with_all = ["blasts", "scenes", "first", "seed"])]
+        #[arg(long, requires = "stress", conflicts_with_all = ["blasts", "scenes", "first"])]
         steps: bool,
         /// With --steps: a steps.json of before, to tell what has changed.
         #[arg(long, requires = "steps")]
@@ -186,6 +190,9 @@ struct RunArguments {
     /// No plan and no progress line.
     #[arg(long)]
     quiet: bool,
+    /// Take warnings for errors: those of the case refuse it, those of the run end it.
+    #[arg(long)]
+    strict: bool,
 }
 
 /// More threads than this help nobody, and starve the machine.
@@ -208,7 +215,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
     let json = arguments.format == Format::Json;
     let result = match arguments.command {
         Command::Run(run) => ranks::run_case(run, json),
-        Command::Check { case, set } => check(&case, &set),
+        Command::Check { case, set, strict } => check(&case, &set, strict),
         Command::New { template, folder } => new::new(template.as_deref(), folder),
         Command::Verify { stress: true, blasts, steps, baseline, scenes, first, seed, output, threads, .. } => {
             let settings = fractum::stress::Settings { scenes, first, blasts, seed, output, threads, cache: cache() };
@@ -309,6 +316,7 @@ fn run_case(run: RunArguments, ranks: Ranks) -> Result<ExitCode, Failure> {
         resume: run.resume,
         overwrite: run.overwrite,
         quiet: run.quiet || !leads,
+        strict: run.strict,
         cache: cache(),
     };
     let Outcome { summary, folder, load } = fractum::run_shared(&run.case, &options, ranks)?;
@@ -384,11 +392,14 @@ fn with_place(line: &str, tone: Tone, stream: Stream) -> String {
     }
 }
 
-fn check(case: &std::path::Path, set: &[(String, String)]) -> Result<ExitCode, Failure> {
+fn check(case: &std::path::Path, set: &[(String, String)], strict: bool) -> Result<ExitCode, Failure> {
     let (plan, warnings) = fractum::plan::checked(case, set, &cache())?;
     match Stream::Out.width() {
         Some(width) => say!("{}", plan.wrapped(width, |topic| toned(topic, Tone::Name, Stream::Out))),
         None => say!("{plan}"),
+    }
+    if strict && !warnings.is_empty() {
+        return Err(Failure::Input(Diagnostics(warnings).as_errors()));
     }
     for warning in &warnings {
         say!("{}", with_place(&warning.to_string(), Tone::Doubt, Stream::Out));

@@ -10,6 +10,7 @@ impl Plan {
     /// The step, what asks for it, and how many there are.
     pub(super) fn describe_time(&mut self, case: &Case, scene: &Scene, span: f64) {
         let governing = match scene.governing_element() {
+            _ if scene.given_velocities_govern() => "given velocities, which change from node to node".to_owned(),
             Some(stable) => {
                 let (body, element) = stable.governing;
                 format!("element {element} of {}", scene.solid.body(body).name)

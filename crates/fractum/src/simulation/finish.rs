@@ -1,7 +1,6 @@
 //! The end of a run: last frame, last row, summary, report and final names.
 
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
 use std::path::Path;
 
 use fractum_fem::{CrackFacet, Solid};
@@ -9,7 +8,7 @@ use fractum_io::atomic::{Group, create_folder};
 use fractum_io::attenuation;
 use fractum_io::fragments::{self, Fragment};
 use fractum_io::number::at_instant;
-use fractum_io::summary::{Hashes, Summary, hash_text};
+use fractum_io::summary::{Breakage, Hashes, Status, Summary, hash_text};
 use fractum_scene::{Scene, fragment_size};
 
 use super::{End, Outcome, Saved, Simulation};
@@ -34,12 +33,7 @@ impl Simulation {
         self.scene.gather_ranks();
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         self.ranks.steps(&self.scene).map_or(Ok(()), |steps| self.messages.log.line(steps))?;
-        let (status, state_hash) = (end.status(), self.state_hash());
-        let reason = match &end {
-            End::Finished(why) => why.clone(),
-            End::Interrupted => "interrupted".to_owned(),
-            End::Failed(error) => error.to_string(),
-        };
+        let state_hash = self.state_hash();
         let clock = self.scene.clock;
         if matches!(end, End::Finished(_)) && self.saved.is_none_or(|saved| saved.step != clock.step) {
             // So that the run can be continued to a later end.
@@ -48,8 +42,8 @@ impl Simulation {
         self.record_last(&end)?;
         self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
         let pieces = self.scene.fragments();
-        self.warn_of_single_nodes()?;
-        self.warn_of_merged_bands()?;
+        let end = self.audit_end(end)?;
+        let (status, reason) = (end.status(), end.reason());
         // All files of the end get their names together.
         let mut files = Group::default();
         let skin = self.skin();
@@ -60,15 +54,19 @@ impl Simulation {
             hashes: Hashes { case_hash: hash_text(self.about.case_hash), state_hash: hash_text(state_hash) },
             origin: self.about.origin.clone(),
             probes: summary::probes(&self.case, &self.recorder),
-            ppv: self.recorder.attenuations(),
-            fragment_sizes: summary::fragment_sizes(&self.scene.solid, &pieces),
+            breakage: Breakage {
+                fragment_sizes: summary::fragment_sizes(&self.scene.solid, &pieces),
+                ppv: self.recorder.attenuations(),
+            },
+            warnings: self.messages.warnings().to_vec(),
             time: summary::time(&clock, reason, self.solver.rests()),
             wall: summary::wall(self.started.elapsed(), &self.phases),
             ..summary::of_scene(&self.scene)
         };
         summary.expect = self.case.expect.iter().map(|e| summary::expectation(e, &summary)).collect();
-        if !summary.ppv.is_empty() {
-            files.add(&self.folder.join("ppv.csv"), attenuation::to_csv(&summary.ppv).as_bytes());
+        let ppv = &summary.breakage.ppv;
+        if !ppv.is_empty() {
+            files.add(&self.folder.join("ppv.csv"), attenuation::to_csv(ppv).as_bytes());
         }
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
@@ -76,7 +74,6 @@ impl Simulation {
         let notes = Notes {
             case_file: self.case.source.path.display().to_string(),
             plan: self.about.plan.wrapped(PLAN_WIDTH, str::to_owned),
-            warnings: self.messages.warnings,
             pictures,
             inputs: crate::inputs::table(&self.case),
             plots: crate::plots::notes(&self.case),
@@ -89,18 +86,19 @@ impl Simulation {
         files.finish()?;
         page?;
         let at_rest = self.solver.rests();
+        if let End::Failed(error) = &end {
+            self.messages.log.line(error)?;
+        }
+        if status == Status::Stopped && !self.ranks.leads() {
+            return Err(Failure::Elsewhere(ExitCode::Stopped));
+        }
+        let folder = self.folder.display();
+        let saved = self.saved.map_or(format!("{folder}"), |Saved { step, time, .. }| {
+            format!("{folder}: step {step}, {}", at_instant(time, at_rest))
+        });
         match end {
-            End::Failed(error) => {
-                self.messages.log.line(&error)?;
-                if !self.ranks.leads() {
-                    return Err(Failure::Elsewhere(ExitCode::Stopped));
-                }
-                let folder = self.folder.display();
-                let saved = self.saved.map_or(format!("{folder}"), |Saved { step, time, .. }| {
-                    format!("{folder}: step {step}, {}", at_instant(time, at_rest))
-                });
-                Err(Failure::Stopped { error, saved })
-            }
+            End::Failed(error) => Err(Failure::Stopped { error, saved }),
+            End::Strict(warning) => Err(Failure::Strict { warning, saved }),
             _ => Ok(Outcome { summary, folder: self.folder, load }),
         }
     }
@@ -208,56 +206,6 @@ fn add_cracks(scene: &Scene, folder: &Path, removed: &[(u32, u32, f64)], files: 
     cracks::facets_file(&scene.solid, &crack, Some(&history))?.add_to(files, &folder.join(format!("{name}.vtp")));
     Ok(())
 }
-
-impl Simulation {
-    /// Warns of bodies that came apart into single nodes.
-    fn warn_of_single_nodes(&mut self) -> Result<(), Failure> {
-        let shares = self.scene.single_share().into_iter().enumerate();
-        for (body, share) in shares.filter(|(_, share)| *share > MOSTLY_SINGLE) {
-            let (name, percent) = (&self.scene.solid.body(body).name, 100.0 * share);
-            self.messages.warn(format!(
-                "warning: body \"{name}\": {percent:.0} % of its mass is in single nodes, which are no fragments; a finer mesh resolves them"
-            ))?;
-        }
-        Ok(())
-    }
-
-    /// Warns of phase fields whose length is short for the elements that cracks went through, or whose bands are sheared or pressed, as those of two cracks are that have become one.
-    fn warn_of_merged_bands(&mut self) -> Result<(), Failure> {
-        let solid = &self.scene.solid;
-        for body in 0..solid.body_count() {
-            let Some(([length, _], size)) = solid.phase_sizes(body).zip(solid.size_along_cracks(body)) else {
-                continue;
-            };
-            if length < LEAST_SIZES * size {
-                let name = &solid.body(body).name;
-                self.messages.warn(format!(
-                    "warning: body \"{name}\": its cracks ran through elements of {size:.2e} m, and the length of its phase field, {length:.2e} m, is {:.1} of them: a band needs {LEAST_SIZES} at least; refine the mesh where the cracks went, or set a longer length",
-                    length / size
-                ))?;
-            }
-        }
-        let bodies = (0..solid.body_count()).filter_map(|body| {
-            let [length, _] = solid.phase_sizes(body)?;
-            Some((&solid.body(body).name, solid.cost_of_bands(body)?, length))
-        });
-        let sheared = bodies.filter(|(_, cost, _)| *cost > SHEARED);
-        for (name, cost, length) in sheared {
-            self.messages.warn(format!(
-                "warning: body \"{name}\": damage took {cost:.1} times the fracture energy of its area of crack: the bands of its phase field, {:.2e} m wide, are sheared, or pressed along the crack. Where two cracks are nearer to each other than that, their bands become one: take a smaller length on a finer mesh",
-                PI * length
-            ))?;
-        }
-        Ok(())
-    }
-}
-
-/// Elements that the length of a phase field must span.
-const LEAST_SIZES: f64 = 1.5;
-/// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is at most 1.1.
-const SHEARED: f64 = 1.3;
-/// Share of a body's mass in single nodes above which its fragments tell little.
-const MOSTLY_SINGLE: f64 = 0.5;
 
 fn fragments_of(solid: &Solid, pieces: &[fractum_scene::Fragment]) -> Vec<Fragment> {
     pieces

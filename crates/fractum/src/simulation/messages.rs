@@ -3,28 +3,32 @@
 use std::io::Stderr;
 
 use fractum_io::log::{Progress, RunLog};
-use fractum_io::number::at_instant;
-use fractum_scene::Scene;
+use fractum_io::warning::Warning;
 
+use super::Options;
 use crate::error::Failure;
 
-/// Terminal, log, and the warnings for the report.
+/// Terminal, log, and the one list of warnings.
 pub(super) struct Messages {
     pub(super) progress: Progress<Stderr>,
     pub(super) log: RunLog,
-    pub(super) warnings: Vec<String>,
+    /// All warnings, in the order in which they came.
+    warnings: Vec<Warning>,
+    /// How many of them were found before the first step, and are found again by a resumed run.
+    before: usize,
     /// What the last step brought, until it is told.
     pub(super) event: Option<String>,
-    warned_of_balance: bool,
+    /// Whether a warning ends the run.
+    pub(super) strict: bool,
     /// Another rank speaks.
     silent: bool,
 }
 
 impl Messages {
-    /// - `quiet`: no progress; `silent`: nothing at all, since another rank speaks
-    pub(super) fn new(log: RunLog, quiet: bool, silent: bool) -> Self {
-        let progress = Progress::on_stderr(quiet || silent);
-        Messages { progress, log, warnings: Vec::new(), event: None, warned_of_balance: false, silent }
+    /// - `silent`: nothing at all on the terminal, since another rank speaks
+    pub(super) fn new(log: RunLog, options: &Options, silent: bool) -> Self {
+        let progress = Progress::on_stderr(options.quiet || silent);
+        Messages { progress, log, warnings: Vec::new(), before: 0, event: None, strict: options.strict, silent }
     }
 
     pub(super) fn tell(&mut self, text: &str) -> Result<(), Failure> {
@@ -34,25 +38,36 @@ impl Messages {
         Ok(self.log.line(text)?)
     }
 
-    pub(super) fn warn(&mut self, text: String) -> Result<(), Failure> {
-        self.tell(&text)?;
-        self.warnings.push(text);
+    /// Warns, once of the same.
+    pub(super) fn warn(&mut self, warning: Warning) -> Result<(), Failure> {
+        if self.warnings.contains(&warning) {
+            return Ok(());
+        }
+        self.tell(&warning.to_string())?;
+        self.warnings.push(warning);
         Ok(())
+    }
+
+    /// Warns of what was found before the first step.
+    ///
+    /// - `earlier`: what the steps before a resumed one brought
+    pub(super) fn begin(&mut self, found: Vec<Warning>, earlier: Vec<Warning>) -> Result<(), Failure> {
+        found.into_iter().try_for_each(|warning| self.warn(warning))?;
+        self.before = self.warnings.len();
+        earlier.into_iter().try_for_each(|warning| self.warn(warning))
+    }
+
+    /// All warnings so far.
+    pub(super) fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// Those that the steps brought.
+    pub(super) fn of_steps(&self) -> &[Warning] {
+        &self.warnings[self.before..]
     }
 
     pub(super) fn tell_event(&mut self) -> Result<(), Failure> {
         self.event.take().map_or(Ok(()), |event| self.tell(&event))
-    }
-
-    /// - `allowed`: relative residual of the energy balance above which to warn, once in a run
-    /// - `at_rest`: whether the time is a load factor
-    pub(super) fn warn_of_balance(&mut self, scene: &Scene, allowed: f64, at_rest: bool) -> Result<(), Failure> {
-        let relative = scene.ledger().relative_residual();
-        if self.warned_of_balance || relative <= allowed {
-            return Ok(());
-        }
-        self.warned_of_balance = true;
-        let instant = at_instant(scene.clock.time, at_rest);
-        self.warn(format!("warning: {instant}: the energy balance is off by {relative:.1e} of the energy put in"))
     }
 }

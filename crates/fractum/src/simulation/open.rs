@@ -11,6 +11,7 @@ use fractum_io::case::{Case, Diagnostic, Diagnostics};
 use fractum_io::checkpoint::{self, CheckpointError, Header, Identity, Loaded};
 use fractum_io::log::RunLog;
 use fractum_io::number::{at_instant, instant_text};
+use fractum_io::warning::{Code, Warning};
 use fractum_scene::Scene;
 
 use super::messages::Messages;
@@ -83,7 +84,7 @@ impl Simulation {
         let results = folder_of(path, options)?;
         let find = || {
             let identity = identity(&input);
-            options.resume.then(|| find_checkpoint(&results, &identity, ranks.leads())).transpose()
+            options.resume.then(|| find_checkpoint(&results, &identity)).transpose()
         };
         // No rank writes before all have read.
         let loaded = ranks.together(find())?;
@@ -100,6 +101,10 @@ impl Simulation {
             if solver.follows_path() {
                 recorder.follow(scene)?;
             }
+        }
+        // What had ended by its curve stays ended.
+        if let Some(why) = simulation.falls_below().filter(|_| goes_on.is_some()) {
+            simulation.end_stage(why)?;
         }
         simulation.prepare_step()?;
         Ok(simulation)
@@ -156,14 +161,16 @@ impl Simulation {
             ranks.cut(&case.output, scene.solid.is_divided()),
         );
         let put_back = |loaded: Loaded<RunState>| put_back(loaded, &mut scene, &mut solver, &case);
+        let earlier = loaded.as_ref().map_or(Vec::new(), |loaded| loaded.state.warnings.to_vec());
+        let found = found(&built.warnings, loaded.as_ref(), options.strict)?;
         let resumed = loaded.map(put_back).transpose()?;
         let is_new = resumed.is_none();
         let leads = ranks.leads();
-        let mut messages = Messages::new(open_folder(&folder, is_new || !leads)?, options.quiet, !leads);
+        let mut messages = Messages::new(open_folder(&folder, is_new || !leads)?, options, !leads);
         keep_case(&case, &folder, is_new)?;
         log_start(&mut messages.log, path, &about, goes_on)?;
         timings.iter().try_for_each(|timing| messages.log.line(timing))?;
-        built.warnings.iter().try_for_each(|warning| messages.warn(warning.to_string()))?;
+        messages.begin(found, earlier)?;
         let place = ([folder.as_path(), results.as_path()], course, leads);
         let recorder = Recorder::open(case, &scene, probes, built.ppv, grid, place, resumed)?;
         let resume = Options { resume: true, overwrite: false, quiet: false, ..options.clone() };
@@ -213,22 +220,31 @@ fn log_start(log: &mut RunLog, path: &Path, about: &About, goes_on: Option<&str>
 }
 
 /// The newest checkpoint of this case.
-///
-/// - `tells`: whether to tell of states that are passed over
-fn find_checkpoint(folder: &Path, identity: &Identity, tells: bool) -> Result<Loaded<RunState<'static>>, Failure> {
+fn find_checkpoint(folder: &Path, identity: &Identity) -> Result<Loaded<RunState<'static>>, Failure> {
     let states = folder.join("checkpoint");
     let complete = |header: &Header, state: RunState<'static>| {
         let solids = checkpoint::load_parts(&states, identity, header.step, state.parts)?;
         Ok(RunState { solids, ..state })
     };
-    let Some(loaded) = checkpoint::load_latest_with(&states, identity, complete)? else {
+    checkpoint::load_latest_with(&states, identity, complete)?.ok_or_else(|| {
         let text = format!("{}: no checkpoint to resume from; run without --resume", folder.display());
-        return Err(Failure::input(text));
-    };
-    for refused in loaded.passed_over.iter().filter(|_| tells) {
-        tell!("warning: {refused}");
+        Failure::input(text)
+    })
+}
+
+/// What is to be warned of before the first step: what was found in the case, and states that were passed over.
+///
+/// # Errors
+/// [`Failure::Input`] with the warnings of the case where these are errors.
+fn found(warnings: &[Diagnostic], loaded: Option<&Loaded<RunState>>, strict: bool) -> Result<Vec<Warning>, Failure> {
+    if strict && !warnings.is_empty() {
+        return Err(Failure::Input(Diagnostics(warnings.to_vec()).as_errors()));
     }
-    Ok(loaded)
+    let passed_over = loaded.into_iter().flat_map(|loaded| &loaded.passed_over);
+    let refused = passed_over.map(|refused| {
+        Warning::new(Code::Checkpoint, "", refused.to_string()).remedy("the run goes on from the state before it")
+    });
+    Ok(warnings.iter().filter_map(Diagnostic::to_warning).chain(refused).collect())
 }
 
 /// Where a resumed run goes on, in words.

@@ -23,7 +23,12 @@ impl Options {
         words.extend(["-o".to_owned(), results.display().to_string()]);
         words.extend(self.overrides.iter().flat_map(|(name, value)| ["--set".to_owned(), format!("{name}={value}")]));
         words.extend(self.threads.iter().flat_map(|threads| ["--threads".to_owned(), threads.to_string()]));
-        let flags = [(self.resume, "--resume"), (self.overwrite, "--overwrite"), (self.quiet, "--quiet")];
+        let flags = [
+            (self.resume, "--resume"),
+            (self.overwrite, "--overwrite"),
+            (self.quiet, "--quiet"),
+            (self.strict, "--strict"),
+        ];
         words.extend(flags.into_iter().filter(|(given, _)| *given).map(|(_, flag)| flag.to_owned()));
         words.iter().map(|word| for_shell(word)).collect::<Vec<_>>().join(" ")
     }

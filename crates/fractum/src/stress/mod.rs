@@ -139,6 +139,7 @@ fn judge(folder: &Path, settings: &Settings) -> (End, Option<f64>, String) {
         output: Some(results.clone()),
         threads: settings.threads,
         quiet: true,
+        strict: false,
         overwrite: true,
         cache: settings.cache.clone(),
         ..Options::default()

@@ -59,7 +59,7 @@ pub fn steps(settings: &Settings, baseline: Option<&Path>) -> Result<Vec<Limit>,
     let pool = pool.build()?;
     atomic::create_folder(&settings.output)?;
     let mut limits = Vec::new();
-    for situation in situations() {
+    for situation in situations(settings.seed) {
         let limit = pool.install(|| limit(&situation, settings))?;
         say!("{:<52}{:>6}   {}", limit.scene, shown(limit.stable_to), limit.beyond);
         limits.push(limit);
@@ -210,7 +210,7 @@ mod tests {
         let left = output.path().join(SCENE).join("beads.csv");
         atomic::create_folder(&output.path().join(SCENE)).expect("a folder");
         fs::write(&left, "0,0,0,1").expect("a file");
-        for situation in situations() {
+        for situation in situations(1) {
             if !["tetrahedra, smoothed, small, power-iteration", "elastic support"].contains(&situation.name.as_str()) {
                 continue;
             }

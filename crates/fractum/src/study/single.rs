@@ -87,6 +87,7 @@ impl Single<'_> {
             threads: Some(self.settings.threads),
             overrides: self.planned.overrides.clone(),
             quiet: true,
+            strict: false,
             cache: self.settings.cache.clone(),
             resume: false,
             overwrite: true,

@@ -11,6 +11,7 @@ use crate::case::Diagnostic;
 use crate::case::model::{Body, BodyKind, Material, SolidBody};
 use crate::case::reader::Table;
 use crate::case::unit::Dimension;
+use crate::warning::Code;
 use fractum_fem::{Formulation, Kinematics, Plane};
 
 /// Reads all bodies against the materials read before; nothing where one of them is wrong.
@@ -35,7 +36,7 @@ pub(super) fn read(root: &Table<'_>, materials: &[(String, Option<Material>)]) -
         if let Some(material) = material
             && complete
         {
-            root.reader.note(Diagnostic::warning(&material.name.place, "is not used by any body"));
+            root.reader.note(Diagnostic::warning(Code::Unused, &material.name.place, "is not used by any body"));
         }
     }
     (complete && !bodies.is_empty()).then_some(bodies)

@@ -9,6 +9,7 @@ use super::vectors::{AXES, components, condition};
 use crate::case::model::{InCracks, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
 use crate::case::reader::Table;
 use crate::case::{Diagnostic, Spanned, TimeFunction};
+use crate::warning::Code;
 use fractum_math::Vec3;
 
 /// Reads all supports; nothing where one of them is wrong.
@@ -168,7 +169,7 @@ pub(super) fn fixed_axes(table: &Table<'_>, key: &'static str) -> Option<[Option
 fn warn_of_jump(table: &Table<'_>, function: &Spanned<TimeFunction>) {
     let start = function.value.value(0.0, Vec3::zeros());
     if !function.value.depends_on_position() && start != 0.0 {
-        let note = Diagnostic::warning(&function.place, format!("starts with a jump to {start} m"));
+        let note = Diagnostic::warning(Code::Jump, &function.place, format!("starts with a jump to {start} m"));
         table.reader.note(note.remedy("let it begin at 0, by a ramp for instance"));
     }
 }

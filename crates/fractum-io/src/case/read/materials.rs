@@ -6,6 +6,7 @@ use crate::case::model::{Damage, Material};
 use crate::case::reader::Table;
 use crate::case::usual::{DENSITY, FRACTURE_ENERGY, STRENGTH, YOUNG_MODULUS};
 use crate::case::{Diagnostic, Spanned};
+use crate::warning::Code;
 use fractum_fem::{Criterion, CriterionKind, DamageLaw, Regularisation, Softening};
 use fractum_scene::{ContactParameters, damping_of_restitution};
 
@@ -80,7 +81,7 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
     if criterion == CriterionKind::PureMohrCoulomb
         && let Some(node) = table.node("tension_cutoff")
     {
-        let note = Diagnostic::warning(&node.place, node.found());
+        let note = Diagnostic::warning(Code::TensionCutoff, &node.place, node.found());
         table.reader.note(note.remedy("pure Mohr-Coulomb loses about a fifth of the strength in Brazilian tests"));
     }
     let tensile_strength = table.quantity("tensile_strength").physical().usual(&STRENGTH).required();

@@ -6,6 +6,7 @@ use crate::case::expression::functions;
 use crate::case::reader::{Parameter, Reader, Table};
 use crate::case::tree::{Node, Value};
 use crate::case::{Diagnostic, Place};
+use crate::warning::Code;
 
 /// Names of the parameters that the file declares.
 pub(super) fn declared(root: &Node) -> Vec<String> {
@@ -53,7 +54,11 @@ pub(super) fn report_unused(reader: &Reader) {
     for parameter in reader.parameters.borrow().values().filter(|parameter| !parameter.used) {
         let place = &parameter.place;
         let found = "is not used anywhere";
-        let note = if place.line == 0 { Diagnostic::error(place, found) } else { Diagnostic::warning(place, found) };
+        let note = if place.line == 0 {
+            Diagnostic::error(place, found)
+        } else {
+            Diagnostic::warning(Code::Unused, place, found)
+        };
         reader.note(note);
     }
 }

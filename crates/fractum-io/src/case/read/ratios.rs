@@ -7,6 +7,7 @@ use crate::case::reader::Table;
 use crate::case::usual::{LONGEST_ZONE, STRENGTH, YOUNG_MODULUS, energy_meant};
 use crate::case::{Diagnostic, Spanned};
 use crate::number::{quantity, significant};
+use crate::warning::Code;
 
 /// Tensile strength over Young's modulus [-]: theory gives a tenth at most; the weakest soil has 1e-6.
 const STRAIN: std::ops::RangeInclusive<f64> = 1e-7..=0.2;
@@ -35,7 +36,8 @@ pub(super) fn doubt(
             let ratio = significant(strength / young, 2);
             let [strength, young] = [strength, young].map(|stress| quantity(stress, "Pa"));
             let found = format!("is {strength}, {ratio} of young_modulus, which is {young}");
-            let note = Diagnostic::warning(&place, found).expected("1e-7 to 0.2 of it (concrete has 1e-4)");
+            let note = Diagnostic::warning(Code::UnusualValue, &place, found)
+                .expected("1e-7 to 0.2 of it (concrete has 1e-4)");
             material.reader.note(note.remedy("check the units of both"));
         }
     }
@@ -50,7 +52,8 @@ pub(super) fn doubt(
         quantity(law.fracture_energy, "J/m^2"),
         quantity(zone, "m")
     );
-    let note = Diagnostic::warning(&place, found).expected("1 um to 100 m (ceramics have 0.1 mm, concrete 0.3 m)");
+    let note = Diagnostic::warning(Code::UnusualValue, &place, found)
+        .expected("1 um to 100 m (ceramics have 0.1 mm, concrete 0.3 m)");
     let meant = material.node_below("damage.fracture_energy");
     let suits = |fracture_energy: f64| ZONE.contains(&DamageLaw { fracture_energy, ..law.clone() }.process_zone(young));
     let meant = meant.and_then(|node| energy_meant(node, suits));

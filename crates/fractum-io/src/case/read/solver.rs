@@ -9,6 +9,7 @@ use crate::case::model::{
 use crate::case::reader::Table;
 use crate::case::tree::{Entry, Value};
 use crate::case::{Choice, Diagnostic, Place, Spanned};
+use crate::warning::Code;
 use fractum_dem::Batch;
 use fractum_scene::Domain;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
@@ -109,7 +110,8 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         && safety > RISKY_SAFETY
     {
         let why = if safety > 1.0 { "above 1 the run is unstable" } else { "this is close to the limit of stability" };
-        let note = Diagnostic::warning(&node.place, node.found()).remedy(format!("{why}; 0.8 is usual"));
+        let note =
+            Diagnostic::warning(Code::TimeStep, &node.place, node.found()).remedy(format!("{why}; 0.8 is usual"));
         table.reader.note(note);
     }
     let time_step = table.choice("time_step").or(TimeStep::PowerIteration);
@@ -272,11 +274,16 @@ pub(super) fn output(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>
         if let (Some(every), Some(longest)) = (&every, longest)
             && every.value > longest
         {
-            let note = Diagnostic::warning(&every.place, format!("is longer than the run of {longest} s"));
+            let note = Diagnostic::warning(
+                Code::OutputInterval,
+                &every.place,
+                format!("is longer than the run of {longest} s"),
+            );
             table.reader.note(note);
         }
         if let Some(every) = every.as_ref().filter(|every| name == "checkpoint" && every.value < OFTEN) {
-            let note = Diagnostic::warning(&every.place, "is time on the clock, not time of the scene");
+            let note =
+                Diagnostic::warning(Code::OutputInterval, &every.place, "is time on the clock, not time of the scene");
             table
                 .reader
                 .note(note.remedy("take minutes, or leave it out: a run that always saves its state does little else"));

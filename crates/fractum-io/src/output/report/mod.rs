@@ -21,6 +21,7 @@ use crate::output::markup::head;
 use crate::output::picture::Scale;
 use crate::output::plot::{Chart, Level};
 use crate::output::summary::{Hashes, Status, Summary, Wall};
+use crate::warning::Warning;
 use charts::words;
 
 /// Fragments listed; the file `fragments.csv` has them all.
@@ -52,8 +53,6 @@ pub struct ReportData {
     pub inputs: Vec<(String, String)>,
     /// The plan, as `check` prints it.
     pub plan: String,
-    /// What the user should know.
-    pub warnings: Vec<String>,
     /// Names and versions: program, compiler, machine, ...
     pub versions: Vec<(String, String)>,
 }
@@ -121,8 +120,8 @@ pub fn to_html(data: &ReportData) -> String {
     let mut figures: Vec<Chart> = data.curves.iter().filter_map(|curve| charts::curve(history, curve)).collect();
     figures.extend(data.energy.as_ref().and_then(|columns| charts::energy(history, columns)));
     figures.extend(charts::cracks(history, &data.cracks));
-    figures.extend(charts::attenuations(&summary.ppv));
-    figures.extend(charts::passing(&data.fragments, summary.fragment_sizes.as_ref()));
+    figures.extend(charts::attenuations(&summary.breakage.ppv));
+    figures.extend(charts::passing(&data.fragments, summary.breakage.fragment_sizes.as_ref()));
     figures.extend(charts::fragment_sizes(&data.fragments));
     let page = html! {
         (DOCTYPE)
@@ -130,7 +129,7 @@ pub fn to_html(data: &ReportData) -> String {
             (head(&summary.title))
             body {
                 (heading(data))
-                (warnings(&data.warnings))
+                (warnings(&data.summary.warnings))
                 (expectations(summary))
                 (pictures(&data.pictures))
                 (strip(&data.pictures))
@@ -176,10 +175,10 @@ fn heading(data: &ReportData) -> Markup {
     }
 }
 
-fn warnings(warnings: &[String]) -> Markup {
+fn warnings(warnings: &[Warning]) -> Markup {
     html! {
         @if !warnings.is_empty() {
-            section.warnings { strong { "Warnings" } ul { @for warning in warnings { li { (warning) } } } }
+            section.warnings { strong { "Warnings" } ul { @for warning in warnings { li { (warning.to_string()) } } } }
         }
     }
 }
@@ -427,6 +426,7 @@ mod tests {
     use crate::output::expectation::Expectation;
     use crate::output::history::Column;
     use crate::output::summary::Probe;
+    use crate::warning::Code;
 
     fn example() -> ReportData {
         let mut data = ReportData {
@@ -445,10 +445,10 @@ mod tests {
             cracks: vec!["broken_edges".into()],
             pictures: vec![Figure { title: "At the end".into(), png: b"not looked at".to_vec(), ..Figure::default() }],
             plan: "bodies: <disc>".into(),
-            warnings: vec!["element 5 & 6 are large".into()],
             ..ReportData::default()
         };
         data.summary.title = "Disc <split>".into();
+        data.summary.warnings.push(Warning::new(Code::CoarseMesh, "", "element 5 & 6 are large"));
         let bound = |value, tolerance, relative| Bound::Near { value, tolerance, relative };
         let [strength, imbalance] = [bound(10_000.0, 500.0, Some(0.05)), bound(0.0, 1.0, None)];
         data.summary.expect.push(Expectation::hold("strength", "Pa", 10_200.0, strength, "a paper"));

@@ -1,0 +1,91 @@
+//! Looks at the state of a scene: is the theory still valid?
+
+use fractum_fem::{Extreme, Extremes};
+
+use crate::scene::Scene;
+use crate::watch::{Notice, Noticed, Site};
+
+/// Share of the work that damping may take in the second half of a run: what comes to rest before that has its time.
+const DAMPED: f64 = 0.05;
+/// Rotation of a body of small strains [rad], 10 degrees: it adds a strain of 1.5 %.
+const TURNED: f64 = std::f64::consts::PI / 18.0;
+/// Strain beyond which the law of small stretches is off by as much.
+const STRAINED: f64 = 0.05;
+/// Stress over the strength that is told where nothing can break.
+const OVERLOADED: f64 = 1.1;
+/// Compression over the tensile strength that no brittle material bears.
+const PRESSED: f64 = 20.0;
+/// Overlap over the radius beyond which Hertz' law of small contacts is off by some ten percent.
+const DEEP: f64 = 0.1;
+
+impl Scene {
+    /// Looks whether the present state is still one that the models of the scene know. Nothing of the state changes.
+    pub fn audit(&mut self) {
+        self.look_at_temperatures();
+        self.look_at_damping();
+        self.look_at_solids();
+        self.look_at_overlaps();
+    }
+
+    /// Looks at the overlaps of particles alone, which an impact has for some tens of steps only.
+    pub fn look_at_overlaps(&mut self) {
+        if self.contacts.is_empty() || self.has_noticed(Notice::Overlap) {
+            return;
+        }
+        let deepest = self.contacts.deepest(&self.bonded.particles);
+        if let Some((site, share)) = deepest.filter(|(_, share)| *share > DEEP) {
+            self.note(Notice::Overlap, site, share);
+        }
+    }
+
+    /// Keeps what was noticed; of each kind the first counts. Nothing is allocated.
+    pub fn note(&mut self, what: Notice, site: Site, value: f64) {
+        let noticed = Noticed { what, site, time: self.clock.time, value };
+        self.optional.watch.first[what as usize].get_or_insert(noticed);
+    }
+
+    /// What was noticed so far, a kind each.
+    pub fn noticed(&self) -> impl Iterator<Item = &Noticed> {
+        self.optional.watch.first.iter().flatten()
+    }
+
+    /// Whether something of this kind has been noticed before, so that nobody needs to look again.
+    fn has_noticed(&self, what: Notice) -> bool {
+        self.optional.watch.first[what as usize].is_some()
+    }
+
+    fn look_at_damping(&mut self) {
+        let share = self.books.late_damping / self.ledger.scale;
+        if self.ledger.scale > 0.0 && share > DAMPED {
+            self.note(Notice::Damping, Site::Scene, share);
+        }
+    }
+
+    fn look_at_solids(&mut self) {
+        use Notice::{Compression, Rotation, Strain, TensionOutside};
+        let all = [Rotation, Strain, TensionOutside, Compression];
+        if self.solid.body_count() == 0 || all.into_iter().all(|what| self.has_noticed(what)) {
+            return;
+        }
+        let Extremes { rotation, strain, tension, compression } = self.solid.extremes();
+        let found = [rotation, strain, tension, compression];
+        for ((what, extreme), limit) in all.into_iter().zip(found).zip([TURNED, STRAINED, OVERLOADED, PRESSED]) {
+            if let Some(Extreme { body, element, value }) = extreme.filter(|extreme| extreme.value > limit) {
+                self.note(what, Site::Element { body, element }, value);
+            }
+        }
+    }
+
+    fn look_at_temperatures(&mut self) {
+        let Some(heat) = self.heat().filter(|_| !self.has_noticed(Notice::BelowZero)) else { return };
+        let coldest = |temperatures: &[f64]| {
+            let all = temperatures.iter().copied().enumerate().filter(|(_, t)| *t < 0.0);
+            all.min_by(|a, b| a.1.total_cmp(&b.1))
+        };
+        let node = coldest(heat.of_nodes()).map(|(node, t)| (Site::Node(node as u32), t));
+        let found = node.or_else(|| coldest(heat.of_particles()).map(|(i, t)| (Site::Particle(i as u32), t)));
+        if let Some((site, temperature)) = found {
+            self.note(Notice::BelowZero, site, temperature);
+        }
+    }
+}

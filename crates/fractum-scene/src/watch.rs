@@ -1,0 +1,66 @@
+//! What a scene notices of itself where its theory ends: each kind once, with its place and instant.
+//!
+//! [`Scene::audit`](crate::Scene::audit) looks at the present state now and then; what a step finds by itself is noted with
+//! [`Scene::note`](crate::Scene::note). A program turns what was noticed into words.
+
+/// The kinds of what a scene notices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// A temperature below absolute zero [K].
+    BelowZero,
+    /// Damping of nodes and particles takes a visible share of the work, though the run is in its second half [-].
+    Damping,
+    /// A body of small strains turns [rad].
+    Rotation,
+    /// A strain that is not small [-].
+    Strain,
+    /// A tensile stress above the strength where the case has kept elements from damage: ratio of both [-].
+    TensionOutside,
+    /// A compressive stress over the tensile strength [-], by a criterion that knows tension alone.
+    Compression,
+    /// Particles that are pressed deeply into each other, or into a body: overlap over the smaller radius [-].
+    Overlap,
+}
+
+impl Notice {
+    const COUNT: usize = Notice::Overlap as usize + 1;
+}
+
+/// Where something was noticed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Site {
+    /// In the scene as a whole.
+    Scene,
+    /// In an element of a solid body.
+    Element {
+        /// Number of the body.
+        body: usize,
+        /// Number of the element in its body.
+        element: u32,
+    },
+    /// At a node.
+    Node(u32),
+    /// At a particle.
+    Particle(u32),
+    /// Between two particles.
+    Particles([u32; 2]),
+}
+
+/// Something that was noticed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noticed {
+    /// What it is.
+    pub what: Notice,
+    /// Where it is.
+    pub site: Site,
+    /// When it was noticed first [s].
+    pub time: f64,
+    /// How large it was then; its kind tells the unit.
+    pub value: f64,
+}
+
+/// What a scene has noticed so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Watch {
+    pub(crate) first: [Option<Noticed>; Notice::COUNT],
+}

@@ -1,0 +1,216 @@
+//! What a run finds while it goes, as warnings.
+
+use std::f64::consts::PI;
+
+use fractum_io::number::{at_instant, percent, quantity};
+use fractum_io::warning::{Code, Warning};
+use fractum_math::Vec3;
+use fractum_scene::{Notice, Noticed, Scene, Site};
+
+use super::{End, Simulation};
+use crate::error::Failure;
+
+/// Steps of motion between two looks at the state: a look costs about a step.
+const STEPS_BETWEEN_LOOKS: u64 = 200;
+/// The same at overlaps of particles alone, which costs a small part of a step: an impact lasts some fifty steps.
+const STEPS_BETWEEN_LOOKS_AT_OVERLAPS: u64 = 20;
+
+impl Simulation {
+    /// Looks at the state: of motion and of heat now and then, at rest after every equilibrium.
+    pub(super) fn audit_now_and_then(&mut self) -> Result<(), Failure> {
+        let step = self.scene.clock.step;
+        if !self.solver.rests() && step.is_multiple_of(STEPS_BETWEEN_LOOKS_AT_OVERLAPS) {
+            self.scene.look_at_overlaps();
+        }
+        if self.solver.rests() || step.is_multiple_of(STEPS_BETWEEN_LOOKS) { self.audit() } else { Ok(()) }
+    }
+
+    /// Looks at the state, and warns of what is noticed.
+    fn audit(&mut self) -> Result<(), Failure> {
+        self.scene.audit();
+        let at_rest = self.solver.rests();
+        let found: Vec<Warning> = self.scene.noticed().map(|found| warning(&self.scene, found, at_rest)).collect();
+        // Each process looks at what it computes, and all of them decide alike.
+        self.ranks.gather(found).into_iter().flatten().try_for_each(|found| self.warn_once(found))
+    }
+
+    /// Warns of an energy balance that is off, once in a run.
+    pub(super) fn audit_balance(&mut self) -> Result<(), Failure> {
+        let relative = self.scene.ledger().relative_residual();
+        if relative <= self.case.solver.balance_warning {
+            return Ok(());
+        }
+        let text = format!("the energy balance is off by {relative:.1e} of the energy put in");
+        let found = Warning::new(Code::EnergyBalance, self.instant(self.time()), text);
+        self.warn_once(found.remedy("take a smaller solver.safety, and look where the energy goes (probes[].energy)"))
+    }
+
+    /// Looks at the state of the end, which is judged as every other, and at what cracks have made of the bodies. A strict run
+    /// that would have finished has another end where it meets a warning.
+    pub(super) fn audit_end(&mut self, end: End) -> Result<End, Failure> {
+        self.audit()?;
+        self.audit_balance()?;
+        self.warn_of_single_nodes()?;
+        self.warn_of_short_lengths()?;
+        self.warn_of_merged_bands()?;
+        Ok(match (end, self.end.take()) {
+            (End::Finished(_), Some(strict)) => strict,
+            (end, _) => end,
+        })
+    }
+
+    /// Warns of bodies that came apart into single nodes.
+    fn warn_of_single_nodes(&mut self) -> Result<(), Failure> {
+        let shares = self.scene.single_share().into_iter().enumerate();
+        for (body, share) in shares.filter(|(_, share)| *share > MOSTLY_SINGLE) {
+            let (name, percent) = (&self.scene.solid.body(body).name, 100.0 * share);
+            let text = format!("{percent:.0} % of its mass is in single nodes, which are no fragments");
+            let found = Warning::new(Code::SingleNodes, format!("body \"{name}\""), text);
+            self.warn(found.remedy("a finer mesh resolves them"))?;
+        }
+        Ok(())
+    }
+
+    /// Warns of phase fields whose length is short for the elements that cracks went through.
+    fn warn_of_short_lengths(&mut self) -> Result<(), Failure> {
+        let solid = &self.scene.solid;
+        let found = (0..solid.body_count()).filter_map(|body| {
+            let ([length, _], size) = solid.phase_sizes(body).zip(solid.size_along_cracks(body))?;
+            if length >= LEAST_SIZES * size {
+                return None;
+            }
+            let sizes = length / size;
+            let [length, size] = [length, size].map(|length| quantity(length, "m"));
+            let text = format!(
+                "its cracks ran through elements of {size}, and the length of its phase field, {length}, is {sizes:.1} of them: a band needs {LEAST_SIZES} at least"
+            );
+            let place = format!("body \"{}\"", solid.body(body).name);
+            let found = Warning::new(Code::PhaseFieldLength, place, text);
+            Some(found.remedy("refine the mesh where the cracks went, or set a longer length"))
+        });
+        let found: Vec<Warning> = found.collect();
+        found.into_iter().try_for_each(|found| self.warn(found))
+    }
+
+    /// Warns of phase fields whose bands are sheared or pressed, as those of two cracks are that have become one.
+    fn warn_of_merged_bands(&mut self) -> Result<(), Failure> {
+        let solid = &self.scene.solid;
+        let bodies = (0..solid.body_count()).filter_map(|body| {
+            let [length, _] = solid.phase_sizes(body)?;
+            Some((&solid.body(body).name, solid.cost_of_bands(body)?, length))
+        });
+        let sheared = bodies.filter(|(_, cost, _)| *cost > SHEARED);
+        let found = sheared.map(|(name, cost, length)| {
+            let width = quantity(PI * length, "m");
+            let text = format!(
+                "damage took {cost:.1} times the fracture energy of its area of crack: the bands of its phase field, {width} wide, are sheared, or pressed along the crack"
+            );
+            Warning::new(Code::MergedBands, format!("body \"{name}\""), text)
+                .remedy("where two cracks are nearer to each other than that, take a smaller length on a finer mesh")
+        });
+        let found: Vec<Warning> = found.collect();
+        found.into_iter().try_for_each(|found| self.warn(found))
+    }
+
+    /// Warns of the first of a kind.
+    fn warn_once(&mut self, warning: Warning) -> Result<(), Failure> {
+        let told = self.messages.warnings().iter().any(|before| before.code == warning.code);
+        if told { Ok(()) } else { self.warn(warning) }
+    }
+
+    /// Warns; of a strict run it is the end.
+    fn warn(&mut self, warning: Warning) -> Result<(), Failure> {
+        if self.messages.strict && !self.is_over() {
+            self.end = Some(End::Strict(warning.clone()));
+        }
+        self.messages.warn(warning)
+    }
+}
+
+/// Elements that the length of a phase field must span.
+const LEAST_SIZES: f64 = 1.5;
+/// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is at most 1.1.
+const SHEARED: f64 = 1.3;
+/// Share of a body's mass in single nodes above which its fragments tell little.
+const MOSTLY_SINGLE: f64 = 0.5;
+
+/// What the scene noticed, in words.
+///
+/// - `at_rest`: whether instants are load factors
+fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest: bool) -> Warning {
+    let when = at_instant(*time, at_rest);
+    let place = match place(scene, *site) {
+        place if place.is_empty() => when,
+        place => format!("{place}, {when}"),
+    };
+    let (code, text, remedy) = match what {
+        Notice::BelowZero => (
+            Code::BelowZero,
+            format!("the temperature is {}, below absolute zero", quantity(*value, "K")),
+            "temperatures are absolute: check what cools ([[heat.conditions]]), its sign and its unit",
+        ),
+        Notice::Damping => (
+            Code::Damping,
+            format!("damping has taken {} of the work in the second half of the run", percent(*value)),
+            "what moves slowly is braked by it: take less damping ([damping]), or load more slowly",
+        ),
+        Notice::Rotation => (
+            Code::Rotation,
+            format!("it has turned by {:.0} degrees, and small strains know no rotation", value.to_degrees()),
+            "set kinematics = \"corotational\" on the body",
+        ),
+        Notice::Strain => (
+            Code::LargeStrain,
+            format!("the strain is {}, which is not small", percent(*value)),
+            "check loads and units; stresses are those of small strains",
+        ),
+        Notice::TensionOutside => (
+            Code::TensionOutside,
+            format!("the tension is {value:.2} times the strength, where damage_where keeps elements from damage"),
+            "widen damage_where: cracks start here, or end at its border",
+        ),
+        Notice::Compression => (
+            Code::Compression,
+            format!(
+                "the compression is {value:.0} times the tensile strength, and criterion = \"rankine\" knows tension alone"
+            ),
+            "take a criterion with a compressive strength: mohr-coulomb, drucker-prager or mazars",
+        ),
+        Notice::Overlap => (
+            Code::DeepOverlap,
+            format!(
+                "the overlap is {} of the smaller radius, and the law of contact is for small ones",
+                percent(*value)
+            ),
+            "particles may pass through each other: press or hit them less, or make them stiffer (contact_modulus)",
+        ),
+    };
+    Warning::new(code, place, text).remedy(remedy)
+}
+
+/// A place of the scene in words; nothing of the scene as a whole.
+fn place(scene: &Scene, site: Site) -> String {
+    let at = |x: Vec3| format!("({:.4e}, {:.4e}, {:.4e}) m", x.x, x.y, x.z);
+    let name = |particle: u32| {
+        let body = scene.bonded.bodies().iter().find(|body| body.range.contains(&(particle as usize)));
+        body.map_or_else(String::new, |body| {
+            format!("particle {} of body \"{}\"", particle as usize - body.range.start, body.name)
+        })
+    };
+    match site {
+        Site::Scene => String::new(),
+        Site::Element { body, element } => {
+            let (number, middle) =
+                (scene.solid.element_number(body, element), scene.solid.element_middle(body, element));
+            format!("element {number} of body \"{}\" at {}", scene.solid.body(body).name, at(middle))
+        }
+        Site::Node(node) => format!("node at {}", at(scene.solid.reference[node as usize])),
+        Site::Particle(particle) => {
+            format!("{} at {}", name(particle), at(scene.bonded.particles.position[particle as usize]))
+        }
+        Site::Particles([first, second]) => {
+            let place = at(scene.bonded.particles.position[first as usize]);
+            format!("{} and {} at {place}", name(first), name(second))
+        }
+    }
+}

@@ -1,0 +1,368 @@
+//! One list of warnings: terminal, log, report, summary and page say the same, and a resumed run says it again.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use fractum_io::warning::Code;
+use fractum_math::Vec3;
+use fractum_mesh::generate::{structured_box, structured_rectangle};
+use fractum_mesh::{Group, Mesh, MshFormat};
+use serde_json::Value;
+
+use crate::common::{Workplace, bar, mesh_bytes, resumed, run, summary};
+
+/// A block whose heat sink cools it below zero, with a parameter that nothing uses.
+const FROZEN: &str = r#"fractum = 1
+[parameters]
+spare = 1
+[mesh]
+file = "bar.msh"
+[materials.steel]
+density = "7800 kg/m^3"
+young_modulus = "200 GPa"
+poisson_ratio = 0.3
+[materials.steel.thermal]
+conductivity = "50 W/(m K)"
+heat_capacity = "500 J/(kg K)"
+expansion = "1e-5 1/K"
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "steel"
+[heat]
+initial_temperature = "20 K"
+step = "20 us"
+[[heat.conditions]]
+group = "body"
+source = "-4e10 W/m^3"
+[[supports]]
+group = "x-"
+fix = "x"
+[solver]
+end = "4 ms"
+[output]
+history = { every = "0.1 ms" }
+fields = { every = "4 ms" }
+"#;
+
+/// Code, place and text of all warnings of a results folder.
+pub(crate) fn listed(place: &Workplace, folder: &str) -> Vec<[String; 3]> {
+    let summary = summary(place, folder);
+    let text = |warning: &Value, key: &str| warning[key].as_str().unwrap_or_else(|| panic!("{warning}")).to_owned();
+    let all = summary["warnings"].as_array().unwrap().iter();
+    all.map(|warning| ["code", "where", "text"].map(|key| text(warning, key))).collect()
+}
+
+#[test]
+fn the_page_explains_every_code_and_no_other() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/warnings.md");
+    let page = fs::read_to_string(page).unwrap();
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| `")?.split_once('`'));
+    let listed: Vec<&str> = rows.map(|(code, _)| code).collect();
+    let known: BTreeSet<&str> = Code::ALL.iter().map(|code| code.name()).collect();
+    assert_eq!(listed.iter().copied().collect::<BTreeSet<_>>(), known);
+    assert_eq!(listed.len(), known.len(), "each once");
+}
+
+#[test]
+fn every_place_shows_the_same_warnings_once() {
+    let place = Workplace::new(FROZEN);
+    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet", "--threads", "1"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let all = listed(&place, "out");
+    let codes: Vec<&str> = all.iter().map(|[code, ..]| code.as_str()).collect();
+    assert_eq!(codes, ["unused", "below-zero"], "{all:?}");
+    assert_eq!(all[0][1], "case.toml:3:1");
+    assert!(all[1][1].starts_with("node at (") && all[1][1].contains("t = "), "{all:?}");
+    let [log, report] =
+        ["run.log", "report.html"].map(|name| fs::read_to_string(place.path("out").join(name)).unwrap());
+    for [code, where_, text] in &all {
+        for (shown, what) in [(&ended.stderr, "terminal"), (&log, "log"), (&report, "report")] {
+            let lines: Vec<&str> =
+                shown.split(['\n', '<']).filter(|line| line.contains(&format!("[{code}]"))).collect();
+            assert_eq!(lines.len(), 1, "{what}: {lines:?}");
+            assert!(lines[0].contains(where_.as_str()) && lines[0].contains(text.as_str()), "{what}: {}", lines[0]);
+        }
+    }
+    let head = report.find("[below-zero]").unwrap();
+    assert!(head < report.find("<h2>").unwrap(), "warnings stand at the head of the report");
+}
+
+#[test]
+fn a_resumed_run_has_the_warnings_of_the_steps_before_it() {
+    let place = Workplace::new(&FROZEN.replace("[output]\n", "[output]\ncheckpoint = { every = \"1 ms\" }\n"));
+    run(&place, "out", "1");
+    let before = listed(&place, "out");
+    assert!(before.iter().any(|[code, ..]| code == "below-zero"), "{before:?}");
+    resumed(&place, "out");
+    assert_eq!(listed(&place, "out"), before);
+    // The state has them, so that nothing is told twice.
+    let log = fs::read_to_string(place.path("out/run.log")).unwrap();
+    assert_eq!(log.matches("[below-zero]").count(), 2, "once for each of both runs: {log}");
+}
+
+#[test]
+fn strict_makes_warnings_errors() {
+    let place = Workplace::new(FROZEN);
+    for command in [&["check", "case.toml"][..], &["run", "case.toml", "-o", "out"]] {
+        let ended = place.fractum(&[command, &["--strict"]].concat());
+        let right = ended.stderr.contains("case.toml:3:1: parameters.spare") && ended.stderr.contains("[unused]");
+        assert!(ended.code == Some(1) && right && !ended.stderr.contains("warning: "), "{}", ended.stderr);
+    }
+    assert!(!place.path("out/summary.json").exists());
+    fs::write(place.path("case.toml"), FROZEN.replace("[parameters]\nspare = 1\n", "")).unwrap();
+    assert_eq!(place.fractum(&["check", "case.toml", "--strict"]).code, Some(0));
+    // What the run finds ends it, with its results and its last state.
+    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--strict", "--quiet", "--threads", "1"]);
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.contains("[below-zero]") && ended.stderr.contains("last good state"), "{}", ended.stderr);
+    let summary = summary(&place, "out");
+    assert_eq!(summary["status"], "stopped");
+    assert!(summary["time"]["end"].as_f64().unwrap() < 4e-3);
+}
+
+/// A bar in space or in the plane, right as it stands.
+const BAR: &str = r#"fractum = 1
+[mesh]
+file = "bar.msh"
+[materials.stone]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "stone"
+[[supports]]
+group = "x-"
+fix = "PLANE"
+[[supports]]
+group = "x+"
+velocity = { x = { ramp = [["0 s", "0 m/s"], ["0.1 ms", "1 mm/s"]] } }
+[solver]
+end = "0.3 ms"
+[output]
+history = { every = "20 us" }
+"#;
+
+const GRAVITY: &str = "[[loads]]\ngravity = { z = \"-9.81 m/s^2\" }\n[solver]";
+
+const DAMAGE: &str = "[materials.stone.damage]\ncriterion = \"rankine\"\ntensile_strength = \"3 MPa\"\nfracture_energy = \"100 J/m^2\"\n[[bodies]]";
+
+/// Moves the elements of the far half into a group of their own; `apart` gives that half nodes of its own.
+fn halves(mut mesh: Mesh, apart: bool) -> Mesh {
+    let middle = 0.5 * (mesh.bounding_box().0.x + mesh.bounding_box().1.x);
+    let twins = (apart).then(|| {
+        let count = mesh.nodes.len() as u32;
+        let nodes = mesh.nodes.clone();
+        mesh.nodes.extend(nodes);
+        mesh.node_tags = (1..=mesh.nodes.len() as u64).collect();
+        count
+    });
+    let is_far = |nodes: &[u32], mesh: &Mesh| {
+        nodes.iter().map(|&n| mesh.nodes[n as usize].x).sum::<f64>() > middle * nodes.len() as f64
+    };
+    let far_tetrahedra: Vec<bool> = mesh.tetrahedra.iter().map(|nodes| is_far(nodes, &mesh)).collect();
+    let far_triangles: Vec<bool> = mesh.triangles.iter().map(|nodes| is_far(nodes, &mesh)).collect();
+    let far_lines: Vec<bool> = mesh.lines.iter().map(|nodes| is_far(nodes, &mesh)).collect();
+    let shift = twins.unwrap_or(0);
+    for (nodes, _) in mesh.tetrahedra.iter_mut().zip(&far_tetrahedra).filter(|(_, far)| **far) {
+        nodes.iter_mut().for_each(|node| *node += shift);
+    }
+    for (nodes, _) in mesh.triangles.iter_mut().zip(&far_triangles).filter(|(_, far)| **far) {
+        nodes.iter_mut().for_each(|node| *node += shift);
+    }
+    for (nodes, _) in mesh.lines.iter_mut().zip(&far_lines).filter(|(_, far)| **far) {
+        nodes.iter_mut().for_each(|node| *node += shift);
+    }
+    let body = mesh.groups.iter().position(|group| group.name == "body").unwrap();
+    let mut far = Group { name: "far".into(), tag: 99, ..mesh.groups[body].clone() };
+    far.tetrahedra.retain(|&element| far_tetrahedra[element as usize]);
+    far.triangles.retain(|&element| far_triangles[element as usize]);
+    mesh.groups[body].tetrahedra.retain(|&element| !far_tetrahedra[element as usize]);
+    mesh.groups[body].triangles.retain(|&element| !far_triangles[element as usize]);
+    mesh.groups.push(far);
+    mesh
+}
+
+/// Moves the half with nodes of its own away.
+fn away(mut mesh: Mesh) -> Mesh {
+    let count = mesh.nodes.len() / 2;
+    mesh.nodes[count..].iter_mut().for_each(|node| node.x += 0.01);
+    mesh
+}
+
+/// The bar with an upper side that is no plane.
+fn channel() -> Mesh {
+    let mut mesh = bar();
+    mesh.nodes.iter_mut().for_each(|node| node.y *= 1.0 + 4.0 * (node.x - 0.2).powi(2));
+    mesh
+}
+
+fn plate() -> Mesh {
+    structured_rectangle([8, 4], [0.4, 0.2], None)
+}
+
+/// A second body of the far half.
+fn second(keys: &str) -> String {
+    format!(
+        "[[bodies]]\nname = \"far\"\nkind = \"solid\"\ngroup = \"far\"\nmaterial = \"stone\"\n{keys}[[supports]]\ngroup = \"x-\""
+    )
+}
+
+/// A mistake: mesh, what replaces what, and the code that tells it; those that need a run say so.
+struct Mistake {
+    mesh: Mesh,
+    edits: Vec<(&'static str, String)>,
+    code: &'static str,
+    runs: bool,
+}
+
+fn mistakes() -> Vec<Mistake> {
+    let [checked, moving] = [false, true].map(|runs| {
+        move |code: &'static str, mesh: Mesh, edits: &[(&'static str, &str)]| {
+            let edits = edits.iter().map(|(old, new)| (*old, (*new).to_owned())).collect();
+            Mistake { mesh, edits, code, runs }
+        }
+    });
+    let support = "[[supports]]\ngroup = \"x-\"";
+    let (ramp, end) = ("{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"1 mm/s\"]] }", "end = \"0.3 ms\"");
+    let static_end = "kind = \"static\"\nend = \"0.3 ms\"";
+    let load = |text: &str| format!("[[loads]]\ngroup = \"y+\"\n{text}\n[solver]");
+    let unequal = "thickness = \"10 mm\"\n";
+    vec![
+        checked("left-out", halves(bar(), false), &[]),
+        checked("left-out", halves(plate(), false), &[]),
+        checked("beyond-bodies", halves(bar(), false), &[]),
+        checked("coincident-nodes", halves(bar(), true), &[(support, &second("")), (end, static_end)]),
+        checked("coincident-nodes", halves(plate(), true), &[(support, &second(""))]),
+        checked("unequal-plates", halves(plate(), false), &[(support, &second(unequal))]),
+        checked("unequal-plates", halves(plate(), false), &[(support, &second("plane = \"stress\"\n"))]),
+        checked("coincident-nodes", halves(bar(), true), &[(support, &second(""))]),
+        checked("no-contact", away(halves(plate(), true)), &[(support, &second(""))]),
+        checked("unheld", bar(), &[("[[supports]]\ngroup = \"x-\"\nfix = \"PLANE\"\n", ""), (end, "end = \"4 ms\"")]),
+        checked("thin-mesh", structured_rectangle([16, 2], [0.4, 0.05], None), &[("{ x = {", "{ y = {")]),
+        checked("thin-mesh", structured_box([8, 8, 1], Vec3::new(0.4, 0.4, 0.02), None), &[("{ x = {", "{ z = {")]),
+        checked("thin-mesh", structured_box([16, 2, 2], Vec3::new(0.4, 0.05, 0.05), None), &[("[solver]", GRAVITY)]),
+        checked("locking", bar(), &[("poisson_ratio = 0.2", "poisson_ratio = 0.49")]),
+        checked("locking", plate(), &[("poisson_ratio = 0.2", "poisson_ratio = 0.4999")]),
+        checked("suction", channel(), &[("[solver]", &load("pressure = \"-2 MPa\""))]),
+        checked(
+            "jump",
+            bar(),
+            &[("velocity = { x = ", "displacement = { x = "), (ramp, "\"if(t < 50 us, 0 m, 10 um)\"")],
+        ),
+        checked("jump", bar(), &[("[[bodies]]", DAMAGE), (ramp, "\"0.5 m/s\"")]),
+        checked("unit-of-load", bar(), &[("[solver]", &load("pressure = 8"))]),
+        checked("unit-of-motion", bar(), &[(ramp, "\"10 km/s\"")]),
+        checked("unusual-value", bar(), &[("density = \"2400 kg/m^3\"", "density = 2.4")]),
+        checked("time-step", bar(), &[(end, "safety = 1.2\nend = \"0.3 ms\"")]),
+        checked("output-interval", bar(), &[("every = \"20 us\"", "every = \"20 ms\"")]),
+        moving(
+            "rotation",
+            bar(),
+            &[
+                (ramp, "\"-300 1/s*(y - 6 cm)\""),
+                ("fix = \"xyz\"\n", "velocity = { x = \"-300 1/s*(y - 6 cm)\" }\n"),
+                (
+                    "material = \"stone\"\n",
+                    "material = \"stone\"\ninitial_velocity = { x = \"-300 1/s*(y - 6 cm)\", y = \"300 1/s*(x - 20 cm)\" }\n",
+                ),
+                (end, "end = \"1 ms\""),
+            ],
+        ),
+        moving("large-strain", bar(), &[(ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"-150 m/s\"]] }")]),
+        moving(
+            "tension-outside",
+            bar(),
+            &[
+                ("[[bodies]]", DAMAGE),
+                (
+                    "material = \"stone\"\n",
+                    "material = \"stone\"\ndamage_where = \"x < 6 cm\"\nstrength_factor = 100\n",
+                ),
+                (ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"1 m/s\"]] }"),
+            ],
+        ),
+        moving(
+            "compression",
+            bar(),
+            &[("[[bodies]]", DAMAGE), (ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"-10 m/s\"]] }")],
+        ),
+        moving("damping", bar(), &[(end, "end = \"2 ms\"\n[damping]\nmass = \"1e6 1/s\"")]),
+    ]
+}
+
+#[test]
+fn mistakes_are_told_with_their_code() {
+    for plane in [false, true] {
+        let place = Workplace::with_mesh(
+            &BAR.replace("PLANE", if plane { "xy" } else { "xyz" }),
+            &mesh_bytes(&if plane { plate() } else { bar() }, MshFormat::V4_1Binary),
+        );
+        let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet", "--strict"]);
+        assert_eq!(ended.code, Some(0), "the case that is spoilt is right: {}", ended.stderr);
+    }
+    let mut missed = Vec::new();
+    for Mistake { mesh, edits, code, runs } in mistakes() {
+        let fix = if mesh.tetrahedra.is_empty() { "xy" } else { "xyz" };
+        let mut case = BAR.to_owned();
+        for (old, new) in &edits {
+            assert!(case.contains(old), "{old}");
+            case = case.replacen(old, new, 1);
+        }
+        let case = case.replace("PLANE", fix);
+        let place = Workplace::with_mesh(&case, &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+        let arguments: &[&str] =
+            if runs { &["run", "case.toml", "-o", "out", "--quiet"] } else { &["check", "case.toml"] };
+        let ended = place.fractum(arguments);
+        let said = if runs { &ended.stderr } else { &ended.stdout };
+        if !said.contains(&format!("[{code}]")) {
+            missed.push(format!("{code} ({edits:?}): {} {}", said, ended.stderr));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+#[test]
+fn quadrilaterals_of_a_plane_body_are_refused() {
+    let mut mesh = plate();
+    let body = mesh.groups.iter().position(|group| group.name == "body").unwrap();
+    let [first, second] = [mesh.triangles[0], mesh.triangles[1]];
+    let corner = *second.iter().find(|node| !first.contains(node)).unwrap();
+    // The two triangles of a cell as one quadrilateral.
+    let common: Vec<u32> = first.into_iter().filter(|node| second.contains(node)).collect();
+    let single = *first.iter().find(|node| !common.contains(node)).unwrap();
+    mesh.quads = vec![[single, common[0], corner, common[1]]];
+    mesh.quad_tags = vec![99_999];
+    mesh.groups[body].quads = vec![0];
+    mesh.groups[body].triangles.retain(|&element| element > 1);
+    let place = Workplace::with_mesh(&BAR.replace("PLANE", "xy"), &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+    let ended = place.fractum(&["check", "case.toml"]);
+    let right = ended.stderr.contains("1 of its 31 elements are quadrilaterals");
+    assert!(ended.code == Some(1) && right, "{} {}", ended.stdout, ended.stderr);
+}
+
+#[test]
+fn what_has_ended_by_its_curve_stays_ended() {
+    let stop = "stop_when = { probe = \"load\", below = 0.5 }\nend = \"2 ms\"";
+    let probe = "[[probes]]\nname = \"load\"\nreaction = { group = \"x+\", along = \"x\" }\n[solver]";
+    let case = BAR.replace("PLANE", "xyz").replace("[solver]", probe).replace("end = \"0.3 ms\"", stop);
+    let case = case.replace("[\"0.1 ms\", \"1 mm/s\"]", "[\"0.1 ms\", \"0.1 m/s\"], [\"0.2 ms\", \"-0.1 m/s\"]");
+    let place = Workplace::new(&case);
+    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let before = summary(&place, "out");
+    assert!(before["time"]["reason"].as_str().unwrap().contains("fell below"), "{before}");
+    fs::remove_file(place.path("out/summary.json")).unwrap();
+    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet", "--resume"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let after = summary(&place, "out");
+    for key in ["steps", "end", "reason"] {
+        assert_eq!(before["time"][key], after["time"][key], "{key}");
+    }
+    assert_eq!(before["state_hash"], after["state_hash"]);
+}
