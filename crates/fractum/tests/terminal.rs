@@ -56,8 +56,8 @@ fn the_last_lines_show_the_peak_and_why_the_run_ended() {
     let shown = ended.stderr.lines().find(|line| line.contains("ETA")).unwrap();
     assert!(shown.contains("load ") && shown.contains(" (peak ") && shown.trim_end().contains("balance "), "{shown}");
     // Stopped early by the load, which falls with the velocity of the wave that leaves the end.
-    let fallen = CASE.replace("x = \"pull\" }", "x = \"pull*(1 - t/8 us)\" }");
-    let stop = "end = \"20 us\"\nstop_when = { probe = \"load\", below = 0.5 }";
+    let fallen = CASE.replace("x = \"pull\" }", "x = \"pull*(1 - t/40 us)\" }");
+    let stop = "end = \"80 us\"\nstop_when = { probe = \"load\", below = 0.5 }";
     let fallen = fallen.replace("end = \"20 us\"", stop);
     let ended = Workplace::new(&fallen).fractum(&["run", "case.toml", "-o", "out"]);
     assert!(ended.stdout.contains("load fell below 50 % of its largest value at t = "), "{ended:?}");

@@ -32,6 +32,7 @@ normal = "-z"
 point = [0, 0, "20 mm"]
 velocity = { z = "-1 m/s" }
 [solver]
+safety = 0.2
 end = "19 ms"
 "#;
 
@@ -55,19 +56,40 @@ fn a_bead_pressed_flat_is_told_once_with_its_share_of_the_radius() {
     assert_eq!(listed(&place, "light"), [[""; 3]; 0]);
 }
 
+/// A bead so fast that it ends within a few steps, before the second row of the history.
+const SHOT: &str = r#"fractum = 1
+[materials.stone]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+contact = { restitution = 0.9 }
+[[bodies]]
+name = "bead"
+kind = "particles"
+material = "stone"
+file = "bead.csv"
+initial_velocity = { z = "-20 km/s" }
+[[bodies]]
+name = "floor"
+kind = "rigid"
+shape = "box"
+point = ["-10 mm", "-10 mm", "-1 mm"]
+size = ["20 mm", "20 mm", "1 mm"]
+[solver]
+end = "0.2 us"
+"#;
+
 #[test]
 fn the_balance_of_the_last_step_is_judged() {
-    // A shot so fast that it ends within a few steps, before the second row of the history.
-    let shot = BEAD.replace("file = \"bead.csv\"", "file = \"bead.csv\"\ninitial_velocity = { z = \"-20 km/s\" }");
-    let place = Workplace::new(&shot.replace("\"19 ms\"", "\"0.2 us\"").replace("5 MPa", "30 GPa"));
-    fs::write(place.path("bead.csv"), "0,0,0.003,0.001\n").unwrap();
+    let place = Workplace::new(SHOT);
+    fs::write(place.path("bead.csv"), "0,0,0.004,0.004\n").unwrap();
     let ended = run(&place, "out", "1");
-    let residual = ended["ledger"]["relative_residual"].as_f64().unwrap_or_else(|| panic!("{}", ended["ledger"]));
+    let residual = ended["energy"]["residual_max_relative"].as_f64().unwrap();
     let told = listed(&place, "out").iter().any(|[code, ..]| code == "energy-balance");
-    assert!(residual > 1e-2 && told, "{residual}: {:?}", listed(&place, "out"));
+    assert!(residual > 1e-3 && told, "{residual}: {:?}", listed(&place, "out"));
 }
 
-/// A strip whose upper side is cooled: it bends without stress.
+/// A strip whose upper half is cooled, so that it bends.
 const STRIP: &str = r#"fractum = 1
 [mesh]
 file = "bar.msh"
@@ -90,7 +112,7 @@ formulation = "smoothed"
 initial_temperature = "300 K"
 [[heat.conditions]]
 where = "x > -1 m"
-temperature = "300 K - 100 K*t/2 ms*y/2 mm"
+temperature = "300 K - if(y > MIDDLE, 100 K, 0 K)*t/END"
 [[supports]]
 group = "x-"
 fix = "x"
@@ -98,26 +120,32 @@ fix = "x"
 where = "x < 0.01 mm && y < 0.01 mm"
 fix = "y"
 [solver]
-end = "2 ms"
+end = "END"
 [[probes]]
 name = "tip"
 displacement = { group = "x+", along = "y" }
 [output]
-history = { every = "20 us" }
+history = { every = "0.1 ms" }
 [damping]
 local = LOCAL
 "#;
 
 #[test]
 fn local_damping_does_not_brake_what_expands_slowly() {
-    let tip = |local: &str| {
-        let mesh = structured_rectangle([30, 4], [0.03, 0.002], None);
-        let place = Workplace::with_mesh(&STRIP.replace("LOCAL", local), &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+    let strip = |cells: [u32; 2], size: [f64; 2], local: &str, end: &str| {
+        let mesh = structured_rectangle(cells, size, None);
+        let middle = format!("{} mm", 500.0 * size[1]);
+        let case = STRIP.replace("LOCAL", local).replace("MIDDLE", &middle).replace("END", end);
+        let place = Workplace::with_mesh(&case, &mesh_bytes(&mesh, MshFormat::V4_1Binary));
         run(&place, "out", "1");
-        history(&place, "out", &["tip"]).last().unwrap()[0]
+        let tip = history(&place, "out", &["tip"]).last().unwrap()[0];
+        (tip, listed(&place, "out").iter().any(|[code, ..]| code == "damping"))
     };
-    let [free, damped] = ["0", "0.2"].map(tip);
-    // Curvature alpha dT/h: a tip of alpha dT L^2/(2 h), bent towards the cooled side.
-    let exact = 1e-5 * 100.0 * 0.03 * 0.03 / (2.0 * 0.002);
-    assert!((free / exact - 1.0).abs() < 0.05 && (damped / exact - 1.0).abs() < 0.05, "{free} {damped} {exact}");
+    let slow = |local| strip([60, 4], [0.06, 0.004], local, "10 ms");
+    let [(free, untold), (damped, _)] = ["0", "0.2"].map(slow);
+    assert!((damped / free - 1.0).abs() < 0.03 && !untold, "{free} {damped}");
+    // A few periods only: what is braked visibly is told.
+    let fast = |local| strip([30, 4], [0.03, 0.002], local, "2 ms");
+    let [(free, untold), (damped, told)] = ["0", "0.2"].map(fast);
+    assert!(damped < 0.9 * free && told && !untold, "{free} {damped}");
 }

@@ -431,7 +431,6 @@ fn a_wrong_option_is_wrong_input() {
         &["run"],
         &["walk"],
         &[],
-        &[&steps[..], &["--seed", "2"]].concat(),
         &[&steps[..], &["--scenes", "2"]].concat(),
     ] {
         let ended = workplace.fractum(arguments);
