@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn stress_is_looked_at_where_no_criterion_does() {
-        let law = DamageLaw::rankine(3e6, 100.0);
+        let law = DamageLaw::rankine(3e6, 200.0);
         let guarded = |solid: &mut Body| {
             *solid = solid.clone().smoothed().with_damage(law.clone());
             let edges = Solid::new(structured_box([2; 3], Vec3::repeat(1.0), None).nodes, vec![solid.clone()]).unwrap();

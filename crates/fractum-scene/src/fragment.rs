@@ -3,6 +3,8 @@ use std::borrow::Cow;
 use fractum_fem::Solid;
 use fractum_math::{Connected, Vec3, connected};
 
+use crate::conditions::SurfaceSupports;
+
 /// A connected piece of a solid or of a bonded body. A fragment has at least two nodes or particles; what is left are
 /// single ones.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +26,8 @@ pub struct Fragment {
     pub velocity: Vec3,
     /// Corners of the box around it [m].
     pub bounds: [Vec3; 2],
+    /// Whether an absorbing or elastic boundary holds it: it stands for all that lies beyond, and its own size tells nothing.
+    pub stays: bool,
 }
 
 impl Fragment {
@@ -39,6 +43,7 @@ impl Fragment {
         (self.centroid, self.velocity) = (mean(self.centroid, other.centroid), mean(self.velocity, other.velocity));
         self.bounds = [self.bounds[0].inf(&other.bounds[0]), self.bounds[1].sup(&other.bounds[1])];
         self.mass = mass;
+        self.stays |= other.stays;
         self.volume += other.volume;
         self.elements += other.elements;
         self.bonds += other.bonds;
@@ -121,6 +126,13 @@ pub fn solid_pieces(solid: &Solid, joined_below: f64) -> Vec<Fragment> {
     pieces
 }
 
+/// [`solid_pieces`], of which those are marked that boundaries hold.
+pub(crate) fn marked_pieces(solid: &Solid, joined_below: f64, boundaries: &SurfaceSupports) -> Vec<Fragment> {
+    let mut pieces = solid_pieces(solid, joined_below);
+    pieces.iter_mut().for_each(|piece| piece.stays = piece.nodes.iter().any(|&node| boundaries.act_on(node)));
+    pieces
+}
+
 /// What every node has of the volume of a body [m³]: an equal part of each element around it that is still there.
 fn nodal_volumes(solid: &Solid, body: usize) -> Vec<f64> {
     let corners = solid.body(body).shape.node_count();
@@ -196,7 +208,8 @@ fn piece(solid: &Solid, nodes: Vec<u32>, elements: usize, volume: f64) -> Fragme
         high = high.sup(&position);
     }
     let bounds = [low, high];
-    Fragment { nodes, elements, bonds: 0, mass, volume, centroid: centroid / mass, velocity: velocity / mass, bounds }
+    let (centroid, velocity) = (centroid / mass, velocity / mass);
+    Fragment { nodes, elements, bonds: 0, mass, volume, centroid, velocity, bounds, stays: false }
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Contacts, ContactsState, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
 use crate::domain::{Domain, Left};
-use crate::fragment::{Fragment, joined, single_share, solid_pieces};
+use crate::fragment::{Fragment, joined, marked_pieces, single_share, solid_pieces};
 use crate::gas::Gas;
 use crate::heat::Heat;
 use crate::ledger::{Books, Ledger};
@@ -368,7 +368,7 @@ impl Scene {
     /// Fragments of solids and bonded bodies, heaviest first: pieces of at least two nodes or particles, joined by edges
     /// that keep some of their strength, by bonds and by ties.
     pub fn fragments(&self) -> Vec<Fragment> {
-        let mut found = solid_pieces(&self.solid, self.settings.joined_below);
+        let mut found = marked_pieces(&self.solid, self.settings.joined_below, &self.optional.surface_supports);
         if !self.bonded.is_empty() {
             found = joined(found, self.bonded.fragments(), self.ties.links());
             found.sort_by(|a, b| b.mass.total_cmp(&a.mass));

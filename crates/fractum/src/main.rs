@@ -11,7 +11,20 @@ fn end_on_signal() {
     }
 }
 
+/// A file that would grow beyond the limit of its user is an error of writing, which has its message, and no end by a signal.
+fn take_limits_as_errors() {
+    #[cfg(unix)]
+    {
+        use nix::sys::signal::{SigSet, Signal};
+        let mut limits = SigSet::empty();
+        limits.add(Signal::SIGXFSZ);
+        // Threads take over what is blocked. Where it cannot be, the signal ends the program as before.
+        let _ = limits.thread_block();
+    }
+}
+
 fn main() {
+    take_limits_as_errors();
     let arguments = match command::Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(usage) => {

@@ -71,10 +71,10 @@ pub(crate) fn time(clock: &Clock, reason: String, at_rest: bool) -> summary::Tim
     summary::Time { steps: clock.step, dt: clock.dt_before, dt_min: clock.dt_min, end: clock.time, reason, at_rest }
 }
 
-/// Sizes of the fragments; none where there are none.
+/// Sizes of the fragments; none where there are none, or where boundaries hold all of them.
 pub(crate) fn fragment_sizes(solid: &Solid, pieces: &[Fragment]) -> Option<summary::FragmentSizes> {
     let [p20, p50, p80] = [0.2, 0.5, 0.8].map(|share| passing_size(solid, pieces, share));
-    (!pieces.is_empty()).then_some(summary::FragmentSizes { p20, p50, p80 })
+    pieces.iter().any(|piece| !piece.stays).then_some(summary::FragmentSizes { p20, p50, p80 })
 }
 
 /// How long it took.

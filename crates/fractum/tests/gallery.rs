@@ -1,9 +1,11 @@
 //! The quick part of the gallery meets its references.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use fractum::neighbours::{neighbours, unsaid};
 use fractum::verify::{Selection, verify};
+use fractum::{Options, Simulation};
 use fractum_io::beside::{End, Row};
 use fractum_io::case::read_case;
 
@@ -81,4 +83,63 @@ fn a_case_that_promises_something_says_something_of_each_neighbour() {
         }
     }
     assert!(count > 8 && silent.is_empty(), "of {count} references: {silent:#?}");
+}
+
+/// One case of every kind, small ones.
+const KINDS: [&str; 19] = [
+    "absorbing/normal",
+    "ball-on-edge/ball",
+    "bonded-box/tension-vibration",
+    "brazilian-static/coarse",
+    "cantilever-static/plane-depth-2",
+    "falling-block/block",
+    "gas-blast/gas",
+    "graded-plate/in-parts",
+    "granular/pour",
+    "heat/bar-implicit",
+    "kirsch-in-situ/pressurised",
+    "rigid-ball/ball-on-cube",
+    "sphere-on-beam/case1",
+    "stages/released-bar",
+    "tension-bar/gmsh-coarse",
+    "tension-bar-plane/delaunay-coarse",
+    "tied/strike",
+    "vibrating-cantilever/depth-2",
+    "weibull/bar",
+];
+
+#[test]
+fn every_kind_goes_on_from_its_first_a_middle_and_its_last_state() {
+    const STEPS: u64 = 10;
+    let output = tempfile::tempdir().unwrap();
+    let cache = fractum_prepare::Cache::new(Some(output.path().join("cache")));
+    let mut differ = Vec::new();
+    for kind in KINDS {
+        let path = cases().join(format!("{kind}.toml"));
+        let open = |folder: &str, resume: bool| {
+            let output = Some(output.path().join(kind).join(folder));
+            let options = Options { output, resume, quiet: true, cache: cache.clone(), ..Options::default() };
+            Simulation::open(&path, &options).unwrap_or_else(|failure| panic!("{kind}: {failure}"))
+        };
+        // Until a step, or the end of what has few of them.
+        let advance = |mut simulation: Simulation, until: u64| {
+            while simulation.steps() < until && !simulation.is_over() {
+                simulation.step().unwrap();
+                simulation.record().unwrap();
+            }
+            let reached = (simulation.steps(), simulation.state_hash());
+            simulation.stop().unwrap();
+            simulation.finish().unwrap();
+            reached
+        };
+        let expected = advance(open("whole", false), STEPS);
+        for saved in BTreeSet::from([0, expected.0 / 2, expected.0 - 1]) {
+            let folder = format!("from-{saved}");
+            advance(open(&folder, false), saved);
+            if advance(open(&folder, true), STEPS) != expected {
+                differ.push(format!("{kind} from step {saved}"));
+            }
+        }
+    }
+    assert!(differ.is_empty(), "{differ:#?}");
 }

@@ -336,6 +336,21 @@ fn a_full_disk_is_a_failure_of_the_machine_that_leaves_no_half_file() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn a_limit_on_the_size_of_files_is_a_failure_of_the_machine() {
+    let workplace = Workplace::new(&breaking_bar());
+    let program = workplace.command(&RUN);
+    let mut shell = std::process::Command::new("sh");
+    // Blocks of 512 bytes.
+    shell.args(["-c", "ulimit -f 40; exec \"$0\" \"$@\""]).arg(program.get_program()).args(program.get_args());
+    let ended = shell.current_dir(program.get_current_dir().unwrap()).output().unwrap();
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert_eq!(ended.status.code(), Some(3), "{said}");
+    assert!(said.contains("too large"), "{said}");
+    assert!(!workplace.path("out/summary.json").exists());
+}
+
+#[test]
 fn an_unstable_run_stops_names_the_element_and_keeps_its_results() {
     let unstable = with("kind = \"explicit\"", "kind = \"explicit\"\nsafety = 1.5").replace("20 us", "20 ms");
     let elastic = unstable.replace("name = \"bar\"", "name = \"bar\"\ndamage = false");

@@ -85,7 +85,7 @@ pub(super) fn unheld(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnos
     let by_supports = case.supports.iter().map(|support| driven(mesh, &support.on));
     let forces = case.loads.iter().filter_map(|load| match &load.kind {
         LoadKind::Force { on, .. } | LoadKind::Traction { on, .. } => Some(driven(mesh, on)),
-        LoadKind::Gravity { .. } | LoadKind::Pressure { .. } => None,
+        _ => None,
     });
     let all: Vec<Driven> = by_supports.chain(forces).collect::<Option<_>>()?;
     let [one] = all.as_slice() else { return None };
@@ -204,7 +204,8 @@ fn is_bent(case: &Case, mesh: &Mesh, body: &Own) -> bool {
                 components[axis].is_some() && !own(on).is_empty()
             }
             LoadKind::Gravity { acceleration } => acceleration[axis].is_some(),
-            LoadKind::Pressure { on, .. } => {
+            other => {
+                let LoadKind::Pressure { on, .. } = other else { return false };
                 let nodes = own(on);
                 !nodes.is_empty() && flat(&nodes, axis)
             }

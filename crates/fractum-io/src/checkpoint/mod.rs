@@ -32,6 +32,7 @@ pub use error::CheckpointError;
 
 use crate::atomic::{self, UNFINISHED};
 use crate::compress::Compression;
+use crate::error::WriteError;
 
 /// Version of the container's format.
 pub const FORMAT: u32 = 7;
@@ -247,6 +248,24 @@ fn files(folder: &Path, step: impl Fn(&str) -> Option<u64>) -> io::Result<Vec<(u
     Ok(found)
 }
 
+/// Removes all checkpoints of `folder`, and the folder once nothing else is in it: other files are the user's, and stay.
+///
+/// # Errors
+/// [`WriteError`]; a folder that is not there is none.
+pub fn discard(folder: &Path) -> Result<(), WriteError> {
+    if !folder.is_dir() {
+        return Ok(());
+    }
+    let error = |error| WriteError::new(folder, error);
+    let found = checkpoints(folder).and_then(|found| Ok(found.into_iter().chain(parts(folder)?))).map_err(error)?;
+    found.into_iter().try_for_each(|(_, path)| fs::remove_file(path)).map_err(error)?;
+    remove_unfinished(folder).map_err(error)?;
+    match fs::remove_dir(folder) {
+        Err(found) if found.kind() != io::ErrorKind::DirectoryNotEmpty => Err(error(found)),
+        _ => Ok(()),
+    }
+}
+
 /// Removes all but the checkpoint of `step` and the newest before it, with their parts, and what killed runs left unfinished.
 fn remove_outdated(folder: &Path, step: u64) -> io::Result<()> {
     let mut found = checkpoints(folder)?;
@@ -257,6 +276,11 @@ fn remove_outdated(folder: &Path, step: u64) -> io::Result<()> {
             fs::remove_file(path)?;
         }
     }
+    remove_unfinished(folder)
+}
+
+/// Removes what killed runs left unfinished.
+fn remove_unfinished(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
@@ -379,6 +403,12 @@ mod tests {
         // Resumed from 20 after 30 was lost: 30 is a past that was not taken.
         save(folder, &header(25), &state(3), Compression::Fast).unwrap();
         assert_eq!(names(folder), ["notes.txt", "state-000000020.fck", "state-000000025.fck"]);
+        discard(folder).unwrap();
+        assert_eq!(names(folder), ["notes.txt"]);
+        fs::remove_file(folder.join("notes.txt")).unwrap();
+        discard(folder).unwrap();
+        assert!(!folder.exists());
+        discard(folder).unwrap();
     }
 
     #[test]

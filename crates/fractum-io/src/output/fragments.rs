@@ -30,6 +30,8 @@ pub struct Fragment {
     pub largest_extent: f64,
     /// Diameter of the sphere of its volume, in the plane of the circle of its area [m].
     pub size: f64,
+    /// Whether an absorbing or elastic boundary holds it, so that it counts for no size distribution.
+    pub stays: bool,
 }
 
 /// Writes `fragments` to `path` (usually `fragments.csv`), in the order given.
@@ -59,26 +61,27 @@ fn parse(text: &str) -> Result<Vec<Fragment>, (usize, String)> {
         return Err((1, HEADER.to_owned()));
     }
     let fragment = |(index, line): (usize, &str)| {
-        let wrong = |_| (index + 2, "13 numbers".to_owned());
+        let wrong = |_| (index + 2, "14 numbers".to_owned());
         let cells: Vec<f64> = line.split(',').map(str::parse).collect::<Result<_, _>>().map_err(wrong)?;
-        let [id, mass, volume, nodes, elements, x, y, z, vx, vy, vz, largest_extent, size] = cells[..] else {
-            return Err((index + 2, "13 numbers".to_owned()));
+        let [id, mass, volume, nodes, elements, x, y, z, vx, vy, vz, largest_extent, size, stays] = cells[..] else {
+            return Err((index + 2, "14 numbers".to_owned()));
         };
         let [id, nodes, elements] = [id, nodes, elements].map(|count| count as u64);
         let (centroid, velocity) = ([x, y, z], [vx, vy, vz]);
-        Ok(Fragment { id, mass, volume, nodes, elements, centroid, velocity, largest_extent, size })
+        let stays = stays != 0.0;
+        Ok(Fragment { id, mass, volume, nodes, elements, centroid, velocity, largest_extent, size, stays })
     };
     lines.enumerate().map(fragment).collect()
 }
 
 const HEADER: &str = "id,mass [kg],volume [m^3],nodes,elements,x [m],y [m],z [m],\
-     velocity_x [m/s],velocity_y [m/s],velocity_z [m/s],largest_extent [m],size [m]";
+     velocity_x [m/s],velocity_y [m/s],velocity_z [m/s],largest_extent [m],size [m],stays";
 
 /// The text of `fragments.csv`, in the order given.
 pub fn to_csv(fragments: &[Fragment]) -> String {
     let mut text = format!("{HEADER}\n");
     for fragment in fragments {
-        let Fragment { id, mass, volume, nodes, elements, centroid, velocity, largest_extent, size } = fragment;
+        let Fragment { id, mass, volume, nodes, elements, centroid, velocity, largest_extent, size, stays } = fragment;
         text.push_str(&id.to_string());
         for value in [*mass, *volume] {
             text.push(',');
@@ -89,7 +92,7 @@ pub fn to_csv(fragments: &[Fragment]) -> String {
             text.push(',');
             push_shortest(&mut text, *value);
         }
-        text.push('\n');
+        text.push_str(if *stays { ",1\n" } else { ",0\n" });
     }
     text
 }
@@ -110,6 +113,7 @@ mod tests {
             velocity: [1.0, 2.0, 3.0],
             largest_extent: 0.25,
             size: 0.125,
+            stays: true,
         };
         let text = to_csv(std::slice::from_ref(&fragment));
         assert_eq!(parse(&text).unwrap(), [fragment]);
@@ -119,7 +123,7 @@ mod tests {
         let mut lines = text.lines();
         let columns = lines.next().unwrap().split(',').count();
         let line = lines.next().unwrap();
-        assert_eq!(line, "1,2.5,0.001,40,120,0,0.1,-0.2,1,2,3,0.25,0.125");
+        assert_eq!(line, "1,2.5,0.001,40,120,0,0.1,-0.2,1,2,3,0.25,0.125,1");
         assert_eq!(line.split(',').count(), columns);
         assert_eq!(lines.next(), None);
     }

@@ -46,6 +46,7 @@ impl Bonded {
                 centroid,
                 velocity,
                 bounds,
+                stays: false,
             }
         };
         found.into_iter().map(fragment).collect()

@@ -87,6 +87,11 @@ impl SurfaceSupports {
         self.dashpots.nodes.iter().chain(&self.springs.nodes).copied()
     }
 
+    /// Whether they act on a node.
+    pub(crate) fn act_on(&self, node: u32) -> bool {
+        [&self.dashpots, &self.springs].iter().any(|own| own.nodes.binary_search(&node).is_ok())
+    }
+
     /// - `absorbing`, `elastic`: facets with dashpots and with springs
     /// - `mass`: of all nodes [kg]
     pub fn new(absorbing: &[SupportedFacet], elastic: &[SupportedFacet], mass: &[f64]) -> Self {

@@ -364,6 +364,7 @@ fn write_fragments(path: &Path, mut pieces: Vec<Piece>, density: f64) -> Result<
         centroid: piece.centroid.into(),
         velocity: piece.velocity.into(),
         largest_extent: (piece.bounds[1] - piece.bounds[0]).max(),
+        stays: false,
         size: equivalent_diameter(piece.content / density, None),
     };
     let table: Vec<Fragment> = (1..).zip(&pieces).map(fragment).collect();

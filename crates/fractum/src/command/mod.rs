@@ -416,7 +416,17 @@ fn explain(key: Option<&str>) -> Result<ExitCode, Failure> {
     };
     match fractum_io::case::explain(key) {
         Ok(doc) => {
-            say!("{}\n  {}\n  type: {}, default: {}", doc.path, doc.doc, doc.kind.label(), doc.default);
+            let kind = |doc: &fractum_io::case::KeyDoc| match doc.default {
+                "" => doc.kind.label(),
+                default => format!("{}, default: {default}", doc.kind.label()),
+            };
+            say!("{}\n  {}\n  type: {}", doc.path, doc.doc, kind(doc));
+            let below = format!("{}.", doc.path);
+            let own =
+                |key: &&fractum_io::case::KeyDoc| key.path.strip_prefix(&below).is_some_and(|name| !name.contains('.'));
+            for key in fractum_io::case::keys().iter().filter(own) {
+                say!("\n{}\n  {}\n  type: {}", key.path, key.doc, kind(key));
+            }
             Ok(ExitCode::Done)
         }
         Err(Some(near)) => Err(Failure::input(format!("no key \"{key}\"; did you mean \"{near}\"?"))),

@@ -10,8 +10,10 @@ use fractum_scene::{Notice, Noticed, Scene, Site};
 use super::{End, Simulation};
 use crate::error::Failure;
 
-/// Steps of motion between two looks at the state: a look costs about a step.
-const STEPS_BETWEEN_LOOKS: u64 = 200;
+/// Steps of motion between two looks at the state, of a short run and of a long one: a look costs about a step.
+const STEPS_BETWEEN_LOOKS: [f64; 2] = [64.0, 256.0];
+/// Looks that a run of medium length has.
+const LOOKS: f64 = 50.0;
 /// The same at overlaps of particles alone, which costs a small part of a step: an impact lasts some fifty steps.
 const STEPS_BETWEEN_LOOKS_AT_OVERLAPS: u64 = 20;
 
@@ -22,7 +24,14 @@ impl Simulation {
         if !self.solver.rests() && step.is_multiple_of(STEPS_BETWEEN_LOOKS_AT_OVERLAPS) {
             self.scene.look_at_overlaps();
         }
-        if self.solver.rests() || step.is_multiple_of(STEPS_BETWEEN_LOOKS) { self.audit() } else { Ok(()) }
+        if self.solver.rests() || step.is_multiple_of(self.steps_between_looks()) { self.audit() } else { Ok(()) }
+    }
+
+    fn steps_between_looks(&self) -> u64 {
+        let [least, most] = STEPS_BETWEEN_LOOKS;
+        // Twice as often for twice the step, and so the same on all processes and after a resume.
+        let steps = self.case.solver.end / self.scene.clock.dt_after;
+        1 << ((steps / LOOKS).clamp(least, most) as u64).ilog2()
     }
 
     /// Looks at the state, and warns of what is noticed.

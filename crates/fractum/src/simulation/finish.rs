@@ -221,6 +221,7 @@ fn fragments_of(solid: &Solid, pieces: &[fractum_scene::Fragment]) -> Vec<Fragme
             velocity: piece.velocity.into(),
             largest_extent: piece.extent(),
             size: fragment_size(solid, piece),
+            stays: piece.stays,
         })
         .collect()
 }

@@ -360,13 +360,7 @@ const RESULTS: [&str; 12] = [
 /// A run that starts anew leaves nothing of an earlier one that could be taken for its own: no state to resume from, no
 /// frames, no pictures, no case. Other files in these folders are the user's, and stay.
 fn discard_results(folder: &Path) -> Result<(), Failure> {
-    let checkpoints = folder.join("checkpoint");
-    match std::fs::remove_dir_all(&checkpoints) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            return Err(WriteError::new(&checkpoints, error).into());
-        }
-        _ => {}
-    }
+    checkpoint::discard(&folder.join("checkpoint"))?;
     let pictures = gallery::FILES.map(|name| folder.join("pictures").join(name));
     let files = RESULTS.map(|name| folder.join(name)).into_iter().chain(pictures);
     for path in files.filter(|path| path.is_file()) {

@@ -92,7 +92,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("probes[].fragment.where", K::Condition, "", "Which nodes, by their positions at the start"),
     key("probes[].fragment.measure", K::Choice(names::<FragmentMeasure>), "required", "Its mass, volume, size (diameter of the sphere of that volume, in the plane of the circle of that area), or the velocity of its centre of mass"),
     key("probes[].fragment.along", K::Direction, "", "Velocity only, required there: direction"),
-    key("probes[].fragment_size", K::Quantity(D::NONE), "", "Size below which this share of the mass of all fragments lies, in m: P50 for 0.5; within 0 and 1"),
+    key("probes[].fragment_size", K::Quantity(D::NONE), "", "Size below which this share of the mass of all fragments lies, in m: P50 for 0.5; within 0 and 1; without those that an absorbing or elastic boundary holds"),
     key("probes[].energy", K::Choice(names::<EnergyProbe>), "", "An entry of the energy ledger, in J"),
     key("probes[].count", K::Choice(names::<CountKind>), "", "A count"),
     key("probes[].momentum", K::Table, "", "Linear momentum of the scene, in kg m/s"),
