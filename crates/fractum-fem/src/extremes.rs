@@ -174,11 +174,12 @@ mod tests {
         moved(&mut solid, |x| Vec3::new(2e-4 * x.x, 0.0, 0.0));
         let found = solid.extremes();
         assert!((found.tension.unwrap().value - 2.0).abs() < 1e-9, "{found:?}");
-        assert!(found.compression.unwrap().value.abs() < 1e-9, "{found:?}");
+        // Principal values that are equal are found to the root of rounding.
+        assert!(found.compression.unwrap().value.abs() < 1e-7, "{found:?}");
         assert!((found.strain.unwrap().value / 2e-4 - 1.0).abs() < 1e-9);
         moved(&mut solid, |x| Vec3::new(-1e-3 * x.x, 0.0, 0.0));
         let found = solid.extremes();
-        assert!(found.tension.unwrap().value.abs() < 1e-9, "{found:?}");
+        assert!(found.tension.unwrap().value.abs() < 1e-7, "{found:?}");
         assert!((found.compression.unwrap().value - 10.0).abs() < 1e-9, "{found:?}");
         // A body that may be damaged everywhere needs no look in tension.
         let solid = cube(|body| *body = body.clone().smoothed().with_damage(law.clone()));

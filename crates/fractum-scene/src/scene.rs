@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::bonded::{Bonded, BondedState};
 use crate::clock::{Clock, Frequencies, TimeStepSettings};
 use crate::conditions::{ConditionsState, Loads, Population, Supports, SurfaceSupports};
-use crate::contacts::{Candidate, NodesOnShape};
-use crate::contacts::{Contacts, ContactsState, OverlapWith};
+use crate::contacts::{Candidate, Contacts, ContactsState, NodesOnShape, OverlapWith};
 use crate::coupling::{Attachment, Debris, DebrisState, Ties};
 use crate::domain::{Domain, Left};
 use crate::fragment::{Fragment, joined, marked_pieces, single_share, solid_pieces};
@@ -225,6 +224,7 @@ impl Scene {
     /// The same scene with particles of its bonded bodies tied to its solids, before its first step.
     pub fn with_ties(mut self, attachments: &[Attachment]) -> Self {
         self.ties = Ties::new(&mut self.solid, &mut self.bonded, attachments);
+        self.update_wall_frequency(); // nodes have taken the mass of particles
         self.clock = Clock::new(self.next_dt(0.0));
         self
     }
