@@ -77,8 +77,8 @@ codes! {
     Reflections = "reflections",
     /// A tool that meets nothing.
     Misses = "misses",
-    /// A reaction of all supports of a body.
-    WholeReaction = "whole-reaction",
+    /// A reaction that is not that of one support.
+    Reaction = "reaction",
     /// A Poisson's ratio at which elements lock.
     Locking = "locking",
     /// A pressure that pulls.

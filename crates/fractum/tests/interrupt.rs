@@ -96,6 +96,7 @@ fn what_may_never_end_is_refused_at_once() {
         &["run", "endless.toml", "-o", "out"],
         &["mesh", "info", "/dev/zero"],
         &["check", "/dev/urandom"],
+        &["study", "pipe.toml"],
     ] {
         let ended = place.fractum(arguments);
         let right = ended.code == Some(1) && ended.stderr.contains("is a device or a pipe, which may never end");

@@ -5,7 +5,7 @@ use fractum_mesh::Mesh;
 
 use super::body_doubts::{Own, passage, wave_speed};
 use crate::case::model::{BodyKind, Case, LoadKind, Motion, Probe, ProbeKind, Selection, SolverKind, Support};
-use crate::case::{Diagnostic, Place, TimeFunction};
+use crate::case::{Diagnostic, Place, Spanned, TimeFunction};
 use crate::number::{percent, quantity, significant};
 use crate::warning::Code;
 
@@ -33,26 +33,40 @@ pub(super) fn doubts_of_loads(case: &Case, begin: f64, mesh: &Mesh, bodies: &[Ow
     doubts
 }
 
-/// Reactions of whole bodies: those of all supports together, which balance each other.
-pub(super) fn whole_reactions(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+/// Reactions that are not those of one support: of a whole body, whose supports balance each other, or of a group most of which is free.
+pub(super) fn odd_reactions(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+    let by_place = case.supports.iter().any(|support| support.on.within.is_some());
+    let odd = |group: &Spanned<String>| {
+        let nodes = mesh.group_nodes(&group.value);
+        let of_support = |support: &Support| {
+            let own = support.on.group.as_ref().map(|group| mesh.group_nodes(&group.value)).unwrap_or_default();
+            own.into_iter().filter(|node| nodes.binary_search(node).is_ok()).collect::<Vec<u32>>()
+        };
+        let held: Vec<(&str, Vec<u32>)> =
+            case.supports.iter().map(|support| (support.on.label(), of_support(support))).collect();
+        let (first, _) = held.iter().find(|(_, nodes)| !nodes.is_empty())?;
+        let other = held.iter().find(|(label, nodes)| label != first && !nodes.is_empty());
+        let is_body = bodies.iter().any(|body| body.solid.group.value == group.value);
+        if let Some((other, _)) = other.filter(|_| is_body) {
+            return Some((
+                format!("it is the sum of those at \"{first}\" and \"{other}\", which balance each other"),
+                "name the group of one support",
+            ));
+        }
+        let mut count: Vec<u32> = held.into_iter().flat_map(|(_, nodes)| nodes).collect();
+        count.sort_unstable();
+        count.dedup();
+        (2 * count.len() < nodes.len()).then(|| {
+            let found = format!("{} of its {} nodes are held, and it is theirs alone", count.len(), nodes.len());
+            (found, "name the group of the support")
+        })
+    };
     let doubt = |probe: &Probe| {
         let ProbeKind::Reaction { on, .. } = &probe.kind else { return None };
-        let group = on.group.as_ref().filter(|_| on.within.is_none())?;
-        let body = bodies.iter().find(|body| body.solid.group.value == group.value)?;
-        let holds = |support: &&Support| {
-            let nodes = support.on.group.as_ref().map(|group| mesh.group_nodes(&group.value));
-            nodes.is_none_or(|nodes| nodes.iter().any(|node| body.nodes.binary_search(node).is_ok()))
-        };
-        let held: Vec<&Support> = case.supports.iter().filter(holds).collect();
-        let first = held.first()?.on.label();
-        let other = held.iter().find(|support| support.on.label() != first)?;
-        let found = format!(
-            "= \"{}\": its reaction is the sum of those at \"{first}\" and \"{}\", which balance each other",
-            group.value,
-            other.on.label()
-        );
-        let note = Diagnostic::warning(Code::WholeReaction, &group.place, found);
-        Some(note.remedy("name the group of one support"))
+        let group = on.group.as_ref().filter(|_| on.within.is_none() && !by_place)?;
+        let (found, remedy) = odd(group)?;
+        let found = format!("= \"{}\" is no support: {found}", group.value);
+        Some(Diagnostic::warning(Code::Reaction, &group.place, found).remedy(remedy))
     };
     case.probes.iter().filter_map(doubt).collect()
 }

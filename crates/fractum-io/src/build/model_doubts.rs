@@ -10,8 +10,8 @@ use crate::number::{grouped, percent, quantity};
 use crate::warning::Code;
 
 use super::body_doubts::{Own, thin, unheld};
-use super::load_doubts::{doubts_of_loads, whole_reactions};
-use super::meeting_doubts::{coincident, meetings, missing, overlapping};
+use super::load_doubts::{doubts_of_loads, odd_reactions};
+use super::meeting_doubts::{coincident, meetings, missing, overlapping, sunk};
 
 /// Poisson's ratio above which linear elements are too stiff.
 const LOCKING: f64 = 0.45;
@@ -48,12 +48,13 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     }
     doubts.extend(meets);
     doubts.extend(missing(case, mesh, &bodies));
+    doubts.extend(sunk(case, mesh, &bodies));
     doubts.extend(unheld(case, mesh, &bodies));
     doubts.extend(bodies.iter().filter_map(|body| thin(case, mesh, body)));
     doubts.extend(unequal_plates(mesh, &bodies));
     doubts.extend(bodies.iter().filter_map(|body| locking(case, body)));
     doubts.extend(bodies.iter().filter_map(|body| thickness(case, body)));
-    doubts.extend(whole_reactions(case, mesh, &bodies));
+    doubts.extend(odd_reactions(case, mesh, &bodies));
     let mut begin = 0.0;
     for stage in std::iter::once(case).chain(&case.later) {
         doubts.extend(suctions(stage, mesh));

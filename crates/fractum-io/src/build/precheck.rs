@@ -86,6 +86,10 @@ impl Context<'_> {
                 });
             if let Some(near) = nearest(&group.value, names.iter().copied()) {
                 diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
+            } else if names.is_empty() && self.case.mesh.is_some() {
+                diagnostic = diagnostic.remedy(
+                    "leave group out for a body that is the whole mesh, and choose places by where; or save physical groups",
+                );
             }
             self.diagnostics.push(diagnostic);
         }
@@ -93,7 +97,7 @@ impl Context<'_> {
 
     /// Whether the mesh names several groups that a body may be made of.
     fn has_several_bodies(&self) -> bool {
-        let solid = !self.mesh.tetrahedra.is_empty();
+        let solid = self.mesh.tetrahedron_count() > 0;
         let dimension = if solid { 3 } else { 2 };
         let groups = self.mesh.groups.iter();
         groups.filter(|group| group.dimension == dimension && group.name != WHOLE_MESH).count() > 1
