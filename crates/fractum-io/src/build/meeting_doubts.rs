@@ -154,7 +154,7 @@ fn share_within<const N: usize>(
     found.into_iter().filter(|found| *found).count() as f64 / looked * count as f64 / elements.len().max(1) as f64
 }
 
-/// Whether a triangle or a tetrahedron holds a point inside.
+/// Whether a triangle or a tetrahedron holds a point.
 fn holds<const N: usize>(corners: &[Vec3; N], x: &Vec3) -> bool {
     let size = |corners: &[Vec3; N]| {
         let [a, b] = [1, 2].map(|corner| corners[corner] - corners[0]);
@@ -162,11 +162,13 @@ fn holds<const N: usize>(corners: &[Vec3; N], x: &Vec3) -> bool {
         a.cross(&b).dot(&across)
     };
     let whole = size(corners);
-    (0..N).all(|corner| {
+    // A place on a face belongs to both elements.
+    let inside = |corner: usize| {
         let mut with = *corners;
         with[corner] = *x;
-        size(&with) * whole > 0.0
-    })
+        size(&with) * whole >= 0.0
+    };
+    whole != 0.0 && (0..N).all(inside)
 }
 
 /// Tools that are moved, and meet nothing on their way.
