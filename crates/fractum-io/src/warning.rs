@@ -65,6 +65,20 @@ codes! {
     ThinMesh = "thin-mesh",
     /// Plane bodies with common nodes that differ in thickness or plane state.
     UnequalPlates = "unequal-plates",
+    /// A plane body without a thickness.
+    Thickness = "thickness",
+    /// A test that lasts few passages of a wave.
+    FastLoading = "fast-loading",
+    /// A load that the run does not see to its end.
+    EndsEarly = "ends-early",
+    /// A pulse whose front is shorter than the elements.
+    ShortPulse = "short-pulse",
+    /// A held side that sends back the wave of a pulse.
+    Reflections = "reflections",
+    /// A tool that meets nothing.
+    Misses = "misses",
+    /// A reaction that is not that of one support.
+    Reaction = "reaction",
     /// A Poisson's ratio at which elements lock.
     Locking = "locking",
     /// A pressure that pulls.

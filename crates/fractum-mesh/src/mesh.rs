@@ -88,6 +88,18 @@ impl Mesh {
         self.groups.iter().map(|group| group.name.as_str()).filter(|name| seen.insert(*name)).collect()
     }
 
+    /// Adds a group of all tetrahedra, or of all plane elements where there are none.
+    pub fn add_group_of_all(&mut self, name: &str) {
+        let all = |count: usize| (0..count as u32).collect();
+        let mut group = Group { name: name.to_owned(), dimension: 3, tag: i32::MAX, ..Group::default() };
+        if self.tetrahedra.is_empty() {
+            (group.dimension, group.triangles, group.quads) = (2, all(self.triangles.len()), all(self.quads.len()));
+        } else {
+            group.tetrahedra = all(self.tetrahedra.len());
+        }
+        self.groups.push(group);
+    }
+
     /// The nodes of all elements in the groups of that name, ascending, each once.
     pub fn group_nodes(&self, name: &str) -> Vec<u32> {
         let mut nodes = Vec::new();

@@ -71,5 +71,5 @@ pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::{Phase, StepReport};
 pub use subcycling::SubcyclingState;
 pub use time_function::TimeFunction;
-pub use velocity_station::{PeakVelocity, VelocityStation};
+pub use velocity_station::{PeakVelocity, StationPlace, VelocityStation};
 pub use watch::{Notice, Noticed, Site};

@@ -6,12 +6,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::clock::Clock;
 
-/// A place of solids at a distance from a hole.
+/// Places of solids near each other, of which the one that moves fastest counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VelocityStation {
-    /// Its nodes, at least one.
-    pub nodes: Vec<u32>,
-    /// Their mean place without load [m].
+    /// Its places, at least one, nearest to the hole first.
+    pub places: Vec<StationPlace>,
+}
+
+/// A node at a distance from a hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StationPlace {
+    /// The node.
+    pub node: u32,
+    /// Its place without load [m].
     pub place: Vec3,
     /// Distance from the hole [m].
     pub distance: f64,
@@ -20,23 +27,22 @@ pub struct VelocityStation {
 /// Largest velocity so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PeakVelocity {
-    /// Magnitude of the velocity, mean over the nodes [m/s].
+    /// Magnitude of the velocity [m/s].
     pub velocity: f64,
     /// When it was that large first [s].
     pub time: f64,
+    /// Which of the places of the station has it.
+    pub place: u32,
 }
 
 impl VelocityStation {
-    /// Mean magnitude of the velocity of its nodes [m/s].
-    pub fn speed(&self, solid: &Solid) -> f64 {
-        self.nodes.iter().map(|&node| solid.velocity[node as usize].norm()).sum::<f64>() / self.nodes.len() as f64
-    }
-
-    /// Takes over the velocity of the last step, which belongs to its middle, where it is larger.
+    /// Takes over the velocity of the last step, which belongs to its middle, where it is larger at one of the nodes.
     pub fn watch(&self, solid: &Solid, clock: &Clock, peak: &mut PeakVelocity) {
-        let velocity = self.speed(solid);
-        if velocity > peak.velocity {
-            *peak = PeakVelocity { velocity, time: clock.time - 0.5 * clock.dt_before };
+        for (place, own) in (0..).zip(&self.places) {
+            let velocity = solid.velocity[own.node as usize].norm();
+            if velocity > peak.velocity {
+                *peak = PeakVelocity { velocity, time: clock.time - 0.5 * clock.dt_before, place };
+            }
         }
     }
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fractum_io::build::{SolidDivision, cannot_divide, divide, held_bodies};
-use fractum_io::case::model::MeshSource;
-use fractum_io::case::{Case, Diagnostic, Diagnostics, Place};
+use fractum_io::case::model::{MeshSource, WHOLE_MESH};
+use fractum_io::case::{Case, Diagnostic, Diagnostics, Place, refuse_endless};
 use fractum_io::memory;
 use fractum_mesh::{JoinError, Mesh, WholeMesh, halved, joined, scrambled};
 use fractum_parallel::{Exchange, gather};
@@ -127,6 +127,7 @@ fn read_files(source: &MeshSource, processes: Processes) -> Result<(Mesh, Vec<u1
 }
 
 fn read_file(source: &MeshSource, file: &Path, processes: Processes) -> Result<(Mesh, u128), Failure> {
+    refuse_endless(file).map_err(|error| fail(source, format!("= \"{}\" {error}", file.display()), ""))?;
     // The file and the mesh that is read from it, which is about as large.
     let length = fs::metadata(file).map_or(0, |known| known.len());
     memory::require(2 * length * processes.here as u64, format!("reading {}", file.display()))?;
@@ -149,8 +150,11 @@ fn read_file(source: &MeshSource, file: &Path, processes: Processes) -> Result<(
         let error = Diagnostic::error(&place, found).remedy(format!("set parts = {cut}, or save all parts at once"));
         return Err(Failure::Input(Diagnostics(vec![error])));
     }
-    let mesh =
+    let mut mesh =
         fractum_mesh::read_mesh(&bytes).map_err(|error| fail(source, format!(": {}: {error}", file.display()), ""))?;
+    if source.is_one_body {
+        mesh.add_group_of_all(WHOLE_MESH);
+    }
     Ok((mesh, xxh3_128(&bytes)))
 }
 

@@ -9,7 +9,9 @@ use fractum_io::build::PpvStations;
 use fractum_io::case::model::{Case, Output, ProbeExpression, ProbeInput, ProbeKind, Take, load_of};
 use fractum_io::history::History;
 use fractum_io::vtk::{Collection, FrameWriter};
-use fractum_scene::{EnergyKind, EnergyRole, PeakVelocity, Probe, ProbedScene, Scene, VelocityStation, Watched};
+use fractum_scene::{
+    EnergyKind, EnergyRole, PeakVelocity, Probe, ProbedScene, Scene, StationPlace, VelocityStation, Watched,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::columns::{columns, no_probes};
@@ -163,7 +165,8 @@ impl Recorder {
     pub(crate) fn watch_points(&mut self, scene: &Scene) -> Watched {
         let (mut watched, fetches) = points_of_probes(&self.probes, scene);
         self.fetches = fetches;
-        let stations = self.ppv.iter().flat_map(|of| &of.stations).flat_map(|station| &station.nodes);
+        let stations =
+            self.ppv.iter().flat_map(|of| &of.stations).flat_map(|station| &station.places).map(|own| own.node);
         watched.nodes.extend(stations);
         if self.case.output.fields.reaction {
             let held =
@@ -176,12 +179,10 @@ impl Recorder {
 
     /// Largest velocities against distance, with their laws.
     pub(crate) fn attenuations(&self) -> Vec<Attenuation> {
-        let station = |of: &VelocityStation, peak: &PeakVelocity, scale: f64| Station {
-            place: of.place.into(),
-            distance: of.distance,
-            scaled_distance: of.distance / scale,
-            velocity: peak.velocity,
-            time: peak.time,
+        let station = |of: &VelocityStation, peak: &PeakVelocity, scale: f64| {
+            let StationPlace { place, distance, .. } = of.places[peak.place as usize];
+            let (velocity, time) = (peak.velocity, peak.time);
+            Station { place: place.into(), distance, scaled_distance: distance / scale, velocity, time }
         };
         let table = |(of, peaks): (&PpvStations, &Vec<PeakVelocity>)| {
             let stations = of.stations.iter().zip(peaks).map(|(own, peak)| station(own, peak, of.scale));

@@ -83,12 +83,25 @@ fn the_search_for_a_strength_ends_by_a_signal() {
 }
 
 #[test]
-fn reading_ends_by_a_signal() {
+fn what_may_never_end_is_refused_at_once() {
     let place = Workplace::new(BREAKING_BAR);
     fs::remove_file(place.path("bar.msh")).unwrap();
     make_pipe(&place.path("bar.msh"));
-    ends_by(&place, &["check", "case.toml"], "TERM");
-    ends_by(&place, &["mesh", "info", "bar.msh"], "INT");
+    make_pipe(&place.path("pipe.toml"));
+    fs::write(place.path("endless.toml"), BREAKING_BAR.replace("bar.msh", "/dev/zero")).unwrap();
+    for arguments in [
+        &["check", "case.toml"][..],
+        &["mesh", "info", "bar.msh"],
+        &["check", "pipe.toml"],
+        &["run", "endless.toml", "-o", "out"],
+        &["mesh", "info", "/dev/zero"],
+        &["check", "/dev/urandom"],
+        &["study", "pipe.toml"],
+    ] {
+        let ended = place.fractum(arguments);
+        let right = ended.code == Some(1) && ended.stderr.contains("is a device or a pipe, which may never end");
+        assert!(right, "{arguments:?}: {ended:?}");
+    }
 }
 
 #[test]

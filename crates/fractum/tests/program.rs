@@ -15,6 +15,7 @@ mod heat;
 mod interfaces;
 mod interrupt;
 mod loose;
+mod meant;
 mod mesh;
 mod new;
 mod parts;

@@ -9,7 +9,7 @@ use crate::common::{Workplace, history, mesh_bytes, run};
 use crate::warnings::listed;
 
 /// A bead between a floor and a press, or shot at the floor.
-const BEAD: &str = r#"fractum = 1
+pub(crate) const BEAD: &str = r#"fractum = 1
 [materials.stuff]
 density = "2500 kg/m^3"
 young_modulus = "5 MPa"

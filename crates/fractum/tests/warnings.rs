@@ -124,7 +124,7 @@ fn strict_makes_warnings_errors() {
 }
 
 /// A bar in space or in the plane, right as it stands.
-const BAR: &str = r#"fractum = 1
+pub(crate) const BAR: &str = r#"fractum = 1
 [mesh]
 file = "bar.msh"
 [materials.stone]
@@ -153,7 +153,7 @@ const GRAVITY: &str = "[[loads]]\ngravity = { z = \"-9.81 m/s^2\" }\n[solver]";
 const DAMAGE: &str = "[materials.stone.damage]\ncriterion = \"rankine\"\ntensile_strength = \"3 MPa\"\nfracture_energy = \"100 J/m^2\"\n[[bodies]]";
 
 /// Moves the elements of the far half into a group of their own; `apart` gives that half nodes of its own.
-fn halves(mut mesh: Mesh, apart: bool) -> Mesh {
+pub(crate) fn halves(mut mesh: Mesh, apart: bool) -> Mesh {
     let middle = 0.5 * (mesh.bounding_box().0.x + mesh.bounding_box().1.x);
     let twins = (apart).then(|| {
         let count = mesh.nodes.len() as u32;
@@ -214,14 +214,14 @@ fn second(keys: &str) -> String {
 }
 
 /// A mistake: mesh, what replaces what, and the code that tells it; those that need a run say so.
-struct Mistake {
+pub(crate) struct Mistake {
     mesh: Mesh,
     edits: Vec<(&'static str, String)>,
     code: &'static str,
     runs: bool,
 }
 
-fn mistakes() -> Vec<Mistake> {
+pub(crate) fn mistakes() -> Vec<Mistake> {
     let [checked, moving] = [false, true].map(|runs| {
         move |code: &'static str, mesh: Mesh, edits: &[(&'static str, &str)]| {
             let edits = edits.iter().map(|(old, new)| (*old, (*new).to_owned())).collect();
@@ -330,9 +330,8 @@ fn mistakes_are_told_with_their_code() {
     assert!(missed.is_empty(), "{}", missed.join("\n"));
 }
 
-#[test]
-fn quadrilaterals_of_a_plane_body_are_refused() {
-    let mut mesh = plate();
+/// A plate, one of whose cells is a quadrilateral.
+pub(crate) fn quads(mut mesh: Mesh) -> Mesh {
     let body = mesh.groups.iter().position(|group| group.name == "body").unwrap();
     let [first, second] = [mesh.triangles[0], mesh.triangles[1]];
     let corner = *second.iter().find(|node| !first.contains(node)).unwrap();
@@ -343,6 +342,12 @@ fn quadrilaterals_of_a_plane_body_are_refused() {
     mesh.quad_tags = vec![99_999];
     mesh.groups[body].quads = vec![0];
     mesh.groups[body].triangles.retain(|&element| element > 1);
+    mesh
+}
+
+#[test]
+fn quadrilaterals_of_a_plane_body_are_refused() {
+    let mesh = quads(plate());
     let place = Workplace::with_mesh(&BAR.replace("PLANE", "xy"), &mesh_bytes(&mesh, MshFormat::V4_1Binary));
     let ended = place.fractum(&["check", "case.toml"]);
     let right = ended.stderr.contains("1 of its 63 elements are quadrilaterals");

@@ -26,7 +26,7 @@ pub(super) struct Own<'a> {
 }
 
 /// Bodies that hang together by common nodes, as the number of each one's first.
-fn pieces(bodies: &[Own]) -> Vec<usize> {
+pub(super) fn pieces(bodies: &[Own]) -> Vec<usize> {
     let mut piece: Vec<usize> = (0..bodies.len()).collect();
     for index in 1..bodies.len() {
         for before in 0..index {
@@ -38,23 +38,6 @@ fn pieces(bodies: &[Own]) -> Vec<usize> {
         }
     }
     piece
-}
-
-/// Plane solids that could meet, and pass through each other.
-pub(super) fn meetings(case: &Case, bodies: &[Own]) -> Option<Diagnostic> {
-    if case.solver.kind != SolverKind::Explicit || !bodies.iter().any(|body| body.plane) {
-        return None;
-    }
-    // Meshes that a command makes may not be there yet.
-    if bodies.iter().any(|body| body.nodes.is_empty()) {
-        return None;
-    }
-    let pieces = pieces(bodies);
-    let other = pieces.iter().position(|piece| *piece != 0)?;
-    let [first, second] = [&bodies[0], &bodies[other]].map(|body| &body.name.value);
-    let found = format!("= \"{second}\": it has no nodes in common with \"{first}\", and plane solids do not touch");
-    let note = Diagnostic::warning(Code::NoContact, &bodies[other].name.place, found);
-    Some(note.remedy("they pass through each other where they meet: make one of them rigid, or model both in space"))
 }
 
 /// What moves or loads a piece at one place.
@@ -94,13 +77,7 @@ pub(super) fn unheld(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnos
     if 2 * one.nodes.len() > whole {
         return None;
     }
-    let (low, high) = extent(mesh, bodies);
-    let speed = |body: &Own| {
-        let material = &case.materials[body.solid.material];
-        (material.young_modulus / material.density).sqrt()
-    };
-    let slowest = bodies.iter().map(speed).fold(f64::INFINITY, f64::min);
-    let passage = (high - low).norm() / slowest;
+    let passage = passage(case, mesh, bodies);
     if case.solver.end < PASSAGES * passage {
         return None;
     }
@@ -113,7 +90,21 @@ pub(super) fn unheld(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnos
     Some(note.remedy("support the bodies elsewhere; what is thrown needs an initial_velocity"))
 }
 
-fn extent(mesh: &Mesh, bodies: &[Own]) -> (Vec3, Vec3) {
+/// Speed of a wave along a bar of the material of a body [m/s].
+pub(super) fn wave_speed(case: &Case, body: &Own) -> f64 {
+    let material = &case.materials[body.solid.material];
+    (material.young_modulus / material.density).sqrt()
+}
+
+/// Time that a wave needs to pass through all bodies [s].
+pub(super) fn passage(case: &Case, mesh: &Mesh, bodies: &[Own]) -> f64 {
+    let (low, high) = extent(mesh, bodies);
+    let slowest = bodies.iter().map(|body| wave_speed(case, body)).fold(f64::INFINITY, f64::min);
+    (high - low).norm() / slowest
+}
+
+/// The box around some bodies [m].
+pub(super) fn extent(mesh: &Mesh, bodies: &[Own]) -> (Vec3, Vec3) {
     let infinite = Vec3::repeat(f64::INFINITY);
     let places = bodies.iter().flat_map(|body| &body.nodes).map(|&node| mesh.nodes[node as usize]);
     places.fold((infinite, -infinite), |(low, high), x| (low.inf(&x), high.sup(&x)))

@@ -12,6 +12,8 @@ mod gas;
 mod gauges;
 mod heat;
 mod in_situ;
+mod load_doubts;
+mod meeting_doubts;
 mod model_doubts;
 mod ppv;
 mod precheck;

@@ -1,21 +1,18 @@
 //! Is this the model that was meant? Doubts about what mesh and case make together.
 
-use std::collections::BTreeMap;
-
 use fractum_fem::Plane;
 use fractum_math::Vec3;
 use fractum_mesh::{Group, Mesh};
-use fractum_scene::ContactParameters;
 
-use crate::case::model::{BodyKind, Case, GroupUse, LoadKind, Motion, SolverKind};
+use crate::case::model::{BodyKind, Case, GroupUse, Load, LoadKind, Motion, Probe, ProbeKind, SolverKind};
 use crate::case::{Diagnostic, Spanned, TimeFunction};
 use crate::number::{grouped, percent, quantity};
 use crate::warning::Code;
 
-use super::body_doubts::{Own, meetings, thin, unheld};
+use super::body_doubts::{Own, thin, unheld};
+use super::load_doubts::{doubts_of_loads, odd_reactions};
+use super::meeting_doubts::{coincident, meetings, missing, overlapping, sunk};
 
-/// Distance of two nodes that lie in one place, over the size of the mesh.
-const COINCIDENT: f64 = 1e-7;
 /// Poisson's ratio above which linear elements are too stiff.
 const LOCKING: f64 = 0.45;
 /// Stress of the wave of a jump over the strength, above which the jump shows in what breaks.
@@ -41,18 +38,29 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
         .collect();
     let mut doubts: Vec<Diagnostic> = left_out(case, mesh, &bodies).into_iter().collect();
     doubts.extend(beyond_bodies(case, mesh, &bodies));
-    let coincident = coincident(case, mesh, &bodies);
-    if coincident.is_empty() {
+    // What lies within another body is told, and not also that it touches.
+    let mut meets = overlapping(mesh, &bodies);
+    if meets.is_empty() {
+        meets = coincident(case, mesh, &bodies);
+    }
+    if meets.is_empty() {
         doubts.extend(meetings(case, &bodies));
     }
-    doubts.extend(coincident);
+    doubts.extend(meets);
+    doubts.extend(missing(case, mesh, &bodies));
+    doubts.extend(sunk(case, mesh, &bodies));
     doubts.extend(unheld(case, mesh, &bodies));
     doubts.extend(bodies.iter().filter_map(|body| thin(case, mesh, body)));
     doubts.extend(unequal_plates(mesh, &bodies));
     doubts.extend(bodies.iter().filter_map(|body| locking(case, body)));
+    doubts.extend(bodies.iter().filter_map(|body| thickness(case, body)));
+    doubts.extend(odd_reactions(case, mesh, &bodies));
+    let mut begin = 0.0;
     for stage in std::iter::once(case).chain(&case.later) {
         doubts.extend(suctions(stage, mesh));
         doubts.extend(leaps(stage, mesh, &bodies));
+        doubts.extend(doubts_of_loads(stage, begin, mesh, &bodies));
+        begin = stage.solver.end;
     }
     doubts
 }
@@ -107,53 +115,6 @@ fn beyond_bodies(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
     case.groups_used().iter().filter(|(_, of)| acts(of)).filter_map(|(group, _)| doubt(group)).collect()
 }
 
-/// Bodies whose nodes lie in the same places without being the same, where nothing makes them touch.
-fn coincident(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
-    if bodies.len() < 2 {
-        return Vec::new();
-    }
-    let touches = case.solver.kind == SolverKind::Explicit && !bodies.iter().any(|body| body.plane);
-    // Who says how bodies touch means that they do.
-    let says_how = |body: &Own| case.materials[body.solid.material].contact != ContactParameters::default();
-    let (low, high) = mesh.bounding_box();
-    let within = COINCIDENT * (high - low).norm();
-    // Along a direction in which nodes of a mesh of rows differ.
-    let along = Vec3::new(0.577, 0.743, 0.339);
-    let mut places: Vec<(f64, u32, u32)> = Vec::new();
-    for (index, body) in bodies.iter().enumerate() {
-        places.extend(body.nodes.iter().map(|&node| (along.dot(&mesh.nodes[node as usize]), index as u32, node)));
-    }
-    places.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let mut pairs = BTreeMap::<(u32, u32), (usize, u32)>::new();
-    for (at, &(place, body, node)) in places.iter().enumerate() {
-        let near = places[at + 1..].iter().take_while(|(other, ..)| other - place <= within);
-        for &(_, other, twin) in near {
-            let apart = mesh.nodes[node as usize] - mesh.nodes[twin as usize];
-            if other != body && twin != node && apart.norm() <= within {
-                pairs.entry((body.min(other), body.max(other))).or_insert((0, node)).0 += 1;
-            }
-        }
-    }
-    let doubt = |((first, second), (count, node)): ((u32, u32), (usize, u32))| {
-        let [first, second] = [first, second].map(|index| &bodies[index as usize]);
-        if touches && (says_how(first) || says_how(second)) {
-            return None;
-        }
-        let so = if touches { "they touch there, and are not joined" } else { "nothing joins them" };
-        let at = mesh.nodes[node as usize];
-        let at = [at.x, at.y, at.z].map(|x| quantity(x, "m")).join(", ");
-        let found = format!(
-            "= \"{}\": {count} of its nodes lie on nodes of \"{}\", such as that at ({at}): {so}",
-            second.name.value, first.name.value
-        );
-        let note = Diagnostic::warning(Code::CoincidentNodes, &second.name.place, found);
-        let joined = "mesh both with common nodes (fragment the volumes, or remove duplicate nodes in Gmsh)";
-        let contact = if touches { "; if they only touch, say so by contact in a material" } else { "" };
-        Some(note.remedy(format!("{joined}{contact}")))
-    };
-    pairs.into_iter().filter_map(doubt).collect()
-}
-
 /// Plane bodies with common nodes and two thicknesses or plane states.
 fn unequal_plates(mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
     let plates: Vec<&Own> = bodies.iter().filter(|body| body.plane).collect();
@@ -190,6 +151,23 @@ fn unequal_plates(mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
 /// Whether a plane body is free across its plane.
 fn in_plane_stress(body: &Own) -> bool {
     body.plane && body.solid.plane.as_ref().is_some_and(|own| own.value == Plane::Stress)
+}
+
+/// A plane body without a thickness in a case of forces: it is one metre thick.
+fn thickness(case: &Case, body: &Own) -> Option<Diagnostic> {
+    let force = |load: &Load| matches!(&load.kind, LoadKind::Force { .. });
+    let in_newton = |probe: &Probe| matches!(&probe.kind, ProbeKind::Reaction { .. } | ProbeKind::ContactForce { .. });
+    let forces = case.loads.iter().any(|load| force(load)) || case.probes.iter().any(in_newton);
+    if !body.plane || body.nodes.is_empty() || body.solid.thickness.is_some() || !forces {
+        return None;
+    }
+    let found = format!(
+        "= \"{}\" has no thickness: forces are those of a plate of {}",
+        body.name.value,
+        quantity(body.solid.depth, "m")
+    );
+    let note = Diagnostic::warning(Code::Thickness, &body.name.place, found);
+    Some(note.remedy("set thickness; \"1 m\" says that forces per metre are meant"))
 }
 
 /// A material so incompressible that elements of constant strain are too stiff.

@@ -4,7 +4,7 @@ use fractum_dem::crack_shape::Axis;
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 use fractum_math::elementary::cbrt;
-use fractum_scene::VelocityStation;
+use fractum_scene::{StationPlace, VelocityStation};
 
 use super::Context;
 use super::bodies::Numbering;
@@ -46,14 +46,19 @@ impl Context<'_> {
             return None;
         }
         let station = |nodes: Vec<u32>| {
-            let place = place(&nodes);
-            VelocityStation { distance: distance(&place), place, nodes }
+            let of = |node: u32| {
+                let place = solid.reference[node as usize];
+                StationPlace { node, place, distance: distance(&place) }
+            };
+            let mut places: Vec<StationPlace> = nodes.into_iter().map(of).collect();
+            places.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+            VelocityStation { places }
         };
         let mut stations: Vec<VelocityStation> = sets.into_iter().map(station).collect();
-        stations.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        stations.sort_by(|a, b| a.places[0].distance.total_cmp(&b.places[0].distance));
         let radius =
             wall.iter().map(|&node| distance(&solid.reference[node as usize])).sum::<f64>() / wall.len() as f64;
-        if stations.iter().any(|station| station.distance < 1e-6 * radius) || radius == 0.0 {
+        if stations.iter().any(|station| station.places[0].distance < 1e-6 * radius) || radius == 0.0 {
             let found = format!("= \"{}\": a station lies on the axis or centre of the hole", ppv.hole.value);
             self.error(&ppv.hole.place.clone(), found, "stations at a distance from it");
         }

@@ -6,7 +6,7 @@ use fractum_math::Vec3;
 use fractum_scene::{Domain, Scene};
 
 use super::Context;
-use crate::case::model::{Body, BodyKind, BondLawKind, GroupUse, Motion, ProbeKind, Selection, SolverKind};
+use crate::case::model::{Body, BodyKind, BondLawKind, GroupUse, Motion, ProbeKind, Selection, SolverKind, WHOLE_MESH};
 use crate::case::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
 use crate::number::quantity;
 use crate::warning::Code;
@@ -66,6 +66,11 @@ impl Context<'_> {
         let names = self.mesh.group_names();
         let mut empty: HashMap<&str, bool> = HashMap::new();
         for (group, _) in self.case.groups_used() {
+            if group.value == WHOLE_MESH && self.has_several_bodies() {
+                let list = names.iter().filter(|name| **name != WHOLE_MESH).copied().collect::<Vec<_>>().join(", ");
+                self.error(&group.place, "is missing", format!("one of the physical groups of the mesh: {list}"));
+                continue;
+            }
             if names.contains(&group.value.as_str()) {
                 let nodes = || self.mesh.group_nodes(&group.value);
                 if *empty.entry(&group.value).or_insert_with(|| nodes().is_empty()) {
@@ -81,9 +86,21 @@ impl Context<'_> {
                 });
             if let Some(near) = nearest(&group.value, names.iter().copied()) {
                 diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
+            } else if names.is_empty() && self.case.mesh.is_some() {
+                diagnostic = diagnostic.remedy(
+                    "leave group out for a body that is the whole mesh, and choose places by where; or save physical groups",
+                );
             }
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// Whether the mesh names several groups that a body may be made of.
+    fn has_several_bodies(&self) -> bool {
+        let solid = self.mesh.tetrahedron_count() > 0;
+        let dimension = if solid { 3 } else { 2 };
+        let groups = self.mesh.groups.iter();
+        groups.filter(|group| group.dimension == dimension && group.name != WHOLE_MESH).count() > 1
     }
 
     /// Plane bodies are of triangles alone.

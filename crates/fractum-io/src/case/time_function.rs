@@ -1,7 +1,7 @@
 //! Functions of time and position for supports and loads.
 
 use fractum_math::Vec3;
-use fractum_math::elementary::{exp, exp_m1, sin};
+use fractum_math::elementary::{exp, exp_m1, ln, sin};
 
 use super::expression::Program;
 
@@ -115,6 +115,39 @@ impl TimeFunction {
             | Self::HalfSine { .. }
             | Self::DoubleExponential { .. }
             | Self::LinearExponential { .. } => true,
+        }
+    }
+
+    /// Instants [s] at which a pulse begins and is largest; none of other functions.
+    pub fn rise(&self) -> Option<[f64; 2]> {
+        match *self {
+            Self::Constant(_) | Self::Ramp(_) | Self::SmoothRamp(_) | Self::Expression(_) => None,
+            Self::Triangle { start, rise, .. } | Self::LinearExponential { start, rise, .. } => {
+                Some([start, start + rise])
+            }
+            Self::HalfSine { start, duration, .. } => Some([start, start + 0.5 * duration]),
+            Self::DoubleExponential { decay, rise, start, .. } => {
+                Some([start, start + ln(rise / decay) / (rise - decay)])
+            }
+            Self::Delayed(delay, ref function) => function.rise().map(|times| times.map(|time| time + delay)),
+        }
+    }
+
+    /// Last instant of a table [s], and how far its value goes after another instant, over its largest value; none of other functions.
+    pub fn rest_of_table(&self, after: f64) -> Option<(f64, f64)> {
+        match self {
+            Self::Ramp(points) | Self::SmoothRamp(points) => {
+                let (last, _) = *points.last()?;
+                let present = self.value(after, Vec3::zeros());
+                let largest = points.iter().fold(0.0f64, |largest, (_, value)| largest.max(value.abs()));
+                let rest = points.iter().filter(|(time, _)| *time > after);
+                let way = rest.fold(0.0f64, |way, (_, value)| way.max((value - present).abs()));
+                Some((last, if largest > 0.0 { way / largest } else { 0.0 }))
+            }
+            Self::Delayed(delay, function) => {
+                function.rest_of_table(after - delay).map(|(last, way)| (last + delay, way))
+            }
+            _ => None,
         }
     }
 
@@ -261,6 +294,24 @@ mod tests {
             }
         }
         assert_eq!(at(&TimeFunction::Ramp(vec![(1.0, 3.0)]), 0.0), 3.0);
+    }
+
+    #[test]
+    fn pulses_tell_their_rise_and_tables_what_is_left_of_them() {
+        let pulse = TimeFunction::double_exponential(7.0, 2.0, 9.0, 1.0).unwrap();
+        let linear = TimeFunction::LinearExponential { peak: 7.0, start: 1.0, rise: 2.0, decay: 4.0 };
+        for pulse in [pulse, linear] {
+            let [start, peak] = pulse.rise().unwrap();
+            assert!(start == 1.0 && (peak - 3.0).abs() < 1e-6 && (at(&pulse, peak) - 7.0).abs() < 1e-6, "{pulse:?}");
+            let [late, _] = TimeFunction::Delayed(0.5, Box::new(pulse)).rise().unwrap();
+            assert_eq!(late, 1.5);
+        }
+        let table = TimeFunction::Ramp(vec![(0.0, 0.0), (4.0, 8.0), (6.0, 8.0)]);
+        assert_eq!(table.rise(), None);
+        assert_eq!(table.rest_of_table(1.0), Some((6.0, 0.75)));
+        assert_eq!(table.rest_of_table(5.0), Some((6.0, 0.0)));
+        assert_eq!(TimeFunction::Delayed(1.0, Box::new(table)).rest_of_table(2.0), Some((7.0, 0.75)));
+        assert_eq!(TimeFunction::Constant(3.0).rest_of_table(0.0), None);
     }
 
     #[test]

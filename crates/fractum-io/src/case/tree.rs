@@ -161,7 +161,8 @@ pub(super) fn join(table: &str, name: &str) -> String {
     if table.is_empty() { name.to_string() } else { format!("{table}.{name}") }
 }
 
-fn shortened(raw: &str) -> String {
+/// What a message quotes of a text: the beginning of its first line.
+pub(super) fn shortened(raw: &str) -> String {
     let line = raw.lines().next().unwrap_or_default();
     if line.len() == raw.len() && line.chars().count() <= QUOTED {
         return line.to_string();

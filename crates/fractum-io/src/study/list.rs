@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::plan::Study;
-use crate::case::{Diagnostic, Diagnostics, Place};
+use crate::case::{Diagnostic, Diagnostics, Place, refuse_endless};
 use crate::output::history::quoted;
 
 /// A run of a list.
@@ -78,6 +78,7 @@ pub fn read(path: &Path) -> Result<Vec<Listed>, Diagnostics> {
     let wrong = |line: usize, found: String, remedy: &str| {
         Diagnostics(vec![Diagnostic::error(&place(line), found).remedy(remedy)])
     };
+    refuse_endless(path).map_err(|error| wrong(0, error, ""))?;
     let text = fs::read_to_string(path).map_err(|error| wrong(0, format!("cannot be read: {error}"), ""))?;
     let mut rows = parse(&text).map_err(|line| wrong(line, ": a quote is not closed".into(), ""))?.into_iter();
     let Some((_, header)) = rows.next().filter(|(_, header)| header.starts_with(&FIRST.map(String::from))) else {

@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
 
-use crate::case::{Diagnostic, Diagnostics, Dimension, Place, nearest, parse_quantity, place_of};
+use crate::case::{Diagnostic, Diagnostics, Dimension, Place, nearest, parse_quantity, place_of, refuse_endless};
 
 /// The version of the study format this reads.
 const VERSION: u64 = 1;
@@ -118,6 +118,7 @@ pub fn plan(path: &Path, set: &[(String, String)], vary: &[Variation]) -> Result
     let file = path.display().to_string();
     let whole = Place { file: file.clone(), line: 0, column: 0, key: String::new() };
     let fail = |found: String| Diagnostics(vec![Diagnostic::error(&whole, found)]);
+    refuse_endless(path).map_err(&fail)?;
     let text = fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
     let mut study = if is_study(path, &text) {
         read(&text, path)?

@@ -81,7 +81,8 @@ fn measures_that_do_not_fit_are_refused_with_their_place() {
         (probe("wave_speed = { body = \"stone\", wave = \"shear\" }"), "the name of a solid body"),
         (probe("wave_speed = { body = \"rock\", wave = \"shear\" }"), ""),
         (ppv("groups = [\"outer\", \"rim\"]"), "rim"),
-        (ppv("groups = [\"inner\"]"), "a station lies on the axis or centre of the hole"),
+        (ppv("groups = [\"inner\"]"), ""),
+        (ppv("centre = [2, 0, 0]\ngroups = [\"outer\"]"), "a station lies on the axis or centre of the hole"),
         (ppv("line = { from = [1.1, 0, 0], to = [2, 0, 0], stations = 3 }"), ""),
     ];
     for (text, said) in cases {
@@ -103,7 +104,9 @@ fn stations_have_their_distances_in_radii_of_the_hole_or_scaled_by_the_charge() 
         let ppv = &built.ppv[0];
         assert!((ppv.scale - scale).abs() < 1e-9 && ppv.unit == unit, "{} {}", ppv.scale, ppv.unit);
         let (first, last) = (&ppv.stations[0], ppv.stations.last().unwrap());
-        assert!(first.distance < last.distance && (last.distance - 2.0).abs() < 1e-9, "{:?}", ppv.stations);
-        assert!(ppv.stations.iter().all(|of| (of.place.norm() - of.distance).abs() < 1e-9), "{:?}", ppv.stations);
+        let [first, last] = [first, last].map(|station| station.places[0].distance);
+        assert!(first < last && (last - 2.0).abs() < 1e-9, "{:?}", ppv.stations);
+        let mut places = ppv.stations.iter().flat_map(|of| &of.places);
+        assert!(places.all(|of| (of.place.norm() - of.distance).abs() < 1e-9), "{:?}", ppv.stations);
     }
 }

@@ -49,7 +49,11 @@ fn no_case_of_the_gallery_and_no_template_is_doubted() {
         });
         // These have two elements through the thickness, to show what that costs, or far from where they are looked at.
         let is_thin = ["depth-2", "ball-on-edge"].iter().any(|name| path.to_string_lossy().contains(name));
-        let told = doubts(&case, mesh).into_iter().filter(|doubt| !(is_thin && doubt.code == Some(Code::ThinMesh)));
+        // Of the source, on elements of half a front.
+        let is_short = path.to_string_lossy().contains("granite-cylinder/pulse");
+        let known =
+            |code: Option<Code>| is_thin && code == Some(Code::ThinMesh) || is_short && code == Some(Code::ShortPulse);
+        let told = doubts(&case, mesh).into_iter().filter(|doubt| !known(doubt.code));
         doubted.extend(told.map(|doubt| doubt.to_string()));
     }
     assert!(meshes.len() > 60, "{} meshes", meshes.len());

@@ -38,6 +38,7 @@ impl StaticSolver {
         monotone: bool,
     ) -> Result<Option<(f64, usize)>, StepError> {
         let present = scene.clock.time;
+        self.system.begin();
         self.begin(scene, points, growth, by_damage && !monotone);
         let (mut tau, mut found_at) = (longest, present);
         for iteration in 1..=if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] } {
@@ -67,6 +68,11 @@ impl StaticSolver {
             if missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
                 self.largest_forces = self.largest_forces.max(forces);
                 return Ok(Some((present + tau, iteration)));
+            }
+            // Of an elastic step nothing but the linear solution is left to improve.
+            let linear = points.is_empty() && !scene.has_contacts();
+            if linear && !self.system.sharpen().map_err(|error| scene.come_apart(error))? {
+                return Ok(None);
             }
             let Edges { seen, loading, image } = &mut self.edges;
             image.clear();

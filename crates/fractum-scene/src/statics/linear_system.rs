@@ -70,6 +70,22 @@ impl LinearSystem {
         }
     }
 
+    /// As [`System::begin`].
+    pub(super) fn begin(&mut self) {
+        match self {
+            LinearSystem::Plane(system) => system.begin(),
+            LinearSystem::Space(system) => system.begin(),
+        }
+    }
+
+    /// As [`System::sharpen`].
+    pub(super) fn sharpen(&mut self) -> Result<bool, SparseError> {
+        match self {
+            LinearSystem::Plane(system) => system.sharpen(),
+            LinearSystem::Space(system) => system.sharpen(),
+        }
+    }
+
     pub(super) fn factor_entries(&self) -> Option<usize> {
         match self {
             LinearSystem::Plane(system) => system.factor_entries(),

@@ -19,6 +19,9 @@ const DIRECT_IF_REUSED: usize = 250_000;
 const ANCHOR: f64 = 1e-10;
 /// Nodes in a cluster of the coarse space.
 const CLUSTER: usize = 64;
+/// Times that the tolerance of an iteration may be sharpened within a step, and by how much.
+const SHARPENED: u32 = 2;
+const SHARPER: f64 = 1e-3;
 /// Iterations after which the linear solver gives up.
 const MOST_ITERATIONS: usize = 5000;
 
@@ -49,6 +52,10 @@ pub(super) struct System<const B: usize> {
     places: Vec<[f64; 3]>,
     method: Method<B>,
     tolerance: f64,
+    /// How often the present step has asked for a sharper solution of the iteration.
+    sharpened: u32,
+    /// The factor to which an iteration that is not sharp enough hands over, for the present matrix.
+    handed: Option<Box<Factor>>,
     right: Vec<[f64; B]>,
     solution: Vec<[f64; B]>,
     pub(super) work: LinearWork,
@@ -97,6 +104,8 @@ impl<const B: usize> System<B> {
             places,
             method,
             tolerance,
+            sharpened: 0,
+            handed: None,
             right: zero.clone(),
             solution: zero,
             work: LinearWork::default(),
@@ -124,6 +133,7 @@ impl<const B: usize> System<B> {
         anchored: bool,
     ) -> Result<(), SparseError> {
         self.matrix.clear();
+        self.handed = None;
         let (matrix, pairs) = (&mut self.matrix, &self.pairs);
         solid.for_each_cell(damage, |cell| {
             let mut place = pairs[cell.first_pair..].iter();
@@ -179,12 +189,14 @@ impl<const B: usize> System<B> {
             *to = std::array::from_fn(|a| if self.held[i] >> a & 1 == 1 { 0.0 } else { from[a] });
         }
         self.work.solutions += 1;
-        match &mut self.method {
-            Method::Direct(factor) => {
+        let handed = self.handed.as_mut().filter(|_| self.sharpened > SHARPENED);
+        match (handed, &mut self.method) {
+            (Some(factor), _) | (None, Method::Direct(factor)) => {
                 self.solution.copy_from_slice(&self.right);
                 factor.solve(&mut self.solution);
             }
-            Method::Iterative(preconditioner) => {
+            (None, Method::Iterative(preconditioner)) => {
+                let tolerance = self.tolerance * SHARPER.powi(self.sharpened as i32);
                 let preconditioner = preconditioner.as_mut().expect("the matrix was prepared");
                 self.solution.fill([0.0; B]);
                 let done = conjugate_gradients(
@@ -192,7 +204,7 @@ impl<const B: usize> System<B> {
                     &self.right,
                     &mut self.solution,
                     preconditioner,
-                    self.tolerance,
+                    tolerance,
                     MOST_ITERATIONS,
                 );
                 self.work.iterations += done.iterations;
@@ -205,6 +217,27 @@ impl<const B: usize> System<B> {
             *to = Vec3::from_fn(|a, _| if a < B { from[a] } else { 0.0 });
         }
         Ok(())
+    }
+
+    /// Goes on with the tolerance of the settings, for another step.
+    pub(super) fn begin(&mut self) {
+        self.sharpened = 0;
+    }
+
+    /// Makes the solutions of this step sharper: where stiffnesses differ by a million, what the soft part lacks is nothing beside the
+    /// forces of the stiff one. An iteration that is not sharp enough hands over to a factorisation. Whether there was anything to gain.
+    pub(super) fn sharpen(&mut self) -> Result<bool, SparseError> {
+        if matches!(self.method, Method::Direct(_)) || self.sharpened > SHARPENED {
+            return Ok(false);
+        }
+        self.sharpened += 1;
+        if self.sharpened > SHARPENED && self.handed.is_none() {
+            let mut factor = Box::new(Factor::new(self.matrix.pattern(), &self.places, B)?);
+            factor.refactor(&self.matrix)?;
+            self.work.factorisations += 1;
+            self.handed = Some(factor);
+        }
+        Ok(true)
     }
 
     /// Entries of the factor, or of the matrix where there is none, and whether there is one.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Subcommand, ValueEnum};
 use fractum::{ExitCode, Failure, say};
 use fractum_io::case::model::part_files;
-use fractum_io::case::read_case;
+use fractum_io::case::{read_case, refuse_endless};
 use fractum_mesh::{Mesh, MshFormat, joined, read_mesh, write_msh};
 
 use super::mesh_info::{self, Demand};
@@ -103,6 +103,7 @@ fn read(file: &Path, parts: Option<u32>) -> Result<Mesh, Failure> {
 }
 
 fn read_one(file: &Path) -> Result<Mesh, Failure> {
+    refuse_endless(file).map_err(|error| Failure::input(format!("{} {error}", file.display())))?;
     let bytes =
         fs::read(file).map_err(|error| Failure::input(format!("{}: cannot read the mesh: {error}", file.display())))?;
     read_mesh(&bytes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))

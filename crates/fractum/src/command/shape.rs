@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fractum::Failure;
-use fractum_io::case::{Choice, Dimension, parse_quantity};
+use fractum_io::case::{Choice, Dimension, parse_quantity, refuse_endless};
 use fractum_mesh::read_mesh;
 use fractum_pack::{ClosedSurface, Domain, PackError, PackSize, PackSpec, Packing, pack, pack_certified, read_stl};
 
@@ -134,6 +134,7 @@ fn group_surface(file: &Path, group: Option<&str>) -> Result<ClosedSurface, Fail
 
 /// Reads a file.
 pub(crate) fn read(file: &Path) -> Result<Vec<u8>, Failure> {
+    refuse_endless(file).map_err(|error| Failure::input(format!("{} {error}", file.display())))?;
     fs::read(file).map_err(|error| Failure::input(format!("{}: cannot read: {error}", file.display())))
 }
 

@@ -37,6 +37,9 @@ impl End {
     }
 }
 
+/// Share of the largest value below which a load that has fallen seldom rises above that again.
+const SMALL_DROP: f64 = 0.5;
+
 impl Simulation {
     /// Why there is no further step.
     pub(super) fn last_step(&self) -> String {
@@ -53,8 +56,16 @@ impl Simulation {
         let record = self.recorder.state();
         let (values, time) = (&record.series[stop.probe], record.times.last().copied().unwrap_or(0.0));
         let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let fallen = largest > 0.0 && time >= stop.after && values.last().is_some_and(|&v| v < stop.below * largest);
+        let is_below = |value: &f64| *value < stop.below * largest;
+        let rows_below = values.iter().rev().take_while(|value| is_below(value)).count();
+        // Along a path the load factor may fall.
+        let below = record.times.len().saturating_sub(rows_below);
+        let lasting: f64 = record.times[below..].windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+        let fallen = largest > 0.0 && time >= stop.after && rows_below > 0 && lasting >= stop.lasting;
         let (name, part) = (&self.case.probes[stop.probe].name.value, percent(stop.below));
-        fallen.then(|| format!("{name} fell below {part} of its largest value at {}", self.instant(time)))
+        let what = format!("{name} fell below {part} of its largest value at {}", self.instant(time));
+        let small = stop.below > SMALL_DROP && stop.lasting == 0.0;
+        let further = if small { "; whether it would rise again is not known (stop_when.lasting)" } else { "" };
+        fallen.then(|| format!("{what}{further}"))
     }
 }

@@ -6,6 +6,7 @@ use super::program::{Binary, Op, Program, Unary};
 use super::rules::Rules;
 use super::types::{Names, Type};
 use super::units::unit_after_number;
+use crate::case::tree::shortened;
 use crate::case::unit::{Dimension, Unit};
 use crate::case::{Choice, nearest};
 
@@ -198,7 +199,7 @@ impl<'t> Compiler<'t, '_> {
     fn unknown(&self, name: &str, offset: usize) -> ExpressionError {
         let mut all = self.names.all();
         all.push("pi".to_string());
-        let error = ExpressionError::new(offset, format!("unknown name \"{name}\""));
+        let error = ExpressionError::new(offset, format!("unknown name \"{}\"", shortened(name)));
         match nearest(name, all.iter().map(String::as_str)) {
             _ if Unit::find(name).is_some() => error.remedy("a unit stands right behind its number, as in 2 mm"),
             Some(near) => error.remedy(format!("did you mean \"{near}\"?")),

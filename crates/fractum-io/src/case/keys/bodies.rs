@@ -94,7 +94,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[]", K::Tables, "required", "Bodies, at least one"),
     key("bodies[].name", K::Text, "required", "Name, unique among bodies"),
     key("bodies[].kind", K::Choice(body_kinds), "required", "What the body is"),
-    key("bodies[].group", K::Text, "", "Solid, required there: mesh group of its elements; bonded group: mesh group whose volume its particles fill; rigid group: its facets"),
+    key("bodies[].group", K::Text, "", "Solid: mesh group of its elements, may be left out where the mesh has one body; bonded group: mesh group whose volume its particles fill; rigid group: its facets"),
     key("bodies[].material", K::Text, "", "Name of its material; required but for rigid bodies, which deform in contact with it, and not at all without"),
     key("bodies[].formulation", K::Choice(names::<Formulation>), "\"smoothed\" with damage, else \"standard\"", "Solid: strain and damage on edges, or the plain element"),
     key("bodies[].kinematics", K::Choice(names::<Kinematics>), "\"small\"", "Solid: small rotations, or a frame that turns with each element"),

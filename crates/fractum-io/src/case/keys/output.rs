@@ -32,7 +32,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("output.ppv[].line.from", K::Point(D::LENGTH), "required", "The first"),
     key("output.ppv[].line.to", K::Point(D::LENGTH), "required", "The last"),
     key("output.ppv[].line.stations", K::Integer, "required", "Their number, 1 to 10000"),
-    key("output.ppv[].groups", K::Names, "[]", "Mesh groups, each of which is a station: the mean over its nodes"),
+    key("output.ppv[].groups", K::Names, "[]", "Mesh groups, each of which is a station: the node that moves fastest, at its own place"),
     key("output.gauges[]", K::Tables, "", "Displacement and strain on a grid of places, as image correlation finds them: a file gauges/NAME-NNNNN.csv per frame"),
     key("output.gauges[].name", K::Text, "required", "Name of its files: letters, digits, underscores and hyphens"),
     key("output.gauges[].group", K::Text, "", "Mesh group or set of particles; required without `where`"),

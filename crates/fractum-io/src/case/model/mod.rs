@@ -105,6 +105,9 @@ pub struct CaseSource {
     pub(super) warnings: Vec<Diagnostic>,
 }
 
+/// Group that is all of the mesh, for a body without a `group`.
+pub const WHOLE_MESH: &str = "whole mesh";
+
 /// Where the mesh comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshSource {
@@ -114,6 +117,8 @@ pub struct MeshSource {
     pub parts: Option<usize>,
     /// Length of the mesh's unit [m].
     pub unit: f64,
+    /// Whether a body is all of it: it then has the group [`WHOLE_MESH`].
+    pub is_one_body: bool,
     /// How often all edges are halved.
     pub halvings: u32,
     /// Random moves of inner nodes: share of the shortest edge [-], and seed.

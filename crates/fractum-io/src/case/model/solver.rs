@@ -139,4 +139,6 @@ pub struct StopWhen {
     pub below: f64,
     /// Not before this time [s].
     pub after: f64,
+    /// Time that it must have stayed below [s].
+    pub lasting: f64,
 }

@@ -7,10 +7,10 @@ use super::loose::loose;
 use super::presence::optional;
 use super::rigid::rigid;
 use super::vectors::{condition, field, initial_velocity};
-use crate::case::Diagnostic;
-use crate::case::model::{Body, BodyKind, Material, SolidBody};
+use crate::case::model::{Body, BodyKind, Material, SolidBody, WHOLE_MESH};
 use crate::case::reader::Table;
 use crate::case::unit::Dimension;
+use crate::case::{Diagnostic, Spanned};
 use crate::warning::Code;
 use fractum_fem::{Formulation, Kinematics, Plane};
 
@@ -107,7 +107,11 @@ fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [
 }
 
 fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut [bool]) -> Option<SolidBody> {
-    let group = table.text("group").spanned().required();
+    let group = if table.has("group") {
+        table.text("group").spanned().required()
+    } else {
+        Some(Spanned { value: WHOLE_MESH.to_owned(), place: table.place_below("group") })
+    };
     let material = material_of(table, materials, used);
     let material_here = material.and_then(|index| materials[index].1.as_ref());
     // A material that is wrong itself says nothing about damage.

@@ -32,14 +32,14 @@ mod vectors;
 mod verify;
 
 use std::collections::BTreeMap;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
 
 use super::expression::parse_unit;
 use super::keys::remove_unknown;
 use super::model::{
-    Body, BodyKind, BondedShape, Case, CaseSource, Flows, MeshSource, PackingSource, RigidShape, Verify,
+    Body, BodyKind, BondedShape, Case, CaseSource, Flows, MeshSource, PackingSource, RigidShape, Verify, WHOLE_MESH,
 };
 use super::reader::{Reader, Table};
 use super::scale::Scale;
@@ -193,6 +193,9 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let damping = solver::damping(&table, bodies.as_deref(), !stage.is_empty());
     let probes = probes::read(&table);
     let solver = solver::read(&table, &probes.list, bodies.as_deref());
+    if stage.is_empty() {
+        solver::tell_at_rest(&table, solver.as_ref());
+    }
     let gas = gas::read(&table, solver.as_ref(), !stage.is_empty());
     let heat = heat::read(&table, solver.as_ref(), !stage.is_empty());
     let plots = plots::read(&table, &probes);
@@ -271,7 +274,9 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
         Some(None) => return None,
         known => known.flatten(),
     };
-    Some(Some(MeshSource { file, parts, unit, halvings, scramble }))
+    let whole = |body: &Body| matches!(&body.kind, BodyKind::Solid(solid) if solid.group.value == WHOLE_MESH);
+    let is_one_body = bodies.is_some_and(|bodies| bodies.iter().any(whole));
+    Some(Some(MeshSource { file, parts, unit, is_one_body, halvings, scramble }))
 }
 
 fn table_path(reader: &Reader, file: &str) -> std::path::PathBuf {
@@ -297,9 +302,22 @@ fn unit(table: &Table<'_>, name: &'static str, dimension: Dimension) -> Option<f
     read.given()
 }
 
+/// Refuses what may never end: devices and pipes.
+///
+/// # Errors
+/// What keeps it from being read, in words that follow its name.
+pub fn refuse_endless(path: &Path) -> Result<(), String> {
+    let kind = fs::metadata(path).map(|known| known.file_type());
+    match kind.is_ok_and(|kind| !kind.is_file() && !kind.is_dir()) {
+        true => Err("is a device or a pipe, which may never end; name a file".to_owned()),
+        false => Ok(()),
+    }
+}
+
 /// Contents of a file of reasonable size, or what keeps them from being read.
 fn read_file(path: &Path) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
+    refuse_endless(path)?;
     let file = File::open(path).map_err(|error| format!("cannot be opened: {error}"))?;
     file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|error| format!("cannot be read: {error}"))?;
     if bytes.len() as u64 > LARGEST {

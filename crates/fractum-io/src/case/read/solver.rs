@@ -142,6 +142,17 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     })
 }
 
+/// Tells what has no effect where nothing moves.
+pub(super) fn tell_at_rest(root: &Table<'_>, solver: Option<&Solver>) {
+    let rests = |solver: &Solver| {
+        let moves = |statics: &StaticOptions| statics.no_equilibrium == NoEquilibrium::Motion;
+        solver.kind == SolverKind::Static && !solver.statics.as_ref().is_some_and(moves)
+    };
+    for body in root.tables("bodies").iter().filter(|_| solver.is_some_and(rests)) {
+        body.set_aside("initial_velocity", "with solver.kind = \"static\", where nothing moves");
+    }
+}
+
 /// Refuses what acts on motion alone.
 fn refuse_while_conducting(root: &Table<'_>, table: &Table<'_>) {
     for key in ["step", "time_step", "subcycling", "initial_overlap", "domain", "balance_warning", "balance_stop"] {
@@ -235,8 +246,9 @@ fn stop_when(solver: &Table<'_>, probes: &[ReadProbe]) -> Option<StopWhen> {
     });
     let below = table.quantity("below").between(0.0, 1.0).required();
     let after = table.quantity("after").not_negative().or(0.0);
+    let lasting = table.quantity("lasting").not_negative().or(0.0);
     table.finish("here");
-    Some(StopWhen { probe: probe?, below: below?, after })
+    Some(StopWhen { probe: probe?, below: below?, after, lasting })
 }
 
 /// Frames of fields and rows of the history where nothing is said.

@@ -1,0 +1,185 @@
+//! Is this the model that was meant? A corpus of mistakes, of which `fractum check` tells nearly all with the right words.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use fractum_mesh::generate::structured_rectangle;
+use fractum_mesh::{Mesh, MshFormat};
+
+use fractum_math::Vec3;
+
+use crate::common::{Workplace, bar, mesh_bytes};
+use crate::warnings::{BAR, halves, quads};
+
+const MISTAKES: &str = include_str!("wrong/meant.toml");
+
+/// Mistakes of the corpus that may be missed.
+const MISSED: usize = 0;
+
+/// What is done to a bar that breaks, rests, is heated, struck, or blasted.
+fn cases() -> BTreeMap<&'static str, String> {
+    let support = "[[supports]]\ngroup = \"x+\"\nvelocity = { x = { ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"1 mm/s\"]] } }\n";
+    let end = "end = \"0.3 ms\"";
+    let bar = BAR.replace("PLANE", "xyz");
+    assert!(bar.contains(support) && bar.contains(end));
+    let replaced = |new: &str, at_end: &str| bar.replace(support, new).replace(end, at_end);
+    let damage = "[materials.stone.damage]\ncriterion = \"rankine\"\ntensile_strength = \"3 MPa\"\nfracture_energy = \"100 J/m^2\"\n[[bodies]]";
+    let pull = "[[probes]]\nname = \"pull\"\nreaction = { group = \"x+\", along = \"x\" }\n";
+    let long = "[\"0.1 ms\", \"1 mm/s\"]";
+    let broken = bar
+        .replacen("[[bodies]]", damage, 1)
+        .replace(end, "end = \"3 ms\"")
+        .replace("[output]", &format!("{pull}[output]"));
+    assert!(broken.contains(long));
+    let rest = format!("[[supports]]\ngroup = \"x+\"\ndisplacement = {{ x = \"0.1 mm*t/1 s\" }}\n{pull}");
+    let at_rest = replaced(&rest, "kind = \"static\"\nend = \"1 s\"").replace("history = { every = \"20 us\" }", "");
+    let pulse = "[[loads]]\ngroup = \"y+\"\npressure = { pulse = \"half-sine\", peak = \"2 MPa\", start = \"0 s\", duration = \"100 us\" }\n";
+    let ball = "[[bodies]]\nname = \"ball\"\nkind = \"rigid\"\nshape = \"sphere\"\npoint = [\"20 cm\", \"141 mm\", \"6 cm\"]\nradius = \"20 mm\"\nvelocity = { y = \"-1 m/s\" }\n";
+    let heat = "[materials.stone.thermal]\nconductivity = \"3 W/(m K)\"\nheat_capacity = \"800 J/(kg K)\"\n[[bodies]]";
+    let conditions = "[heat]\ninitial_temperature = \"300 K\"\n[[heat.conditions]]\ngroup = \"x+\"\ntemperature = \"400 K\"\n[solver]";
+    let heated = replaced("", "kind = \"heat\"\nend = \"1000 s\"").replacen("[[bodies]]", heat, 1);
+    let heated = heated.replace("[[supports]]\ngroup = \"x-\"\nfix = \"xyz\"\n", "").replace("[solver]", conditions);
+    BTreeMap::from([
+        ("broken", broken),
+        ("static", at_rest),
+        ("blast", replaced(pulse, "end = \"0.2 ms\"").replace("fix = \"xyz\"", "absorbing = true")),
+        ("tool", replaced(ball, "end = \"2 ms\"")),
+        ("heated", heated.replace("history = { every = \"20 us\" }", "")),
+        ("plate", BAR.replace("PLANE", "xy")),
+        ("bead", crate::told::BEAD.to_owned()),
+        ("bar", bar),
+    ])
+}
+
+fn mesh(name: &str) -> Mesh {
+    let plate = || structured_rectangle([8, 4], [0.4, 0.2], None);
+    let scaled = |by: f64, away: f64| {
+        let mut mesh = bar();
+        mesh.nodes.iter_mut().for_each(|node| *node = *node * by + Vec3::new(away, 0.0, 0.0));
+        mesh
+    };
+    match name {
+        "bar" => bar(),
+        "plate" => plate(),
+        "quads" => quads(plate()),
+        "halves" => halves(bar(), false),
+        "thousandfold" => scaled(1e3, 0.0),
+        "far" => scaled(1.0, 1e8),
+        "shifted" => {
+            let mut mesh = halves(bar(), true);
+            let half = mesh.nodes.len() / 2;
+            mesh.nodes[half..].iter_mut().for_each(|node| node.x -= 0.08);
+            mesh
+        }
+        other => panic!("{other}"),
+    }
+}
+
+#[test]
+fn nearly_all_mistakes_are_told() {
+    let table: toml::Table = MISTAKES.parse().unwrap();
+    let mistakes = table["mistake"].as_array().unwrap();
+    assert!(mistakes.len() + crate::warnings::mistakes().len() >= 120, "{}", mistakes.len());
+    let cases = cases();
+    let place = Workplace::new("");
+    fs::write(place.path("bead.csv"), "0,0,0.01,0.01\n").unwrap();
+    fs::write(place.path("deep.csv"), "0,0,0.005,0.01\n").unwrap();
+    fs::write(place.path("words.csv"), "a bead of ten millimetres\n").unwrap();
+    let mesh_of = |case: &str| if case == "plate" { "plate" } else { "bar" };
+    let checked = |case: &str, name: &str| {
+        fs::write(place.path("bar.msh"), mesh_bytes(&mesh(name), MshFormat::V4_1Binary)).unwrap();
+        let case = if name == "plate" { case.replace("\"xyz\"", "\"xy\"") } else { case.to_owned() };
+        fs::write(place.path("case.toml"), case).unwrap();
+        place.fractum(&["check", "case.toml"])
+    };
+    for (name, case) in &cases {
+        let ended = checked(case, mesh_of(name));
+        let right = ended.code == Some(0) && !ended.stdout.contains("warning: ");
+        assert!(right, "the case {name} that is spoilt is right: {} {}", ended.stdout, ended.stderr);
+    }
+    let mut missed = Vec::new();
+    for mistake in mistakes {
+        let text = |key: &str| mistake.get(key).map(|text| text.as_str().unwrap());
+        let (of, old, new) = (text("of").unwrap(), text("old").unwrap(), text("new").unwrap());
+        let says = text("says").unwrap();
+        assert!(old.is_empty() || cases[of].contains(old), "{of} holds no {old}");
+        let case = if old.is_empty() { cases[of].clone() } else { cases[of].replacen(old, new, 1) };
+        let ended = checked(&case, text("mesh").unwrap_or(mesh_of(of)));
+        let mut lines = ended.stderr.lines().chain(ended.stdout.lines().filter(|line| line.contains("warning: ")));
+        if !lines.any(|line| line.contains(says)) {
+            missed.push(format!("{of}: {old} -> {new}\n  wanted {says}\n  {} {}", ended.stderr, ended.stdout));
+        }
+    }
+    assert!(missed.len() <= MISSED, "{} of {} missed:\n{}", missed.len(), mistakes.len(), missed.join("\n"));
+}
+
+#[test]
+fn a_mesh_without_groups_is_one_body() {
+    let mut mesh = bar();
+    mesh.groups.clear();
+    let by_place = |case: &str| {
+        case.replace("group = \"x-\"", "where = \"x < 1 mm\"").replace("group = \"x+\"", "where = \"x > 399 mm\"")
+    };
+    let case = by_place(&BAR.replace("PLANE", "xyz").replace("group = \"body\"\n", ""));
+    let place = Workplace::with_mesh(&case, &mesh_bytes(&mesh, MshFormat::V2_2Ascii));
+    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet", "--strict"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let with_group = by_place(&BAR.replace("PLANE", "xyz"));
+    let other = Workplace::new(&with_group);
+    assert_eq!(other.fractum(&["run", "case.toml", "-o", "out", "--quiet"]).code, Some(0));
+    let of = |place: &Workplace| crate::common::summary(place, "out")["counts"]["elements"].clone();
+    assert_eq!(of(&place), of(&other));
+    // A group is told to be missing where a body is asked for by a name that the mesh does not know.
+    fs::write(place.path("case.toml"), with_group).unwrap();
+    let ended = place.fractum(&["check", "case.toml"]);
+    assert!(ended.code == Some(1) && ended.stderr.contains("groups there: none; leave group out"), "{}", ended.stderr);
+}
+
+#[test]
+fn the_peak_velocity_of_a_group_is_that_of_its_fastest_node() {
+    let thrown = "group = \"body\"\ninitial_velocity = { y = \"x*1 m/s/40 cm\" }";
+    let stations = "[[output.ppv]]\nname = \"side\"\nhole = \"x-\"\ncentre = [\"-1 m\", 0, 0]\ngroups = [\"y+\"]";
+    let free = BAR.split("[[supports]]").next().unwrap().replace("group = \"body\"", thrown);
+    let case = format!("{free}{stations}\n[solver]\nend = \"5 us\"\n");
+    let place = Workplace::new(&case);
+    let summary = crate::common::run(&place, "out", "1");
+    let station = &summary["ppv"][0]["stations"][0];
+    let [velocity, x] = [&station["velocity"], &station["place"][0]].map(|value| value.as_f64().unwrap());
+    assert!((velocity - 1.0).abs() < 0.02 && (x - 0.4).abs() < 1e-9, "{station}");
+}
+
+#[test]
+fn a_small_drop_before_the_peak_ends_no_run_that_asks_for_a_lasting_one() {
+    let pull = "displacement = { x = { ramp = [[\"0 s\", 0], [\"0.2 s\", \"2 um\"], [\"0.25 s\", \"1 um\"], [\"0.5 s\", \"4 um\"], [\"1 s\", 0]] } }";
+    let case = cases()["static"].replace("displacement = { x = \"0.1 mm*t/1 s\" }", pull);
+    let ended = |stop: &str| {
+        let stop = format!("stop_when = {{ probe = \"pull\", below = 0.7{stop} }}\nend = \"1 s\"");
+        let place = Workplace::new(&case.replace("end = \"1 s\"", &stop));
+        let summary = crate::common::run(&place, "out", "1");
+        let [end, max] =
+            [&summary["time"]["end"], &summary["probes"]["pull"]["max"]].map(|value| value.as_f64().unwrap());
+        (end, max, summary["time"]["reason"].as_str().unwrap().to_owned())
+    };
+    let (early, first, reason) = ended("");
+    assert!(early < 0.26 && reason.contains("whether it would rise again is not known"), "{early} {reason}");
+    let (late, peak, _) = ended(", lasting = \"0.1 s\"");
+    assert!(late > 0.7 && late < 0.9 && (peak / first - 2.0).abs() < 0.02, "{late} {peak} {first}");
+}
+
+#[test]
+fn stiffnesses_that_differ_by_a_million_are_solved_by_iteration_too() {
+    let second = "[materials.hard]\ndensity = 2400\nyoung_modulus = \"1 TPa\"\npoisson_ratio = 0\n[[bodies]]\nname = \"far\"\nkind = \"solid\"\ngroup = \"far\"\nmaterial = \"hard\"\n[[supports]]\ngroup = \"x-\"";
+    let case = cases()["static"].replace("[[supports]]\ngroup = \"x-\"", second).replace("\"30 GPa\"", "\"1 MPa\"");
+    let case = case.replace("poisson_ratio = 0.2", "poisson_ratio = 0").replace("0.1 mm*t", "1 um*t");
+    let pull = |solver: &str| {
+        let case = case.replace("end = \"1 s\"", &format!("linear_solver = \"{solver}\"\nend = \"1 s\""));
+        let place = Workplace::with_mesh(&case, &mesh_bytes(&halves(bar(), false), MshFormat::V4_1Binary));
+        crate::common::run(&place, "out", "1")["probes"]["pull"]["final"].as_f64().unwrap()
+    };
+    // The soft half of 0.2 m takes all of the micrometre.
+    let exact = 1e6 * 0.12 * 0.12 * 1e-6 / 0.2;
+    for solver in ["direct", "iterative"] {
+        let found = pull(solver);
+        assert!((found / exact - 1.0).abs() < 1e-3, "{solver}: {found} for {exact}");
+    }
+}
