@@ -277,15 +277,19 @@ fn strength_text(found: &FoundStrengths) -> Option<String> {
     let mut text = format!("such bodies bear {} \u{b1} {:.1} % in tension", quantity(tension, "Pa"), 100.0 * scatter);
     let kind = found.criterion.kind();
     text += &match found.crushing {
-        Some(Crushing { reached, scatter: crushed, friction_angle: [angle, spread], .. }) => format!(
-            " and {} \u{b1} {:.1} % in compression, {:.1} \u{b1} {:.1} times as much; their friction angle is {:.0} \u{b1} {:.0} deg (standard deviations of three packings)",
-            quantity(reached, "Pa"),
-            100.0 * crushed,
-            reached / tension,
-            reached / tension * (scatter * scatter + crushed * crushed).sqrt(),
-            angle.to_degrees(),
-            spread.to_degrees(),
-        ),
+        Some(Crushing { reached, scatter: crushed, friction_angle, .. }) => {
+            let angle = friction_angle.map(|both| both.map(f64::to_degrees)).map_or_else(
+                || "their friction angle is not measured at rest".to_owned(),
+                |[angle, spread]| format!("their friction angle is {angle:.0} \u{b1} {spread:.0} deg"),
+            );
+            format!(
+                " and {} \u{b1} {:.1} % in compression, {:.1} \u{b1} {:.1} times as much; {angle} (standard deviations of three packings)",
+                quantity(reached, "Pa"),
+                100.0 * crushed,
+                reached / tension,
+                reached / tension * (scatter * scatter + crushed * crushed).sqrt(),
+            )
+        }
         None if kind.slips => "; strength in compression is not calibrated, as no compressive_strength is given".into(),
         None => {
             let name = kind.name;
@@ -294,8 +298,10 @@ fn strength_text(found: &FoundStrengths) -> Option<String> {
             )
         }
     };
-    if found.crushing.is_some_and(|found| found.chains >= SPLITS) {
-        text += "; they split across a compression at a higher load than their strength in tension says";
+    if let Some(Crushing { chains, .. }) = found.crushing.filter(|found| found.chains >= SPLITS) {
+        text += &format!(
+            "; tension of up to {chains:.2} of the compression across it is spared, so that splitting under compression is not calibrated"
+        );
     }
     Some(text)
 }
