@@ -50,17 +50,6 @@ pub enum CalibrateError {
         /// Ratio of the thinnest beams.
         highest: f64,
     },
-    /// A strength in compression that the strength in tension does not allow.
-    #[error(
-        "compressive strength {asked} Pa is out of reach: prisms of such bonds bear {reached:.4e} Pa at the nearest beside this \
-         tensile strength; change one of the two"
-    )]
-    Compression {
-        /// The asked strength [Pa].
-        asked: f64,
-        /// The nearest that was reached [Pa].
-        reached: f64,
-    },
     /// A coordination outside the table of a law.
     #[error("coordination {asked} is outside the law's range {from} to {to} ({convention}); use direct inversion")]
     LawRange {

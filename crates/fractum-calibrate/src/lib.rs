@@ -16,6 +16,7 @@
 //! ```
 
 mod calibrate;
+pub mod crushing;
 mod error;
 mod inversion;
 pub mod lab;

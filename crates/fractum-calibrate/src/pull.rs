@@ -1,4 +1,4 @@
-//! Tension and compression tests to the load peak.
+//! Tension tests to the load peak.
 
 use fractum_dem::FractureCriterion;
 use fractum_dem::criterion::{BeamRankine, EndMoments, Hydrostatic, Level, Principal};
@@ -41,16 +41,7 @@ pub(crate) fn pull(sample: &Sample, asked: f64, criterion: FractureCriterion) ->
         let expected = "a positive number of pascals";
         return Err(CalibrateError::Material { what: "tensile strength", value: asked, expected });
     }
-    to_peak(sample, lab::Failure::Tension, criterion)
-}
-
-/// A test to the load peak.
-pub(crate) fn to_peak(
-    sample: &Sample,
-    test: lab::Failure,
-    criterion: FractureCriterion,
-) -> Result<lab::Broken, CalibrateError> {
     // Strength is asked, not the whole fall of the load.
-    let options = lab::FailureOptions { stop: 0.9, ..lab::FailureOptions::new(test, criterion) };
-    lab::break_sample(sample, test, &options)
+    let test = lab::Failure::Tension;
+    lab::break_sample(sample, test, &lab::FailureOptions { stop: 0.9, ..lab::FailureOptions::new(test, criterion) })
 }

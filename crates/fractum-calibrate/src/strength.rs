@@ -1,13 +1,11 @@
-//! The strengths of a criterion that give a body its strengths in tension and in compression.
+//! The strengths of a criterion that give a body its strength in tension.
 
 use fractum_dem::FractureCriterion;
-use fractum_math::elementary::{exp, ln};
 use fractum_pack::{Convention, Domain, PackSpec, pack};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::lab::Failure;
-use crate::pull::{StrengthCriterion, pull, to_peak};
+use crate::pull::{StrengthCriterion, pull};
 use crate::strength_law::{self, READINGS};
 use crate::{CalibrateError, Micro, Sample, published};
 
@@ -76,7 +74,7 @@ pub struct BondKind {
 
 impl BondKind {
     /// A packing with such bonds; its radii have their dispersion.
-    fn sample(&self, spec: PackSpec) -> Result<Sample, CalibrateError> {
+    pub(crate) fn sample(&self, spec: PackSpec) -> Result<Sample, CalibrateError> {
         let packing = pack(&PackSpec { dispersion: self.dispersion, ..spec })?;
         let mut sample = Sample::new(packing, self.coordination, self.convention)?;
         sample.set_micro(self.micro)?;
@@ -85,83 +83,39 @@ impl BondKind {
 }
 
 /// Particles of the boxes on which strengths are found, and how many of them are broken.
-const STRENGTH_BOXES: (usize, u64) = (5_000, 2);
+const STRENGTH_BOXES: (usize, u64) = (5_000, 3);
 
-/// The factor from the material's strengths to the criterion's own: with all of them times it, boxes of such bonds peak at
-/// the tensile strength `asked` [Pa] of the material.
-///
-/// # Errors
-/// Those of packing, bonding and breaking.
-pub fn strength_factor(bonds: &BondKind, asked: f64, criterion: FractureCriterion) -> Result<f64, CalibrateError> {
-    let (particles, packings) = STRENGTH_BOXES;
-    let mut factor = 0.0;
-    for seed in 1..=packings {
-        let sample = bonds.sample(PackSpec::new(Domain::cuboid(1e-3, 1e-3, 1e-3), particles, seed))?;
-        factor += asked / pull(&sample, asked, criterion)?.strength / packings as f64;
-    }
-    Ok(factor)
-}
-
-/// Particles of the prisms on which strength in compression is found, their edges, and how many of them are pressed.
-const PRISMS: (usize, [f64; 3], u64) = (2_500, [2e-3, 1e-3, 1e-3], 2);
-/// Strength of the first trial over the asked one: slip begins in weak places.
-const FIRST_TRIAL: f64 = 1.3;
-/// Difference from the asked strength at which the search ends, that which is still accepted, and its most trials.
-const CLOSE: f64 = 0.01;
-const ACCEPTED: f64 = 0.05;
-const TRIALS: usize = 5;
-
-/// The strength of a criterion in compression that gives a body the one that is asked.
+/// What takes the strengths of a material to those of a criterion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Crushing {
-    /// The criterion's own [Pa].
-    pub strength: f64,
-    /// What prisms bear with it, mean over the packings [Pa].
-    pub reached: f64,
-    /// Difference between the packings over that mean.
+pub struct Pulling {
+    /// The strengths of the criterion over those of the material.
+    pub factor: f64,
+    /// Scatter of the tensile strength between packings: standard deviation over mean.
     pub scatter: f64,
 }
 
-/// Finds the criterion's strength in compression with which prisms of such bonds, twice as long as wide, bear the strength
-/// `asked` [Pa] between ends that are free to widen.
-///
-/// - `criterion`: with its own strength in tension
+/// Finds the factor from the material's strengths to the criterion's own: with all of them times it, boxes of such bonds peak
+/// at the tensile strength `asked` [Pa] of the material.
 ///
 /// # Errors
-/// [`CalibrateError::Compression`] where the strength in tension does not let them bear so much; those of packing, bonding
-/// and breaking.
-pub fn crushing(bonds: &BondKind, asked: f64, criterion: FractureCriterion) -> Result<Crushing, CalibrateError> {
-    let (particles, [x, y, z], packings) = PRISMS;
-    let prism = |seed: u64| bonds.sample(PackSpec::new(Domain::cuboid(x, y, z), particles, seed));
-    let samples = (1..=packings).into_par_iter().map(prism).collect::<Result<Vec<Sample>, CalibrateError>>()?;
-    let press = |strength: f64| {
-        let criterion = criterion.with_compressive_strength(strength);
-        let one = |sample: &Sample| Ok(to_peak(sample, Failure::Compression, criterion)?.strength);
-        let borne = samples.par_iter().map(one).collect::<Result<Vec<f64>, CalibrateError>>()?;
-        let reached = borne.iter().sum::<f64>() / borne.len() as f64;
-        let (low, high) = borne.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &b| (l.min(b), h.max(b)));
-        Ok::<Crushing, CalibrateError>(Crushing { strength, reached, scatter: (high - low) / reached })
+/// Those of packing, bonding and breaking.
+pub fn pulling(bonds: &BondKind, asked: f64, criterion: FractureCriterion) -> Result<Pulling, CalibrateError> {
+    let (particles, packings) = STRENGTH_BOXES;
+    let factor = |seed: u64| {
+        let sample = bonds.sample(PackSpec::new(Domain::cuboid(1e-3, 1e-3, 1e-3), particles, seed))?;
+        Ok(asked / pull(&sample, asked, criterion)?.strength)
     };
-    let miss = |tried: &Crushing| ln(tried.reached / asked);
-    let (mut best, mut slope) = (press(FIRST_TRIAL * asked)?, 1.0);
-    let mut last = best;
-    for _ in 1..TRIALS {
-        if miss(&best).abs() < CLOSE {
-            break;
-        }
-        let next = press(last.strength * exp((-miss(&last) / slope).clamp(-0.7, 0.7)))?;
-        // Peaks scatter from trial to trial: a slope that few per cent of strength show is none.
-        let way = ln(next.strength / last.strength);
-        if way.abs() > 0.05 {
-            slope = ((miss(&next) - miss(&last)) / way).clamp(0.4, 1.5);
-        }
-        last = next;
-        if miss(&next).abs() < miss(&best).abs() {
-            best = next;
-        }
-    }
-    let Crushing { reached, .. } = best;
-    if miss(&best).abs() < ACCEPTED { Ok(best) } else { Err(CalibrateError::Compression { asked, reached }) }
+    let factors = (1..=packings).into_par_iter().map(factor).collect::<Result<Vec<f64>, CalibrateError>>()?;
+    let (factor, scatter) = spread(&factors);
+    Ok(Pulling { factor, scatter })
+}
+
+/// Mean, and standard deviation over the mean.
+pub(crate) fn spread(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let square: f64 = values.iter().map(|v| (v / mean - 1.0).powi(2)).sum();
+    (mean, (square / (count - 1.0).max(1.0)).sqrt())
 }
 
 #[cfg(test)]

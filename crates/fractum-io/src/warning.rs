@@ -101,6 +101,8 @@ codes! {
     SupportOnTie = "support-on-tie",
     /// A packing that does not meet its certificate.
     Packing = "packing",
+    /// A strength in compression that bonds cannot have beside their strength in tension.
+    BondStrength = "bond-strength",
     /// A checkpoint that could not be read.
     Checkpoint = "checkpoint",
     /// An energy balance that is off.

@@ -96,9 +96,16 @@ pub struct BondedBodies {
 
 /// Makes the bodies of particles of a case ready.
 ///
+/// - `tell`: called before what takes tens of seconds
+///
 /// # Errors
 /// Everything that cannot be packed, bonded or calibrated, with its place.
-pub fn prepare_bodies(case: &Case, mesh: &Mesh, cache: &Cache) -> Result<BondedBodies, Diagnostics> {
+pub fn prepare_bodies(
+    case: &Case,
+    mesh: &Mesh,
+    cache: &Cache,
+    tell: &dyn Fn(&str),
+) -> Result<BondedBodies, Diagnostics> {
     let mut all = BondedBodies::default();
     let mut errors = Vec::new();
     for body in &case.bodies {
@@ -113,7 +120,7 @@ pub fn prepare_bodies(case: &Case, mesh: &Mesh, cache: &Cache) -> Result<BondedB
             }
             _ => continue,
         };
-        let maker = Maker { case, mesh, cache, name: &body.name, bonded };
+        let maker = Maker { case, mesh, cache, tell, name: &body.name, bonded };
         if let Err(error) = maker.make(&mut all) {
             errors.push(*error);
         }
@@ -146,6 +153,7 @@ struct Maker<'a> {
     case: &'a Case,
     mesh: &'a Mesh,
     cache: &'a Cache,
+    tell: &'a dyn Fn(&str),
     name: &'a Spanned<String>,
     bonded: &'a BondedBody,
 }
@@ -164,10 +172,14 @@ impl Maker<'_> {
         }
         let material = self.material();
         let (made, beams_from, coordination) = self.bond(packing)?;
+        let faces = CrackFaces { friction: material.contact.friction, damping_ratio: material.contact.damping_ratio };
         let fracture = match &material.fracture {
-            Some(failure) => Some(self.strengths(&failure.value, &made.sample, made.beams.micro, coordination)?),
+            Some(failure) => {
+                Some(self.strengths(&failure.value, &made.sample, made.beams.micro, coordination, faces)?)
+            }
             None => None,
         };
+        all.warnings.extend(fracture.as_ref().and_then(|found| self.doubt_strength(found)));
         let done = Instant::now();
         all.timings.push(format!(
             "{}: packing {:.2} s, bonds and beams {:.2} s",
@@ -178,7 +190,6 @@ impl Maker<'_> {
         let joints = Joints::Beams(made.beams, beams_from);
         let mass = made.particles.mass.iter().sum();
         all.reports.push(BondedReport { fracture, ..self.report(&made.sample, mass, packing_from, joints) });
-        let faces = CrackFaces { friction: material.contact.friction, damping_ratio: material.contact.damping_ratio };
         let (fraction, volume) = (made.sample.fraction, made.sample.measured_volume());
         let breaks = |found: FoundStrengths| BondFracture {
             criterion: Some(found.criterion),

@@ -15,7 +15,7 @@
 //! use fractum_prepare::{Cache, facets, prepare_bodies};
 //! let case = read_case("cases/bonded-box/tension.toml".as_ref(), &[])?;
 //! let mesh = Mesh::default();
-//! let made = prepare_bodies(&case, &mesh, &Cache::new(Some("cache".into())))?;
+//! let made = prepare_bodies(&case, &mesh, &Cache::new(Some("cache".into())), &|_| {})?;
 //! let built = build_scene(&case, &mesh, made.prepared, facets(&case)?)?;
 //! # Ok::<(), fractum_io::case::Diagnostics>(())
 //! ```

@@ -13,6 +13,7 @@ use crate::course::Course;
 use crate::error::Failure;
 use crate::mesh_files::{JoinedMesh, MeshFiles};
 use crate::plots;
+use crate::terminal::{Stream, print_error};
 use fractum_prepare::{BondedBodies, BondedReport, Cache, Processes, check_memory, choose, facets, prepare_bodies};
 
 /// A case with its mesh and the scene made of both.
@@ -95,7 +96,13 @@ impl Meshed {
         check_before_particles(&case, &mesh.mesh)?;
         plots::check(&case, &columns::possible_columns(&case))?;
         check_memory(&case, &mesh.mesh, processes)?;
-        let made = prepare_bodies(&case, &mesh.mesh, cache)?;
+        // For who waits at a terminal; no part of what a program reads.
+        let tell = |line: &str| {
+            if Stream::Error.width().is_some() {
+                print_error(line);
+            }
+        };
+        let made = prepare_bodies(&case, &mesh.mesh, cache, &tell)?;
         Ok(Prepared { case, mesh, made })
     }
 }

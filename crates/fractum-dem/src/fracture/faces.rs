@@ -8,7 +8,7 @@ use crate::bond::Bonds;
 use crate::particles::Particles;
 
 /// The faces of a crack against one another.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CrackFaces {
     /// Coulomb's coefficient μ ≥ 0.
     pub friction: f64,

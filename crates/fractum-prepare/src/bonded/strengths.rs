@@ -1,73 +1,119 @@
 //! The strengths of a criterion that give a bonded body those of its material.
 
-use fractum_calibrate::strength::{BondKind, Crushing, crushing, strength_factor};
-use fractum_calibrate::{Micro, Sample};
-use fractum_dem::FractureCriterion;
+use fractum_calibrate::crushing::{Crushing, Use, crushing};
+use fractum_calibrate::strength::{BondKind, Pulling, pulling};
+use fractum_calibrate::{CalibrateError, Micro, Sample};
+use fractum_dem::{CrackFaces, FractureCriterion};
 use fractum_io::case::Diagnostic;
-use fractum_io::case::model::BondFailure;
+use fractum_io::case::model::{BondFailure, SolverKind};
+use fractum_io::warning::Code;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use super::{Maker, Origin};
 use crate::cache::key;
 
-/// A criterion with its own strengths.
+/// A criterion with its own strengths, and what bodies bear with it.
 #[derive(Clone, Copy, Debug)]
 pub struct FoundStrengths {
     /// The criterion.
     pub criterion: FractureCriterion,
     /// Where its strengths came from.
     pub origin: Origin,
+    /// What was found in tension, with the strength of bodies [Pa]; none where the strengths are given.
+    pub pulling: Option<(f64, Pulling)>,
     /// What was found in compression; none where that is not calibrated.
     pub crushing: Option<Crushing>,
 }
 
-/// What decides the strengths of a criterion.
-#[derive(Serialize)]
-struct StrengthKey {
+/// Difference from the asked strength in compression that is told.
+const ACCEPTED: f64 = 0.05;
+
+/// What decides the strength of a criterion in tension.
+#[derive(Clone, Copy, Serialize)]
+struct PullingKey {
     bonds: BondKind,
     asked: f64,
     criterion: FractureCriterion,
 }
 
+/// What decides that in compression.
+#[derive(Serialize)]
+struct CrushingKey {
+    pulling: PullingKey,
+    asked: f64,
+    use_of_body: Use,
+}
+
 impl Maker<'_> {
-    /// The criterion with its own strengths: given, kept, or found by breaking boxes of such bonds, and prisms in compression.
+    /// The criterion with its own strengths: given, kept, or found by breaking boxes of such bonds in tension, and prisms in compression.
     pub(super) fn strengths(
         &self,
         failure: &BondFailure,
         sample: &Sample,
         micro: Micro,
         coordination: f64,
+        faces: CrackFaces,
     ) -> Result<FoundStrengths, Box<Diagnostic>> {
+        let criterion = failure.criterion;
         let Some(asked) = failure.tensile_strength else {
-            return Ok(FoundStrengths { criterion: failure.criterion, origin: Origin::Given, crushing: None });
+            return Ok(FoundStrengths { criterion, origin: Origin::Given, pulling: None, crushing: None });
         };
         let (convention, dispersion) = (self.bonded.convention, sample.packing.dispersion);
-        let criterion = failure.criterion;
         let bonds = BondKind { micro, coordination, convention, dispersion };
-        let strength_key = key(&StrengthKey { bonds, asked, criterion });
-        let kept = self.cache.find("strength", strength_key, |bytes| Some(f64::from_le_bytes(bytes.try_into().ok()?)));
-        let (factor, origin) = match kept.filter(|factor| factor.is_finite() && *factor > 0.0) {
-            Some(factor) => (factor, Origin::Cached),
-            None => {
-                let factor = strength_factor(&bonds, asked, criterion).map_err(|error| self.wrong(&error))?;
-                self.cache.keep("strength", strength_key, &factor.to_le_bytes());
-                (factor, Origin::Made)
-            }
-        };
-        let scaled = criterion.scaled(factor);
+        let pulling_key = PullingKey { bonds, asked, criterion };
+        let (pulled, origin) = self.kept("strength", key(&pulling_key), || {
+            self.tell("three boxes of such bonds are broken in tension to find the strength of the criterion");
+            pulling(&bonds, asked, criterion)
+        })?;
+        let scaled = criterion.scaled(pulled.factor);
+        let pulled = Some((asked, pulled));
         let Some(asked) = failure.compressive_strength.filter(|_| criterion.kind().slips) else {
-            return Ok(FoundStrengths { criterion: scaled, origin, crushing: None });
+            return Ok(FoundStrengths { criterion: scaled, origin, pulling: pulled, crushing: None });
         };
-        let kept = self.cache.find("crushing", strength_key, |bytes| postcard::from_bytes::<Crushing>(bytes).ok());
-        let (found, origin) = match kept.filter(|found| found.strength.is_finite() && found.strength > 0.0) {
-            Some(found) => (found, origin),
-            None => {
-                let found = crushing(&bonds, asked, scaled).map_err(|error| self.wrong(&error))?;
-                self.cache.keep("crushing", strength_key, &postcard::to_stdvec(&found).unwrap_or_default());
-                (found, Origin::Made)
-            }
+        let use_of_body = Use { at_rest: self.case.solver.kind == SolverKind::Static, faces };
+        let crushing_key = CrushingKey { pulling: pulling_key, asked, use_of_body };
+        let tell = |trial: usize, before: Option<f64>| {
+            let before = before.map_or(String::new(), |b| format!(", the last one bore {b:.2} of what is asked"));
+            self.tell(&format!(
+                "three prisms of such bonds are crushed to find the strength in compression (trial {trial}{before})"
+            ));
         };
-        let criterion = scaled.with_compressive_strength(found.strength);
-        Ok(FoundStrengths { criterion, origin, crushing: Some(found) })
+        let (found, origin) =
+            self.kept("crushing", key(&crushing_key), || crushing(&bonds, asked, scaled, use_of_body, &tell))?;
+        let criterion = scaled.with_chains(found.chains).with_compressive_strength(found.strength);
+        Ok(FoundStrengths { criterion, origin, pulling: pulled, crushing: Some(found) })
+    }
+
+    /// Tells where bodies of such bonds cannot have the strength in compression that is asked.
+    pub(super) fn doubt_strength(&self, found: &FoundStrengths) -> Option<Diagnostic> {
+        let asked = self.material().fracture.as_ref()?.value.compressive_strength?;
+        let Crushing { reached, .. } = found.crushing.filter(|found| (found.reached / asked - 1.0).abs() > ACCEPTED)?;
+        let what = format!(
+            ": bodies of such bonds bear {reached:.4e} Pa in compression, the nearest to the {asked:.4e} Pa asked beside this tensile strength"
+        );
+        let warning = Diagnostic::warning(Code::BondStrength, &self.name.place, what);
+        Some(warning.remedy("change one of the two strengths, Poisson's ratio or the coordination"))
+    }
+
+    /// What the cache has, or what is found now and kept.
+    fn kept<T: Serialize + DeserializeOwned>(
+        &self,
+        kind: &str,
+        key: u128,
+        find: impl FnOnce() -> Result<T, CalibrateError>,
+    ) -> Result<(T, Origin), Box<Diagnostic>> {
+        if let Some(found) = self.cache.find(kind, key, |bytes| postcard::from_bytes(bytes).ok()) {
+            return Ok((found, Origin::Cached));
+        }
+        let found = find().map_err(|error| self.wrong(&error))?;
+        // Serialising plain numbers into memory has no way to fail.
+        self.cache.keep(kind, key, &postcard::to_stdvec(&found).unwrap_or_default());
+        Ok((found, Origin::Made))
+    }
+
+    /// Says what is being done, for what takes long.
+    fn tell(&self, what: &str) {
+        (self.tell)(&format!("{}: {what}", self.name.value));
     }
 }

@@ -152,11 +152,11 @@ impl BreakArguments {
         // Pressed samples need a strength in compression; elsewhere it is there when asked for.
         let pressed = matches!(self.test, Test::Compression).then_some(10.0 * tensile_strength);
         let numbers = CriterionNumbers {
-            tensile_strength,
             compressive_strength: given.or(pressed),
             friction_angle: friction_angle.to_radians(),
             level: Level::from_number(*level).unwrap_or_default(),
             moments: *moments,
+            ..CriterionNumbers::new(tensile_strength)
         };
         let kind = FractureCriterion::KINDS.iter().find(|kind| kind.name == criterion);
         let unknown = || Failure::input(format!("no criterion \"{criterion}\""));
@@ -187,7 +187,15 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
     let density = parse_quantity(&arguments.motion.density, Dimension::DENSITY).map_err(Failure::input)?;
     if let Some(transits) = arguments.motion.transits {
         let faces = CrackFaces { friction: arguments.motion.friction, damping_ratio: 0.0 };
-        let motion = lab::MotionOptions { density, transits, start: 0.9, faces, safety: arguments.motion.safety };
+        let motion = lab::MotionOptions {
+            density,
+            transits,
+            of: None,
+            pressure: 0.0,
+            start: 0.9,
+            faces,
+            safety: arguments.motion.safety,
+        };
         let started = Instant::now();
         let moved = lab::break_in_motion(&sample, test, &options, &motion).map_err(wrong)?;
         say!(

@@ -9,7 +9,10 @@ pub use brazilian::{Diameter, diameter, hondros};
 pub use geometry::{Geometry, geometry};
 pub use motion::{BrokenInMotion, MotionEnergy, MotionOptions, break_in_motion};
 
-use fractum_dem::{Batch, Breaking, BreakingOutcome, CriticalLoad, FractureCriterion, Tolerance, quasi_static};
+use fractum_dem::{
+    Batch, Breaking, BreakingOutcome, CriticalLoad, FractureCriterion, LoadPoint, LoadStage, QuasiStatic, Tolerance,
+    quasi_static,
+};
 use serde::Serialize;
 
 use super::STRAIN;
@@ -95,21 +98,9 @@ impl Broken {
 /// # Errors
 /// Another shape; an impossible criterion; a solve that does not converge.
 pub fn break_sample(sample: &Sample, test: Failure, options: &FailureOptions) -> Result<Broken, CalibrateError> {
-    let Setup { supports, guess, displacement, stress_per_load, strain_per_displacement, ends, middle } =
-        Setup::of(sample, test)?;
-    let what = Breaking {
-        criterion: options.criterion,
-        pairs: &sample.network.pairs,
-        radius: &sample.packing.radius,
-        strength_factors: &[],
-        fraction: sample.fraction,
-        volume: sample.measured_volume(),
-        displacement,
-        batch: options.batch,
-        limit: options.limit / (displacement * strain_per_displacement),
-        stop: options.stop,
-        tolerance: options.tolerance,
-    };
+    let setup = Setup::of(sample, test)?;
+    let what = breaking(sample, &setup, options);
+    let Setup { supports, guess, displacement, stress_per_load, strain_per_displacement, ends, middle } = setup;
     let separated = |graph: &fractum_dem::BondGraph| match &middle {
         None => graph.parts().separate(&ends[0], &ends[1]),
         Some(inside) => graph.parts_among(|i| inside[i]).separate(&ends[0], &ends[1]),
@@ -123,6 +114,36 @@ pub fn break_sample(sample: &Sample, test: Failure, options: &FailureOptions) ->
         displacement,
         outcome,
     })
+}
+
+/// What is to be broken of a sample.
+fn breaking<'a>(sample: &'a Sample, setup: &Setup, options: &FailureOptions) -> Breaking<'a> {
+    Breaking {
+        criterion: options.criterion,
+        pairs: &sample.network.pairs,
+        radius: &sample.packing.radius,
+        strength_factors: &[],
+        fraction: sample.fraction,
+        volume: sample.measured_volume(),
+        displacement: setup.displacement,
+        batch: options.batch,
+        limit: options.limit / (setup.displacement * setup.strain_per_displacement),
+        stop: options.stop,
+        tolerance: options.tolerance,
+    }
+}
+
+/// The load at which the first bond breaks; none where nothing does.
+fn first_break(
+    sample: &Sample,
+    test: Failure,
+    options: &FailureOptions,
+) -> Result<Option<CriticalLoad>, CalibrateError> {
+    let setup = Setup::of(sample, test)?;
+    let what = breaking(sample, &setup, options);
+    let mut run = QuasiStatic::new(sample.lattice.clone(), setup.supports, &setup.guess, &what)?;
+    let (LoadPoint { displacement, load, .. }, stage) = run.load_to_next_failure(|_| false);
+    Ok((stage == LoadStage::Failing).then_some(CriticalLoad { displacement, load, broken: 0 }))
 }
 
 #[cfg(test)]
@@ -171,7 +192,8 @@ mod tests {
             FractureCriterion::Principal(Principal { tensile_strength: 60.06e6, compressive_strength: None, level });
         let options = FailureOptions::new(Failure::Tension, criterion);
         let faces = fractum_dem::CrackFaces::default();
-        let motion = MotionOptions { density: 2500.0, transits: 40.0, start: 0.9, faces, safety: 0.5 };
+        let motion =
+            MotionOptions { density: 2500.0, transits: 40.0, of: None, pressure: 0.0, start: 0.9, faces, safety: 0.5 };
         let moved = break_in_motion(&sample, Failure::Tension, &options, &motion).unwrap();
         assert!((moved.first_break.unwrap() / rest.first_break.unwrap() - 1.0).abs() < 0.01, "{moved:?}");
         assert!((moved.strength / rest.strength - 1.0).abs() < 0.02, "{} {}", moved.strength, rest.strength);

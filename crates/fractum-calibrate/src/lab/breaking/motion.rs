@@ -1,6 +1,6 @@
 use fractum_dem::{
-    Bonds, CentralDifference, CrackFaces, CriticalLoad, Dof6, Fracture, LoadPoint, Occasion, ParticleDamping,
-    Particles, Piece, StaticBody, pieces,
+    Bonds, CentralDifference, CrackFaces, CriticalLoad, Dof6, Fracture, LatticeSupports, LoadPoint, Occasion,
+    ParticleDamping, Particles, Piece, StaticBody, Tolerance, pieces,
 };
 use fractum_math::{Vec3, rotation_by};
 use serde::Serialize;
@@ -16,6 +16,11 @@ pub struct MotionOptions {
     pub density: f64,
     /// Time in which the load would rise from zero to the first break, in times that a wave takes along the sample.
     pub transits: f64,
+    /// Nominal stress [Pa] that is reached in this time instead of that of the first break. The sample has lost its strength as
+    /// soon as the load falls, since bonds may go on breaking.
+    pub of: Option<f64>,
+    /// Pressure on the sides of a box before and while its ends move [Pa]; only forces of the supports count as load.
+    pub pressure: f64,
     /// Load at which motion starts, over that of the first break: below it, the body is as at rest.
     pub start: f64,
     /// The faces of cracks.
@@ -74,7 +79,7 @@ pub struct MotionEnergy {
 
 /// Steps between two points of the load curve.
 const EVERY: usize = 20;
-/// Load over that of the first break at which a sample that holds is given up.
+/// Load over that which [`MotionOptions::transits`] are of at which a sample that holds is given up.
 const BEYOND: f64 = 2.0;
 
 /// Breaks a sample by explicit steps with the supports at constant speed.
@@ -90,8 +95,8 @@ pub fn break_in_motion(
     motion: &MotionOptions,
 ) -> Result<BrokenInMotion, CalibrateError> {
     let setup = Setup::of(sample, test)?;
-    let first = super::break_sample(sample, test, &FailureOptions { limit: f64::INFINITY, ..*options })?.outcome;
-    let Some(point) = first.first else {
+    let first = super::first_break(sample, test, &FailureOptions { limit: f64::INFINITY, ..*options })?;
+    let Some(point) = first else {
         return Err(CalibrateError::Material {
             what: "load of the first break",
             value: f64::INFINITY,
@@ -99,7 +104,7 @@ pub fn break_in_motion(
         });
     };
     let mut moving = MovingSample::new(sample, &setup, &point, options, motion)?;
-    let first_factor = point.displacement / setup.displacement;
+    let last_factor = BEYOND * moving.rate * motion.transits * moving.transit;
     let separated = |graph: &fractum_dem::BondGraph| {
         graph.broken() > 0
             && match &setup.middle {
@@ -108,7 +113,7 @@ pub fn break_in_motion(
             }
     };
     let (mut curve, mut apart) = (Vec::new(), false);
-    while moving.factor < BEYOND * first_factor && !apart {
+    while moving.factor < last_factor && !apart {
         if !moving.steps.is_multiple_of(EVERY) {
             moving.step(false);
             continue;
@@ -117,7 +122,8 @@ pub fn break_in_motion(
         if moving.steps > EVERY {
             curve.push(point);
             // Half a transit without a break: the crack has come to rest.
-            let rested = (moving.steps - moving.last_broken) as f64 * moving.motion.dt() > 0.5 * moving.transit;
+            let rested = motion.of.is_some()
+                || (moving.steps - moving.last_broken) as f64 * moving.motion.dt() > 0.5 * moving.transit;
             apart = separated(moving.fracture.graph()) || (rested && point.load < options.stop * moving.peak.load);
         }
     }
@@ -142,8 +148,7 @@ struct MovingSample {
     bonds: Bonds,
     fracture: Fracture,
     motion: CentralDifference,
-    /// Prescribed displacements (particle, axis) at load factor one.
-    prescribed: Vec<(usize, usize, f64)>,
+    driven: Driven,
     /// Displacement (or rotation) of the supports at load factor one.
     displacement: f64,
     factor: f64,
@@ -157,6 +162,26 @@ struct MovingSample {
     first_load: Option<f64>,
     steps: usize,
     last_broken: usize,
+}
+
+/// What acts on a sample from outside.
+struct Driven {
+    /// Prescribed displacements (particle, axis) at load factor one.
+    prescribed: Vec<(usize, usize, f64)>,
+    /// Forces of the pressure on the sides.
+    pressed: Vec<(usize, Vec3)>,
+}
+
+impl Driven {
+    /// Work of the supports per unit of the load factor, against the forces of bonds and contacts [J].
+    fn push(&self, particles: &Particles) -> f64 {
+        -self.prescribed.iter().map(|&(i, d, u)| particles.force[i][d] * u).sum::<f64>()
+    }
+
+    /// Work of the pressure, from wherever it is counted [J].
+    fn work_of_pressure(&self, particles: &Particles) -> f64 {
+        self.pressed.iter().map(|(i, force)| force.dot(&particles.position[*i])).sum()
+    }
 }
 
 impl MovingSample {
@@ -182,8 +207,12 @@ impl MovingSample {
         let speed = (first.load * stress_per_load / (first_factor * super::STRAIN) / motion.density).sqrt();
         let (lower, upper) = sample.packing.domain.bounds();
         let transit = (upper - lower).max() / speed;
-        let rate = first_factor / (motion.transits * transit);
+        let target = motion.of.map_or(1.0, |stress| stress / (first.load * stress_per_load)) * first_factor;
+        let rate = target / (motion.transits * transit);
         let factor = motion.start * first_factor;
+        let pressed = if motion.pressure > 0.0 { pressure_on_sides(sample, motion.pressure)? } else { Vec::new() };
+        let squeezed = squeezed(sample, supports, &pressed, options.tolerance)?;
+        set_in_motion(&mut particles, &squeezed, 1.0, 0.0);
         set_in_motion(&mut particles, &state, factor, rate);
         let mut prescribed = Vec::new();
         for (i, u) in state.iter().enumerate() {
@@ -193,13 +222,14 @@ impl MovingSample {
         }
         let dt = bonds.stable_step(&particles, motion.safety);
         fracture.add_bond_forces(&mut bonds, &mut particles);
+        press(&mut particles, &pressed);
         particles.start_half_a_step_early(dt);
         Ok(MovingSample {
             motion: CentralDifference::new(&particles, dt, ParticleDamping::default()),
             particles,
             bonds,
             fracture,
-            prescribed,
+            driven: Driven { prescribed, pressed },
             displacement: *displacement,
             factor,
             rate,
@@ -213,15 +243,10 @@ impl MovingSample {
         })
     }
 
-    /// Work of the supports per unit of the load factor, against the forces of bonds and contacts [J].
-    fn push(&self) -> f64 {
-        -self.prescribed.iter().map(|&(i, d, u)| self.particles.force[i][d] * u).sum::<f64>()
-    }
-
     /// One step. Returns the kinetic energy at its start, where it is measured [J].
     fn step(&mut self, measure: bool) -> f64 {
-        let before = self.push();
-        let MovingSample { particles, bonds, fracture, motion, .. } = self;
+        let MovingSample { particles, bonds, fracture, motion, driven, .. } = self;
+        let (before, potential) = (driven.push(particles), driven.work_of_pressure(particles));
         let kinetic = if measure {
             motion.kick_drift_and_measure(particles).before.kinetic
         } else {
@@ -232,12 +257,14 @@ impl MovingSample {
         fracture.book_last_work(particles, None, dt);
         particles.clear_forces();
         fracture.add_bond_forces(bonds, particles);
+        press(particles, &driven.pressed);
         let faces = fracture.add_contact_forces(particles, None, dt);
         self.energy.friction += faces.contact.friction + faces.contact.damping;
         self.energy.kinks += faces.kinks;
         self.energy.contact = faces.contact.stored;
-        let after = self.push();
-        self.energy.external += 0.5 * (before + after) * self.rate * dt;
+        let after = driven.push(particles);
+        let by_pressure = driven.work_of_pressure(particles) - potential;
+        self.energy.external += 0.5 * (before + after) * self.rate * dt + by_pressure;
         self.factor += self.rate * dt;
         self.steps += 1;
         self.load = after / self.displacement;
@@ -275,13 +302,61 @@ impl MovingSample {
     }
 }
 
-/// Displacements and rotations times a factor, and velocities and spins at its rate [1/s].
+/// Forces of a pressure [Pa] on the four sides of a box, in equilibrium.
+fn pressure_on_sides(sample: &Sample, pressure: f64) -> Result<Vec<(usize, Vec3)>, CalibrateError> {
+    let size = sample.box_extents().ok_or(CalibrateError::Shape { test: "pressure on the sides", shape: "a box" })?;
+    let mut forces = Vec::new();
+    for (wall, inwards, area) in [
+        ("y-", Vec3::y(), size.x * size.z),
+        ("y+", -Vec3::y(), size.x * size.z),
+        ("z-", Vec3::z(), size.x * size.y),
+        ("z+", -Vec3::z(), size.x * size.y),
+    ] {
+        let set = sample.packing.wall(wall).unwrap_or_default();
+        forces.extend(set.iter().map(|&i| (i as usize, inwards * (pressure * area / set.len() as f64))));
+    }
+    // Walls are not met at exactly opposite places: what would turn the box about its axis is taken off.
+    let position = |i: usize| sample.packing.position[i];
+    let centre = forces.iter().map(|(i, _)| position(*i)).sum::<Vec3>() / forces.len().max(1) as f64;
+    let across = |i: usize| position(i) - centre - Vec3::x() * (position(i) - centre).x;
+    let moment: f64 = forces.iter().map(|(i, force)| across(*i).cross(force).x).sum();
+    let inertia: f64 = forces.iter().map(|(i, _)| across(*i).norm_squared()).sum();
+    forces.iter_mut().for_each(|(i, force)| *force -= Vec3::x().cross(&across(*i)) * (moment / inertia));
+    Ok(forces)
+}
+
+/// Displacements and rotations of the elastic sample under forces, its supports at rest.
+fn squeezed(
+    sample: &Sample,
+    supports: &LatticeSupports,
+    forces: &[(usize, Vec3)],
+    tolerance: Tolerance,
+) -> Result<Vec<Dof6>, CalibrateError> {
+    let count = sample.packing.len();
+    let rest = vec![[0.0; 6]; count];
+    if forces.is_empty() {
+        return Ok(rest);
+    }
+    let (mut held, mut loads) = (LatticeSupports::none(count), rest.clone());
+    for i in 0..count {
+        (0..6).filter(|&d| supports.is_fixed(i as u32, d)).for_each(|d| held.set(i as u32, d, 0.0));
+    }
+    forces.iter().for_each(|(i, force)| (0..3).for_each(|d| loads[*i][d] += force[d]));
+    Ok(sample.lattice.solve(&held, Some(&loads), &rest, tolerance)?.state)
+}
+
+/// Adds forces to those of particles.
+fn press(particles: &mut Particles, forces: &[(usize, Vec3)]) {
+    forces.iter().for_each(|(i, force)| particles.force[*i] += force);
+}
+
+/// Adds displacements and rotations times a factor, and velocities and spins at its rate [1/s].
 fn set_in_motion(particles: &mut Particles, state: &[Dof6], factor: f64, rate: f64) {
     for (i, u) in state.iter().enumerate() {
         let (shift, turn) = (Vec3::new(u[0], u[1], u[2]), Vec3::new(u[3], u[4], u[5]));
         particles.position[i] += shift * factor;
-        particles.orientation[i] = rotation_by(turn * factor);
-        particles.velocity[i] = shift * rate;
-        particles.spin[i] = turn * rate;
+        particles.orientation[i] = rotation_by(turn * factor) * particles.orientation[i];
+        particles.velocity[i] += shift * rate;
+        particles.spin[i] += turn * rate;
     }
 }

@@ -4,6 +4,8 @@ use super::{EndMoments, FractureCriterion, Level};
 
 /// Compressive over tensile strength where a criterion needs one that nobody gives.
 const STRENGTH_RATIO: f64 = 10.0;
+/// Share of a compression that chains of particles turn into tension across it, where none was measured.
+const CHAINS: f64 = 0.2;
 
 /// A number that some criteria take beside their strength in tension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +29,8 @@ pub struct CriterionNumbers {
     pub compressive_strength: Option<f64>,
     /// Friction angle [rad].
     pub friction_angle: f64,
+    /// Share of a compression that chains of particles turn into tension across it.
+    pub chains: f64,
     /// Over which particles stress is taken.
     pub level: Level,
     /// Which bending moment counts.
@@ -37,7 +41,14 @@ impl CriterionNumbers {
     /// A strength in tension [Pa], and nothing else.
     pub fn new(tensile_strength: f64) -> Self {
         let (level, moments) = (Level::default(), EndMoments::default());
-        CriterionNumbers { tensile_strength, compressive_strength: None, friction_angle: 0.0, level, moments }
+        CriterionNumbers {
+            tensile_strength,
+            compressive_strength: None,
+            friction_angle: 0.0,
+            chains: CHAINS,
+            level,
+            moments,
+        }
     }
 
     /// The strength in compression, ten times that in tension where none is given [Pa].

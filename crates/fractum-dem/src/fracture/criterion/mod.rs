@@ -280,6 +280,11 @@ impl FractureCriterion {
         (self.kind().make)(&CriterionNumbers { compressive_strength, ..numbers })
     }
 
+    /// The same criterion with another share of a compression that chains of particles turn into tension across it.
+    pub fn with_chains(self, chains: f64) -> Self {
+        (self.kind().make)(&CriterionNumbers { chains, ..self.numbers() })
+    }
+
     /// Over which particles stress is taken; none for a criterion of single bonds.
     pub fn level(&self) -> Option<Level> {
         match self.rule() {
@@ -323,7 +328,13 @@ mod tests {
             (Box::new(Principal { compressive_strength: None, ..crushing }), [Some(2.0), None]),
             (Box::new(crushing), [Some(2.0), Some(15.0)]),
             (
-                Box::new(MohrCoulomb { tensile_strength: 2.0, compressive_strength: 15.0, friction_angle: 0.6, level }),
+                Box::new(MohrCoulomb {
+                    tensile_strength: 2.0,
+                    compressive_strength: 15.0,
+                    friction_angle: 0.6,
+                    chains: 0.2,
+                    level,
+                }),
                 [Some(2.0), Some(15.0)],
             ),
             (
@@ -383,7 +394,8 @@ mod tests {
         let level = Level::Own;
         let bad = FractureCriterion::Principal(Principal { tensile_strength: -1.0, compressive_strength: None, level });
         assert!(matches!(bad.check(), Err(DemError::BadCriterion { .. })));
-        let steep = MohrCoulomb { tensile_strength: 1.0, compressive_strength: 9.0, friction_angle: 2.0, level };
+        let steep =
+            MohrCoulomb { tensile_strength: 1.0, compressive_strength: 9.0, friction_angle: 2.0, chains: 0.2, level };
         assert!(FractureCriterion::MohrCoulomb(steep).check().is_err());
         assert!(FractureCriterion::Hydrostatic(Hydrostatic { strength: f64::NAN }).check().is_err());
     }

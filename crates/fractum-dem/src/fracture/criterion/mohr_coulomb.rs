@@ -8,13 +8,14 @@ use super::{
 };
 use crate::DemError;
 
-/// Mohr–Coulomb with tension cut-off on the virial stress: max(min(σ₁, 5 σ₁ + σ₃)/f_t, (N σ₁ − σ₃)/f_c) with
-/// N = (1 + sin φ)/(1 − sin φ), tension positive.
+/// Mohr–Coulomb with tension cut-off on the virial stress: max(min(σ₁, (σ₁ + b σ₃)/(1 − K b))/f_t, (N σ₁ − σ₃)/f_c) with
+/// N = (1 + sin φ)/(1 − sin φ), K = min(4, 0.95/b), tension positive.
 ///
-/// The cut-off is f_t as long as no compression exceeds 4 f_t (3 f_t in the middle of a Brazilian disc), and (f_t − σ₃)/5 beyond:
+/// The cut-off is f_t as long as no compression exceeds K f_t (it is 3 f_t in the middle of a Brazilian disc), and grows with it beyond:
 /// where a body is compressed along one axis, chains of particles bear the load, and between them neighbourhoods are pulled apart
-/// by an eighth of it, where a continuum bears nothing across. With f_t alone these chains split, and no body of spheres bears more
-/// than some eight times its tensile strength, whatever its strength in shear.
+/// by a share of it, where a continuum bears nothing across. With f_t alone these chains split, and no body of spheres bears more
+/// than some eight times its tensile strength, whatever its strength in shear. The share b follows from the bonds: it is larger the
+/// fewer they are and the higher Poisson's ratio is. From 1/3 on the middle of a disc is spared too.
 ///
 /// In tension the bond nearest to the first principal direction breaks; in shear the one nearest to a normal of the two
 /// planes on which shear slips, at 45° − φ/2 from the first principal direction towards the third.
@@ -26,18 +27,23 @@ pub struct MohrCoulomb {
     pub compressive_strength: f64,
     /// Friction angle φ [rad].
     pub friction_angle: f64,
+    /// Share b of a compression that chains of particles turn into tension across it.
+    pub chains: f64,
     /// Over which particles stress is taken.
     #[serde(default)]
     pub level: Level,
 }
 
-/// Compression over tensile strength up to which the tension cut-off does not depend on it, plus one.
-const COMPRESSED: f64 = 5.0;
+/// Compression over tensile strength up to which the tension cut-off never depends on it: three in the middle of a disc that splits.
+const COMPRESSED: f64 = 4.0;
+/// The most of the tensile strength that chains may have at the compression from which on the cut-off grows.
+const MOST: f64 = 0.95;
 
 impl MohrCoulomb {
     #[inline]
     fn tension(&self, first: f64, last: f64) -> f64 {
-        first.min(COMPRESSED * first + last) / self.tensile_strength
+        let left = 1.0 - (COMPRESSED * self.chains).min(MOST);
+        first.min((first + self.chains * last) / left) / self.tensile_strength
     }
 
     #[inline]
@@ -45,6 +51,11 @@ impl MohrCoulomb {
         let sine = sin(self.friction_angle);
         ((1.0 + sine) / (1.0 - sine) * first - last) / self.compressive_strength
     }
+}
+
+/// A number from zero to below a limit.
+fn below(what: &'static str, value: f64, limit: f64, expected: &'static str) -> Result<(), DemError> {
+    if (0.0..limit).contains(&value) { Ok(()) } else { Err(DemError::BadCriterion { what, value, expected }) }
 }
 
 impl NamedCriterion for MohrCoulomb {
@@ -55,14 +66,16 @@ impl NamedCriterion for MohrCoulomb {
         &[CriterionParameter::CompressiveStrength, CriterionParameter::FrictionAngle, CriterionParameter::Level];
 
     fn from_numbers(numbers: &CriterionNumbers) -> Self {
-        let &CriterionNumbers { tensile_strength, friction_angle, level, .. } = numbers;
-        MohrCoulomb { tensile_strength, compressive_strength: numbers.compressive_or_usual(), friction_angle, level }
+        let &CriterionNumbers { tensile_strength, friction_angle, chains, level, .. } = numbers;
+        let compressive_strength = numbers.compressive_or_usual();
+        MohrCoulomb { tensile_strength, compressive_strength, friction_angle, chains, level }
     }
 
     fn numbers(&self) -> CriterionNumbers {
-        let (friction_angle, level) = (self.friction_angle, self.level);
-        let compressive_strength = Some(self.compressive_strength);
-        CriterionNumbers { compressive_strength, friction_angle, level, ..CriterionNumbers::new(self.tensile_strength) }
+        let &MohrCoulomb { friction_angle, chains, level, .. } = self;
+        let (compressive_strength, alone) =
+            (Some(self.compressive_strength), CriterionNumbers::new(self.tensile_strength));
+        CriterionNumbers { compressive_strength, friction_angle, chains, level, ..alone }
     }
 }
 
@@ -70,9 +83,9 @@ impl Strengths for MohrCoulomb {
     fn check(&self) -> Result<(), DemError> {
         positive("tensile strength", self.tensile_strength)?;
         positive("compressive strength", self.compressive_strength)?;
-        let fine = (0.0..std::f64::consts::FRAC_PI_2).contains(&self.friction_angle);
-        let (what, expected) = ("friction angle in radians", "0 to below pi/2");
-        if fine { Ok(()) } else { Err(DemError::BadCriterion { what, value: self.friction_angle, expected }) }
+        let (right_angle, expected) = (std::f64::consts::FRAC_PI_2, "0 to below pi/2");
+        below("friction angle in radians", self.friction_angle, right_angle, expected)?;
+        below("share of chains", self.chains, 1.0, "0 to below 1")
     }
 
     fn scale(&mut self, factor: f64) {
@@ -122,8 +135,13 @@ mod tests {
     #[test]
     fn the_tension_cut_off_grows_where_compression_exceeds_four_times_the_strength() {
         let (tensile_strength, compressive_strength) = (2.0, 1e9);
-        let criterion =
-            MohrCoulomb { tensile_strength, compressive_strength, friction_angle: 0.6, level: Level::Neighbours };
+        let criterion = MohrCoulomb {
+            tensile_strength,
+            compressive_strength,
+            friction_angle: 0.6,
+            chains: 0.2,
+            level: Level::Neighbours,
+        };
         let at_limit = |first: f64, last: f64| criterion.ratio(&Sym3::new(first, 0.5 * last, last, 0.0, 0.0, 0.0));
         for (first, last) in [(2.0, 0.0), (2.0, -6.0), (2.0, -8.0), (4.0, -18.0), (20.4, -100.0)] {
             assert!((at_limit(first, last) - 1.0).abs() < 1e-7, "{first} {last}: {}", at_limit(first, last));
@@ -135,10 +153,33 @@ mod tests {
     }
 
     #[test]
+    fn what_chains_pull_apart_is_spared_and_the_middle_of_a_disc_is_not() {
+        for chains in [0.0, 0.2, 0.25, 0.3] {
+            let criterion = MohrCoulomb {
+                tensile_strength: 2.0,
+                compressive_strength: 1e9,
+                friction_angle: 0.6,
+                chains,
+                level: Level::Neighbours,
+            };
+            let ratio = |first: f64, last: f64| criterion.ratio(&Sym3::new(first, last, last, 0.0, 0.0, 0.0));
+            assert!((ratio(2.0, 0.0) - 1.0).abs() < 1e-7 && (ratio(2.0, -6.0) - 1.0).abs() < 1e-7, "{chains}");
+            if chains > 0.0 {
+                assert!(ratio(0.99 * chains * 50.0, -50.0) < 1e-6, "{chains}");
+            }
+        }
+    }
+
+    #[test]
     fn slip_planes_make_the_angle_of_coulomb_with_the_compression() {
         let friction_angle = 0.6;
-        let criterion =
-            MohrCoulomb { tensile_strength: 1.0, compressive_strength: 10.0, friction_angle, level: Level::Neighbours };
+        let criterion = MohrCoulomb {
+            tensile_strength: 1.0,
+            compressive_strength: 10.0,
+            friction_angle,
+            chains: 0.2,
+            level: Level::Neighbours,
+        };
         let Release::Nearest(normals, BreakMode::Shear) = criterion.release(&Sym3::new(0.0, 0.1, -20.0, 0.0, 0.0, 0.0))
         else {
             panic!("compression does not slip");
