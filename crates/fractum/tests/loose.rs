@@ -321,3 +321,53 @@ fn pictures_over_time_show_what_is_in_a_container() {
         assert!(coloured(picture) > 0.02, "{}: {}", picture.display(), coloured(picture));
     }
 }
+
+/// A ball that flies at a wall of its own material.
+const AT_A_WALL: &str = r#"fractum = 1
+[materials.ball]
+density = "2600 kg/m^3"
+young_modulus = "100 MPa"
+poisson_ratio = 0.3
+contact = { friction = 0.35, restitution = 0.5 }
+[materials.dull]
+density = "2600 kg/m^3"
+young_modulus = "100 MPa"
+poisson_ratio = 0.3
+contact = { friction = 0.35, restitution = 0.2 }
+[[bodies]]
+name = "ball"
+kind = "particles"
+material = "ball"
+file = "ball.csv"
+unit = "mm"
+initial_velocity = { z = "-1 m/s" }
+[[bodies]]
+name = "wall"
+kind = "rigid"
+shape = "plane"
+normal = "z"
+material = "ball"
+[solver]
+end = "4 ms"
+[[probes]]
+name = "speed"
+velocity = { group = "ball", along = "z" }
+"#;
+
+#[test]
+fn the_contact_of_its_material_counts_for_a_rigid_body_unless_it_has_its_own() {
+    let rebound = |case: &str| {
+        let place = Workplace::new(case);
+        fs::write(place.path("ball.csv"), "0,0,5.1,5\n").unwrap();
+        run(&place, "out", "1")["probes"]["speed"]["final"].as_f64().unwrap()
+    };
+    let same = rebound(AT_A_WALL);
+    assert!((same - 0.5).abs() < 0.01, "{same}");
+    // The mean damping ratio of both counts.
+    let mixed = [0.5, 0.2].map(|e| fractum_scene::damping_of_restitution(e)).iter().sum::<f64>() / 2.0;
+    let low = rebound(&AT_A_WALL.replace("normal = \"z\"\nmaterial = \"ball\"", "normal = \"z\"\nmaterial = \"dull\""));
+    let between = |rebound: f64| (fractum_scene::damping_of_restitution(rebound) - mixed).abs() < 0.02;
+    assert!(low < 0.4 && between(low), "{low}");
+    let own = rebound(&AT_A_WALL.replace("normal = \"z\"", "normal = \"z\"\ncontact = { restitution = 0.2 }"));
+    assert!(between(own) && (own - low).abs() < 1e-3, "{own} {low}");
+}

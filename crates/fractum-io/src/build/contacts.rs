@@ -248,7 +248,9 @@ impl Context<'_> {
                 && let Some((form, frame)) = self.form(rigid, &mut facets)
             {
                 let elastic = rigid.material.map_or(ElasticMaterial::RIGID, |material| {
-                    elastic(case.materials[material].young_modulus, case.materials[material].poisson_ratio)
+                    let model::Material { young_modulus, contact_modulus, poisson_ratio, .. } =
+                        case.materials[material];
+                    elastic(contact_modulus.unwrap_or(young_modulus), poisson_ratio)
                 });
                 let mut rigid_body = RigidBody::new(&body.name.value, form, frame, elastic, rigid.contact);
                 drive(&mut rigid_body, rigid);

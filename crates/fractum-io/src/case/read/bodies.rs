@@ -98,7 +98,8 @@ fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [
         }
         Some(Kind::Rigid) => {
             let material = table.has("material").then(|| material_of(&table, materials, used));
-            (rigid(&table, material).map(Box::new).map(BodyKind::Rigid), "on a rigid body")
+            let here = material.flatten().and_then(|index| materials[index].1.as_ref());
+            (rigid(&table, material, here).map(Box::new).map(BodyKind::Rigid), "on a rigid body")
         }
         None => return None, // which keys belong here is not known
     };

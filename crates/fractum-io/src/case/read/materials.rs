@@ -51,7 +51,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
     );
     let thermal = super::heat::thermal(&table);
     let contact_modulus = contact_modulus(&table);
-    let contact = contact(&table);
+    let contact = contact(&table, ContactParameters::default(), &["young_modulus"]);
     table.finish("here");
     Some(Material {
         name,
@@ -201,11 +201,14 @@ fn contact_modulus(parent: &Table<'_>) -> Option<Option<f64>> {
     contact.quantity("young_modulus").physical().usual(&YOUNG_MODULUS).map(Some).or_if_absent(None)
 }
 
-/// The `contact` table of a material or tool.
-pub(super) fn contact(parent: &Table<'_>) -> ContactParameters {
+/// The `contact` table of a material or rigid body.
+///
+/// - `default`: what counts where nothing is said; `apart`: keys that are read by themselves
+pub(super) fn contact(parent: &Table<'_>, default: ContactParameters, apart: &[&'static str]) -> ContactParameters {
     let table = parent.table_or_empty("contact");
-    table.node("young_modulus"); // a material's, read by itself
-    let default = ContactParameters::default();
+    for key in apart {
+        table.node(key);
+    }
     let friction = table.quantity("friction").not_negative().or(default.friction);
     let rolling_friction = table.quantity("rolling_friction").not_negative().or(default.rolling_friction);
     let damping_ratio = if table.has("restitution") {

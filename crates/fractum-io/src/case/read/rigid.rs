@@ -7,7 +7,7 @@ use super::time_functions::time_function;
 use super::vectors::{AXES, components, direction, initial_velocity, point};
 use super::{materials, unit};
 use crate::case::Diagnostic;
-use crate::case::model::{RigidBody, RigidShape};
+use crate::case::model::{Material, RigidBody, RigidShape};
 use crate::case::reader::Table;
 use crate::case::unit::Dimension;
 use fractum_math::Vec3;
@@ -26,11 +26,13 @@ enum Kind {
 pub(super) const SHAPES: [&str; 6] = ["plane", "box", "cylinder", "sphere", "group", "stl"];
 const KINDS: [Kind; 6] = [Kind::Plane, Kind::Box, Kind::Cylinder, Kind::Sphere, Kind::Group, Kind::Stl];
 
-/// Reads a rigid body; `material` is that of its elastic constants, where it has one.
-pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>) -> Option<RigidBody> {
+/// Reads a rigid body.
+///
+/// - `material`: that of its elastic constants, where it has one; `here`: what it says of contact, where it is right
+pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>, here: Option<&Material>) -> Option<RigidBody> {
     let kinds: Vec<(&'static str, Kind)> = SHAPES.into_iter().zip(KINDS).collect();
     let kind = table.one_of("shape", &kinds).required();
-    let contact = materials::contact(table);
+    let contact = materials::contact(table, here.map(|material| material.contact).unwrap_or_default(), &[]);
     let solid_shape = matches!(kind, Some(Kind::Box | Kind::Cylinder | Kind::Sphere));
     if kind.is_some() && !solid_shape {
         table.refuse("inside", "but on a box, cylinder or sphere");
