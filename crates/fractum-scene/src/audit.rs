@@ -29,13 +29,23 @@ impl Scene {
 
     /// Looks at the overlaps of particles alone, which an impact has for some tens of steps only.
     pub fn look_at_overlaps(&mut self) {
-        if self.contacts.is_empty() || self.has_noticed(Notice::Overlap) {
+        if self.contacts.is_empty() {
             return;
         }
+        let before = self.deepest_overlap().map_or(0.0, |before| before.value);
         let deepest = self.contacts.deepest(&self.bonded.particles);
-        if let Some((site, share)) = deepest.filter(|(_, share)| *share > DEEP) {
-            self.note(Notice::Overlap, site, share);
+        if let Some((site, value)) = deepest.filter(|(_, share)| *share > before) {
+            let found = Noticed { what: Notice::Overlap, site, time: self.clock.time, value };
+            self.optional.watch.deepest = Some(found);
+            if value > DEEP {
+                self.note(Notice::Overlap, site, value);
+            }
         }
+    }
+
+    /// The largest overlap of a particle that was found so far, over the smaller radius.
+    pub fn deepest_overlap(&self) -> Option<&Noticed> {
+        self.optional.watch.deepest.as_ref()
     }
 
     /// Keeps what was noticed; of each kind the first counts. Nothing is allocated.

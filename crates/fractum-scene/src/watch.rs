@@ -63,4 +63,6 @@ pub struct Noticed {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Watch {
     pub(crate) first: [Option<Noticed>; Notice::COUNT],
+    /// The largest overlap, whether it is worth a word or not.
+    pub(crate) deepest: Option<Noticed>,
 }

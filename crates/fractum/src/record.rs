@@ -8,6 +8,7 @@ use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::PpvStations;
 use fractum_io::case::model::{Case, Output, ProbeExpression, ProbeInput, ProbeKind, Take, load_of};
 use fractum_io::history::History;
+use fractum_io::summary::LargestOverlap;
 use fractum_io::vtk::{Collection, FrameWriter};
 use fractum_scene::{
     EnergyKind, EnergyRole, PeakVelocity, Probe, ProbedScene, Scene, StationPlace, VelocityStation, Watched,
@@ -24,6 +25,7 @@ use crate::gone::Gone;
 use crate::heat_columns;
 use crate::left;
 use crate::path_frames::PathFrames;
+use crate::ranks::Ranks;
 use crate::series::{index_of_max, interpolate, is_due, next_index, slope_of_window, speed, time_mean};
 use crate::solver::Measured;
 
@@ -53,6 +55,8 @@ pub(crate) struct RecordState {
     pub(crate) removed: Vec<(u32, u32, f64)>,
     /// Largest velocities so far, table by table and station by station.
     peaks: Vec<Vec<PeakVelocity>>,
+    /// The largest overlap of a particle so far.
+    overlap: Option<LargestOverlap>,
 }
 
 impl RecordState {
@@ -202,6 +206,21 @@ impl Recorder {
             return is_due(time, self.state.frames, self.case.output.fields_every);
         }
         self.state.path.frame_is_due()
+    }
+
+    /// The largest overlap of a particle so far.
+    pub(crate) fn largest_overlap(&self) -> Option<&LargestOverlap> {
+        self.state.overlap.as_ref()
+    }
+
+    pub(crate) fn set_largest_overlap(&mut self, found: LargestOverlap) {
+        self.state.overlap = Some(found);
+    }
+
+    /// Takes the largest overlap that any process has found. All processes must call it.
+    pub(crate) fn join_overlaps(&mut self, ranks: &Ranks) {
+        let found = ranks.gather(self.state.overlap.take()).into_iter().flatten();
+        self.state.overlap = found.reduce(|most, next| if next.share > most.share { next } else { most });
     }
 
     /// What has been recorded.

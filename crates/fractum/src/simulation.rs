@@ -318,6 +318,7 @@ impl Simulation {
     /// Saves the state; where processes share solids, each writes what it has of them beside what the first one writes.
     fn save(&mut self) -> Result<(), Failure> {
         self.finish_pieces()?;
+        self.recorder.join_overlaps(&self.ranks);
         let (scene, parts) = match self.scene.state_in_parts() {
             Some((scene, part)) => {
                 let written = self.save_part(&part);

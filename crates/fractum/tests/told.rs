@@ -5,7 +5,7 @@ use std::fs;
 use fractum_mesh::MshFormat;
 use fractum_mesh::generate::structured_rectangle;
 
-use crate::common::{Workplace, history, mesh_bytes, run};
+use crate::common::{Workplace, history, mesh_bytes, run, summary};
 use crate::warnings::listed;
 
 /// A bead between a floor and a press, or shot at the floor.
@@ -40,7 +40,7 @@ end = "19 ms"
 fn a_bead_pressed_flat_is_told_once_with_its_share_of_the_radius() {
     let place = Workplace::new(BEAD);
     fs::write(place.path("bead.csv"), "0,0,0.01,0.01\n").unwrap();
-    run(&place, "out", "1");
+    let pressed = run(&place, "out", "1");
     let all = listed(&place, "out");
     let [[code, site, text]] = all.as_slice() else { panic!("{all:?}") };
     assert_eq!(code, "deep-overlap");
@@ -52,8 +52,23 @@ fn a_bead_pressed_flat_is_told_once_with_its_share_of_the_radius() {
     assert!(text.starts_with("the overlap is 10"), "{text}");
     let light = BEAD.replace("\"19 ms\"", "\"1.5 ms\"");
     fs::write(place.path("case.toml"), light).unwrap();
-    run(&place, "light", "1");
+    let light = run(&place, "light", "1");
     assert_eq!(listed(&place, "light"), [[""; 3]; 0]);
+    // The summary tells how deep it was: half of the way of the press, warned of or not.
+    let largest = |summary: &serde_json::Value| {
+        let found = &summary["largest_overlap"];
+        assert!(found["where"].as_str().unwrap().starts_with("particle 0 of body \"bead\""), "{found}");
+        [&found["share"], &found["time"]].map(|number| number.as_f64().unwrap())
+    };
+    let ([flat, _], [most, late]) = (largest(&pressed), largest(&light));
+    assert!(flat > 0.5 && (most - 0.075).abs() < 0.01 && late <= 1.5e-3, "{flat} {most} {late}");
+    assert!(light["warnings"].as_array().unwrap().is_empty());
+    // A resumed run goes on from it.
+    fs::write(place.path("case.toml"), BEAD.replace("\"19 ms\"", "\"1.6 ms\"")).unwrap();
+    let longer = place.fractum(&["run", "case.toml", "-o", "light", "--resume", "--quiet"]);
+    assert_eq!(longer.code, Some(0), "{}", longer.stderr);
+    let [more, _] = largest(&summary(&place, "light"));
+    assert!((more - 0.08).abs() < 0.01 && more > most, "{more} {most}");
 }
 
 /// A bead so fast that it ends within a few steps, before the second row of the history.

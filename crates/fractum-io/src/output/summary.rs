@@ -56,7 +56,7 @@ pub struct Summary {
     /// What became of the bonds of each body whose bonds can break.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fracture: Vec<Fracture>,
-    /// Sizes of the fragments, and velocities of the ground.
+    /// Sizes of the fragments, velocities of the ground, and the largest overlap.
     #[serde(flatten)]
     pub breakage: Breakage,
     /// Sizes at the end.
@@ -79,7 +79,7 @@ pub struct Hashes {
     pub state_hash: String,
 }
 
-/// What a body breaks into, and what the ground around feels.
+/// What a body breaks into, what the ground around feels, and how deeply particles are pressed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Breakage {
     /// Sizes of the fragments; none where there are none.
@@ -88,6 +88,21 @@ pub struct Breakage {
     /// Largest velocities against scaled distance, and their power laws.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ppv: Vec<Attenuation>,
+    /// The largest overlap of a particle that was found; none where particles touch nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_overlap: Option<LargestOverlap>,
+}
+
+/// The largest overlap of a particle with another one or with a body.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LargestOverlap {
+    /// Overlap over the smaller radius.
+    pub share: f64,
+    /// What overlaps, and where.
+    #[serde(rename = "where")]
+    pub place: String,
+    /// When it was found [s].
+    pub time: f64,
 }
 
 /// A probe over the run.

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use fractum_io::number::{at_instant, percent, quantity};
+use fractum_io::summary::LargestOverlap;
 use fractum_io::warning::{Code, Warning};
 use fractum_math::Vec3;
 use fractum_scene::{Notice, Noticed, Scene, Site};
@@ -23,6 +24,7 @@ impl Simulation {
         let step = self.scene.clock.step;
         if !self.solver.rests() && step.is_multiple_of(STEPS_BETWEEN_LOOKS_AT_OVERLAPS) {
             self.scene.look_at_overlaps();
+            self.keep_overlap();
         }
         if self.solver.rests() || step.is_multiple_of(self.steps_between_looks()) { self.audit() } else { Ok(()) }
     }
@@ -37,10 +39,21 @@ impl Simulation {
     /// Looks at the state, and warns of what is noticed.
     fn audit(&mut self) -> Result<(), Failure> {
         self.scene.audit();
+        self.keep_overlap();
+        self.recorder.join_overlaps(&self.ranks);
         let at_rest = self.solver.rests();
         let found: Vec<Warning> = self.scene.noticed().map(|found| warning(&self.scene, found, at_rest)).collect();
         // Each process looks at what it computes, and all of them decide alike.
         self.ranks.gather(found).into_iter().flatten().try_for_each(|found| self.warn_once(found))
+    }
+
+    /// Keeps the largest overlap for the summary.
+    fn keep_overlap(&mut self) {
+        let before = self.recorder.largest_overlap().map_or(0.0, |before| before.share);
+        if let Some(found) = self.scene.deepest_overlap().filter(|found| found.value > before) {
+            let place = place(&self.scene, found.site);
+            self.recorder.set_largest_overlap(LargestOverlap { share: found.value, place, time: found.time });
+        }
     }
 
     /// Warns of an energy balance that is off, once in a run.

@@ -57,6 +57,7 @@ impl Simulation {
             breakage: Breakage {
                 fragment_sizes: summary::fragment_sizes(&self.scene.solid, &pieces),
                 ppv: self.recorder.attenuations(),
+                largest_overlap: self.recorder.largest_overlap().cloned(),
             },
             warnings: self.messages.warnings().to_vec(),
             time: summary::time(&clock, reason, self.solver.rests()),
