@@ -80,7 +80,7 @@ impl<L: ContactLaw> Block<L> {
             self.add_touches(ground, spheres, law, dt, (sphere, overlap_offset));
             for touch in self.before[old.clone()].iter().zip(&self.taken).filter(|(_, taken)| !**taken).map(|(t, _)| t)
             {
-                self.ended += ending(touch, law(sphere, 0.0));
+                self.ended += ending(touch, law(sphere, 0.0), ground, spheres, dt);
             }
         }
     }
@@ -236,11 +236,13 @@ impl<L: ContactLaw> Block<L> {
     }
 }
 
-/// What is left of a contact that ended: its springs relax.
-fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L) -> Work {
-    let mut memory = touch.memory;
-    let still = Vec3::zeros();
-    let motion = PairMotion { normal: touch.normal, overlap: 0.0, velocity: still, spin: still, dt: 0.0 };
+/// What is left of a contact that ended in the step to here: its springs relax, and its forces act once more over half of that step.
+fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L, ground: &Surface, spheres: &Spheres, dt: f64) -> Work {
+    let (mut memory, i) = (touch.memory, touch.sphere as usize);
+    let (ground_velocity, ground_spin) = ground.motion_at(touch.feature, &(spheres.position[i] + touch.offset));
+    let velocity = ground_velocity - spheres.velocity[i] - spheres.spin[i].cross(&touch.offset);
+    let spin = ground_spin - spheres.spin[i];
+    let motion = PairMotion { normal: touch.normal, overlap: 0.0, velocity, spin, dt };
     let force = law.force(&motion, &mut memory);
     Work::contact(0.0, force.friction * touch.weight, force.damping * touch.weight)
 }

@@ -326,3 +326,50 @@ fn a_cylinder_between_plates_has_the_modulus_of_its_material_and_starts_without_
     let (modulus, start) = pressed(&place, "deep");
     assert!((modulus / 30e9 - 1.0).abs() < 0.06 && start == [0.0; 2], "{modulus:e} {start:?}");
 }
+
+/// A plate meets a bonded body across a gap.
+fn plate_meets(shape: &str, gap: f64, speed: f64, seed: u32) -> String {
+    format!(
+        r#"fractum = 1
+[materials.gypsum]
+density = "2000 kg/m^3"
+young_modulus = "5 GPa"
+poisson_ratio = 0.2
+[[bodies]]
+name = "body"
+kind = "bonded"
+material = "gypsum"
+{shape}
+particles = 150
+seed = {seed}
+[[bodies]]
+name = "upper"
+kind = "rigid"
+shape = "plane"
+normal = "-z"
+point = [0, 0, "10 mm + {gap} um"]
+velocity = {{ z = "-{speed} m/s" }}
+[solver]
+end = "{gap} um/({speed} m/s) + 40 us"
+[[probes]]
+name = "momentum"
+momentum = {{ along = "-z" }}
+[[probes]]
+name = "push"
+reaction = {{ group = "upper", along = "z" }}
+"#
+    )
+}
+
+#[test]
+fn flat_faces_meet_a_plate_across_a_gap() {
+    let block = "shape = \"box\"\nsize = [\"10 mm\", \"10 mm\", \"10 mm\"]";
+    let rows = [(block, 0.0, 0.5, 1), (block, 10.0, 0.5, 2), (block, 3.0, 0.05, 3)];
+    for (shape, gap, speed, seed) in rows {
+        let place = Workplace::new(&plate_meets(shape, gap, speed, seed));
+        let summary = run(&place, "out", "1");
+        let residual = summary["energy"]["residual_max_relative"].as_f64().unwrap();
+        let momentum = summary["probes"]["momentum"]["final"].as_f64().unwrap();
+        assert!(residual < 1e-3 && momentum > 0.0, "{shape} {gap} {speed} {seed}: {residual}, {momentum}");
+    }
+}

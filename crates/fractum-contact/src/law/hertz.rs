@@ -1,7 +1,7 @@
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::linear::partial_spring;
+use super::accounted_spring::{AccountedSpring, Pressed};
 use super::rolling::{Rolling, RollingMemory};
 use super::slip::slip_to_cone;
 use super::{ContactForce, ContactLaw, ContactParameters, PairMotion};
@@ -62,8 +62,8 @@ impl MaterialPair {
 ///   force falls with the stiffness: no path gains energy (Thornton, Cummins and Cleary 2011).
 ///
 /// A *flat* contact has its full size from the first touch on, as that of a flat punch: F_n = k δ + c dδ/dt with constant
-/// stiffnesses, c = 2 ζ √(m* k). One that begins or ends within a step acts for its share of that step, as
-/// [`Linear`](super::Linear) does.
+/// stiffnesses, c = 2 ζ √(m* k). Where it begins or ends within a step its force is the one that gives back the energy
+/// it has taken.
 ///
 /// Johnson, *Contact Mechanics* (1985), eqs (3.36), (4.22), (7.43); Antypov and Elliott (2011) for the damping.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,8 +80,8 @@ pub struct Hertz {
     pub friction: f64,
     /// Friction against rolling.
     pub rolling: Rolling,
-    /// Whether the contact is flat: stiffnesses do not grow with the overlap.
-    pub flat: bool,
+    /// Effective mass m* [kg] of a flat contact, whose stiffnesses do not grow with the overlap; none of a round one.
+    pub flat: Option<f64>,
 }
 
 /// What a Hertz contact remembers.
@@ -96,6 +96,8 @@ pub struct HertzMemory {
     /// Force of the normal damper at the last step [N].
     damper: f64,
     rolling: RollingMemory,
+    /// Normal spring of a flat contact.
+    spring: AccountedSpring,
     /// Part of the overlap that gives no force [m], see [`ContactLaw::add_overlap_offset`].
     overlap_offset: f64,
 }
@@ -114,7 +116,7 @@ impl Hertz {
             damping_share: (tangential / (1.5 * normal)).sqrt(),
             friction: pair.surface.friction,
             rolling: Rolling::new(pair.surface.rolling_friction, effective_radius, effective_mass),
-            flat: false,
+            flat: None,
         }
     }
 
@@ -130,17 +132,18 @@ impl Hertz {
             damping_share: (tangential / normal).sqrt(),
             friction: surface.friction,
             rolling: Rolling::new(surface.rolling_friction, arm, effective_mass),
-            flat: true,
+            flat: Some(effective_mass),
         }
     }
 
     /// Force [N] and energy [J] of the normal spring at an overlap δ > 0, and √δ [m^½], which is 1 for a flat contact.
     ///
     /// - `way`: change of the overlap in the step [m]
-    fn elastic(&self, overlap: f64, way: f64) -> (f64, f64, f64) {
-        if self.flat {
-            let (force, stored) = partial_spring(self.normal, overlap, way);
-            return (force, stored, 1.0);
+    fn elastic(&self, overlap: f64, way: f64, dt: f64, spring: &mut AccountedSpring) -> (f64, f64, f64) {
+        if let Some(mass) = self.flat {
+            let force =
+                spring.press(&Pressed { stiffness: self.normal, mass, viscosity: self.damping, overlap, way, dt });
+            return (force, spring.energy(), 1.0);
         }
         let root = overlap.sqrt();
         let force = self.normal * overlap * root;
@@ -155,7 +158,7 @@ impl ContactLaw for Hertz {
         let n = motion.normal;
         let approach = -motion.velocity.dot(&n);
         let across = motion.velocity + n * approach;
-        let old = *memory;
+        let mut old = *memory;
         let old_stiffness = self.tangential * old.root;
         let old_spring = 0.5 * old_stiffness * old.slip.norm_squared();
         let overlap_offset = old.overlap_offset.min(motion.overlap.max(0.0));
@@ -164,12 +167,13 @@ impl ContactLaw for Hertz {
             *memory = HertzMemory { overlap_offset, ..HertzMemory::default() };
             return ContactForce {
                 damping: 0.5 * (old.damper * approach + old.drag.dot(&across)) * motion.dt
+                    + old.spring.part(approach * motion.dt)
                     + old.rolling.last_damping(motion),
                 friction: old_spring + old.rolling.stored(),
                 ..ContactForce::default()
             };
         }
-        let (elastic, compressed, root) = self.elastic(overlap, approach * motion.dt);
+        let (elastic, compressed, root) = self.elastic(overlap, approach * motion.dt, motion.dt, &mut old.spring);
         let viscosity = self.damping * root.sqrt();
         let damper = (viscosity * approach).max(-elastic);
         let normal_force = elastic + damper;
@@ -197,7 +201,7 @@ impl ContactLaw for Hertz {
             let size = whole.norm();
             (trial, if size > limit { slip_to_cone(whole, size, limit) - trial * stiffness } else { drag })
         };
-        *memory = HertzMemory { slip, drag, root, damper, rolling: old.rolling, overlap_offset };
+        *memory = HertzMemory { slip, drag, root, damper, rolling: old.rolling, spring: old.spring, overlap_offset };
 
         let spring = 0.5 * stiffness * slip.norm_squared();
         let work = 0.5 * (turned * old_stiffness + slip * stiffness).dot(&across) * motion.dt;
@@ -228,7 +232,7 @@ impl ContactLaw for Hertz {
     }
 
     fn stiffness(&self, overlap: f64) -> (f64, f64) {
-        if self.flat {
+        if self.flat.is_some() {
             return (self.normal, self.tangential);
         }
         let root = overlap.max(0.0).sqrt();

@@ -166,7 +166,7 @@ impl Linear {
 /// k δ (1 + δ/|w|)/2. The energy is what it has done in the step to here, or will do in the next one: F |w|/2. At a constant
 /// rate the spring then closes and opens without gain or loss; with the full force each time costs or brings
 /// k δ (|w| - δ)/2, which does not vanish in the sum where contacts last for few steps.
-pub(super) fn partial_spring(stiffness: f64, overlap: f64, way: f64) -> (f64, f64) {
+fn partial_spring(stiffness: f64, overlap: f64, way: f64) -> (f64, f64) {
     let (full, way) = (stiffness * overlap, way.abs());
     if way <= overlap {
         return (full, 0.5 * full * overlap);

@@ -1,5 +1,6 @@
 //! What a touching pair feels.
 
+mod accounted_spring;
 mod hertz;
 mod linear;
 mod motion;
