@@ -36,9 +36,12 @@ fn wrong_inputs_are_answered_on_their_line_with_the_remedy() {
     let mut missed = Vec::new();
     let workplace = Workplace::new(CASE);
     let right = workplace.fractum(&["check", "case.toml"]);
+    // It is short, and is told so; nothing else.
+    let doubts: Vec<&str> = right.stdout.lines().filter(|line| line.contains("warning: ")).collect();
+    let short = |line: &&str| line.ends_with("[fast-loading]");
     assert!(
-        right.code == Some(0) && !right.stdout.contains("warning: "),
-        "the case that is spoilt is right: {right:?}"
+        right.code == Some(0) && doubts.len() == 1 && doubts.iter().all(short),
+        "the case that is spoilt: {right:?}"
     );
     for Input { old, new, line, says } in &inputs {
         assert_eq!(CASE.matches(old.as_str()).count(), 1, "{old}");

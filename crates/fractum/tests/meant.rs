@@ -153,7 +153,7 @@ fn a_small_drop_before_the_peak_ends_no_run_that_asks_for_a_lasting_one() {
     let pull = "displacement = { x = { ramp = [[\"0 s\", 0], [\"0.2 s\", \"2 um\"], [\"0.25 s\", \"1 um\"], [\"0.5 s\", \"4 um\"], [\"1 s\", 0]] } }";
     let case = cases()["static"].replace("displacement = { x = \"0.1 mm*t/1 s\" }", pull);
     let ended = |stop: &str| {
-        let stop = format!("stop_when = {{ probe = \"pull\", below = 0.7{stop} }}\nend = \"1 s\"");
+        let stop = format!("stop_when = {{ probe = \"pull\", below = 0.7{stop} }}\nstep = \"0.01 s\"\nend = \"1 s\"");
         let place = Workplace::new(&case.replace("end = \"1 s\"", &stop));
         let summary = crate::common::run(&place, "out", "1");
         let [end, max] =
