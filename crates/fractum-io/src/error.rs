@@ -110,7 +110,7 @@ impl WriteError {
         use io::ErrorKind as Kind;
         let path = path.to_path_buf();
         match source.kind() {
-            Kind::StorageFull | Kind::QuotaExceeded | Kind::FileTooLarge => Self::DiskFull { path, source },
+            Kind::StorageFull | Kind::QuotaExceeded => Self::DiskFull { path, source },
             Kind::PermissionDenied | Kind::ReadOnlyFilesystem => Self::PermissionDenied { path, source },
             Kind::WouldBlock | Kind::ResourceBusy => Self::Busy { path, source },
             Kind::NotFound => Self::MissingFolder { path, source },

@@ -64,11 +64,16 @@ fn breaking_bar() -> String {
     BREAKING_BAR.replace("\"5 ms\"", "\"5 min\"")
 }
 
+/// What is said but for the one doubt that is true of [`SMALL`]: it ends before a wave has passed.
+fn but_for_its_haste(said: &str) -> String {
+    said.split_inclusive('\n').filter(|line| !line.ends_with("[fast-loading]\n")).collect()
+}
+
 /// What every failure owes its user: the exit code, as many lines as mistakes, no panic, nothing half written.
 fn check_failure(place: &Workplace, ended: &Ended, code: i32, lines: usize, what: &str) {
     assert!(!ended.stderr.contains("panicked") && !ended.stdout.contains("panicked"), "{what}: {ended:?}");
     assert_eq!(ended.code, Some(code), "{what}: {ended:?}");
-    assert_eq!(ended.stderr.lines().count(), lines, "{what}: {}", ended.stderr);
+    assert_eq!(but_for_its_haste(&ended.stderr).lines().count(), lines, "{what}: {}", ended.stderr);
     assert_eq!(files_below(&place.path("out"), ".part"), Vec::<PathBuf>::new(), "{what}");
 }
 
@@ -94,7 +99,7 @@ fn refused(case: &str, at: &str, key: &str, words: &[&str]) {
 fn the_case_that_these_tests_spoil_is_right() {
     let workplace = Workplace::new(SMALL);
     let ended = workplace.fractum(&RUN);
-    assert_eq!((ended.code, ended.stderr.as_str(), ended.stdout.as_str()), (Some(0), "", ""));
+    assert_eq!((ended.code, but_for_its_haste(&ended.stderr).as_str(), ended.stdout.as_str()), (Some(0), "", ""));
 }
 
 #[test]
@@ -434,7 +439,7 @@ particle_radius = "0.1 um"
 fn an_interval_beyond_all_time_is_never_over() {
     let workplace = Workplace::new(&format!("{SMALL}\n[output.checkpoint]\nevery = \"1e300 s\"\n"));
     let ended = workplace.fractum(&RUN);
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, but_for_its_haste(&ended.stderr).as_str()), (Some(0), ""));
 }
 
 #[test]
