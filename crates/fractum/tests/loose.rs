@@ -364,7 +364,7 @@ fn the_contact_of_its_material_counts_for_a_rigid_body_unless_it_has_its_own() {
     let same = rebound(AT_A_WALL);
     assert!((same - 0.5).abs() < 0.01, "{same}");
     // The mean damping ratio of both counts.
-    let mixed = [0.5, 0.2].map(|e| fractum_scene::damping_of_restitution(e)).iter().sum::<f64>() / 2.0;
+    let mixed = [0.5, 0.2].map(fractum_scene::damping_of_restitution).iter().sum::<f64>() / 2.0;
     let low = rebound(&AT_A_WALL.replace("normal = \"z\"\nmaterial = \"ball\"", "normal = \"z\"\nmaterial = \"dull\""));
     let between = |rebound: f64| (fractum_scene::damping_of_restitution(rebound) - mixed).abs() < 0.02;
     assert!(low < 0.4 && between(low), "{low}");

@@ -157,7 +157,7 @@ fn in_plane_stress(body: &Own) -> bool {
 fn thickness(case: &Case, body: &Own) -> Option<Diagnostic> {
     let force = |load: &Load| matches!(&load.kind, LoadKind::Force { .. });
     let in_newton = |probe: &Probe| matches!(&probe.kind, ProbeKind::Reaction { .. } | ProbeKind::ContactForce { .. });
-    let forces = case.loads.iter().any(|load| force(load)) || case.probes.iter().any(in_newton);
+    let forces = case.loads.iter().any(force) || case.probes.iter().any(in_newton);
     if !body.plane || body.nodes.is_empty() || body.solid.thickness.is_some() || !forces {
         return None;
     }
