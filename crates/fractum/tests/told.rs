@@ -61,7 +61,7 @@ fn a_bead_pressed_flat_is_told_once_with_its_share_of_the_radius() {
         [&found["share"], &found["time"]].map(|number| number.as_f64().unwrap())
     };
     let ([flat, _], [most, late]) = (largest(&pressed), largest(&light));
-    assert!(flat > 0.5 && (most - 0.075).abs() < 0.01 && late < 1.6e-3, "{flat} {most} {late}");
+    assert!(flat > 0.5 && (most - 0.075).abs() < 0.01 && late <= 1.5e-3, "{flat} {most} {late}");
     assert!(light["warnings"].as_array().unwrap().is_empty());
     // A resumed run goes on from it.
     fs::write(place.path("case.toml"), BEAD.replace("\"19 ms\"", "\"1.6 ms\"")).unwrap();

@@ -1,7 +1,7 @@
 //! Doubts about how bodies are held, how they meet, and how finely they are meshed.
 
-use fractum_math::Vec3;
-use fractum_mesh::{Mesh, topology};
+use fractum_math::{Vec3, connected};
+use fractum_mesh::{Group, Mesh, topology};
 
 use crate::case::model::{BodyKind, Case, LoadKind, Motion, Selection, SolidBody, SolverKind};
 use crate::case::{Diagnostic, Place, Spanned};
@@ -26,18 +26,25 @@ pub(super) struct Own<'a> {
 }
 
 /// Bodies that hang together by common nodes, as the number of each one's first.
-pub(super) fn pieces(bodies: &[Own]) -> Vec<usize> {
-    let mut piece: Vec<usize> = (0..bodies.len()).collect();
-    for index in 1..bodies.len() {
-        for before in 0..index {
-            let [a, b] = [piece[before], piece[index]];
-            let own = &bodies[index].nodes;
-            if a != b && bodies[before].nodes.iter().any(|node| own.binary_search(node).is_ok()) {
-                piece.iter_mut().filter(|piece| **piece == a.max(b)).for_each(|piece| *piece = a.min(b));
-            }
-        }
-    }
-    piece
+pub(super) fn pieces(bodies: &[Own]) -> Vec<u32> {
+    let mut owners: Vec<(u32, u32)> =
+        (0..).zip(bodies).flat_map(|(body, own)| own.nodes.iter().map(move |&node| (node, body))).collect();
+    owners.sort_unstable();
+    let shared = owners.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    connected(bodies.len(), shared.map(|pair| [pair[0].1, pair[1].1]))
+}
+
+/// The nodes of the elements of a body.
+///
+/// - `of`: the elements of a group, in the list `all`
+pub(super) fn elements<const N: usize>(
+    mesh: &Mesh,
+    body: &Own,
+    of: fn(&Group) -> &Vec<u32>,
+    all: &[[u32; N]],
+) -> Vec<[u32; N]> {
+    let groups = mesh.group(&body.solid.group.value);
+    groups.iter().flat_map(|group| of(group)).map(|&element| all[element as usize]).collect()
 }
 
 /// What moves or loads a piece at one place.
@@ -115,10 +122,8 @@ pub(super) fn thin(case: &Case, mesh: &Mesh, body: &Own) -> Option<Diagnostic> {
     if mesh.whole.is_some() || body.nodes.is_empty() || !is_bent(case, mesh, body) {
         return None;
     }
-    let groups = mesh.group(&body.solid.group.value);
     let (boundary, shares) = if body.plane {
-        let own = groups.iter().flat_map(|group| &group.triangles).map(|&element| mesh.triangles[element as usize]);
-        let elements: Vec<[u32; 3]> = own.collect();
+        let elements = elements(mesh, body, |group| &group.triangles, &mesh.triangles);
         if elements.len() as f64 > FEW[1] * body.nodes.len() as f64 {
             return None;
         }
@@ -127,8 +132,7 @@ pub(super) fn thin(case: &Case, mesh: &Mesh, body: &Own) -> Option<Diagnostic> {
         let shares = within(&elements, &boundary);
         (boundary, shares)
     } else {
-        let own = groups.iter().flat_map(|group| &group.tetrahedra).map(|&element| mesh.tetrahedra[element as usize]);
-        let elements: Vec<[u32; 4]> = own.collect();
+        let elements = elements(mesh, body, |group| &group.tetrahedra, &mesh.tetrahedra);
         if elements.len() as f64 > FEW[0] * body.nodes.len() as f64 {
             return None;
         }

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use fractum_math::Vec3;
-use fractum_mesh::{Group, Mesh};
+use fractum_mesh::Mesh;
 use fractum_scene::ContactParameters;
 
-use super::body_doubts::{Own, extent, pieces};
+use super::body_doubts::{Own, elements, extent, pieces};
 use crate::case::Diagnostic;
 use crate::case::model::{Body, BodyKind, Case, Motion, RigidBody, RigidShape, SolverKind, Support};
 use crate::number::{percent, quantity};
@@ -85,9 +85,15 @@ pub(super) fn coincident(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagno
 
 /// Solids that lie within each other: their mass and stiffness are counted twice there.
 pub(super) fn overlapping(mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+    let boxes: Vec<(Vec3, Vec3)> = bodies.iter().map(|body| extent(mesh, std::slice::from_ref(body))).collect();
+    let axes = if bodies.iter().all(|body| body.plane) { 0..2 } else { 0..3 };
+    let apart = |a: usize, b: usize| {
+        let [(low, high), (from, to)] = [boxes[a], boxes[b]];
+        axes.clone().any(|axis| high[axis] <= from[axis] || to[axis] <= low[axis])
+    };
     let mut doubts = Vec::new();
     for (index, second) in bodies.iter().enumerate() {
-        for first in &bodies[..index] {
+        for (_, first) in bodies[..index].iter().enumerate().filter(|(before, _)| !apart(*before, index)) {
             // A body of few large elements may hold none of the middles of the other.
             let shares = [(second, first), (first, second)].map(|(own, other)| within(mesh, own, other));
             let Some((share, of)) = shares.into_iter().zip([second, first]).find(|(share, _)| *share > 0.0) else {
@@ -120,11 +126,6 @@ fn within(mesh: &Mesh, own: &Own, other: &Own) -> f64 {
         }
         _ => 0.0,
     }
-}
-
-fn elements<const N: usize>(mesh: &Mesh, body: &Own, of: fn(&Group) -> &Vec<u32>, all: &[[u32; N]]) -> Vec<[u32; N]> {
-    let groups = mesh.group(&body.solid.group.value);
-    groups.iter().flat_map(|group| of(group)).map(|&element| all[element as usize]).collect()
 }
 
 fn share_within<const N: usize>(

@@ -24,7 +24,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use fractum::cache_of_user as cache;
 use fractum::terminal::{Stream, Tone, toned};
 use fractum::{ExitCode, Failure, Options, Outcome, Ranks, say, tell};
-use fractum_io::case::Diagnostics;
+use fractum_io::case::{Diagnostics, KeyDoc};
 use fractum_io::summary::{Fracture, Probe, Status};
 
 /// Fracture of solids: finite elements with damage, discrete elements, and the transition between them.
@@ -416,14 +416,13 @@ fn explain(key: Option<&str>) -> Result<ExitCode, Failure> {
     };
     match fractum_io::case::explain(key) {
         Ok(doc) => {
-            let kind = |doc: &fractum_io::case::KeyDoc| match doc.default {
+            let kind = |doc: &KeyDoc| match doc.default {
                 "" => doc.kind.label(),
                 default => format!("{}, default: {default}", doc.kind.label()),
             };
             say!("{}\n  {}\n  type: {}", doc.path, doc.doc, kind(doc));
             let below = format!("{}.", doc.path);
-            let own =
-                |key: &&fractum_io::case::KeyDoc| key.path.strip_prefix(&below).is_some_and(|name| !name.contains('.'));
+            let own = |key: &&KeyDoc| key.path.strip_prefix(&below).is_some_and(|name| !name.contains('.'));
             for key in fractum_io::case::keys().iter().filter(own) {
                 say!("\n{}\n  {}\n  type: {}", key.path, key.doc, kind(key));
             }

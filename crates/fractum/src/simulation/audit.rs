@@ -11,8 +11,8 @@ use fractum_scene::{Notice, Noticed, Scene, Site};
 use super::{End, Simulation};
 use crate::error::Failure;
 
-/// Steps of motion between two looks at the state, of a short run and of a long one: a look costs about a step.
-const STEPS_BETWEEN_LOOKS: [f64; 2] = [64.0, 256.0];
+/// Steps of motion between two looks at the state, of a short run and of a long one: a look costs about two steps.
+const STEPS_BETWEEN_LOOKS: [f64; 2] = [128.0, 256.0];
 /// Looks that a run of medium length has.
 const LOOKS: f64 = 50.0;
 /// The same at overlaps of particles alone, which costs a small part of a step: an impact lasts some fifty steps.
@@ -37,7 +37,7 @@ impl Simulation {
     }
 
     /// Looks at the state, and warns of what is noticed.
-    fn audit(&mut self) -> Result<(), Failure> {
+    pub(super) fn audit(&mut self) -> Result<(), Failure> {
         self.scene.audit();
         self.keep_overlap();
         self.recorder.join_overlaps(&self.ranks);
@@ -67,10 +67,9 @@ impl Simulation {
         self.warn_once(found.remedy("take a smaller solver.safety, and look where the energy goes (probes[].energy)"))
     }
 
-    /// Looks at the state of the end, which is judged as every other, and at what cracks have made of the bodies. A strict run
+    /// Looks at the balance of the end, which is judged as every other, and at what cracks have made of the bodies. A strict run
     /// that would have finished has another end where it meets a warning.
     pub(super) fn audit_end(&mut self, end: End) -> Result<End, Failure> {
-        self.audit()?;
         self.audit_balance()?;
         self.warn_of_single_nodes()?;
         self.warn_of_short_lengths()?;

@@ -61,11 +61,13 @@ impl Simulation {
         // Along a path the load factor may fall.
         let below = record.times.len().saturating_sub(rows_below);
         let lasting: f64 = record.times[below..].windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-        let fallen = largest > 0.0 && time >= stop.after && rows_below > 0 && lasting >= stop.lasting;
+        if largest <= 0.0 || time < stop.after || rows_below == 0 || lasting < stop.lasting {
+            return None;
+        }
         let (name, part) = (&self.case.probes[stop.probe].name.value, percent(stop.below));
         let what = format!("{name} fell below {part} of its largest value at {}", self.instant(time));
         let small = stop.below > SMALL_DROP && stop.lasting == 0.0;
         let further = if small { "; whether it would rise again is not known (stop_when.lasting)" } else { "" };
-        fallen.then(|| format!("{what}{further}"))
+        Some(format!("{what}{further}"))
     }
 }

@@ -39,6 +39,7 @@ impl Simulation {
             // So that the run can be continued to a later end.
             self.save()?;
         }
+        self.audit()?; // before the one step more
         self.record_last(&end)?;
         self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
         let pieces = self.scene.fragments();

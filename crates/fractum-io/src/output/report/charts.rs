@@ -158,6 +158,8 @@ pub(super) fn fragment_sizes(fragments: &[Fragment]) -> Option<Chart> {
 /// Share of the mass in pieces of at most a size, with the sizes of a fifth, half and four fifths; `None` for fewer than
 /// two pieces.
 pub(super) fn passing(fragments: &[Fragment], sizes: Option<&FragmentSizes>) -> Option<Chart> {
+    let but = if fragments.iter().any(|piece| piece.stays) { ", without what boundaries hold" } else { "" };
+    let title = format!("Size distribution of the fragments{but}");
     let free = fragments.iter().filter(|piece| !piece.stays);
     let mut pieces: Vec<(f64, f64)> = free.map(|piece| (piece.size, piece.mass)).collect();
     pieces.retain(|(size, mass)| size.is_finite() && *size > 0.0 && *mass > 0.0);
@@ -181,7 +183,7 @@ pub(super) fn passing(fragments: &[Fragment], sizes: Option<&FragmentSizes>) -> 
         [("P20", 20.0, sizes.p20), ("P50", 50.0, sizes.p50), ("P80", 80.0, sizes.p80)].map(mark).into()
     });
     Some(Chart {
-        title: "Size distribution of the fragments, without what boundaries hold".into(),
+        title,
         x: Axis::new("size: diameter of equal volume, in the plane of equal area", "m").logarithmic(),
         y: Axis::new("mass passing [%]", "-").from_zero(),
         series: vec![Series::new("passing", x, y, Style::Step)],
