@@ -149,6 +149,26 @@ fn a_body_that_breaks_has_the_same_bits_on_any_number_of_ranks() {
     assert!(counts.removed_elements > 10 && counts.particles > 10, "{counts:?}");
 }
 
+#[test]
+fn a_body_that_begins_to_turn_has_the_same_bits_on_any_number_of_ranks() {
+    for breaks in [false, true] {
+        let turning = || {
+            let (nodes, mut body) = block();
+            if breaks {
+                body = body.smoothed().with_damage(DamageLaw::rankine(3e6, 20.0));
+            }
+            let mut solid = Solid::new(nodes, vec![Body { kinematics: Kinematics::Auto, ..body }]).unwrap();
+            for i in 0..solid.velocity.len() {
+                solid.velocity[i] = Vec3::new(0.0, 0.0, 500.0).cross(&solid.reference[i]);
+            }
+            scene(solid, Vec::new(), Vec::new(), LocalDamping::default())
+        };
+        let single = same_on_ranks(200, turning);
+        assert_eq!(single.solid.body(0).kinematics, Kinematics::Corotational);
+        assert_eq!(single.counts().removed_elements > 0, breaks, "{:?}", single.counts());
+    }
+}
+
 /// What happens far off does not have every rank move all nodes: removal, contact of discrete elements, rows.
 #[test]
 fn few_steps_of_a_body_that_breaks_need_all_nodes() {

@@ -15,6 +15,8 @@
 //! # Ok::<(), fractum_calibrate::CalibrateError>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod calibrate;
 pub mod crushing;
 mod error;

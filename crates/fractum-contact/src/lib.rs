@@ -14,6 +14,8 @@
 //! assert_eq!(close_pairs(&centres, &[1.0; 3], 0.0), [[0, 1]]);
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod broad_phase;
 mod error;
 mod foot;

@@ -47,6 +47,8 @@ pub enum Kinematics {
     Small,
     /// Stretch U - 1 after the polar decomposition F = R U of each cell: any rotation, small stretch.
     Corotational,
+    /// Small until a part of the body turns in motion, corotational from then on; see [`crate::Solid::let_turn`].
+    Auto,
 }
 
 /// What a plane body assumes across its thickness.

@@ -152,7 +152,7 @@ impl Block {
 
     /// Whether its cells neither turn nor expand, and are not viscous: strains that were found once serve the forces too.
     fn is_plain(&self, model: &BodyModel) -> bool {
-        model.body.kinematics == Kinematics::Small && model.viscosity.is_none() && self.cells.thermal.is_none()
+        model.body.kinematics != Kinematics::Corotational && model.viscosity.is_none() && self.cells.thermal.is_none()
     }
 
     /// Has the elements of a standard body take over the damage of their edges once more, whatever happened to these.

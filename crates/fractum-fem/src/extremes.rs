@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
+use fractum_math::Sym3;
 use fractum_math::elementary::asin;
-use fractum_math::{Sym3, Vec3};
 use rayon::prelude::*;
 
 use crate::body::Kinematics;
@@ -11,9 +11,7 @@ use crate::evaluate::{Block, BlockLaw};
 use crate::kernel::strain;
 use crate::material::CriterionKind;
 use crate::solid::Solid;
-
-/// Damage above which a cell carries too little to be judged.
-const CARRIES: f64 = 0.5;
+use crate::turning::{CARRIES, turn};
 
 /// A largest value, and where it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +70,7 @@ impl Solid {
         let mut found: [Found; 4] = [None; 4];
         let block = &self.blocks[index as usize];
         let model = &self.bodies[block.body];
-        let small = model.body.kinematics == Kinematics::Small;
+        let small = model.body.kinematics != Kinematics::Corotational;
         let zone = model.body.damage.as_ref();
         let unarmed =
             zone.filter(|_| model.smoothed_edges().is_some() && matches!(block.law, BlockLaw::Elastic { .. }));
@@ -83,8 +81,7 @@ impl Solid {
             }
             let h = block.cells.gradient(cell, |node| self.displacement[node]);
             if small {
-                let turn = Vec3::new(h[(2, 1)] - h[(1, 2)], h[(0, 2)] - h[(2, 0)], h[(1, 0)] - h[(0, 1)]);
-                found[0] = larger(found[0], Some((asin((0.5 * turn.norm()).min(1.0)), index, cell as u32)));
+                found[0] = larger(found[0], Some((asin(turn(&h).min(1.0)), index, cell as u32)));
             }
             let elastic = block.cells.elastic_strain(cell, strain(&h, model.body.kinematics));
             found[1] = larger(found[1], Some((norm(elastic), index, cell as u32)));
@@ -123,6 +120,7 @@ fn norm(tensor: Sym3) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use fractum_math::Vec3;
     use fractum_math::elementary::{cos, sin};
     use fractum_mesh::generate::structured_box;
 

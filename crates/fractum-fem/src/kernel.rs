@@ -112,7 +112,7 @@ fn is_inverted(h: &Mat3) -> bool {
 #[inline(always)]
 pub(crate) fn strain(h: &Mat3, kinematics: Kinematics) -> Sym3 {
     match kinematics {
-        Kinematics::Small => Sym3::symmetric_part(h),
+        Kinematics::Small | Kinematics::Auto => Sym3::symmetric_part(h),
         Kinematics::Corotational => corotational_strain(h).0,
     }
 }

@@ -73,6 +73,7 @@ mod thermal_strain;
 mod threshold;
 mod time_step;
 mod told_edges;
+mod turning;
 mod viscosity;
 mod viscous_solid;
 

@@ -4,6 +4,7 @@ use fractum_math::{Sym3, Vec3};
 use fractum_parallel::gather;
 use serde::{Deserialize, Serialize};
 
+use crate::body::Kinematics;
 use crate::damage::{EdgeDamage, EdgeField};
 use crate::evaluate::{Block, BlockLaw};
 use crate::solid::Solid;
@@ -14,6 +15,8 @@ const TOLD_AT_ONCE: usize = 1 << 17;
 /// What changes in a body during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyState {
+    /// Measure of strain, which changes where a body begins to turn.
+    pub kinematics: Kinematics,
     /// Elements that are still there.
     pub alive: Vec<bool>,
     /// Edge histories; empty without damage, and where no rank has all of them, see [`Solid::each_history`].
@@ -133,7 +136,7 @@ impl Solid {
         let phase = model.phase.as_ref().map_or_else(Vec::new, |field| field.state().collect());
         // Nothing is removed of a body that no rank has whole.
         let alive = model.divided.as_ref().map_or_else(|| model.alive.clone(), |divided| vec![true; divided.count]);
-        BodyState { alive, edges, elements, phase }
+        BodyState { kinematics: model.body.kinematics, alive, edges, elements, phase }
     }
 
     /// Puts a saved state back. The solid must have been built from the same bodies.
@@ -150,6 +153,7 @@ impl Solid {
         for (index, body) in state.bodies.into_iter().enumerate() {
             let Solid { bodies, blocks, .. } = self;
             let model = &mut bodies[index];
+            model.body.kinematics = body.kinematics;
             let cells = blocks.iter_mut().filter(|block| block.body == index).filter_map(Block::edge_field_mut);
             let standard = model.standard.as_mut().map(|standard| &mut standard.field);
             cells.chain(standard).for_each(|field| field.restore(&body.edges));

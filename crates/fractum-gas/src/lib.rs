@@ -23,6 +23,8 @@
 //! assert!((network.total().mass / mass - 1.0).abs() < 1e-12);
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod law;
 mod network;
 mod slit;

@@ -19,6 +19,8 @@
 //! assert!(field.ledger().residual().abs() < 1e-10);
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod condition;
 mod field;
 mod implicit;

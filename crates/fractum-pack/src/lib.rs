@@ -15,6 +15,8 @@
 //! # Ok::<(), fractum_pack::PackError>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod certificate;
 mod cloud;
 mod cooker;

@@ -4,6 +4,8 @@
 //! ranks make the same calls in the same order; every method waits for the others. No method adds numbers: sums are made by
 //! who gets them, in an order of its own, so that they have the same bits for any number of ranks.
 
+#![forbid(unsafe_code)]
+
 mod division;
 mod exchange;
 #[cfg(feature = "mpi")]

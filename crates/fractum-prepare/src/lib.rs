@@ -20,6 +20,8 @@
 //! # Ok::<(), fractum_io::case::Diagnostics>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod bonded;
 mod cache;
 mod choice;

@@ -38,7 +38,7 @@ pub enum EnergyKind {
     /// Energy stored in the springs of elastic supports.
     Foundation,
     /// What central differences keep less of the energy at a start out of balance and at changes of the time step,
-    /// ⅛ (Δt₊² - Δt₋²) Σ F²/m: either sign.
+    /// ⅛ (Δt₊² - Δt₋²) Σ F²/m: either sign; and what small strains have found beyond the energy of a body as it begins to turn.
     TimeStep,
     /// Energy of the gas that was put in holes.
     GasSupplied,
@@ -107,7 +107,12 @@ impl EnergyKind {
         entry(EnergyKind::Friction, "friction", "Friction", EnergyRole::Spent),
         entry(EnergyKind::Absorbed, "absorbed", "Absorbed by boundaries", EnergyRole::Spent),
         entry(EnergyKind::Foundation, "foundation", "Elastic supports", EnergyRole::Stored),
-        entry(EnergyKind::TimeStep, "time_step", "Changes of the time step", EnergyRole::Spent),
+        entry(
+            EnergyKind::TimeStep,
+            "time_step",
+            "Changes of the time step and of the measure of strain",
+            EnergyRole::Spent,
+        ),
         entry(EnergyKind::GasSupplied, "gas_supplied", "Gas put in", EnergyRole::Supplied),
         entry(EnergyKind::Gas, "gas", "Gas", EnergyRole::Stored),
         entry(EnergyKind::GasLeaked, "gas_leaked", "Gas leaked", EnergyRole::Spent),

@@ -4,6 +4,8 @@
 //! [`Scene`] holds everything; [`Scene::step`] reads like the equations. What changes during a run is a
 //! [`SceneState`], one value that can be saved and put back bit for bit.
 
+#![forbid(unsafe_code)]
+
 mod advance;
 mod audit;
 mod bands;

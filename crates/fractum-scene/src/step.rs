@@ -20,12 +20,14 @@ const SAME_STEP: f64 = 1e-9;
 const STEPS_BETWEEN_CHECKS: u64 = 200;
 
 /// What happened in a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
     /// Elements removed.
     pub removed: usize,
     /// Discrete elements born.
     pub particles_born: usize,
+    /// Solid bodies that have begun to turn, and are corotational from now on.
+    pub turning: Vec<u32>,
 }
 
 /// A part of the step, for those who time it. A step passes those alone that its scene has work for.
@@ -133,7 +135,7 @@ impl Scene {
         self.optional.surface_supports.absorb_after(&mut self.solid, dt_after);
         passed(Phase::Motion);
 
-        let report = self.release_cut_elements(dt_after);
+        let report = self.change_solids(dt_after);
         if self.solid.has_damage() {
             passed(Phase::Transition);
         }
@@ -238,13 +240,21 @@ impl Scene {
         work
     }
 
+    /// Bodies that begin to turn become corotational, and cut elements leave.
+    fn change_solids(&mut self, dt: f64) -> StepReport {
+        let mut turning = Vec::new();
+        // What small strains had found beyond was never put in.
+        self.books.time_step += self.solid.let_turn(self.clock.step, dt, &mut turning);
+        StepReport { turning, ..self.release_cut_elements(dt) }
+    }
+
     /// Elements that a crack has cut through leave; their nodes get discrete elements.
     ///
     /// - `dt`: time since the forces were last computed [s]
     pub(crate) fn release_cut_elements(&mut self, dt: f64) -> StepReport {
         self.removals.last.clear();
         let energy = self.solid.remove_cut_elements(dt, &mut self.removals.last);
-        let mut report = StepReport { removed: self.removals.last.len(), particles_born: 0 };
+        let mut report = StepReport { removed: self.removals.last.len(), ..StepReport::default() };
         if report.removed > 0 {
             self.follow_removal();
             self.books.removed += energy;

@@ -1,5 +1,7 @@
 //! fractum: fracture of solids from a gmsh mesh and one case file.
 
+#![forbid(unsafe_code)]
+
 mod command;
 
 use clap::Parser;
@@ -11,15 +13,23 @@ fn end_on_signal() {
     }
 }
 
-/// A file that would grow beyond the limit of its user is an error of writing, which has its message, and no end by a signal.
+/// A file that would grow beyond the limit of its user is an error of writing, which has its message, and no end by a signal. Where memory
+/// is refused the library of the language says so and aborts: that is the end of a run for lack of memory.
 fn take_limits_as_errors() {
     #[cfg(unix)]
     {
+        use std::sync::Arc;
+        use std::sync::atomic::AtomicBool;
+
         use nix::sys::signal::{SigSet, Signal};
+        use signal_hook::flag::register_conditional_shutdown;
+
         let mut limits = SigSet::empty();
         limits.add(Signal::SIGXFSZ);
         // Threads take over what is blocked. Where it cannot be, the signal ends the program as before.
         let _ = limits.thread_block();
+        let always = Arc::new(AtomicBool::new(true));
+        let _ = register_conditional_shutdown(Signal::SIGABRT as i32, fractum::ExitCode::Machine as i32, always);
     }
 }
 

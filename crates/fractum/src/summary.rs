@@ -127,8 +127,8 @@ fn hash_of_divided(scene: &Scene) -> u128 {
     // A list is its length, and what it holds.
     add(&hash, &state.before_bodies());
     add(&hash, &bodies.len());
-    for (index, BodyState { alive, edges: _, elements, phase }) in bodies.iter().enumerate() {
-        add(&hash, alive);
+    for (index, BodyState { kinematics, alive, edges: _, elements, phase }) in bodies.iter().enumerate() {
+        add(&hash, &(kinematics, alive));
         scene.solid.each_history(index, |count| add(&hash, &count), |history| add(&hash, history));
         add(&hash, &(elements, phase));
     }

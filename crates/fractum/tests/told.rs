@@ -2,8 +2,10 @@
 
 use std::fs;
 
+use fractum::{Options, Simulation};
+use fractum_math::Vec3;
 use fractum_mesh::MshFormat;
-use fractum_mesh::generate::structured_rectangle;
+use fractum_mesh::generate::{structured_box, structured_rectangle};
 
 use crate::common::{Workplace, history, mesh_bytes, run, summary};
 use crate::warnings::listed;
@@ -163,4 +165,70 @@ fn local_damping_does_not_brake_what_expands_slowly() {
     let fast = |local| strip([30, 4], [0.03, 0.002], local, "2 ms");
     let [(free, untold), (damped, told)] = ["0", "0.2"].map(fast);
     assert!(damped < 0.9 * free && told && !untold, "{free} {damped}");
+}
+
+/// A free body that turns.
+const TURNING: &str = r#"fractum = 1
+mesh = { file = "bar.msh" }
+[materials.stone]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+DAMAGE
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "stone"
+KINEMATICS
+initial_velocity = { x = "-1000 1/s*(y - 10 mm)", y = "1000 1/s*(x - 50 mm)" }
+[[probes]]
+name = "stretch"
+extensometer = { group = "body", from = [0, "10 mm", "10 mm"], to = ["100 mm", "10 mm", "10 mm"] }
+[solver]
+end = "0.35 ms"
+[output]
+history = { every = "50 us" }
+"#;
+
+#[test]
+fn a_body_that_turns_is_corotational_by_itself() {
+    const DAMAGE: &str = "damage = { tensile_strength = \"30 MPa\", fracture_energy = \"200 N/m\" }";
+    let mesh = mesh_bytes(&structured_box([20, 4, 4], Vec3::new(0.1, 0.02, 0.02), None), MshFormat::V4_1Binary);
+    let stretched = |damage: &str, kinematics: &str| {
+        let case = TURNING.replace("DAMAGE", damage).replace("KINEMATICS", kinematics);
+        let place = Workplace::with_mesh(&case, &mesh);
+        let ended = run(&place, "out", "1");
+        let stretch = history(&place, "out", &["stretch"]).iter().fold(0.0, |most: f64, row| most.max(row[0].abs()));
+        let log = fs::read_to_string(place.path("out/run.log")).unwrap();
+        let told = listed(&place, "out").iter().any(|[code, ..]| code == "rotation");
+        (place, ended, stretch, log.contains("\"bar\" begins to turn"), told)
+    };
+    for damage in ["", DAMAGE] {
+        let (place, ended, stretch, turns, told) = stretched(damage, "");
+        assert!(stretch < 4e-4 && turns && !told, "{stretch}");
+        let residual = ended["energy"]["residual_max_relative"].as_f64().unwrap();
+        assert!(residual < 1e-4, "{residual}");
+        // Resumed before and after it has begun to turn.
+        let advance = |folder: &str, resume: bool, until: u64| {
+            let options = Options { output: Some(place.path(folder)), resume, quiet: true, ..Options::default() };
+            let mut simulation = Simulation::open(&place.path("case.toml"), &options).unwrap();
+            while simulation.steps() < until {
+                simulation.step().unwrap();
+                simulation.record().unwrap();
+            }
+            let hash = simulation.state_hash();
+            simulation.stop().unwrap();
+            simulation.finish().unwrap();
+            hash
+        };
+        let whole = advance("whole", false, 100);
+        for saved in [3, 60] {
+            let folder = format!("from-{saved}");
+            advance(&folder, false, saved);
+            assert_eq!(advance(&folder, true, 100), whole, "from step {saved}");
+        }
+        let (_, _, stretch, turns, told) = stretched(damage, "kinematics = \"small\"");
+        assert!(stretch > 0.05 && !turns && told, "{stretch}");
+    }
 }

@@ -272,7 +272,7 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
                 ("fix = \"PLANE\"\n", "velocity = { x = \"-300 1/s*(y - 6 cm)\" }\n"),
                 (
                     "material = \"stone\"\n",
-                    "material = \"stone\"\ninitial_velocity = { x = \"-300 1/s*(y - 6 cm)\", y = \"300 1/s*(x - 20 cm)\" }\n",
+                    "material = \"stone\"\nkinematics = \"small\"\ninitial_velocity = { x = \"-300 1/s*(y - 6 cm)\", y = \"300 1/s*(x - 20 cm)\" }\n",
                 ),
                 (end, "end = \"1 ms\""),
             ],

@@ -337,17 +337,21 @@ fn a_full_disk_is_a_failure_of_the_machine_that_leaves_no_half_file() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_limit_on_the_size_of_files_is_a_failure_of_the_machine() {
-    let workplace = Workplace::new(&breaking_bar());
-    let program = workplace.command(&RUN);
-    let mut shell = std::process::Command::new("sh");
-    // Blocks of 512 bytes.
-    shell.args(["-c", "ulimit -f 40; exec \"$0\" \"$@\""]).arg(program.get_program()).args(program.get_args());
-    let ended = shell.current_dir(program.get_current_dir().unwrap()).output().unwrap();
-    let said = String::from_utf8_lossy(&ended.stderr);
-    assert_eq!(ended.status.code(), Some(3), "{said}");
-    assert!(said.contains("too large"), "{said}");
-    assert!(!workplace.path("out/summary.json").exists());
+fn limits_of_the_user_are_failures_of_the_machine() {
+    // Blocks of 512 bytes, and KiB.
+    for (limit, word) in [("-f 40", "too large"), ("-v 32000", "memory"), ("-v 40000", "memory")] {
+        let workplace = Workplace::new(&breaking_bar());
+        let program = workplace.command(&RUN);
+        let mut shell = std::process::Command::new("sh");
+        let command = format!("ulimit {limit}; exec \"$0\" \"$@\"");
+        shell.args(["-c", &command]).arg(program.get_program()).args(program.get_args());
+        let ended = shell.current_dir(program.get_current_dir().unwrap()).output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(3), "{limit}: {said}");
+        // A thread needs memory too.
+        assert!(said.contains(word) || said.contains("threads could not be started"), "{limit}: {said}");
+        assert!(!workplace.path("out/summary.json").exists());
+    }
 }
 
 #[test]

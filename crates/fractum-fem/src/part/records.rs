@@ -53,6 +53,11 @@ impl Records {
         }
     }
 
+    /// From now on something can happen that all ranks must know.
+    pub(crate) fn expect_events(&mut self) {
+        self.has_events = true;
+    }
+
     /// Tells all ranks what they need of every block, or of those alone in which something has happened.
     pub(super) fn tell(&mut self, exchange: &dyn Exchange, own: Range<usize>, blocks: &mut [Block]) -> Events {
         if !self.all.is_empty() {

@@ -5,7 +5,7 @@ use fractum_calibrate::strength::Pulling;
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
 use fractum_fem::{ElementKind, Formulation, Kinematics, Plane};
-use fractum_io::case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody};
+use fractum_io::case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody, SolverKind};
 use fractum_io::number::quantity;
 use fractum_math::elementary::cbrt;
 use fractum_math::{Mat3, Sym3, Vec3};
@@ -195,6 +195,8 @@ impl Plan {
         let kinematics = match body.kinematics {
             Kinematics::Small => "small strains",
             Kinematics::Corotational => "corotational",
+            Kinematics::Auto if case.solver.kind == SolverKind::Static => "small strains",
+            Kinematics::Auto => "small strains until it turns",
         };
         let closing = body.damage.as_ref().is_some_and(|zone| zone.law.unilateral);
         let closing = if closing { ", cracks close under pressure" } else { "" };

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use fractum_io::case::model::ProbeKind;
 use fractum_io::number::{at_instant, percent, quantity};
 use fractum_io::summary::LargestOverlap;
 use fractum_io::warning::{Code, Warning};
@@ -82,10 +83,16 @@ impl Simulation {
 
     /// Warns of bodies that came apart into single nodes.
     fn warn_of_single_nodes(&mut self) -> Result<(), Failure> {
+        let reads_velocity = self.case.probes.iter().any(|probe| matches!(probe.kind, ProbeKind::Velocity { .. }));
+        let (least, what) = if reads_velocity {
+            (VISIBLY_SINGLE, "which have velocities of their own, and are no fragments")
+        } else {
+            (MOSTLY_SINGLE, "which are no fragments")
+        };
         let shares = self.scene.single_share().into_iter().enumerate();
-        for (body, share) in shares.filter(|(_, share)| *share > MOSTLY_SINGLE) {
+        for (body, share) in shares.filter(|(_, share)| *share > least) {
             let (name, percent) = (&self.scene.solid.body(body).name, 100.0 * share);
-            let text = format!("{percent:.0} % of its mass is in single nodes, which are no fragments");
+            let text = format!("{percent:.0} % of its mass is in single nodes, {what}");
             let found = Warning::new(Code::SingleNodes, format!("body \"{name}\""), text);
             self.warn(found.remedy("a finer mesh resolves them"))?;
         }
@@ -152,8 +159,9 @@ impl Simulation {
 const LEAST_SIZES: f64 = 1.5;
 /// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is at most 1.1.
 const SHEARED: f64 = 1.3;
-/// Share of a body's mass in single nodes above which its fragments tell little.
+/// Share of a body's mass in single nodes above which its fragments tell little, and above which a mean velocity does.
 const MOSTLY_SINGLE: f64 = 0.5;
+const VISIBLY_SINGLE: f64 = 0.05;
 
 /// What the scene noticed, in words.
 ///
@@ -178,7 +186,11 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
         Notice::Rotation => (
             Code::Rotation,
             format!("it has turned by {:.0} degrees, and small strains know no rotation", value.to_degrees()),
-            "set kinematics = \"corotational\" on the body",
+            if at_rest {
+                "an equilibrium knows small strains alone: load less, or in motion (solver.kind = \"explicit\")"
+            } else {
+                "leave out kinematics on the body, which then is corotational where it turns"
+            },
         ),
         Notice::Strain => (
             Code::LargeStrain,

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use fractum_io::number::at_instant;
 use fractum_scene::{Scene, StepError};
 
 use super::Advance;
@@ -11,10 +12,21 @@ use crate::phases::Phases;
 pub(super) fn step(scene: &mut Scene, measure: bool, phases: &mut Phases) -> Result<Advance, StepError> {
     let (time, dt) = (scene.clock.time, scene.clock.dt_after);
     let mut last = Instant::now();
-    scene.step_observed(measure, |phase| {
+    let report = scene.step_observed(measure, |phase| {
         let now = Instant::now();
         phases.add(phase.into(), now - last);
         last = now;
     })?;
-    Ok(if measure { Advance::measured(time, dt, true) } else { Advance::default() })
+    let advance = if measure { Advance::measured(time, dt, true) } else { Advance::default() };
+    if report.turning.is_empty() {
+        return Ok(advance);
+    }
+    let name = |&body: &u32| format!("\"{}\"", scene.solid.body(body as usize).name);
+    let names: Vec<String> = report.turning.iter().map(name).collect();
+    let event = format!(
+        "{}: {} begins to turn, with corotational strains from now on",
+        at_instant(time + dt, false),
+        names.join(", ")
+    );
+    Ok(Advance { event: Some(event), ..advance })
 }

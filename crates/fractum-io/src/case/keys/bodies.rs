@@ -97,7 +97,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].group", K::Text, "", "Solid: mesh group of its elements, may be left out where the mesh has one body; bonded group: mesh group whose volume its particles fill; rigid group: its facets"),
     key("bodies[].material", K::Text, "", "Name of its material; required but for rigid bodies, which deform in contact with it, and not at all without"),
     key("bodies[].formulation", K::Choice(names::<Formulation>), "\"smoothed\" with damage, else \"standard\"", "Solid: strain and damage on edges, or the plain element"),
-    key("bodies[].kinematics", K::Choice(names::<Kinematics>), "\"small\"", "Solid: small rotations, or a frame that turns with each element"),
+    key("bodies[].kinematics", K::Choice(names::<Kinematics>), "\"auto\"", "Solid: small strains, a frame that turns with each element, or small until a part turns in motion"),
     key("bodies[].plane", K::Choice(names::<Plane>), "\"strain\"", "Solid in 2D only: plane strain or plane stress"),
     key("bodies[].thickness", K::Quantity(D::LENGTH), "\"1 m\"", "Solid in 2D only: thickness, > 0"),
     key("bodies[].initial_velocity", K::Table, "", "Velocity at the start, by components; of a rigid body along its free axes"),

@@ -69,5 +69,5 @@ impl SolidBody {
 }
 
 choice!(Formulation { "smoothed" => Smoothed, "standard" => Standard });
-choice!(Kinematics { "small" => Small, "corotational" => Corotational });
+choice!(Kinematics { "auto" => Auto, "small" => Small, "corotational" => Corotational });
 choice!(Plane { "strain" => Strain, "stress" => Stress });

@@ -136,7 +136,7 @@ fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut
     });
     let usual = if damage { Formulation::Smoothed } else { Formulation::Standard };
     let formulation = table.choice("formulation").or(usual);
-    let kinematics = table.choice("kinematics").or(Kinematics::Small);
+    let kinematics = table.choice("kinematics").or(Kinematics::Auto);
     let plane = table.choice::<Plane>("plane").spanned().given();
     let thickness = table.quantity("thickness").positive().spanned().given();
     let depth = thickness.as_ref().map_or(table.reader.scale.of(Dimension::LENGTH), |thickness| thickness.value);
