@@ -3,6 +3,7 @@
 //! - [`read_msh`] and [`write_msh`]: MSH 2.2 and 4.1, ASCII and binary, from bytes and to any writer
 //! - [`read_inp`]: Abaqus input files; [`read_vtu`]: grids of VTK; [`read_mesh`] chooses by the first bytes
 //! - [`joined`]: one mesh of the files into which Gmsh writes its partitions
+//! - [`joined_bodies`]: bodies of which each has nodes of its own, joined where their faces conform
 //! - [`Mesh`]: points, lines, triangles, quadrilaterals and tetrahedra with named [`Group`]s
 //! - [`topology`]: edges, facets, outward boundary, elements of a node
 //! - [`quality`]: volumes, altitudes, lengths of edges, radius ratios, dihedral angles; [`hints`] says what to mend
@@ -30,6 +31,7 @@
 #![forbid(unsafe_code)]
 
 mod abaqus;
+mod coincident;
 pub mod generate;
 mod gmsh;
 mod hints;
@@ -43,6 +45,7 @@ pub mod topology;
 mod vtk;
 
 pub use abaqus::read_inp;
+pub use coincident::{Coincident, Joint, coincident_nodes, joined_bodies};
 pub use fractum_math::Vec3;
 pub use gmsh::{MshFormat, partitions, read_msh, write_msh};
 pub use hints::hints;

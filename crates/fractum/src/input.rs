@@ -120,7 +120,7 @@ impl Prepared {
     /// # Errors
     /// As [`load`]; the same on every rank.
     pub(crate) fn build(self, exchange: Option<&Arc<dyn Exchange>>) -> Result<Input, Failure> {
-        let Prepared { case, mesh: JoinedMesh { mesh, hash: mesh_hash, division, notes }, made } = self;
+        let Prepared { case, mesh: JoinedMesh { mesh, hash: mesh_hash, division, notes, warnings }, made } = self;
         let build = |case: &Case, prepared| {
             build_shared_scene(case, &mesh, prepared, facets(case)?, (exchange.cloned(), division.as_ref()))
         };
@@ -134,6 +134,7 @@ impl Prepared {
             }
         }
         built.warnings.extend(case.warnings().iter().cloned());
+        built.warnings.extend(warnings);
         built.warnings.extend(doubts(&case, &mesh));
         built.warnings.extend(made.warnings);
         let choice = choose(&case, &mut built);

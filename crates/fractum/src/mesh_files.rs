@@ -5,10 +5,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fractum_io::build::{SolidDivision, cannot_divide, divide, held_bodies};
-use fractum_io::case::model::{MeshSource, WHOLE_MESH};
-use fractum_io::case::{Case, Diagnostic, Diagnostics, Place, refuse_endless};
+use fractum_io::case::model::{MeshSource, SolidGroup, WHOLE_MESH};
+use fractum_io::case::{Case, Diagnostic, Diagnostics, Place, Spanned, refuse_endless};
 use fractum_io::memory;
-use fractum_mesh::{JoinError, Mesh, WholeMesh, halved, joined, scrambled};
+use fractum_io::number::quantity;
+use fractum_io::warning::Code;
+use fractum_math::Vec3;
+use fractum_mesh::{JoinError, Joint, Mesh, WholeMesh, halved, joined, joined_bodies, scrambled};
 use fractum_parallel::{Exchange, gather};
 use fractum_prepare::Processes;
 use xxhash_rust::xxh3::xxh3_128;
@@ -19,6 +22,8 @@ use crate::error::Failure;
 pub(crate) struct MeshFiles {
     /// That of the files that it has read; empty where the case has no mesh.
     mesh: Mesh,
+    /// What is doubtful about it.
+    warnings: Vec<Diagnostic>,
     /// Hashes of these files.
     hashes: Vec<u128>,
     /// Other processes have read other files.
@@ -39,6 +44,8 @@ pub(crate) struct JoinedMesh {
     pub(crate) division: Option<SolidDivision>,
     /// For the log: who has how much.
     pub(crate) notes: Vec<String>,
+    /// What is doubtful about it.
+    pub(crate) warnings: Vec<Diagnostic>,
 }
 
 impl MeshFiles {
@@ -48,20 +55,22 @@ impl MeshFiles {
     /// [`Failure::Input`] for files that cannot be read; [`Failure::Memory`].
     pub(crate) fn read(case: &Case, processes: Processes) -> Result<Self, Failure> {
         let Some(source) = &case.mesh else {
-            return Ok(MeshFiles { mesh: Mesh::default(), hashes: Vec::new(), is_part: false, alike: None, processes });
+            let (mesh, warnings, hashes) = Default::default();
+            return Ok(MeshFiles { mesh, warnings, hashes, is_part: false, alike: None, processes });
         };
         let reason = source.parts.filter(|_| processes.all > 1).and_then(|_| cannot_divide(case));
         let is_part = source.parts.is_some() && processes.all > 1 && reason.is_none();
-        if is_part && (source.scramble.is_some() || source.halvings > 0) {
+        if is_part && (source.scramble.is_some() || source.halvings > 0 || source.join.is_some()) {
             let remedy = "leave out mesh.parts, or write the mesh first and cut it then";
             return Err(fail(
                 source,
-                ": parts that several processes read are neither halved nor scrambled".to_owned(),
+                ": parts that several processes read are neither joined, halved nor scrambled".to_owned(),
                 remedy,
             ));
         }
-        let (mesh, hashes) = read_files(source, if is_part { processes } else { processes.alike() })?;
-        Ok(MeshFiles { mesh, hashes, is_part, alike: reason, processes })
+        let ReadFiles { mesh, hashes, warnings } =
+            read_files(source, if is_part { processes } else { processes.alike() })?;
+        Ok(MeshFiles { mesh, warnings, hashes, is_part, alike: reason, processes })
     }
 
     /// Makes one mesh of what all processes have read, and gives each what it needs of the solids. All processes must call it.
@@ -69,11 +78,11 @@ impl MeshFiles {
     /// # Errors
     /// [`Failure::Input`] for parts that do not fit together.
     pub(crate) fn join(self, case: &Case, exchange: Option<&Arc<dyn Exchange>>) -> Result<JoinedMesh, Failure> {
-        let MeshFiles { mesh, hashes, is_part, alike, processes } = self;
+        let MeshFiles { mesh, warnings, hashes, is_part, alike, processes } = self;
         let Some(source) = &case.mesh else { return Ok(JoinedMesh::default()) };
         let whole = |mesh, hashes: &[u128], alike: Option<String>| {
             let note = alike.map(|reason| format!("every process has the whole mesh, because of {reason}"));
-            JoinedMesh { mesh, hash: hash(hashes), division: None, notes: note.into_iter().collect() }
+            JoinedMesh { mesh, hash: hash(hashes), division: None, notes: note.into_iter().collect(), warnings }
         };
         let Some(exchange) = exchange.filter(|_| is_part) else { return Ok(whole(mesh, &hashes, alike)) };
         let hashes = gather(&**exchange, &hashes).concat();
@@ -83,9 +92,9 @@ impl MeshFiles {
                 let (own, all) = (mesh.tetrahedra.len(), mesh.tetrahedron_count());
                 let notes = std::iter::once(format!("this process has {own} of the {all} tetrahedra of the mesh"));
                 let notes = notes.chain(held_bodies(case)).collect();
-                Ok(JoinedMesh { mesh, hash: hash(&hashes), division: Some(division), notes })
+                Ok(JoinedMesh { mesh, hash: hash(&hashes), division: Some(division), notes, warnings: Vec::new() })
             }
-            Err(reason) => Ok(whole(read_files(source, processes.alike())?.0, &hashes, Some(reason))),
+            Err(reason) => Ok(whole(read_files(source, processes.alike())?.mesh, &hashes, Some(reason))),
         }
     }
 }
@@ -98,8 +107,15 @@ fn hash(hashes: &[u128]) -> u128 {
     }
 }
 
+/// The mesh of some files in metres, with their hashes and what is doubtful.
+struct ReadFiles {
+    mesh: Mesh,
+    hashes: Vec<u128>,
+    warnings: Vec<Diagnostic>,
+}
+
 /// Reads the files of a process among several: those that follow each other.
-fn read_files(source: &MeshSource, processes: Processes) -> Result<(Mesh, Vec<u128>), Failure> {
+fn read_files(source: &MeshSource, processes: Processes) -> Result<ReadFiles, Failure> {
     let files = source.files();
     let own = processes.own(files.len());
     let (mut meshes, mut hashes) = (Vec::new(), Vec::new());
@@ -115,6 +131,7 @@ fn read_files(source: &MeshSource, processes: Processes) -> Result<(Mesh, Vec<u1
     if source.unit != 1.0 {
         mesh.nodes.iter_mut().for_each(|node| *node *= source.unit);
     }
+    let warnings = source.join.as_ref().map_or_else(Vec::new, |join| join_solids(&mut mesh, join));
     if let Some((share, seed)) = source.scramble {
         mesh = scrambled(&mesh, share, seed);
     }
@@ -123,7 +140,41 @@ fn read_files(source: &MeshSource, processes: Processes) -> Result<(Mesh, Vec<u1
         memory::require(bytes, "halving the edges of the mesh".to_owned())?;
         mesh = halved(&mesh);
     }
-    Ok((mesh, hashes))
+    Ok(ReadFiles { mesh, hashes, warnings })
+}
+
+/// Makes coincident nodes of solids one, and tells where.
+fn join_solids(mesh: &mut Mesh, solids: &Spanned<Vec<SolidGroup>>) -> Vec<Diagnostic> {
+    let groups: Vec<&str> = solids.value.iter().map(|solid| solid.group.as_str()).collect();
+    let (joined, joints) = joined_bodies(mesh, &groups);
+    *mesh = joined;
+    let name = |body: usize| format!("\"{}\"", solids.value[body].body);
+    let place = |at: Vec3| format!("({})", [at.x, at.y, at.z].map(|x| quantity(x, "m")).join(", "));
+    if joints.is_empty() {
+        let names: Vec<String> = (0..groups.len()).map(name).collect();
+        let found = format!(": no face of {} has its nodes in the same places as one of another", names.join(", "));
+        let note = Diagnostic::warning(Code::NoEffect, &solids.place, found);
+        let remedy = "leave it out where the mesh has common nodes, else mesh both sides of a face alike";
+        return vec![note.remedy(remedy)];
+    }
+    let mut warnings = Vec::new();
+    for Joint { bodies: [first, second], nodes, faces, at, apart } in joints {
+        let (names, sides) = (
+            format!("{} and {}", name(first), name(second)),
+            if mesh.tetrahedra.is_empty() { "edges" } else { "faces" },
+        );
+        let joined = format!("{names} joined at {nodes} nodes of {faces} {sides}, such as that at {}", place(at));
+        mesh.notices.push(joined);
+        if let Some((count, at)) = apart {
+            let found = format!(
+                ": {names} lie upon each other beside the {faces} {sides} on which they are joined, and do not conform there ({count} places, such as {})",
+                place(at)
+            );
+            let note = Diagnostic::warning(Code::CoincidentNodes, &solids.place, found);
+            warnings.push(note.remedy("mesh both sides of the whole face alike"));
+        }
+    }
+    warnings
 }
 
 fn read_file(source: &MeshSource, file: &Path, processes: Processes) -> Result<(Mesh, u128), Failure> {

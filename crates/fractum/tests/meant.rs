@@ -110,6 +110,39 @@ fn nearly_all_mistakes_are_told() {
     assert!(missed.is_empty(), "{} of {} missed:\n{}", missed.len(), mistakes.len(), missed.join("\n"));
 }
 
+/// A second body of the far half, which `halves` makes.
+const FAR: &str =
+    "[[bodies]]\nname = \"far\"\nkind = \"solid\"\ngroup = \"far\"\nmaterial = \"stone\"\n[[supports]]\ngroup = \"x-\"";
+
+#[test]
+fn blocks_whose_nodes_are_joined_are_as_one_mesh() {
+    let cases = cases();
+    for (of, scale) in [("broken", 1.0), ("static", 1.0), ("static", 1e3), ("plate", 1e3)] {
+        let base = || mesh(if of == "plate" { "plate" } else { "bar" });
+        let (unit, fix) = (if scale > 1.0 { "unit = \"mm\"\n" } else { "" }, if of == "plate" { "xy" } else { "xyz" });
+        let case = cases[of].replacen("[[supports]]\ngroup = \"x-\"", FAR, 1).replace("\"xyz\"", &format!("\"{fix}\""));
+        // What acts on the side of the second body, and a probe of it.
+        let load = "[[loads]]\ngroup = \"y+\"\npressure = \"1 kPa\"\n[solver]";
+        let case = case.replace("[solver]", load);
+        let ended = |apart: bool| {
+            let mut mesh = halves(base(), apart);
+            mesh.nodes.iter_mut().for_each(|node| *node *= scale);
+            let join = if apart { "join = [\"far\", \"bar\"]\n" } else { "" };
+            let case = case.replace("[mesh]\n", &format!("[mesh]\n{unit}{join}"));
+            let place = Workplace::with_mesh(&case, &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+            let summary = crate::common::run(&place, "out", "1");
+            let log = fs::read_to_string(place.path("out/run.log")).unwrap();
+            let told = log.contains("\"far\" and \"bar\" joined at") && log.contains("such as that at (");
+            assert_eq!(told, apart, "{log}");
+            assert!(!log.contains("[coincident-nodes]"), "{log}");
+            summary
+        };
+        let (joined, one) = (ended(true), ended(false));
+        assert_eq!(joined["state_hash"], one["state_hash"], "{of}");
+        assert_eq!(joined["probes"], one["probes"], "{of}");
+    }
+}
+
 #[test]
 fn a_mesh_without_groups_is_one_body() {
     let mut mesh = bar();

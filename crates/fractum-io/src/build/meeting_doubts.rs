@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use fractum_math::Vec3;
-use fractum_mesh::Mesh;
+use fractum_mesh::{Coincident, Mesh, coincident_nodes};
 use fractum_scene::ContactParameters;
 
 use super::body_doubts::{Own, elements, extent, pieces};
@@ -12,8 +12,6 @@ use crate::case::model::{Body, BodyKind, Case, Motion, RigidBody, RigidShape, So
 use crate::number::{percent, quantity};
 use crate::warning::Code;
 
-/// Distance of two nodes that lie in one place, over the size of the mesh.
-const COINCIDENT: f64 = 1e-7;
 /// Elements of a body that are looked for in another one.
 const SAMPLE: usize = 2000;
 /// Instants at which the motion of a tool is looked at.
@@ -44,27 +42,13 @@ pub(super) fn coincident(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagno
     let touches = case.solver.kind == SolverKind::Explicit && !bodies.iter().any(|body| body.plane);
     // Who says how bodies touch means that they do.
     let says_how = |body: &Own| case.materials[body.solid.material].contact != ContactParameters::default();
-    let (low, high) = mesh.bounding_box();
-    let within = COINCIDENT * (high - low).norm();
-    // Along a direction in which nodes of a mesh of rows differ.
-    let along = Vec3::new(0.577, 0.743, 0.339);
-    let mut places: Vec<(f64, u32, u32)> = Vec::new();
-    for (index, body) in bodies.iter().enumerate() {
-        places.extend(body.nodes.iter().map(|&node| (along.dot(&mesh.nodes[node as usize]), index as u32, node)));
+    let sets: Vec<&[u32]> = bodies.iter().map(|body| body.nodes.as_slice()).collect();
+    let mut pairs = BTreeMap::<[usize; 2], (usize, u32)>::new();
+    for Coincident { bodies, nodes: [node, _] } in coincident_nodes(mesh, &sets) {
+        pairs.entry(bodies).or_insert((0, node)).0 += 1;
     }
-    places.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let mut pairs = BTreeMap::<(u32, u32), (usize, u32)>::new();
-    for (at, &(place, body, node)) in places.iter().enumerate() {
-        let near = places[at + 1..].iter().take_while(|(other, ..)| other - place <= within);
-        for &(_, other, twin) in near {
-            let apart = mesh.nodes[node as usize] - mesh.nodes[twin as usize];
-            if other != body && twin != node && apart.norm() <= within {
-                pairs.entry((body.min(other), body.max(other))).or_insert((0, node)).0 += 1;
-            }
-        }
-    }
-    let doubt = |((first, second), (count, node)): ((u32, u32), (usize, u32))| {
-        let [first, second] = [first, second].map(|index| &bodies[index as usize]);
+    let doubt = |(pair, (count, node)): ([usize; 2], (usize, u32))| {
+        let [first, second] = pair.map(|index| &bodies[index]);
         if touches && (says_how(first) || says_how(second)) {
             return None;
         }
@@ -76,7 +60,15 @@ pub(super) fn coincident(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagno
             second.name.value, first.name.value
         );
         let note = Diagnostic::warning(Code::CoincidentNodes, &second.name.place, found);
-        let joined = "mesh both with common nodes (fragment the volumes, or remove duplicate nodes in Gmsh)";
+        let is_joined = |body: &Own| {
+            let join = case.mesh.as_ref().and_then(|mesh| mesh.join.as_ref());
+            join.is_some_and(|join| join.value.iter().any(|solid| solid.body == body.name.value))
+        };
+        let joined = if is_joined(first) && is_joined(second) {
+            "mesh.join leaves them, as no face has all of its nodes in common: mesh both sides alike"
+        } else {
+            "set mesh.join = true, or mesh both with common nodes"
+        };
         let contact = if touches { "; if they only touch, say so by contact in a material" } else { "" };
         Some(note.remedy(format!("{joined}{contact}")))
     };

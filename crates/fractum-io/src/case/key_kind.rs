@@ -59,6 +59,8 @@ pub enum KeyKind {
     Points,
     /// Several names.
     Names,
+    /// All of something, or the names of some.
+    AllOrNames,
     /// Rows of group, delay and pulse, or a file of them.
     Firing,
 }
@@ -90,6 +92,7 @@ impl KeyKind {
             Self::Condition => "a condition such as \"abs(y) < 8 cm\"".to_string(),
             Self::ProbeExpression => "an expression of probes such as \"2*max(load)\"".to_string(),
             Self::Names => "a list of names such as [\"rest\", \"release\"]".to_string(),
+            Self::AllOrNames => "true for all, or a list of names such as [\"left\", \"right\"]".to_string(),
             Self::Firing => {
                 "rows such as [[\"hole-1\", \"25 ms\", \"contour\"]], or a CSV file of such rows".to_string()
             }
@@ -120,6 +123,7 @@ impl KeyKind {
             Self::ProbeExpression => "probe expression".to_string(),
             Self::Points => "list of pairs".to_string(),
             Self::Names => "list of names".to_string(),
+            Self::AllOrNames => "true, list of names".to_string(),
             Self::Firing => "list of rows, text".to_string(),
         }
     }

@@ -55,6 +55,9 @@ fn value(path: &str, kind: KeyKind, doc: &str, default: &str) -> Value {
         KeyKind::Tables => return json!({ "type": "array", "description": doc, "items": object(path, doc) }),
         KeyKind::Text | KeyKind::Unit(_) | KeyKind::Condition | KeyKind::ProbeExpression => json!({ "type": "string" }),
         KeyKind::Names => json!({ "type": "array", "items": { "type": "string" }, "minItems": 1 }),
+        KeyKind::AllOrNames => {
+            json!({ "anyOf": [{ "type": "boolean" }, { "type": "array", "items": { "type": "string" }, "minItems": 2 }] })
+        }
         KeyKind::Flag => json!({ "type": "boolean" }),
         KeyKind::Integer | KeyKind::Quantity(_) | KeyKind::Angle | KeyKind::AnyQuantity | KeyKind::Field(_) => {
             json!({ "type": ["number", "string"] })

@@ -20,6 +20,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("mesh.file", K::Text, "required", "Gmsh (.msh), Abaqus (.inp) or VTK (.vtu) file, relative to the case file"),
     key("mesh.parts", K::Integer, "", "The mesh is in so many files, one for each partition of Gmsh (`Mesh.PartitionSplitMeshFiles`): with file = \"rock.msh\" in rock_1.msh, rock_2.msh and so on. Several processes read some each; with parts = 1 one of them reads the file itself, and deals it out"),
     key("mesh.unit", K::Unit(Some(D::LENGTH)), "\"m\"", "Unit of the mesh's coordinates"),
+    key("mesh.join", K::AllOrNames, "false", "Solids whose nodes lie in the same places share them: all solids, or the named ones. Nodes are joined on faces that conform, and nearer than a thousandth of the shortest edge"),
     key("mesh.halvings", K::Integer, "0", "How often every edge is halved after reading, 0 to 6: each time a triangle becomes 4, a tetrahedron 8; curved sides stay those of the file"),
     key("mesh.scramble", K::Table, "", "Moves inner nodes at random, which gives another mesh of the same size; it comes before halvings"),
     key("mesh.scramble.share", K::Quantity(D::NONE), "required", "Largest move of a node over its shortest edge, above 0 and at most 0.5; nodes on sides, between groups and at poor elements stay"),

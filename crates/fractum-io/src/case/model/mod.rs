@@ -119,10 +119,21 @@ pub struct MeshSource {
     pub unit: f64,
     /// Whether a body is all of it: it then has the group [`WHOLE_MESH`].
     pub is_one_body: bool,
+    /// Solids whose coincident nodes become one, before edges are halved.
+    pub join: Option<Spanned<Vec<SolidGroup>>>,
     /// How often all edges are halved.
     pub halvings: u32,
     /// Random moves of inner nodes: share of the shortest edge [-], and seed.
     pub scramble: Option<(f64, u64)>,
+}
+
+/// A solid body by its name, with the group of its elements.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SolidGroup {
+    /// Name of the body.
+    pub body: String,
+    /// Its group.
+    pub group: String,
 }
 
 impl MeshSource {

@@ -39,7 +39,8 @@ use std::path::Path;
 use super::expression::parse_unit;
 use super::keys::remove_unknown;
 use super::model::{
-    Body, BodyKind, BondedShape, Case, CaseSource, Flows, MeshSource, PackingSource, RigidShape, Verify, WHOLE_MESH,
+    Body, BodyKind, BondedShape, Case, CaseSource, Flows, MeshSource, PackingSource, RigidShape, SolidGroup, Verify,
+    WHOLE_MESH,
 };
 use super::reader::{Reader, Table};
 use super::scale::Scale;
@@ -264,6 +265,7 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
         table.finish("here");
         share.map(|share| (share, seed))
     });
+    let join = join(&table, bodies);
     let parts = table
         .has("parts")
         .then(|| table.integer("parts").check(|count| (1..=MOST_PARTS).contains(count), "1 to 65536").or(1) as usize);
@@ -276,7 +278,46 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
     };
     let whole = |body: &Body| matches!(&body.kind, BodyKind::Solid(solid) if solid.group.value == WHOLE_MESH);
     let is_one_body = bodies.is_some_and(|bodies| bodies.iter().any(whole));
-    Some(Some(MeshSource { file, parts, unit, is_one_body, halvings, scramble }))
+    Some(Some(MeshSource { file, parts, unit, is_one_body, join: join?, halvings, scramble }))
+}
+
+/// The solids whose coincident nodes become one: nothing where none are joined.
+fn join(table: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<Spanned<Vec<SolidGroup>>>> {
+    let Some(node) = table.node("join") else { return Some(None) };
+    let solids = bodies.into_iter().flatten().filter_map(|body| match &body.kind {
+        BodyKind::Solid(solid) => Some(SolidGroup { body: body.name.value.clone(), group: solid.group.value.clone() }),
+        _ => None,
+    });
+    let solids: Vec<SolidGroup> = solids.collect();
+    let named = match &node.value {
+        Value::Flag(false) => return Some(None),
+        Value::Flag(true) => return Some(Some(Spanned::new(solids, node.place.clone()))),
+        Value::Array(_) => names::read(table, "join", "solid bodies")?,
+        _ => {
+            table
+                .reader
+                .note(Diagnostic::error(&node.place, node.found()).expected(super::KeyKind::AllOrNames.expected()));
+            return None;
+        }
+    };
+    if named.len() < 2 {
+        let note = Diagnostic::error(&node.place, node.found());
+        table.reader.note(note.expected("two bodies at least"));
+        return None;
+    }
+    // Which bodies there are is not known.
+    let Some(_) = bodies else { return Some(None) };
+    let find = |name: &Spanned<String>| {
+        let found = solids.iter().find(|solid| solid.body == name.value).cloned();
+        if found.is_none() {
+            let note = Diagnostic::error(&name.place, format!("= \"{}\" is no solid body", name.value));
+            let known = solids.iter().map(|solid| solid.body.as_str());
+            table.reader.note(table.reader.suggest(note, &name.value, known, "there are"));
+        }
+        found
+    };
+    let found = named.iter().map(find).collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()?;
+    Some(Some(Spanned::new(found, node.place.clone())))
 }
 
 fn table_path(reader: &Reader, file: &str) -> std::path::PathBuf {
