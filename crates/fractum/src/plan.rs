@@ -20,7 +20,7 @@ use fractum_io::case::Diagnostic;
 use fractum_io::case::model::{
     Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SolverKind, SurfaceSupport,
 };
-use fractum_io::number::{instant_text, quantity};
+use fractum_io::number::{instant_text, percent, quantity};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_prepare::Cache;
@@ -84,6 +84,12 @@ impl Plan {
         let scene = &built.scene;
         if !case.source.title.is_empty() {
             plan.add("case", &case.source.title);
+        }
+        if let Some(scale) = case.source.verify.scale {
+            let what = format!(
+                "verify.scale: lengths and times are {scale} times those of the case, forces {scale}\u{b2} times"
+            );
+            plan.add("scale", format!("{what}; stresses, velocities and densities stay"));
         }
         if let Some(source) = &case.mesh {
             plan.describe_mesh(source, mesh);
@@ -153,6 +159,23 @@ impl Plan {
         let lengths: Vec<String> = size.iter().take(lengths).map(|&length| quantity(length, "m")).collect();
         let (counted, lengths) = (counted.collect::<Vec<_>>().join(", "), lengths.join(" x "));
         self.add("mesh", format!("{}: {counted}, {lengths}", source.file.value.display()));
+        if let Some((share, seed)) = source.scramble {
+            let share = percent(share);
+            self.add(
+                "",
+                format!(
+                    "mesh.scramble: inner nodes moved at random by up to {share} of their shortest edge, seed {seed}"
+                ),
+            );
+        }
+        if source.halvings > 0 {
+            let (times, each) = (1u64 << source.halvings, if mesh.tetrahedra.is_empty() { 4u64 } else { 8 });
+            let parts = each.pow(source.halvings);
+            self.add(
+                "",
+                format!("mesh.halvings: elements {times} times smaller than in the file, {parts} for each of it"),
+            );
+        }
         for notice in &mesh.notices {
             self.add("", notice.clone());
         }

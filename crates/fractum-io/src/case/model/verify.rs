@@ -7,6 +7,8 @@ use super::Expect;
 pub struct Verify {
     /// Whether `--quick` runs this case.
     pub quick: bool,
+    /// By how much the whole case is larger than written, where it is.
+    pub scale: Option<f64>,
     /// What all references promise that do not say it themselves.
     pub promise: Promise,
     /// The cases beside this one, by kind.

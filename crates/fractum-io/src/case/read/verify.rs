@@ -60,7 +60,8 @@ pub(super) fn read(root: &Table<'_>, around: &Around<'_>, expect: Option<&[Expec
             None
         }
     });
-    scale.check(|scale| (1e-9..=1e9).contains(scale), "from 1e-9 to 1e9").given();
+    let scale = scale.check(|scale| (1e-9..=1e9).contains(scale), "from 1e-9 to 1e9").given();
+    let scale = scale.filter(|scale| *scale != 1.0);
     let mut neighbours = around.neighbours();
     for own in table.tables("neighbours") {
         neighbours.extend(own_neighbour(&own));
@@ -86,7 +87,7 @@ pub(super) fn read(root: &Table<'_>, around: &Around<'_>, expect: Option<&[Expec
             });
         }
     }
-    Verify { quick, promise, neighbours }
+    Verify { quick, scale, promise, neighbours }
 }
 
 /// `holds_for` and `excepted` of a table.
