@@ -125,6 +125,9 @@ impl Plan {
     /// - `span`: time from the end of the stage before to that of this one [s]
     fn describe_solver(&mut self, case: &Case, built: &BuiltScene, span: f64) {
         let scene = &built.scene;
+        if let Some(end) = time_step::early_end(case) {
+            self.add("ends early", end);
+        }
         match &built.statics {
             Some(settings) => self.describe_statics(scene, settings),
             None if built.bonded_statics.is_some() => {

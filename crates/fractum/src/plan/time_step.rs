@@ -1,7 +1,7 @@
 //! The time step in the plan.
 
-use fractum_io::case::model::Case;
-use fractum_io::number::quantity;
+use fractum_io::case::model::{Case, StopWhen};
+use fractum_io::number::{percent, quantity};
 use fractum_scene::Scene;
 
 use super::Plan;
@@ -33,6 +33,22 @@ impl Plan {
         let steps = (span / scene.clock.dt_after).ceil();
         self.add("steps", format!("{steps} to t = {}", quantity(case.solver.end, "s")));
     }
+}
+
+/// When a run ends before its time.
+pub(super) fn early_end(case: &Case) -> Option<String> {
+    let stop = case.solver.stop_when.as_ref()?;
+    let (name, part) = (&case.probes[stop.probe].name.value, percent(stop.below));
+    let [deep, share] = [StopWhen::DEEP, StopWhen::SHARE].map(percent);
+    let lasting = match stop.lasting {
+        Some(0.0) => String::new(),
+        Some(lasting) => format!(" for {}", quantity(lasting, "s")),
+        None if stop.below <= StopWhen::DEEP => String::new(),
+        None => format!(" for {share} of the time that the peak took, or below {deep} of it"),
+    };
+    let after =
+        if stop.after > 0.0 { format!(", not before t = {}", quantity(stop.after, "s")) } else { String::new() };
+    Some(format!("once {name} is below {part} of its peak{lasting}{after}"))
 }
 
 /// How cells share the steps.

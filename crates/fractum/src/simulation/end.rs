@@ -1,11 +1,13 @@
 //! Why a run is over.
 
+use fractum_io::case::model::StopWhen;
 use fractum_io::number::percent;
 use fractum_io::summary::Status;
 use fractum_io::warning::Warning;
 use fractum_scene::StepError;
 
 use super::Simulation;
+use crate::series::index_of_max;
 
 /// Why a run is over.
 pub(super) enum End {
@@ -37,9 +39,6 @@ impl End {
     }
 }
 
-/// Share of the largest value below which a load that has fallen seldom rises above that again.
-const SMALL_DROP: f64 = 0.5;
-
 impl Simulation {
     /// Why there is no further step.
     pub(super) fn last_step(&self) -> String {
@@ -55,19 +54,66 @@ impl Simulation {
         let stop = self.case.solver.stop_when.as_ref()?;
         let record = self.recorder.state();
         let (values, time) = (&record.series[stop.probe], record.times.last().copied().unwrap_or(0.0));
-        let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let is_below = |value: &f64| *value < stop.below * largest;
-        let rows_below = values.iter().rev().take_while(|value| is_below(value)).count();
-        // Along a path the load factor may fall.
-        let below = record.times.len().saturating_sub(rows_below);
-        let lasting: f64 = record.times[below..].windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-        if largest <= 0.0 || time < stop.after || rows_below == 0 || lasting < stop.lasting {
+        let drop = Drop::of(&record.times, values, stop.below)?;
+        let is_over = match stop.lasting {
+            Some(lasting) => drop.lasting >= lasting,
+            None => drop.is_deep || drop.lasting >= StopWhen::SHARE * drop.until_peak,
+        };
+        if time < stop.after || !is_over {
             return None;
         }
         let (name, part) = (&self.case.probes[stop.probe].name.value, percent(stop.below));
         let what = format!("{name} fell below {part} of its largest value at {}", self.instant(time));
-        let small = stop.below > SMALL_DROP && stop.lasting == 0.0;
+        let small = !drop.is_deep && stop.lasting == Some(0.0);
         let further = if small { "; whether it would rise again is not known (stop_when.lasting)" } else { "" };
         Some(format!("{what}{further}"))
+    }
+}
+
+/// The last values of a curve that have fallen below a fraction of its largest value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Drop {
+    /// Time since the first of them [s].
+    lasting: f64,
+    /// Time from the start to the largest value [s].
+    until_peak: f64,
+    /// Whether the last value is below [`StopWhen::DEEP`].
+    is_deep: bool,
+}
+
+impl Drop {
+    fn of(times: &[f64], values: &[f64], below: f64) -> Option<Self> {
+        let peak = index_of_max(values)?;
+        let largest = values[peak];
+        let count = values.iter().rev().take_while(|value| **value < below * largest).count();
+        if largest <= 0.0 || count == 0 {
+            return None;
+        }
+        // Along a path the load factor may fall.
+        let way = |times: &[f64]| times.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+        let first = values.len() - count;
+        let is_deep = values[values.len() - 1] < StopWhen::DEEP * largest;
+        Some(Drop { lasting: way(&times[first..]), until_peak: way(&times[..=peak]), is_deep })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drop_is_judged_by_its_depth_and_by_the_way_to_the_peak() {
+        let times: Vec<f64> = (0..10).map(f64::from).collect();
+        let of = |values: &[f64], below: f64| Drop::of(&times[..values.len()], values, below);
+        let drop = |lasting, until_peak, is_deep| Some(Drop { lasting, until_peak, is_deep });
+        assert_eq!(of(&[0.0, 1.0, 2.0, 1.5], 0.8), drop(0.0, 2.0, false));
+        assert_eq!(of(&[0.0, 1.0, 2.0, 1.5, 1.5, 1.4], 0.8), drop(2.0, 2.0, false));
+        assert_eq!(of(&[0.0, 1.0, 2.0, 1.5, 0.9], 0.8), drop(1.0, 2.0, true));
+        // A curve that has risen again has not fallen; nor has one that was never above zero, or that is empty.
+        assert_eq!(of(&[0.0, 1.0, 2.0, 1.5, 1.7], 0.8), None);
+        assert_eq!(of(&[-1.0, -2.0], 0.8), None);
+        assert_eq!(of(&[], 0.8), None);
+        // Along a path that turns back.
+        assert_eq!(Drop::of(&[0.0, 2.0, 1.5, 1.0], &[0.0, 3.0, 2.0, 1.6], 0.7), drop(0.5, 2.0, false));
     }
 }

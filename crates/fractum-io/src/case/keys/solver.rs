@@ -47,7 +47,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("solver.stop_when.probe", K::Text, "required", "Name of the probe"),
     key("solver.stop_when.below", K::Quantity(D::NONE), "required", "Fraction of the largest value so far, within 0 and 1"),
     key("solver.stop_when.after", K::Quantity(D::TIME), "\"0 s\"", "Not before this time"),
-    key("solver.stop_when.lasting", K::Quantity(D::TIME), "\"0 s\"", "Only once it has stayed below for so long, so that a small drop before the peak ends no run"),
+    key("solver.stop_when.lasting", K::Quantity(D::TIME), "a quarter of the time to the largest value, or 0 s below half of it", "Only once it has stayed below for so long, so that a small drop before the peak ends no run; \"0 s\" ends it at the first drop"),
     key("solver.balance_warning", K::Quantity(D::NONE), "1e-3", "Energy imbalance over external work at which to warn, > 0"),
     key("solver.balance_stop", K::Quantity(D::NONE), "1e-2", "Energy imbalance over external work at which to stop, ≥ balance_warning"),
 ];

@@ -139,6 +139,13 @@ pub struct StopWhen {
     pub below: f64,
     /// Not before this time [s].
     pub after: f64,
-    /// Time that it must have stayed below [s].
-    pub lasting: f64,
+    /// Time that it must have stayed below [s]; where nothing is said, see [`StopWhen::DEEP`] and [`StopWhen::SHARE`].
+    pub lasting: Option<f64>,
+}
+
+impl StopWhen {
+    /// Fraction of the largest value so far: a drop below it ends the run at once, since a load that has fallen so far seldom rises above its peak again.
+    pub const DEEP: f64 = 0.5;
+    /// A smaller drop must last for this part of the time from the start to the largest value.
+    pub const SHARE: f64 = 0.25;
 }

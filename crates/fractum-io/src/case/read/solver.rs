@@ -246,7 +246,7 @@ fn stop_when(solver: &Table<'_>, probes: &[ReadProbe]) -> Option<StopWhen> {
     });
     let below = table.quantity("below").between(0.0, 1.0).required();
     let after = table.quantity("after").not_negative().or(0.0);
-    let lasting = table.quantity("lasting").not_negative().or(0.0);
+    let lasting = table.quantity("lasting").not_negative().given();
     table.finish("here");
     Some(StopWhen { probe: probe?, below: below?, after, lasting })
 }
