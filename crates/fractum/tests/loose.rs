@@ -285,7 +285,7 @@ fn what_overlaps_at_the_start_is_told_and_may_be_kept() {
     let said = format!("{}{}", told.stdout, told.stderr);
     for words in [
         "2 contacts overlap at the start, deepest particle 0 of beads and particle 1 of beads, by 400 µm",
-        "1 node of a solid is within other bodies at the start, deepest that at (0 m, 0 m, 0 m) in rigid body ball",
+        "1 node of a solid is within rigid body ball at the start, deepest that at (0 m, 0 m, 0 m)",
     ] {
         assert!(said.contains(words), "{said}");
     }

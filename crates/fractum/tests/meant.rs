@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use fractum_mesh::generate::structured_rectangle;
+use fractum_mesh::generate::{structured_box, structured_rectangle};
+use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_mesh::{Mesh, MshFormat};
 
 use fractum_math::Vec3;
@@ -72,6 +73,19 @@ fn mesh(name: &str) -> Mesh {
     }
 }
 
+/// A box as an STL file.
+fn stl_box(corner: [f64; 3], size: [f64; 3]) -> String {
+    let mesh = structured_box([1; 3], Vec3::from(size), None);
+    let at = |node: u32| mesh.nodes[node as usize] + Vec3::from(corner);
+    let vertex = |x: Vec3| format!("vertex {} {} {}\n", x.x, x.y, x.z);
+    let facet = |nodes: [u32; 3]| {
+        let corners: String = nodes.map(|node| vertex(at(node))).concat();
+        format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
+    };
+    let facets: String = boundary_of_tetrahedra(&mesh.tetrahedra).iter().map(|side| facet(side.nodes)).collect();
+    format!("solid box\n{facets}endsolid box\n")
+}
+
 #[test]
 fn nearly_all_mistakes_are_told() {
     let table: toml::Table = MISTAKES.parse().unwrap();
@@ -81,6 +95,9 @@ fn nearly_all_mistakes_are_told() {
     let place = Workplace::new("");
     fs::write(place.path("bead.csv"), "0,0,0.01,0.01\n").unwrap();
     fs::write(place.path("deep.csv"), "0,0,0.005,0.01\n").unwrap();
+    fs::write(place.path("grains.csv"), "0.233,0.11,0.053,0.001\n0.333,0.11,0.053,0.001\n0.433,0.11,0.053,0.001\n")
+        .unwrap();
+    fs::write(place.path("tooth.stl"), stl_box([231.0, 90.0, 51.0], [5.0, 50.0, 5.0])).unwrap();
     fs::write(place.path("words.csv"), "a bead of ten millimetres\n").unwrap();
     let mesh_of = |case: &str| if case == "plate" { "plate" } else { "bar" };
     let checked = |case: &str, name: &str| {

@@ -87,7 +87,14 @@ impl Context<'_> {
         warnings.extend(self.overlap_of_particles(&scene, &deep, NO_FORCE));
         warnings.extend(self.particle_overlaps(&scene, &mut contacts));
         let mut scene = scene.with_contacts(contacts, surface);
-        warnings.extend(self.node_overlaps(&scene, surface));
+        let nodes = deep_nodes(&scene, surface);
+        warnings.extend(self.node_overlaps(&scene, &nodes));
+        let told = nodes.iter().filter_map(|(_, _, other)| match other {
+            OverlapWith::RigidBody(name) => Some(name.as_str()),
+            _ => None,
+        });
+        let told: Vec<&str> = told.collect();
+        warnings.extend(self.tool_overlaps(&scene.solid, &scene.bonded, scene.contacts.rigid_bodies(), &told));
         if self.case.solver.initial_overlap == InitialOverlap::Keep {
             scene.accept_initial_overlaps();
         }
@@ -181,32 +188,38 @@ impl Context<'_> {
         Some(Diagnostic::warning(Code::InitialOverlap, &self.whole_case(), found).remedy(remedy))
     }
 
-    /// Nodes of solids that are in other bodies at the start.
-    fn node_overlaps(&self, scene: &Scene, surface: &[u32]) -> Option<Diagnostic> {
-        let infinite = Vec3::repeat(f64::INFINITY);
-        let places = surface.iter().map(|&n| scene.solid.position(n as usize));
-        let (low, high) = places.fold((infinite, -infinite), |(low, high), p| (low.inf(&p), high.sup(&p)));
-        let nodes = scene.node_overlaps();
-        let deep = nodes.iter().filter(|(_, depth, _)| *depth > DEEP * (high - low).norm());
-        let (node, depth, other) = deep.clone().next()?;
-        let other = match other {
-            OverlapWith::Solid(name) => format!("solid {name}"),
-            OverlapWith::RigidBody(name) => format!("rigid body {name}"),
-            OverlapWith::Particle(particle) => format!("particle {particle}"),
+    /// Nodes of solids that are in other bodies at the start: for each of these the deepest.
+    ///
+    /// - `nodes`: those with their depths [m], deepest first
+    fn node_overlaps(&self, scene: &Scene, nodes: &[(u32, f64, OverlapWith)]) -> Vec<Diagnostic> {
+        let mut others: Vec<&OverlapWith> = Vec::new();
+        nodes.iter().map(|(.., other)| other).for_each(|other| {
+            if !others.contains(&other) {
+                others.push(other);
+            }
+        });
+        let doubt = |other: &OverlapWith| {
+            let mut within = nodes.iter().filter(|(.., found)| found == other);
+            let count = within.clone().count();
+            let (node, depth, _) = within.next()?;
+            let other = match other {
+                OverlapWith::Solid(name) => format!("solid {name}"),
+                OverlapWith::RigidBody(name) => format!("rigid body {name}"),
+                OverlapWith::Particle(particle) => format!("particle {particle}"),
+            };
+            let at = scene.solid.position(*node as usize);
+            let found = format!(
+                "{} within {other} at the start, deepest that at ({}), by {}",
+                match count {
+                    1 => "1 node of a solid is".to_owned(),
+                    count => format!("{count} nodes of solids are"),
+                },
+                [at.x, at.y, at.z].map(|x| quantity(x, "m")).join(", "),
+                quantity(*depth, "m")
+            );
+            Some(Diagnostic::warning(Code::InitialOverlap, &self.whole_case(), found).remedy(self.overlap_remedy()))
         };
-        let at = scene.solid.position(*node as usize);
-        let found = format!(
-            "{} within other bodies at the start, deepest that at ({}, {}, {}) in {other}, by {}",
-            match deep.count() {
-                1 => "1 node of a solid is".to_owned(),
-                count => format!("{count} nodes of solids are"),
-            },
-            quantity(at.x, "m"),
-            quantity(at.y, "m"),
-            quantity(at.z, "m"),
-            quantity(*depth, "m")
-        );
-        Some(Diagnostic::warning(Code::InitialOverlap, &self.whole_case(), found).remedy(self.overlap_remedy()))
+        others.into_iter().filter_map(doubt).collect()
     }
 
     fn overlap_remedy(&self) -> &'static str {
@@ -344,6 +357,18 @@ impl Context<'_> {
             _ => Probe::RigidBodyVelocity { rigid_body, direction },
         })
     }
+}
+
+/// Nodes of solids that are within other bodies, with their depths [m], deepest first; no rounding of places.
+///
+/// - `surface`: nodes on the surface of solids
+fn deep_nodes(scene: &Scene, surface: &[u32]) -> Vec<(u32, f64, OverlapWith)> {
+    let infinite = Vec3::repeat(f64::INFINITY);
+    let places = surface.iter().map(|&n| scene.solid.position(n as usize));
+    let (low, high) = places.fold((infinite, -infinite), |(low, high), p| (low.inf(&p), high.sup(&p)));
+    let mut nodes = scene.node_overlaps();
+    nodes.retain(|(_, depth, _)| *depth > DEEP * (high - low).norm());
+    nodes
 }
 
 /// The shape that solids feel of a rigid body.

@@ -198,36 +198,6 @@ pub(super) fn missing(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnosti
     case.bodies.iter().filter_map(doubt).collect()
 }
 
-/// Tools whose middle lies within a solid: where none of its nodes is in the tool, they do not feel each other.
-pub(super) fn sunk(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
-    let doubt = |body: &Body| {
-        let BodyKind::Rigid(rigid) = &body.kind else { return None };
-        let middle = match &rigid.shape {
-            RigidShape::Sphere { point, .. } => *point,
-            RigidShape::Box { point, size } => point + size / 2.0,
-            RigidShape::Cylinder { point, axis, length, .. } => point + axis * (length / 2.0),
-            RigidShape::Plane { .. } | RigidShape::Group { .. } | RigidShape::Stl { .. } => return None,
-        };
-        if rigid.inside {
-            return None;
-        }
-        let holds_middle = |own: &&Own| {
-            if own.plane {
-                let triangles = elements(mesh, own, |group| &group.triangles, &mesh.triangles);
-                triangles.iter().any(|nodes| holds(&nodes.map(|node| mesh.nodes[node as usize]), &middle))
-            } else {
-                let tetrahedra = elements(mesh, own, |group| &group.tetrahedra, &mesh.tetrahedra);
-                tetrahedra.iter().any(|nodes| holds(&nodes.map(|node| mesh.nodes[node as usize]), &middle))
-            }
-        };
-        let own = bodies.iter().find(holds_middle)?;
-        let found = format!("= \"{}\": its middle lies within \"{}\"", body.name.value, own.name.value);
-        let note = Diagnostic::warning(Code::InitialOverlap, &body.name.place, found);
-        Some(note.remedy("move it out; of a tool within a solid only the nodes that it covers feel it"))
-    };
-    case.bodies.iter().filter_map(doubt).collect()
-}
-
 /// Where a rigid body that does not turn is during the run, from where it starts [m]; none where that depends on forces, or it stays.
 fn way(case: &Case, rigid: &RigidBody) -> Option<Vec<Vec3>> {
     let pushed =

@@ -23,6 +23,7 @@ mod strength;
 mod subcycling;
 mod surface_supports;
 mod ties;
+mod tool_overlaps;
 
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
