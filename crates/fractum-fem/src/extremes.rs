@@ -6,7 +6,8 @@ use fractum_math::Sym3;
 use fractum_math::elementary::asin;
 use rayon::prelude::*;
 
-use crate::body::Kinematics;
+use crate::body::{DamageZone, Kinematics, Region};
+use crate::body_model::BodyModel;
 use crate::evaluate::{Block, BlockLaw};
 use crate::kernel::strain;
 use crate::material::CriterionKind;
@@ -72,8 +73,11 @@ impl Solid {
         let model = &self.bodies[block.body];
         let small = model.body.kinematics != Kinematics::Corotational;
         let zone = model.body.damage.as_ref();
-        let unarmed =
-            zone.filter(|_| model.smoothed_edges().is_some() && matches!(block.law, BlockLaw::Elastic { .. }));
+        let kept_whole = zone.filter(|zone| match block.law {
+            BlockLaw::Elastic { .. } => model.smoothed_edges().is_some(),
+            BlockLaw::Standard(_) => matches!(zone.region, Region::Edges(_)),
+            _ => false,
+        });
         let in_tension = zone.filter(|zone| zone.law.criterion.kind() == CriterionKind::Rankine);
         for cell in 0..block.cells.len() {
             if block.cells.volume[cell] == 0.0 || block.damage_of(cell) > CARRIES {
@@ -85,13 +89,16 @@ impl Solid {
             }
             let elastic = block.cells.elastic_strain(cell, strain(&h, model.body.kinematics));
             found[1] = larger(found[1], Some((norm(elastic), index, cell as u32)));
+            let unarmed = kept_whole.filter(|zone| model.may_not_part(zone, block.items[cell]));
             if unarmed.is_none() && in_tension.is_none() {
                 continue;
             }
             let stress = model.hooke.stress(elastic);
+            // An element at the border of the region may be damaged in part.
+            let carried = 1.0 - block.damage_of(cell);
             // Principal values are found where they may be the largest.
             let bound = norm(stress);
-            for (which, zone, sign) in [(2, unarmed, 1.0), (3, in_tension, -1.0)] {
+            for (which, zone, sign) in [(2, unarmed, carried), (3, in_tension, -1.0)] {
                 let Some(strength) = zone.map(|zone| zone.law.tensile_strength) else { continue };
                 if found[which].is_none_or(|(value, ..)| bound > value * strength) {
                     let values = stress.principal_values().map(|value| sign * value / strength);
@@ -113,6 +120,18 @@ impl Solid {
     }
 }
 
+impl BodyModel {
+    /// Whether an edge of the smoothed formulation, or an element of the standard one, lies where no crack may part it: of an element no way to
+    /// cut it has all of its edges in the region of damage.
+    fn may_not_part(&self, zone: &DamageZone, item: u32) -> bool {
+        let (Some(standard), Some(edges), Region::Edges(marked)) = (&self.standard, &self.edges, &zone.region) else {
+            return true;
+        };
+        let own = &edges.of_element(item)[..self.body.shape.edge_count()];
+        standard.element_damage(own, |edge| f64::from(u8::from(marked[edge as usize]))) < 1.0
+    }
+}
+
 /// Root of the sum of the squares of all components.
 fn norm(tensor: Sym3) -> f64 {
     tensor.dot(tensor).sqrt()
@@ -125,7 +144,7 @@ mod tests {
     use fractum_mesh::generate::structured_box;
 
     use super::*;
-    use crate::body::{Body, ElementKind, Region};
+    use crate::body::{Body, ElementKind};
     use crate::material::{DamageLaw, Elastic};
 
     fn cube(change: impl FnOnce(&mut Body)) -> Solid {
@@ -160,27 +179,58 @@ mod tests {
     #[test]
     fn stress_is_looked_at_where_no_criterion_does() {
         let law = DamageLaw::rankine(3e6, 200.0);
-        let guarded = |solid: &mut Body| {
-            *solid = solid.clone().smoothed().with_damage(law.clone());
-            let edges = Solid::new(structured_box([2; 3], Vec3::repeat(1.0), None).nodes, vec![solid.clone()]).unwrap();
-            let count = edges.body_edges(0).unwrap().len();
-            let Some(zone) = &mut solid.damage else { return };
-            zone.region = Region::Edges(vec![false; count]);
+        for smoothed in [true, false] {
+            let with_damage = |body: &mut Body| {
+                let kind = if smoothed { body.clone().smoothed() } else { body.clone() };
+                *body = kind.with_damage(law.clone());
+            };
+            let guarded = |body: &mut Body| {
+                with_damage(body);
+                let nodes = structured_box([2; 3], Vec3::repeat(1.0), None).nodes;
+                let count = Solid::new(nodes, vec![body.clone()]).unwrap().body_edges(0).unwrap().len();
+                let Some(zone) = &mut body.damage else { return };
+                zone.region = Region::Edges(vec![false; count]);
+            };
+            let mut solid = cube(guarded);
+            // Uniaxial strain of 2 ft/E in tension, then of 10 ft/E in compression.
+            moved(&mut solid, |x| Vec3::new(2e-4 * x.x, 0.0, 0.0));
+            let found = solid.extremes();
+            assert!((found.tension.unwrap().value - 2.0).abs() < 1e-9, "{found:?}");
+            // Principal values that are equal are found to the root of rounding.
+            assert!(found.compression.unwrap().value.abs() < 1e-7, "{found:?}");
+            assert!((found.strain.unwrap().value / 2e-4 - 1.0).abs() < 1e-9);
+            moved(&mut solid, |x| Vec3::new(-1e-3 * x.x, 0.0, 0.0));
+            let found = solid.extremes();
+            assert!(found.tension.unwrap().value.abs() < 1e-7, "{found:?}");
+            assert!((found.compression.unwrap().value - 10.0).abs() < 1e-9, "{found:?}");
+            // A body that may be damaged everywhere needs no look in tension.
+            let mut solid = cube(with_damage);
+            moved(&mut solid, |x| Vec3::new(2e-4 * x.x, 0.0, 0.0));
+            assert!(solid.extremes().tension.is_none());
+        }
+    }
+
+    #[test]
+    fn elements_of_the_standard_formulation_are_looked_at_where_no_crack_may_part_them() {
+        let mesh = structured_box([2; 3], Vec3::repeat(1.0), None);
+        // Edges in the lower half may be damaged; strain grows with z in one half of the body and with -z in the other.
+        let region = |body: &mut Body| {
+            *body = body.clone().with_damage(DamageLaw::rankine(3e6, 200.0));
+            let edges = Solid::new(mesh.nodes.clone(), vec![body.clone()]).unwrap();
+            let low = |edge: u32| {
+                let [a, b] = edges.body_edges(0).unwrap().nodes(edge);
+                mesh.nodes[a as usize].z + mesh.nodes[b as usize].z < 1.0 + 1e-9
+            };
+            let marked = (0..edges.body_edges(0).unwrap().len() as u32).map(low).collect();
+            let Some(zone) = &mut body.damage else { return };
+            zone.region = Region::Edges(marked);
         };
-        let mut solid = cube(guarded);
-        // Uniaxial strain of 2 ft/E in tension, then of 10 ft/E in compression.
-        moved(&mut solid, |x| Vec3::new(2e-4 * x.x, 0.0, 0.0));
-        let found = solid.extremes();
-        assert!((found.tension.unwrap().value - 2.0).abs() < 1e-9, "{found:?}");
-        // Principal values that are equal are found to the root of rounding.
-        assert!(found.compression.unwrap().value.abs() < 1e-7, "{found:?}");
-        assert!((found.strain.unwrap().value / 2e-4 - 1.0).abs() < 1e-9);
-        moved(&mut solid, |x| Vec3::new(-1e-3 * x.x, 0.0, 0.0));
-        let found = solid.extremes();
-        assert!(found.tension.unwrap().value.abs() < 1e-7, "{found:?}");
-        assert!((found.compression.unwrap().value - 10.0).abs() < 1e-9, "{found:?}");
-        // A body that may be damaged everywhere needs no look in tension.
-        let solid = cube(|body| *body = body.clone().smoothed().with_damage(law.clone()));
-        assert!(solid.extremes().tension.is_none());
+        let tension = |top: bool| {
+            let mut solid = cube(region);
+            let strain = |z: f64| if top { 4e-4 * (z - 0.5).max(0.0) } else { 4e-4 * (0.5 - z).max(0.0) };
+            moved(&mut solid, |x| Vec3::new(strain(x.z) * x.x, 0.0, 0.0));
+            solid.extremes().tension.unwrap().value
+        };
+        assert!(tension(true) > 1.0 && tension(false) < 1e-7, "{} {}", tension(true), tension(false));
     }
 }

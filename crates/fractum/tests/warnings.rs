@@ -291,6 +291,18 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
             ],
         ),
         moving(
+            "tension-outside",
+            bar(),
+            &[
+                ("[[bodies]]", DAMAGE),
+                (
+                    "material = \"stone\"\n",
+                    "material = \"stone\"\nformulation = \"standard\"\ndamage_where = \"x < 6 cm\"\nstrength_factor = \"if(x < 6 cm, 3, 1)\"\n",
+                ),
+                (ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"1 m/s\"]] }"),
+            ],
+        ),
+        moving(
             "compression",
             bar(),
             &[("[[bodies]]", DAMAGE), (ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"-10 m/s\"]] }")],
