@@ -61,16 +61,38 @@ const FIRST_BALANCE: f64 = 0.04;
 const ATTEMPTS: u64 = 3;
 const SEEDS_APART: u64 = 1_000_000;
 
+/// Where the compaction of a packing is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PackProgress {
+    /// Particles.
+    pub count: usize,
+    /// Times that all radii were scaled and the particles relaxed.
+    pub rounds: usize,
+    /// Contacts per particle off the walls, as they are now.
+    pub reached: f64,
+    /// The same as asked.
+    pub asked: f64,
+}
+
+impl std::fmt::Display for PackProgress {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let PackProgress { count, rounds, reached, asked } = self;
+        write!(f, "packing {count} particles: {reached:.2} of {asked} contacts each after round {rounds}")
+    }
+}
+
 /// Packs as [`pack`] does, and again with another seed, a few times at most, where the certificate misses its targets: one
 /// packing in six is less isotropic than it should be by chance.
 ///
 /// Gives the first packing that passes [`Certificate::check`], or the first of all where none does.
 ///
+/// - `tell`: called after each round of compaction
+///
 /// # Errors
 /// Those of [`pack`].
-pub fn pack_certified(spec: &PackSpec) -> Result<(Packing, Certificate), PackError> {
+pub fn pack_certified(spec: &PackSpec, tell: &dyn Fn(PackProgress)) -> Result<(Packing, Certificate), PackError> {
     let measured = |seed: u64| {
-        let packing = pack(&PackSpec { seed, ..spec.clone() })?;
+        let packing = pack_and_tell(&PackSpec { seed, ..spec.clone() }, tell)?;
         let certificate = Certificate::of(&packing);
         Ok((packing, certificate))
     };
@@ -96,6 +118,16 @@ pub fn pack_certified(spec: &PackSpec) -> Result<(Packing, Certificate), PackErr
 /// Bad dimensions, dispersion or counts; a domain too narrow for its particles; [`PackError::Refused`] when the
 /// compaction does not reach the asked coordination.
 pub fn pack(spec: &PackSpec) -> Result<Packing, PackError> {
+    pack_and_tell(spec, &|_| {})
+}
+
+/// As [`pack`].
+///
+/// - `tell`: called after each round of compaction
+///
+/// # Errors
+/// Those of [`pack`].
+pub fn pack_and_tell(spec: &PackSpec, tell: &dyn Fn(PackProgress)) -> Result<Packing, PackError> {
     let (count, start_radius) = plan(spec)?;
     let mut random = Random::new(spec.seed);
     let half = 0.5 * spec.dispersion;
@@ -112,7 +144,7 @@ pub fn pack(spec: &PackSpec) -> Result<Packing, PackError> {
     let radius: Vec<f64> = order.iter().map(|&i| shape[i as usize]).collect();
     let mut assembly = Assembly::new(&spec.domain, position, radius);
     let mut iterations = 0;
-    let mut compaction = compact(&mut assembly, spec.coordination, &mut iterations)?;
+    let mut compaction = compact(&mut assembly, spec.coordination, &mut iterations, tell)?;
     let (contacts, walls) = assembly.touching();
     compaction.rattlers = rattlers(&contacts, &walls);
     compaction.contacts = contacts.iter().map(Vec::len).sum::<usize>() / 2;
@@ -264,7 +296,12 @@ fn insert(domain: &Domain, radius: &[f64], random: &mut Random) -> Result<Vec<Ve
 ///
 /// Above jamming (z − z_c)² grows linearly with ln R (O'Hern et al. 2003, Phys. Rev. E 68, 011306), which makes the
 /// next scale predictable; states slightly above jamming also relax much faster than those just below.
-fn compact(assembly: &mut Assembly, asked: f64, iterations: &mut usize) -> Result<Compaction, PackError> {
+fn compact(
+    assembly: &mut Assembly,
+    asked: f64,
+    iterations: &mut usize,
+    tell: &dyn Fn(PackProgress),
+) -> Result<Compaction, PackError> {
     let aim = asked + 0.5 * WINDOW;
     let excess = |z: f64| (z - CRITICAL).max(0.0).powi(2);
     let mut slope = EXCESS_SLOPE;
@@ -278,6 +315,7 @@ fn compact(assembly: &mut Assembly, asked: f64, iterations: &mut usize) -> Resul
         let interior: Vec<usize> = (0..contacts.len()).filter(|&i| walls[i] == 0).collect();
         let total: usize = interior.iter().map(|&i| contacts[i].len()).sum();
         reached = total as f64 / interior.len().max(1) as f64;
+        tell(PackProgress { count: contacts.len(), rounds: round + 1, reached, asked });
         if reached >= asked && reached <= asked + WINDOW {
             let overlap = relaxed.overlap / assembly.mean_radius();
             return Ok(Compaction { coordination: reached, overlap, contacts: 0, rattlers: 0, iterations: 0 });
@@ -448,7 +486,11 @@ mod tests {
     fn an_uncertified_packing_is_tried_again_and_then_given_out_as_it_is() {
         // A slab three diameters thick is layered by its walls whatever the seed.
         let spec = PackSpec::new(Domain::cuboid(1.0, 1.0, 0.12), 1500, 1);
-        let (packing, certificate) = pack_certified(&spec).unwrap();
+        let told = std::cell::RefCell::new(Vec::new());
+        let (packing, certificate) = pack_certified(&spec, &|at| told.borrow_mut().push(at)).unwrap();
+        let (first, last) = (told.borrow()[0], *told.borrow().last().unwrap());
+        assert_eq!((first.rounds, first.count), (1, packing.len()));
+        assert!((last.asked..last.asked + WINDOW).contains(&last.reached), "{last}");
         assert!(certificate.check().is_err(), "{certificate:?}");
         assert_eq!(digest(&packing), digest(&pack(&spec).unwrap()));
     }

@@ -34,7 +34,7 @@ mod surface;
 
 pub use certificate::{Certificate, ContactFigures, OverlapFigures, interior_fraction};
 pub use cloud::{cloud, cloud_cells};
-pub use cooker::{PackSize, PackSpec, pack, pack_certified};
+pub use cooker::{PackProgress, PackSize, PackSpec, pack, pack_and_tell, pack_certified};
 pub use domain::{Domain, DomainData};
 pub use error::PackError;
 pub use isotropy::Isotropy;

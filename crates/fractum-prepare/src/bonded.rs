@@ -15,7 +15,7 @@ use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
 use fractum_io::warning::Code;
 use fractum_mesh::{Mesh, topology};
 use fractum_pack::{
-    Arrangement, Certificate, ClosedSurface, Convention, Domain, PackError, PackSize, PackSpec, Packing,
+    Arrangement, Certificate, ClosedSurface, Convention, Domain, PackError, PackProgress, PackSize, PackSpec, Packing,
     pack_certified, read_stl, regular,
 };
 use fractum_scene::BondFracture;
@@ -96,7 +96,7 @@ pub struct BondedBodies {
 
 /// Makes the bodies of particles of a case ready.
 ///
-/// - `tell`: called before what takes tens of seconds
+/// - `tell`: called with what is being done, again and again while it takes long
 ///
 /// # Errors
 /// Everything that cannot be packed, bonded or calibrated, with its place.
@@ -211,6 +211,11 @@ impl Maker<'_> {
         Ok(())
     }
 
+    /// Says what is being done, for what takes long.
+    fn tell(&self, what: &str) {
+        (self.tell)(&format!("{}: {what}", self.name.value));
+    }
+
     fn material(&self) -> &Material {
         &self.case.materials[self.bonded.material]
     }
@@ -259,6 +264,9 @@ impl Maker<'_> {
             convention,
             beams,
         };
+        if from == Origin::Made {
+            self.tell("finding beams that give the material its Young's modulus and Poisson's ratio");
+        }
         let made = prepare(packing, &wanted).map_err(|error| self.wrong(&error))?;
         if from == Origin::Made {
             // Serialising plain numbers into memory has no way to fail.
@@ -346,7 +354,9 @@ impl Maker<'_> {
             ParticleSize::Radius(radius) => PackSize::MeanRadius(radius),
         };
         let spec = PackSpec { domain, size: size_of, dispersion, seed, coordination: CONTACTS };
-        let (packing, _) = pack_certified(&spec).map_err(|error| {
+        self.tell("packing");
+        let progress = |progress: PackProgress| self.tell(&progress.to_string());
+        let (packing, _) = pack_certified(&spec, &progress).map_err(|error| {
             let place = match error {
                 PackError::TooSmall { .. } | PackError::Count(_) => &size.place,
                 _ => &shape.place,

@@ -1,10 +1,13 @@
 //! From paths to a scene.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
 use fractum_io::build::{BuiltScene, build_shared_scene, check_before_particles, doubts};
 use fractum_io::case::{Case, Diagnostics, read_case};
+use fractum_io::log::Progress;
 use fractum_mesh::Mesh;
 use fractum_parallel::Exchange;
 
@@ -13,7 +16,7 @@ use crate::course::Course;
 use crate::error::Failure;
 use crate::mesh_files::{JoinedMesh, MeshFiles};
 use crate::plots;
-use crate::terminal::{Stream, print_error};
+use crate::terminal::Stream;
 use fractum_prepare::{BondedBodies, BondedReport, Cache, Processes, check_memory, choose, facets, prepare_bodies};
 
 /// A case with its mesh and the scene made of both.
@@ -45,7 +48,9 @@ pub struct Input {
 /// [`Failure::Input`] with everything that is wrong; [`Failure::Memory`].
 pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Result<Input, Failure> {
     let processes = Processes::default();
-    read(path, overrides, processes)?.join(None)?.prepare(cache, processes)?.build(None)
+    // For who waits at a terminal; no part of what a program reads.
+    let quiet = Stream::Error.width().is_none();
+    read(path, overrides, processes)?.join(None)?.prepare(cache, processes, quiet)?.build(None)
 }
 
 /// A case with what this process has read of its mesh.
@@ -87,22 +92,20 @@ pub(crate) struct Meshed {
 impl Meshed {
     /// Checks what can be checked without the scene, and makes the bonded bodies.
     ///
-    /// - `cache`: where packings and beams are kept
+    /// - `cache`: where packings and beams are kept; `quiet`: without a line that tells what is being done
     ///
     /// # Errors
     /// As [`load`].
-    pub(crate) fn prepare(self, cache: &Cache, processes: Processes) -> Result<Prepared, Failure> {
+    pub(crate) fn prepare(self, cache: &Cache, processes: Processes, quiet: bool) -> Result<Prepared, Failure> {
         let Meshed { case, mesh } = self;
         check_before_particles(&case, &mesh.mesh)?;
         plots::check(&case, &columns::possible_columns(&case))?;
         check_memory(&case, &mesh.mesh, processes)?;
-        // For who waits at a terminal; no part of what a program reads.
-        let tell = |line: &str| {
-            if Stream::Error.width().is_some() {
-                print_error(line);
-            }
-        };
-        let made = prepare_bodies(&case, &mesh.mesh, cache, &tell)?;
+        let (progress, began) = (RefCell::new(Progress::on_stderr(quiet)), Instant::now());
+        let tell = |doing: &str| progress.borrow_mut().prepare(doing, began.elapsed());
+        let made = prepare_bodies(&case, &mesh.mesh, cache, &tell);
+        progress.borrow_mut().clear();
+        let made = made?;
         Ok(Prepared { case, mesh, made })
     }
 }

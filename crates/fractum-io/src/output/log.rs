@@ -195,6 +195,34 @@ impl<W: Write> Progress<W> {
         };
         let width = (self.width)().unwrap_or(usize::MAX);
         let line = fitted(format!("{percent}  ETA {}", self.eta(snapshot)), snapshot.words(), width);
+        self.write(&line);
+    }
+
+    /// Shows what is being done before a run begins, `elapsed` after the work on it began: in one line that is overwritten, or in a line now and
+    /// then.
+    pub fn prepare(&mut self, doing: &str, elapsed: Duration) {
+        let since = elapsed.saturating_sub(self.shown.map_or(Duration::ZERO, |(last, _)| last));
+        let due = match self.style {
+            Style::Quiet => false,
+            Style::Overwrite => self.shown.is_none() || since >= Duration::from_millis(200),
+            Style::Lines => since >= Duration::from_secs(10),
+        };
+        if !due {
+            return;
+        }
+        self.write(&format!("{}  {doing}", duration(elapsed.as_secs_f64())));
+        self.shown = Some((elapsed, 0.0));
+    }
+
+    /// Clears the line of a preparation.
+    pub fn clear(&mut self) {
+        if std::mem::take(&mut self.line_open) {
+            let _ = write!(self.out, "\r\x1b[K");
+            let _ = self.out.flush();
+        }
+    }
+
+    fn write(&mut self, line: &str) {
         // Write errors are nobody's business, see the type. Without wrapping, a line of a terminal that has just become
         // narrower is cut at its edge, so that the next can overwrite it.
         let _ = match self.style {
@@ -260,6 +288,30 @@ pub fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_being_prepared_is_one_line_or_one_now_and_then() {
+        let shown = |style: Style| {
+            let mut progress = Progress::new(Vec::new(), style);
+            for second in 0..25 {
+                progress.prepare(&format!("round {second}"), Duration::from_secs(second));
+                progress.prepare("at once", Duration::from_millis(1000 * second + 10));
+            }
+            progress.clear();
+            text(&progress).to_owned()
+        };
+        assert_eq!(shown(Style::Quiet), "");
+        assert_eq!(shown(Style::Lines), "0:10  round 10\n0:20  round 20\n");
+        let line = shown(Style::Overwrite);
+        assert!(
+            line.starts_with("\r\x1b[K\x1b[?7l0:00  round 0\x1b[?7h\r\x1b[K\x1b[?7l0:01  round 1\x1b[?7h"),
+            "{line:?}"
+        );
+        assert!(
+            line.ends_with("round 24\x1b[?7h\r\x1b[K") && !line.contains(['\n']) && !line.contains("at once"),
+            "{line:?}"
+        );
+    }
 
     fn snapshot(time: f64) -> Snapshot {
         Snapshot {

@@ -111,9 +111,4 @@ impl Maker<'_> {
         self.cache.keep(kind, key, &postcard::to_stdvec(&found).unwrap_or_default());
         Ok((found, Origin::Made))
     }
-
-    /// Says what is being done, for what takes long.
-    fn tell(&self, what: &str) {
-        (self.tell)(&format!("{}: {what}", self.name.value));
-    }
 }

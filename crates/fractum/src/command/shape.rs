@@ -1,14 +1,20 @@
 //! Options that the packing, laboratory and calibration commands share.
 
+use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fractum::Failure;
 use fractum_io::case::{Choice, Dimension, parse_quantity, refuse_endless};
+use fractum_io::log::Progress;
 use fractum_mesh::read_mesh;
-use fractum_pack::{ClosedSurface, Domain, PackError, PackSize, PackSpec, Packing, pack, pack_certified, read_stl};
+use fractum_pack::{
+    ClosedSurface, Domain, PackError, PackProgress, PackSize, PackSpec, Packing, pack_and_tell, pack_certified,
+    read_stl,
+};
 
 /// The shape to fill and the particles to fill it with.
 #[derive(Args, Clone)]
@@ -63,15 +69,18 @@ pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value =
 impl ShapeArguments {
     /// Makes the packing, or reads it.
     pub(crate) fn packing(&self) -> Result<Packing, Failure> {
-        self.packing_by(pack)
+        self.packing_by(pack_and_tell)
     }
 
     /// Makes a packing that passes its certificate where some seed gives one, or reads it.
     pub(crate) fn certified_packing(&self) -> Result<Packing, Failure> {
-        self.packing_by(|spec| Ok(pack_certified(spec)?.0))
+        self.packing_by(|spec, tell| Ok(pack_certified(spec, tell)?.0))
     }
 
-    fn packing_by(&self, make: impl Fn(&PackSpec) -> Result<Packing, PackError>) -> Result<Packing, Failure> {
+    fn packing_by(
+        &self,
+        make: impl Fn(&PackSpec, &dyn Fn(PackProgress)) -> Result<Packing, PackError>,
+    ) -> Result<Packing, Failure> {
         if let Some(file) = &self.packing {
             let wrong = |error| Failure::input(format!("{}: {error}", file.display()));
             return Packing::from_bytes(&read(file)?).map_err(wrong);
@@ -82,7 +91,10 @@ impl ShapeArguments {
         };
         let domain = self.domain()?;
         let spec = PackSpec { domain, size, dispersion: self.dispersion, seed: self.seed, coordination: self.contacts };
-        make(&spec).map_err(|error| Failure::input(error.to_string()))
+        let (progress, began) = (RefCell::new(Progress::on_stderr(false)), Instant::now());
+        let made = make(&spec, &|at| progress.borrow_mut().prepare(&at.to_string(), began.elapsed()));
+        progress.borrow_mut().clear();
+        made.map_err(|error| Failure::input(error.to_string()))
     }
 
     fn domain(&self) -> Result<Domain, Failure> {

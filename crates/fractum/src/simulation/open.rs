@@ -58,7 +58,8 @@ impl Simulation {
         // What they do together waits until all have done what each does by itself.
         let source = ranks.together(source())?;
         let meshed = ranks.together(source.join(ranks.exchange()))?;
-        let prepared = ranks.together(meshed.prepare(&options.cache, ranks.processes()))?;
+        let prepared =
+            ranks.together(meshed.prepare(&options.cache, ranks.processes(), options.quiet || !ranks.leads()))?;
         let input = ranks.together(prepared.build(ranks.exchange()))?;
         Self::start_shared(input, path, options, started, ranks)
     }
