@@ -12,8 +12,8 @@ use fractum_scene::{BondedBody, Scene};
 
 /// Per element and step: standard, smoothed; the second of each with damage.
 const ELEMENT: [[f64; 2]; 2] = [[20.0, 20.0], [45.0, 50.0]];
-/// Times as much where elements turn with their bodies.
-const TURNING: f64 = 10.0;
+/// Times as much where elements turn with their bodies: standard, smoothed (tension-bar/gmsh-coarse with `kinematics`, sound and armed, by processor time).
+const TURNING: [f64; 2] = [3.2, 1.8];
 /// Per bond and step, with its share of particles: beams; interfaces that hold, that may fail, beside a mean strain.
 const BOND: [f64; 4] = [60.0, 52.0, 150.0, 160.0];
 /// Per loose particle and step, with its contacts in a heap.
@@ -37,10 +37,16 @@ const FRAME: [f64; 2] = [60.0, 20.0];
 /// Times the first, sound steps that those of a solid take which cracks: local damage, with a phase field, where compression is split from
 /// tension (`unilateral`). Means of the gallery (`fractum verify`, `estimates.md`); a solid that stays sound takes one.
 const CRACKING: [f64; 3] = [1.4, 2.0, 3.0];
+/// Times as many steps as the first one lets expect where a blast makes many discrete elements, in the plane and in space: their contacts ask
+/// for shorter steps, 0.45 and 0.3 of the first one (`dt_min` of granite-disc, gas-blast and shale-pulse; of granite-cylinder and charge), from
+/// a third of the run on.
+const MORE_STEPS: [f64; 2] = [1.8, 2.3];
 
-/// How much longer steps become if all solids that may be damaged crack.
-pub(super) fn slower_by_cracks(scene: &Scene) -> f64 {
-    let (mut sum, mut elements) = (0.0, 0);
+/// How much longer the steps of a run become if all solids that may be damaged crack, times how many more there are.
+///
+/// - `blast`: how much of a blast it is, from 0 to 1
+pub(super) fn slower_by_cracks(scene: &Scene, blast: f64) -> f64 {
+    let (mut sum, mut elements, mut more) = (0.0, 0, 1.0);
     for body in (0..scene.solid.body_count()).map(|index| scene.solid.body(index)) {
         let factor = match &body.damage {
             None => 1.0,
@@ -48,10 +54,13 @@ pub(super) fn slower_by_cracks(scene: &Scene) -> f64 {
             Some(zone) if zone.regularisation.is_some() => CRACKING[1],
             Some(_) => CRACKING[0],
         };
+        if body.damage.is_some() {
+            more = 1.0 + blast * (MORE_STEPS[usize::from(body.shape == ElementKind::T4)] - 1.0);
+        }
         sum += factor * body.elements.len() as f64;
         elements += body.elements.len();
     }
-    if elements > 0 { sum / elements as f64 } else { 1.0 }
+    if elements > 0 { more * sum / elements as f64 } else { 1.0 }
 }
 
 /// What a run in motion needs.
@@ -98,7 +107,10 @@ impl Cost {
                 ElementKind::T3 => &MEMORY_OF_TRIANGLE,
                 ElementKind::T4 => &MEMORY_OF_TETRAHEDRON,
             };
-            let turning = if body.kinematics == Kinematics::Corotational { TURNING } else { 1.0 };
+            let turning = match body.kinematics {
+                Kinematics::Corotational => TURNING[usize::from(body.formulation == Formulation::Smoothed)],
+                Kinematics::Small => 1.0,
+            };
             let elements = scene.solid.element_count(index) as f64;
             self.step += 1e-9 * of(&ELEMENT) * turning * elements;
             self.memory += of(memory) * elements;

@@ -1,13 +1,16 @@
 //! How long a run will take: its first steps are taken, and the rest of them counted.
 
+use std::f64::consts::LN_10;
 use std::time::Instant;
 
 use fractum_io::build::BuiltScene;
-use fractum_io::case::model::{Case, Probe as DescribedProbe};
+use fractum_io::case::model::{Case, Load, LoadKind, Probe as DescribedProbe};
 use fractum_io::vtk::Cut;
+use fractum_math::Vec3;
+use fractum_math::elementary::{exp, ln};
 use fractum_prepare::{PATH_ITERATIONS, solution_time};
 use fractum_scene::statics::{Control, Stiffness};
-use fractum_scene::{Probe, ProbedScene, Scene};
+use fractum_scene::{GasMeasure, Probe, ProbedScene, Scene};
 
 use super::cost::{Cost, slower_by_cracks, slowness};
 use crate::frames::{Frame, GridLayout};
@@ -27,6 +30,12 @@ const MOST_TRIED: f64 = 1.6;
 const PIXEL: f64 = 2.5e-8;
 const FILES: f64 = 8e-3;
 const ROW: f64 = 5e-6;
+
+/// Pressure over tensile strength up to which a hole only cracks, and from which on all around it breaks.
+const BREAKS: [f64; 2] = [3.0, 12.0];
+/// Instants after its begin at which a pulse is looked at, in so many decades before the end.
+const LOOKS: u32 = 600;
+const DECADES: f64 = 6.0;
 
 /// What a run takes on this machine [s].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,7 +149,31 @@ impl Stage<'_> {
         }
         let share = (scene.clock.time - from) / self.span;
         let all = if share > 0.0 { began.elapsed().as_secs_f64() / share } else { 0.0 };
-        Some((all * slower_by_cracks(scene)).max(counted))
+        Some((all * slower_by_cracks(scene, self.blast(scene))).max(counted))
+    }
+
+    /// How much of a blast the stage is: 0 where pulses and gas crack a hole or less, 1 where they break all around it.
+    fn blast(&self, scene: &Scene) -> f64 {
+        if !self.case.is_blast() {
+            return 0.0;
+        }
+        let solids = (0..scene.solid.body_count()).map(|body| scene.solid.body(body));
+        let strengths = solids.filter_map(|body| Some(body.damage.as_ref()?.law.tensile_strength));
+        let strength = strengths.fold(f64::INFINITY, f64::min);
+        let gas = scene.gas().map_or(0.0, |gas| gas.measure(&scene.solid, GasMeasure::Pressure, None));
+        let peak = |load: &Load| match &load.kind {
+            LoadKind::Pressure { pressure, .. } => {
+                let begin = pressure.value.delay().unwrap_or(0.0);
+                let after =
+                    |look: u32| self.case.solver.end * exp(-DECADES * LN_10 * f64::from(look) / f64::from(LOOKS));
+                let at = |look: u32| pressure.value.value(begin + after(look), Vec3::zeros());
+                (0..=LOOKS).map(at).fold(0.0, f64::max)
+            }
+            _ => 0.0,
+        };
+        let ratio = self.case.loads.iter().map(peak).fold(gas, f64::max) / strength;
+        let [few, many] = BREAKS;
+        (ln(ratio.max(few) / few) / ln(many / few)).min(1.0)
     }
 
     /// Numbers of frames and of rows of the history; of a path of equilibria, which has a row for every step, those that its steps ask for.
