@@ -102,7 +102,7 @@ pub fn joined_bodies(mesh: &Mesh, groups: &[&str]) -> (Mesh, Vec<Joint>) {
     for (body, surface) in surfaces.iter().enumerate() {
         faces.extend(surface.iter().map(|&facet| (facet.map(|node| root(&place, node)), body, facet)));
     }
-    faces.iter_mut().for_each(|(places, ..)| places.sort_unstable());
+    faces.iter_mut().for_each(|(places, ..)| *places = ascending(*places));
     faces.sort_unstable();
     let mut same: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
     let mut joints = BTreeMap::<[usize; 2], Found>::new();
@@ -135,6 +135,12 @@ pub fn joined_bodies(mesh: &Mesh, groups: &[&str]) -> (Mesh, Vec<Joint>) {
 struct Found {
     faces: BTreeSet<[u32; 3]>,
     nodes: BTreeSet<u32>,
+}
+
+/// The places of a facet in one order, whatever its sense; a side of a plane body repeats the last one.
+fn ascending(mut places: [u32; 3]) -> [u32; 3] {
+    places.sort_unstable();
+    if places[0] == places[1] { [places[0], places[2], places[2]] } else { places }
 }
 
 /// The nodes of another facet in the places of those of a facet.
@@ -186,11 +192,7 @@ fn apart(
         };
         vec![side(a, b, c), side(b, c, a), side(c, a, b)]
     };
-    let keys = |facet: &[u32; 3]| {
-        let mut key = facet.map(|node| root(place, node));
-        key.sort_unstable();
-        key
-    };
+    let keys = |facet: &[u32; 3]| ascending(facet.map(|node| root(place, node)));
     let mut rim = BTreeSet::new();
     let of_first = surfaces[0].iter().filter(|facet| common.contains(&keys(facet)));
     of_first.flat_map(sides).for_each(|(side, _)| _ = rim.insert(side));

@@ -300,6 +300,8 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
                     "material = \"stone\"\nformulation = \"standard\"\ndamage_where = \"x < 6 cm\"\nstrength_factor = \"if(x < 6 cm, 3, 1)\"\n",
                 ),
                 (ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"1 m/s\"]] }"),
+                // Before the wave comes back.
+                (end, "end = \"0.15 ms\""),
             ],
         ),
         moving(
