@@ -44,18 +44,19 @@ const MORE_STEPS: [f64; 2] = [1.8, 2.3];
 
 /// How much longer the steps of a run become if all solids that may be damaged crack, times how many more there are.
 ///
-/// - `blast`: how much of a blast it is, from 0 to 1
-pub(super) fn slower_by_cracks(scene: &Scene, blast: f64) -> f64 {
+/// - `blast`: how much of a blast it is, from 0 to 1; none where it is none at all
+pub(super) fn slower_by_cracks(scene: &Scene, blast: Option<f64>) -> f64 {
     let (mut sum, mut elements, mut more) = (0.0, 0, 1.0);
     for body in (0..scene.solid.body_count()).map(|index| scene.solid.body(index)) {
         let factor = match &body.damage {
             None => 1.0,
-            Some(zone) if zone.law.unilateral => CRACKING[2],
+            // Of a weak blast little is damaged.
+            Some(zone) if zone.law.unilateral => CRACKING[0] + blast.unwrap_or(1.0) * (CRACKING[2] - CRACKING[0]),
             Some(zone) if zone.regularisation.is_some() => CRACKING[1],
             Some(_) => CRACKING[0],
         };
         if body.damage.is_some() {
-            more = 1.0 + blast * (MORE_STEPS[usize::from(body.shape == ElementKind::T4)] - 1.0);
+            more = 1.0 + blast.unwrap_or(0.0) * (MORE_STEPS[usize::from(body.shape == ElementKind::T4)] - 1.0);
         }
         sum += factor * body.elements.len() as f64;
         elements += body.elements.len();

@@ -152,10 +152,10 @@ impl Stage<'_> {
         Some((all * slower_by_cracks(scene, self.blast(scene))).max(counted))
     }
 
-    /// How much of a blast the stage is: 0 where pulses and gas crack a hole or less, 1 where they break all around it.
-    fn blast(&self, scene: &Scene) -> f64 {
+    /// How much of a blast the stage is: 0 where pulses and gas crack a hole or less, 1 where they break all around it; none without such loads.
+    fn blast(&self, scene: &Scene) -> Option<f64> {
         if !self.case.is_blast() {
-            return 0.0;
+            return None;
         }
         let solids = (0..scene.solid.body_count()).map(|body| scene.solid.body(body));
         let strengths = solids.filter_map(|body| Some(body.damage.as_ref()?.law.tensile_strength));
@@ -173,7 +173,7 @@ impl Stage<'_> {
         };
         let ratio = self.case.loads.iter().map(peak).fold(gas, f64::max) / strength;
         let [few, many] = BREAKS;
-        (ln(ratio.max(few) / few) / ln(many / few)).min(1.0)
+        Some((ln(ratio.max(few) / few) / ln(many / few)).min(1.0))
     }
 
     /// Numbers of frames and of rows of the history; of a path of equilibria, which has a row for every step, those that its steps ask for.
