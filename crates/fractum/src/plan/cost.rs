@@ -110,7 +110,7 @@ impl Cost {
             };
             let turning = match body.kinematics {
                 Kinematics::Corotational => TURNING[usize::from(body.formulation == Formulation::Smoothed)],
-                Kinematics::Small => 1.0,
+                Kinematics::Small | Kinematics::Auto => 1.0,
             };
             let elements = scene.solid.element_count(index) as f64;
             self.step += 1e-9 * of(&ELEMENT) * turning * elements;
