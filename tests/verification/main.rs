@@ -13,6 +13,7 @@ mod plane;
 mod ranks;
 mod ranks_divided;
 mod ranks_particles;
+mod rigid_contact;
 mod scene;
 mod statics;
 mod subcycling;

@@ -1,4 +1,4 @@
-use fractum_math::{Rotation, Vec3};
+use fractum_math::{Rotation, Vec3, rotation_by};
 use serde::{Deserialize, Serialize};
 
 /// Where a rigid body is and how it moves.
@@ -43,6 +43,14 @@ impl Frame {
     #[inline]
     pub fn velocity_at(&self, x: &Vec3) -> Vec3 {
         self.velocity + self.spin.cross(&(x - self.origin))
+    }
+
+    /// Where it is after a duration [s], at the velocities that it has.
+    #[must_use]
+    pub fn moved(&self, dt: f64) -> Self {
+        let turns = self.spin != Vec3::zeros();
+        let rotation = if turns { rotation_by(self.spin * dt) * self.rotation } else { self.rotation };
+        Frame { origin: self.origin + self.velocity * dt, rotation, ..*self }
     }
 
     fn is_unturned(&self) -> bool {

@@ -65,6 +65,19 @@ impl Solid {
         self.work_of_chunks()
     }
 
+    /// Velocity of a node after a kick under a force, as [`Solid::kick_and_drift`] gives it [m/s]; held axes keep theirs.
+    pub fn kicked(&self, node: usize, force: Vec3, dt_kick: f64, damping: LocalDamping, held: u8) -> Vec3 {
+        let (before, free) = (self.velocity[node], free_axes(held));
+        let (force, moving) = (force.component_mul(&free), before.component_mul(&free));
+        let resist = damping_force(damping, force, moving, self.inverse_mass[node]);
+        before + (force + resist) * (self.inverse_mass[node] * dt_kick)
+    }
+
+    /// Velocity that an impulse gives a node, by axis [1/kg]; none along held axes.
+    pub fn mobility(&self, node: usize, held: u8) -> Vec3 {
+        free_axes(held) * self.inverse_mass[node]
+    }
+
     /// What [`Solid::kick_runs`] has found, in sum.
     pub(crate) fn work_of_chunks(&self) -> HalfSteps {
         self.chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part)

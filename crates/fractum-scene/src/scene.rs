@@ -209,8 +209,7 @@ impl Scene {
             frequencies,
             removals: Removals::default(),
         };
-        scene.update_wall_frequency();
-        scene.clock = Clock::new(scene.next_dt(0.0));
+        scene.prepare_shapes();
         scene
     }
 
@@ -235,7 +234,7 @@ impl Scene {
     pub fn with_contacts(mut self, mut contacts: Contacts, surface: &[u32]) -> Self {
         contacts.set_node_contacts(&self.solid, &mut self.debris, &self.bonded.particles, surface);
         self.contacts = contacts;
-        self.clock = Clock::new(self.next_dt(0.0));
+        self.prepare_shapes();
         self
     }
 
@@ -262,6 +261,7 @@ impl Scene {
     pub fn accept_initial_overlaps(&mut self) {
         self.contacts.accept_particle_overlaps(&self.solid, &self.bonded.particles);
         self.accept_node_overlaps();
+        self.find_first_step();
     }
 
     /// Nodes of solids that are in something before the first step: node, depth [m] and what it is in, deepest first.

@@ -2,7 +2,7 @@
 
 use fractum_fem::StableStep;
 
-use crate::clock::{Frequencies, TimeStepSettings};
+use crate::clock::{Clock, Frequencies, TimeStepSettings};
 use crate::gas::Gas;
 use crate::scene::Scene;
 
@@ -79,9 +79,23 @@ impl Scene {
         equal_steps(dt, end - time)
     }
 
+    /// Finds, before the first step, what rigid shapes hold, and what their springs ask of the step.
+    pub(crate) fn prepare_shapes(&mut self) {
+        for ground in &mut self.shape_contacts {
+            ground.prepare(self.contacts.rigid_bodies(), &self.solid, &self.debris);
+        }
+        self.find_first_step();
+    }
+
+    /// Finds the first step, with springs on the rigid shapes as they stand.
+    pub(crate) fn find_first_step(&mut self) {
+        self.update_wall_frequency();
+        self.clock = Clock::new(self.next_dt(0.0));
+    }
+
     pub(crate) fn update_wall_frequency(&mut self) {
-        let Scene { solid, shape_contacts, .. } = self;
-        let walls: f64 = shape_contacts.iter().map(|ground| ground.frequency_square(solid)).sum();
+        let Scene { solid, shape_contacts, debris, .. } = self;
+        let walls: f64 = shape_contacts.iter().map(|ground| ground.frequency_square(solid, debris)).sum();
         self.frequencies.walls_square = RESOLUTION * RESOLUTION * walls;
     }
 

@@ -2,7 +2,7 @@ use fractum_dem::Particles;
 use fractum_fem::InvertedElement;
 use fractum_math::{HalfSteps, Vec3, Work};
 
-use crate::contacts::Touching;
+use crate::contacts::{HoldStep, Touching, hold_nodes};
 use crate::error::StepError;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
@@ -92,10 +92,7 @@ impl Scene {
             self.finish_expansion();
             passed(Phase::Heat);
         }
-        let contact = self.add_contact_forces(elapsed, faces);
-        if measure {
-            self.sum_watched_contacts();
-        }
+        let mut contact = self.add_contact_forces(elapsed, faces);
         if self.may_touch() {
             passed(Phase::Contact);
         }
@@ -107,6 +104,7 @@ impl Scene {
             passed(Phase::Gas);
         }
         self.add_surface_support_forces(first);
+        contact += self.hold_nodes(elapsed, measure);
         let given = if first { self.start_half_a_step_early(dt_before) } else { 0.0 };
         self.let_left_rest();
         self.let_particles_leave(dt_before);
@@ -121,8 +119,8 @@ impl Scene {
             self.books += work.before;
         }
         if measure {
-            // What central differences keep less of the energy of a start out of balance, ⅛ Δt² Σ F²/m.
-            let missing = if first { (given - work.before.kinetic).max(0.0) } else { 0.0 };
+            // What central differences keep less of the energy of a start out of balance, ⅛ Δt² Σ F²/m, but for what shapes stop.
+            let missing = if first { (given - work.before.kinetic).max(0.0) - contact.damping } else { 0.0 };
             self.ledger[EnergyKind::Kinetic] = work.before.kinetic + missing;
             self.ledger[EnergyKind::Contact] = contact.stored;
             self.close_balance()?;
@@ -219,6 +217,21 @@ impl Scene {
         contacts.sum_watched(&Touching { solid, debris, particles: &bonded.particles, shapes: shape_contacts });
     }
 
+    /// Has rigid shapes hold nodes of solids against all other forces; all contacts are known then.
+    ///
+    /// - `elapsed`: step that led here [s]
+    fn hold_nodes(&mut self, elapsed: f64, measure: bool) -> Work {
+        let Scene { shape_contacts, contacts, solid, supports, settings, clock, .. } = self;
+        let (dt_after, damping, held) = (clock.dt_after, settings.damping, supports.held());
+        let dt_kick = 0.5 * (elapsed + dt_after);
+        let step = HoldStep { time: clock.time, elapsed, dt_kick, dt_after, damping, held };
+        let work = hold_nodes(shape_contacts, contacts.rigid_bodies_mut(), solid, &step);
+        if measure {
+            self.sum_watched_contacts();
+        }
+        work
+    }
+
     /// - `work`: that of the contacts counted so far
     fn add_contact_forces(&mut self, dt: f64, mut work: Work) -> Work {
         self.search_together();
@@ -313,6 +326,7 @@ impl Scene {
         ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
         if self.clock.step == 0 {
             ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];
+            ledger.initial += ledger[EnergyKind::Damping]; // rigid shapes stop what meets them at once
             if !solid.initial_displacement.is_empty() {
                 ledger.in_situ = ledger[EnergyKind::Elastic];
             }

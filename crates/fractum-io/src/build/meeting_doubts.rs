@@ -1,4 +1,4 @@
-//! Doubts about how bodies meet: nodes in the same places, solids within each other, tools that touch nothing.
+//! Doubts about how bodies meet: nodes in the same places, solids within each other, tools that touch nothing, damping without effect.
 
 use std::collections::BTreeMap;
 
@@ -194,6 +194,44 @@ pub(super) fn missing(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnosti
             format!("= \"{}\": it moves by {longest}, and comes no nearer to the bodies than {apart}", body.name.value);
         let note = Diagnostic::warning(Code::Misses, &body.name.place, found);
         Some(note.remedy("check its place, its direction of motion, and the end of the run"))
+    };
+    case.bodies.iter().filter_map(doubt).collect()
+}
+
+/// Damping of contact that counts nowhere: driven shapes hold the nodes of solids, and there is nothing else to touch.
+pub(super) fn undamped(case: &Case, bodies: &[Own]) -> Vec<Diagnostic> {
+    let moves = std::iter::once(case).chain(&case.later).any(|stage| stage.solver.kind == SolverKind::Explicit);
+    let held = |body: &Body| match &body.kind {
+        BodyKind::Solid(solid) => !solid.damage,
+        BodyKind::Rigid(rigid) => {
+            let has_facets = matches!(rigid.shape, RigidShape::Group { .. } | RigidShape::Stl { .. });
+            !(has_facets || rigid.inside || rigid.free_rotation || rigid.free.contains(&true))
+        }
+        _ => false,
+    };
+    let is_driven = case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Rigid(_)));
+    // Meshes that a command makes may not be there yet.
+    let there = bodies.iter().all(|body| !body.nodes.is_empty());
+    let alone = bodies.iter().all(|body| body.plane) || (there && pieces(bodies).iter().all(|piece| *piece == 0));
+    if !moves || !is_driven || !alone || case.solver.subcycling.is_some() || !case.bodies.iter().all(held) {
+        return Vec::new();
+    }
+    let doubt = |body: &Body| {
+        let own = match &body.kind {
+            BodyKind::Solid(solid) => &case.materials[solid.material].contact,
+            BodyKind::Rigid(rigid) => &rigid.contact,
+            _ => return None,
+        };
+        if own.damping_ratio == ContactParameters::default().damping_ratio {
+            return None;
+        }
+        let found = format!("= \"{}\": the damping ratio or restitution of its contact has no effect", body.name.value);
+        let note = Diagnostic::warning(Code::NoEffect, &body.name.place, found);
+        Some(
+            note.remedy(
+                "driven rigid bodies stop the nodes of solids at once; remove it, and damp the solid by damping",
+            ),
+        )
     };
     case.bodies.iter().filter_map(doubt).collect()
 }

@@ -11,7 +11,7 @@ use crate::warning::Code;
 
 use super::body_doubts::{Own, thin, unheld};
 use super::load_doubts::{doubts_of_loads, odd_reactions};
-use super::meeting_doubts::{coincident, meetings, missing, overlapping};
+use super::meeting_doubts::{coincident, meetings, missing, overlapping, undamped};
 
 /// Poisson's ratio above which linear elements are too stiff.
 const LOCKING: f64 = 0.45;
@@ -48,6 +48,7 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     }
     doubts.extend(meets);
     doubts.extend(missing(case, mesh, &bodies));
+    doubts.extend(undamped(case, &bodies));
     doubts.extend(unheld(case, mesh, &bodies));
     doubts.extend(bodies.iter().filter_map(|body| thin(case, mesh, body)));
     doubts.extend(unequal_plates(mesh, &bodies));

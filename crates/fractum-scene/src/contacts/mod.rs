@@ -4,6 +4,7 @@
 mod between;
 mod debris_among;
 mod flat_faces;
+mod held_nodes;
 mod leave;
 mod node_contacts;
 mod nodes_on_shape;
@@ -23,6 +24,7 @@ pub(crate) use between::Touching;
 pub use between::{ContactBody, ContactProbe};
 use flat_faces::FlatBodies;
 pub use flat_faces::FlatFaces;
+pub(crate) use held_nodes::{HoldStep, hold_nodes};
 pub use node_contacts::pieces;
 pub(crate) use nodes_on_shape::Candidate;
 pub use nodes_on_shape::NodesOnShape;

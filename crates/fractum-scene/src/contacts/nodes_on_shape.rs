@@ -10,10 +10,15 @@ use serde::{Deserialize, Serialize};
 use crate::contacts::RigidBody;
 use crate::coupling::Debris;
 
+/// Overlap at the start, over the radius at the node, up to which a node is on the surface: what is left of a mesh file.
+const ON_SURFACE: f64 = 1e-4;
+
 /// A rigid shape, seen from outside; solids stay out of it.
 ///
 /// It feels the nodes on the surface of the solids at the start (as points) and every particle (as a sphere). A node
 /// that turns into a particle while it lies nearer than its radius keeps touching as a point until it has left.
+/// A shape that stands still or is driven [holds](super::held_nodes) points on its surface; springs push spheres, what is within a shape at
+/// the start, and what touches a body that moves freely.
 #[derive(Clone, Debug)]
 pub struct NodesOnShape {
     pub(crate) shape: Shape,
@@ -23,6 +28,8 @@ pub struct NodesOnShape {
     pub(crate) rigid_body: Option<usize>,
     /// Friction and damping of its contacts, together with those of the other surface.
     surface: ContactParameters,
+    /// Whether forces do not move it, so that it holds points.
+    pub(super) holds: bool,
     pub(crate) candidates: Vec<Candidate>,
 }
 
@@ -40,12 +47,21 @@ pub(crate) struct Candidate {
     pub(crate) stored: f64,
     pub(crate) friction: f64,
     pub(crate) damping: f64,
+    /// Whether the shape holds it instead of a spring; not at rest.
+    pub(crate) is_held: bool,
+    /// Whether it has been within the shape since the start: a spring pushes it out.
+    pub(crate) is_pushed: bool,
+    /// From the reference point of the shape to where the last force acted, where it is held [m].
+    pub(super) lever: Vec3,
+    /// Forces that are tried, before and after a sweep [N].
+    #[serde(skip)]
+    pub(super) trial: [Vec3; 2],
 }
 
 impl Candidate {
     /// Whether it touched at the last step.
     pub(crate) fn is_loaded(&self) -> bool {
-        self.memory != ContactMemory::default()
+        self.force != Vec3::zeros() || self.memory != ContactMemory::default()
     }
 }
 
@@ -53,12 +69,13 @@ impl NodesOnShape {
     /// A fixed half space behind the plane through `point` with unit `normal`.
     pub fn plane(point: Vec3, normal: Vec3, surface: ContactParameters) -> Self {
         let frame = Frame { rotation: rotation_between(&Vec3::z(), &normal), ..Frame::at(point) };
-        NodesOnShape { shape: Shape::HalfSpace, frame, rigid_body: None, surface, candidates: Vec::new() }
+        NodesOnShape { shape: Shape::HalfSpace, frame, rigid_body: None, surface, holds: false, candidates: Vec::new() }
     }
 
     /// The shape of a rigid body of the scene, by its number there.
     pub fn of_body(rigid_body: usize, shape: Shape, surface: ContactParameters) -> Self {
-        NodesOnShape { shape, frame: Frame::at_rest(), rigid_body: Some(rigid_body), surface, candidates: Vec::new() }
+        let (frame, candidates) = (Frame::at_rest(), Vec::new());
+        NodesOnShape { shape, frame, rigid_body: Some(rigid_body), surface, holds: false, candidates }
     }
 
     /// The rigid body that it is the shape of.
@@ -88,8 +105,25 @@ impl NodesOnShape {
                 stored: 0.0,
                 friction: 0.0,
                 damping: 0.0,
+                is_held: false,
+                is_pushed: false,
+                lever: Vec3::zeros(),
+                trial: [Vec3::zeros(); 2],
             };
             self.candidates.insert(place, candidate);
+        }
+    }
+
+    /// Finds, before the first step, whether it holds points, and which of them a spring must push out.
+    pub(crate) fn prepare(&mut self, rigid_bodies: &[RigidBody], solid: &Solid, debris: &Debris) {
+        let body = self.rigid_body.map(|index| rigid_bodies.get(index));
+        let is_driven = body.is_none_or(|body| body.is_some_and(RigidBody::is_driven));
+        // The nodes of short steps are kicked more often than what holds them.
+        self.holds = is_driven && !solid.is_subcycled();
+        let frame = body.flatten().map_or(self.frame, |body| body.frame);
+        for c in &mut self.candidates {
+            let depth = -self.shape.outside(&frame.to_body(&solid.position(c.node as usize))).distance;
+            c.is_pushed = depth > ON_SURFACE * debris.radius(c.node);
         }
     }
 
@@ -101,6 +135,7 @@ impl NodesOnShape {
         let mut found = Vec::new();
         for c in &mut self.candidates {
             let depth = -self.shape.outside(&frame.to_body(&solid.position(c.node as usize))).distance;
+            c.is_pushed = false;
             if depth > 0.0 {
                 Linear::add_overlap_offset(&mut c.memory, depth);
                 found.push((c.node, depth));
@@ -120,16 +155,17 @@ impl NodesOnShape {
 
     /// Nodes in contact at the last step.
     pub(crate) fn touching(&self) -> usize {
-        self.candidates.iter().filter(|c| c.stored > 0.0).count()
+        self.candidates.iter().filter(|c| c.force != Vec3::zeros()).count()
     }
 
-    /// Largest squared frequency that these contacts add to a node [1/s²].
-    pub(crate) fn frequency_square(&self, solid: &Solid) -> f64 {
+    /// Largest squared frequency that the springs of these contacts add to a node [1/s²].
+    pub(crate) fn frequency_square(&self, solid: &Solid, debris: &Debris) -> f64 {
         let of = |c: &Candidate| (c.law.normal_stiffness + c.law.tangential_stiffness) / solid.mass[c.node as usize];
-        self.candidates.iter().map(of).fold(0.0, f64::max)
+        let has_spring = |c: &&Candidate| !self.holds || c.is_pushed || debris.radius_if_particle(c.node) > 0.0;
+        self.candidates.iter().filter(has_spring).map(of).fold(0.0, f64::max)
     }
 
-    /// Adds the contact forces to the nodes, the torques to free particles, and the opposite to the rigid body.
+    /// Adds the forces of the springs to the nodes, the torques to free particles, and the opposite to the rigid body.
     pub(crate) fn add_forces(
         &mut self,
         rigid_bodies: &mut [RigidBody],
@@ -137,7 +173,8 @@ impl NodesOnShape {
         debris: &mut Debris,
         dt: f64,
     ) -> Work {
-        let NodesOnShape { shape, frame, rigid_body, candidates, .. } = self;
+        let NodesOnShape { shape, frame, rigid_body, candidates, holds, .. } = self;
+        let holds = *holds;
         let mut rigid_body = rigid_body.and_then(|index| rigid_bodies.get_mut(index));
         if let Some(rigid_body) = &rigid_body {
             *frame = rigid_body.frame;
@@ -150,6 +187,11 @@ impl NodesOnShape {
                 let place = solid.position(i);
                 let Outside { normal, distance, .. } = shape.outside(&frame.to_body(&place));
                 let normal = -frame.to_space(&normal);
+                if holds && c.is_point(debris) {
+                    c.hold(&normal, distance);
+                    return;
+                }
+                let let_go = c.let_go(solid, &frame, dt);
                 let full = debris.radius_if_particle(c.node);
                 if c.radius == 0.0 && full > 0.0 && distance > full {
                     c.radius = full;
@@ -163,11 +205,13 @@ impl NodesOnShape {
                 let ContactForce { on_second, couple_on_second, stored, friction, damping } =
                     c.law.force(&motion, &mut c.memory);
                 (c.force, c.couple) = (on_second, couple_on_second);
-                (c.stored, c.friction, c.damping) = (stored, friction, damping);
+                (c.stored, c.friction, c.damping) = (stored, friction, damping + let_go);
+                c.is_pushed &= distance < 0.0;
             });
         }
         let mut work = Work::default();
-        for c in candidates.iter().filter(|c| c.stored > 0.0 || c.damping != 0.0 || c.friction != 0.0) {
+        let has_spring = |c: &&Candidate| !c.is_held && (c.stored > 0.0 || c.damping != 0.0 || c.friction != 0.0);
+        for c in candidates.iter().filter(has_spring) {
             let i = c.node as usize;
             solid.force[i] += c.force;
             debris.add_torque(c.node, c.arm.cross(&c.force) + c.couple);

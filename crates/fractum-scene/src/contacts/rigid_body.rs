@@ -2,7 +2,7 @@
 
 use fractum_contact::law::{ContactParameters, ElasticMaterial};
 use fractum_contact::{FacetMesh, Frame, Shape, Surface};
-use fractum_math::{HalfSteps, Mat3, Rotation, Vec3, rotation_by};
+use fractum_math::{HalfSteps, Mat3, Rotation, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::time_function::TimeFunction;
@@ -203,6 +203,20 @@ impl RigidBody {
         }
     }
 
+    /// Whether forces change nothing of its motion.
+    pub(super) fn is_driven(&self) -> bool {
+        let free = |drive: &Drive| matches!(drive, Drive::Force(_) | Drive::Free);
+        !self.along.iter().chain(&self.about).any(free)
+    }
+
+    /// Where a driven body will be at the end of a step, with its velocities in the step.
+    pub(super) fn driven_to(&self, time: f64, dt_after: f64) -> Frame {
+        let middle = time + 0.5 * dt_after;
+        let given = |drive: &Drive| if let Drive::Velocity(given) = drive { given(middle, &self.start) } else { 0.0 };
+        let [velocity, spin] = [&self.along, &self.about].map(|drives| Vec3::from_fn(|axis, _| given(&drives[axis])));
+        Frame { velocity, spin, ..self.frame }.moved(dt_after)
+    }
+
     /// Advances velocities and place with the forces of tⁿ.
     pub(super) fn advance(&mut self, time: f64, dt_before: f64, dt_after: f64, gravity: &Vec3) -> HalfSteps {
         let mut work = HalfSteps::default();
@@ -227,10 +241,7 @@ impl RigidBody {
             work.after.external += 0.5 * outside * after * dt_after;
         }
         self.turn(time, dt_before, dt_after, &mut work);
-        self.frame.origin += self.frame.velocity * dt_after;
-        if self.frame.spin != Vec3::zeros() {
-            self.frame.rotation = rotation_by(self.frame.spin * dt_after) * self.frame.rotation;
-        }
+        self.frame = self.frame.moved(dt_after);
         work
     }
 

@@ -249,6 +249,12 @@ impl Debris {
         if self.particle_of[node as usize] == NONE { 0.0 } else { self.radius[node as usize] }
     }
 
+    /// Whether there is a particle at a node that no element holds any more.
+    pub(crate) fn is_loose(&self, node: u32) -> bool {
+        let particle = self.particle_of[node as usize];
+        particle != NONE && !self.state.attached[particle as usize]
+    }
+
     /// Angular velocity of the particle at a node, zero without one.
     pub(crate) fn spin(&self, solid: &Solid, node: u32) -> Vec3 {
         match self.particle_of[node as usize] {

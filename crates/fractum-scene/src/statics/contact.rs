@@ -211,7 +211,7 @@ impl Scene {
                 c.memory.slip = slip;
                 (c.force, c.couple, c.arm) = (force, Vec3::zeros(), normal * (overlap - c.radius));
                 c.stored = half * overlap.max(0.0).powi(2) + 0.5 * c.law.tangential_stiffness * slip.norm_squared();
-                (c.friction, c.damping) = (0.0, 0.0);
+                (c.friction, c.damping, c.is_held) = (0.0, 0.0, false);
                 if let Some(rigid_body) =
                     ground.rigid_body.and_then(|rigid_body| contacts.rigid_bodies_mut().get_mut(rigid_body))
                 {
