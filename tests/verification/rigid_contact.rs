@@ -6,6 +6,7 @@ use fractum_fem::{Body, Elastic, ElementKind, Formulation, Kinematics, LocalDamp
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_scene::coupling::Debris;
+use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSettings, StaticSolver};
 use fractum_scene::{
     Bonded, ContactParameters, Contacts, Drive, ElasticMaterial, EnergyKind, Form, Frame, Gravity, Load, Loads, Motion,
     NodesOnShape, RigidBody, Scene, SceneSettings, Shape, Support, Supports, TimeStepSettings,
@@ -121,6 +122,35 @@ fn pressed(solid: Solid, size: f64, safety: f64, damping: LocalDamping) -> f64 {
     scene.contacts.rigid_bodies()[0].contact_force()[up] / (YOUNG * size * size * 5e-3)
 }
 
+/// Force at rest of a tool that has pressed a cube by 0.5 % of its side, over E A u/L.
+fn pressed_at_rest(solid: Solid, size: f64) -> f64 {
+    let up = if solid.is_plane() { 1 } else { 2 };
+    let mut press = platen(size, up);
+    press.along[up] = Drive::Velocity(Arc::new(move |_, _| -5e-3 * size));
+    // What no plane holds sideways must be held by the sides at the axes.
+    let supports = (0..=up).map(|axis| bottom_of(&solid, axis, size)).collect();
+    let none = surface_of(0.0, 0.1);
+    let (free, exact) = (settings(1.0, 0.8, 0.0), YOUNG * size * size * 5e-3);
+    let mut scene = scene(solid, supports, Vec::new(), vec![press], none, free);
+    let settings = StaticSettings {
+        control: Control::Time,
+        step: 0.25,
+        end: 1.0,
+        most_steps: 100,
+        tolerance: 1e-6,
+        linear_tolerance: 1e-12,
+        linear: LinearSolver::Direct,
+        no_equilibrium: NoEquilibrium::Stop,
+        damping: None,
+    };
+    let mut solver = StaticSolver::new(&scene, settings).unwrap();
+    while !solver.is_finished(&scene) {
+        solver.step(&mut scene).unwrap();
+    }
+    assert!(scene.ledger().relative_residual() < 1e-3, "{:?}", scene.ledger());
+    scene.contacts.rigid_bodies()[0].contact_force()[up] / exact
+}
+
 #[test]
 fn a_plane_bears_the_exact_force_on_any_mesh() {
     use Formulation::{Smoothed, Standard};
@@ -152,6 +182,26 @@ fn a_plane_bears_the_exact_force_on_any_mesh() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn a_platen_bears_the_exact_force_at_rest_on_any_mesh() {
+    use Formulation::{Smoothed, Standard};
+    let rows = [
+        (2, 0.02, 0.0, Smoothed, true),
+        (4, 0.02, 0.0, Standard, true),
+        (8, 0.02, 0.0, Standard, true),
+        (2, 20.0, 0.3, Standard, true),
+        (4, 20.0, 0.3, Smoothed, true),
+        (2, 0.02, 0.0, Standard, false),
+        (4, 0.02, 0.3, Smoothed, false),
+        (8, 20.0, 0.4, Standard, false),
+    ];
+    for (cells, size, nu, formulation, in_space) in rows {
+        let share = pressed_at_rest(cube(cells, size, nu, formulation, in_space), size);
+        println!("{cells} {size} {nu} {formulation:?} {in_space}: {share}");
+        assert!((share - 1.0).abs() < 5e-3, "{cells} {size} {nu} {formulation:?} {in_space}: {share}");
+    }
 }
 
 /// A strip thrown lengthwise at a plane: the wave in it comes back after 2 L/c, and until then the plane bears ρ c v on its section.
@@ -201,6 +251,37 @@ fn a_bar_leaves_a_plane_with_its_momentum_but_for_that_of_its_first_row() {
                 "{cells}: {back} {lasted}"
             );
         }
+    }
+}
+
+/// Nodes that lie on a plane as they are thrown at it are stopped at the first instant: what they lose is damping.
+#[test]
+fn what_lies_on_a_plane_and_is_thrown_at_it_loses_its_first_row() {
+    let size = 0.02;
+    for (in_space, friction) in [(true, 0.0), (false, 0.5)] {
+        let mut solid = cube(4, size, 0.2, Formulation::Smoothed, in_space);
+        let (up, crossing) = (if in_space { 2 } else { 1 }, size * (DENSITY / YOUNG).sqrt());
+        let velocity = Vec3::ith(0, 0.3) - Vec3::ith(up, 1.0);
+        solid.velocity.fill(velocity);
+        let nodes = 0..solid.mass.len();
+        let row: f64 = nodes.filter(|&i| solid.reference[i][up] < 1e-9 * size).map(|i| solid.mass[i]).sum();
+        let whole: f64 = solid.mass.iter().sum();
+        // With this friction the row sticks.
+        let stopped = 0.5 * row * if friction > 0.0 { velocity.norm_squared() } else { 1.0 };
+        let contact = surface_of(friction, 0.1);
+        let floor = plane(Vec3::zeros(), Vec3::ith(up, 1.0), contact);
+        let mut scene = scene(solid, Vec::new(), Vec::new(), vec![floor], contact, settings(crossing, 0.8, 0.0));
+        scene.step(true).unwrap();
+        let ledger = scene.ledger();
+        println!("{in_space} {friction}: {ledger:?}, {stopped}");
+        assert!((ledger.initial / (0.5 * whole * velocity.norm_squared()) - 1.0).abs() < 1e-9, "{ledger:?}");
+        assert!((ledger[EnergyKind::Damping] / stopped - 1.0).abs() < 1e-9, "{ledger:?}, {stopped}");
+        while !scene.is_finished() {
+            scene.step(true).unwrap();
+        }
+        let ledger = scene.ledger();
+        assert!(ledger[EnergyKind::TimeStep].abs() < 1e-9 * stopped, "{ledger:?}, {stopped}");
+        assert!(ledger.residual_max_relative < 1e-9, "{ledger:?}");
     }
 }
 

@@ -1,7 +1,9 @@
 //! Contact at equilibrium, with rigid shapes and of discrete elements with each other: penalty springs, on where a node overlaps and off where it does not.
 //!
-//! The springs are those of motion: the tangential one remembers its stretch at the last equilibrium and slips where Coulomb's
-//! law lets it. The iteration takes them linear about its last iterate, what slips by its secant.
+//! Along the normal those of rigid shapes are so stiff that they count for little beside the elements. The tangential one remembers its
+//! stretch at the last equilibrium and slips where Coulomb's law lets it. The iteration takes them linear about its last iterate, what
+//! slips by its secant.
+//! A spring that presses in the linear solution stays on in the next one, even where the curvature of its shape has left a gap.
 
 use fractum_contact::law::slip_to_cone;
 use fractum_contact::{Frame, Outside};
@@ -19,6 +21,10 @@ use crate::statics::check_supports;
 /// Gap over the size of the solid up to which a node counts as touching: what rounding leaves of a body that lies on a shape.
 const TOUCHING: f64 = 1e-9;
 
+/// How much stiffer along its normal than a wall of the material of the solid a rigid shape is: that wall gives way as half an element
+/// does. Across it a shape is as stiff as the wall: the secant of friction comes to what sticks by the smaller steps the stiffer it is.
+const RIGID: f64 = 100.0;
+
 /// A node that a shape or another node pushes: its force, linear about the state it was found at.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spring {
@@ -26,6 +32,8 @@ pub(super) struct Spring {
     pub(super) node: u32,
     /// The node that pushes it and feels the opposite.
     pub(super) partner: Option<u32>,
+    /// Number of the shape that pushes it, where it is one.
+    ground: u32,
     /// Unit normal towards the node.
     normal: Vec3,
     /// Force on the node [N].
@@ -43,6 +51,15 @@ impl Spring {
         self.partner.map_or(own, |partner| own - field[partner as usize])
     }
 
+    /// Itself if it is one of a shape and presses, by the linear solution, after its node and time have gone on.
+    ///
+    /// - `since`: duration [s]
+    pub(super) fn pressed(&self, moved: Vec3, since: f64) -> Option<Pressed> {
+        let force = self.force + self.rate * since - self.stiffness * moved;
+        let pressed = Pressed { ground: self.ground, node: self.node, pressure: force.dot(&self.normal) };
+        (self.partner.is_none() && pressed.pressure > 0.0).then_some(pressed)
+    }
+
     /// Adds a force on its node, and the opposite on its partner.
     pub(super) fn push(&self, force: Vec3, forces: &mut [Vec3]) {
         forces[self.node as usize] += force;
@@ -57,11 +74,45 @@ impl Spring {
     }
 }
 
+/// Normal and tangential stiffness of a contact with a shape [N/m].
+fn stiffness(c: &Candidate) -> [f64; 2] {
+    [RIGID * c.law.normal_stiffness, c.law.tangential_stiffness]
+}
+
 /// A tangential spring at one instant.
 struct Tangential {
     slip: Vec3,
     /// Way against friction since the last equilibrium [m].
     slid: Vec3,
+}
+
+/// A spring of a shape that presses at the end of a linear solution.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pressed {
+    ground: u32,
+    node: u32,
+    /// Normal force [N].
+    pressure: f64,
+}
+
+/// Springs of shapes on nodes that do not touch.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Also<'a> {
+    /// None.
+    Nothing,
+    /// On those that just do not touch, with no force.
+    Near,
+    /// On these, ascending by shape and node: they pull back what has left its shape.
+    Kept(&'a [Pressed]),
+}
+
+impl Also<'_> {
+    /// Normal force of a spring that is kept [N].
+    fn kept(&self, ground: u32, node: u32) -> Option<f64> {
+        let Also::Kept(kept) = self else { return None };
+        let place = kept.binary_search_by_key(&(ground, node), |pressed| (pressed.ground, pressed.node)).ok()?;
+        Some(kept[place].pressure)
+    }
 }
 
 /// Normal out of the shape and overlap of a node at a place.
@@ -72,9 +123,9 @@ fn sense(ground: &NodesOnShape, frame: &Frame, c: &Candidate, place: &Vec3) -> (
 
 /// The tangential spring of a contact with the normal force `pressure` after a relative motion.
 fn tangential(c: &Candidate, normal: &Vec3, pressure: f64, moved: Vec3) -> Tangential {
-    let across = |v: Vec3| v - normal * v.dot(normal);
+    let ([_, stiff], across) = (stiffness(c), |v: Vec3| v - normal * v.dot(normal));
     let trial = across(c.memory.slip + moved);
-    let slip = slip_to_cone(trial, c.law.tangential_stiffness * trial.norm(), c.law.friction * pressure);
+    let slip = slip_to_cone(trial, stiff * trial.norm(), c.law.friction * pressure);
     Tangential { slip, slid: trial - slip }
 }
 
@@ -94,55 +145,65 @@ impl Scene {
     /// # Errors
     /// [`SceneError::FreeBody`] with the body and the motion.
     pub fn check_supports(&self) -> Result<(), SceneError> {
-        let springs = self.springs(&self.solid.displacement, [0.0, 0.0], 1.0, true);
+        let springs = self.springs_at_rest();
         let touched: Vec<(u32, Vec3)> = springs.iter().map(|spring| (spring.node, spring.normal)).collect();
         check_supports(&self.solid, self.supports.held(), &touched)
+    }
+
+    /// Springs of the nodes that touch at the last equilibrium, and of those that just do not.
+    pub(super) fn springs_at_rest(&self) -> Vec<Spring> {
+        self.springs(&self.solid.displacement, [self.clock.time; 2], 1.0, Also::Near)
     }
 
     /// Springs of the nodes that touch shapes or each other under a displacement field.
     ///
     /// - `times`: load parameters of the last equilibrium and of the field
     /// - `ahead`: duration from which the pace of the shapes is taken [s]
-    /// - `near`: also those that just do not touch, with no force
-    pub(super) fn springs(&self, field: &[Vec3], times: [f64; 2], ahead: f64, near: bool) -> Vec<Spring> {
+    /// - `also`: what does not touch, and has a spring
+    pub(super) fn springs(&self, field: &[Vec3], times: [f64; 2], ahead: f64, also: Also) -> Vec<Spring> {
         let pushed = |push: Push| {
             let stiffness = push.normal * push.normal.transpose() * push.stiffness;
             let force = push.normal * (push.stiffness * push.overlap);
             let [partner, node] = push.nodes;
-            Spring { node, partner: Some(partner), normal: push.normal, force, stiffness, rate: Vec3::zeros() }
+            let (partner, rate) = (Some(partner), Vec3::zeros());
+            Spring { node, partner, ground: 0, normal: push.normal, force, stiffness, rate }
         };
         let mut springs: Vec<Spring> = self.debris.pushes(&self.solid, field).map(pushed).collect();
         if self.shape_contacts.is_empty() {
             return springs;
         }
         let size = self.solid.reference.iter().map(|p| p.norm()).fold(0.0, f64::max);
-        let gap = if near { TOUCHING * size } else { 0.0 };
-        for ground in &self.shape_contacts {
+        let gap = if matches!(also, Also::Near) { TOUCHING * size } else { 0.0 };
+        for (index, ground) in (0..).zip(&self.shape_contacts) {
             let (mut frame, way, pace) = self.motion_of(ground, times, ahead);
             frame.origin += way;
             for c in &ground.candidates {
                 let i = c.node as usize;
                 let (normal, overlap) = sense(ground, &frame, c, &(self.solid.reference[i] + field[i]));
-                if overlap <= -gap {
+                let kept = also.kept(index, c.node);
+                if overlap <= -gap && kept.is_none() {
                     continue;
                 }
-                let pressure = c.law.normal_stiffness * overlap.max(0.0);
+                let [stiff, stiff_across] = stiffness(c);
+                // What a curved shape has left by the way along it is no loss of pressure.
+                let pressure = kept.unwrap_or(stiff * overlap.max(0.0));
                 let moved = field[i] - self.solid.displacement[i] - way;
                 let Tangential { slip, slid } = tangential(c, &normal, pressure, moved);
                 // What slips is held by the secant of its friction: iterates that go from sticking to slipping and back settle.
                 let (held, went) = (slip.norm(), slid.norm());
                 let holds = if held > 0.0 {
-                    c.law.tangential_stiffness * held / (held + went)
+                    stiff_across * held / (held + went)
                 } else if went == 0.0 && pressure > 0.0 && c.law.friction > 0.0 {
-                    c.law.tangential_stiffness
+                    stiff_across
                 } else {
                     0.0
                 };
                 let along = normal * normal.transpose();
-                let stiffness = along * c.law.normal_stiffness + (Mat3::identity() - along) * holds;
-                let force = normal * pressure - slip * c.law.tangential_stiffness;
+                let stiffness = along * stiff + (Mat3::identity() - along) * holds;
+                let least = if kept.is_some() { f64::NEG_INFINITY } else { 0.0 };
+                let force = normal * (stiff * overlap.max(least)) - slip * stiff_across;
                 let rate = stiffness * pace;
-                springs.push(Spring { node: c.node, partner: None, normal, force, stiffness, rate });
+                springs.push(Spring { node: c.node, partner: None, ground: index, normal, force, stiffness, rate });
             }
         }
         springs
@@ -193,25 +254,27 @@ impl Scene {
                 let place = solid.position(i);
                 let (_, was) = sense(ground, &old, c, &(solid.reference[i] + before[i]));
                 let (normal, overlap) = sense(ground, &new, c, &place);
-                let pressure = c.law.normal_stiffness * overlap.max(0.0);
+                let [stiff, stiff_across] = stiffness(c);
+                let pressure = stiff * overlap.max(0.0);
                 let full = debris.radius_if_particle(c.node);
                 if c.radius == 0.0 && full > 0.0 && -overlap > full {
                     c.radius = full;
                 }
                 let Tangential { slip, slid } =
                     tangential(c, &normal, pressure, solid.displacement[i] - before[i] - way);
-                friction += 0.5 * c.law.tangential_stiffness * (c.memory.slip + slip).dot(&slid);
-                let half = 0.5 * c.law.normal_stiffness;
+                friction += 0.5 * stiff_across * (c.memory.slip + slip).dot(&slid);
+                let half = 0.5 * stiff;
                 // The way to a contact is without force, and so is that from it.
                 let idle = half
                     * ((overlap.max(0.0) + was.max(0.0)) * (overlap - was)
                         - (overlap.max(0.0).powi(2) - was.max(0.0).powi(2)));
-                let force = normal * pressure - slip * c.law.tangential_stiffness;
+                let force = normal * pressure - slip * stiff_across;
                 external += 0.5 * (c.force + force).dot(&way) - idle;
                 c.memory.slip = slip;
                 (c.force, c.couple, c.arm) = (force, Vec3::zeros(), normal * (overlap - c.radius));
-                c.stored = half * overlap.max(0.0).powi(2) + 0.5 * c.law.tangential_stiffness * slip.norm_squared();
-                (c.friction, c.damping, c.is_held) = (0.0, 0.0, false);
+                c.stored = half * overlap.max(0.0).powi(2) + 0.5 * stiff_across * slip.norm_squared();
+                (c.friction, c.damping) = (0.0, 0.0);
+                (c.is_held, c.is_pushed) = (false, false);
                 if let Some(rigid_body) =
                     ground.rigid_body.and_then(|rigid_body| contacts.rigid_bodies_mut().get_mut(rigid_body))
                 {

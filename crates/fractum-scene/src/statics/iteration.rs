@@ -3,9 +3,11 @@
 use fractum_fem::{DamagePoint, Seen, Solid};
 use fractum_math::Vec3;
 
-use super::contact::Spring;
+use super::contact::{Also, Spring};
 use super::equilibrium::Boundary;
-use super::{Control, Edges, GROWTH, ITERATIONS, MONOTONE_ITERATIONS, NO_FORCE, Response, StaticSolver, path};
+use super::{
+    Control, Edges, GROWTH, ITERATIONS, MONOTONE_ITERATIONS, NO_FORCE, Response, StaticSolver, Touching, path,
+};
 use crate::error::StepError;
 use crate::scene::Scene;
 
@@ -56,10 +58,12 @@ impl StaticSolver {
             self.advance(&scene.solid, points, tau, monotone);
             let mut exact = scene.boundary_at(present, present + tau);
             if scene.has_contacts() {
+                let since = present + tau - found_at;
                 found_at = present + tau;
+                self.touching.keep(&self.response.start, since);
                 self.touching.place.clone_from(&self.response.start);
                 scene.debris.meet(&scene.solid, &self.touching.place);
-                for spring in scene.springs(&self.touching.place, [present, found_at], longest, false) {
+                for spring in scene.springs(&self.touching.place, [present, found_at], longest, Also::Nothing) {
                     spring.push(spring.force, &mut exact.force);
                 }
             }
@@ -125,7 +129,8 @@ impl StaticSolver {
     /// Finds what touches in the last iterate, and brings the matrix up to date.
     fn find_contacts(&mut self, scene: &mut Scene, times: [f64; 2], longest: f64, near: bool) -> Result<(), StepError> {
         scene.debris.meet(&scene.solid, &self.touching.place);
-        self.touching.springs = scene.springs(&self.touching.place, times, longest, near);
+        let also = if near { Also::Near } else { Also::Kept(&self.touching.kept) };
+        self.touching.springs = scene.springs(&self.touching.place, times, longest, also);
         self.couple(scene)?;
         if !(self.elastic && self.prepared && scene.shape_contacts.is_empty()) {
             let prepared = self.system.prepare(scene, &self.trial, &self.touching.springs);
@@ -245,5 +250,16 @@ impl StaticSolver {
             *u += p;
         }
         Ok(())
+    }
+}
+
+impl Touching {
+    /// Notes which springs of shapes press at the end of a linear solution.
+    ///
+    /// - `field`: the displacements there; `since`: from the last iterate to there [s]
+    fn keep(&mut self, field: &[Vec3], since: f64) {
+        let Touching { springs, place, kept, .. } = self;
+        kept.clear();
+        kept.extend(springs.iter().filter_map(|spring| spring.pressed(spring.of(field) - spring.of(place), since)));
     }
 }

@@ -37,7 +37,7 @@ use crate::error::StepError;
 use crate::scene::Scene;
 use crate::step::StepReport;
 use anderson::Anderson;
-use contact::Spring;
+use contact::{Pressed, Spring};
 use equilibrium::AppliedForces;
 use linear_system::LinearSystem;
 
@@ -107,6 +107,8 @@ struct Touching {
     /// Springs of the last iterate, which is `place`.
     springs: Vec<Spring>,
     place: Vec<Vec3>,
+    /// Springs of shapes that press at the end of the last linear solution, ascending by shape and node.
+    kept: Vec<Pressed>,
     /// Pairs of nodes that have touched so far and belong to no cell, and how many of them the system has places for.
     pairs: Vec<[u32; 2]>,
     coupled: usize,

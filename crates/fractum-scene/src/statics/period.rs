@@ -29,7 +29,7 @@ impl Stiffness {
     /// [`SparseError::TooLarge`] if the factor does not fit.
     pub fn new(scene: &Scene) -> Result<Self, SparseError> {
         let held = scene.supports().held();
-        let springs = scene.springs(&scene.solid.displacement, [scene.clock.time; 2], 1.0, true);
+        let springs = scene.springs_at_rest();
         let touching: Vec<[u32; 2]> = springs.iter().filter_map(Spring::pair).collect();
         let system = LinearSystem::new(&scene.solid, held, LinearSolver::Auto, ITERATIONS, TOLERANCE, &touching)?;
         Ok(Stiffness { system })
@@ -48,7 +48,7 @@ impl Stiffness {
     /// # Errors
     /// [`SparseError`] if the scene can move without resistance.
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), SparseError> {
-        let springs = scene.springs(&scene.solid.displacement, [scene.clock.time; 2], 1.0, true);
+        let springs = scene.springs_at_rest();
         self.system.prepare(scene, &scene.solid.cell_damage(), &springs)
     }
 
