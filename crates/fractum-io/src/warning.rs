@@ -119,6 +119,8 @@ codes! {
     TensionOutside = "tension-outside",
     /// Compression that the criterion does not know.
     Compression = "compression",
+    /// Solids that meet rigid bodies lose a visible share of the energy.
+    ImpactLoss = "impact-loss",
     /// Particles that are pressed deeply into each other.
     DeepOverlap = "deep-overlap",
     /// A body that came apart into single nodes.

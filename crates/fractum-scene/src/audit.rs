@@ -7,6 +7,8 @@ use crate::watch::{Notice, Noticed, Site};
 
 /// Share of the work that damping may take in the second half of a run: what comes to rest before that has its time.
 const DAMPED: f64 = 0.05;
+/// Share of the energy that rigid shapes may take from solids that meet them.
+const STOPPED: f64 = 0.05;
 /// Rotation of a body of small strains [rad], 10 degrees: it adds a strain of 1.5 %.
 const TURNED: f64 = std::f64::consts::PI / 18.0;
 /// Strain beyond which the law of small stretches is off by as much.
@@ -68,6 +70,10 @@ impl Scene {
         let share = self.books.late_damping / self.ledger.scale;
         if self.ledger.scale > 0.0 && share > DAMPED {
             self.note(Notice::Damping, Site::Scene, share);
+        }
+        let share = self.books.stopped / self.ledger.scale;
+        if self.ledger.scale > 0.0 && share > STOPPED {
+            self.note(Notice::Stopped, Site::Scene, share);
         }
     }
 

@@ -197,6 +197,8 @@ pub(crate) struct Books {
     pub(crate) left: f64,
     /// Part of `damping` that damping of nodes and particles has taken in the second half of the run.
     pub(crate) late_damping: f64,
+    /// Part of `damping` that rigid shapes have taken from the nodes of solids that met them.
+    pub(crate) stopped: f64,
 }
 
 impl AddAssign<Work> for Books {

@@ -226,6 +226,7 @@ impl Scene {
         let dt_kick = 0.5 * (elapsed + dt_after);
         let step = HoldStep { time: clock.time, elapsed, dt_kick, dt_after, damping, held };
         let work = hold_nodes(shape_contacts, contacts.rigid_bodies_mut(), solid, &step);
+        self.books.stopped += work.damping;
         if measure {
             self.sum_watched_contacts();
         }

@@ -20,10 +20,12 @@ pub enum Notice {
     Compression,
     /// Particles that are pressed deeply into each other, or into a body: overlap over the smaller radius [-].
     Overlap,
+    /// Rigid shapes have stopped solids that met them, and taken a visible share of the energy [-].
+    Stopped,
 }
 
 impl Notice {
-    const COUNT: usize = Notice::Overlap as usize + 1;
+    const COUNT: usize = Notice::Stopped as usize + 1;
 }
 
 /// Where something was noticed.

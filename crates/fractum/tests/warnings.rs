@@ -148,6 +148,8 @@ end = "0.3 ms"
 history = { every = "20 us" }
 "#;
 
+const WALL: &str =
+    "[[bodies]]\nname = \"wall\"\nkind = \"rigid\"\nshape = \"plane\"\nnormal = \"x\"\npoint = [\"-1 um\", 0, 0]\n";
 const GRAVITY: &str = "[[loads]]\ngravity = { z = \"-9.81 m/s^2\" }\n[solver]";
 
 const DAMAGE: &str = "[materials.stone.damage]\ncriterion = \"rankine\"\ntensile_strength = \"3 MPa\"\nfracture_energy = \"100 J/m^2\"\n[[bodies]]";
@@ -275,6 +277,15 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
                     "material = \"stone\"\nkinematics = \"small\"\ninitial_velocity = { x = \"-300 1/s*(y - 6 cm)\", y = \"300 1/s*(x - 20 cm)\" }\n",
                 ),
                 (end, "end = \"1 ms\""),
+            ],
+        ),
+        moving(
+            "impact-loss",
+            bar(),
+            &[
+                ("[[supports]]\ngroup = \"x-\"\nfix = \"PLANE\"\n", WALL),
+                (far_support, ""),
+                ("material = \"stone\"\n", "material = \"stone\"\ninitial_velocity = { x = \"-1 m/s\" }\n"),
             ],
         ),
         moving("large-strain", bar(), &[(ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"-150 m/s\"]] }")]),

@@ -209,6 +209,11 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
             ),
             "take a criterion with a compressive strength: mohr-coulomb, drucker-prager or mazars",
         ),
+        Notice::Stopped => (
+            Code::ImpactLoss,
+            format!("rigid bodies have taken {} of the energy from solids that met them", percent(*value)),
+            "a row of nodes stops at once where it meets a rigid body: the loss halves with the elements",
+        ),
         Notice::Overlap => (
             Code::DeepOverlap,
             format!(
