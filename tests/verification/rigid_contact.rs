@@ -204,7 +204,7 @@ fn a_platen_bears_the_exact_force_at_rest_on_any_mesh() {
     }
 }
 
-/// A strip thrown lengthwise at a plane: the wave in it comes back after 2 L/c, and until then the plane bears ρ c v on its section.
+/// A strip that a plane meets lengthwise: the wave in it comes back after 2 L/c, and until then the plane bears ρ c v on its section.
 #[test]
 fn a_bar_leaves_a_plane_with_its_momentum_but_for_that_of_its_first_row() {
     let (length, width, speed) = (0.1, 0.01, 1.0);
@@ -216,13 +216,13 @@ fn a_bar_leaves_a_plane_with_its_momentum_but_for_that_of_its_first_row() {
             let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
             let body = Body::new("bar", ElementKind::T3, elements, elastic);
             let body = Body { plane: Plane::Stress, thickness: width, formulation, ..body };
-            let mut solid = Solid::new(mesh.nodes, vec![body]).unwrap();
-            solid.velocity.fill(-Vec3::x() * speed);
+            let solid = Solid::new(mesh.nodes, vec![body]).unwrap();
             let contact = surface_of(0.0, 0.1);
-            let wall = plane(-Vec3::x() * 1e-5, Vec3::x(), contact);
+            let mut wall = plane(-Vec3::x() * 1e-5, Vec3::x(), contact);
+            wall.along[0] = Drive::Velocity(Arc::new(move |_, _| speed));
             let end = 1e-5 / speed + 3.0 * length / celerity;
             let mut scene = scene(solid, Vec::new(), Vec::new(), vec![wall], contact, settings(end, 0.8, 0.0));
-            let (mut impulse, mut start, mut parted) = (0.0, 0.0, 0.0);
+            let (mut impulse, mut parted) = (0.0, 0.0);
             while !scene.is_finished() {
                 let dt = scene.clock.dt_after;
                 scene.step(true).unwrap();
@@ -231,17 +231,15 @@ fn a_bar_leaves_a_plane_with_its_momentum_but_for_that_of_its_first_row() {
                 if force > 0.0 {
                     parted = scene.clock.time - 1e-5 / speed;
                 }
-                if scene.clock.step == 1 {
-                    start = scene.ledger()[EnergyKind::Kinetic];
-                }
             }
             let ledger = scene.ledger();
             let whole: f64 = scene.solid.mass.iter().sum();
             let left: f64 = scene.solid.mass.iter().zip(&scene.solid.velocity).map(|(m, v)| m * v.x).sum();
+            let start = 0.5 * whole * speed * speed; // as the plane sees it
             let (share, lasted) = (ledger[EnergyKind::Damping] / start, parted * celerity / (2.0 * length));
-            let back = left / (whole * speed);
+            let back = left / (whole * speed) - 1.0;
             println!("{formulation:?} {cells}: {back}, lost {share}, {lasted}, {ledger:?}");
-            assert!((impulse - left - whole * speed).abs() < 1e-9 * whole * speed, "{impulse} {left}");
+            assert!((impulse - left).abs() < 1e-9 * whole * speed, "{impulse} {left}");
             assert!(ledger.residual_max_relative < 1e-10, "{ledger:?}");
             // Half a row of elements is stopped at once, and some of it again when waves come back.
             let row = 0.5 / f64::from(cells);
@@ -251,37 +249,6 @@ fn a_bar_leaves_a_plane_with_its_momentum_but_for_that_of_its_first_row() {
                 "{cells}: {back} {lasted}"
             );
         }
-    }
-}
-
-/// Nodes that lie on a plane as they are thrown at it are stopped at the first instant: what they lose is damping.
-#[test]
-fn what_lies_on_a_plane_and_is_thrown_at_it_loses_its_first_row() {
-    let size = 0.02;
-    for (in_space, friction) in [(true, 0.0), (false, 0.5)] {
-        let mut solid = cube(4, size, 0.2, Formulation::Smoothed, in_space);
-        let (up, crossing) = (if in_space { 2 } else { 1 }, size * (DENSITY / YOUNG).sqrt());
-        let velocity = Vec3::ith(0, 0.3) - Vec3::ith(up, 1.0);
-        solid.velocity.fill(velocity);
-        let nodes = 0..solid.mass.len();
-        let row: f64 = nodes.filter(|&i| solid.reference[i][up] < 1e-9 * size).map(|i| solid.mass[i]).sum();
-        let whole: f64 = solid.mass.iter().sum();
-        // With this friction the row sticks.
-        let stopped = 0.5 * row * if friction > 0.0 { velocity.norm_squared() } else { 1.0 };
-        let contact = surface_of(friction, 0.1);
-        let floor = plane(Vec3::zeros(), Vec3::ith(up, 1.0), contact);
-        let mut scene = scene(solid, Vec::new(), Vec::new(), vec![floor], contact, settings(crossing, 0.8, 0.0));
-        scene.step(true).unwrap();
-        let ledger = scene.ledger();
-        println!("{in_space} {friction}: {ledger:?}, {stopped}");
-        assert!((ledger.initial / (0.5 * whole * velocity.norm_squared()) - 1.0).abs() < 1e-9, "{ledger:?}");
-        assert!((ledger[EnergyKind::Damping] / stopped - 1.0).abs() < 1e-9, "{ledger:?}, {stopped}");
-        while !scene.is_finished() {
-            scene.step(true).unwrap();
-        }
-        let ledger = scene.ledger();
-        assert!(ledger[EnergyKind::TimeStep].abs() < 1e-9 * stopped, "{ledger:?}, {stopped}");
-        assert!(ledger.residual_max_relative < 1e-9, "{ledger:?}");
     }
 }
 
@@ -417,28 +384,27 @@ fn two_planes_hold_the_same_nodes() {
     }
 }
 
-/// A cube that glances off a fixed ball: nodes slide round a curved shape.
+/// A ball that glances off a cube: nodes slide round a curved shape.
 #[test]
 fn a_glancing_blow_brings_no_energy() {
     let size = 0.02;
     let mut gains = Vec::new();
     for safety in [0.8, 0.4] {
-        let mut solid = cube(4, size, 0.2, Formulation::Smoothed, true);
-        solid.velocity.fill(Vec3::new(0.5, 0.0, -1.0));
+        let solid = cube(4, size, 0.2, Formulation::Smoothed, true);
         let crossing = size * (DENSITY / YOUNG).sqrt();
         let contact = surface_of(0.0, 0.0);
         let form = Form::Shape { shape: Shape::Ball { radius: 0.5 * size }, hollow: false };
         let frame = Frame::at(Vec3::new(0.3 * size, 0.5 * size, -0.501 * size));
-        let ball = RigidBody::new("ball", form, frame, ElasticMaterial::RIGID, contact);
+        let mut ball = RigidBody::new("ball", form, frame, ElasticMaterial::RIGID, contact);
+        ball.along[0] = Drive::Velocity(Arc::new(|_, _| -0.5));
+        ball.along[2] = Drive::Velocity(Arc::new(|_, _| 1.0));
+        let start = 0.5 * 1.25 * solid.mass.iter().sum::<f64>();
         let mut scene =
             scene(solid, Vec::new(), Vec::new(), vec![ball], contact, settings(8.0 * crossing, safety, 0.0));
-        let (mut start, mut least) = (0.0, 0.0f64);
+        let mut least = 0.0f64;
         while !scene.is_finished() {
             scene.step(true).unwrap();
             let ledger = scene.ledger();
-            if scene.clock.step == 1 {
-                start = ledger[EnergyKind::Kinetic];
-            }
             least = least.min(ledger[EnergyKind::Damping] / start);
         }
         let ledger = scene.ledger();
@@ -522,11 +488,11 @@ fn held_nodes_have_the_same_bits_on_any_number_of_ranks_and_threads_and_after_a_
     let made = || {
         let (nodes, body) = jittered_box([20, 10, 10], Vec3::new(0.4, 0.2, 0.2));
         let mut solid = Solid::new(nodes, vec![body.smoothed()]).unwrap();
-        solid.velocity.fill(Vec3::new(0.2, 0.0, -1.0));
+        solid.velocity.fill(Vec3::new(0.2, 0.0, 0.0));
         let contact = surface_of(0.3, 0.1);
         let mut plate = plane(Vec3::new(0.0, 0.0, 0.2), -Vec3::z(), contact);
         plate.along[2] = Drive::Velocity(Arc::new(|_, _| -1.2));
-        let planes = vec![plane(Vec3::new(0.0, 0.0, -1e-5), Vec3::z(), contact), plate];
+        let planes = vec![plane(Vec3::zeros(), Vec3::z(), contact), plate];
         let weight = Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -9.81) });
         let mut settings = settings(1.0, 0.8, 0.0);
         settings.damping = LocalDamping { local: 0.1, mass_rate: 0.0 };

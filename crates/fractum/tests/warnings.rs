@@ -149,7 +149,7 @@ history = { every = "20 us" }
 "#;
 
 const WALL: &str =
-    "[[bodies]]\nname = \"wall\"\nkind = \"rigid\"\nshape = \"plane\"\nnormal = \"x\"\npoint = [\"-1 um\", 0, 0]\n";
+    "[[bodies]]\nname = \"wall\"\nkind = \"rigid\"\nshape = \"plane\"\nnormal = \"x\"\npoint = [\"-0.1 mm\", 0, 0]\n";
 const GRAVITY: &str = "[[loads]]\ngravity = { z = \"-9.81 m/s^2\" }\n[solver]";
 
 const DAMAGE: &str = "[materials.stone.damage]\ncriterion = \"rankine\"\ntensile_strength = \"3 MPa\"\nfracture_energy = \"100 J/m^2\"\n[[bodies]]";
@@ -285,7 +285,7 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
             &[
                 ("[[supports]]\ngroup = \"x-\"\nfix = \"PLANE\"\n", WALL),
                 (far_support, ""),
-                ("material = \"stone\"\n", "material = \"stone\"\ninitial_velocity = { x = \"-1 m/s\" }\n"),
+                ("[solver]", "[[loads]]\ngravity = { x = \"-1e5 m/s^2\" }\n[solver]"),
             ],
         ),
         moving("large-strain", bar(), &[(ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"-150 m/s\"]] }")]),

@@ -202,7 +202,8 @@ pub(super) fn missing(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnosti
 pub(super) fn undamped(case: &Case, bodies: &[Own]) -> Vec<Diagnostic> {
     let moves = std::iter::once(case).chain(&case.later).any(|stage| stage.solver.kind == SolverKind::Explicit);
     let held = |body: &Body| match &body.kind {
-        BodyKind::Solid(solid) => !solid.damage,
+        // What is thrown meets springs.
+        BodyKind::Solid(solid) => !solid.damage && solid.initial_velocity.iter().all(Option::is_none),
         BodyKind::Rigid(rigid) => {
             let has_facets = matches!(rigid.shape, RigidShape::Group { .. } | RigidShape::Stl { .. });
             !(has_facets || rigid.inside || rigid.free_rotation || rigid.free.contains(&true))

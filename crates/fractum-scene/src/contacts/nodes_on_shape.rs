@@ -12,6 +12,8 @@ use crate::coupling::Debris;
 
 /// Overlap at the start, over the radius at the node, up to which a node is on the surface: what is left of a mesh file.
 const ON_SURFACE: f64 = 1e-4;
+/// Part of its velocity at the start with which a node that moves along a surface may come nearer to it: rounding.
+const TOWARDS: f64 = 1e-9;
 
 /// A rigid shape, seen from outside; solids stay out of it.
 ///
@@ -118,9 +120,15 @@ impl NodesOnShape {
     pub(crate) fn prepare(&mut self, rigid_bodies: &[RigidBody], solid: &Solid, debris: &Debris) {
         let body = self.rigid_body.map(|index| rigid_bodies.get(index));
         let is_driven = body.is_none_or(|body| body.is_some_and(RigidBody::is_driven));
-        // The nodes of short steps are kicked more often than what holds them.
-        self.holds = is_driven && !solid.is_subcycled();
         let frame = body.flatten().map_or(self.frame, |body| body.frame);
+        // A row of nodes that is stopped at once loses energy: where solids are thrown at the shape springs send them back.
+        let is_thrown = self.candidates.iter().any(|c| {
+            let (place, velocity) = (solid.position(c.node as usize), solid.velocity[c.node as usize]);
+            let outward = -frame.to_space(&self.shape.outside(&frame.to_body(&place)).normal);
+            velocity.dot(&outward) < -TOWARDS * velocity.norm()
+        });
+        // The nodes of short steps are kicked more often than what holds them.
+        self.holds = is_driven && !solid.is_subcycled() && !is_thrown;
         for c in &mut self.candidates {
             let depth = -self.shape.outside(&frame.to_body(&solid.position(c.node as usize))).distance;
             c.is_pushed = depth > ON_SURFACE * debris.radius(c.node);
