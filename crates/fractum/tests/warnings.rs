@@ -281,11 +281,12 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
         ),
         moving(
             "impact-loss",
-            bar(),
+            structured_box([3, 2, 2], Vec3::new(0.4, 0.12, 0.12), None),
             &[
                 ("[[supports]]\ngroup = \"x-\"\nfix = \"PLANE\"\n", WALL),
                 (far_support, ""),
-                ("[solver]", "[[loads]]\ngravity = { x = \"-1e5 m/s^2\" }\n[solver]"),
+                ("[solver]", "[[loads]]\ngravity = { x = \"-4e3 m/s^2\" }\n[solver]"),
+                (end, "end = \"0.5 ms\""),
             ],
         ),
         moving("large-strain", bar(), &[(ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"-150 m/s\"]] }")]),
