@@ -23,7 +23,7 @@ pub(crate) const CARRIES: f64 = 0.5;
 impl Body {
     /// Rotation [rad] beyond which [`Kinematics::Auto`] turns: the false strain ½ θ² of small strains is at most 5e-5, and a tenth of the strain at
     /// the tensile strength.
-    pub fn least_turn(&self) -> f64 {
+    pub(crate) fn least_turn(&self) -> f64 {
         let of_damage = self.damage.as_ref().map_or(f64::INFINITY, |zone| {
             (2.0 * FALSE_LOAD * zone.law.tensile_strength / self.elastic.young_modulus).sqrt()
         });
@@ -52,12 +52,13 @@ impl Solid {
         }
         let first = (step / STEPS_BETWEEN_LOOKS % LOOKS) as usize;
         let own = &self.blocks[self.own_blocks()];
-        let mut found: Vec<u32> = own
-            .par_iter()
-            .filter(|block| self.turns(block, first, STEPS_BETWEEN_LOOKS as f64 * dt))
-            .map(|b| b.body as u32)
-            .collect();
-        found.dedup();
+        let turns = |block: &&Block| self.turns(block, first, STEPS_BETWEEN_LOOKS as f64 * dt);
+        // Nothing is allocated while no body turns.
+        let mut found = Vec::new();
+        if own.par_iter().any(|block| turns(&block)) {
+            found = own.par_iter().filter(turns).map(|block| block.body as u32).collect();
+            found.dedup();
+        }
         if let Some(part) = &self.part {
             found = gather_named(&*part.exchange(), &found);
         }

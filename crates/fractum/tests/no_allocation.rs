@@ -206,6 +206,11 @@ fn a_warm_step_allocates_nothing() {
         let mut scene = pulled(nodes.clone(), plain.clone(), 0.01, calm);
         assert_eq!(requests(&mut scene), 0, "plain elastic");
 
+        let until_it_turns = Body { kinematics: Kinematics::Auto, ..smoothed.clone() };
+        let mut scene = pulled(nodes.clone(), until_it_turns, 0.01, calm);
+        assert_eq!(requests(&mut scene), 0, "small strains until it turns");
+        assert_eq!(scene.solid.body(0).kinematics, Kinematics::Auto);
+
         let mut scene = pulled(nodes.clone(), corotational.smoothed(), 0.01, viscosity);
         assert_eq!(requests(&mut scene), 0, "smoothed, large rotations, viscous");
 

@@ -321,6 +321,15 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
             bar(),
             &[("[[bodies]]", DAMAGE), (ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"-10 m/s\"]] }")],
         ),
+        moving(
+            "single-nodes",
+            bar(),
+            &[
+                ("[[bodies]]", DAMAGE),
+                (ramp, "\"20 m/s\""),
+                ("[solver]", "[[probes]]\nname = \"out\"\nvelocity = { group = \"x+\", along = \"x\" }\n[solver]"),
+            ],
+        ),
         moving("damping", bar(), &[(end, "end = \"2 ms\"\n[damping]\nmass = \"1e6 1/s\"")]),
     ]
 }

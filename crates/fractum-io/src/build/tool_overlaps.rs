@@ -88,7 +88,7 @@ impl SolidSide {
         if model.shape == ElementKind::T4 {
             let facets: Vec<[u32; 3]> =
                 topology::boundary_of_tetrahedra(&model.elements).iter().map(|facet| facet.nodes).collect();
-            let (points, triangles) = compact(&facets, at);
+            let (_, points, triangles) = compact(&facets, at);
             let surface = ClosedSurface::new(&points, &triangles).ok()?;
             let least = DEEP * (2.0 * surface.area() / triangles.len() as f64).sqrt();
             return Some(SolidSide { surface, is_plane: false, least });
@@ -98,11 +98,8 @@ impl SolidSide {
         let sides = topology::boundary_of_triangles(&elements);
         let length = |[a, b]: [u32; 2]| (at(b) - at(a)).norm();
         let around: f64 = sides.iter().map(|side| length(side.nodes)).sum();
-        let (mut points, mut triangles) = compact(&elements, at);
+        let (used, mut points, mut triangles) = compact(&elements, at);
         let count = points.len() as u32;
-        let mut used: Vec<u32> = elements.iter().flatten().copied().collect();
-        used.sort_unstable();
-        used.dedup();
         let number = |node: u32| used.binary_search(&node).map_or(0, |found| found as u32);
         let below: Vec<[u32; 3]> = triangles.iter().map(|&[a, b, c]| [a + count, c + count, b + count]).collect();
         triangles.extend(below);
@@ -126,14 +123,15 @@ impl SolidSide {
     }
 }
 
-/// Facets with nodes of their own, numbered along the nodes of the solid.
-fn compact(facets: &[[u32; 3]], at: impl Fn(u32) -> Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+/// Facets with nodes of their own: the nodes of the solid that they have, ascending, with their places, and the facets by places in this list.
+fn compact(facets: &[[u32; 3]], at: impl Fn(u32) -> Vec3) -> (Vec<u32>, Vec<Vec3>, Vec<[u32; 3]>) {
     let mut used: Vec<u32> = facets.iter().flatten().copied().collect();
     used.sort_unstable();
     used.dedup();
     let number = |node: u32| used.binary_search(&node).map_or(0, |found| found as u32);
     let triangles = facets.iter().map(|facet| facet.map(number)).collect();
-    (used.iter().map(|&node| at(node)).collect(), triangles)
+    let places = used.iter().map(|&node| at(node)).collect();
+    (used, places, triangles)
 }
 
 /// Whether points come near a solid at all; of a plane one in its plane.
