@@ -212,7 +212,7 @@ fn transcendental_functions_come_from_one_place() {
 #[test]
 fn fused_products_stay_in_the_kernels_that_are_compiled_for_them() {
     // Elsewhere each is a call of the C library.
-    let kernels = ["fractum-math/src/lane.rs", "fractum-fem/src/polar.rs", "fractum-sparse/src/dense.rs"];
+    let kernels = ["fractum-math/src/lane.rs", "fractum-fem/src/element/polar.rs", "fractum-sparse/src/dense.rs"];
     for (name, _) in ARROWS {
         for (path, code) in sources(name) {
             let code = code.lines().filter(|line| !line.trim_start().starts_with("//"));

@@ -6,11 +6,11 @@
 use fractum_math::{Mat3, Ragged, Sym3, Vec3};
 
 use crate::body::{Formulation, Kinematics};
-use crate::damage::EdgeDamage;
-use crate::evaluate::{Block, BlockLaw};
-use crate::restraint::{Restraint, Seen};
+use crate::damage::Taken;
+use crate::damage::edge::EdgeDamage;
+use crate::damage::restraint::{Restraint, Seen};
+use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
-use crate::taken::Taken;
 
 /// Damage of every cell, block by block; empty rows for blocks without damage.
 #[derive(Clone, Debug, Default, PartialEq)]

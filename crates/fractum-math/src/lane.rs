@@ -2,10 +2,13 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use crate::Vec3;
 
+/// How many cells, edges or tensors go side by side: as many as a [`Lane`] has values.
+pub const FOUR: usize = 4;
+
 /// Four doubles side by side, as wide as an AVX register: a padded vector, or one number of each of four tensors.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
-pub struct Lane(pub [f64; 4]);
+pub struct Lane(pub [f64; FOUR]);
 
 impl Lane {
     /// Zeros.

@@ -27,7 +27,7 @@ mod work;
 
 pub use connected::{Connected, connected, numbered_parts};
 pub use lanczos::largest_eigenvalue;
-pub use lane::Lane;
+pub use lane::{FOUR, Lane};
 pub use negative_part::{by_component, negative_parts};
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};

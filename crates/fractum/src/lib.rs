@@ -2,11 +2,11 @@
 //!
 //! - [`run`]: one case from file to results folder
 //! - [`Simulation`]: the same, step by step
+//! - [`output`]: what a run leaves behind
 //! - [`plan`]: what a run will do, before it does it
 //! - [`report`]: the page of a results folder
 //! - [`stress`]: random scenes of every kind of body
-//! - [`study`]: many runs, and what they say together
-//! - [`sweep`]: runs of a list, each started by itself
+//! - [`study`]: many runs, and what they say together; [`study::sweep`]: runs of a list, each started by itself
 //! - [`terminal`]: lines on stdout and stderr
 //! - [`verify`]: the gallery against its references
 //!
@@ -47,55 +47,25 @@
 
 #![forbid(unsafe_code)]
 
-mod columns;
-mod course;
-pub mod cracks;
 mod error;
-mod fetch;
-mod frame_file;
-mod frame_pictures;
-mod frames;
-mod gallery;
-mod gas_cells;
-mod gauge_tables;
-mod gone;
-mod heat_columns;
 mod input;
-mod inputs;
-mod interrupt;
-mod last_words;
-mod left;
-mod mesh_files;
-mod needs;
-pub mod neighbours;
-mod path_frames;
+pub mod output;
 mod phases;
 pub mod plan;
-mod plots;
-mod pool;
-mod population;
-mod ranks;
-mod record;
-mod record_bonded;
+mod process;
 pub mod report;
-mod rigid_surface;
 mod run;
-mod series;
-mod sight;
 mod simulation;
 mod solver;
 pub mod stress;
-mod strip;
 pub mod study;
-mod summary;
-pub mod sweep;
 pub mod terminal;
 pub mod verify;
 
 pub use error::{ExitCode, Failure};
-pub use frame_pictures::{Movie, MovieSettings, movie};
 pub use input::{Input, cache_of_user, load};
-pub use interrupt::{clear_interrupt, interrupt, is_interrupted};
-pub use ranks::Ranks;
+pub use process::interrupt::{clear_interrupt, interrupt, is_interrupted};
+pub use process::ranks::Ranks;
+pub use report::frame_pictures::{Movie, MovieSettings, movie};
 pub use run::{run, run_shared};
 pub use simulation::{Options, Outcome, Simulation, for_shell};

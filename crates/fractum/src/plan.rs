@@ -32,7 +32,7 @@ pub use self::estimate::Estimate;
 pub(crate) use self::estimate::estimate;
 use crate::error::Failure;
 use crate::input::{Input, load};
-use crate::pool::pool;
+use crate::process::pool;
 
 /// The plan of a case with what both solvers would cost and how long its run takes, and what is doubtful; some steps are taken for that.
 ///

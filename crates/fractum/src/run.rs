@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::error::Failure;
-use crate::pool::pool;
-use crate::ranks::Ranks;
+use crate::process::pool;
+use crate::process::ranks::Ranks;
 use crate::simulation::{Options, Outcome, Simulation};
 
 /// Runs the case at `path` on threads of its own.

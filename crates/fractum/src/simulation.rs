@@ -29,13 +29,13 @@ use fractum_scene::{EnergyKind, HeatState, Scene, SceneState, StepError, Subcycl
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
-use crate::interrupt::{UnderWay, is_interrupted};
-use crate::last_words::LastWords;
+use crate::output::record::{RecordState, Recorder};
+use crate::output::series::index_of_max;
 use crate::phases::{Part, Phases};
 use crate::plan::Plan;
-use crate::ranks::Ranks;
-use crate::record::{RecordState, Recorder};
-use crate::series::index_of_max;
+use crate::process::interrupt::{UnderWay, is_interrupted};
+use crate::process::last_words::LastWords;
+use crate::process::ranks::Ranks;
 use crate::solver::{Measured, Solver, SolverState};
 use end::End;
 use messages::Messages;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use fractum::neighbours::{neighbours, unsaid};
+use fractum::verify::neighbours::{neighbours, unsaid};
 use fractum::verify::{Selection, verify};
 use fractum::{Options, Simulation};
 use fractum_io::beside::{End, Row};

@@ -149,7 +149,7 @@ fn curves(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody]) -> Vec<H
     (0..bodies.len()).map(of_body).map(|[low, high]| HilbertCurve::new(low, high)).collect()
 }
 
-/// Places by which the cells of an element are ordered, those of [`crate::cell::Geometry`]: sums of nodes of each of its edges, or of the element.
+/// Places by which the cells of an element are ordered, those of [`crate::cells::cell::Geometry`]: sums of nodes of each of its edges, or of the element.
 fn middles<'a>(body: &ReadBody<'a>, element: usize, nodes: &'a [Vec3]) -> impl Iterator<Item = Vec3> + 'a {
     let corners = body.elements[element].map(|node| nodes[node as usize]);
     let smoothed = body.formulation == Formulation::Smoothed;

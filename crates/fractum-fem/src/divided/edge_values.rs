@@ -7,7 +7,7 @@ use fractum_mesh::topology::TETRAHEDRON_EDGES;
 use fractum_parallel::{Exchange, Swapped, post};
 
 use super::{BodyShare, EdgeValue};
-use crate::edges::BodyEdges;
+use crate::body::edges::BodyEdges;
 
 /// Numbers of an [`EdgeValue`].
 const NUMBERS: usize = 13;

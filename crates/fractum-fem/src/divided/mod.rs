@@ -15,6 +15,8 @@ mod edge_values;
 mod nodes;
 mod order;
 mod pieces;
+pub(crate) mod places;
+pub(crate) mod told_edges;
 
 use std::collections::BTreeMap;
 

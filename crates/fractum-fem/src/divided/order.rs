@@ -3,7 +3,7 @@
 use fractum_parallel::{Exchange, post, rank_of};
 use rayon::prelude::*;
 
-use crate::cell::BLOCK_CELLS;
+use crate::cells::cell::BLOCK_CELLS;
 
 /// A cell in the order of all: its class (twice its body, or one more if it cannot be damaged where others can), its place along the curve, and what decides between cells at the same place (the nodes of an edge, the number of
 /// an element).

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
-use fractum::cracks::{self, Columns};
+use fractum::output::cracks::{self, Columns};
 use fractum::{Failure, say};
 use fractum_calibrate::{Micro, Sample, lab, published};
 use fractum_dem::criterion::{BreakMode, CriterionNumbers, EndMoments, FractureCriterion, Level};

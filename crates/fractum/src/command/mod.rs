@@ -256,7 +256,7 @@ fn run_gallery(selection: &fractum::verify::Selection) -> Result<ExitCode, Failu
 }
 
 fn run_neighbours(selection: &fractum::verify::Selection, only_promised: bool) -> Result<ExitCode, Failure> {
-    let rows = fractum::neighbours::neighbours(selection, only_promised)?;
+    let rows = fractum::verify::neighbours::neighbours(selection, only_promised)?;
     match rows.iter().filter(|row| row.end == fractum_io::beside::End::Fails).count() {
         0 => Ok(ExitCode::Done),
         failed => Err(Failure::Unmet(format!("{failed} references do not hold beside their case"))),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use fractum::sweep::{collect, find, results_folder, run_one};
+use fractum::study::sweep::{collect, find, results_folder, run_one};
 use fractum::{ExitCode, Failure, Options, say, tell};
 use fractum_io::atomic;
 use fractum_io::study::list::{of_study, to_csv};

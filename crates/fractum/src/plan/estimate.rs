@@ -13,11 +13,11 @@ use fractum_scene::statics::{Control, Stiffness};
 use fractum_scene::{GasMeasure, Probe, ProbedScene, Scene};
 
 use super::cost::{Cost, slower_by_cracks, slowness};
-use crate::frames::{Frame, GridLayout};
 use crate::input::Input;
+use crate::output::frames::{Frame, GridLayout};
 use crate::phases::Phases;
+use crate::report::{gallery, strip};
 use crate::solver::Solver;
-use crate::{gallery, strip};
 
 /// Seconds of a stage that are tried.
 const TRIED: f64 = 0.15;

@@ -6,7 +6,7 @@ use fractum_scene::Population;
 
 use super::{End, Simulation};
 use crate::error::Failure;
-use crate::summary::state_hash;
+use crate::output::summary::state_hash;
 
 impl Simulation {
     /// Adds forces that the case does not know of: nodes of solids or particles, in the numbering of the scene, and the force

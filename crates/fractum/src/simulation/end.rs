@@ -7,7 +7,7 @@ use fractum_io::warning::Warning;
 use fractum_scene::StepError;
 
 use super::Simulation;
-use crate::series::index_of_max;
+use crate::output::series::index_of_max;
 
 /// Why a run is over.
 pub(super) enum End {

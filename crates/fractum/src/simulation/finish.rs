@@ -6,20 +6,21 @@ use std::path::Path;
 use fractum_fem::{CrackFacet, Solid};
 use fractum_io::atomic::{Group, create_folder};
 use fractum_io::attenuation;
+use fractum_io::case::model::{Case, Material};
 use fractum_io::fragments::{self, Fragment};
-use fractum_io::number::at_instant;
+use fractum_io::number::{at_instant, quantity, significant};
 use fractum_io::summary::{Breakage, Hashes, Status, Summary, hash_text};
 use fractum_scene::{Scene, fragment_size};
 
 use super::{End, Outcome, Saved, Simulation};
-use crate::cracks::{self, Columns, FacetHistory};
 use crate::error::{ExitCode, Failure};
-use crate::gallery;
+use crate::output::cracks::{self, Columns, FacetHistory};
+use crate::output::summary;
 use crate::phases::Part;
+use crate::report::gallery;
+use crate::report::strip::strip;
 use crate::report::{self, Notes, PictureNote};
 use crate::solver::Measured;
-use crate::strip::strip;
-use crate::summary;
 
 impl Simulation {
     /// Writes the last frame and row, summary, fragments, cracks and report, and gives the history its final name.
@@ -77,8 +78,8 @@ impl Simulation {
             case_file: self.case.source.path.display().to_string(),
             plan: self.about.plan.wrapped(PLAN_WIDTH, str::to_owned),
             pictures,
-            inputs: crate::inputs::table(&self.case),
-            plots: crate::plots::notes(&self.case),
+            inputs: inputs_of(&self.case),
+            plots: crate::report::plots::notes(&self.case),
         };
         files.add(&self.folder.join("summary.json"), summary.to_json().as_bytes());
         report::keep(&self.folder, &notes, &mut files);
@@ -226,4 +227,35 @@ fn fragments_of(solid: &Solid, pieces: &[fractum_scene::Fragment]) -> Vec<Fragme
             stays: piece.stays,
         })
         .collect()
+}
+
+/// Materials and settings of a case, as the table of the report: what and its value, line by line.
+fn inputs_of(case: &Case) -> Vec<(String, String)> {
+    let mut lines: Vec<(String, String)> =
+        case.materials.iter().map(|material| (material.name.value.clone(), of_material(material))).collect();
+    for (name, value) in &case.source.parameters {
+        lines.push((format!("parameter {name}"), format!("{} in SI units", significant(*value, 6))));
+    }
+    for (name, value) in &case.source.overrides {
+        lines.push((format!("--set {name}"), value.clone()));
+    }
+    lines.push(("end".to_owned(), quantity(case.solver.end, "s")));
+    lines
+}
+
+fn of_material(material: &Material) -> String {
+    let mut parts = vec![
+        format!("density {}", quantity(material.density, "kg/m^3")),
+        format!("E = {}", quantity(material.young_modulus, "Pa")),
+        format!("Poisson's ratio {}", material.poisson_ratio),
+    ];
+    if let Some(damage) = &material.damage {
+        let law = &damage.value.law;
+        parts.push(format!("tensile strength {}", quantity(law.tensile_strength, "Pa")));
+        parts.push(format!("fracture energy {}", quantity(law.fracture_energy, "J/m^2")));
+    }
+    if let Some(strength) = material.fracture.as_ref().and_then(|fracture| fracture.value.tensile_strength) {
+        parts.push(format!("tensile strength of bonds {}", quantity(strength, "Pa")));
+    }
+    parts.join(", ")
 }

@@ -17,20 +17,20 @@ use fractum_scene::Scene;
 use super::messages::Messages;
 use super::origin::{forget_case, keep_case, origin};
 use super::{About, Options, RunState, Simulation};
-use crate::course::Course;
 use crate::error::Failure;
-use crate::frames::GridLayout;
-use crate::gallery;
-use crate::gauge_tables;
 use crate::input::{Input, read};
-use crate::interrupt::UnderWay;
+use crate::output::columns::Course;
+use crate::output::frames::GAUGES;
+use crate::output::frames::GridLayout;
+use crate::output::population::Population;
+use crate::output::record::{RecordState, Recorder};
 use crate::phases::Phases;
 use crate::plan::Plan;
-use crate::population::Population;
-use crate::ranks::Ranks;
-use crate::record::{RecordState, Recorder};
+use crate::process::interrupt::UnderWay;
+use crate::process::ranks::Ranks;
+use crate::report::gallery;
+use crate::report::strip::STRIP_FILE;
 use crate::solver::{Measured, Solver};
-use crate::strip::STRIP_FILE;
 use crate::tell;
 use crate::terminal::{Stream, Tone, toned};
 
@@ -369,7 +369,7 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
     }
     let endings = [".vtu", ".vtp", ".pvtu", ".pvtp"];
     let frames = Population::ALL.iter().flat_map(|population| endings.map(|end| (population.folder(), "", end)));
-    for (name, start, end) in frames.chain([("pictures", STRIP_FILE, ".png"), (gauge_tables::FOLDER, "", ".csv")]) {
+    for (name, start, end) in frames.chain([("pictures", STRIP_FILE, ".png"), (GAUGES, "", ".csv")]) {
         let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
         for path in entries.flatten().map(|entry| entry.path()) {
             let own = path.file_name().and_then(|own| own.to_str());

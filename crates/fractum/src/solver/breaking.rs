@@ -4,8 +4,8 @@ use fractum_scene::{BondedStaticSettings, BondedStaticState, BondedStatics, Scen
 
 use super::Advance;
 use crate::error::Failure;
-use crate::interrupt::is_interrupted;
 use crate::phases::{Part, Phases};
+use crate::process::interrupt::is_interrupted;
 
 /// The breaking of a bonded body; every step is a row of the history, with the load just before bonds break.
 pub(crate) struct BreakingRun(BondedStatics);

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Advance, motion};
 use crate::error::Failure;
-use crate::interrupt::is_interrupted;
 use crate::phases::{Part, Phases};
+use crate::process::interrupt::is_interrupted;
 
 /// Where such a run stands, for its checkpoint.
 #[derive(Clone, Debug, Serialize, Deserialize)]

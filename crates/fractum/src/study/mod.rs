@@ -5,6 +5,7 @@
 
 mod exhibits;
 mod single;
+pub mod sweep;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -20,7 +21,7 @@ use fractum_io::study::{page, table};
 use fractum_prepare::Cache;
 
 use crate::error::Failure;
-use crate::interrupt::{UnderWay, is_interrupted};
+use crate::process::interrupt::{UnderWay, is_interrupted};
 use crate::{say, tell};
 use single::Single;
 

@@ -17,7 +17,7 @@ use xxhash_rust::xxh3::Xxh3;
 use super::Settings;
 use crate::error::Failure;
 use crate::input::{Input, load};
-use crate::interrupt::is_interrupted;
+use crate::process::interrupt::is_interrupted;
 use crate::run::run_measured;
 use crate::simulation::Options;
 

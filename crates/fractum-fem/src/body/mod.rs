@@ -1,0 +1,159 @@
+pub(crate) mod edges;
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::material::{DamageLaw, Elastic};
+
+/// Kind of all elements of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ElementKind {
+    /// Four-node tetrahedra.
+    T4,
+    /// Three-node triangles in the xy-plane (the fourth entry of an element repeats the third).
+    T3,
+}
+
+impl ElementKind {
+    /// Nodes of an element.
+    pub fn node_count(self) -> usize {
+        match self {
+            ElementKind::T4 => 4,
+            ElementKind::T3 => 3,
+        }
+    }
+
+    /// Edges of an element.
+    pub fn edge_count(self) -> usize {
+        match self {
+            ElementKind::T4 => 6,
+            ElementKind::T3 => 3,
+        }
+    }
+}
+
+/// Where strain, stress and damage live.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Formulation {
+    /// On the elements: the plain constant-strain element.
+    Standard,
+    /// On the edges: the strain of an edge is the volume-weighted mean over the elements that share it.
+    Smoothed,
+}
+
+/// Measure of strain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Kinematics {
+    /// Linear strain, for rotations well below 0.1 rad.
+    Small,
+    /// Stretch U - 1 after the polar decomposition F = R U of each cell: any rotation, small stretch.
+    Corotational,
+    /// Small until a part of the body turns in motion, corotational from then on; see [`crate::Solid::let_turn`].
+    Auto,
+}
+
+/// What a plane body assumes across its thickness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Plane {
+    /// No strain across the thickness.
+    Strain,
+    /// No stress across the thickness.
+    Stress,
+}
+
+/// Which edges of a body may be damaged.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Region {
+    /// All of them.
+    Everywhere,
+    /// Those marked, by edge in the order of [`Body::edge_midpoints`].
+    Edges(Vec<bool>),
+}
+
+/// Damage regularised by a cohesive phase field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Regularisation {
+    /// Length b [m]: a crack is a band of width π b; none is twice the size of the elements where cracks are expected.
+    pub length: Option<f64>,
+}
+
+/// Damage of a body: the law, and what varies over the body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DamageZone {
+    /// The law.
+    pub law: DamageLaw,
+    /// Where damage may occur.
+    pub region: Region,
+    /// Factor on the tensile strength of each edge, in the order of [`Body::edge_midpoints`]; empty means 1.
+    pub strength_factor: Vec<f64>,
+    /// A further factor that each edge has by chance; empty means 1. What it adds is cut where the edge is too long for it.
+    pub strength_by_chance: Vec<f64>,
+    /// Lower the strength of edges too long for their fracture energy, instead of refusing the body.
+    pub reduce_strength_to_fit: bool,
+    /// Damage as a phase field instead of edge by edge.
+    pub regularisation: Option<Regularisation>,
+}
+
+/// A group of elements with one material and one formulation; the input of [`crate::Solid::new`].
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// The user's name for it.
+    pub name: String,
+    /// Shape of its elements.
+    pub shape: ElementKind,
+    /// Node indices of its elements, positively oriented.
+    pub elements: Arc<Vec<[u32; 4]>>,
+    /// Elasticity.
+    pub elastic: Elastic,
+    /// Where strain and stress live.
+    pub formulation: Formulation,
+    /// Measure of strain.
+    pub kinematics: Kinematics,
+    /// State across the thickness (T3 only).
+    pub plane: Plane,
+    /// Thickness [m] (T3 only).
+    pub thickness: f64,
+    /// Damage, or none for an elastic body.
+    pub damage: Option<DamageZone>,
+}
+
+impl Body {
+    /// An elastic body of plain elements with small strains.
+    pub fn new(name: &str, shape: ElementKind, elements: Vec<[u32; 4]>, elastic: Elastic) -> Self {
+        Body {
+            name: name.to_owned(),
+            shape,
+            elements: Arc::new(elements),
+            elastic,
+            formulation: Formulation::Standard,
+            kinematics: Kinematics::Small,
+            plane: Plane::Strain,
+            thickness: 1.0,
+            damage: None,
+        }
+    }
+
+    /// The same body in the smoothed formulation.
+    pub fn smoothed(self) -> Self {
+        Body { formulation: Formulation::Smoothed, ..self }
+    }
+
+    /// The same body with damage everywhere by `law`.
+    pub fn with_damage(self, law: DamageLaw) -> Self {
+        let zone = DamageZone {
+            law,
+            region: Region::Everywhere,
+            strength_factor: Vec::new(),
+            strength_by_chance: Vec::new(),
+            reduce_strength_to_fit: false,
+            regularisation: None,
+        };
+        Body { damage: Some(zone), ..self }
+    }
+
+    /// What makes a volume of the measure of an element: the thickness of triangles [m], 1 for tetrahedra.
+    pub(crate) fn depth(&self) -> f64 {
+        if self.shape == ElementKind::T3 { self.thickness } else { 1.0 }
+    }
+}

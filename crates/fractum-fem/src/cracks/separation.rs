@@ -1,0 +1,210 @@
+//! How much of a solid has separated, and into how many cracks: from the faces that removal has opened, without load.
+//!
+//! A crack has two faces, so its area is half of theirs. Faces follow the sides of elements, which makes a straight crack
+//! across an irregular mesh rougher than it is; each facet therefore counts with its projection on the mean plane of the
+//! facets around it. A zone in which every element is gone counts with half of its rim.
+
+use fractum_math::{Vec3, numbered_parts};
+
+use crate::cracks::crack_surface::{CrackFacet, CrackSurface};
+use crate::element::facet_area;
+use crate::solid::Solid;
+
+/// Times the mean of the normals goes on to the next neighbours: a reach of about three facets, within which a mesh is
+/// rough and a crack is not curved.
+const PASSES: usize = 4;
+
+/// Cosine below which neighbours are the two faces of one crack, as they are at its tip.
+const OTHER_FACE: f64 = -0.5;
+
+/// An element that a crack has cut through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeparatedElement {
+    /// Body it belonged to.
+    pub body: usize,
+    /// Its number there.
+    pub element: u32,
+    /// Its middle without load [m].
+    pub middle: Vec3,
+}
+
+/// A facet that faces a crack.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeparatedFacet {
+    /// Body it belongs to.
+    pub body: usize,
+    /// Removed element before it.
+    pub removed: u32,
+    /// Its share of the area of the crack without load, of which it is one of two faces [m²].
+    pub area: f64,
+}
+
+/// What has separated.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Separation {
+    /// Removed elements, body by body in their order.
+    pub elements: Vec<SeparatedElement>,
+    /// Facets that their removal has exposed.
+    pub facets: Vec<SeparatedFacet>,
+}
+
+impl Solid {
+    /// What has separated so far.
+    pub fn separation(&self) -> Separation {
+        let mut elements = Vec::new();
+        for body in 0..self.body_count() {
+            let removed = (0u32..).zip(self.alive(body)).filter(|(_, alive)| !**alive).map(|(element, _)| element);
+            let middle = |element| self.element_middle(body, element);
+            elements.extend(removed.map(|element| SeparatedElement { body, element, middle: middle(element) }));
+        }
+        if elements.is_empty() {
+            return Separation::default();
+        }
+        Separation { elements, facets: self.separated_facets(&self.crack_surface()) }
+    }
+
+    fn separated_facets(&self, surface: &CrackSurface) -> Vec<SeparatedFacet> {
+        let vectors: Vec<Vec3> = surface.facets.iter().map(|facet| self.area_without_load(facet)).collect();
+        let same_face = |a: &Vec3, b: &Vec3| a.dot(b) > OTHER_FACE * (a.norm_squared() * b.norm_squared()).sqrt();
+        let mut mean = vectors.clone();
+        for _ in 0..PASSES {
+            let around = |index: usize| {
+                let others = surface.neighbours.row(index).iter().map(|&other| other as usize);
+                let others = others.filter(|&other| same_face(&vectors[index], &vectors[other]));
+                mean[index] + others.map(|other| mean[other]).sum::<Vec3>()
+            };
+            mean = (0..mean.len()).map(around).collect();
+        }
+        let projected = |(area, mean): (&Vec3, &Vec3)| match mean.try_normalize(0.0) {
+            Some(normal) => area.dot(&normal).max(0.0),
+            None => area.norm(),
+        };
+        let areas = vectors.iter().zip(&mean).map(projected);
+        let facet = |(facet, area): (&CrackFacet, f64)| SeparatedFacet {
+            body: facet.body,
+            removed: facet.removed,
+            area: 0.5 * area,
+        };
+        surface.facets.iter().zip(areas).map(facet).collect()
+    }
+
+    /// Area of a facet times its normal without load; of a side in the plane its length times the thickness [m²].
+    fn area_without_load(&self, facet: &CrackFacet) -> Vec3 {
+        let plane = facet.nodes[1] == facet.nodes[2];
+        let corners = facet.nodes.map(|node| self.reference[node as usize]);
+        facet_area(corners, plane.then_some(self.body(facet.body).thickness))
+    }
+
+    /// The crack that each of these removed elements is part of, numbered in their order, and how many cracks there are;
+    /// elements of one crack share nodes.
+    pub fn separate_cracks(&self, elements: &[SeparatedElement]) -> (Vec<u32>, u32) {
+        let corners = |of: &SeparatedElement| {
+            let body = self.body(of.body);
+            body.elements[of.element as usize][..body.shape.node_count()].to_vec()
+        };
+        let mut ends: Vec<(u32, u32)> =
+            (0..).zip(elements).flat_map(|(i, of)| corners(of).into_iter().map(move |n| (n, i))).collect();
+        ends.sort_unstable();
+        let links = ends.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
+        numbered_parts(elements.len(), links)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Body, ElementKind};
+    use crate::material::{DamageLaw, Elastic};
+    use fractum_mesh::generate::{structured_box, structured_rectangle};
+
+    const SIDE: f64 = 0.2;
+    const THICKNESS: f64 = 0.3;
+
+    /// A solid torn along planes: nodes beyond each one, y > offset + slope x within the limits of x, move by 5 mm.
+    fn torn(shape: ElementKind, nodes: Vec<Vec3>, elements: Vec<[u32; 4]>, beyond: impl Fn(&Vec3) -> f64) -> Solid {
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
+        let law = DamageLaw::rankine(3e6, 100.0);
+        let mut body = Body::new("bar", shape, elements, elastic).smoothed().with_damage(law);
+        body.thickness = THICKNESS;
+        let mut solid = Solid::new(nodes, vec![body]).unwrap();
+        for (u, p) in solid.displacement.iter_mut().zip(&solid.reference) {
+            u.y = beyond(p);
+        }
+        solid.update_internal_forces(0.0, false);
+        solid.remove_cut_elements(0.0, &mut Vec::new());
+        solid
+    }
+
+    fn area(solid: &Solid) -> f64 {
+        solid.separation().facets.iter().map(|facet| facet.area).sum()
+    }
+
+    /// Moves inner nodes by up to half of the reach each way, always the same.
+    fn jittered(mut nodes: Vec<Vec3>, sides: [f64; 3], reach: f64) -> Vec<Vec3> {
+        let mut seed = 1u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        for node in &mut nodes {
+            for axis in 0..3 {
+                let inner = sides[axis] > 0.0 && node[axis] > 1e-9 && node[axis] < sides[axis] - 1e-9;
+                node[axis] += if inner { reach * random() } else { 0.0 };
+            }
+        }
+        nodes
+    }
+
+    fn plane(jitter: bool, beyond: impl Fn(&Vec3) -> f64) -> Solid {
+        let mesh = structured_rectangle([40, 40], [SIDE, SIDE], None);
+        let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
+        let nodes = if jitter { jittered(mesh.nodes, [SIDE, SIDE, 0.0], 0.6 * SIDE / 40.0) } else { mesh.nodes };
+        torn(ElementKind::T3, nodes, elements, beyond)
+    }
+
+    #[test]
+    fn a_straight_crack_has_its_length_on_any_mesh() {
+        for slope in [0.0, 0.3, 0.7, -0.5] {
+            let length = SIDE * f64::hypot(1.0, slope);
+            let across = |p: &Vec3| if p.y > 0.5 * SIDE + slope * (p.x - 0.5 * SIDE) { 5e-3 } else { 0.0 };
+            for jitter in [false, true] {
+                let measured = area(&plane(jitter, across)) / THICKNESS;
+                assert!((measured / length - 1.0).abs() < 0.04, "slope {slope}, {jitter}: {}", measured / length);
+            }
+        }
+    }
+
+    #[test]
+    fn a_plane_crack_in_space_has_its_area() {
+        for slope in [0.0, 0.4] {
+            let mesh = structured_box([12, 12, 12], Vec3::repeat(SIDE), None);
+            for jitter in [false, true] {
+                let nodes = mesh.nodes.clone();
+                let nodes = if jitter { jittered(nodes, [SIDE; 3], 0.3 * SIDE / 12.0) } else { nodes };
+                let across = |p: &Vec3| if p.y > 0.48 * SIDE + slope * (p.x - 0.5 * SIDE) { 5e-3 } else { 0.0 };
+                let solid = torn(ElementKind::T4, nodes, mesh.tetrahedra.clone(), across);
+                let ratio = area(&solid) / (SIDE * SIDE * f64::hypot(1.0, slope));
+                assert!((ratio - 1.0).abs() < 0.06, "slope {slope}, {jitter}: {ratio}");
+            }
+        }
+    }
+
+    #[test]
+    fn cracks_that_share_no_node_are_counted_apart() {
+        let bands = |p: &Vec3| {
+            if p.y > 0.7 * SIDE {
+                1e-2
+            } else if p.y > 0.3 * SIDE {
+                5e-3
+            } else {
+                0.0
+            }
+        };
+        let solid = plane(true, bands);
+        let Separation { elements, .. } = solid.separation();
+        let (part, count) = solid.separate_cracks(&elements);
+        assert_eq!(count, 2);
+        assert!(elements.iter().zip(&part).all(|(of, &part)| (of.middle.y < 0.5 * SIDE) == (part == 0)));
+        assert_eq!(plane(false, |_| 0.0).separation(), Separation::default());
+    }
+}

@@ -1,0 +1,228 @@
+//! The edges of a block of smoothed cells in a step: their strains, the growth of their damage, the stress that is left.
+
+use fractum_math::{FOUR, Sym3, Vec3, widest};
+
+use crate::body::Kinematics;
+use crate::cells::block::Cells;
+use crate::cells::kernel::{self, CellLaw};
+use crate::damage::edge::{EdgeDamage, EdgeField};
+
+/// The edges of one block of smoothed cells.
+#[derive(Clone, Debug)]
+pub(crate) struct EdgeCells {
+    pub(crate) field: EdgeField,
+    /// Energy dissipated in this block so far [J].
+    pub(crate) dissipated: f64,
+    /// Elastic energy of the last step, where it was asked for [J].
+    pub(crate) energy: Option<f64>,
+}
+
+/// The step that led to the present displacements.
+#[derive(Clone, Copy)]
+pub(crate) struct Advance<'a> {
+    /// Displacements now [m].
+    pub(crate) displacement: &'a [Vec3],
+    /// Velocities since the step before [m/s].
+    pub(crate) velocity: &'a [Vec3],
+    /// Time since the step before [s]; 0 if nothing has moved.
+    pub(crate) dt: f64,
+    pub(crate) kinematics: Kinematics,
+}
+
+impl Advance<'_> {
+    /// Elastic strain of a cell now.
+    #[inline(always)]
+    pub(crate) fn strain_now(&self, cells: &Cells, cell: usize) -> Sym3 {
+        kernel::elastic_strain(cells, cell, self.displacement, self.kinematics)
+    }
+
+    /// Elastic strain of a cell at the step before.
+    pub(crate) fn strain_before(&self, cells: &Cells, cell: usize) -> Sym3 {
+        let h = cells.gradient(cell, |node| self.displacement[node] - self.velocity[node] * self.dt);
+        cells.elastic_strain_before(cell, kernel::strain(&h, self.kinematics))
+    }
+}
+
+/// The edges of one block in one step, as the law of their cells.
+pub(crate) struct EdgesInStep<'a> {
+    pub(crate) edges: &'a mut EdgeCells,
+    pub(crate) cells: &'a Cells,
+    pub(crate) step: Advance<'a>,
+}
+
+impl EdgesInStep<'_> {
+    /// Takes over the strain that an edge has all at once because elements around it left.
+    ///
+    /// Nothing is booked as damage: the energy belongs to the removal.
+    pub(crate) fn settle(&mut self, cell: usize) {
+        let strain = self.step.strain_now(self.cells, cell);
+        let field = &self.edges.field;
+        let stress = field.softens.hooke.stress(strain);
+        if field.softens.criterion.surely_below(stress, field.threshold[cell]) {
+            return;
+        }
+        let booked = (self.edges.dissipated, self.edges.energy);
+        loaded_stress(self, cell, strain, stress);
+        (self.edges.dissipated, self.edges.energy) = booked;
+        // The next forces belong to the same step.
+        self.edges.field.state[cell].strain = self.step.strain_before(self.cells, cell);
+    }
+
+    /// Takes from an edge the stiffness with which it would store more than `most` [J]; damage of a phase field has no value
+    /// of its own.
+    pub(crate) fn weaken(&mut self, cell: usize, most: f64) {
+        let field = &mut self.edges.field;
+        if field.softens.regularised {
+            return;
+        }
+        let strain = self.step.strain_now(self.cells, cell);
+        let (opening, full) = (field.softens.opening_stress(strain), field.softens.hooke.stress(strain));
+        let [open, closed] = [opening, full - opening].map(|s| 0.5 * s.dot(strain) * self.cells.volume[cell]);
+        let needed = 1.0 - ((most - closed) / open).max(0.0);
+        if open > 0.0 && needed > field.state[cell].damage {
+            let before = self.step.strain_before(self.cells, cell);
+            let edge = &mut field.state[cell];
+            (edge.damage, edge.strain) = (needed, before);
+            field.note(cell);
+        }
+    }
+
+    /// Stress times volume of an edge without damage.
+    #[inline(always)]
+    fn intact_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 {
+        let volume = self.cells.volume[cell];
+        if let Some(energy) = &mut self.edges.energy {
+            *energy += 0.5 * stress.dot(strain) * volume;
+        }
+        stress * volume
+    }
+
+    /// Lets an edge see its equivalent stress `q`; returns its stress times volume.
+    ///
+    /// - `closed`: part of the effective `stress` that damage leaves alone, where cracks close
+    #[inline(always)]
+    fn advance(&mut self, cell: usize, strain: Sym3, (stress, closed): (Sym3, Option<Sym3>), q: f64) -> Sym3 {
+        let EdgeCells { field, dissipated, energy } = &mut *self.edges;
+        let volume = self.cells.volume[cell];
+        let EdgeDamage { damage: damage_before, strain: kept, .. } = field.state[cell];
+        let seen = field.softens.see(&field.state[cell], stress, q);
+        let growth = field.load(cell, seen, self.step.dt);
+        if growth > 0.0 {
+            // An edge that was intact has kept no strain.
+            let before = if damage_before == 0.0 { self.step.strain_before(self.cells, cell) } else { kept };
+            let taken = field.softens.taken(damage_before, [before, strain], stress, closed);
+            *dissipated += taken.by(growth) * volume;
+        }
+        let edge = &mut field.state[cell];
+        edge.strain = strain;
+        let left = 1.0 - edge.damage;
+        let nominal = closed.map_or(stress * left, |closed| (stress - closed) * left + closed);
+        if let Some(energy) = energy {
+            *energy += 0.5 * nominal.dot(strain) * volume;
+        }
+        nominal * volume
+    }
+}
+
+impl CellLaw for EdgesInStep<'_> {
+    #[inline(always)]
+    fn scaled_stress(&mut self, cell: usize, strain: Sym3, _volume: f64) -> Sym3 {
+        let softens = &self.edges.field.softens;
+        let stress = softens.hooke.stress(strain);
+        if softens.criterion.surely_below(stress, self.edges.field.threshold[cell]) {
+            return self.intact_stress(cell, strain, stress);
+        }
+        loaded_stress(self, cell, strain, stress)
+    }
+
+    #[inline(always)]
+    fn integrity(&self, cell: usize) -> f64 {
+        1.0 - self.edges.field.state[cell].damage
+    }
+}
+
+/// The same four at a time, with the bits that each edge has alone.
+pub(crate) struct FourEdgesInStep<'a>(pub(crate) EdgesInStep<'a>);
+
+impl CellLaw for FourEdgesInStep<'_> {
+    const BY_FOURS: bool = true;
+
+    #[inline(always)]
+    fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
+        self.0.scaled_stress(cell, strain, volume)
+    }
+
+    #[inline(always)]
+    fn scaled_stresses(&mut self, first: usize, strains: &[Sym3; FOUR], volumes: &[f64; FOUR]) -> [Sym3; FOUR] {
+        let EdgeField { softens, threshold, .. } = &self.0.edges.field;
+        let threshold = &threshold[first..first + FOUR];
+        let (mut stresses, mut below, mut all_below) = ([Sym3::ZERO; FOUR], [true; FOUR], true);
+        for k in 0..FOUR {
+            stresses[k] = softens.hooke.stress(strains[k]);
+            below[k] = volumes[k] == 0.0 || softens.criterion.surely_below(stresses[k], threshold[k]);
+            all_below &= below[k];
+        }
+        if !all_below {
+            return loaded_stresses(&mut self.0, first, below, strains, &stresses);
+        }
+        for k in 0..FOUR {
+            stresses[k] = self.0.intact_stress(first + k, strains[k], stresses[k]);
+        }
+        stresses
+    }
+
+    #[inline(always)]
+    fn integrity(&self, cell: usize) -> f64 {
+        self.0.integrity(cell)
+    }
+}
+
+widest! {
+    /// Stress times volume of an edge that is damaged or may become so; out of the way of those that are not.
+    #[inline(never)]
+    fn loaded_stress(edges: &mut EdgesInStep<'_>, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 = loaded_one;
+}
+
+#[inline(always)]
+fn loaded_one(edges: &mut EdgesInStep<'_>, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 {
+    let EdgeField { softens, state, .. } = &edges.edges.field;
+    let q = softens.equivalent(&state[cell], stress, edges.step.dt);
+    let closed = softens.closed_stress(strain);
+    edges.advance(cell, strain, (stress, closed), q)
+}
+
+widest! {
+    /// The same of four edges.
+    ///
+    /// - `below`: which are intact, or have no elements; `stresses`: effective ones
+    #[inline(never)]
+    fn loaded_stresses(
+        edges: &mut EdgesInStep<'_>,
+        first: usize,
+        below: [bool; FOUR],
+        strains: &[Sym3; FOUR],
+        stresses: &[Sym3; FOUR],
+    ) -> [Sym3; FOUR] = loaded_four;
+}
+
+#[inline(always)]
+fn loaded_four(
+    edges: &mut EdgesInStep<'_>,
+    first: usize,
+    below: [bool; FOUR],
+    strains: &[Sym3; FOUR],
+    stresses: &[Sym3; FOUR],
+) -> [Sym3; FOUR] {
+    let EdgeField { softens, state, .. } = &edges.edges.field;
+    let q = softens.equivalent_of_four(&state[first..first + FOUR], stresses, below, edges.step.dt);
+    let closed = softens.closed_stresses(strains);
+    let mut scaled = [Sym3::ZERO; FOUR];
+    for k in 0..FOUR {
+        scaled[k] = if below[k] {
+            edges.intact_stress(first + k, strains[k], stresses[k])
+        } else {
+            edges.advance(first + k, strains[k], (stresses[k], closed.as_ref().map(|closed| closed[k])), q[k])
+        };
+    }
+    scaled
+}

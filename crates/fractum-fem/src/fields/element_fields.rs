@@ -1,0 +1,134 @@
+//! Stress, strain and damage of elements.
+
+use std::collections::BTreeMap;
+
+use fractum_math::Sym3;
+use rayon::prelude::*;
+
+use crate::body::edges::BodyEdges;
+use crate::cells::kernel;
+use crate::divided::{ALONE, ELSEWHERE, EdgeValue};
+use crate::solid::Solid;
+use crate::solid::body_model::BodyModel;
+
+impl Solid {
+    /// Nominal stress [Pa] and damage of every element of a body: means over its edges where it is smoothed.
+    pub fn element_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
+        let model = &self.bodies[index];
+        self.means(model, |at| self.cell_field(index, at))
+    }
+
+    /// What cells hold, as means over the edges of each element where the body is smoothed.
+    fn means(&self, model: &BodyModel, of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
+        let count = model.smoothed_edges().map_or(model.alive.len(), BodyEdges::len) as u32;
+        let cells: Vec<(Sym3, f64)> = (0..count).into_par_iter().map(|cell| of_cell(model.location.of(cell))).collect();
+        match model.smoothed_edges() {
+            None => cells,
+            Some(edges) => {
+                let mean = |element| model.mean_of_edges(&edges.of_element(element), |edge| cells[edge as usize]);
+                (0..model.alive.len() as u32).into_par_iter().map(mean).collect()
+            }
+        }
+    }
+
+    /// Live elements of a body that this process tells of, ascending.
+    pub fn told_elements(&self, index: usize) -> Vec<u32> {
+        let alive = (0..).zip(&self.bodies[index].alive).filter(|(_, alive)| **alive).map(|(element, _)| element);
+        alive.filter(|&element: &u32| self.tells_of(index, element as usize)).collect()
+    }
+
+    /// As [`Solid::element_fields`], of [`Solid::told_elements`].
+    pub fn told_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
+        self.told_means(index, |at| self.cell_field(index, at))
+    }
+
+    /// Strain of [`Solid::told_elements`], that of thermal expansion included: the mean over its edges where the body is smoothed.
+    pub fn told_strains(&self, index: usize) -> Vec<Sym3> {
+        let model = &self.bodies[index];
+        let means = self.told_means(index, |at| (self.cell_strain(model, at), 0.0));
+        means.into_iter().map(|(strain, _)| strain).collect()
+    }
+
+    /// Means of the elements that this process tells of, from the cells alone that they need.
+    fn told_means(&self, index: usize, of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
+        let (model, told) = (&self.bodies[index], self.told_elements(index));
+        if model.is_told.is_empty() {
+            let all = self.means(model, of_cell);
+            let is_all = told.len() == all.len();
+            return if is_all { all } else { told.into_iter().map(|element| all[element as usize]).collect() };
+        }
+        let Some(edges) = model.smoothed_edges() else {
+            return told.par_iter().map(|&element| of_cell(model.location.of(element))).collect();
+        };
+        let mut needed: Vec<u32> = told.par_iter().flat_map_iter(|&element| edges.of_element(element)).collect();
+        needed.par_sort_unstable();
+        needed.dedup();
+        let place = |edge: u32| needed.binary_search(&edge).expect("one of those of its elements");
+        let cells: Vec<(Sym3, f64)> = needed.par_iter().map(|&edge| of_cell(model.location.of(edge))).collect();
+        let mean = |&element: &u32| model.mean_of_edges(&edges.of_element(element), |edge| cells[place(edge)]);
+        told.par_iter().map(mean).collect()
+    }
+
+    /// As [`Solid::element_fields`] of one element.
+    pub fn element_field(&self, index: usize, element: u32) -> (Sym3, f64) {
+        let model = &self.bodies[index];
+        let cell = |cell: u32| self.cell_field(index, model.location.of(cell));
+        match model.smoothed_edges() {
+            None => cell(element),
+            Some(edges) => model.mean_of_edges(&edges.of_element(element), cell),
+        }
+    }
+
+    /// [`Solid::element_damages`] of a body of which this rank has its own cells alone, by what it has been told of others.
+    pub(crate) fn damages_around(&self, index: usize) -> Vec<f64> {
+        let model = &self.bodies[index];
+        let mut damages: Vec<f64> = model.alive.iter().map(|alive| f64::from(u8::from(!alive))).collect();
+        let Some(edges) = &model.edges else { return damages };
+        let fields = self.damaged_fields().filter(|(body, _)| *body == index).map(|(_, field)| field);
+        let damaged = fields.flat_map(|field| {
+            let histories = field.edges.iter().zip(&field.state).filter(|(_, history)| history.damage > 0.0);
+            histories.map(|(&edge, history)| (edge, history.damage))
+        });
+        let damage: BTreeMap<u32, f64> = damaged.collect();
+        let mut around: Vec<u32> = damage.keys().flat_map(|&edge| edges.around(edge).into_owned()).collect();
+        around.sort_unstable();
+        around.dedup();
+        for element in around.into_iter().filter(|&element| model.alive[element as usize]) {
+            let of_edge = |edge: u32| (Sym3::ZERO, damage.get(&edge).copied().unwrap_or(0.0));
+            damages[element as usize] = model.mean_of_edges(&edges.of_element(element), of_edge).1;
+        }
+        damages
+    }
+
+    pub(crate) fn cell_field(&self, index: usize, at: (u32, u32)) -> (Sym3, f64) {
+        let model = &self.bodies[index];
+        match at.0 {
+            ELSEWHERE => {
+                let EdgeValue { stress, damage, .. } = model.value_elsewhere(at.1);
+                return (stress, damage);
+            }
+            ALONE => {
+                let strain = self.strain_alone(model, at.1);
+                let told =
+                    self.edge(index, at.1).map(|(field, place)| field.nominal_stress(place, &model.hooke, strain));
+                return told.unwrap_or_else(|| (model.hooke.stress(strain), 0.0));
+            }
+            _ => {}
+        }
+        let (cells, place) = self.cells_with(at);
+        let strain = kernel::elastic_strain(&cells, place, &self.displacement, model.body.kinematics);
+        let (block, cell) = (&self.blocks[at.0 as usize], at.1 as usize);
+        (block.nominal_stress(cell, &model.hooke, strain), block.damage_of(cell))
+    }
+
+    /// Strain of a cell, that of thermal expansion included.
+    pub(crate) fn cell_strain(&self, model: &BodyModel, at: (u32, u32)) -> Sym3 {
+        match at.0 {
+            ELSEWHERE => return model.value_elsewhere(at.1).strain,
+            ALONE => return self.strain_alone(model, at.1),
+            _ => {}
+        }
+        let (cells, cell) = self.cells_with(at);
+        kernel::total_strain(&cells, cell, &self.displacement, model.body.kinematics)
+    }
+}

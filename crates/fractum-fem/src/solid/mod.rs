@@ -1,0 +1,407 @@
+pub(crate) mod body_blocks;
+pub(crate) mod body_model;
+pub(crate) mod evaluate;
+pub(crate) mod part;
+pub(crate) mod state;
+pub(crate) mod subcycling;
+
+use std::sync::Arc;
+
+use fractum_math::{CHUNK, HalfSteps, Sym3, Vec3};
+use fractum_parallel::Exchange;
+use rayon::prelude::*;
+
+use crate::body::edges::BodyEdges;
+use crate::body::{Body, Formulation, Region};
+use crate::cells::block::NodeSlots;
+use crate::cells::cell::Geometry;
+use crate::damage::edge::EdgeField;
+use crate::damage::threshold::characteristic_length;
+use crate::error::SolidError;
+use crate::material::{Wave, rayleigh_wave_speed};
+pub(crate) use crate::solid::body_model::BodyModel;
+use crate::solid::body_model::Chosen;
+use crate::solid::evaluate::{Block, BlockLaw};
+use crate::solid::part::Part;
+use crate::solid::subcycling::Subcycling;
+
+/// Finite elements of all solid bodies, with their nodes.
+///
+/// Arrays over nodes are public: boundary conditions and contact read and add to them.
+#[derive(Clone, Debug)]
+pub struct Solid {
+    /// Positions without load [m].
+    pub reference: Vec<Vec3>,
+    /// Displacement at tⁿ [m].
+    pub displacement: Vec<Vec3>,
+    /// Displacement at the start under in-situ stress, from which results count [m]; empty where that is zero.
+    pub initial_displacement: Vec<Vec3>,
+    /// Velocity at the half step before tⁿ [m/s].
+    pub velocity: Vec<Vec3>,
+    /// Force at tⁿ [N]: internal after [`Solid::update_internal_forces`], then whatever is added.
+    pub force: Vec<Vec3>,
+    /// Lumped mass [kg]; never changes, also not when elements are removed.
+    pub mass: Vec<f64>,
+    pub(crate) inverse_mass: Vec<f64>,
+    pub(crate) bodies: Vec<BodyModel>,
+    pub(crate) blocks: Vec<Block>,
+    pub(crate) slots: NodeSlots,
+    pub(crate) chunk_work: Vec<HalfSteps>,
+    pub(crate) viscous_dissipation: f64,
+    /// The share of one of several ranks; none where this process does all.
+    pub(crate) part: Option<Box<Part>>,
+    /// Nodes of the mesh that stand twice, ascending; their copies are the nodes beyond those of the mesh. Arrays that change in a run
+    /// and masses have the copies too.
+    pub(crate) copies: Vec<u32>,
+    /// What cells with steps of two sizes need; none where all take the same.
+    pub(crate) subcycling: Option<Box<Subcycling>>,
+}
+
+impl Solid {
+    /// Builds the cells of all bodies over shared nodes.
+    ///
+    /// - `nodes`: reference positions [m]
+    ///
+    /// # Errors
+    /// [`SolidError`] for elements without volume or too large for their fracture energy, for massless nodes, and beyond some 7 billion smoothed tetrahedra.
+    pub fn new(nodes: Vec<Vec3>, bodies: Vec<Body>) -> Result<Self, SolidError> {
+        Solid::with_fine(nodes, bodies, &[], None)
+    }
+
+    /// The same, with the cells alone that this rank evaluates of those of an exchange, where no other are needed; see
+    /// [`Solid::share_out`].
+    ///
+    /// # Errors
+    /// As [`Solid::new`].
+    pub fn shared(nodes: Vec<Vec3>, bodies: Vec<Body>, exchange: Arc<dyn Exchange>) -> Result<Self, SolidError> {
+        Solid::with_fine(nodes, bodies, &[], Some(exchange))
+    }
+
+    /// - `fine`: elements of each body whose cells have blocks of their own; empty where there are none
+    pub(crate) fn with_fine(
+        nodes: Vec<Vec3>,
+        bodies: Vec<Body>,
+        fine: &[Vec<bool>],
+        exchange: Option<Arc<dyn Exchange>>,
+    ) -> Result<Self, SolidError> {
+        let mut mass = vec![0.0; nodes.len()];
+        let mut blocks = Vec::new();
+        let mut models = Vec::new();
+        for (index, body) in bodies.into_iter().enumerate() {
+            let fine = fine.get(index).map_or(&[][..], Vec::as_slice);
+            let geometry = Geometry { body: &body, nodes: &nodes };
+            let volumes = geometry.volumes()?;
+            let corners = body.shape.node_count();
+            for (element, &volume) in body.elements.iter().zip(&volumes) {
+                for &node in &element[..corners] {
+                    mass[node as usize] += body.elastic.density * volume / corners as f64;
+                }
+            }
+            let chosen = Chosen { fine, ..Chosen::default() };
+            let (model, mut own) = BodyModel::new(body, index, &nodes, &volumes, chosen, blocks.len())?;
+            blocks.append(&mut own);
+            models.push(model);
+        }
+        if let Some(node) = mass.iter().position(|&m| m <= 0.0) {
+            return Err(SolidError::MasslessNode { node });
+        }
+        let slots = NodeSlots::new(nodes.len(), blocks.iter().map(|b: &Block| b.cells.nodes.as_slice()))?;
+        let part = exchange.map(|exchange| Box::new(Part::new(exchange, &blocks, &slots)));
+        Ok(Solid::of_blocks(nodes, mass, models, blocks, slots, part))
+    }
+
+    /// The solid of blocks whose cells have no geometry yet.
+    pub(crate) fn of_blocks(
+        nodes: Vec<Vec3>,
+        mass: Vec<f64>,
+        bodies: Vec<BodyModel>,
+        blocks: Vec<Block>,
+        slots: NodeSlots,
+        part: Option<Box<Part>>,
+    ) -> Self {
+        let zero = vec![Vec3::zeros(); nodes.len()];
+        let mut solid = Solid {
+            displacement: zero.clone(),
+            initial_displacement: Vec::new(),
+            velocity: zero.clone(),
+            force: zero,
+            inverse_mass: mass.iter().map(|m| 1.0 / m).collect(),
+            chunk_work: vec![HalfSteps::default(); nodes.len().div_ceil(CHUNK)],
+            reference: nodes,
+            mass,
+            bodies,
+            blocks,
+            slots,
+            viscous_dissipation: 0.0,
+            part,
+            copies: Vec::new(),
+            subcycling: None,
+        };
+        solid.make_cells();
+        solid
+    }
+
+    /// Gives a node mass beside that of its elements [kg], for ever.
+    pub fn add_mass(&mut self, node: usize, mass: f64) {
+        self.mass[node] += mass;
+        self.inverse_mass[node] = 1.0 / self.mass[node];
+    }
+
+    /// Position of a node at tⁿ [m].
+    #[inline]
+    pub fn position(&self, node: usize) -> Vec3 {
+        self.reference[node] + self.displacement[node]
+    }
+
+    /// Displacement of a node since the start, which in-situ stress may have loaded [m].
+    #[inline]
+    pub fn displacement_from_start(&self, node: usize) -> Vec3 {
+        self.displacement[node] - self.initial_displacement.get(node).copied().unwrap_or_default()
+    }
+
+    /// Replaces `force` by the internal forces of the present displacements, and advances damage.
+    ///
+    /// - `dt`: time since the last call [s] (for rate-dependent laws)
+    /// - `measure`: whether to sum the elastic energy, see [`Solid::elastic_energy`]
+    pub fn update_internal_forces(&mut self, dt: f64, measure: bool) {
+        self.load_standard_edges(dt);
+        self.update_phase_fields(dt);
+        self.damage_standard_elements();
+        let (subcycling, displacement, velocity) =
+            (self.subcycling.take(), std::mem::take(&mut self.displacement), std::mem::take(&mut self.velocity));
+        self.evaluate_own(|bodies, index, block| {
+            let dt = match &subcycling {
+                Some(subcycling) if subcycling.is_ahead(index) => return,
+                Some(subcycling) if block.is_fine => dt / subcycling.parts_before(),
+                _ => dt,
+            };
+            block.evaluate(&bodies[block.body], &displacement, &velocity, dt, measure);
+        });
+        (self.subcycling, self.displacement, self.velocity) = (subcycling, displacement, velocity);
+        self.exchange_cells(measure);
+        let Solid { blocks, .. } = self;
+        let power: f64 = blocks.iter().map(|b| b.viscous_power).sum();
+        self.viscous_dissipation += power * dt;
+        self.gather_forces();
+        self.keep_internal();
+    }
+
+    /// Sums the forces of the blocks on each node.
+    pub(crate) fn gather_forces(&mut self) {
+        let mut force = std::mem::take(&mut self.force);
+        self.sum_blocks(&mut force);
+        self.part.iter_mut().for_each(|part| part.tell_forces(&mut force));
+        self.force = force;
+    }
+
+    /// The same into `force`; of several ranks each has those on the nodes of its blocks then.
+    pub(crate) fn sum_blocks(&self, force: &mut [Vec3]) {
+        let Solid { blocks, slots, part, .. } = self;
+        let sum = |node: usize| slots.gather(node, |block| blocks[block].forces());
+        if let Some(part) = part {
+            force.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, force)| {
+                for run in part.pushed(chunk) {
+                    run.clone().for_each(|i| force[i] = sum(chunk * CHUNK + i));
+                }
+            });
+            return;
+        }
+        force.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(node, f)| *f = sum(node));
+    }
+
+    /// First passes of bodies with damage in the standard formulation: element stress, edge histories.
+    fn load_standard_edges(&mut self, dt: f64) {
+        if self.bodies.iter().all(|b| b.standard.is_none()) {
+            return;
+        }
+        let Solid { displacement, blocks, bodies, .. } = self;
+        blocks.par_iter_mut().for_each(|block| block.effective_stress(&bodies[block.body], displacement));
+        for model in bodies {
+            let BodyModel { standard: Some(standard), alive, location, .. } = model else { continue };
+            standard.update_edges(dt, alive, |element| {
+                let (block, cell) = location.of(element);
+                (blocks[block as usize].standard_cells(), cell as usize)
+            });
+            for element in standard.elements_of_growth() {
+                let (block, cell) = location.of(element);
+                if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
+                    law.expect_damage(cell as usize);
+                }
+            }
+        }
+    }
+
+    /// Gives the elements of the standard formulation the damage of their edges, where that may have grown.
+    fn damage_standard_elements(&mut self) {
+        let Solid { blocks, bodies, .. } = self;
+        for (index, model) in bodies.iter().enumerate() {
+            let BodyModel { standard: Some(standard), edges: Some(edges), .. } = model else { continue };
+            blocks.par_iter_mut().filter(|b| b.body == index).for_each(|block| {
+                let edge = |edge: u32| &standard.field.state[edge as usize];
+                block.take_element_damage(|element| {
+                    let of = edges.of_element(element);
+                    let own = &of[..standard.shape.edge_count()];
+                    let least_seen = own.iter().map(|&e| edge(e).kappa).fold(f64::INFINITY, f64::min);
+                    (standard.element_damage(own, |e| edge(e).damage), least_seen)
+                });
+            });
+        }
+    }
+
+    /// Elastic energy at the last measured step [J].
+    pub fn elastic_energy(&self) -> f64 {
+        if let Some([elastic, _]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
+            return elastic;
+        }
+        self.blocks.iter().map(Block::elastic).sum()
+    }
+
+    /// Energy dissipated by damage so far [J].
+    pub fn dissipated_energy(&self) -> f64 {
+        if let Some([_, dissipated]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
+            return dissipated;
+        }
+        self.blocks.iter().map(Block::dissipated).sum()
+    }
+
+    /// Energy dissipated by viscosity so far [J].
+    pub fn viscous_dissipation(&self) -> f64 {
+        self.viscous_dissipation
+    }
+
+    /// Damage of the edges of all bodies: blocks of smoothed cells first, then standard bodies.
+    pub(crate) fn edge_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
+        self.cell_fields().chain(self.standard_fields())
+    }
+
+    /// Those that may hold damaged edges: standard bodies do not count theirs.
+    pub(crate) fn damaged_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
+        self.cell_fields().filter(|(_, field)| field.is_damaged()).chain(self.standard_fields())
+    }
+
+    fn cell_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
+        self.blocks.iter().filter_map(|block| Some((block.body, block.edge_field()?)))
+    }
+
+    fn standard_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
+        (0..).zip(&self.bodies).filter_map(|(body, model)| Some((body, &model.standard.as_ref()?.field)))
+    }
+
+    /// Where the damage of an edge of a body is kept; none where it may not be damaged.
+    pub(crate) fn edge(&self, body: usize, edge: u32) -> Option<(&EdgeField, usize)> {
+        let model = &self.bodies[body];
+        if let Some(standard) = &model.standard {
+            return Some((&standard.field, edge as usize));
+        }
+        if let Some((block, cell)) = model.location.kept(edge) {
+            return Some((self.blocks[block as usize].edge_field()?, cell as usize));
+        }
+        let &(block, cell) = model.known.as_ref()?.told.get(&edge)?;
+        let told = self.blocks[block as usize].told_edges()?;
+        Some((&told.field, told.place(cell)?))
+    }
+
+    /// Characteristic length of an edge that may be damaged [m]; none of any other.
+    pub(crate) fn length_of_edge(&self, body: usize, edge: u32) -> Option<f64> {
+        let model = &self.bodies[body];
+        let (Some(edges), Some(_)) = (&model.edges, &model.known) else {
+            return self.edge(body, edge).map(|(field, index)| field.length[index]);
+        };
+        let may_break = match model.body.damage.as_ref().map(|zone| &zone.region) {
+            Some(Region::Edges(marked)) => marked[edge as usize],
+            _ => true,
+        };
+        may_break.then(|| {
+            characteristic_length(&model.body, &edges.around(edge), |element| self.element_volume(body, element))
+        })
+    }
+
+    /// Number of bodies.
+    pub fn body_count(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// A body as it was given.
+    pub fn body(&self, index: usize) -> &Body {
+        &self.bodies[index].body
+    }
+
+    /// Speed of a compression wave in a body, √((λ + 2μ)/ρ): in plane stress that of a plate [m/s].
+    pub fn p_wave_speed(&self, index: usize) -> f64 {
+        let BodyModel { hooke, body, .. } = &self.bodies[index];
+        ((hooke.lambda + 2.0 * hooke.mu) / body.elastic.density).sqrt()
+    }
+
+    /// Speed of a wave in a body; in plane stress that in a plate [m/s].
+    pub fn wave_speed(&self, index: usize, wave: Wave) -> f64 {
+        let (p, s) = (self.p_wave_speed(index), self.bodies[index].body.elastic.s_wave_speed());
+        match wave {
+            Wave::Compression => p,
+            Wave::Shear => s,
+            Wave::Rayleigh => rayleigh_wave_speed(p, s),
+        }
+    }
+
+    /// Edges of a body, if its formulation or its damage uses them.
+    pub fn body_edges(&self, index: usize) -> Option<&BodyEdges> {
+        self.bodies[index].edges.as_ref()
+    }
+
+    /// Which elements of a body are still there.
+    pub fn alive(&self, index: usize) -> &[bool] {
+        &self.bodies[index].alive
+    }
+
+    /// Edges of a body whose strength was lowered to fit their length, and the largest ratio of a length to the largest one
+    /// possible: a characteristic length to that at which softening snaps back, that of a phase field to the longest it may be.
+    pub fn length_report(&self, index: usize) -> (usize, f64) {
+        (self.bodies[index].reduced_edges, self.bodies[index].largest_length_ratio)
+    }
+
+    /// Damage of the elements of a body: the mean over its edges where it is smoothed, 1 where one has been removed.
+    pub fn element_damages(&self, index: usize) -> Vec<f64> {
+        let model = &self.bodies[index];
+        if model.known.is_some() {
+            return self.damages_around(index);
+        }
+        let mut damage = vec![0.0; model.location.all().len()];
+        let may_be_damaged = |block: &&Block| block.edge_field().is_none_or(EdgeField::is_damaged);
+        for block in self.blocks.iter().filter(|block| block.body == index).filter(may_be_damaged) {
+            for (cell, &item) in block.items.iter().enumerate() {
+                damage[item as usize] = block.damage_of(cell);
+            }
+        }
+        let of_cell = |cell: u32| (Sym3::ZERO, damage[cell as usize]);
+        let of_element = |(element, &alive): (u32, &bool)| match model.smoothed_edges() {
+            _ if !alive => 1.0,
+            None => damage[element as usize],
+            Some(edges) => model.mean_of_edges(&edges.of_element(element), of_cell).1,
+        };
+        (0..).zip(&model.alive).map(of_element).collect()
+    }
+
+    /// Centre of an element without load [m].
+    pub fn element_middle(&self, index: usize, element: u32) -> Vec3 {
+        let body = &self.bodies[index].body;
+        let corners = &body.elements[element as usize][..body.shape.node_count()];
+        corners.iter().map(|&n| self.reference[n as usize]).sum::<Vec3>() / corners.len() as f64
+    }
+}
+
+impl BodyModel {
+    /// Edges that hold the strain of the body; none where its elements do.
+    pub(crate) fn smoothed_edges(&self) -> Option<&BodyEdges> {
+        self.edges.as_ref().filter(|_| self.body.formulation == Formulation::Smoothed)
+    }
+
+    /// Mean of stress and damage over the edges of an element.
+    pub(crate) fn mean_of_edges(&self, of: &[u32; 6], field: impl Fn(u32) -> (Sym3, f64)) -> (Sym3, f64) {
+        let count = self.body.shape.edge_count();
+        let mut sum = (Sym3::ZERO, 0.0);
+        for &edge in &of[..count] {
+            let (stress, damage) = field(edge);
+            sum = (sum.0 + stress, sum.1 + damage);
+        }
+        (sum.0 * (1.0 / count as f64), sum.1 / count as f64)
+    }
+}

@@ -1,0 +1,76 @@
+//! How much has separated: length, area and number of cracks, and where they have come to.
+
+use fractum_fem::{SeparatedElement, Separation};
+use fractum_math::{Vec3, numbered_parts};
+
+use crate::measure::crack_measure::{CrackMeasure, InsideCracks};
+use crate::scene::Scene;
+
+impl InsideCracks {
+    /// Whether an element of a solid counts.
+    pub(crate) fn has_element(&self, body: usize, element: u32) -> bool {
+        self.elements.get(body).is_some_and(|body| body.get(element as usize) == Some(&true))
+    }
+
+    /// Whether a bond of a bonded body counts.
+    pub(crate) fn has_bond(&self, body: usize, bond: u32) -> bool {
+        self.bonds.get(body).is_some_and(|body| body.get(bond as usize) == Some(&true))
+    }
+}
+
+/// Removed elements that count.
+pub(crate) fn separated_within(separation: &Separation, inside: Option<&InsideCracks>) -> Vec<SeparatedElement> {
+    let counts = |of: &&SeparatedElement| inside.is_none_or(|inside| inside.has_element(of.body, of.element));
+    separation.elements.iter().filter(counts).copied().collect()
+}
+
+/// A number about what has separated: zero before anything has, but for the tip, which then is not a number.
+pub(crate) fn measure_extent(
+    scene: &Scene,
+    separation: &Separation,
+    measure: CrackMeasure,
+    direction: &Vec3,
+    inside: Option<&InsideCracks>,
+) -> f64 {
+    let facets = separation.facets.iter();
+    let facets = facets.filter(|facet| inside.is_none_or(|inside| inside.has_element(facet.body, facet.removed)));
+    let bodies = scene.bonded.bodies().iter().enumerate();
+    let broken = bodies.flat_map(|(index, body)| body.cracks().iter().map(move |crack| (index, crack)));
+    let broken = broken.filter(|(body, crack)| inside.is_none_or(|inside| inside.has_bond(*body, crack.bond)));
+    let broken = broken.map(|(_, crack)| crack);
+    let solid = &scene.solid;
+    match measure {
+        CrackMeasure::Length => facets.map(|facet| facet.area / solid.body(facet.body).thickness).sum::<f64>() + 0.0,
+        CrackMeasure::Count => {
+            let (_, of_solids) = solid.separate_cracks(&separated_within(separation, inside));
+            let pairs: Vec<[u32; 2]> = broken.map(|crack| crack.pair).collect();
+            f64::from(of_solids + separate_pairs(pairs))
+        }
+        CrackMeasure::Tip => {
+            let elements = separated_within(separation, inside).into_iter().map(|of| of.middle);
+            let places = elements.chain(broken.map(|crack| crack.position));
+            places.map(|place| place.dot(direction)).fold(f64::NAN, f64::max)
+        }
+        _ => facets.map(|facet| facet.area).sum::<f64>() + broken.map(|crack| crack.area).sum::<f64>(),
+    }
+}
+
+/// Sets of broken bonds that share particles.
+fn separate_pairs(pairs: Vec<[u32; 2]>) -> u32 {
+    let mut particles: Vec<u32> = pairs.iter().flatten().copied().collect();
+    particles.sort_unstable();
+    particles.dedup();
+    let index = |particle: u32| particles.partition_point(|&other| other < particle) as u32;
+    numbered_parts(particles.len(), pairs.iter().map(|pair| pair.map(index))).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bonds_that_share_particles_are_one_crack() {
+        assert_eq!(separate_pairs(vec![[7, 3], [9, 20], [3, 4], [20, 21], [40, 41]]), 3);
+        assert_eq!(separate_pairs(Vec::new()), 0);
+    }
+}
