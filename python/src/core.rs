@@ -240,6 +240,7 @@ impl Core {
                 ("nodes", counts.nodes),
                 ("elements", counts.elements),
                 ("removed_elements", counts.removed_elements),
+                ("crushed_elements", counts.crushed_elements),
                 ("damaged_edges", fracture.damaged_edges),
                 ("broken_edges", fracture.broken_edges),
                 ("particles", counts.particles),

@@ -121,6 +121,8 @@ codes! {
     Compression = "compression",
     /// Solids that meet rigid bodies lose a visible share of the energy.
     ImpactLoss = "impact-loss",
+    /// An element that had begun to break was turned inside out, and taken out.
+    Crushed = "crushed",
     /// Particles that are pressed deeply into each other.
     DeepOverlap = "deep-overlap",
     /// A body that came apart into single nodes.

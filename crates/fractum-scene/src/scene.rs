@@ -57,6 +57,8 @@ pub(crate) struct Optional {
 pub(crate) struct Removals {
     /// Bodies and elements of the last step.
     pub(crate) last: Vec<(usize, u32)>,
+    /// How many since the start were turned inside out.
+    pub(crate) crushed: usize,
     /// How many since the stable step was looked at.
     pub(crate) since_check: usize,
     /// Free pieces outside it leave the run.
@@ -93,6 +95,7 @@ pub struct SceneState {
     books: Books,
     frequency: f64,
     governing: (usize, u32),
+    crushed: usize,
     removed_since_check: usize,
     contact_frequency_square: f64,
     contact_frequency_peak: f64,
@@ -151,6 +154,8 @@ pub struct Counts {
     pub nodes: usize,
     pub elements: usize,
     pub removed_elements: usize,
+    /// Those of them that were turned inside out.
+    pub crushed_elements: usize,
     pub particles: usize,
     pub contacts: usize,
     pub bonds: usize,
@@ -345,6 +350,7 @@ impl Scene {
             nodes: self.solid.reference.len(),
             elements: (0..self.solid.body_count()).map(|b| self.solid.element_count(b)).sum(),
             removed_elements: self.solid.removed_count() - self.removals.left.elements,
+            crushed_elements: self.removals.crushed,
             particles: self.debris.len() + self.bonded.particles.len()
                 - self.removals.left.particles(self.solid.reference.len()).count(),
             bonds: self.bonded.bond_counts().0,
@@ -410,6 +416,7 @@ impl Scene {
             books: self.books,
             frequency: self.frequencies.stable.frequency,
             governing: self.frequencies.stable.governing,
+            crushed: self.removals.crushed,
             removed_since_check: self.removals.since_check,
             contact_frequency_square: self.frequencies.contact_square,
             contact_frequency_peak: self.frequencies.contact_peak,
@@ -440,6 +447,7 @@ impl Scene {
         self.ledger = state.ledger;
         self.books = state.books;
         self.frequencies.stable = StableStep { frequency: state.frequency, governing: state.governing };
+        self.removals.crushed = state.crushed;
         self.removals.since_check = state.removed_since_check;
         self.removals.left = state.left;
         self.frequencies.contact_square = state.contact_frequency_square;

@@ -6,6 +6,7 @@ use crate::contacts::{HoldStep, Touching, hold_nodes};
 use crate::error::StepError;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
+use crate::watch::{Notice, Site};
 
 /// Elastic energy over all energy put in, above which a run is unstable: a mode of the highest frequency at 0.95 of the
 /// stable step reaches 10.
@@ -150,9 +151,8 @@ impl Scene {
     }
 
     fn refuse_inverted_elements(&self) -> Result<(), StepError> {
-        let Some(InvertedElement { body, element, centre, volume_ratio }) = self.solid.inverted_element() else {
-            return Ok(());
-        };
+        let inverted = self.solid.inverted_element().filter(|inverted| !inverted.is_crushed());
+        let Some(InvertedElement { body, element, centre, volume_ratio, .. }) = inverted else { return Ok(()) };
         let (step, time, dt, limit) = (self.clock.step, self.clock.time, self.clock.dt_before, self.stable_dt());
         let body = self.solid.body(body).name.clone();
         let [x, y, z] = [centre.x, centre.y, centre.z];
@@ -267,6 +267,10 @@ impl Scene {
     /// - `dt`: time since the forces were last computed [s]
     pub(crate) fn release_cut_elements(&mut self, dt: f64) -> StepReport {
         self.removals.last.clear();
+        if let Some((body, element)) = self.solid.crushed_element() {
+            self.removals.crushed += 1;
+            self.note(Notice::Crushed, Site::Element { body, element }, 1.0);
+        }
         let energy = self.solid.remove_cut_elements(dt, &mut self.removals.last);
         let mut report = StepReport { removed: self.removals.last.len(), ..StepReport::default() };
         if report.removed > 0 {

@@ -22,10 +22,12 @@ pub enum Notice {
     Overlap,
     /// Rigid shapes have stopped solids that met them, and taken a visible share of the energy [-].
     Stopped,
+    /// An element that had begun to break was turned inside out, and taken out.
+    Crushed,
 }
 
 impl Notice {
-    const COUNT: usize = Notice::Stopped as usize + 1;
+    const COUNT: usize = Notice::Crushed as usize + 1;
 }
 
 /// Where something was noticed.

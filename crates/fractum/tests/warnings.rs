@@ -223,6 +223,20 @@ pub(crate) struct Mistake {
     runs: bool,
 }
 
+/// Rock around a hole that bursts: a piece of it is pressed flat after it has come loose.
+#[test]
+fn a_crushed_element_is_taken_out_and_told() {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/charge/breaking.toml");
+    let place = Workplace::new("");
+    let poisson_ratio = "materials.rock.poisson_ratio=0.1";
+    let ended = place.fractum(&["run", case.to_str().unwrap(), "-o", "results", "--set", poisson_ratio]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let summary = summary(&place, "results");
+    assert!(summary["counts"]["crushed_elements"].as_u64().unwrap() > 0, "{}", summary["counts"]);
+    assert!(listed(&place, "results").iter().any(|[code, ..]| code == "crushed"));
+    assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", summary["energy"]);
+}
+
 pub(crate) fn mistakes() -> Vec<Mistake> {
     let [checked, moving] = [false, true].map(|runs| {
         move |code: &'static str, mesh: Mesh, edits: &[(&'static str, &str)]| {

@@ -14,7 +14,9 @@ use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
 
 impl Solid {
-    /// Removes every element for which all edges of one cut are broken, and returns the energy that went with them [J].
+    /// Removes every element for which all edges of one cut are broken, and a crushed one; returns the energy that went with them [J].
+    ///
+    /// A crushed element has been turned inside out after it had lost most of its stiffness, one in a step.
     ///
     /// The energy is what the forces of the touched cells do less work in the step that led here, and what these cells
     /// store less after it: ½ σ : ε⁰ with the stress of now and the strain of the step before, as it was and as it is
@@ -28,6 +30,10 @@ impl Solid {
         let first = removed.len();
         for body in 0..self.bodies.len() {
             self.find_cut_elements(body, removed);
+        }
+        if let Some(crushed) = self.crushed_element().filter(|crushed| !removed[first..].contains(crushed)) {
+            removed.push(crushed);
+            removed[first..].sort_unstable();
         }
         self.take_out(dt, &removed[first..])
     }

@@ -11,6 +11,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::ElementKind;
 
+/// Damage above which a cell carries too little to be judged.
+pub(crate) const CARRIES: f64 = 0.5;
+
 /// An element that motion has turned inside out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InvertedElement {
@@ -22,6 +25,15 @@ pub struct InvertedElement {
     pub centre: Vec3,
     /// Its present volume over that without load; negative inside out.
     pub volume_ratio: f64,
+    /// Damage of the cell that was found, 0 to 1.
+    pub damage: f64,
+}
+
+impl InvertedElement {
+    /// Whether it had lost most of its stiffness before: what is left of it bears too little to keep its shape.
+    pub fn is_crushed(&self) -> bool {
+        self.damage > CARRIES
+    }
 }
 
 /// The seven ways a plane cuts a tetrahedron, as sets of its local edges (01)(02)(03)(12)(13)(23).

@@ -8,8 +8,9 @@ use rayon::prelude::*;
 
 use crate::body::{DamageZone, Kinematics, Region};
 use crate::cells::kernel::strain;
+use crate::element::CARRIES;
 use crate::material::CriterionKind;
-use crate::motion::turning::{CARRIES, turn};
+use crate::motion::turning::turn;
 use crate::solid::Solid;
 use crate::solid::body_model::BodyModel;
 use crate::solid::evaluate::{Block, BlockLaw};

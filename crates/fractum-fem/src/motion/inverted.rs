@@ -21,6 +21,12 @@ impl Solid {
         }
     }
 
+    /// Body and number of the inverted element, where it is crushed.
+    pub fn crushed_element(&self) -> Option<(usize, u32)> {
+        let crushed = self.inverted_element().filter(InvertedElement::is_crushed)?;
+        Some((crushed.body, crushed.element))
+    }
+
     /// That of the first of some blocks that has one.
     pub(crate) fn inverted_of(&self, blocks: &[Block]) -> Option<InvertedElement> {
         let (block, cell) = blocks.iter().find_map(|block| Some((block, block.inverted?)))?;
@@ -31,16 +37,72 @@ impl Solid {
             Formulation::Standard => &one[..],
             Formulation::Smoothed => &of_edge,
         };
-        let corners = model.body.shape.node_count();
+        let (corners, damage) = (model.body.shape.node_count(), block.damage_of(cell));
         let of = |&element: &u32| {
             let nodes = model.body.elements[element as usize].map(|node| node as usize);
             let measure = |place: &dyn Fn(usize) -> Vec3| measure_and_gradients(model.body.shape, &nodes.map(place)).0;
             let volume_ratio = measure(&|node| self.position(node)) / measure(&|node| self.reference[node]);
             let centre = nodes[..corners].iter().map(|&n| self.position(n)).sum::<Vec3>() / corners as f64;
             let element = model.divided.as_ref().map_or(element, |divided| divided.numbers[element as usize]);
-            InvertedElement { body, element, centre, volume_ratio }
+            InvertedElement { body, element, centre, volume_ratio, damage }
         };
         let alive = elements.iter().filter(|&&element| model.alive[element as usize]);
         alive.map(of).min_by(|a, b| a.volume_ratio.total_cmp(&b.volume_ratio))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fractum_math::Vec3;
+    use fractum_mesh::generate::structured_box;
+
+    use crate::body::{Body, ElementKind, Kinematics};
+    use crate::material::{DamageLaw, Elastic};
+    use crate::solid::Solid;
+
+    /// A box that is turned inside out, with this damage everywhere.
+    fn inside_out(damage: f64, smoothed: bool) -> Solid {
+        let mesh = structured_box([2; 3], Vec3::repeat(0.02), None);
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let body =
+            Body::new("box", ElementKind::T4, mesh.tetrahedra, elastic).with_damage(DamageLaw::rankine(3e6, 100.0));
+        let body = Body { kinematics: Kinematics::Corotational, ..body };
+        let mut solid = Solid::new(mesh.nodes, vec![if smoothed { body.smoothed() } else { body }]).unwrap();
+        let mut state = solid.state();
+        state.bodies[0].edges.iter_mut().for_each(|edge| edge.damage = damage);
+        solid.restore(state);
+        for node in 0..solid.reference.len() {
+            solid.displacement[node].x = -1.5 * solid.reference[node].x;
+        }
+        solid.update_internal_forces(0.0, true);
+        solid
+    }
+
+    #[test]
+    fn an_element_that_still_carries_is_no_crushed_one() {
+        for smoothed in [false, true] {
+            let mut solid = inside_out(0.3, smoothed);
+            assert!(solid.inverted_element().is_some() && solid.crushed_element().is_none());
+            let mut removed = Vec::new();
+            solid.remove_cut_elements(0.0, &mut removed);
+            assert!(removed.is_empty());
+        }
+    }
+
+    #[test]
+    fn crushed_elements_leave_one_by_one_with_their_energy() {
+        for smoothed in [false, true] {
+            let mut solid = inside_out(0.7, smoothed);
+            let mut removed = Vec::new();
+            for _ in 0..5 {
+                let (crushed, before) = (solid.crushed_element().unwrap(), solid.elastic_energy());
+                let taken = solid.remove_cut_elements(0.0, &mut removed);
+                assert_eq!(removed.last(), Some(&crushed));
+                solid.update_internal_forces(0.0, true);
+                let after = solid.elastic_energy();
+                assert!(taken > 0.0 && (before - after - taken).abs() <= 1e-9 * before, "{before} {after} {taken} J");
+            }
+            assert_eq!(removed.len(), 5);
+        }
     }
 }

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::body::{Body, Kinematics};
 use crate::damage::edges_in_step::Advance;
+use crate::element::CARRIES;
 use crate::solid::Solid;
 use crate::solid::body_model::BodyModel;
 use crate::solid::evaluate::{Block, BlockLaw};
@@ -17,8 +18,6 @@ const LOOKS: u64 = 8;
 const TURNED: f64 = 0.01;
 /// Part of the strength to which the false strain of a rotation may load a body that can be damaged.
 const FALSE_LOAD: f64 = 0.1;
-/// Damage above which a cell carries too little to be judged.
-pub(crate) const CARRIES: f64 = 0.5;
 
 impl Body {
     /// Rotation [rad] beyond which [`Kinematics::Auto`] turns: the false strain ½ θ² of small strains is at most 5e-5, and a tenth of the strain at

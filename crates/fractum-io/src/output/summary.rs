@@ -206,6 +206,9 @@ pub struct Counts {
     pub elements: u64,
     /// Elements that were removed.
     pub removed_elements: u64,
+    /// Those of them that were turned inside out after they had begun to break.
+    #[serde(default)]
+    pub crushed_elements: u64,
     /// Particles.
     pub particles: u64,
     /// Bonds at the start.
@@ -342,6 +345,7 @@ mod tests {
             "nodes",
             "elements",
             "removed_elements",
+            "crushed_elements",
             "particles",
             "bonds",
             "broken_bonds",

@@ -27,6 +27,7 @@ pub(crate) fn of_scene(scene: &Scene) -> Summary {
             nodes: counts.nodes as u64,
             elements: counts.elements as u64,
             removed_elements: counts.removed_elements as u64,
+            crushed_elements: counts.crushed_elements as u64,
             particles: counts.particles as u64,
             bonds: counts.bonds as u64,
             broken_bonds: counts.broken_bonds as u64,

@@ -214,6 +214,13 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
             format!("rigid bodies have taken {} of the energy from solids that met them", percent(*value)),
             "a row of nodes stops at once where it meets a rigid body: the loss halves with the elements",
         ),
+        Notice::Crushed => (
+            Code::Crushed,
+            "the element was turned inside out after it had lost more than half of its stiffness, and was taken out"
+                .to_owned(),
+            "rock that is crushed still bears pressure, and this does not: try unilateral = true or smaller elements; counts.crushed_elements \
+             tells how many they were",
+        ),
         Notice::Overlap => (
             Code::DeepOverlap,
             format!(

@@ -257,6 +257,7 @@ const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
     ("counts.nodes", Dimension::NONE),
     ("counts.elements", Dimension::NONE),
     ("counts.removed_elements", Dimension::NONE),
+    ("counts.crushed_elements", Dimension::NONE),
     ("counts.broken_edges", Dimension::NONE),
     ("counts.damaged_edges", Dimension::NONE),
     ("counts.particles", Dimension::NONE),

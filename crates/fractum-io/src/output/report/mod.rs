@@ -340,6 +340,7 @@ fn energies(summary: &Summary) -> Markup {
         ("Nodes", counts.nodes),
         ("Elements", counts.elements),
         ("Removed elements", counts.removed_elements),
+        ("Crushed elements", counts.crushed_elements),
         ("Broken edges", counts.broken_edges),
         ("Particles", counts.particles),
         ("Bonds", counts.bonds),
