@@ -123,6 +123,7 @@ impl Network {
 
     /// Moves mass and enthalpy down the pressures.
     fn sweep(&mut self, dt: f64, passages: &[Passage]) {
+        let nothing = self.contents.nothing();
         let crate::network::Scratch { cells, flow, implicit, .. } = &mut self.scratch;
         let Scratch { pressure, order, rank, ways, .. } = implicit;
         order.clear();
@@ -138,7 +139,7 @@ impl Network {
             let from = order[group[0].0 as usize];
             let Amount { mass, energy } = self.contents.cells[from as usize];
             let wanted = dt * group.iter().map(|way| flow[way.1 as usize].abs()).sum::<f64>();
-            if mass <= 0.0 || energy <= 0.0 || wanted <= 0.0 {
+            if mass <= nothing || energy <= 0.0 || wanted <= 0.0 {
                 continue;
             }
             let share = (LARGEST_PASS * mass / wanted).min(1.0);
