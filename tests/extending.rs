@@ -146,7 +146,7 @@ fn the_compiler_takes_all_steps_of_the_document() {
     let mut tree = tree();
     let document = tree["docs/extending.md"].clone();
     let sections = steps(&document);
-    assert_eq!(sections.len(), 5);
+    assert_eq!(sections.len(), 8);
     for (file, step) in sections.values().flatten() {
         let changed = applied(file, tree.remove(file), step);
         tree.insert(file.clone(), changed);

@@ -10,8 +10,8 @@ use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
     Along, Bonded, BondedPart, ContactBody, ContactMaterial, ContactParameters, ContactProbe, Contacts, Drive,
-    ElasticMaterial, EnergyKind, FacetMesh, FlatFaces, Form, Frame, Inertia, Loads, Probe, ProbedScene, RigidBody,
-    Scene, SceneSettings, Shape, SolidSurface, Supports, TimeStepSettings,
+    ElasticMaterial, EnergyKind, FacetMesh, FlatFaces, Form, Frame, Inertia, Loads, RigidBody, Scene, SceneSettings,
+    Shape, SolidSurface, Supports, TimeStepSettings,
 };
 use fractum_tests::{settings, softening};
 
@@ -131,8 +131,8 @@ pub(crate) fn crash(target: Target, (beads, rate): (usize, f64)) -> Scene {
 
 /// Linear and angular momentum.
 fn momenta(scene: &Scene) -> (Vec3, Vec3) {
-    let of = |probe: fn(Vec3) -> Probe| Vec3::from_fn(|k, _| probe(Vec3::ith(k, 1.0)).value(&ProbedScene::new(scene)));
-    (of(Probe::Momentum), of(Probe::AngularMomentum))
+    let along = |of: fn(&Scene, &Vec3) -> f64| Vec3::from_fn(|k, _| of(scene, &Vec3::ith(k, 1.0)));
+    (along(Scene::momentum_along), along(Scene::angular_momentum_along))
 }
 
 /// Runs to the end; momenta at the start and the largest changes of both since.
@@ -272,8 +272,8 @@ fn the_force_from_a_rigid_body_that_meets_one_body_is_its_reaction() {
     let mut largest: f64 = 0.0;
     for _ in 0..400 {
         scene.step(true).unwrap();
-        let reaction = Probe::RigidBodyForce { rigid_body: 0, direction: along }.value(&ProbedScene::new(&scene));
-        let force = Probe::ContactForce(probe).value(&ProbedScene::new(&scene));
+        let reaction = -scene.contacts.rigid_bodies()[0].contact_force().dot(&along);
+        let force = scene.contacts.force_between(&probe).unwrap();
         largest = largest.max(force.abs());
         assert!((force - reaction).abs() <= 1e-13 * largest, "{force} {reaction}");
     }

@@ -51,10 +51,14 @@ pub use heat::{
     Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
 };
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
+pub use measure::crack_extent::CrackProbe;
 pub use measure::crack_measure::{CrackMeasure, InsideCracks};
 pub use measure::damaged::{DamagedMeasure, DamagedPart};
 pub use measure::gauges::{Extensometer, GaugeGrid, GaugeReading};
-pub use measure::piece_probe::{FragmentMeasure, SurfaceMeasure, equivalent_diameter, fragment_size, passing_size};
+pub use measure::piece_probe::{
+    FragmentMeasure, FragmentProbe, SurfaceMeasure, SurfaceProbe, equivalent_diameter, fragment_size, passing_size,
+};
+pub use measure::points::{PointProbe, ProbeOfPoints};
 pub use measure::probe::{NeededPoints, Probe, ProbeNeeds, ProbedScene};
 pub use measure::radial_cracks::{RadialCracks, RadialMeasure};
 pub use measure::region_probe::{RegionStrain, RegionStress};

@@ -1,17 +1,13 @@
 //! Bonded bodies, and the supports, loads and probes on their particles.
 
 use fractum_dem::{AnyBondLaw, Particles};
-use fractum_fem::Solid;
 use fractum_math::Vec3;
 use fractum_scene::coupling::Attachment;
-use fractum_scene::{
-    BondFracture, Bonded, BondedPart, FlatFaces, PointProbe, Population, Probe, RegionStress, Support,
-};
+use fractum_scene::{BondFracture, Bonded, BondedPart, FlatFaces, Support};
 
 use super::Context;
 use super::conditions::{LoadedPoints, motion_of};
-use super::probes::is_held;
-use crate::case::model::{BodyKind, Material, ProbeKind, Selection, TimeStep};
+use crate::case::model::{BodyKind, Material, Selection, TimeStep};
 use crate::case::{Diagnostic, Field, Spanned};
 use crate::warning::Code;
 
@@ -172,38 +168,6 @@ impl Context<'_> {
         }
         let loads = self.loads(&LoadedPoints::Particles(bonded));
         bonded.set_loads(loads);
-    }
-
-    /// A probe of particles; none where it names a mesh group, or measures something else.
-    pub(super) fn particle_probe(&mut self, kind: &ProbeKind, bonded: &Bonded, solid: &Solid) -> Option<Probe> {
-        let on = kind.on()?;
-        let group = on.group.as_ref().filter(|_| self.names_particles(on))?;
-        let particles = self.selected_particles(on, group, bonded);
-        if let ProbeKind::Temperature { take, .. } = kind {
-            return Some(Probe::Temperature { population: Population::Particles, points: particles, take: *take });
-        }
-        let probe = match kind {
-            ProbeKind::Reaction { along, .. } => {
-                let places = bonded.supports().places(&particles);
-                let along_held = is_held(&places, along);
-                if !particles.is_empty() && !along_held {
-                    let found = format!("= \"{}\": nothing holds it along the direction of the probe", group.value);
-                    self.error(&group.place, found, "a set that a support prescribes");
-                }
-                PointProbe::Reaction { places, along: *along }
-            }
-            ProbeKind::Displacement { along, .. } => PointProbe::Displacement { points: particles, along: *along },
-            ProbeKind::Velocity { along, .. } => PointProbe::Velocity { points: particles, along: *along },
-            ProbeKind::Rotation { along, .. } => PointProbe::Rotation { points: particles, axis: *along },
-            ProbeKind::Stress { between, .. } => {
-                return Some(Probe::ParticleStress(RegionStress::new(bonded, &particles, *between)));
-            }
-            ProbeKind::Strain { .. } | ProbeKind::Extensometer { .. } => {
-                return self.strain_probe(kind, (bonded, solid), Population::Particles, &particles);
-            }
-            _ => return None,
-        };
-        Some(Probe::Points { population: Population::Particles, probe })
     }
 }
 

@@ -4,13 +4,13 @@ use fractum_fem as fem;
 use fractum_math::{Mat3, Vec3, rotation_between};
 use fractum_mesh::topology;
 use fractum_scene::{
-    Along, ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, NodesOnShape, Overlap,
-    OverlapWith, Probe, RigidBody, Scene, Shape, SolidSurface, pieces,
+    ContactMaterial, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia, NodesOnShape, Overlap,
+    OverlapWith, RigidBody, Scene, Shape, SolidSurface, pieces,
 };
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function};
-use crate::case::model::{self, Body, BodyKind, InitialOverlap, LoadKind, ProbeKind, RigidShape};
+use crate::case::model::{self, Body, BodyKind, InitialOverlap, LoadKind, RigidShape};
 use crate::case::{Diagnostic, Spanned};
 use crate::number::quantity;
 use crate::warning::Code;
@@ -332,30 +332,6 @@ impl Context<'_> {
                 None
             }
         }
-    }
-
-    /// A probe of a rigid body; none where it names something else.
-    pub(super) fn rigid_body_probe(&mut self, kind: &ProbeKind) -> Option<Probe> {
-        let (ProbeKind::Reaction { on, along }
-        | ProbeKind::Displacement { on, along }
-        | ProbeKind::Velocity { on, along }) = kind
-        else {
-            return None;
-        };
-        let rigid_body = self.case.tool(on.group_name())?;
-        let Along::Direction(direction) = *along else {
-            let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
-            self.error(&place, format!("= \"{}\": a rigid body", on.label()), "a direction with it, such as \"x\"");
-            return None;
-        };
-        if let Some(within) = &on.within {
-            self.error(&within.place, "has no effect on a rigid body", "nodes or particles; remove the key");
-        }
-        Some(match kind {
-            ProbeKind::Reaction { .. } => Probe::RigidBodyForce { rigid_body, direction },
-            ProbeKind::Displacement { .. } => Probe::RigidBodyDisplacement { rigid_body, direction },
-            _ => Probe::RigidBodyVelocity { rigid_body, direction },
-        })
     }
 }
 

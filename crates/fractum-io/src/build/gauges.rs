@@ -1,12 +1,11 @@
-//! Grids of places with displacement and strain, and extensometers.
+//! Grids of places with displacement and strain.
 
 use fractum_fem::Solid;
-use fractum_math::Vec3;
-use fractum_scene::{Bonded, Extensometer, GaugeGrid, Population, Probe};
+use fractum_scene::{Bonded, GaugeGrid, Population};
 
 use super::Context;
 use super::bodies::Numbering;
-use crate::case::model::{Gauges, Selection};
+use crate::case::model::Gauges;
 
 /// A grid of places with its name.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,25 +45,5 @@ impl Context<'_> {
             self.error(&gauges.length.place, found, "several times the distance of the points, and a grid on the body");
         }
         (!grid.is_empty()).then(|| BuiltGauges { name: gauges.name.value.clone(), grid })
-    }
-
-    /// An extensometer on nodes or particles; an error where both feet have one place.
-    pub(super) fn extensometer(
-        &mut self,
-        scene: (&Bonded, &Solid),
-        (population, points): (Population, &[u32]),
-        on: &Selection,
-        (ends, foot): ([Vec3; 2], Option<f64>),
-    ) -> Option<Probe> {
-        if points.is_empty() {
-            return None; // told where they were chosen
-        }
-        let probe = Extensometer::new(scene, population, points, ends, foot);
-        if probe.is_none() {
-            let place = on.place().cloned().unwrap_or_else(|| self.whole_case());
-            let found = format!("= \"{}\": both feet are on the same of its {} points", on.label(), points.len());
-            self.error(&place, found, "places with points of their own");
-        }
-        probe.map(Probe::Extensometer)
     }
 }

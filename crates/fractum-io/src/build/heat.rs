@@ -3,12 +3,12 @@
 use std::collections::HashSet;
 
 use fractum_math::Vec3;
-use fractum_scene::{Heat, HeatCondition, HeatSettings, Population, Probe, Scene, ThermalMaterial};
+use fractum_scene::{Heat, HeatCondition, HeatSettings, Scene, ThermalMaterial};
 
 use super::bodies::{Numbering, Part};
 use super::conditions::{LoadedPoints, Surface};
 use super::{Context, function};
-use crate::case::model::{self, BodyKind, HeatKind, HeatScheme, ProbeKind, SolverKind};
+use crate::case::model::{self, BodyKind, HeatKind, HeatScheme, SolverKind};
 use crate::number::quantity;
 
 /// Least number of steps of conduction in a run that gives none.
@@ -174,18 +174,6 @@ impl Context<'_> {
             }
             _ => HeatCondition::Supply { points, value },
         })
-    }
-
-    /// A probe of heat, on nodes where it has points.
-    pub(super) fn heat_probe(&mut self, kind: &ProbeKind, numbering: &Numbering) -> Option<Probe> {
-        match kind {
-            ProbeKind::Temperature { on, take } => {
-                let points = self.selected_nodes(on, numbering);
-                Some(Probe::Temperature { population: Population::Nodes, points, take: *take })
-            }
-            ProbeKind::Heat(measure) => Some(Probe::Heat(*measure)),
-            _ => None,
-        }
     }
 
     /// An explicit step that was asked for must be stable.

@@ -4,6 +4,7 @@ use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 
 use super::body_doubts::{Own, passage, wave_speed};
+use crate::case::measure::Reaction;
 use crate::case::model::{BodyKind, Case, LoadKind, Motion, Probe, ProbeKind, Selection, SolverKind, Support};
 use crate::case::{Diagnostic, Place, Spanned, TimeFunction};
 use crate::number::{percent, quantity, significant};
@@ -62,7 +63,7 @@ pub(super) fn odd_reactions(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Dia
         })
     };
     let doubt = |probe: &Probe| {
-        let ProbeKind::Reaction { on, .. } = &probe.kind else { return None };
+        let ProbeKind::Reaction(Reaction { on, .. }) = &probe.kind else { return None };
         let group = on.group.as_ref().filter(|_| on.within.is_none() && !by_place)?;
         let (found, remedy) = odd(group)?;
         let found = format!("= \"{}\" is no support: {found}", group.value);
@@ -113,7 +114,7 @@ fn idle(case: &Case, (place, function): (&Place, &TimeFunction)) -> Option<Diagn
 
 /// The test of a specimen whose reaction is measured, and that is loaded within few passages of a wave.
 fn hurried(case: &Case, begin: f64, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
-    let measured = |probe: &Probe| matches!(probe.kind, ProbeKind::Reaction { .. });
+    let measured = |probe: &Probe| matches!(probe.kind, ProbeKind::Reaction(_));
     let pulses = case.loads.iter().any(|load| load.kind.functions().iter().any(|function| function.value.is_pulse()));
     let thrown = bodies.iter().any(|body| body.solid.initial_velocity.iter().any(Option::is_some));
     let alone = case.bodies.iter().all(|body| matches!(body.kind, BodyKind::Solid(_)));

@@ -64,7 +64,7 @@ pub struct BuiltScene {
     /// Settings of the solver that brings a bonded body from break to break; none for other runs.
     pub bonded_statics: Option<BondedStaticSettings>,
     /// The probes of the case that are measured, in the order of `Case::probes`; none for expressions.
-    pub probes: Vec<Option<Probe>>,
+    pub probes: Vec<Option<Box<dyn Probe>>>,
     /// Stations at which the largest velocity is kept.
     pub ppv: Vec<PpvStations>,
     /// Grids of places with displacement and strain.
@@ -303,15 +303,15 @@ impl<'a> Context<'a> {
     fn made_ready(
         &mut self,
         mut scene: Scene,
-        probes: &[Option<Probe>],
+        probes: &[Option<Box<dyn Probe>>],
         warnings: &mut Vec<Diagnostic>,
     ) -> Option<Scene> {
         if let Some(domain) = self.case.solver.domain.clone() {
             scene = self.with_domain(scene, &domain)?;
         }
         for probe in probes.iter().flatten() {
-            if let Probe::ContactForce(probe) = probe {
-                scene.contacts.watch(*probe);
+            if let Some(contact) = probe.contact() {
+                scene.contacts.watch(contact);
             }
         }
         if let Some(stress) = &self.case.in_situ

@@ -156,7 +156,7 @@ fn in_plane_stress(body: &Own) -> bool {
 /// A plane body without a thickness in a case of forces: it is one metre thick.
 fn thickness(case: &Case, body: &Own) -> Option<Diagnostic> {
     let force = |load: &Load| matches!(&load.kind, LoadKind::Force { .. });
-    let in_newton = |probe: &Probe| matches!(&probe.kind, ProbeKind::Reaction { .. } | ProbeKind::ContactForce { .. });
+    let in_newton = |probe: &Probe| matches!(&probe.kind, ProbeKind::Reaction(_) | ProbeKind::ContactForce(_));
     let forces = case.loads.iter().any(force) || case.probes.iter().any(in_newton);
     if !body.plane || body.nodes.is_empty() || body.solid.thickness.is_some() || !forces {
         return None;

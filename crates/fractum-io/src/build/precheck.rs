@@ -6,6 +6,7 @@ use fractum_math::Vec3;
 use fractum_scene::{Domain, Scene};
 
 use super::Context;
+use crate::case::measure::ContactForce;
 use crate::case::model::{Body, BodyKind, BondLawKind, GroupUse, Motion, ProbeKind, Selection, SolverKind, WHOLE_MESH};
 use crate::case::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
 use crate::number::quantity;
@@ -30,7 +31,7 @@ impl Context<'_> {
     /// Probes of heat need heat.
     fn check_heat_probes(&mut self) {
         let case = self.case;
-        let of_heat = |kind: &ProbeKind| matches!(kind, ProbeKind::Temperature { .. } | ProbeKind::Heat(_));
+        let of_heat = |kind: &ProbeKind| matches!(kind, ProbeKind::Temperature(_) | ProbeKind::HeatOfAll(_));
         for probe in case.probes.iter().filter(|probe| of_heat(&probe.kind) && case.flows.heat.is_none()) {
             let found = format!("= \"{}\": the case has no heat", probe.name.value);
             self.error(&probe.name.place, found, "a table [heat]");
@@ -42,7 +43,7 @@ impl Context<'_> {
         let case = self.case;
         let names: Vec<&str> = case.bodies.iter().map(|body| body.name.value.as_str()).collect();
         for probe in &case.probes {
-            let ProbeKind::ContactForce { on, from, .. } = &probe.kind else { continue };
+            let ProbeKind::ContactForce(ContactForce { on, from, .. }) = &probe.kind else { continue };
             let unknown = [on, from].map(|name| !names.contains(&name.value.as_str()));
             for (name, _) in [on, from].into_iter().zip(unknown).filter(|(_, unknown)| *unknown) {
                 let mut diagnostic = Diagnostic::error(&name.place, format!("= \"{}\"", name.value));
@@ -137,7 +138,7 @@ impl Context<'_> {
                 None => {}
             }
         }
-        named.extend(case.probes.iter().filter_map(|probe| probe.kind.on()));
+        named.extend(case.probes.iter().filter_map(|probe| probe.kind.may_be_particles()));
         named.extend(case.output.gauges.iter().map(|gauges| &gauges.on));
         named.extend(case.flows.heat.iter().flat_map(|heat| &heat.conditions).map(|condition| &condition.on));
         let groups = named.into_iter().filter_map(|on| on.group.as_ref());

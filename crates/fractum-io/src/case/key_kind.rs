@@ -1,5 +1,6 @@
 //! What a key of the case file holds, and how that is told.
 
+use super::Choice;
 use super::unit::Dimension;
 
 /// A key of the case file.
@@ -14,6 +15,16 @@ pub struct KeyDoc {
     pub default: &'static str,
     /// What it means, in a line.
     pub doc: &'static str,
+}
+
+/// A row of the list of keys.
+pub(super) const fn key(path: &'static str, kind: KeyKind, default: &'static str, doc: &'static str) -> KeyDoc {
+    KeyDoc { path, kind, default, doc }
+}
+
+/// Names of a closed list.
+pub(super) fn names<T: Choice>() -> Vec<&'static str> {
+    T::NAMES.iter().map(|(name, _)| *name).collect()
 }
 
 /// What a key holds.

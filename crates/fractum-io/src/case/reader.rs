@@ -1,6 +1,9 @@
 //! Typed access to the tables of a case: every mistake is noted, none ends the reading.
 
+mod effect;
+pub(super) mod presence;
 mod reading;
+pub(super) mod vectors;
 
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,13 +11,11 @@ use std::path::PathBuf;
 
 use super::diagnostic::MOST_LISTED;
 use super::expression::{Compiled, ExpressionError, Named, Names, Op, Type, compile};
-use super::key_kind::KeyKind;
-use super::keys::{Unknown, describe};
+use super::key_kind::{KeyDoc, KeyKind};
 use super::scale::Scale;
 use super::tree::{Entry, Node, Value, join};
 use super::unit::Dimension;
 use super::{Choice, Diagnostic, Place, Severity, nearest};
-use crate::warning::Code;
 pub(super) use reading::Reading;
 use reading::State;
 
@@ -25,6 +26,8 @@ const MOST_NAMES: usize = 20;
 pub(super) struct Reader {
     /// Folder of the case file.
     pub(super) folder: PathBuf,
+    /// The list of keys: the row of a pattern.
+    describe: fn(&str) -> Option<&'static KeyDoc>,
     /// By how much all lengths are larger than written: `verify.scale`.
     pub(super) scale: Scale,
     /// Parameters read so far.
@@ -38,6 +41,12 @@ pub(super) struct Reader {
     meant: RefCell<BTreeSet<String>>,
 }
 
+/// An unknown key, and the path of the key that was probably meant.
+pub(super) struct Unknown {
+    pub(super) diagnostic: Diagnostic,
+    pub(super) meant: Option<String>,
+}
+
 /// A named quantity.
 #[derive(Debug, Clone)]
 pub(super) struct Parameter {
@@ -48,9 +57,10 @@ pub(super) struct Parameter {
 }
 
 impl Reader {
-    pub(super) fn new(folder: PathBuf) -> Self {
+    pub(super) fn new(folder: PathBuf, describe: fn(&str) -> Option<&'static KeyDoc>) -> Self {
         Self {
             folder,
+            describe,
             scale: Scale(1.0),
             parameters: RefCell::default(),
             tables: RefCell::default(),
@@ -324,7 +334,7 @@ impl<'a> Table<'a> {
 
     /// What the list of keys says a key holds.
     pub(super) fn kind(&self, name: &str) -> Option<KeyKind> {
-        describe(&join(&self.pattern, name)).map(|key| key.kind)
+        (self.reader.describe)(&join(&self.pattern, name)).map(|key| key.kind)
     }
 
     /// Dimension of a key by the list of keys.
@@ -407,43 +417,5 @@ impl<'a> Table<'a> {
             });
         }
         found.map(|(_, value)| *value)
-    }
-
-    /// Notes that a key which is there has no effect, and why.
-    pub(super) fn refuse(&self, name: &str, why: &str) {
-        if let Some((entry, used)) = self.entries.iter().find(|(entry, _)| entry.name == name) {
-            used.set(true);
-            self.no_effect(entry, why);
-        }
-    }
-
-    /// Notes that a key which is there has no effect while something is switched off: it may stay for later.
-    pub(super) fn set_aside(&self, name: &str, why: &str) {
-        if let Some((entry, used)) = self.entries.iter().find(|(entry, _)| entry.name == name) {
-            used.set(true);
-            self.reader.note(Diagnostic::warning(Code::NoEffect, &entry.key_place, format!("has no effect {why}")));
-        }
-    }
-
-    /// Whether `--set` gives a value of this table.
-    pub(super) fn is_overridden(&self) -> bool {
-        self.entries.iter().any(|(entry, _)| entry.node.place.is_override())
-    }
-
-    /// A key without effect is a mistake; but what the file says may stay where `--set` has switched it off.
-    fn no_effect(&self, entry: &Entry, why: &str) {
-        let found = format!("has no effect {why}");
-        self.reader.note(if self.is_overridden() && !entry.node.place.is_override() {
-            Diagnostic::warning(Code::NoEffect, &entry.key_place, found)
-        } else {
-            Diagnostic::error(&entry.key_place, found).remedy("remove it")
-        });
-    }
-
-    /// Reports the keys that nobody asked for: they have no effect, for the reason given.
-    pub(super) fn finish(self, why: &str) {
-        for (entry, _) in self.entries.iter().filter(|(_, used)| !used.get()) {
-            self.no_effect(entry, why);
-        }
     }
 }

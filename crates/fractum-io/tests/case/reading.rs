@@ -2,6 +2,7 @@
 
 use fractum_dem::{Crushing, InterfaceFailure, LocalBond};
 use fractum_fem::{Criterion, CriterionKind, Formulation, Softening};
+use fractum_io::case::measure::Crack;
 use fractum_io::case::model::{
     BodyKind, BondLawKind, BondedShape, Bound, InterfaceArea, Interfaces, LoadKind, Motion, PackingSource,
     ParticleSize, ProbeKind, SurfaceSupport,
@@ -135,7 +136,7 @@ fn a_case_with_every_key_is_read_into_si() {
     let all = all.concat();
     assert_eq!(units, all, "N/m is J/m^2");
     assert!(!case.probes[28].is_scalar(), "a slope is a history");
-    let ProbeKind::Crack { measure, along, within, .. } = &case.probes[10].kind else { panic!() };
+    let ProbeKind::Crack(Crack { measure, along, within, .. }) = &case.probes[10].kind else { panic!() };
     assert_eq!((*measure, *along), (CrackMeasure::Angle, Vec3::y()));
     let within = &within.as_ref().unwrap().value;
     assert!(within.holds_at(Vec3::zeros()) && !within.holds_at(Vec3::x()));

@@ -1,17 +1,17 @@
-//! Boundary conditions, written once over [`Points`]: supports, loads and probes of nodes and of particles alike.
+//! Boundary conditions, written once over [`Points`]: supports and loads of nodes and of particles alike.
 
+mod along;
 mod load;
 mod points;
-mod probe;
 mod state;
 mod support;
 mod surface_support;
 
+pub use along::Along;
+pub(crate) use along::mean;
 pub use load::*;
 pub use points::Population;
 pub(crate) use points::{DrivenPoints, Points};
-pub(crate) use probe::mean;
-pub use probe::{Along, PointProbe};
 pub(crate) use state::ConditionsState;
 pub(crate) use support::{Kick, integral};
 pub use support::{Motion, Support, Supports};

@@ -1,10 +1,42 @@
 //! How much has separated: length, area and number of cracks, and where they have come to.
 
+use fractum_dem::crack_shape::Axis;
 use fractum_fem::{SeparatedElement, Separation};
 use fractum_math::{Vec3, numbered_parts};
 
-use crate::measure::crack_measure::{CrackMeasure, InsideCracks};
+use crate::measure::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
+use crate::measure::probe::{Probe, ProbeNeeds, ProbedScene};
 use crate::scene::Scene;
+
+/// How the crack lies: the edges that have lost at least half of their strength, and the broken bonds; not a number
+/// where there are none. Or how much has separated: removed elements, and broken bonds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrackProbe {
+    /// What about it.
+    pub measure: CrackMeasure,
+    /// Direction, and the point of it that a helix or cone needs.
+    pub axis: Axis,
+    /// Which edges, elements and bonds count; all if absent.
+    pub inside: Option<InsideCracks>,
+}
+
+impl Probe for CrackProbe {
+    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        let (scene, measure, inside) = (probed.scene, self.measure, self.inside.as_ref());
+        if measure.is_of_separation() {
+            return measure_extent(scene, probed.separation(), measure, &self.axis.direction, inside);
+        }
+        measure_crack(scene, probed.crack_edges(), measure, &self.axis, inside)
+    }
+
+    fn needs(&self, _: &Scene) -> ProbeNeeds {
+        ProbeNeeds { damage: !self.measure.is_of_separation(), ..ProbeNeeds::default() }
+    }
+
+    fn is_of_separation(&self) -> bool {
+        self.measure.is_of_separation()
+    }
+}
 
 impl InsideCracks {
     /// Whether an element of a solid counts.
@@ -25,7 +57,7 @@ pub(crate) fn separated_within(separation: &Separation, inside: Option<&InsideCr
 }
 
 /// A number about what has separated: zero before anything has, but for the tip, which then is not a number.
-pub(crate) fn measure_extent(
+fn measure_extent(
     scene: &Scene,
     separation: &Separation,
     measure: CrackMeasure,

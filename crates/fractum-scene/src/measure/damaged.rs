@@ -2,6 +2,9 @@
 
 use fractum_fem::Solid;
 
+use crate::measure::probe::{Probe, ProbeNeeds, ProbedScene};
+use crate::scene::Scene;
+
 /// What a probe measures of the damaged part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DamagedMeasure {
@@ -35,9 +38,11 @@ impl DamagedPart {
         let size = elements.iter().fold(0.0, |sum, (_, _, size)| sum + size);
         DamagedPart { measure, threshold, elements, size }
     }
+}
 
-    /// The number, at present.
-    pub(crate) fn value(&self, solid: &Solid) -> f64 {
+impl Probe for DamagedPart {
+    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        let solid = &probed.scene.solid;
         let mut damaged = 0.0;
         for of_body in self.elements.chunk_by(|a, b| a.0 == b.0) {
             let damage = solid.element_damages(of_body[0].0);
@@ -45,5 +50,9 @@ impl DamagedPart {
             damaged = of_body.iter().filter(counts).fold(damaged, |sum, (_, _, size)| sum + size);
         }
         if self.measure == DamagedMeasure::Share { damaged / self.size } else { damaged }
+    }
+
+    fn needs(&self, _: &Scene) -> ProbeNeeds {
+        ProbeNeeds::of_damage()
     }
 }

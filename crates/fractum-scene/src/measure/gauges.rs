@@ -7,6 +7,7 @@ use fractum_math::{Rotation, Vec3};
 
 use crate::bonded::Bonded;
 use crate::conditions::{Points, Population, mean};
+use crate::measure::probe::{Probe, ProbeNeeds, ProbedScene};
 use crate::scene::Scene;
 
 /// Smallest part of a direction across a plane of points with which a strain is not measured.
@@ -151,10 +152,13 @@ impl Extensometer {
         let span = second - first;
         (span.norm() > 0.0).then_some(Extensometer { population, feet, span })
     }
+}
 
+impl Probe for Extensometer {
     /// Elongation over the distance without load [-], at the instant of the last step; rotation of the whole is none. Not a number once a
     /// point of a foot has left the run.
-    pub(crate) fn value(&self, scene: &Scene) -> f64 {
+    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        let scene = probed.scene;
         let has_left = scene.has_left(self.population);
         if self.feet.iter().flatten().any(|&i| has_left(i)) {
             return f64::NAN;
@@ -162,6 +166,10 @@ impl Extensometer {
         let (all, dt) = (points_of(&scene.bonded, &scene.solid, self.population), scene.clock.dt_before);
         let [first, second] = [0, 1].map(|foot| mean(&self.feet[foot], |i| all.displacement_before(i, dt)));
         elongation(&self.span, &(second - first))
+    }
+
+    fn needs(&self, _: &Scene) -> ProbeNeeds {
+        ProbeNeeds::of_all(false)
     }
 }
 

@@ -6,6 +6,8 @@ use fractum_math::elementary::cbrt;
 
 use crate::fragment::Fragment;
 use crate::gas::{HoleEnds, enclosed_volume};
+use crate::measure::probe::{NeededPoints, Probe, ProbeNeeds, ProbedScene};
+use crate::scene::Scene;
 
 /// What a probe measures of facets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,37 +31,63 @@ pub enum FragmentMeasure {
     Velocity,
 }
 
-/// Present area, or enclosed volume, of outward facets; an edge in the plane repeats its second node.
-pub(crate) fn measure_surface(solid: &Solid, facets: &[[u32; 3]], measure: SurfaceMeasure) -> f64 {
-    let at = |node: u32| solid.position(node as usize);
-    match measure {
-        SurfaceMeasure::Area => facets.iter().map(|facet| solid.facet_area(facet, at).norm()).sum(),
-        SurfaceMeasure::Volume => enclosed_volume(solid, facets, &HoleEnds::default(), at),
+/// Something about facets as they are at present.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceProbe {
+    /// Outward facets; an edge in the plane repeats its second node.
+    pub facets: Vec<[u32; 3]>,
+    /// What about them.
+    pub measure: SurfaceMeasure,
+}
+
+impl Probe for SurfaceProbe {
+    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        let solid = &probed.scene.solid;
+        let at = |node: u32| solid.position(node as usize);
+        match self.measure {
+            SurfaceMeasure::Area => self.facets.iter().map(|facet| solid.facet_area(facet, at).norm()).sum(),
+            SurfaceMeasure::Volume => enclosed_volume(solid, &self.facets, &HoleEnds::default(), at),
+        }
+    }
+
+    fn needs(&self, _: &Scene) -> ProbeNeeds {
+        ProbeNeeds { nodes: NeededPoints::Some(self.facets.concat()), ..ProbeNeeds::default() }
     }
 }
 
 /// Something about the fragment that holds the first of these nodes; the single node counts as one where nothing joins it.
-pub(crate) fn measure_fragment(
-    solid: &Solid,
-    fragments: &[Fragment],
-    nodes: &[u32],
-    measure: FragmentMeasure,
-    along: &Vec3,
-) -> f64 {
-    let Some(&node) = nodes.first() else { return f64::NAN };
-    let Some(own) = fragments.iter().find(|fragment| fragment.nodes.contains(&node)) else {
-        let mass = solid.mass[node as usize];
-        return match measure {
-            FragmentMeasure::Mass => mass,
-            FragmentMeasure::Volume | FragmentMeasure::Size => 0.0,
-            FragmentMeasure::Velocity => solid.velocity[node as usize].dot(along),
+#[derive(Clone, Debug, PartialEq)]
+pub struct FragmentProbe {
+    /// The nodes, of which the first counts.
+    pub nodes: Vec<u32>,
+    /// What about it.
+    pub measure: FragmentMeasure,
+    /// Direction of a velocity.
+    pub along: Vec3,
+}
+
+impl Probe for FragmentProbe {
+    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        let (solid, fragments) = (&probed.scene.solid, probed.fragments());
+        let Some(&node) = self.nodes.first() else { return f64::NAN };
+        let Some(own) = fragments.iter().find(|fragment| fragment.nodes.contains(&node)) else {
+            let mass = solid.mass[node as usize];
+            return match self.measure {
+                FragmentMeasure::Mass => mass,
+                FragmentMeasure::Volume | FragmentMeasure::Size => 0.0,
+                FragmentMeasure::Velocity => solid.velocity[node as usize].dot(&self.along),
+            };
         };
-    };
-    match measure {
-        FragmentMeasure::Mass => own.mass,
-        FragmentMeasure::Volume => own.volume,
-        FragmentMeasure::Size => fragment_size(solid, own),
-        FragmentMeasure::Velocity => own.velocity.dot(along),
+        match self.measure {
+            FragmentMeasure::Mass => own.mass,
+            FragmentMeasure::Volume => own.volume,
+            FragmentMeasure::Size => fragment_size(solid, own),
+            FragmentMeasure::Velocity => own.velocity.dot(&self.along),
+        }
+    }
+
+    fn needs(&self, _: &Scene) -> ProbeNeeds {
+        ProbeNeeds::of_all(true)
     }
 }
 

@@ -8,6 +8,7 @@ use fractum_math::Vec3;
 
 use crate::measure::crack_extent::separated_within;
 use crate::measure::crack_measure::InsideCracks;
+use crate::measure::probe::{Probe, ProbedScene};
 
 /// What a probe measures of radial cracks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +51,16 @@ const ALL_AROUND: f64 = PI / 6.0;
 /// Share of the volume that is gone where a body is crushed.
 const CRUSHED: f64 = 0.9;
 
+impl Probe for RadialCracks {
+    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        self.at_present(&probed.scene.solid, probed.separation())
+    }
+
+    fn is_of_separation(&self) -> bool {
+        true
+    }
+}
+
 impl RadialCracks {
     /// - `radius`: of the circle that [`RadialMeasure::Count`] looks at [m]
     /// - `inside`: which elements count; all if absent
@@ -71,7 +82,7 @@ impl RadialCracks {
     }
 
     /// The number, at present.
-    pub(crate) fn value(&self, solid: &Solid, separation: &Separation) -> f64 {
+    fn at_present(&self, solid: &Solid, separation: &Separation) -> f64 {
         let separated = || separated_within(separation, self.inside.as_ref());
         match self.measure {
             RadialMeasure::Count => f64::from(self.count(solid, separated())),
@@ -183,7 +194,7 @@ mod tests {
 
     fn measured(solid: &Solid, measure: RadialMeasure, radius: f64) -> f64 {
         let axis = Axis { point: centre(), direction: Vec3::z() };
-        RadialCracks::new(solid, measure, axis, radius, None).value(solid, &solid.separation())
+        RadialCracks::new(solid, measure, axis, radius, None).at_present(solid, &solid.separation())
     }
 
     /// On a ray at this angle, from one distance to another.

@@ -5,6 +5,7 @@ use fractum_math::{Rotation, Vec3, rotation_by, sphere_volume};
 
 use crate::bonded::Bonded;
 use crate::conditions::{Along, Points, Population};
+use crate::measure::probe::{NeededPoints, Probe, ProbeNeeds, ProbedScene};
 use crate::scene::Scene;
 
 /// Virial stress of a set of particles.
@@ -39,7 +40,7 @@ impl RegionStress {
     }
 
     /// The bonds that it looks at (body, bond), and their particles.
-    pub(crate) fn looks_at(&self, bonded: &Bonded) -> (Vec<(u32, u32)>, Vec<u32>) {
+    fn looks_at(&self, bonded: &Bonded) -> (Vec<(u32, u32)>, Vec<u32>) {
         let bonds: Vec<(u32, u32)> = self.bonds.iter().map(|&(body, bond, _)| (body, bond)).collect();
         let ends = |&(body, bond): &(u32, u32)| bonded.bodies()[body as usize].bonds.pairs()[bond as usize];
         let mut particles: Vec<u32> = bonds.iter().flat_map(ends).collect();
@@ -47,9 +48,13 @@ impl RegionStress {
         particles.dedup();
         (bonds, particles)
     }
+}
 
-    /// The component [Pa]; tension is positive. Not a number once a particle of the set has left the run.
-    pub(crate) fn value(&self, scene: &Scene) -> f64 {
+impl Probe for RegionStress {
+    /// The component [Pa], at the places that the step ends with: a step after strains of the same row; tension is positive. Not a
+    /// number once a particle of the set has left the run.
+    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        let scene = probed.scene;
         if self.set.iter().copied().any(scene.has_left(Population::Particles)) {
             return f64::NAN;
         }
@@ -66,6 +71,11 @@ impl RegionStress {
             ends * normal.at(&middle).dot(&(virial * along.at(&middle)))
         };
         self.bonds.iter().map(of).sum::<f64>() / self.volume
+    }
+
+    fn needs(&self, scene: &Scene) -> ProbeNeeds {
+        let (bonds, particles) = self.looks_at(&scene.bonded);
+        ProbeNeeds { particles: NeededPoints::Some(particles), bonds, ..ProbeNeeds::default() }
     }
 }
 
@@ -101,9 +111,12 @@ impl RegionStrain {
         let measured = |direction: &Vec3| gauge.normal.is_none_or(|normal| normal.dot(direction).abs() < 1e-6);
         between.iter().all(measured).then_some(RegionStrain { population, gauge, between })
     }
+}
 
+impl Probe for RegionStrain {
     /// The component [-], at the instant of the last step. Not a number once a point of the set has left the run.
-    pub(crate) fn value(&self, scene: &Scene) -> f64 {
+    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        let scene = probed.scene;
         if self.gauge.points().any(scene.has_left(self.population)) {
             return f64::NAN;
         }
@@ -119,5 +132,9 @@ impl RegionStrain {
             ),
         };
         self.between[0].dot(&(strain * self.between[1]))
+    }
+
+    fn needs(&self, _: &Scene) -> ProbeNeeds {
+        ProbeNeeds::of_all(false)
     }
 }

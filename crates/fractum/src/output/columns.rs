@@ -3,8 +3,8 @@
 use fractum_io::build::BuiltScene;
 use fractum_io::case::model::{Body, BodyKind, Case, HistoryColumns, SolverKind};
 use fractum_io::history::{Column, Table};
+use fractum_scene::Scene;
 use fractum_scene::statics::{Control, NoEquilibrium};
-use fractum_scene::{Heat, Left, Scene};
 
 /// How a run proceeds.
 #[derive(Clone, Copy, Debug, Default)]
@@ -85,15 +85,4 @@ pub(crate) fn no_probes(case: &Case, scene: &Scene, course: Course) -> HistoryCo
 fn both_rests_and_moves(case: &Case) -> bool {
     let hands_over = case.solver.statics.as_ref().is_some_and(|s| s.no_equilibrium == NoEquilibrium::Motion);
     hands_over || !case.later.is_empty()
-}
-
-/// What has left the domain, as columns in their order.
-pub(crate) fn of_left(left: &Left) -> [f64; 5] {
-    [left.pieces as f64, left.mass, left.momentum.x, left.momentum.y, left.momentum.z]
-}
-
-/// Heat, as columns in their order.
-pub(crate) fn of_heat(heat: &Heat) -> [f64; 3] {
-    let ledger = heat.ledger();
-    [ledger.stored, ledger.held + ledger.supplied + ledger.convection, ledger.residual()]
 }

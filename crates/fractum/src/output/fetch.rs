@@ -21,7 +21,7 @@ pub(crate) struct Fetch {
 }
 
 /// Points of probes that every process follows, since they are few or held by supports, and what is to be fetched for each probe.
-pub(crate) fn points_of_probes(probes: &[Option<Probe>], scene: &Scene) -> (Watched, Vec<Fetch>) {
+pub(crate) fn points_of_probes(probes: &[Option<Box<dyn Probe>>], scene: &Scene) -> (Watched, Vec<Fetch>) {
     let mut watched = Watched::default();
     // Whether points must be fetched, since there are too many to be followed.
     let follow = |needed: NeededPoints, all: usize, of_supports: bool, watched: &mut Vec<u32>| match needed {
@@ -31,7 +31,7 @@ pub(crate) fn points_of_probes(probes: &[Option<Probe>], scene: &Scene) -> (Watc
         }
         _ => true,
     };
-    let mut fetch = |probe: &Probe| {
+    let mut fetch = |probe: &dyn Probe| {
         let ProbeNeeds { nodes, particles, of_supports, damage, contacts, bonds } = probe.needs(scene);
         Fetch {
             nodes: follow(nodes, scene.solid.reference.len(), of_supports, &mut watched.nodes),
@@ -41,7 +41,7 @@ pub(crate) fn points_of_probes(probes: &[Option<Probe>], scene: &Scene) -> (Watc
             bonds,
         }
     };
-    let fetches = probes.iter().map(|probe| probe.as_ref().map(&mut fetch).unwrap_or_default()).collect();
+    let fetches = probes.iter().map(|probe| probe.as_deref().map(&mut fetch).unwrap_or_default()).collect();
     (watched, fetches)
 }
 

@@ -2,10 +2,10 @@
 
 use fractum_fem::Solid;
 use fractum_io::build::BuiltGauges;
-use fractum_io::case::model::{BodyKind, Case, FurtherFields};
+use fractum_io::case::model::{BodyKind, Case, OutputField, OutputFields};
 use fractum_io::number::push_shortest;
 use fractum_io::vtk::{CellBlock, CellKind, Cut, Field, PendingFile, PolyCells, PolyData, UnstructuredGrid, Values};
-use fractum_math::Sym3;
+use fractum_math::{Mat3, Sym3};
 use fractum_scene::{GaugeGrid, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -125,7 +125,7 @@ pub(crate) struct GridLayout {
     materials: Vec<i32>,
     rigid: RigidSurfaces,
     gauges: Vec<BuiltGauges>,
-    further: FurtherFields,
+    further: OutputFields,
     cut: Cut,
 }
 
@@ -190,26 +190,13 @@ fn solid_file(scene: &Scene, layout: &GridLayout) -> Result<FrameFile, Failure> 
     let displacement = nodal(&|n| solid.displacement_from_start(n).into());
     let velocity: Vec<[f32; 3]> = order.iter().map(|&n| single(solid.velocity[n as usize].into())).collect();
     let held: Vec<u8> = order.iter().map(|&n| u8::from(attached[n as usize])).collect();
-    let reactions = if layout.further.reaction { scene.node_reactions() } else { Vec::new() };
-    let reaction: Vec<[f32; 3]> = if layout.further.reaction {
-        order.iter().map(|&n| single(reactions[n as usize].into())).collect()
-    } else {
-        Vec::new()
-    };
-    let fragments = if layout.further.fragment { scene.fragment_of_nodes() } else { Vec::new() };
-    let fragment: Vec<i32> =
-        if layout.further.fragment { order.iter().map(|&n| fragments[n as usize]).collect() } else { Vec::new() };
     let mut point_data = vec![
         Field::vector("displacement", &displacement),
         vector("velocity", &velocity),
         Field::flag("attached", &held),
     ];
-    if layout.further.reaction {
-        point_data.push(vector("reaction", &reaction));
-    }
-    if layout.further.fragment {
-        point_data.push(Field::integer("fragment", &fragment));
-    }
+    let wanted: Vec<Array> = layout.further.iter().flat_map(|field| of_nodes(field, scene, order)).collect();
+    point_data.extend(wanted.iter().map(Array::field));
     let temperature: Option<Vec<f64>> =
         scene.heat().map(|heat| order.iter().map(|&n| heat.of_nodes()[n as usize]).collect());
     point_data.extend(temperature.as_ref().map(|temperature| Field::scalar("temperature", temperature)));
@@ -219,10 +206,80 @@ fn solid_file(scene: &Scene, layout: &GridLayout) -> Result<FrameFile, Failure> 
         points: &points,
         cells: &cells,
         point_data: &point_data,
-        cell_data: &elements.fields(layout.further),
+        cell_data: &elements.fields(),
         time: Some(scene.clock.time),
     };
     FrameFile::of_grid(&grid, layout.cut, &layout.numbers)
+}
+
+/// Values of a field that the case asks for, by points or by cells.
+struct Array {
+    name: &'static str,
+    components: usize,
+    values: Owned,
+}
+
+enum Owned {
+    F32(Vec<f32>),
+    I32(Vec<i32>),
+}
+
+impl Array {
+    /// Numbers in single precision.
+    fn new<const N: usize>(name: &'static str, values: impl Iterator<Item = [f64; N]>) -> Self {
+        Array { name, components: N, values: Owned::F32(values.flatten().map(|value| value as f32).collect()) }
+    }
+
+    /// Whole numbers.
+    fn integers(name: &'static str, values: impl Iterator<Item = i32>) -> Self {
+        Array { name, components: 1, values: Owned::I32(values.collect()) }
+    }
+
+    fn field(&self) -> Field<'_> {
+        let values = match &self.values {
+            Owned::F32(values) => Values::F32(values),
+            Owned::I32(values) => Values::I32(values),
+        };
+        Field { name: self.name, components: self.components, values }
+    }
+}
+
+/// A field that the case asks for at the nodes `order`; nothing where it is one of elements.
+fn of_nodes(field: OutputField, scene: &Scene, order: &[u32]) -> Vec<Array> {
+    let nodes = || order.iter().map(|&node| node as usize);
+    match field {
+        OutputField::Principal | OutputField::Strain => Vec::new(),
+        OutputField::Reaction => {
+            let reactions = scene.node_reactions();
+            vec![Array::new("reaction", nodes().map(|node| <[f64; 3]>::from(reactions[node])))]
+        }
+        OutputField::Fragment => {
+            let fragments = scene.fragment_of_nodes();
+            vec![Array::integers("fragment", nodes().map(|node| fragments[node]))]
+        }
+    }
+}
+
+/// A field that the case asks for in the elements that are left, body after body; nothing where it is one of nodes.
+///
+/// - `stresses`: of these elements [Pa]
+fn of_elements(field: OutputField, solid: &Solid, stresses: &[Sym3]) -> Vec<Array> {
+    match field {
+        OutputField::Principal => {
+            let eigen: Vec<([f64; 3], Mat3)> = stresses.iter().map(|stress| stress.eigen()).collect();
+            let values = Array::new("principal_stresses", eigen.iter().map(|(values, _)| *values));
+            let names = ["principal_direction_1", "principal_direction_2", "principal_direction_3"];
+            let direction = |(axis, name)| {
+                Array::new(name, eigen.iter().map(move |(_, axes)| <[f64; 3]>::from(axes.column(axis).into_owned())))
+            };
+            [values].into_iter().chain((0..).zip(names).map(direction)).collect()
+        }
+        OutputField::Strain => {
+            let strains = (0..solid.body_count()).flat_map(|body| solid.told_strains(body));
+            vec![Array::new("strain", strains.map(|strain| strain.0))]
+        }
+        OutputField::Reaction | OutputField::Fragment => Vec::new(),
+    }
 }
 
 /// What is known of the elements that are left, body after body. Seven digits are plenty for looking at it, and halve what is
@@ -233,13 +290,12 @@ struct ElementFields {
     stress: Vec<[f32; 6]>,
     first: Vec<f32>,
     von_mises: Vec<f32>,
-    principal: Vec<[f32; 3]>,
-    directions: [Vec<[f32; 3]>; 3],
-    strain: Vec<[f32; 6]>,
     damage: Vec<f32>,
     phase: Vec<f32>,
     body: Vec<i32>,
     material: Vec<i32>,
+    /// Those that the case asks for.
+    further: Vec<Array>,
 }
 
 impl ElementFields {
@@ -247,16 +303,16 @@ impl ElementFields {
         let solid = &scene.solid;
         let phase_field = solid.has_phase_fields();
         let mut fields = ElementFields::default();
+        let mut stresses = Vec::new();
         for (body, kind) in grid.kinds.iter().enumerate() {
             let (corners, nodes) = (kind.nodes(), &solid.body(body).elements);
             let mut kept = Vec::new();
             let phases = solid.element_phase(body);
-            let strains = if grid.further.strain { solid.told_strains(body) } else { Vec::new() };
-            fields.strain.extend(strains.iter().map(|strain| strain.0.map(|e| e as f32)));
             for (element, (stress, damage)) in solid.told_elements(body).into_iter().zip(solid.told_fields(body)) {
                 let element = element as usize;
                 kept.extend(nodes[element][..corners].iter().map(|&node| grid.place[node as usize]));
-                fields.add_stress(stress, grid.further.principal);
+                fields.add_stress(stress);
+                stresses.extend(grid.further.has(OutputField::Principal).then_some(stress));
                 fields.damage.push(damage as f32);
                 fields.phase.extend(phase_field.then(|| phases.as_ref().map_or(0.0, |phases| phases[element] as f32)));
                 fields.body.push(body as i32);
@@ -264,23 +320,17 @@ impl ElementFields {
             }
             fields.cells.push((*kind, kept));
         }
+        fields.further = grid.further.iter().flat_map(|field| of_elements(field, solid, &stresses)).collect();
         fields
     }
 
-    fn add_stress(&mut self, stress: Sym3, principal: bool) {
+    fn add_stress(&mut self, stress: Sym3) {
         self.stress.push(stress.0.map(|s| s as f32));
         self.von_mises.push((3.0 * stress.j2()).sqrt() as f32);
         self.first.push(stress.principal_values()[0] as f32);
-        if principal {
-            let (values, directions) = stress.eigen();
-            self.principal.push(single(values));
-            for (axis, of) in self.directions.iter_mut().enumerate() {
-                of.push(single(directions.column(axis).into_owned().into()));
-            }
-        }
     }
 
-    fn fields(&self, further: FurtherFields) -> Vec<Field<'_>> {
+    fn fields(&self) -> Vec<Field<'_>> {
         let mut fields = vec![
             tensor("stress", &self.stress),
             scalar("first_principal_stress", &self.first),
@@ -289,14 +339,7 @@ impl ElementFields {
             Field::integer("body", &self.body),
             Field::integer("material", &self.material),
         ];
-        if further.principal {
-            fields.push(vector("principal_stresses", &self.principal));
-            let names = ["principal_direction_1", "principal_direction_2", "principal_direction_3"];
-            fields.extend(names.into_iter().zip(&self.directions).map(|(name, of)| vector(name, of)));
-        }
-        if further.strain {
-            fields.push(tensor("strain", &self.strain));
-        }
+        fields.extend(self.further.iter().map(Array::field));
         if !self.phase.is_empty() {
             fields.push(scalar("d", &self.phase));
         }

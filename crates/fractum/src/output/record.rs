@@ -6,32 +6,25 @@ use std::sync::Arc;
 use fractum_io::atomic::{Group, Written};
 use fractum_io::attenuation::{Attenuation, Station};
 use fractum_io::build::PpvStations;
-use fractum_io::case::model::{Case, Output, ProbeExpression, ProbeInput, ProbeKind, Take, load_of};
+use fractum_io::case::model::{
+    Case, HistoryColumns, Instant, Output, OutputField, ProbeExpression, ProbeInput, ProbeKind, Take, load_of,
+};
 use fractum_io::history::History;
 use fractum_io::summary::LargestOverlap;
 use fractum_io::vtk::{Collection, FrameWriter};
 use fractum_scene::{
-    Counts, EnergyKind, EnergyRole, PeakVelocity, Probe, ProbedScene, Scene, StationPlace, VelocityStation, Watched,
+    Counts, EnergyKind, PeakVelocity, Probe, ProbedScene, Scene, StationPlace, VelocityStation, Watched,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
-use crate::output::columns::{Course, columns, no_probes, of_heat, of_left};
+use crate::output::columns::{Course, columns, no_probes};
 use crate::output::fetch::{Fetch, fetch_together, points_of_probes};
 use crate::output::frames::{Frame, FrameEntry, GAUGES, GridLayout};
 use crate::output::path_frames::PathFrames;
 use crate::output::series::{index_of_max, interpolate, is_due, next_index, slope_of_window, speed, time_mean};
 use crate::process::ranks::Ranks;
 use crate::solver::Measured;
-
-/// Entries of the ledger that count in its balance.
-fn balance() -> impl Iterator<Item = EnergyKind> {
-    EnergyKind::ALL.into_iter().filter(|kind| kind.sign() != 0)
-}
-
-fn parts_of_bonds() -> impl Iterator<Item = EnergyKind> {
-    EnergyKind::ALL.into_iter().filter(|kind| kind.role() == EnergyRole::PartOfBonds)
-}
 
 /// How many elements and bonds are gone: as none comes back, equal numbers are the same ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,7 +81,7 @@ impl RecordState {
 /// Writes the results of a run while it goes.
 pub(crate) struct Recorder {
     case: Arc<Case>,
-    probes: Vec<Option<Probe>>,
+    probes: Vec<Option<Box<dyn Probe>>>,
     ppv: Vec<PpvStations>,
     /// Results folder of the run, where frames go.
     results: PathBuf,
@@ -106,8 +99,8 @@ pub(crate) struct Recorder {
     course: Course,
     /// Whether this process writes the results.
     writes: bool,
-    /// Whether rows tell rest from motion.
-    tells_motion: bool,
+    /// What rows have before the values of probes.
+    columns: HistoryColumns,
 }
 
 impl Recorder {
@@ -119,13 +112,13 @@ impl Recorder {
     pub(crate) fn open(
         case: Arc<Case>,
         scene: &Scene,
-        probes: Vec<Option<Probe>>,
+        probes: Vec<Option<Box<dyn Probe>>>,
         ppv: Vec<PpvStations>,
         grid: GridLayout,
         ([folder, results], course, writes): ([&Path; 2], Course, bool),
         resumed: Option<RecordState>,
     ) -> Result<Self, Failure> {
-        let tells_motion = no_probes(&case, scene, course).in_motion;
+        let before_probes = no_probes(&case, scene, course);
         let columns = columns(&case, scene, course);
         let path = folder.join("history.csv");
         let (history, state) = match resumed {
@@ -156,12 +149,12 @@ impl Recorder {
             gone: None,
             course,
             writes,
-            tells_motion,
+            columns: before_probes,
         })
     }
 
     /// The probes of a further stage, whose supports are others.
-    pub(crate) fn set_probes(&mut self, probes: Vec<Option<Probe>>) {
+    pub(crate) fn set_probes(&mut self, probes: Vec<Option<Box<dyn Probe>>>) {
         (self.probes, self.gone) = (probes, None);
     }
 
@@ -182,7 +175,7 @@ impl Recorder {
         let stations =
             self.ppv.iter().flat_map(|of| &of.stations).flat_map(|station| &station.places).map(|own| own.node);
         watched.nodes.extend(stations);
-        if self.case.output.fields.reaction {
+        if self.case.output.fields.has(OutputField::Reaction) {
             let held =
                 |held: &[u8]| (0..).zip(held).filter(|(_, held)| **held != 0).map(|(i, _)| i).collect::<Vec<u32>>();
             watched.nodes.extend(held(scene.supports().held()));
@@ -243,19 +236,9 @@ impl Recorder {
     /// - `is_last`: whether it is the last row of the run, which measures all
     pub(crate) fn row(&mut self, scene: &mut Scene, measured: Measured, is_last: bool) -> Result<(), Failure> {
         let Measured { time, dt, in_motion } = measured;
-        let ledger = scene.ledger();
         let counts = scene.counts();
-        let mut row = vec![time, dt];
-        row.extend(balance().map(|kind| ledger[kind]));
-        row.extend([ledger.residual(), counts.removed_elements as f64, counts.particles as f64]);
-        if !scene.bonded.is_empty() {
-            row.extend(parts_of_bonds().map(|kind| ledger[kind]));
-            row.push(counts.broken_bonds as f64);
-        }
-        row.extend(scene.domain().into_iter().flat_map(|_| of_left(scene.left())));
-        row.extend(scene.heat().into_iter().flat_map(of_heat));
-        row.extend(self.course.turns_back.then_some(scene.clock.step as f64));
-        row.extend(self.tells_motion.then_some(f64::from(u8::from(in_motion))));
+        let instant = Instant { scene, ledger: scene.ledger(), counts: &counts, time, dt, moves: in_motion };
+        let mut row = self.columns.values(&instant);
         let before = self.state.times.last().copied();
         let is_held =
             |every: f64| !is_last && before.is_some_and(|before| !is_due(time, next_index(before, every), every));
@@ -263,12 +246,12 @@ impl Recorder {
         let gone = Gone::at(scene, &counts);
         let as_before = self.gone.replace(gone) == Some(gone);
         let case = Arc::clone(&self.case);
-        let is_known = |index: usize, probe: &Probe| match case.probes[index].every {
+        let is_known = |index: usize, probe: &dyn Probe| match case.probes[index].every {
             Some(every) => is_held(every),
             None => as_before && probe.is_of_separation(),
         };
-        let all = (0..).zip(&self.probes).filter_map(|(index, probe)| Some((index, probe.as_ref()?)));
-        let due: Vec<(usize, &Probe)> = all.filter(|(index, probe)| !is_known(*index, probe)).collect();
+        let all = (0..).zip(&self.probes).filter_map(|(index, probe)| Some((index, probe.as_deref()?)));
+        let due: Vec<(usize, &dyn Probe)> = all.filter(|(index, probe)| !is_known(*index, *probe)).collect();
         let of_due = || due.iter().filter_map(|(index, _)| self.fetches.get(*index));
         let contacts = of_due().any(|fetch| fetch.contacts);
         fetch_together(of_due(), scene);
@@ -276,7 +259,7 @@ impl Recorder {
         let probed = ProbedScene::with_counts(scene, counts);
         for index in 0..case.probes.len() {
             let value = match (&case.probes[index].kind, &self.probes[index]) {
-                (_, Some(probe)) if is_known(index, probe) => {
+                (_, Some(probe)) if is_known(index, &**probe) => {
                     self.state.series[index].last().copied().unwrap_or(f64::NAN)
                 }
                 (_, Some(probe)) => probe.value(&probed),

@@ -193,7 +193,7 @@ impl Stage<'_> {
     fn written(&self, built: &BuiltScene, [frames, rows]: [f64; 2]) -> Written {
         let scene = &built.scene;
         let probed = ProbedScene::new(scene);
-        let measurements = |(probe, described): (&Option<Probe>, &DescribedProbe)| {
+        let measurements = |(probe, described): (&Option<Box<dyn Probe>>, &DescribedProbe)| {
             let began = Instant::now();
             std::hint::black_box(probe.as_ref()?.value(&probed));
             let count = described.every.map_or(rows, |every| rows.min((self.span / every).ceil() + 1.0));

@@ -83,7 +83,7 @@ impl Simulation {
 
     /// Warns of bodies that came apart into single nodes.
     fn warn_of_single_nodes(&mut self) -> Result<(), Failure> {
-        let reads_velocity = self.case.probes.iter().any(|probe| matches!(probe.kind, ProbeKind::Velocity { .. }));
+        let reads_velocity = self.case.probes.iter().any(|probe| matches!(probe.kind, ProbeKind::Velocity(_)));
         let (least, what) = if reads_velocity {
             (VISIBLY_SINGLE, "which have velocities of their own, and are no fragments")
         } else {

@@ -7,12 +7,13 @@ use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_parallel::{Exchange, gather};
 
+use crate::case::measure::{Damaged, Stress};
 use crate::case::model::{Case, ProbeKind, Selection};
 
 /// Elements whose stress probes measure.
 fn measured(case: &Case) -> impl Iterator<Item = &Selection> {
     case.probes.iter().filter_map(|probe| match &probe.kind {
-        ProbeKind::Stress { on, .. } if case.particle_group(on.group_name()).is_none() => Some(on),
+        ProbeKind::Stress(Stress { on, .. }) if case.particle_group(on.group_name()).is_none() => Some(on),
         _ => None,
     })
 }
@@ -49,7 +50,7 @@ impl NamedElements {
     /// - `bodies`: groups of the bodies, of which the whole has the elements of process 0 first, and so on
     pub(super) fn of(case: &Case, mesh: &Mesh, bodies: &[usize], exchange: &dyn Exchange) -> Self {
         let damaged = case.probes.iter().filter_map(|probe| match &probe.kind {
-            ProbeKind::Damaged { group, .. } => group.as_ref(),
+            ProbeKind::Damaged(Damaged { group, .. }) => group.as_ref(),
             _ => None,
         });
         let names: BTreeSet<&str> =

@@ -13,25 +13,24 @@ mod solver;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use super::key_kind::{KeyDoc, KeyKind};
+use super::key_kind::{KeyDoc, KeyKind, key, names};
+use super::measure;
+use super::model::FIELD_KEYS;
+use super::reader::Unknown;
 use super::tree::{Node, Value, join};
-use super::{Choice, Diagnostic, nearest};
-
-fn names<T: Choice>() -> Vec<&'static str> {
-    T::NAMES.iter().map(|(name, _)| *name).collect()
-}
+use super::{Diagnostic, nearest};
 
 /// Pattern of the table form of a time function, which may stand at many keys.
 pub(super) const TIME_FUNCTION: &str = "TIME_FUNCTION";
 
-const fn key(path: &'static str, kind: KeyKind, default: &'static str, doc: &'static str) -> KeyDoc {
-    KeyDoc { path, kind, default, doc }
-}
-
 /// Every key of the case file, parents before children.
 pub fn keys() -> &'static [KeyDoc] {
     static KEYS: LazyLock<Vec<KeyDoc>> = LazyLock::new(|| {
-        [bodies::KEYS, conditions::KEYS, gas::KEYS, heat::KEYS, solver::KEYS, probes::KEYS, output::KEYS].concat()
+        let measures = measure::keys();
+        let probes = [probes::FIRST, &measures, probes::LAST].concat();
+        let output = [output::FIRST, FIELD_KEYS, output::LAST].concat();
+        let before = [bodies::KEYS, conditions::KEYS, gas::KEYS, heat::KEYS, solver::KEYS].concat();
+        [before, probes, output].concat()
     });
     &KEYS
 }
@@ -94,12 +93,6 @@ const RETIRED: [(&str, &str); 1] = [(
     "materials.NAME.damage.crack_plane_gate",
     "the crack-plane gate is gone; remove the key, and where cracks follow rows of the mesh take another one or set regularisation = \"phase-field\"",
 )];
-
-/// An unknown key, and the path of the key that was probably meant.
-pub(super) struct Unknown {
-    pub(super) diagnostic: Diagnostic,
-    pub(super) meant: Option<String>,
-}
 
 /// Reports keys that do not exist, with the nearest that does, and takes them out of the tree.
 pub(super) fn remove_unknown(node: &mut Node, pattern: &str, report: &mut dyn FnMut(Unknown)) {

@@ -5,15 +5,17 @@ use crate::case::key_kind::{KeyDoc, KeyKind as K};
 use crate::case::model::{PlotScale, Scaling};
 use crate::case::unit::Dimension as D;
 
+/// Before the keys of the fields.
 #[rustfmt::skip] // a table reads best with one row per line
-pub(super) static KEYS: &[KeyDoc] = &[
+pub(super) static FIRST: &[KeyDoc] = &[
     key("output", K::Table, "", "What is written, and how often"),
     key("output.fields", K::Table, "", "Fields for ParaView"),
     key("output.fields.every", K::Quantity(D::TIME), "1/50 of the run", "Time between fields, > 0; on a path of equilibria the way of the load factor, forth and back, and there are further ones as damage grows"),
-    key("output.fields.principal", K::Flag, "false", "Write the three principal stresses of elements, each with its direction"),
-    key("output.fields.strain", K::Flag, "false", "Write the strain of elements, thermal strain included"),
-    key("output.fields.reaction", K::Flag, "false", "Write the forces of supports on nodes"),
-    key("output.fields.fragment", K::Flag, "false", "Write the number of the fragment that each node belongs to, as in fragments.csv; 0 for single nodes"),
+];
+
+/// After them.
+#[rustfmt::skip]
+pub(super) static LAST: &[KeyDoc] = &[
     key("output.fields.pieces", K::Quantity(D::NONE), "1", "Files that solids and particles of a frame are cut into, 1 to 4096; beyond 1 a .pvtu or .pvtp lists them, and several processes share the work of writing them"),
     key("output.history", K::Table, "", "Rows of history.csv"),
     key("output.history.every", K::Quantity(D::TIME), "1/1000 of the run", "Time between rows, > 0"),

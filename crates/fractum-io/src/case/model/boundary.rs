@@ -2,41 +2,8 @@
 
 use fractum_math::{Sym3, Vec3};
 
-use super::GroupUse;
+use super::{GroupUse, Selection};
 use crate::case::{Field, Place, Spanned, TimeFunction};
-
-/// Which nodes or particles are meant: those of a group, those where a condition holds, or those of the group where it
-/// holds.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Selection {
-    /// Mesh group, body of particles or set of its particles, or rigid body; all nodes of solid bodies if absent.
-    pub group: Option<Spanned<String>>,
-    /// Condition on the position at the start. At least one of the two is there.
-    pub within: Option<Spanned<Field>>,
-}
-
-impl Selection {
-    /// All of a group.
-    pub fn of_group(group: Spanned<String>) -> Self {
-        Selection { group: Some(group), within: None }
-    }
-
-    /// Name of the group; empty without one.
-    pub fn group_name(&self) -> &str {
-        self.group.as_ref().map_or("", |group| &group.value)
-    }
-
-    /// What stands for it in messages: its group, or the key of its condition.
-    pub fn label(&self) -> &str {
-        self.group.as_ref().map_or("where", |group| &group.value)
-    }
-
-    /// Where it stands in the case.
-    pub fn place(&self) -> Option<&Place> {
-        let condition = self.within.as_ref().map(|within| &within.place);
-        self.group.as_ref().map(|group| &group.place).or(condition)
-    }
-}
 
 /// Prescribed motion of nodes or particles.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
-//! Columns of the history that are no probes.
+//! Columns of the history that are no probes: name, unit and value.
 
-use fractum_scene::{EnergyKind, EnergyRole};
+use fractum_scene::{Counts, EnergyKind, EnergyRole, Heat, Ledger, Left, Scene};
 
 /// What a run has: it decides which columns its history has before those of probes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -17,25 +17,93 @@ pub struct HistoryColumns {
     pub in_motion: bool,
 }
 
-/// Name and unit of a column.
-type Named = (&'static str, &'static str);
+/// The instant of a row.
+#[derive(Clone, Copy)]
+pub struct Instant<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its ledger.
+    pub ledger: &'a Ledger,
+    /// Its counts.
+    pub counts: &'a Counts,
+    /// Time [s].
+    pub time: f64,
+    /// Time step [s].
+    pub dt: f64,
+    /// Whether the scene moves.
+    pub moves: bool,
+}
 
-/// What has left the domain.
-const LEFT: [Named; 5] = [
-    ("left_pieces", "1"),
-    ("left_mass", "kg"),
-    ("left_momentum_x", "N s"),
-    ("left_momentum_y", "N s"),
-    ("left_momentum_z", "N s"),
+impl Instant<'_> {
+    fn left(&self) -> &Left {
+        self.scene.left()
+    }
+
+    fn heat(&self, of: fn(&Heat) -> f64) -> f64 {
+        self.scene.heat().map_or(f64::NAN, of)
+    }
+}
+
+/// A column: name, SI unit, and its value in a row.
+#[derive(Clone, Copy)]
+struct Column {
+    name: &'static str,
+    unit: &'static str,
+    value: Value,
+}
+
+#[derive(Clone, Copy)]
+enum Value {
+    Energy(EnergyKind),
+    Of(fn(&Instant<'_>) -> f64),
+}
+
+const fn column(name: &'static str, unit: &'static str, value: fn(&Instant<'_>) -> f64) -> Column {
+    Column { name, unit, value: Value::Of(value) }
+}
+
+/// Columns that every history has before and after the entries of the ledger that count in its balance.
+const FIRST: [Column; 2] = [column("time", "s", |row| row.time), column("dt", "s", |row| row.dt)];
+const COUNTS: [Column; 3] = [
+    column("residual", "J", |row| row.ledger.residual()),
+    column("removed_elements", "1", |row| row.counts.removed_elements as f64),
+    column("particles", "1", |row| row.counts.particles as f64),
 ];
 
-const HEAT: [Named; 3] = [("heat_stored", "J"), ("heat_brought", "J"), ("heat_residual", "J")];
+/// After the energies of bonds.
+const BONDS: [Column; 1] = [column("broken_bonds", "1", |row| row.counts.broken_bonds as f64)];
+
+/// What has left the domain.
+const LEFT: [Column; 5] = [
+    column("left_pieces", "1", |row| row.left().pieces as f64),
+    column("left_mass", "kg", |row| row.left().mass),
+    column("left_momentum_x", "N s", |row| row.left().momentum.x),
+    column("left_momentum_y", "N s", |row| row.left().momentum.y),
+    column("left_momentum_z", "N s", |row| row.left().momentum.z),
+];
+
+const HEAT: [Column; 3] = [
+    column("heat_stored", "J", |row| row.heat(|heat| heat.ledger().stored)),
+    column("heat_brought", "J", |row| {
+        row.heat(|heat| {
+            let ledger = heat.ledger();
+            ledger.held + ledger.supplied + ledger.convection
+        })
+    }),
+    column("heat_residual", "J", |row| row.heat(|heat| heat.ledger().residual())),
+];
 
 /// Orders rows and frames where the load factor may run back.
-const STEP: Named = ("step", "1");
+const STEP: Column = column("step", "1", |row| row.scene.clock.step as f64);
 
 /// 1 while the scene moves.
-const IN_MOTION: Named = ("in_motion", "1");
+const IN_MOTION: Column = column("in_motion", "1", |row| f64::from(u8::from(row.moves)));
+
+/// Entries of the ledger that fulfil a condition.
+fn energies(of: fn(EnergyKind) -> bool) -> impl Iterator<Item = Column> {
+    let all = EnergyKind::ALL.into_iter().filter(move |kind| of(*kind));
+    all.map(|kind| Column { name: kind.name(), unit: "J", value: Value::Energy(kind) })
+}
 
 impl HistoryColumns {
     /// All that any run may have.
@@ -43,15 +111,21 @@ impl HistoryColumns {
 
     /// Names and SI units of the columns, in their order.
     pub fn list(self) -> Vec<(&'static str, &'static str)> {
-        self.groups().concat()
+        self.groups().concat().iter().map(|column| (column.name, column.unit)).collect()
     }
 
-    fn groups(self) -> [Vec<Named>; 6] {
-        let mut ledger = vec![("time", "s"), ("dt", "s")];
-        ledger.extend(EnergyKind::ALL.into_iter().filter(|kind| kind.sign() != 0).map(|kind| (kind.name(), "J")));
-        ledger.extend([("residual", "J"), ("removed_elements", "1"), ("particles", "1")]);
-        let of_bonds = EnergyKind::ALL.into_iter().filter(|kind| kind.role() == EnergyRole::PartOfBonds);
-        let bonds = of_bonds.map(|kind| (kind.name(), "J")).chain([("broken_bonds", "1")]).collect();
+    /// Values of the columns at an instant, in their order.
+    pub fn values(self, row: &Instant<'_>) -> Vec<f64> {
+        let value = |column: &Column| match column.value {
+            Value::Energy(kind) => row.ledger[kind],
+            Value::Of(value) => value(row),
+        };
+        self.groups().iter().flatten().map(value).collect()
+    }
+
+    fn groups(self) -> [Vec<Column>; 6] {
+        let ledger = FIRST.into_iter().chain(energies(|kind| kind.sign() != 0)).chain(COUNTS).collect();
+        let bonds = energies(|kind| kind.role() == EnergyRole::PartOfBonds).chain(BONDS).collect();
         let groups = [
             (true, ledger),
             (self.particles, bonds),
@@ -66,20 +140,20 @@ impl HistoryColumns {
     /// How many columns of a history, which these names begin, are no probes.
     pub fn count(names: &[&str]) -> usize {
         if let [first, others @ ..] = names
-            && *first == STEP.0
+            && *first == STEP.name
         {
             // Put first, as the column that orders the rows.
             return 1 + Self::count(others);
         }
         Self::ALL.groups().iter().fold(0, |count, group| {
-            let begins = names.get(count) == group.first().map(|(name, _)| name);
+            let begins = names.get(count).copied() == group.first().map(|column| column.name);
             count + if begins { group.len().min(names.len() - count) } else { 0 }
         })
     }
 
     /// Index of the column that orders the rows by steps, among those that are no probes.
     pub fn step(names: &[&str]) -> Option<usize> {
-        names[..Self::count(names)].iter().position(|name| *name == STEP.0)
+        names[..Self::count(names)].iter().position(|name| *name == STEP.name)
     }
 }
 

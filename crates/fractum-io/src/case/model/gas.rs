@@ -1,6 +1,6 @@
 //! Gas in holes and in the cracks that open to them.
 
-use fractum_scene::{Charge, EquationOfState, GasMeasure, SlitFlow};
+use fractum_scene::{Charge, EquationOfState, SlitFlow};
 
 use super::Selection;
 use crate::case::choice::choice;
@@ -52,8 +52,3 @@ pub enum GasLaw {
 }
 
 choice!(GasLaw { "perfect-gas" => PerfectGas, "noble-abel" => NobleAbel, "jwl" => Jwl });
-
-choice!(GasMeasure {
-    "pressure" => Pressure, "temperature" => Temperature, "mass" => Mass, "energy" => Energy, "volume" => Volume,
-    "wetted_area" => WettedArea, "leaked_mass" => LeakedMass,
-});

@@ -1,6 +1,6 @@
 //! Heat in solids and bonded bodies.
 
-use fractum_scene::{HeatMeasure, PackingConduction, TemperatureTake};
+use fractum_scene::PackingConduction;
 
 use super::{GroupUse, Selection};
 use crate::case::choice::choice;
@@ -110,10 +110,3 @@ pub struct Thermal {
     /// Coefficient of linear expansion [1/K].
     pub expansion: f64,
 }
-
-choice!(HeatMeasure {
-    "stored" => Stored, "held" => Held, "supplied" => Supplied, "convection" => Convection, "residual" => Residual,
-    "expansion_work" => ExpansionWork,
-});
-
-choice!(TemperatureTake { "mean" => Mean, "lowest" => Lowest, "highest" => Highest });

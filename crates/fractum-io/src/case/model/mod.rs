@@ -9,6 +9,7 @@ mod gauges;
 mod heat;
 mod loose;
 mod material;
+mod output;
 mod plot;
 mod ppv;
 mod probe;
@@ -28,22 +29,26 @@ pub use bonded::{
     BondFailure, BondLawKind, BondedBody, BondedShape, Bonds, FileContent, InterfaceArea, Interfaces, PackingSource,
     ParticleSize,
 };
-pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
-pub use columns::HistoryColumns;
+pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Support, SurfaceSupport};
+pub use columns::{HistoryColumns, Instant};
 pub use gas::{Gas, GasHole, GasLaw};
 pub use gauges::Gauges;
 pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
 pub use loose::{LooseBody, LooseSource, Region};
 pub use material::{Damage, Material};
+pub(crate) use output::FIELD_KEYS;
+pub use output::{Output, OutputField, OutputFields};
 pub use plot::{Plot, PlotReference, PlotScale};
 pub use ppv::{Ppv, Scaling, StationLine};
-pub use probe::{Probe, ProbeExpression, ProbeInput, ProbeKind, StressComponent, Take, load_of};
+pub use probe::{Probe, load_of};
 pub use rigid::{RigidBody, RigidShape};
 pub use scatter::{Distribution, Reference, Scatter, Weibull};
 pub use solver::{Control, InitialOverlap, Opening, Solver, SolverKind, StaticOptions, StopWhen, TimeStep};
 pub use tie::Tie;
 pub use verify::{NEIGHBOURS, Neighbour, Promise, Saying, Verify};
 
+pub use super::measure::{ProbeExpression, ProbeInput, ProbeKind, Take};
+pub use super::selection::{GroupUse, Selection};
 use super::{Diagnostic, Dimension, Spanned};
 
 /// A case, read and checked. What needs the mesh (group names, two or three dimensions) is checked by its user, with
@@ -172,42 +177,6 @@ pub struct Damping {
     pub tchamwa_wielgosz: Option<f64>,
 }
 
-/// Fields of solids that are written only where the case asks for them.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct FurtherFields {
-    /// Principal stresses and their directions.
-    pub principal: bool,
-    /// Strain.
-    pub strain: bool,
-    /// Forces of supports.
-    pub reaction: bool,
-    /// Number of the fragment.
-    pub fragment: bool,
-}
-
-/// What is written, and how often.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Output {
-    /// What frames hold besides what they always do.
-    pub fields: FurtherFields,
-    /// Time between fields [s].
-    pub fields_every: f64,
-    /// Files that solids and particles of a frame are cut into, from 1.
-    pub frame_pieces: usize,
-    /// Time between rows of the history [s].
-    pub history_every: f64,
-    /// Wall time between checkpoints [s].
-    pub checkpoint_every: f64,
-    /// Share of its strength that an edge may have lost and still join a fragment, above 0 up to 1.
-    pub joined_below: f64,
-    /// Peak particle velocity against distance.
-    pub ppv: Vec<Ppv>,
-    /// Grids of places with displacement and strain.
-    pub gauges: Vec<Gauges>,
-    /// Charts of the user's own in the report.
-    pub plots: Vec<Plot>,
-}
-
 /// A reference value of the case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expect {
@@ -274,27 +243,6 @@ const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
     ("time.end", Dimension::TIME),
 ];
 
-/// What a mesh group is used for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum GroupUse {
-    /// Elements of a body.
-    Body,
-    /// The volume that particles fill.
-    Filled,
-    /// Facets of a rigid body.
-    Tool,
-    /// Nodes of a support.
-    Support,
-    /// Nodes or facets that share a force.
-    Force,
-    /// Facets under a traction or pressure.
-    Facets,
-    /// Nodes of a probe.
-    ProbeNodes,
-    /// Elements of a probe.
-    ProbeElements,
-}
-
 impl Case {
     /// Whether rock may be crushed in it: a pressure pulse, or gas, on a solid in motion.
     pub fn is_blast(&self) -> bool {
@@ -358,16 +306,7 @@ impl Case {
         let holes = holes.map(|group| (group, GroupUse::Facets));
         let heated = heat.iter().flat_map(|heat| &heat.conditions);
         let heated = heated.filter_map(|own| Some((own.on.group.as_ref()?, own.kind.group_use())));
-        let probes = self.probes.iter().filter_map(|probe| {
-            let (on, group_use) = match &probe.kind {
-                ProbeKind::Damaged { group, .. } => return Some((group.as_ref()?, GroupUse::ProbeElements)),
-                ProbeKind::Surface { on, .. } => (on, GroupUse::Facets),
-                ProbeKind::Stress { on, .. } => (on, GroupUse::ProbeElements),
-                ProbeKind::Load { on, .. } | ProbeKind::Fragment { on, .. } => (on, GroupUse::ProbeNodes),
-                kind => (kind.on()?, GroupUse::ProbeNodes),
-            };
-            Some((on.group.as_ref()?, group_use))
-        });
+        let probes = self.probes.iter().filter_map(|probe| probe.kind.group());
         let stations = self.output.ppv.iter().flat_map(|ppv| ppv.groups.iter().chain([&ppv.hole]));
         let stations = stations.map(|group| (group, GroupUse::ProbeNodes));
         let gauges = self.output.gauges.iter().filter_map(|gauges| gauges.on.group.as_ref());

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use super::bonded::bonded;
 use super::loose::loose;
-use super::presence::optional;
 use super::rigid::rigid;
-use super::vectors::{condition, field, initial_velocity};
 use crate::case::model::{Body, BodyKind, Material, SolidBody, WHOLE_MESH};
 use crate::case::reader::Table;
+use crate::case::reader::presence::optional;
+use crate::case::reader::vectors::{condition, field, initial_velocity};
 use crate::case::unit::Dimension;
 use crate::case::{Diagnostic, Spanned};
 use crate::warning::Code;

@@ -1,12 +1,12 @@
 //! `[[bodies]]` of the kind `bonded`, and the beams of a material.
 
-use super::presence::optional;
-use super::vectors::{condition_of, initial_velocity, point};
 use super::{read_file, table_path, unit};
 use crate::case::model::{
     BondLawKind, BondedBody, BondedShape, Bonds, FileContent, Material, PackingSource, ParticleSize,
 };
 use crate::case::reader::Table;
+use crate::case::reader::presence::optional;
+use crate::case::reader::vectors::{condition_of, initial_velocity, point};
 use crate::case::unit::Dimension;
 use crate::case::{Choice, Diagnostic, Field, Place, Spanned};
 use fractum_dem::{Crushing, LocalBond};

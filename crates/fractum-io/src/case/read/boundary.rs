@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 
 use super::firing::{self, Pulses};
-use super::presence::{exactly_one, optional};
 use super::time_functions::time_function;
-use super::vectors::{AXES, components, condition};
-use crate::case::model::{InCracks, Load, LoadKind, Motion, Selection, Support, SurfaceSupport};
+use crate::case::model::{InCracks, Load, LoadKind, Motion, Support, SurfaceSupport};
 use crate::case::reader::Table;
+use crate::case::reader::presence::{exactly_one, optional};
+use crate::case::reader::vectors::{AXES, components};
+use crate::case::selection::selection;
 use crate::case::{Diagnostic, Spanned, TimeFunction};
 use crate::warning::Code;
 use fractum_math::Vec3;
@@ -56,16 +57,6 @@ fn unique<'s>(root: &Table<'_>, names: impl Iterator<Item = &'s Spanned<String>>
         }
     }
     unique
-}
-
-/// The keys `group` and `where`, of which at least one is there.
-pub(super) fn selection(table: &Table<'_>) -> Option<Selection> {
-    let within = optional(table, "where", |name| condition(table, name).spanned().given());
-    let group = match within {
-        Some(None) => table.text("group").spanned().required().map(Some),
-        _ => optional(table, "group", |name| table.text(name).spanned().given()),
-    };
-    Some(Selection { group: group?, within: within? })
 }
 
 fn support(table: Table<'_>) -> Option<Support> {

@@ -2,11 +2,11 @@
 
 use fractum_scene::{Amount, Charge, EquationOfState, Jwl, NobleAbel, PerfectGas, SlitFlow};
 
-use super::boundary::selection;
-use super::presence::optional;
 use super::time_functions::time_function;
 use crate::case::model::{Gas, GasHole, GasLaw, Solver, SolverKind};
 use crate::case::reader::Table;
+use crate::case::reader::presence::optional;
+use crate::case::selection::selection;
 use crate::case::{Diagnostic, Spanned};
 
 /// Reads the gas, if there is any; nothing where it is wrong. It acts in stages of motion.

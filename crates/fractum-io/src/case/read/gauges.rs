@@ -2,11 +2,11 @@
 
 use fractum_math::Vec3;
 
-use super::boundary::selection;
-use super::vectors::point;
 use crate::case::Diagnostic;
 use crate::case::model::Gauges;
 use crate::case::reader::Table;
+use crate::case::reader::vectors::point;
+use crate::case::selection::selection;
 
 /// Most places of one grid.
 const MOST: f64 = 10_000.0;

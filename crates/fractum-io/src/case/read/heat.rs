@@ -2,12 +2,12 @@
 
 use fractum_scene::PackingConduction;
 
-use super::boundary::selection;
-use super::presence::{exactly_one, optional};
 use super::time_functions::time_function;
-use super::vectors::field;
 use crate::case::model::{Heat, HeatCondition, HeatKind, HeatScheme, Solver, SolverKind, Thermal};
 use crate::case::reader::Table;
+use crate::case::reader::presence::{exactly_one, optional};
+use crate::case::reader::vectors::field;
+use crate::case::selection::selection;
 use crate::case::{Diagnostic, Spanned};
 
 /// Reads what a material is to heat; `Some(None)` where it says nothing.

@@ -1,10 +1,10 @@
 //! `[in_situ]`: stress of the solids before the run.
 
 use super::names;
-use super::vectors::field;
 use crate::case::Diagnostic;
 use crate::case::model::InSitu;
 use crate::case::reader::Table;
+use crate::case::reader::vectors::field;
 
 const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
 

@@ -3,9 +3,9 @@
 use fractum_dem::{Crushing, InterfaceFailure, LocalBond};
 use fractum_math::Vec3;
 
-use super::vectors::point;
 use crate::case::model::{InterfaceArea, Interfaces};
 use crate::case::reader::Table;
+use crate::case::reader::vectors::point;
 use crate::case::usual::STRENGTH;
 
 /// Reads the table; nothing where it, or the elasticity of the material, is wrong.

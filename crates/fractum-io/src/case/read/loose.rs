@@ -1,11 +1,11 @@
 //! `[[bodies]]` of the kind `particles`.
 
 use super::bonded::{DISPERSION_RANGE, file, groups};
-use super::presence::optional;
 use super::unit;
-use super::vectors::{direction, initial_velocity, point};
 use crate::case::model::{LooseBody, LooseSource, Region};
 use crate::case::reader::Table;
+use crate::case::reader::presence::optional;
+use crate::case::reader::vectors::{direction, initial_velocity, point};
 use crate::case::unit::Dimension;
 use crate::case::{Diagnostic, Spanned};
 use fractum_math::Vec3;

@@ -1,9 +1,9 @@
 //! `[materials.NAME]`.
 
 use super::fracture::{FRICTION_ANGLE, read_friction_angle};
-use super::presence::optional;
 use crate::case::model::{Damage, Material};
 use crate::case::reader::Table;
+use crate::case::reader::presence::optional;
 use crate::case::usual::{DENSITY, FRACTURE_ENERGY, STRENGTH, YOUNG_MODULUS};
 use crate::case::{Diagnostic, Spanned};
 use crate::warning::Code;

@@ -14,11 +14,10 @@ mod interface;
 mod loose;
 mod materials;
 mod names;
+mod output;
 mod parameters;
 mod plots;
 mod ppv;
-mod presence;
-mod probe_kinds;
 mod probes;
 mod ratios;
 mod rigid;
@@ -28,7 +27,6 @@ mod stages;
 mod table_file;
 mod ties;
 mod time_functions;
-mod vectors;
 mod verify;
 
 use std::collections::BTreeMap;
@@ -37,7 +35,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::expression::parse_unit;
-use super::keys::remove_unknown;
+use super::keys::{describe, remove_unknown};
 use super::model::{
     Body, BodyKind, BondedShape, Case, CaseSource, Flows, MeshSource, PackingSource, RigidShape, SolidGroup, Verify,
     WHOLE_MESH,
@@ -104,7 +102,7 @@ fn foreign(bytes: &[u8]) -> Option<&'static str> {
 pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Result<Case, Diagnostics> {
     let file = path.display().to_string();
     let mut root = tree::parse(text, &file).map_err(|errors| sorted(errors, &file))?;
-    let mut reader = Reader::new(path.parent().unwrap_or(Path::new("")).to_path_buf());
+    let mut reader = Reader::new(path.parent().unwrap_or(Path::new("")).to_path_buf(), describe);
     for (name, value) in overrides {
         let node = tree::parse_override(name, value);
         if let Err(error) = override_value(&mut root, name, node) {
@@ -200,7 +198,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let gas = gas::read(&table, solver.as_ref(), !stage.is_empty());
     let heat = heat::read(&table, solver.as_ref(), !stage.is_empty());
     let plots = plots::read(&table, &probes);
-    let output = solver::output(&table, solver.as_ref().map(|solver| solver.end), plots);
+    let output = output::read(&table, solver.as_ref().map(|solver| solver.end), plots);
     let expect = expect::read(&table, &probes);
     let around = verify::Around {
         root,

@@ -1,11 +1,11 @@
 //! `[[output.ppv]]`.
 
 use super::names;
-use super::presence::optional;
-use super::vectors::{direction, point};
 use crate::case::Diagnostic;
 use crate::case::model::{Ppv, Scaling, StationLine};
 use crate::case::reader::Table;
+use crate::case::reader::presence::optional;
+use crate::case::reader::vectors::{direction, point};
 
 /// Most stations of one line.
 const MOST: u64 = 10_000;

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use super::parameters::check_name;
-use super::presence::exactly_one;
-use super::probe_kinds::measured;
 use crate::case::expression::{Named, Names, Op, Type, parse_unit};
+use crate::case::measure;
 use crate::case::model::{Probe, ProbeExpression, ProbeInput, ProbeKind, Take};
+use crate::case::reader::presence::exactly_one;
 use crate::case::reader::{ParameterNames, Table};
 use crate::case::tree::{Node, Value};
 use crate::case::unit::Dimension;
@@ -74,35 +74,8 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
     let is_first = by_name.get(&own_name).is_none_or(|first| *first == earlier.len());
     let name = table.text("name").spanned().required().filter(|name| good_name(&table, name, is_first));
     let mut read = ReadProbe { name: own_name, dimension: None, scalar: false, probe: None };
-    const KINDS: &[&str] = &[
-        "reaction",
-        "moment",
-        "displacement",
-        "velocity",
-        "rotation",
-        "contact_force",
-        "stress",
-        "strain",
-        "extensometer",
-        "load",
-        "surface",
-        "fragment",
-        "fragment_size",
-        "energy",
-        "count",
-        "momentum",
-        "angular_momentum",
-        "temperature",
-        "heat",
-        "gas",
-        "crack_area",
-        "crack",
-        "radial_cracks",
-        "damaged",
-        "wave_speed",
-        "expression",
-    ];
-    let Some(key) = exactly_one(&table, KINDS) else { return read };
+    let kinds: Vec<&str> = measure::NAMES.iter().copied().chain(["expression"]).collect();
+    let Some(key) = exactly_one(&table, &kinds) else { return read };
     let mut unit = None;
     let measured = match key {
         "expression" => expression(&table, earlier, by_name).map(|expression| {
@@ -110,15 +83,16 @@ fn probe(table: Table<'_>, own_name: String, earlier: &[ReadProbe], by_name: &Ha
             read.scalar = expression.probe.scalar;
             (ProbeKind::Expression(expression.probe), expression.dimension)
         }),
-        _ => measured(&table, key),
+        _ => measure::read(&table, key).map(|(kind, dimension, own)| {
+            unit = own.map(str::to_owned);
+            (kind, dimension)
+        }),
     };
     let every = if key == "expression" { None } else { table.quantity("every").positive().given() };
     table.finish(&format!("with {key}"));
     if let Some((kind, dimension)) = measured {
         read.dimension = Some(dimension);
-        // A moment is no energy, though its dimension is that of one.
-        let own = if key == "moment" { "N m".to_owned() } else { dimension.symbol() };
-        let unit = unit.unwrap_or(own);
+        let unit = unit.unwrap_or_else(|| dimension.symbol());
         read.probe = name.map(|name| Probe { name, unit, kind, every });
     }
     read

@@ -2,13 +2,13 @@
 
 use super::bonded::file;
 use super::boundary::fixed_axes;
-use super::presence::optional;
 use super::time_functions::time_function;
-use super::vectors::{AXES, components, direction, initial_velocity, point};
 use super::{materials, unit};
 use crate::case::Diagnostic;
 use crate::case::model::{Material, RigidBody, RigidShape};
 use crate::case::reader::Table;
+use crate::case::reader::presence::optional;
+use crate::case::reader::vectors::{AXES, components, direction, initial_velocity, point};
 use crate::case::unit::Dimension;
 use fractum_math::Vec3;
 

@@ -1,9 +1,9 @@
 //! Time functions: constants, expressions, ramps, tables, pulses.
 
-use super::presence::exactly_one;
-use super::vectors::expression;
 use super::{table_file, unit};
 use crate::case::keys::TIME_FUNCTION;
+use crate::case::reader::presence::exactly_one;
+use crate::case::reader::vectors::expression;
 use crate::case::reader::{Reader, Reading, Table};
 use crate::case::tree::{Node, Value};
 use crate::case::unit::Dimension;

@@ -1,33 +1,11 @@
+//! What is measured on a set of points.
+
 use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 
-use super::{Points, Supports};
-
-/// The direction of a component of a vector.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Along {
-    /// The same everywhere: a unit vector.
-    Direction(Vec3),
-    /// Away from an axis.
-    Radial(Axis),
-    /// Around an axis, by the right hand.
-    Tangential(Axis),
-}
-
-impl Along {
-    /// Unit vector at a place; zero on the axis.
-    pub fn at(&self, place: &Vec3) -> Vec3 {
-        let away = |axis: &Axis| {
-            let from = place - axis.point;
-            (from - axis.direction * from.dot(&axis.direction)).try_normalize(0.0).unwrap_or_default()
-        };
-        match self {
-            Along::Direction(direction) => *direction,
-            Along::Radial(axis) => away(axis),
-            Along::Tangential(axis) => axis.direction.cross(&away(axis)),
-        }
-    }
-}
+use crate::conditions::{Along, Points, Population, Supports, mean};
+use crate::measure::probe::{NeededPoints, Probe, ProbeNeeds, ProbedScene};
+use crate::scene::Scene;
 
 /// What is measured on a set of points, ascending: nodes of solids, or particles.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +51,7 @@ pub enum PointProbe {
 
 impl PointProbe {
     /// The points that it looks at.
-    pub(crate) fn points(&self, supports: &Supports) -> Vec<u32> {
+    fn points(&self, supports: &Supports) -> Vec<u32> {
         match self {
             PointProbe::Reaction { places, .. } | PointProbe::Moment { places, .. } => {
                 supports.points_at(places).collect()
@@ -85,18 +63,12 @@ impl PointProbe {
     }
 
     /// Whether it looks at what supports have done.
-    pub(crate) fn is_of_supports(&self) -> bool {
+    fn is_of_supports(&self) -> bool {
         matches!(self, PointProbe::Reaction { .. } | PointProbe::Moment { .. })
     }
 
     /// Value at the last step; `dt` is the step that followed it [s]. Not a number once all points have left the run.
-    pub(crate) fn value(
-        &self,
-        population: &impl Points,
-        supports: &Supports,
-        dt: f64,
-        has_left: impl Fn(u32) -> bool,
-    ) -> f64 {
+    fn value(&self, population: &impl Points, supports: &Supports, dt: f64, has_left: impl Fn(u32) -> bool) -> f64 {
         let present = |point: &u32| !has_left(*point);
         let displacement = |i: usize| population.displacement_before(i, dt);
         match self {
@@ -154,31 +126,50 @@ fn component<'a>(
     sum / f64::from(count)
 }
 
-/// The mean of a vector over points.
-pub(crate) fn mean<'a>(points: impl IntoIterator<Item = &'a u32>, of: impl Fn(usize) -> Vec3) -> Vec3 {
-    let (mut sum, mut count) = (Vec3::zeros(), 0);
-    for &point in points {
-        sum += of(point as usize);
-        count += 1;
-    }
-    sum / f64::from(count)
+/// A probe of nodes of solids, or of particles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbeOfPoints {
+    /// Whose points.
+    pub population: Population,
+    /// What is measured on them.
+    pub probe: PointProbe,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+impl ProbeOfPoints {
+    /// As one of several kinds of probes.
+    pub fn boxed(population: Population, probe: PointProbe) -> Box<dyn Probe> {
+        Box::new(ProbeOfPoints { population, probe })
+    }
+}
 
-    #[test]
-    fn directions_about_an_axis_are_unit_vectors_by_the_right_hand() {
-        let axis = Axis { point: Vec3::new(1.0, 2.0, 3.0), direction: Vec3::z() };
-        let place = Vec3::new(1.0, 4.0, -7.0);
-        assert_eq!(Along::Radial(axis).at(&place), Vec3::y());
-        assert_eq!(Along::Tangential(axis).at(&place), -Vec3::x());
-        assert_eq!(Along::Direction(Vec3::x()).at(&place), Vec3::x());
-        let on_axis = Vec3::new(1.0, 2.0, 9.0);
-        assert_eq!(
-            (Along::Radial(axis).at(&on_axis), Along::Tangential(axis).at(&on_axis)),
-            (Vec3::zeros(), Vec3::zeros())
-        );
+impl Probe for ProbeOfPoints {
+    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        let scene = probed.scene;
+        let (dt, has_left) = (scene.clock.dt_before, scene.has_left(self.population));
+        match self.population {
+            Population::Nodes => self.probe.value(&scene.solid, scene.supports(), dt, has_left),
+            Population::Particles => self.probe.value(&scene.bonded, scene.bonded.supports(), dt, has_left),
+        }
+    }
+
+    fn needs(&self, scene: &Scene) -> ProbeNeeds {
+        let (probe, of_supports) = (&self.probe, self.probe.is_of_supports());
+        match self.population {
+            Population::Nodes => {
+                let nodes = NeededPoints::Some(probe.points(scene.supports()));
+                ProbeNeeds { nodes, of_supports, ..ProbeNeeds::default() }
+            }
+            Population::Particles => {
+                let particles = NeededPoints::Some(probe.points(scene.bonded.supports()));
+                ProbeNeeds { particles, of_supports, ..ProbeNeeds::default() }
+            }
+        }
+    }
+}
+
+impl Scene {
+    /// Sum of the loads on nodes of solids along a component [N]; directions about an axis are those of the places without load.
+    pub fn load_on(&self, nodes: &[u32], along: &Along) -> f64 {
+        self.loads.resultant(nodes, |node| along.at(&self.solid.reference[node]))
     }
 }

@@ -9,10 +9,10 @@ use crate::case::unit::Dimension;
 use crate::case::{Diagnostic, Field};
 
 /// Names of the axes.
-pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
+pub(in crate::case) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Takes a direction: `x`, `-y`, or three numbers; gives a unit vector.
-pub(super) fn direction<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Vec3> {
+pub(in crate::case) fn direction<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Vec3> {
     table.read(name, |node| {
         if let Value::Text(text) = &node.value {
             let (sign, axis) = match text.strip_prefix(['-', '+']) {
@@ -39,7 +39,7 @@ pub(super) fn direction<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Rea
 }
 
 /// Takes a point: three quantities of the key's dimension.
-pub(super) fn point<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Vec3> {
+pub(in crate::case) fn point<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Vec3> {
     table.read(name, |node| triple(table.reader, node, table.dimension(name)))
 }
 
@@ -58,7 +58,7 @@ fn triple(reader: &Reader, node: &Node, dimension: Dimension) -> Option<Vec3> {
 
 /// Takes components along x, y, z from a table, at least one; nothing where the table is absent or a component is
 /// wrong.
-pub(super) fn components<T>(
+pub(in crate::case) fn components<T>(
     parent: &Table<'_>,
     name: &'static str,
     mut read: impl FnMut(&Table<'_>, &'static str) -> Option<T>,
@@ -80,7 +80,7 @@ pub(super) fn components<T>(
 }
 
 /// Takes the velocity at the start by components; none where the key is absent.
-pub(super) fn initial_velocity(body: &Table<'_>) -> Option<[Option<Field>; 3]> {
+pub(in crate::case) fn initial_velocity(body: &Table<'_>) -> Option<[Option<Field>; 3]> {
     if !body.has("initial_velocity") {
         return Some([None, None, None]);
     }
@@ -88,7 +88,7 @@ pub(super) fn initial_velocity(body: &Table<'_>) -> Option<[Option<Field>; 3]> {
 }
 
 /// Takes an expression of x, y, z.
-pub(super) fn field<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Field> {
+pub(in crate::case) fn field<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Field> {
     table.read(name, |node| {
         let (field, kind) = position_expression(table.reader, node, table.dimension(name))?;
         table.reader.check_dimension(node, kind, table.dimension(name)).then_some(field)
@@ -96,12 +96,12 @@ pub(super) fn field<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading
 }
 
 /// Takes a condition on x, y, z.
-pub(super) fn condition<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Field> {
+pub(in crate::case) fn condition<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Field> {
     table.read(name, |node| condition_of(table.reader, node))
 }
 
 /// A condition on x, y, z.
-pub(super) fn condition_of(reader: &Reader, node: &Node) -> Option<Field> {
+pub(in crate::case) fn condition_of(reader: &Reader, node: &Node) -> Option<Field> {
     let expected = "a condition such as \"abs(y) < 8 cm\"";
     if !matches!(node.value, Value::Text(_)) {
         reader.note(Diagnostic::error(&node.place, node.found()).expected(expected));
@@ -130,7 +130,7 @@ fn position_expression(reader: &Reader, node: &Node, dimension: Dimension) -> Op
 }
 
 /// A number, or an expression of t, x, y, z and parameters; refused where it is constant and not finite.
-pub(super) fn expression(
+pub(in crate::case) fn expression(
     reader: &Reader,
     node: &Node,
     dimension: Dimension,

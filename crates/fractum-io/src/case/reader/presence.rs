@@ -4,7 +4,7 @@ use crate::case::Diagnostic;
 use crate::case::reader::Table;
 
 /// `Some(None)` where the key is absent, nothing where its value is wrong.
-pub(super) fn optional<T>(
+pub(in crate::case) fn optional<T>(
     table: &Table<'_>,
     name: &'static str,
     read: impl FnOnce(&'static str) -> Option<T>,
@@ -13,7 +13,7 @@ pub(super) fn optional<T>(
 }
 
 /// The one of these keys that a table has; notes where there is none, or several.
-pub(super) fn exactly_one(table: &Table<'_>, keys: &[&'static str]) -> Option<&'static str> {
+pub(in crate::case) fn exactly_one(table: &Table<'_>, keys: &[&'static str]) -> Option<&'static str> {
     let here: Vec<_> = keys.iter().filter(|key| table.has(key)).copied().collect();
     match here[..] {
         [one] => return Some(one),
