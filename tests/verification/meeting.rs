@@ -15,6 +15,8 @@ use fractum_scene::{
 };
 use fractum_tests::{settings, softening};
 
+use crate::ranks::{advance, bits, on_two_threads, same_on_ranks};
+
 const SURFACE: ContactParameters = ContactParameters { friction: 0.4, damping_ratio: 0.05, rolling_friction: 0.0 };
 
 fn elastic() -> Elastic {
@@ -213,6 +215,112 @@ fn meetings_are_the_same_bits_for_any_number_of_threads_and_after_a_saved_state(
     };
     let first = state(1, false);
     assert!(first == state(3, true) && first == state(1, true));
+}
+
+/// Two bars of 10 mm with edges up and down; the upper one flies down at 2 m/s, `gap` above the lower one and turned by `angle` across it.
+fn crossed_bars(cells: u32, (angle, shift): (f64, f64), nu: f64, gap: f64) -> Scene {
+    let (side, length) = (0.01, 0.06);
+    let bar = |first: u32, turn: Rotation, shift: Vec3| {
+        let size = Vec3::new(length, side, side);
+        let mesh = structured_box([3 * cells, cells, cells], size, None);
+        let elements: Vec<[u32; 4]> = mesh.tetrahedra.iter().map(|e| e.map(|n| n + first)).collect();
+        let facets: Vec<[u32; 3]> = boundary_of_tetrahedra(&elements).iter().map(|f| f.nodes).collect();
+        let edge_up = Rotation::from_scaled_axis(Vec3::x() * std::f64::consts::FRAC_PI_4);
+        let nodes: Vec<Vec3> = mesh.nodes.iter().map(|x| turn * (edge_up * (x - size * 0.5)) + shift).collect();
+        (nodes, elements, facets)
+    };
+    let height = std::f64::consts::SQRT_2 * side + gap;
+    let (mut nodes, lower, of_lower) = bar(0, Rotation::identity(), Vec3::zeros());
+    let count = nodes.len();
+    let turn = Rotation::from_scaled_axis(Vec3::z() * angle);
+    let (upper_nodes, upper, of_upper) = bar(count as u32, turn, Vec3::new(shift, 0.3 * shift, height));
+    nodes.extend(upper_nodes);
+    let glass = Elastic { young_modulus: 70e9, poisson_ratio: nu, density: 2500.0 };
+    let body = |name: &str, elements| {
+        let body = Body::new(name, ElementKind::T4, elements, glass);
+        Body { kinematics: Kinematics::Corotational, ..body }
+    };
+    let mut solid = Solid::new(nodes, vec![body("lower", lower), body("upper", upper)]).unwrap();
+    solid.velocity[count..].fill(Vec3::z() * -2.0);
+    let mut surface: Vec<u32> = of_lower.iter().chain(&of_upper).flatten().copied().collect();
+    surface.sort_unstable();
+    surface.dedup();
+    let free = ContactParameters { friction: 0.3, damping_ratio: 0.0, rolling_friction: 0.0 };
+    let facets = [of_lower, of_upper];
+    let ground = |(body, facets): (usize, &Vec<[u32; 3]>)| SolidSurface::new(&solid, body, free, facets).unwrap();
+    let solids = facets.iter().enumerate().map(ground).collect();
+    let contacts = Contacts::new(&Bonded::default(), Vec::new(), Vec::new(), solids, Vec::new());
+    let debris = Debris::new(&solid, vec![free; 2]);
+    let settings = SceneSettings {
+        time_step: TimeStepSettings { safety: 0.4, element_bound: false, fixed: None, end: 1.0 },
+        damping: LocalDamping::default(),
+        stiffness_time: 0.0,
+        balance_stop: 1e-2,
+        joined_below: 0.95,
+    };
+    let (loads, supports) = (Loads::new(Vec::new(), solid.mass.len()), Supports::new(Vec::new(), &solid.reference));
+    Scene::new(solid, supports.unwrap(), loads, debris, Vec::new(), &surface, settings)
+        .with_contacts(contacts, &surface)
+}
+
+/// Angles between crossed bars, with the way that the crossing is beside the middle of both.
+const CROSSINGS: [(f64, f64); 6] =
+    [(90.0, 1.3e-3), (90.0, 0.0), (45.0, 1.3e-3), (20.0, 1.3e-3), (20.0, 0.4e-3), (-120.0, 0.4e-3)];
+
+#[test]
+fn crossed_bars_meet_edge_on_edge_at_the_gap_between_them_and_part_again() {
+    let gap = 0.2e-3;
+    let mut wrong = Vec::new();
+    for (cells, nu) in [(1, 0.22), (2, 0.0), (2, 0.3), (4, 0.3)] {
+        for (angle, shift) in CROSSINGS {
+            let mut scene = crossed_bars(cells, (f64::to_radians(angle), shift), nu, gap);
+            let (start, mut met, mut deepest) = (momenta(&scene), None, 0.0f64);
+            let half = scene.solid.mass.len() / 2;
+            let mass: f64 = scene.solid.mass[half..].iter().sum();
+            let of_upper = |scene: &Scene, of: &dyn Fn(usize) -> f64| -> f64 {
+                (half..2 * half).map(|i| scene.solid.mass[i] * of(i)).sum::<f64>() / mass
+            };
+            while of_upper(&scene, &|i| scene.solid.velocity[i].z) < -0.9 && scene.clock.step < 20_000 {
+                scene.step(true).unwrap();
+                let down = -of_upper(&scene, &|i| scene.solid.displacement[i].z);
+                deepest = deepest.max(down);
+                if scene.counts().contacts > 0 && met.is_none() {
+                    met = Some(down);
+                }
+            }
+            let (met, now) = (met.unwrap_or(f64::INFINITY), momenta(&scene));
+            let change = ((now.0 - start.0).norm() + (now.1 - start.1).norm() / 0.06) / start.0.norm();
+            let ledger = scene.ledger();
+            let residual = ledger.residual_max_relative;
+            let told = format!(
+                "{cells} {nu} {angle} {shift}: {met:e} {deepest:e} {change:e} {residual:e} {}",
+                ledger[EnergyKind::Friction]
+            );
+            println!("{told}");
+            let booked = ledger[EnergyKind::Friction] >= 0.0;
+            if (met - gap).abs() > 0.01e-3 || deepest > gap + 0.15e-3 || change > 1e-11 || residual > 1e-4 || !booked {
+                wrong.push(told);
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn crossed_bars_have_the_same_bits_on_any_number_of_ranks_and_threads_and_after_a_checkpoint() {
+    let made = || crossed_bars(2, (1.2, 1.3e-3), 0.3, 0.02e-3);
+    let single = same_on_ranks(120, made);
+    assert!(single.counts().contacts > 0);
+    let threaded = on_two_threads(|| {
+        let mut scene = made();
+        advance(&mut scene, 100);
+        assert!(scene.counts().contacts > 0);
+        let mut resumed = made();
+        resumed.restore(scene.state());
+        advance(&mut resumed, 20);
+        bits(&resumed)
+    });
+    assert!(threaded == bits(&single));
 }
 
 /// Force of contact on a body from another [N].

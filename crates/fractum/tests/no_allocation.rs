@@ -6,13 +6,13 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use fractum_dem::{BeamSection, Particles};
 use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, Solid, Viscosity};
-use fractum_math::Vec3;
+use fractum_math::{Rotation, Vec3};
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::{Debris, Layer};
 use fractum_scene::{
-    Bonded, BondedPart, ContactParameters, Gravity, Load, Loads, Motion, NodalForce, NodesOnShape, Scene,
-    SceneSettings, Support, Supports, TimeStepSettings,
+    Bonded, BondedPart, ContactParameters, Contacts, Gravity, Load, Loads, Motion, NodalForce, NodesOnShape, Scene,
+    SceneSettings, SolidSurface, Support, Supports, TimeStepSettings,
 };
 
 /// The allocator of the system, counting requests while it is told to.
@@ -117,6 +117,34 @@ fn landing(nodes: Vec<Vec3>, body: Body) -> Scene {
             ContactParameters { friction: 0.3, ..ContactParameters::default() },
         )],
     )
+}
+
+/// Two bars with edges up and down, one across the other, which flies at it.
+fn crossed() -> Scene {
+    let size = Vec3::new(0.06, 0.01, 0.01);
+    let mesh = structured_box([6, 2, 2], size, None);
+    let edge_up = Rotation::from_scaled_axis(Vec3::x() * std::f64::consts::FRAC_PI_4);
+    let across = Rotation::from_scaled_axis(Vec3::z() * 1.2);
+    let bar =
+        |turn: Rotation, up: f64| mesh.nodes.iter().map(move |x| turn * (edge_up * (x - size * 0.5)) + Vec3::z() * up);
+    let nodes: Vec<Vec3> = bar(Rotation::identity(), 0.0).chain(bar(across, 0.01 * 2f64.sqrt() + 1e-7)).collect();
+    let count = mesh.nodes.len() as u32;
+    let elements =
+        [0, count].map(|first| -> Vec<[u32; 4]> { mesh.tetrahedra.iter().map(|e| e.map(|n| n + first)).collect() });
+    let facets =
+        elements.clone().map(|e| -> Vec<[u32; 3]> { boundary_of_tetrahedra(&e).iter().map(|f| f.nodes).collect() });
+    let mut surface: Vec<u32> = facets.iter().flatten().flatten().copied().collect();
+    surface.sort_unstable();
+    surface.dedup();
+    let bodies = elements.map(|elements| Body::new("bar", ElementKind::T4, elements, ELASTIC));
+    let mut solid = Solid::new(nodes, bodies.to_vec()).unwrap();
+    solid.velocity[count as usize..].fill(Vec3::z() * -2.0);
+    let ground = |(body, facets): (usize, &Vec<[u32; 3]>)| {
+        SolidSurface::new(&solid, body, ContactParameters::default(), facets).unwrap()
+    };
+    let solids = facets.iter().enumerate().map(ground).collect();
+    let contacts = Contacts::new(&Bonded::default(), Vec::new(), Vec::new(), solids, Vec::new());
+    scene(solid, Vec::new(), Vec::new(), Vec::new()).with_contacts(contacts, &surface)
 }
 
 fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<NodesOnShape>) -> Scene {
@@ -241,6 +269,10 @@ fn a_warm_step_allocates_nothing() {
         let mut scene = tied_bar();
         assert_eq!(requests(&mut scene), 0, "tied");
         assert!(scene.ties.counts().0 > 200);
+
+        let mut scene = crossed();
+        assert_eq!(requests(&mut scene), 0, "edge on edge");
+        assert!(scene.counts().contacts > 0);
 
         let mut scene = landing(nodes, armed(smoothed));
         assert_eq!(requests(&mut scene), 0, "on a rigid plane");

@@ -98,6 +98,17 @@ impl Linear {
         }
     }
 
+    /// The same with another normal stiffness [N/m], with the tangential one and the damper that go with it.
+    pub fn with_stiffness(self, normal_stiffness: f64) -> Self {
+        let ratio = normal_stiffness / self.normal_stiffness;
+        Linear {
+            normal_stiffness,
+            tangential_stiffness: self.tangential_stiffness * ratio,
+            normal_damping: self.normal_damping * ratio.sqrt(),
+            ..self
+        }
+    }
+
     /// Force of a pair; its memory advances with the call.
     ///
     /// A contact that begins or ends in a step beside the moment acts for a part of that step only, see

@@ -158,6 +158,16 @@ impl FacetMesh {
         self.edges[edge as usize]
     }
 
+    /// Number of edges.
+    pub fn edge_count(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// Facets at an edge; the second is the first again at an open one.
+    pub fn sides(&self, edge: u32) -> [u32; 2] {
+        self.edge_facets[edge as usize]
+    }
+
     /// What a feature number stands for.
     pub fn feature(&self, number: u32) -> Feature {
         let (facets, edges) = (self.facets.len() as u32, self.edges.len() as u32);

@@ -4,8 +4,9 @@ use fractum_dem::Particles;
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 
+use super::Contacts;
+use super::debris_among::DebrisAmong;
 use super::nodes_on_shape::NodesOnShape;
-use super::{Contacts, DebrisAmong};
 use crate::conditions::Along;
 use crate::coupling::Debris;
 
@@ -46,7 +47,7 @@ impl Contacts {
             self.watched.push((probe, 0.0));
         }
         self.among.iter_mut().for_each(|among| among.keep_loads());
-        self.debris.iter_mut().for_each(DebrisAmong::keep_loads);
+        self.nodes.debris.iter_mut().for_each(DebrisAmong::keep_loads);
     }
 
     /// The force at the last instant that was measured [N]; none of bodies that are not watched.
@@ -88,7 +89,7 @@ impl Contacts {
                 visit(at, [particle(touch.sphere), ContactBody::Rigid(index)], touch.force);
             }
         }
-        for (index, nodes) in self.nodes_on_tools.iter().enumerate() {
+        for (index, nodes) in self.nodes.on_tools.iter().enumerate() {
             for (touch, at, own) in nodes.iter().flat_map(|nodes| nodes.touches()) {
                 visit(at, [node(own), ContactBody::Rigid(index)], touch.force);
             }
@@ -102,8 +103,11 @@ impl Contacts {
                 visit(at, [node(other), own], touch.force);
             }
         }
+        for touch in self.nodes.edges.iter().flat_map(|edges| edges.touches()) {
+            visit(touch.place, touch.bodies.map(ContactBody::Solid), -touch.force);
+        }
         let count = particles.len();
-        for ([i, j], force) in self.debris.iter().flat_map(DebrisAmong::loads) {
+        for ([i, j], force) in self.nodes.debris.iter().flat_map(DebrisAmong::loads) {
             // Only pairs of a particle and a discrete element touch here.
             let own = debris.state().nodes[j as usize - count];
             visit((place(i) + solid.position(own as usize)) * 0.5, [particle(i), node(own)], -force);

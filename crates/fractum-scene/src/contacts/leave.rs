@@ -17,20 +17,22 @@ impl Contacts {
             contacts.touches().for_each(|touch| visit(touch.sphere));
         }
         let count = self.body.len();
-        let particles = self.debris.iter().flat_map(DebrisAmong::pairs_touching).map(|[i, _]| i);
+        let particles = self.nodes.debris.iter().flat_map(DebrisAmong::pairs_touching).map(|[i, _]| i);
         particles.filter(|&i| (i as usize) < count).for_each(visit);
     }
 
     /// Visits every node of solids that touched a facet, a container or a particle at the last step, or whose facet was touched.
     pub(crate) fn each_touching_node(&self, debris: &Debris, particles: &Particles, mut visit: impl FnMut(u32)) {
-        for nodes in self.nodes_on_tools.iter().flatten() {
+        for nodes in self.nodes.on_tools.iter().flatten() {
             nodes.touches().for_each(|(_, _, node)| visit(node));
         }
         for ground in &self.solids {
             ground.each_touching_node(&particles.position, &mut visit);
         }
+        let edges = self.nodes.edges.iter().flat_map(|edges| edges.touches());
+        edges.flat_map(|touch| touch.nodes.iter().flatten()).for_each(|&node| visit(node));
         let count = particles.len();
-        let born = self.debris.iter().flat_map(DebrisAmong::pairs_touching).flatten();
+        let born = self.nodes.debris.iter().flat_map(DebrisAmong::pairs_touching).flatten();
         born.filter_map(|i| (i as usize).checked_sub(count)).for_each(|born| visit(debris.state().nodes[born]));
     }
 
@@ -39,7 +41,7 @@ impl Contacts {
     /// - `radii`: of the particles; negative ones of those that have left [m]
     pub(crate) fn look_again(&mut self, radii: &[f64]) {
         self.among.iter_mut().for_each(SphereContacts::look_again);
-        self.debris.iter_mut().for_each(DebrisAmong::look_again);
+        self.nodes.debris.iter_mut().for_each(DebrisAmong::look_again);
         self.on_tools.iter_mut().for_each(|(contacts, _)| contacts.look_again());
         self.solids.iter_mut().for_each(|ground| ground.look_again(radii));
     }
@@ -61,8 +63,9 @@ impl Contacts {
             ground.remove_facets(solid, elements);
             ground.visitors_mut().iter_mut().for_each(|nodes| nodes.let_leave(gone, debris));
         }
-        self.nodes_on_tools.iter_mut().flatten().for_each(|nodes| nodes.let_leave(gone, debris));
-        if let Some(among) = &mut self.debris {
+        self.nodes.edges.iter_mut().for_each(|edges| edges.remove(&self.solids));
+        self.nodes.on_tools.iter_mut().flatten().for_each(|nodes| nodes.let_leave(gone, debris));
+        if let Some(among) = &mut self.nodes.debris {
             among.let_leave(particles, born, &debris.state().nodes);
         }
     }
@@ -71,6 +74,6 @@ impl Contacts {
     pub(crate) fn leave_out(&mut self, gone: impl Iterator<Item = u32>) {
         let gone: Vec<u32> = gone.collect();
         let on_solids = self.solids.iter_mut().filter_map(|ground| ground.visitors_mut().as_mut());
-        on_solids.chain(self.nodes_on_tools.iter_mut().flatten()).for_each(|nodes| nodes.leave_out(&gone));
+        on_solids.chain(self.nodes.on_tools.iter_mut().flatten()).for_each(|nodes| nodes.leave_out(&gone));
     }
 }

@@ -3,6 +3,7 @@
 
 mod between;
 mod debris_among;
+mod edge_contacts;
 mod flat_faces;
 mod held_nodes;
 mod leave;
@@ -13,7 +14,7 @@ mod rigid_body;
 mod share;
 mod solid_surface;
 
-use fractum_contact::law::{ContactMemory, ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair};
+use fractum_contact::law::{ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair};
 use fractum_contact::{SphereContacts, Spheres, SurfaceContacts, Touch};
 use fractum_dem::{ParticlePart, Particles};
 use fractum_fem::Solid;
@@ -35,8 +36,7 @@ use crate::bonded::Bonded;
 use crate::coupling::Debris;
 use crate::time_function::TimeFunction;
 use crate::watch::Site;
-use debris_among::DebrisAmong;
-use nodes_on_surface::NodesOnSurface;
+use node_contacts::{NodeContacts, NodeContactsState};
 use rigid_body::RigidBodyState;
 use solid_surface::SolidSurfaceState;
 
@@ -75,16 +75,12 @@ pub struct Contacts {
     /// Contacts with each rigid body, and its material with that of each body.
     on_tools: Vec<(SurfaceContacts<Hertz>, Vec<MaterialPair>)>,
     solids: Vec<SolidSurface>,
-    /// Nodes of solids on each rigid body that has facets or is a container, and their discrete elements among the particles.
-    nodes_on_tools: Vec<Option<NodesOnSurface>>,
-    debris: Option<DebrisAmong>,
+    nodes: NodeContacts,
     /// Accelerations of everything, by axis.
     gravity: Vec<(usize, TimeFunctionOf)>,
     rayleigh_frequency: f64,
     /// Faces of bonded bodies that rigid bodies feel as flat.
     flat: FlatBodies,
-    /// Largest squared frequency that contacts have given to nodes of solids so far [1/s²].
-    node_frequency_square: f64,
     /// Forces between bodies that probes ask for [N].
     watched: Vec<(ContactProbe, f64)>,
 }
@@ -105,9 +101,7 @@ pub(crate) struct ContactsState {
     among: Vec<([u32; 2], HertzMemory)>,
     rigid_bodies: Vec<(RigidBodyState, Vec<Touch<HertzMemory>>)>,
     solids: Vec<SolidSurfaceState>,
-    nodes_on_tools: Vec<Vec<Touch<ContactMemory>>>,
-    debris: Vec<([u32; 2], ContactMemory)>,
-    node_frequency_square: f64,
+    nodes: NodeContactsState,
 }
 
 /// Two things that overlap before anything has moved.
@@ -177,8 +171,7 @@ impl Contacts {
             on_tools: rigid_bodies.iter().map(on_tool).collect(),
             among: (!alone && !body.is_empty()).then(|| SphereContacts::new(skin)),
             solids: solids.into_iter().map(|solid| solid.prepared(skin, &materials)).collect(),
-            nodes_on_tools: rigid_bodies.iter().map(|_| None).collect(),
-            debris: None,
+            nodes: NodeContacts::none(rigid_bodies.len()),
             gravity: gravity.into_iter().map(|(axis, value)| (axis, TimeFunctionOf(value))).collect(),
             bonded: is_bonded,
             materials,
@@ -186,7 +179,6 @@ impl Contacts {
             rigid_bodies,
             rayleigh_frequency,
             flat: FlatBodies::default(),
-            node_frequency_square: 0.0,
             watched: Vec::new(),
         }
     }
@@ -207,7 +199,7 @@ impl Contacts {
 
     /// Squared frequency that contacts ask of the step [1/s²].
     pub(crate) fn frequency_square(&self) -> f64 {
-        self.rayleigh_frequency * self.rayleigh_frequency + self.flat.frequency_square + self.node_frequency_square
+        self.rayleigh_frequency * self.rayleigh_frequency + self.flat.frequency_square + self.nodes.frequency_square
     }
 
     /// Energy of the mean particle at the speed of the fastest rigid body [J]: what the first touch is about.
@@ -256,7 +248,7 @@ impl Contacts {
             work += among.add_forces(&spheres, force, moment, dt);
             self.among = Some(among);
         }
-        let Contacts { body, rigid_bodies, on_tools, solids, flat, .. } = self;
+        let Contacts { body, rigid_bodies, on_tools, solids, flat, nodes, .. } = self;
         let body = &*body;
         let felt = flat.felt(spheres);
         for (rigid_body, (contacts, pairs)) in rigid_bodies.iter_mut().zip(on_tools) {
@@ -287,7 +279,7 @@ impl Contacts {
             let law = |pair: &MaterialPair, i: u32| Hertz::new(pair, radius[i as usize], mass[i as usize]);
             work += ground.add_forces(solid, &spheres, body, law, searches, dt);
             ground.contacts().add_to(force, moment);
-            self.node_frequency_square = self.node_frequency_square.max(ground.frequency_square());
+            nodes.frequency_square = nodes.frequency_square.max(ground.frequency_square());
         }
         work
     }
@@ -386,9 +378,7 @@ impl Contacts {
                 .map(|(t, (contacts, _))| (t.state(), contacts.state()))
                 .collect(),
             solids: self.solids.iter().map(SolidSurface::state).collect(),
-            nodes_on_tools: self.nodes_on_tools_state(),
-            debris: self.debris.as_ref().map_or_else(Vec::new, DebrisAmong::state),
-            node_frequency_square: self.node_frequency_square,
+            nodes: self.nodes.state(),
         }
     }
 
@@ -406,12 +396,6 @@ impl Contacts {
         for (ground, touches) in self.solids.iter_mut().zip(state.solids) {
             ground.restore(solid, debris, touches);
         }
-        for (nodes, touches) in self.nodes_on_tools.iter_mut().zip(state.nodes_on_tools) {
-            nodes.iter_mut().for_each(|nodes| nodes.restore(debris, touches.clone()));
-        }
-        if let Some(among) = &mut self.debris {
-            among.restore(state.debris);
-        }
-        self.node_frequency_square = state.node_frequency_square;
+        self.nodes.restore(debris, &self.solids, state.nodes);
     }
 }

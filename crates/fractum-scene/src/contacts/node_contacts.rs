@@ -1,17 +1,73 @@
 //! What nodes of solids meet beside the nodes of their own kind: facets of rigid bodies and of other solids, containers, and
 //! particles with nodes of their own.
 
-use fractum_contact::Spheres;
+use fractum_contact::law::ContactMemory;
+use fractum_contact::{Spheres, Touch};
 use fractum_dem::Particles;
 use fractum_fem::Solid;
 use fractum_math::{Work, connected};
+use serde::{Deserialize, Serialize};
 
 use super::debris_among::{DebrisAmong, Made};
+use super::edge_contacts::{EdgeContacts, EdgeContactsState};
 use super::nodes_on_surface::{NodesOnSurface, frequency_square};
 use super::rigid_body::{Form, RigidBody};
 use super::solid_surface::SolidSurface;
 use super::{Contacts, OverlapWith, SKIN};
 use crate::coupling::Debris;
+
+/// What nodes of solids touch beside the nodes of their own kind.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NodeContacts {
+    /// Nodes on each rigid body that has facets or is a container.
+    pub(super) on_tools: Vec<Option<NodesOnSurface>>,
+    /// Discrete elements among the particles.
+    pub(super) debris: Option<DebrisAmong>,
+    /// Sharp edges on each other.
+    pub(super) edges: Option<EdgeContacts>,
+    /// Largest squared frequency that contacts have given to nodes of solids so far [1/s²].
+    pub(super) frequency_square: f64,
+}
+
+/// The same for a checkpoint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct NodeContactsState {
+    on_tools: Vec<Vec<Touch<ContactMemory>>>,
+    debris: Vec<([u32; 2], ContactMemory)>,
+    edges: EdgeContactsState,
+    frequency_square: f64,
+}
+
+impl NodeContacts {
+    /// Nothing on a number of rigid bodies.
+    pub(super) fn none(rigid_bodies: usize) -> Self {
+        NodeContacts { on_tools: vec![None; rigid_bodies], ..NodeContacts::default() }
+    }
+
+    pub(super) fn state(&self) -> NodeContactsState {
+        let of = |nodes: &Option<NodesOnSurface>| nodes.as_ref().map_or_else(Vec::new, |n| n.contacts().state());
+        NodeContactsState {
+            on_tools: self.on_tools.iter().map(of).collect(),
+            debris: self.debris.as_ref().map_or_else(Vec::new, DebrisAmong::state),
+            edges: self.edges.as_ref().map_or_else(EdgeContactsState::default, EdgeContacts::state),
+            frequency_square: self.frequency_square,
+        }
+    }
+
+    /// Puts a saved state back; `solids` without the facets that had gone.
+    pub(super) fn restore(&mut self, debris: &Debris, solids: &[SolidSurface], state: NodeContactsState) {
+        for (nodes, touches) in self.on_tools.iter_mut().zip(state.on_tools) {
+            nodes.iter_mut().for_each(|nodes| nodes.restore(debris, touches.clone()));
+        }
+        if let Some(among) = &mut self.debris {
+            among.restore(state.debris);
+        }
+        if let Some(edges) = &mut self.edges {
+            edges.restore(state.edges, solids);
+        }
+        self.frequency_square = state.frequency_square;
+    }
+}
 
 impl Contacts {
     /// Has the nodes of solids meet what there is; plane ones meet nothing of it.
@@ -29,7 +85,7 @@ impl Contacts {
         }
         if !particles.is_empty() {
             let smallest = particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
-            self.debris = Some(DebrisAmong::new(SKIN * smallest));
+            self.nodes.debris = Some(DebrisAmong::new(SKIN * smallest));
         }
         let piece = pieces(solid);
         let apart = |body: usize| -> Vec<bool> { piece.iter().map(|other| *other != piece[body]).collect() };
@@ -44,20 +100,21 @@ impl Contacts {
             }
         }
         self.solids.retain(|ground| ground.visitors().is_some() || !particles.is_empty());
-        for (rigid_body, nodes) in self.rigid_bodies.iter().zip(&mut self.nodes_on_tools) {
+        self.nodes.edges = EdgeContacts::new(&self.solids);
+        for (rigid_body, nodes) in self.rigid_bodies.iter().zip(&mut self.nodes.on_tools) {
             *nodes = has_walls(rigid_body).then(|| NodesOnSurface::new(surface, vec![true; piece.len()], debris));
         }
     }
 
     /// Whether nodes of solids that are no discrete elements yet may touch something here.
     pub fn has_node_contacts(&self) -> bool {
-        self.nodes_on_tools.iter().any(Option::is_some) || self.solids.iter().any(|ground| ground.visitors().is_some())
+        self.nodes.on_tools.iter().any(Option::is_some) || self.solids.iter().any(|ground| ground.visitors().is_some())
     }
 
     /// Visits every node of a solid that something here looks at, some of them more than once.
     pub(crate) fn each_node(&self, mut visit: impl FnMut(u32)) {
         let visitors =
-            self.solids.iter().filter_map(SolidSurface::visitors).chain(self.nodes_on_tools.iter().flatten());
+            self.solids.iter().filter_map(SolidSurface::visitors).chain(self.nodes.on_tools.iter().flatten());
         visitors.flat_map(NodesOnSurface::nodes).for_each(|&node| visit(node));
         self.solids.iter().flat_map(SolidSurface::nodes).for_each(|&node| visit(node));
     }
@@ -74,8 +131,8 @@ impl Contacts {
         dt: f64,
     ) -> Work {
         let mut work = Work::default();
-        let mut fastest = self.node_frequency_square;
-        for (rigid_body, nodes) in self.rigid_bodies.iter_mut().zip(&mut self.nodes_on_tools) {
+        let mut fastest = self.nodes.frequency_square;
+        for (rigid_body, nodes) in self.rigid_bodies.iter_mut().zip(&mut self.nodes.on_tools) {
             let Some(nodes) = nodes else { continue };
             let surface = rigid_body.surface;
             let law =
@@ -91,12 +148,16 @@ impl Contacts {
             work += ground.add_node_forces(solid, debris, dt);
             fastest = fastest.max(ground.frequency_square());
         }
-        if let Some(among) = self.debris.as_mut().filter(|_| !debris.is_empty()) {
+        if let Some(edges) = &mut self.nodes.edges {
+            work += edges.add_forces(solid, debris, &self.solids, dt);
+            fastest = fastest.max(edges.frequency_square());
+        }
+        if let Some(among) = self.nodes.debris.as_mut().filter(|_| !debris.is_empty()) {
             let made = Made { body: &self.body, materials: &self.materials };
             work += among.add_forces(solid, debris, particles, made, searches, dt);
             fastest = fastest.max(among.frequency_square(solid, debris, particles));
         }
-        self.node_frequency_square = fastest;
+        self.nodes.frequency_square = fastest;
         work
     }
 
@@ -116,12 +177,13 @@ impl Contacts {
             ground.remove_facets(solid, removed);
             ground.admit(born, solid, debris);
         }
-        for (rigid_body, nodes) in self.rigid_bodies.iter().zip(&mut self.nodes_on_tools) {
+        self.nodes.edges.iter_mut().for_each(|edges| edges.remove(&self.solids));
+        for (rigid_body, nodes) in self.rigid_bodies.iter().zip(&mut self.nodes.on_tools) {
             if let Some(nodes) = nodes {
                 nodes.admit(born, &rigid_body.ground(), solid, debris);
             }
         }
-        if let Some(among) = self.debris.as_mut().filter(|_| !born.is_empty()) {
+        if let Some(among) = self.nodes.debris.as_mut().filter(|_| !born.is_empty()) {
             let made = Made { body: &self.body, materials: &self.materials };
             among.admit(before, solid, debris, particles, made);
         }
@@ -157,7 +219,7 @@ impl Contacts {
         let mut tell = |nodes: &NodesOnSurface, other: OverlapWith| {
             found.extend(nodes.touches().map(|(touch, _, node)| (node, touch.overlap, other.clone())));
         };
-        for (rigid_body, nodes) in self.rigid_bodies.iter().zip(&mut self.nodes_on_tools) {
+        for (rigid_body, nodes) in self.rigid_bodies.iter().zip(&mut self.nodes.on_tools) {
             if let Some(nodes) = nodes {
                 nodes.accept_initial_overlap(&rigid_body.ground(), solid);
                 tell(nodes, OverlapWith::RigidBody(rigid_body.name.clone()));
@@ -168,20 +230,21 @@ impl Contacts {
             let name = &solid.body(ground.body()).name;
             ground.visitors().iter().for_each(|nodes| tell(nodes, OverlapWith::Solid(name.clone())));
         }
+        if let Some(edges) = &mut self.nodes.edges {
+            let name = |ground: usize| OverlapWith::Solid(solid.body(self.solids[ground].body()).name.clone());
+            let crossed = edges.accept_initial_overlap(solid, &self.solids);
+            found.extend(crossed.into_iter().map(|(node, depth, ground)| (node, depth, name(ground))));
+        }
         found
     }
 
     /// Contacts of nodes at the last step.
     pub(super) fn node_contacts(&self) -> usize {
         let on = |nodes: &NodesOnSurface| nodes.contacts().touches().count();
-        let rigid_bodies = self.nodes_on_tools.iter().flatten().map(on).sum::<usize>();
+        let rigid_bodies = self.nodes.on_tools.iter().flatten().map(on).sum::<usize>();
         let solids = self.solids.iter().filter_map(|ground| ground.visitors()).map(on).sum::<usize>();
-        rigid_bodies + solids + self.debris.as_ref().map_or(0, DebrisAmong::touching)
-    }
-
-    pub(super) fn nodes_on_tools_state(&self) -> Vec<Vec<fractum_contact::Touch<fractum_contact::law::ContactMemory>>> {
-        let of = |nodes: &Option<NodesOnSurface>| nodes.as_ref().map_or_else(Vec::new, |n| n.contacts().state());
-        self.nodes_on_tools.iter().map(of).collect()
+        let edges = self.nodes.edges.as_ref().map_or(0, |edges| edges.touches().len());
+        rigid_bodies + solids + edges + self.nodes.debris.as_ref().map_or(0, DebrisAmong::touching)
     }
 }
 

@@ -54,6 +54,11 @@ impl NodesOnSurface {
         &self.contacts
     }
 
+    /// Whether nodes of a solid body may touch this ground.
+    pub(crate) fn meets(&self, body: usize) -> bool {
+        self.bodies[body]
+    }
+
     /// The nodes that may touch.
     pub(crate) fn nodes(&self) -> &[u32] {
         &self.nodes

@@ -19,14 +19,14 @@ impl Contacts {
     /// Which searches are due by the way of some particles: of pairs, then on rigid bodies, on solids, and among discrete elements.
     fn due(&mut self, solid: &Solid, debris: &Debris, particles: &Particles, range: Range<usize>) -> Vec<bool> {
         self.flat.locate(particles, range.clone());
-        let Contacts { among, rigid_bodies, on_tools, solids, flat, debris: near_debris, .. } = self;
+        let Contacts { among, rigid_bodies, on_tools, solids, flat, nodes, .. } = self;
         let spheres = spheres(particles);
         let felt = flat.felt(spheres);
         let of_pairs = among.iter().map(|among| among.is_used_up(&spheres, range.clone()));
         let grounds = rigid_bodies.iter().zip(&*on_tools);
         let on_bodies = grounds.map(|(body, (contacts, _))| contacts.is_used_up(&body.ground(), &felt, range.clone()));
         let on_solids = solids.iter_mut().map(|ground| ground.is_used_up(solid, &spheres, range.clone()));
-        let near_debris = near_debris.iter_mut().filter(|_| !debris.is_empty());
+        let near_debris = nodes.debris.iter_mut().filter(|_| !debris.is_empty());
         let of_debris = near_debris.map(|among| among.is_used_up(solid, debris, particles, range.clone()));
         of_pairs.chain(on_bodies).chain(on_solids).chain(of_debris).collect()
     }
@@ -71,7 +71,7 @@ impl Contacts {
                 ground.renew(solid, &spheres);
             }
         }
-        if let Some(among) = self.debris.as_mut().filter(|_| due.next() == Some(true)) {
+        if let Some(among) = self.nodes.debris.as_mut().filter(|_| due.next() == Some(true)) {
             let made = Made { body: &self.body, materials: &self.materials };
             among.renew(solid, debris, particles, made);
         }
@@ -81,7 +81,7 @@ impl Contacts {
     pub(crate) fn near(&self) -> impl Iterator<Item = u32> {
         let grounds = self.on_tools.iter().map(|(contacts, _)| contacts);
         let on_grounds = grounds.chain(self.solids.iter().map(|ground| ground.contacts()));
-        on_grounds.flat_map(|contacts| contacts.near()).chain(self.debris.iter().flat_map(DebrisAmong::near))
+        on_grounds.flat_map(|contacts| contacts.near()).chain(self.nodes.debris.iter().flat_map(DebrisAmong::near))
     }
 
     /// Pairs of particles that may touch before the next search.

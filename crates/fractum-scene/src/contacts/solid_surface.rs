@@ -110,6 +110,28 @@ impl SolidSurface {
         &self.contacts
     }
 
+    pub(super) fn mesh(&self) -> &FacetMesh {
+        &self.mesh
+    }
+
+    /// A point of the mesh [m].
+    pub(super) fn point(&self, point: u32) -> Vec3 {
+        self.points[point as usize]
+    }
+
+    pub(super) fn elastic(&self) -> &ElasticMaterial {
+        &self.elastic
+    }
+
+    pub(super) fn contact_parameters(&self) -> ContactParameters {
+        self.surface
+    }
+
+    /// Whether the nodes of a solid body may touch it.
+    pub(super) fn meets(&self, body: usize) -> bool {
+        self.visitors.as_ref().is_some_and(|visitors| visitors.meets(body))
+    }
+
     /// Nodes of its facets.
     pub(super) fn nodes(&self) -> &[u32] {
         &self.nodes
