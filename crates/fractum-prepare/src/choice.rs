@@ -157,7 +157,9 @@ fn motion_only(case: &Case, scene: &Scene) -> Option<&'static str> {
     } else if case.supports.iter().any(|support| support.surface.is_some()) {
         Some("absorbing and elastic supports act in motion only")
     } else if !case.bodies.iter().all(may_rest) {
-        Some("solids beside particles, or beside rigid bodies that contact moves, are for motion only")
+        Some(
+            "solids beside particles, rigid facets, containers, or rigid bodies that contact moves, are for motion only",
+        )
     } else if solid.not_secant().is_some() {
         Some("equilibrium is for small strains, open cracks and damage without delay")
     } else if scene.check_supports().is_err() {

@@ -7,7 +7,7 @@ use fractum_scene::{Bonded, BondedStaticSettings, Scene};
 use super::Context;
 use super::bodies::Numbering;
 use crate::case::Place;
-use crate::case::model::{Body, BodyKind, Control, Damping, SolverKind};
+use crate::case::model::{Body, BodyKind, Control, Damping, RigidShape, SolverKind};
 
 /// Relative residual of iterative linear solutions.
 const LINEAR_TOLERANCE: f64 = 1e-8;
@@ -39,8 +39,11 @@ impl Context<'_> {
         }
         if let Some(body) = self.case.bodies.iter().find(|body| !may_rest(body)) {
             let found = format!("= \"static\" with body \"{}\"", body.name.value);
-            let expected =
-                "solid bodies with rigid ones that are driven by velocity or stand still, or one bonded body";
+            let expected = if has_walls(body) {
+                "rigid planes, boxes, cylinders and spheres, which solids touch from outside: facets and containers touch in motion alone"
+            } else {
+                "solid bodies with rigid ones that are driven by velocity or stand still, or one bonded body"
+            };
             self.error(&place, found, format!("{expected}; or kind = \"explicit\""));
             return None;
         }
@@ -117,11 +120,17 @@ impl Context<'_> {
     }
 }
 
-/// Whether a body has a place in equilibrium: solids, and rigid bodies that contact does not move.
+/// Whether a body has a place in equilibrium: solids, and rigid shapes that contact does not move.
 pub fn may_rest(body: &Body) -> bool {
     match &body.kind {
         BodyKind::Solid(_) => true,
-        BodyKind::Rigid(rigid) => rigid.mass.is_none() && rigid.spin.iter().all(Option::is_none),
+        BodyKind::Rigid(rigid) => rigid.mass.is_none() && rigid.spin.iter().all(Option::is_none) && !has_walls(body),
         BodyKind::Bonded(_) | BodyKind::Particles(_) => false,
     }
+}
+
+/// Whether a body is rigid facets or a container.
+fn has_walls(body: &Body) -> bool {
+    let BodyKind::Rigid(rigid) = &body.kind else { return false };
+    rigid.inside || matches!(rigid.shape, RigidShape::Group { .. } | RigidShape::Stl { .. })
 }
