@@ -121,6 +121,8 @@ codes! {
     Compression = "compression",
     /// Solids that meet rigid bodies lose a visible share of the energy.
     ImpactLoss = "impact-loss",
+    /// Springs of contact hold a visible share of the elastic energy.
+    SoftContact = "soft-contact",
     /// An element that had begun to break was turned inside out, and taken out.
     Crushed = "crushed",
     /// Particles that are pressed deeply into each other.

@@ -199,6 +199,8 @@ pub(crate) struct Books {
     pub(crate) late_damping: f64,
     /// Part of `damping` that rigid shapes have taken from the nodes of solids that met them.
     pub(crate) stopped: f64,
+    /// Energies of the springs of contact and of the solids, summed up over the looks at the state.
+    pub(crate) pressed: [f64; 2],
 }
 
 impl AddAssign<Work> for Books {

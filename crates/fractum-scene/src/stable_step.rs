@@ -87,6 +87,12 @@ impl Scene {
         self.find_first_step();
     }
 
+    /// Whether a rigid body holds the nodes of solids that touch it in motion, by its number; springs press on them elsewhere. Known once the
+    /// first step is.
+    pub fn holds_nodes(&self, rigid_body: usize) -> bool {
+        self.shape_contacts.iter().any(|ground| ground.rigid_body() == Some(rigid_body) && ground.holds_points())
+    }
+
     /// Finds the first step, with springs on the rigid shapes as they stand.
     pub(crate) fn find_first_step(&mut self) {
         self.update_wall_frequency();

@@ -24,10 +24,12 @@ pub enum Notice {
     Stopped,
     /// An element that had begun to break was turned inside out, and taken out.
     Crushed,
+    /// Springs of contact give way beside the solids that they press on, and hold a visible share of the elastic energy [-].
+    Springs,
 }
 
 impl Notice {
-    const COUNT: usize = Notice::Crushed as usize + 1;
+    const COUNT: usize = Notice::Springs as usize + 1;
 }
 
 /// Where something was noticed.

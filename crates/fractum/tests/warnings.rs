@@ -303,6 +303,18 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
                 (end, "end = \"0.5 ms\""),
             ],
         ),
+        // Half an element gives way beside the bar: a third of its energy under its own weight.
+        moving(
+            "soft-contact",
+            structured_box([3, 2, 2], Vec3::new(0.4, 0.12, 0.12), None),
+            &[
+                ("[[supports]]\ngroup = \"x-\"\nfix = \"PLANE\"\n", &WALL.replace("-0.1 mm", "0 mm")),
+                (far_support, ""),
+                ("material = \"stone\"\n", "material = \"stone\"\ninitial_velocity = { x = \"-1 mm/s\" }\n"),
+                ("[solver]", "[[loads]]\ngravity = { x = \"-400 m/s^2\" }\n[solver]"),
+                (end, "end = \"30 ms\""),
+            ],
+        ),
         moving("large-strain", bar(), &[(ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"-150 m/s\"]] }")]),
         moving(
             "tension-outside",

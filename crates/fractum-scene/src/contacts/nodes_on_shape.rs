@@ -85,6 +85,11 @@ impl NodesOnShape {
         self.rigid_body
     }
 
+    /// Whether it holds points in motion.
+    pub(crate) fn holds_points(&self) -> bool {
+        self.holds
+    }
+
     /// Sets the nodes that may touch: the surface of the solids.
     pub(crate) fn watch(&mut self, nodes: &[u32], solid: &Solid, debris: &Debris) {
         for &node in nodes {

@@ -2,6 +2,7 @@
 
 use fractum_fem::{Extreme, Extremes};
 
+use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 use crate::watch::{Notice, Noticed, Site};
 
@@ -9,6 +10,8 @@ use crate::watch::{Notice, Noticed, Site};
 const DAMPED: f64 = 0.05;
 /// Share of the energy that rigid shapes may take from solids that meet them.
 const STOPPED: f64 = 0.05;
+/// Share of the elastic energy of contact and solids, over the run so far, that the springs of contact may hold: a force lacks it.
+const SOFT: f64 = 0.05;
 /// Rotation of a body of small strains [rad], 10 degrees: it adds a strain of 1.5 %.
 const TURNED: f64 = std::f64::consts::PI / 18.0;
 /// Strain beyond which the law of small stretches is off by as much.
@@ -25,6 +28,7 @@ impl Scene {
     pub fn audit(&mut self) {
         self.look_at_temperatures();
         self.look_at_damping();
+        self.look_at_springs();
         self.look_at_solids();
         self.look_at_overlaps();
     }
@@ -74,6 +78,22 @@ impl Scene {
         let share = self.books.stopped / self.ledger.scale;
         if self.ledger.scale > 0.0 && share > STOPPED {
             self.note(Notice::Stopped, Site::Scene, share);
+        }
+    }
+
+    /// Looks at what the springs of contact hold beside the solids, as long as nothing else touches.
+    fn look_at_springs(&mut self) {
+        let alone = self.debris.is_empty() && self.bonded.particles.is_empty() && self.solid.body_count() > 0;
+        if !alone || self.has_noticed(Notice::Springs) {
+            return;
+        }
+        let [springs, solids] = &mut self.books.pressed;
+        *springs += self.ledger[EnergyKind::Contact];
+        *solids += self.ledger[EnergyKind::Elastic];
+        let share = *springs / (*springs + *solids);
+        // An impact is over in the first half of the run.
+        if self.clock.time > 0.5 * self.settings.time_step.end && *springs > 0.0 && share > SOFT {
+            self.note(Notice::Springs, Site::Scene, share);
         }
     }
 

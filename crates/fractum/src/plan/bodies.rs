@@ -72,7 +72,15 @@ impl Plan {
         };
         let made = rigid.material.map_or("rigid", |material| case.materials[material].name.value.as_str());
         let friction = rigid.contact.friction;
-        self.add("body", format!("{name}: {made} {shape}{inside}, {motion}, friction {friction}"));
+        let index = scene.contacts.rigid_bodies().iter().position(|rigid_body| rigid_body.name == name);
+        let touches = scene.solid.body_count() > 0 && case.solver.kind != SolverKind::Static;
+        let touched = index.filter(|_| touches).map(|index| scene.holds_nodes(index));
+        let how = match touched {
+            Some(true) => ", holds nodes of solids",
+            Some(false) => ", presses on solids by springs",
+            None => "",
+        };
+        self.add("body", format!("{name}: {made} {shape}{inside}, {motion}, friction {friction}{how}"));
     }
 
     fn describe_bonded(&mut self, material: &Material, report: &BondedReport) {

@@ -221,6 +221,14 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
             "rock that is crushed still bears pressure, and this does not: try unilateral = true or smaller elements; counts.crushed_elements \
              tells how many they were",
         ),
+        Notice::Springs => (
+            Code::SoftContact,
+            format!(
+                "springs of contact hold {} of the elastic energy: solids give way there as half an element does",
+                percent(*value)
+            ),
+            "forces under a given motion lack that share: take smaller elements, or a rigid shape that is driven instead of a solid that is thrown",
+        ),
         Notice::Overlap => (
             Code::DeepOverlap,
             format!(
