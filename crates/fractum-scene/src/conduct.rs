@@ -53,10 +53,11 @@ impl Scene {
     }
 
     /// Books the work of the last expansion at the present stresses.
-    pub(crate) fn finish_expansion(&mut self) {
+    pub(crate) fn finish_expansion(&mut self, passed: &mut impl FnMut(Phase)) {
         let Scene { optional, solid, bonded, books, .. } = self;
         if let Some(heat) = &mut optional.heat {
             books.external += heat.finish_expansion(solid, bonded);
+            passed(Phase::Heat);
         }
     }
 

@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 
 mod advance;
+mod balance;
 mod bands;
 mod bonded;
 mod clock;

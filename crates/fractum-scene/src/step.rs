@@ -1,19 +1,11 @@
 use fractum_dem::Particles;
 use fractum_fem::InvertedElement;
-use fractum_math::{HalfSteps, Vec3, Work};
+use fractum_math::{HalfSteps, Work};
 
 use crate::contacts::{HoldStep, Touching, hold_nodes};
 use crate::error::StepError;
-use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 use crate::watch::{Notice, Site};
-
-/// Elastic energy over all energy put in, above which a run is unstable: a mode of the highest frequency at 0.95 of the
-/// stable step reaches 10.
-const UNSTABLE_RATIO: f64 = 20.0;
-
-/// Part of the energy of in-situ stress below which an energy is what rounding leaves.
-const IN_SITU_ROUND_OFF: f64 = 1e-9;
 
 /// Relative difference of two steps that is rounding.
 const SAME_STEP: f64 = 1e-9;
@@ -29,6 +21,25 @@ pub struct StepReport {
     pub particles_born: usize,
     /// Solid bodies that have begun to turn, and are corotational from now on.
     pub turning: Vec<u32>,
+}
+
+/// The step around tⁿ that is being done.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ThisStep {
+    /// Whether motion begins with it.
+    pub(crate) is_first: bool,
+    /// Whether the ledger of tⁿ is wanted.
+    pub(crate) measure: bool,
+    /// Whether the steps before and after tⁿ differ.
+    pub(crate) changes: bool,
+    /// tⁿ [s].
+    pub(crate) time: f64,
+    /// Time since the forces of before; zero where nothing has moved [s].
+    pub(crate) elapsed: f64,
+    /// Step to tⁿ [s].
+    pub(crate) dt_before: f64,
+    /// Step from tⁿ [s].
+    pub(crate) dt_after: f64,
 }
 
 /// A part of the step, for those who time it. A step passes those alone that its scene has work for.
@@ -72,82 +83,86 @@ impl Scene {
     /// # Errors
     /// As [`Scene::step`].
     pub fn step_observed(&mut self, measure: bool, mut passed: impl FnMut(Phase)) -> Result<StepReport, StepError> {
-        let first = self.clock.begins_motion();
-        let measure = measure || first;
-        let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
-        // Nothing has moved before.
-        let elapsed = if first { 0.0 } else { dt_before };
-        let step_changes = (dt_after - dt_before).abs() > SAME_STEP * dt_before;
-        self.solid.move_all_nodes_next(step_changes); // supports change their kinetic energy
-        self.solid.set_parts(self.parts(dt_after), first);
-        if self.solid.body_count() > 0 {
-            self.solid.update_internal_forces(elapsed, measure); // -∫ Bᵀσ dV; damage evolves
-            self.refuse_inverted_elements()?;
-            passed(Phase::Solid);
-        }
-        let (bonded_load, faces) = self.add_bond_forces(time, elapsed, dt_before, measure);
-        if self.bonded.has_bonds() {
-            passed(Phase::Bonds);
-        }
-        if self.optional.heat.is_some() {
-            self.finish_expansion();
-            passed(Phase::Heat);
-        }
-        let mut contact = self.add_contact_forces(elapsed, faces);
+        let step = self.this_step(measure);
+        self.add_internal_forces(&step, &mut passed)?; // -∫ Bᵀσ dV; damage evolves
+        let (bonded_load, faces) = self.add_bond_forces(&step, &mut passed);
+        self.finish_expansion(&mut passed);
+        let mut contact = self.add_contact_forces(step.elapsed, faces);
         if self.may_touch() {
             passed(Phase::Contact);
         }
         self.pass_on_ties(&mut passed);
-        let load = self.loads.add_forces(&mut self.solid, time, dt_before) + bonded_load;
-        if self.loads.gas().is_some() {
-            passed(Phase::Motion);
-            self.loads.add_gas_forces(&mut self.solid, time, elapsed);
-            passed(Phase::Gas);
-        }
-        self.add_surface_support_forces(first);
-        contact += self.hold_nodes(elapsed, measure);
-        let given = if first { self.start_half_a_step_early(dt_before) } else { 0.0 };
+        let load = self.add_load_forces(&step, &mut passed) + bonded_load;
+        self.add_surface_support_forces(step.is_first);
+        contact += self.hold_nodes(step.elapsed, step.measure);
+        let given = if step.is_first { self.start_half_a_step_early(step.dt_before) } else { 0.0 };
         self.let_left_rest();
-        self.let_particles_leave(dt_before);
-        let expansion = self.conduct(dt_after, &mut passed)?;
-        self.break_bonds(measure || step_changes, &mut passed);
-        let mut work = self.advance(measure || step_changes, &mut passed); // vⁿ⁺½, uⁿ⁺¹
+        self.let_particles_leave(step.dt_before);
+        let expansion = self.conduct(step.dt_after, &mut passed)?;
+        self.break_bonds(step.measure || step.changes, &mut passed);
+        let mut work = self.advance(step.measure || step.changes, &mut passed); // vⁿ⁺½, uⁿ⁺¹
         work.after.external += expansion;
         work.before.external += load;
-
-        self.books += contact;
-        if !first {
-            self.books += work.before;
-        }
-        if measure {
-            // What central differences keep less of the energy of a start out of balance, ⅛ Δt² Σ F²/m, but for what shapes stop.
-            let missing = if first { (given - work.before.kinetic).max(0.0) - contact.damping } else { 0.0 };
-            self.ledger[EnergyKind::Kinetic] = work.before.kinetic + missing;
-            self.ledger[EnergyKind::Contact] = contact.stored;
-            self.close_balance()?;
-            self.books.time_step += missing;
-        }
-        if step_changes {
-            self.books.time_step += work.before.kinetic - work.after.kinetic;
-        }
-        self.books += work.after;
-        self.optional.surface_supports.absorb_after(&mut self.solid, dt_after);
+        self.book(&step, contact, work, given)?;
+        self.optional.surface_supports.absorb_after(&mut self.solid, step.dt_after);
         passed(Phase::Motion);
-
-        let report = self.change_solids(dt_after);
+        let report = self.change_solids(step.dt_after);
         if self.solid.has_damage() {
             passed(Phase::Transition);
         }
-        self.debris.search(&self.solid);
-        self.let_pieces_leave(dt_after);
-        if !self.debris.is_empty() {
-            let renew = self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS);
-            self.update_contact_frequency(report.removed > 0, renew);
-            passed(Phase::Contact);
-        }
-        let dt = self.next_dt(time + dt_after);
+        self.look_at_debris(report.removed > 0, step.dt_after, &mut passed);
+        let dt = self.next_dt(step.time + step.dt_after);
         self.clock.advance(dt);
         Ok(report)
+    }
+
+    /// Instants and sizes of the step that begins.
+    fn this_step(&self, measure: bool) -> ThisStep {
+        let is_first = self.clock.begins_motion();
+        let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
+        ThisStep {
+            is_first,
+            measure: measure || is_first,
+            changes: (dt_after - dt_before).abs() > SAME_STEP * dt_before,
+            time,
+            elapsed: if is_first { 0.0 } else { dt_before },
+            dt_before,
+            dt_after,
+        }
+    }
+
+    /// Forces of the stress in solids at tⁿ.
+    fn add_internal_forces(&mut self, step: &ThisStep, passed: &mut impl FnMut(Phase)) -> Result<(), StepError> {
+        self.solid.move_all_nodes_next(step.changes); // supports change their kinetic energy
+        self.solid.set_parts(self.parts(step.dt_after), step.is_first);
+        if self.solid.body_count() > 0 {
+            self.solid.update_internal_forces(step.elapsed, step.measure);
+            self.refuse_inverted_elements()?;
+            passed(Phase::Solid);
+        }
+        Ok(())
+    }
+
+    /// Forces of loads and of gas at tⁿ; the work of loads in the half step before [J].
+    fn add_load_forces(&mut self, step: &ThisStep, passed: &mut impl FnMut(Phase)) -> f64 {
+        let load = self.loads.add_forces(&mut self.solid, step.time, step.dt_before);
+        if self.loads.gas().is_some() {
+            passed(Phase::Motion);
+            self.loads.add_gas_forces(&mut self.solid, step.time, step.elapsed);
+            passed(Phase::Gas);
+        }
+        load
+    }
+
+    /// Finds what discrete elements may touch, and lets pieces leave.
+    fn look_at_debris(&mut self, has_grown: bool, dt: f64, passed: &mut impl FnMut(Phase)) {
+        self.debris.search(&self.solid);
+        self.let_pieces_leave(dt);
+        if !self.debris.is_empty() {
+            let renew = self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS);
+            self.update_contact_frequency(has_grown, renew);
+            passed(Phase::Contact);
+        }
     }
 
     fn refuse_inverted_elements(&self) -> Result<(), StepError> {
@@ -161,12 +176,16 @@ impl Scene {
 
     /// Forces of the bonds, of crack faces and of the loads on their particles; the work of loads in the half step
     /// before [J], and that of crack faces.
-    fn add_bond_forces(&mut self, time: f64, elapsed: f64, dt_before: f64, measure: bool) -> (f64, Work) {
+    fn add_bond_forces(&mut self, step: &ThisStep, passed: &mut impl FnMut(Phase)) -> (f64, Work) {
         if self.bonded.is_empty() {
             return (0.0, Work::default());
         }
-        let faces = self.bonded.update_bond_forces(elapsed, measure);
-        (self.bonded.add_loads(time, dt_before), faces)
+        let faces = self.bonded.update_bond_forces(step.elapsed, step.measure);
+        let load = self.bonded.add_loads(step.time, step.dt_before);
+        if self.bonded.has_bonds() {
+            passed(Phase::Bonds);
+        }
+        (load, faces)
     }
 
     /// Forces of supports on facets.
@@ -308,121 +327,5 @@ impl Scene {
             }
         }
         report
-    }
-
-    /// Completes the ledger of tⁿ and holds it against the guard.
-    fn close_balance(&mut self) -> Result<(), StepError> {
-        let Scene { ledger, solid, bonded, books, contacts, optional, .. } = self;
-        optional.surface_supports.gather(solid);
-        let bonds = bonded.energy();
-        ledger[EnergyKind::BondTension] = bonds.tension;
-        ledger[EnergyKind::BondBending] = bonds.bending;
-        ledger[EnergyKind::BondTorsion] = bonds.torsion;
-        ledger[EnergyKind::Elastic] = solid.elastic_energy() + bonds.total();
-        // The sum over no block at all is -0.
-        ledger[EnergyKind::Damage] = solid.dissipated_energy() + bonded.dissipated_energy() + 0.0;
-        ledger[EnergyKind::External] = books.external;
-        ledger[EnergyKind::Removed] = books.removed + bonded.released_energy();
-        ledger[EnergyKind::Friction] = books.friction;
-        ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
-        ledger[EnergyKind::TimeStep] = books.time_step;
-        ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();
-        ledger[EnergyKind::Left] = books.left;
-        ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
-        if self.clock.step == 0 {
-            ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];
-            ledger.initial += ledger[EnergyKind::Damping]; // rigid shapes stop what meets them at once
-            if !solid.initial_displacement.is_empty() {
-                ledger.in_situ = ledger[EnergyKind::Elastic];
-            }
-            // Less than this is no energy: bodies that wait for a rigid body move by what rounding leaves, and so does rock
-            // under stress.
-            ledger.scale = bonded.round_off_energy(self.clock.dt_after) + IN_SITU_ROUND_OFF * ledger.in_situ;
-        }
-        if let Some(gas) = self.loads.gas() {
-            let [held, supplied, leaked] = gas.energies();
-            ledger[EnergyKind::Gas] = held;
-            ledger[EnergyKind::GasSupplied] = supplied;
-            ledger[EnergyKind::GasLeaked] = leaked;
-            // What the gas has done is in play; what it holds may be much more.
-            ledger.scale = ledger.scale.max((supplied - held - leaked).abs());
-        }
-        // The first touch of a rigid body is found to a step only; it is measured by what a particle takes from it, not by the little
-        // work done so far.
-        ledger.scale = ledger.scale.max(contacts.touch_energy(&bonded.particles));
-        ledger.update_maxima();
-        let (relative, finite) = (ledger.relative_residual(), ledger.residual().is_finite());
-        let (step, time, dt, limit) = (self.clock.step, self.clock.time, self.clock.dt_after, self.stable_dt());
-        if !finite || !relative.is_finite() {
-            return Err(StepError::NotFinite { step, time, dt, limit, culprit: self.culprit() });
-        }
-        // An unstable run keeps the discrete balance while it blows up: its energies grow with opposite signs.
-        let ratio = (self.ledger[EnergyKind::Elastic] - self.ledger.in_situ) / self.ledger.scale;
-        if ratio > UNSTABLE_RATIO {
-            return Err(StepError::Unstable { step, time, ratio, dt, limit, culprit: self.culprit() });
-        }
-        let allowed = self.settings.balance_stop;
-        if relative > allowed {
-            return Err(StepError::Unbalanced { step, time, relative, allowed, dt, limit, culprit: self.culprit() });
-        }
-        Ok(())
-    }
-
-    /// The ledger of a state of equilibrium.
-    pub(crate) fn book_equilibrium(&mut self) -> Result<(), StepError> {
-        let Scene { ledger, solid, books, .. } = self;
-        ledger[EnergyKind::Elastic] = solid.elastic_energy();
-        ledger[EnergyKind::Damage] = solid.dissipated_energy();
-        ledger[EnergyKind::External] = books.external;
-        ledger[EnergyKind::Removed] = books.removed;
-        ledger[EnergyKind::Friction] = books.friction;
-        ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
-        ledger[EnergyKind::TimeStep] = books.time_step;
-        ledger.update_maxima();
-        if ledger.residual().is_finite() {
-            return Ok(());
-        }
-        let (step, time, dt, limit) = (self.clock.step, self.clock.time, self.clock.dt_before, f64::INFINITY);
-        Err(StepError::NotFinite { step, time, dt, limit, culprit: self.culprit() })
-    }
-
-    /// The element or bonded particle with the largest kinetic energy, or with a value that is not a number.
-    fn culprit(&mut self) -> String {
-        self.gather_ranks();
-        let solid = &self.solid;
-        let energy = |node: u32| {
-            let i = node as usize;
-            let energy = solid.mass[i] * solid.velocity[i].norm_squared();
-            if energy.is_finite() && solid.displacement[i].iter().all(|c| c.is_finite()) {
-                energy
-            } else {
-                f64::INFINITY
-            }
-        };
-        let mut worst = (-1.0, 0, 0);
-        for body in 0..solid.body_count() {
-            let corners = solid.body(body).shape.node_count();
-            for (element, nodes) in solid.body(body).elements.iter().enumerate() {
-                let sum: f64 = nodes[..corners].iter().map(|&n| energy(n)).sum();
-                if sum > worst.0 {
-                    worst = (sum, body, element);
-                }
-            }
-        }
-        let (largest, body, element) = worst;
-        if let Some((energy, particle)) = self.bonded.fastest()
-            && energy > largest
-        {
-            return particle;
-        }
-        let nodes = &solid.body(body).elements[element];
-        let centre: Vec3 = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / 4.0;
-        format!(
-            "element {element} of body {} at ({:.4e}, {:.4e}, {:.4e}) m",
-            solid.body(body).name,
-            centre.x,
-            centre.y,
-            centre.z
-        )
     }
 }
