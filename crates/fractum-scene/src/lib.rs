@@ -52,6 +52,7 @@ pub use heat::{
     Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
 };
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
+pub use measure::counts::{CountKind, Counts};
 pub use measure::crack_extent::CrackProbe;
 pub use measure::crack_measure::{CrackMeasure, InsideCracks};
 pub use measure::damaged::{DamagedMeasure, DamagedPart};
@@ -65,7 +66,7 @@ pub use measure::radial_cracks::{RadialCracks, RadialMeasure};
 pub use measure::region_probe::{RegionStrain, RegionStress};
 pub use measure::velocity_station::{PeakVelocity, StationPlace, VelocityStation};
 pub use ranks::Watched;
-pub use scene::{CountKind, Counts, Scene, SceneSettings, SceneState};
+pub use scene::{Scene, SceneSettings, SceneState};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::{Phase, StepReport};
 pub use subcycling::SubcyclingState;

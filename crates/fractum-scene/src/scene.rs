@@ -52,15 +52,21 @@ pub(crate) struct Optional {
     pub(crate) watch: Watch,
 }
 
+/// How many elements have left the solids.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct RemovalTally {
+    /// Since the start, after they were turned inside out.
+    pub(crate) crushed: usize,
+    /// Since the stable step was looked at.
+    pub(crate) since_check: usize,
+}
+
 /// Elements that have left the solids.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Removals {
     /// Bodies and elements of the last step.
     pub(crate) last: Vec<(usize, u32)>,
-    /// How many since the start were turned inside out.
-    pub(crate) crushed: usize,
-    /// How many since the stable step was looked at.
-    pub(crate) since_check: usize,
+    pub(crate) tally: RemovalTally,
     /// Free pieces outside it leave the run.
     pub(crate) domain: Option<Domain>,
     pub(crate) left: Left,
@@ -95,8 +101,7 @@ pub struct SceneState {
     books: Books,
     frequency: f64,
     governing: (usize, u32),
-    crushed: usize,
-    removed_since_check: usize,
+    removals: RemovalTally,
     contact_frequency_square: f64,
     contact_frequency_peak: f64,
     left: Left,
@@ -122,7 +127,7 @@ impl SceneState {
     /// What stands behind the viscous stress of the solids.
     pub fn behind_solids(&self) -> impl Serialize + '_ {
         let touching = (&self.debris, &self.bonded, &self.contacts, &self.shape_contacts);
-        let frequencies = (self.frequency, self.governing, self.removed_since_check);
+        let frequencies = (self.frequency, self.governing, self.removals);
         let of_contacts = (self.contact_frequency_square, self.contact_frequency_peak);
         (touching, (&self.ledger, &self.books), frequencies, of_contacts, (&self.left, &self.conditions))
     }
@@ -130,49 +135,6 @@ impl SceneState {
     /// The same with another state of the solids; none where there is none.
     pub(crate) fn with_solid(self, solid: impl FnOnce(SolidState) -> Option<SolidState>) -> Option<Self> {
         Some(SceneState { solid: solid(self.solid)?, ..self })
-    }
-}
-
-/// What a probe counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // the names say it
-pub enum CountKind {
-    RemovedElements,
-    BrokenEdges,
-    DamagedEdges,
-    Particles,
-    Fragments,
-    Contacts,
-    Bonds,
-    BrokenBonds,
-}
-
-/// What there is of everything.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs)] // the names say it
-pub struct Counts {
-    pub nodes: usize,
-    pub elements: usize,
-    pub removed_elements: usize,
-    /// Those of them that were turned inside out.
-    pub crushed_elements: usize,
-    pub particles: usize,
-    pub contacts: usize,
-    pub bonds: usize,
-    pub broken_bonds: usize,
-}
-
-impl Counts {
-    /// One of them; edges and fragments are not among them.
-    pub(crate) fn of(&self, kind: CountKind) -> usize {
-        match kind {
-            CountKind::RemovedElements => self.removed_elements,
-            CountKind::Particles => self.particles,
-            CountKind::Contacts => self.contacts,
-            CountKind::Bonds => self.bonds,
-            CountKind::BrokenBonds => self.broken_bonds,
-            CountKind::Fragments | CountKind::BrokenEdges | CountKind::DamagedEdges => 0,
-        }
     }
 }
 
@@ -344,33 +306,6 @@ impl Scene {
         attached
     }
 
-    /// Counts of everything but fragments and edges, of which [`Solid::fracture`] tells.
-    pub fn counts(&self) -> Counts {
-        Counts {
-            nodes: self.solid.reference.len(),
-            elements: (0..self.solid.body_count()).map(|b| self.solid.element_count(b)).sum(),
-            removed_elements: self.solid.removed_count() - self.removals.left.elements,
-            crushed_elements: self.removals.crushed,
-            particles: self.debris.len() + self.bonded.particles.len()
-                - self.removals.left.particles(self.solid.reference.len()).count(),
-            bonds: self.bonded.bond_counts().0,
-            broken_bonds: self.bonded.bond_counts().1,
-            contacts: self.debris.touching().count()
-                + self.shape_contacts.iter().map(NodesOnShape::touching).sum::<usize>()
-                + self.contacts.touching(),
-        }
-    }
-
-    /// One count.
-    pub fn count(&self, kind: CountKind) -> usize {
-        match kind {
-            CountKind::Fragments => self.fragments().len(),
-            CountKind::BrokenEdges => self.solid.fracture().broken_edges,
-            CountKind::DamagedEdges => self.solid.fracture().damaged_edges,
-            kind => self.counts().of(kind),
-        }
-    }
-
     /// Fragments of solids and bonded bodies, heaviest first: pieces of at least two nodes or particles, joined by edges
     /// that keep some of their strength, by bonds and by ties.
     pub fn fragments(&self) -> Vec<Fragment> {
@@ -416,8 +351,7 @@ impl Scene {
             books: self.books,
             frequency: self.frequencies.stable.frequency,
             governing: self.frequencies.stable.governing,
-            crushed: self.removals.crushed,
-            removed_since_check: self.removals.since_check,
+            removals: self.removals.tally,
             contact_frequency_square: self.frequencies.contact_square,
             contact_frequency_peak: self.frequencies.contact_peak,
             left: self.removals.left.clone(),
@@ -447,8 +381,7 @@ impl Scene {
         self.ledger = state.ledger;
         self.books = state.books;
         self.frequencies.stable = StableStep { frequency: state.frequency, governing: state.governing };
-        self.removals.crushed = state.crushed;
-        self.removals.since_check = state.removed_since_check;
+        self.removals.tally = state.removals;
         self.removals.left = state.left;
         self.frequencies.contact_square = state.contact_frequency_square;
         self.frequencies.contact_peak = state.contact_frequency_peak;

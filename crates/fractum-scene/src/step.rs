@@ -287,7 +287,7 @@ impl Scene {
     pub(crate) fn release_cut_elements(&mut self, dt: f64) -> StepReport {
         self.removals.last.clear();
         if let Some((body, element)) = self.solid.crushed_element() {
-            self.removals.crushed += 1;
+            self.removals.tally.crushed += 1;
             self.note(Notice::Crushed, Site::Element { body, element }, 1.0);
         }
         let energy = self.solid.remove_cut_elements(dt, &mut self.removals.last);
@@ -310,11 +310,11 @@ impl Scene {
             let Scene { contacts, solid, debris, bonded, removals, .. } = self;
             contacts.release(solid, debris, &bonded.particles, &removals.last, before);
             self.follow_near();
-            self.removals.since_check += report.removed;
+            self.removals.tally.since_check += report.removed;
         }
         // Cells that lost elements may be stiffer for their mass than any before.
-        if self.removals.since_check > 0 && self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS) {
-            self.removals.since_check = 0;
+        if self.removals.tally.since_check > 0 && self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS) {
+            self.removals.tally.since_check = 0;
             if !self.settings.time_step.element_bound {
                 let present = self.solid.stable_step();
                 if present.frequency > self.frequencies.stable.frequency {

@@ -1,6 +1,7 @@
 //! What is looked at in a scene: probes, gauges, stations of peak velocity, and whether its theory is still valid.
 
 pub(crate) mod audit;
+pub(crate) mod counts;
 pub(crate) mod crack_extent;
 pub(crate) mod crack_measure;
 pub(crate) mod damaged;

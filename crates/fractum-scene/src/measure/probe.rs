@@ -8,7 +8,8 @@ use fractum_math::Sym3;
 
 use crate::contacts::ContactProbe;
 use crate::fragment::Fragment;
-use crate::scene::{CountKind, Counts, Scene};
+use crate::measure::counts::{CountKind, Counts};
+use crate::scene::Scene;
 
 /// A number that a scene yields at every instant.
 pub trait Probe: fmt::Debug + Send + Sync {

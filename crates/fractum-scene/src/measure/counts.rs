@@ -1,0 +1,76 @@
+//! How many there are of everything in a scene.
+
+use crate::contacts::NodesOnShape;
+use crate::scene::Scene;
+
+/// What a probe counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // the names say it
+pub enum CountKind {
+    RemovedElements,
+    BrokenEdges,
+    DamagedEdges,
+    Particles,
+    Fragments,
+    Contacts,
+    Bonds,
+    BrokenBonds,
+}
+
+/// What there is of everything.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs)] // the names say it
+pub struct Counts {
+    pub nodes: usize,
+    pub elements: usize,
+    pub removed_elements: usize,
+    /// Those of them that were turned inside out.
+    pub crushed_elements: usize,
+    pub particles: usize,
+    pub contacts: usize,
+    pub bonds: usize,
+    pub broken_bonds: usize,
+}
+
+impl Counts {
+    /// One of them; edges and fragments are not among them.
+    pub(crate) fn of(&self, kind: CountKind) -> usize {
+        match kind {
+            CountKind::RemovedElements => self.removed_elements,
+            CountKind::Particles => self.particles,
+            CountKind::Contacts => self.contacts,
+            CountKind::Bonds => self.bonds,
+            CountKind::BrokenBonds => self.broken_bonds,
+            CountKind::Fragments | CountKind::BrokenEdges | CountKind::DamagedEdges => 0,
+        }
+    }
+}
+
+impl Scene {
+    /// Counts of everything but fragments and edges, of which [`Solid::fracture`] tells.
+    pub fn counts(&self) -> Counts {
+        Counts {
+            nodes: self.solid.reference.len(),
+            elements: (0..self.solid.body_count()).map(|b| self.solid.element_count(b)).sum(),
+            removed_elements: self.solid.removed_count() - self.removals.left.elements,
+            crushed_elements: self.removals.tally.crushed,
+            particles: self.debris.len() + self.bonded.particles.len()
+                - self.removals.left.particles(self.solid.reference.len()).count(),
+            bonds: self.bonded.bond_counts().0,
+            broken_bonds: self.bonded.bond_counts().1,
+            contacts: self.debris.touching().count()
+                + self.shape_contacts.iter().map(NodesOnShape::touching).sum::<usize>()
+                + self.contacts.touching(),
+        }
+    }
+
+    /// One count.
+    pub fn count(&self, kind: CountKind) -> usize {
+        match kind {
+            CountKind::Fragments => self.fragments().len(),
+            CountKind::BrokenEdges => self.solid.fracture().broken_edges,
+            CountKind::DamagedEdges => self.solid.fracture().damaged_edges,
+            kind => self.counts().of(kind),
+        }
+    }
+}
