@@ -44,6 +44,8 @@ pub struct DamagePoint {
     pub kappa: f64,
     /// Equivalent stress over which softening takes place, E' G_f/(l f_t) [Pa].
     pub softening: f64,
+    /// Strength [Pa].
+    pub strength: f64,
     /// Whether it is broken.
     pub broken: bool,
     /// Damage so far.
@@ -156,7 +158,16 @@ impl Solid {
                 let kappa = field.onset(index);
                 let softening =
                     field.softens.restraint.modulus * energy / (field.length[index] * field.strength[index]);
-                points.push(DamagePoint { body, kappa, softening, broken, damage, lateral, share });
+                points.push(DamagePoint {
+                    body,
+                    kappa,
+                    softening,
+                    broken,
+                    damage,
+                    lateral,
+                    share,
+                    strength: field.strength[index],
+                });
             }
         }
         points
@@ -205,7 +216,7 @@ impl Solid {
             if criterion.surely_below(stress, threshold(point)) {
                 return Seen { share: point.share, ..Seen::NOTHING };
             }
-            let (q, history) = (criterion.equivalent_stress(stress), [point.kappa, point.lateral]);
+            let (q, history) = (criterion.equivalent_stress(stress), [point.strength, point.kappa, point.lateral]);
             match Restraint::of(&model.body).seen(criterion, history, stress, q) {
                 seen if seen.stress > point.kappa => seen,
                 seen => Seen { share: point.share, ..seen },

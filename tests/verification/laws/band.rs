@@ -89,6 +89,14 @@ impl Cell {
         mean.zip(&self.solid.velocity).map(|(force, moved)| force.dot(moved)).sum()
     }
 
+    /// By how much an opening counts less whose lateral strain falls by `side` per strain across the crack: the root of what is left of the work.
+    fn obliquity(&self, side: f64) -> f64 {
+        let (held, fallen) =
+            if self.in_plane { (-self.free, side) } else { (-self.free / (1.0 + self.free), 2.0 * side) };
+        let left = (1.0 - 2.0 * held * fallen + fallen * fallen) / (1.0 - held * fallen);
+        left.min(1.0).sqrt()
+    }
+
     /// Stress across the crack [Pa].
     fn stress(&self) -> f64 {
         let normal = self.axes.column(0);
@@ -115,8 +123,8 @@ pub(super) fn torn_and_held(draw: &mut Draw, curve: Softening) -> Held {
         let opening = openings * f64::from(step) / f64::from(steps);
         let more = opening * strength / modulus;
         work += cell.strain(onset + more, at_onset * onset + (1.0 - held) * free * more);
-        let expected = strength
-            * curve.residual_ratio(strength * (1.0 + opening), strength, cell.length, modulus, cell.fracture_energy);
+        let counted = strength * (1.0 + opening * cell.obliquity((held - 1.0) * free));
+        let expected = strength * curve.residual_ratio(counted, strength, cell.length, modulus, cell.fracture_energy);
         let across = cell.stress();
         hold((across - expected).abs() < 1e-6 * strength, || {
             format!("{words}: {} of the strength at {opening}, {}", across / strength, expected / strength)

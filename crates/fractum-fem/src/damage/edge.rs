@@ -174,10 +174,10 @@ impl Softens {
         self.softening.residual_ratio(kappa, strength, length, self.restraint.modulus, self.fracture_energy)
     }
 
-    /// What an edge sees whose equivalent stress is `q` [Pa].
+    /// What an edge of this strength sees whose equivalent stress is `q` [Pa].
     #[inline(always)]
-    pub(crate) fn see(&self, edge: &EdgeDamage, stress: Sym3, q: f64) -> Seen {
-        self.restraint.seen(&self.criterion, [edge.kappa, edge.lateral], stress, q)
+    pub(crate) fn see(&self, edge: &EdgeDamage, strength: f64, stress: Sym3, q: f64) -> Seen {
+        self.restraint.seen(&self.criterion, [strength, edge.kappa, edge.lateral], stress, q)
     }
 
     /// Advances the history of an edge to what it sees; returns the growth of damage.

@@ -105,7 +105,7 @@ impl EdgesInStep<'_> {
         let EdgeCells { field, dissipated, energy } = &mut *self.edges;
         let volume = self.cells.volume[cell];
         let EdgeDamage { damage: damage_before, strain: kept, .. } = field.state[cell];
-        let seen = field.softens.see(&field.state[cell], stress, q);
+        let seen = field.softens.see(&field.state[cell], field.strength[cell], stress, q);
         let growth = field.load(cell, seen, self.step.dt);
         if growth > 0.0 {
             // An edge that was intact has kept no strain.

@@ -16,7 +16,7 @@ impl Body {
 /// What an edge sees in a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
-    /// Equivalent stress of its opening [Pa]; the largest so far drives damage.
+    /// Equivalent stress of its opening, as far as that counts [Pa]; the largest so far drives damage.
     pub stress: f64,
     /// Part of the largest effective principal stress that belongs to the opening, at most 1.
     pub share: f64,
@@ -39,10 +39,19 @@ impl Seen {
 ///
 /// with the sum L of the lateral principal stresses and its value L₀ at the onset of damage: x grows by E' per strain across the crack, whatever holds it
 /// sideways, with E' = E in space and plane stress, E/(1-ν²) in plane strain. Damage then is 1 - (x/s₁) f_t χ(x)/x, which leaves the stress f_t χ(x) across the crack.
+///
+/// A crack zigzags through the mesh: its elements open askew, so that a lateral strain falls by r per strain ε₁ since the onset, and the lateral stresses, which
+/// pull, take work away. The work of a step is that of f_t χ(x) on m⁻¹ dε₁,
+///
+/// m = (1 - ν̂ r)/(1 - 2 ν̂ r + r²) where r < ν̂ and 1 beyond, ν̂ = ν' in the plane, ν/(1-ν) in space,
+///
+/// and the same strain may also be that of an element that is held in part. What exceeds f_t in x therefore counts by m^-½ (docs/theory/damage.md).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Restraint {
     /// ν'.
     factor: f64,
+    /// ν̂.
+    askew: f64,
     /// E' [Pa].
     pub(crate) modulus: f64,
     /// Ratio of the stress across the thickness to the sum of those in the plane; none in space.
@@ -53,11 +62,15 @@ impl Restraint {
     pub(crate) fn of(body: &Body) -> Self {
         let (Hooke { lambda, mu, zz }, elastic) = (Hooke::of(body), &body.elastic);
         match body.shape {
-            ElementKind::T4 => {
-                Restraint { factor: elastic.poisson_ratio, modulus: elastic.young_modulus, thickness: None }
-            }
+            ElementKind::T4 => Restraint {
+                factor: elastic.poisson_ratio,
+                askew: lambda / (lambda + 2.0 * mu),
+                modulus: elastic.young_modulus,
+                thickness: None,
+            },
             ElementKind::T3 => Restraint {
                 factor: lambda / (lambda + 2.0 * mu),
+                askew: lambda / (lambda + 2.0 * mu),
                 modulus: 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu),
                 thickness: Some(zz * elastic.poisson_ratio),
             },
@@ -66,9 +79,15 @@ impl Restraint {
 
     /// What an edge sees whose equivalent stress is `q` [Pa].
     ///
-    /// - `[kappa, at_onset]`: largest equivalent stress so far, and sum of the lateral principal stresses at the onset of damage [Pa]
+    /// - `[strength, kappa, at_onset]`: strength, largest equivalent stress so far, and sum of the lateral principal stresses at the onset of damage [Pa]
     #[inline(always)]
-    pub(crate) fn seen(&self, criterion: &Criterion, [kappa, at_onset]: [f64; 2], stress: Sym3, q: f64) -> Seen {
+    pub(crate) fn seen(
+        &self,
+        criterion: &Criterion,
+        [strength, kappa, at_onset]: [f64; 3],
+        stress: Sym3,
+        q: f64,
+    ) -> Seen {
         if q <= kappa {
             return Seen { stress: q, ..Seen::NOTHING };
         }
@@ -88,7 +107,27 @@ impl Restraint {
         }
         let opening = first - self.factor * more;
         let stress = if is_rankine { opening } else { q.min(self.released(criterion, stress, more)) };
-        Seen { stress, share: (opening / first).max(0.0), lateral: at_onset }
+        let share = (opening / first).max(0.0);
+        if stress <= strength {
+            return Seen { stress, share, lateral: at_onset };
+        }
+        let counted = strength + (stress - strength) / self.obliquity(more / (first - strength)).sqrt();
+        Seen { stress: counted, share: share * (counted / stress), lateral: at_onset }
+    }
+
+    /// m.
+    ///
+    /// - `ratio`: growth of the lateral sum since the onset over that of the largest principal stress
+    #[inline(always)]
+    fn obliquity(&self, ratio: f64) -> f64 {
+        let askew = self.askew;
+        let fallen = match self.thickness {
+            Some(_) => (askew - ratio) / (1.0 - askew * ratio),
+            None => (2.0 * askew - ratio) / (1.0 + askew - askew * ratio),
+        };
+        // A band that cannot move sideways at all, and numbers beyond that, leave 1.
+        let fallen = fallen.clamp(0.0, 1.0);
+        ((1.0 - askew * fallen) / (1.0 - 2.0 * askew * fallen + fallen * fallen)).max(1.0)
     }
 
     /// Equivalent stress without what restraint adds: principal stresses with `more` of the lateral sum and its effect on the first taken away [Pa].
@@ -142,7 +181,7 @@ mod tests {
 
     fn see(softens: &Softens, edge: &EdgeDamage, strain: Sym3) -> (Seen, Sym3) {
         let stress = softens.hooke.stress(strain);
-        (softens.see(edge, stress, softens.criterion.equivalent_stress(stress)), stress)
+        (softens.see(edge, STRENGTH, stress, softens.criterion.equivalent_stress(stress)), stress)
     }
 
     proptest! {
@@ -163,7 +202,12 @@ mod tests {
                 let more = opening * onset;
                 let side = -nu * onset - (1.0 - held) * nu * more;
                 let (seen, _) = see(&softens, &edge, Sym3([onset + more, side, thick(side), 0.0, 0.0, 0.0]));
-                let expected = STRENGTH * (1.0 + opening);
+                // What of the lateral strain has fallen counts as askew in part.
+                let hooke = softens.hooke;
+                let (askew, sides) = (hooke.lambda / (hooke.lambda + 2.0 * hooke.mu), if in_plane { 1.0 } else { 2.0 });
+                let fallen = sides * (1.0 - held) * nu;
+                let m = (1.0 - askew * fallen) / (1.0 - 2.0 * askew * fallen + fallen * fallen);
+                let expected = STRENGTH * (1.0 + opening / m.max(1.0).sqrt());
                 let has_cut_off = !matches!(kind, CriterionKind::PureMohrCoulomb | CriterionKind::ModifiedMohrCoulomb);
                 let spared = if has_cut_off { 1e-6 } else { 0.02 };
                 let ratio = seen.stress / expected;

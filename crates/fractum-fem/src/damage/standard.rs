@@ -197,7 +197,13 @@ impl StandardDamage {
                         continue;
                     }
                     let was_broken = edge.broken;
-                    let growth = softens.load(edge, softens.see(edge, stress, q), strength[index], length[index], dt);
+                    let growth = softens.load(
+                        edge,
+                        softens.see(edge, strength[index], stress, q),
+                        strength[index],
+                        length[index],
+                        dt,
+                    );
                     run.loaded = true;
                     run.grown[word] |= u64::from(growth > 0.0) << place;
                     run.broke.extend((edge.broken && !was_broken).then_some(index as u32));

@@ -263,15 +263,15 @@ fn driven_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], s
         stresses[k] = field.softens.hooke.stress(strains[k]);
         kappa.0[k] = field.state[cell].kappa;
         own.drive.volume = cells.volume[cell];
-        states[k] = Some(&field.state[cell]);
+        states[k] = Some((&field.state[cell], field.strength[cell]));
         softens = Some(&field.softens);
     }
     let Some(softens) = softens else { return };
     let q = equivalent_stresses(&softens.criterion, &stresses, &kappa);
     let closed = softens.closed_stresses(&strains);
     for (k, (own, edge_step)) in active.iter_mut().zip(steps).enumerate() {
-        let Some(state) = states[k] else { continue };
-        let seen = softens.see(state, stresses[k], q[k]);
+        let Some((state, strength)) = states[k] else { continue };
+        let seen = softens.see(state, strength, stresses[k], q[k]);
         edge_step.seen = if seen.stress > kappa.0[k] { seen } else { Seen::NOTHING };
         let kappa = kappa.0[k].max(edge_step.seen.stress);
         own.drive.energy = kappa * kappa * compliance;
