@@ -182,7 +182,7 @@ fn beads_around_a_solid_that_breaks_have_the_same_bits_on_any_number_of_ranks() 
     let counts = single.counts();
     assert!(counts.particles > 2400 && counts.contacts > 10, "{counts:?}");
     let state: serde_json::Value = serde_json::from_str(&bits(&single)).unwrap();
-    let on_debris = state["contacts"]["debris"].as_array().map_or(0, Vec::len);
+    let on_debris = state["contacts"]["nodes"]["debris"].as_array().map_or(0, Vec::len);
     assert!(on_debris > 0, "no bead touches a discrete element");
     let forces = |scene: &Scene| probes.map(|probe| scene.contacts.force_between(&probe));
     assert!(shared(3, 1300, made).iter().all(|scene| forces(scene) == forces(&single)), "{:?}", forces(&single));
