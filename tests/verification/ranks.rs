@@ -109,6 +109,26 @@ fn an_elastic_body_has_the_same_bits_on_any_number_of_ranks() {
     assert!(single.ledger().residual_max_relative < 1e-3);
 }
 
+/// A body that is turned inside out in the step in which it loses most of its stiffness: its elements leave one by one.
+#[test]
+fn crushed_elements_have_the_same_bits_on_any_number_of_ranks() {
+    for smoothed in [false, true] {
+        let made = || {
+            let (nodes, body) = block();
+            let body = body.with_damage(DamageLaw::rankine(5e9, 1e8));
+            let body = Body { kinematics: Kinematics::Corotational, ..body };
+            let mut solid = Solid::new(nodes, vec![if smoothed { body.smoothed() } else { body }]).unwrap();
+            for node in 0..solid.reference.len() {
+                let place = solid.reference[node];
+                solid.displacement[node] = Vec3::new(-1.01 * place.x, 0.6 * place.y, 0.0);
+            }
+            scene(solid, Vec::new(), Vec::new(), LocalDamping::default())
+        };
+        let single = same_on_ranks(6, made);
+        assert!(single.counts().crushed_elements > 3, "{:?}", single.counts());
+    }
+}
+
 #[test]
 fn a_viscous_body_with_absorbing_ends_has_the_same_bits_on_any_number_of_ranks() {
     let made = || {

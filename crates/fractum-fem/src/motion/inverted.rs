@@ -15,7 +15,8 @@ impl Solid {
     /// Its strain is beyond -1, where the law of small stretches says nothing. Where strains are those of an edge, it is the worst element
     /// around one whose mean deformation is turned inside out.
     pub fn inverted_element(&self) -> Option<InvertedElement> {
-        match self.part.as_ref().filter(|part| part.is_divided()) {
+        // The damage of a cell is known where it is evaluated.
+        match &self.part {
             Some(part) => part.records.inverted,
             None => self.inverted_of(&self.blocks),
         }

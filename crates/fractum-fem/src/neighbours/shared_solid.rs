@@ -238,12 +238,10 @@ impl Solid {
             let told = part.tell_broken(&mut self.blocks);
             note_told(&mut self.bodies, &self.blocks, &told);
         }
-        if part.is_divided() {
-            part.records.inverted = None;
-            if inverted {
-                let own = self.inverted_of(&self.blocks[part.own()]);
-                part.records.inverted = gather(&*part.exchange(), &own).into_iter().flatten().next();
-            }
+        part.records.inverted = None;
+        if inverted {
+            let own = self.inverted_of(&self.blocks[part.own()]);
+            part.records.inverted = gather(&*part.exchange(), &own).into_iter().flatten().next();
         }
         self.part = Some(part);
     }

@@ -1,10 +1,9 @@
 //! Mean displacement [m].
 
-use fractum_math::Vec3;
-use fractum_scene::{Along, PointProbe, Probe, ProbeOfPoints, ProbedScene};
+use fractum_scene::{Along, PointProbe, Probe, ProbeOfPoints};
 
 use super::Measure;
-use super::scenery::Scenery;
+use super::scenery::{OfRigid, Scenery};
 use super::tables::on_along;
 use crate::case::Spanned;
 use crate::case::key_kind::{KeyDoc, KeyKind as K, key};
@@ -47,25 +46,12 @@ impl Measure for Displacement {
     }
 
     fn resolve(&self, scene: &mut Scenery<'_>) -> Option<Box<dyn Probe>> {
-        if let Some(rigid) = scene.rigid_body(&self.on, self.along) {
-            return rigid
-                .map(|(rigid_body, direction)| -> Box<dyn Probe> { Box::new(OfRigidBody { rigid_body, direction }) });
+        // Way of its reference point at the instant of the last step.
+        let way: OfRigid = |body, dt| body.displacement() - body.frame.velocity * dt;
+        if let Some(rigid) = scene.rigid_body(&self.on, self.along, way) {
+            return rigid;
         }
         let (population, points) = scene.points(&self.on);
         Some(ProbeOfPoints::boxed(population, PointProbe::Displacement { points, along: self.along }))
-    }
-}
-
-/// Way of the reference point of a rigid body along a direction, at the instant of the last step [m].
-#[derive(Debug)]
-struct OfRigidBody {
-    rigid_body: usize,
-    direction: Vec3,
-}
-
-impl Probe for OfRigidBody {
-    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
-        let rigid_body = &probed.scene.contacts.rigid_bodies()[self.rigid_body];
-        (rigid_body.displacement() - rigid_body.frame.velocity * probed.scene.clock.dt_before).dot(&self.direction)
     }
 }

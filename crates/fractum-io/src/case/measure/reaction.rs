@@ -1,7 +1,6 @@
 //! Sum of support reactions [N], or the force of a rigid body.
 
-use fractum_math::Vec3;
-use fractum_scene::{Along, PointProbe, Population, Probe, ProbeOfPoints, ProbedScene};
+use fractum_scene::{Along, PointProbe, Population, Probe, ProbeOfPoints};
 
 use super::Measure;
 use super::scenery::{Scenery, is_held};
@@ -56,26 +55,12 @@ impl Measure for Reaction {
             }
             return Some(ProbeOfPoints::boxed(Population::Particles, PointProbe::Reaction { places, along }));
         }
-        if let Some(rigid) = scene.rigid_body(on, along) {
-            return rigid
-                .map(|(rigid_body, direction)| -> Box<dyn Probe> { Box::new(OfRigidBody { rigid_body, direction }) });
+        if let Some(rigid) = scene.rigid_body(on, along, |body, _| -body.contact_force()) {
+            return rigid;
         }
         let nodes = scene.names.nodes(on);
         let nodes = scene.solid.with_copies(nodes);
         let places = scene.held_places(on, &nodes, Some(&along));
         Some(ProbeOfPoints::boxed(Population::Nodes, PointProbe::Reaction { places, along }))
-    }
-}
-
-/// Force of a rigid body on what it touches along a direction [N].
-#[derive(Debug)]
-struct OfRigidBody {
-    rigid_body: usize,
-    direction: Vec3,
-}
-
-impl Probe for OfRigidBody {
-    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
-        -probed.scene.contacts.rigid_bodies()[self.rigid_body].contact_force().dot(&self.direction)
     }
 }

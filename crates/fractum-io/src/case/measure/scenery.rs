@@ -2,7 +2,9 @@
 
 use fractum_fem::Solid;
 use fractum_math::Vec3;
-use fractum_scene::{Along, Bonded, BondedBody, ContactBody, InsideCracks, Population, Supports};
+use fractum_scene::{
+    Along, Bonded, BondedBody, ContactBody, InsideCracks, Population, Probe, ProbedScene, RigidBody, Supports,
+};
 
 use crate::case::selection::Selection;
 use crate::case::{Field, Place, Spanned};
@@ -52,6 +54,24 @@ pub(crate) struct Scenery<'a> {
     pub(crate) names: &'a mut dyn Names,
 }
 
+/// A vector of a rigid body, after a step of this size [s].
+pub(super) type OfRigid = fn(&RigidBody, f64) -> Vec3;
+
+/// Component of a vector of a rigid body.
+#[derive(Debug)]
+struct OfRigidBody {
+    rigid_body: usize,
+    direction: Vec3,
+    value: OfRigid,
+}
+
+impl Probe for OfRigidBody {
+    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
+        let rigid_body = &probed.scene.contacts.rigid_bodies()[self.rigid_body];
+        (self.value)(rigid_body, probed.scene.clock.dt_before).dot(&self.direction)
+    }
+}
+
 impl Scenery<'_> {
     /// Notes a mistake at a selection.
     pub(super) fn error_at(&mut self, on: &Selection, found: String, expected: &str) {
@@ -67,8 +87,15 @@ impl Scenery<'_> {
         }
     }
 
-    /// The rigid body that is named, if one is, and the direction in which it is measured; notes what it has not.
-    pub(super) fn rigid_body(&mut self, on: &Selection, along: Along) -> Option<Option<(usize, Vec3)>> {
+    /// The probe of the rigid body that is named, if one is; notes what it has not.
+    ///
+    /// - `value`: of the body, whose component along the direction is measured
+    pub(super) fn rigid_body(
+        &mut self,
+        on: &Selection,
+        along: Along,
+        value: OfRigid,
+    ) -> Option<Option<Box<dyn Probe>>> {
         let rigid_body = self.names.rigid_body(on.group_name())?;
         let Along::Direction(direction) = along else {
             self.error_at(on, format!("= \"{}\": a rigid body", on.label()), "a direction with it, such as \"x\"");
@@ -78,7 +105,7 @@ impl Scenery<'_> {
             let found = "has no effect on a rigid body".to_owned();
             self.names.error(&within.place, found, "nodes or particles; remove the key");
         }
-        Some(Some((rigid_body, direction)))
+        Some(Some(Box::new(OfRigidBody { rigid_body, direction, value })))
     }
 
     /// Where supports hold these nodes; an error where they do not, or not along the direction. Another stage may hold

@@ -1,7 +1,6 @@
 //! Mean velocity [m/s].
 
-use fractum_math::Vec3;
-use fractum_scene::{Along, PointProbe, Probe, ProbeOfPoints, ProbedScene};
+use fractum_scene::{Along, PointProbe, Probe, ProbeOfPoints};
 
 use super::Measure;
 use super::scenery::Scenery;
@@ -47,24 +46,10 @@ impl Measure for Velocity {
     }
 
     fn resolve(&self, scene: &mut Scenery<'_>) -> Option<Box<dyn Probe>> {
-        if let Some(rigid) = scene.rigid_body(&self.on, self.along) {
-            return rigid
-                .map(|(rigid_body, direction)| -> Box<dyn Probe> { Box::new(OfRigidBody { rigid_body, direction }) });
+        if let Some(rigid) = scene.rigid_body(&self.on, self.along, |body, _| body.frame.velocity) {
+            return rigid;
         }
         let (population, points) = scene.points(&self.on);
         Some(ProbeOfPoints::boxed(population, PointProbe::Velocity { points, along: self.along }))
-    }
-}
-
-/// Velocity of the reference point of a rigid body along a direction [m/s].
-#[derive(Debug)]
-struct OfRigidBody {
-    rigid_body: usize,
-    direction: Vec3,
-}
-
-impl Probe for OfRigidBody {
-    fn value(&self, probed: &ProbedScene<'_>) -> f64 {
-        probed.scene.contacts.rigid_bodies()[self.rigid_body].frame.velocity.dot(&self.direction)
     }
 }
