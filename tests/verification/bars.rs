@@ -277,7 +277,8 @@ fn other_laws_miss_by_no_more_than_is_told() {
     use CriterionKind::{DruckerPrager, Mazars, ModifiedMohrCoulomb, MohrCoulomb, PureMohrCoulomb, Rankine};
     let exponential = |kind| with(Softening::Exponential, kind);
     let plain_elements = |bar: Bar| Bar { formulation: Formulation::Standard, ..bar };
-    let rows: [(&str, Box<dyn Fn(Bar) -> Bar>, [f64; 2]); 8] = [
+    type Row = (&'static str, Box<dyn Fn(Bar) -> Bar>, [f64; 2]);
+    let rows: [Row; 8] = [
         ("linear", Box::new(with(Softening::Linear, Rankine)), [1.01, 1.06]),
         ("bilinear", Box::new(with(Softening::PETERSSON, Rankine)), [1.02, 1.09]),
         ("plain elements", Box::new(plain_elements), [1.06, 1.07]),
