@@ -122,16 +122,8 @@ fn pressed(solid: Solid, size: f64, safety: f64, damping: LocalDamping) -> f64 {
     scene.contacts.rigid_bodies()[0].contact_force()[up] / (YOUNG * size * size * 5e-3)
 }
 
-/// Force at rest of a tool that has pressed a cube by 0.5 % of its side, over E A u/L.
-fn pressed_at_rest(solid: Solid, size: f64) -> f64 {
-    let up = if solid.is_plane() { 1 } else { 2 };
-    let mut press = platen(size, up);
-    press.along[up] = Drive::Velocity(Arc::new(move |_, _| -5e-3 * size));
-    // What no plane holds sideways must be held by the sides at the axes.
-    let supports = (0..=up).map(|axis| bottom_of(&solid, axis, size)).collect();
-    let none = surface_of(0.0, 0.1);
-    let (free, exact) = (settings(1.0, 0.8, 0.0), YOUNG * size * size * 5e-3);
-    let mut scene = scene(solid, supports, Vec::new(), vec![press], none, free);
+/// Brings a scene to rest under all that it is to bear.
+fn rest(scene: &mut Scene) {
     let settings = StaticSettings {
         control: Control::Time,
         step: 0.25,
@@ -143,10 +135,23 @@ fn pressed_at_rest(solid: Solid, size: f64) -> f64 {
         no_equilibrium: NoEquilibrium::Stop,
         damping: None,
     };
-    let mut solver = StaticSolver::new(&scene, settings).unwrap();
-    while !solver.is_finished(&scene) {
-        solver.step(&mut scene).unwrap();
+    let mut solver = StaticSolver::new(scene, settings).unwrap();
+    while !solver.is_finished(scene) {
+        solver.step(scene).unwrap();
     }
+}
+
+/// Force at rest of a tool that has pressed a cube by 0.5 % of its side, over E A u/L.
+fn pressed_at_rest(solid: Solid, size: f64) -> f64 {
+    let up = if solid.is_plane() { 1 } else { 2 };
+    let mut press = platen(size, up);
+    press.along[up] = Drive::Velocity(Arc::new(move |_, _| -5e-3 * size));
+    // What no plane holds sideways must be held by the sides at the axes.
+    let supports = (0..=up).map(|axis| bottom_of(&solid, axis, size)).collect();
+    let none = surface_of(0.0, 0.1);
+    let (free, exact) = (settings(1.0, 0.8, 0.0), YOUNG * size * size * 5e-3);
+    let mut scene = scene(solid, supports, Vec::new(), vec![press], none, free);
+    rest(&mut scene);
     assert!(scene.ledger().relative_residual() < 1e-3, "{:?}", scene.ledger());
     scene.contacts.rigid_bodies()[0].contact_force()[up] / exact
 }
@@ -202,6 +207,67 @@ fn a_platen_bears_the_exact_force_at_rest_on_any_mesh() {
         println!("{cells} {size} {nu} {formulation:?} {in_space}: {share}");
         assert!((share - 1.0).abs() < 5e-3, "{cells} {size} {nu} {formulation:?} {in_space}: {share}");
     }
+}
+
+/// Work at rest that presses a cube on a fixed base by 0.5 % of its side and shears it by `shear`: by a plane with friction, or by its own nodes.
+fn work_at_rest(solid: Solid, size: f64, shear: f64, friction: Option<f64>) -> f64 {
+    let up = if solid.is_plane() { 1 } else { 2 };
+    let way = Vec3::ith(up, -5e-3 * size) + Vec3::x() * (shear * size);
+    let axes = 0..=up;
+    let at = |low: f64, high: f64| -> Vec<u32> {
+        let nodes = 0..solid.reference.len() as u32;
+        nodes.filter(|&n| (low * size..high * size).contains(&solid.reference[n as usize][up])).collect()
+    };
+    let [base, top] = [at(-1.0, 1e-9), at(1.0 - 1e-9, 2.0)];
+    let mut supports: Vec<Support> =
+        axes.clone().map(|axis| Support::new("base", base.clone(), axis, Motion::Fixed)).collect();
+    let contact = surface_of(friction.unwrap_or(0.0), 0.0);
+    let mut planes = Vec::new();
+    if friction.is_some() {
+        let mut press = platen(size, up);
+        press.surface = contact;
+        axes.for_each(|axis| press.along[axis] = Drive::Velocity(Arc::new(move |_, _| way[axis])));
+        planes.push(press);
+    } else {
+        let moved = |axis: usize| Motion::Displacement(Arc::new(move |t, _| way[axis] * t));
+        supports.extend(axes.map(|axis| Support::new("top", top.clone(), axis, moved(axis))));
+    }
+    let mut scene = scene(solid, supports, Vec::new(), planes, contact, settings(1.0, 0.8, 0.0));
+    rest(&mut scene);
+    let ledger = scene.ledger();
+    assert!(ledger.relative_residual() < 1e-3, "{ledger:?}");
+    ledger[EnergyKind::External]
+}
+
+#[test]
+fn a_plane_with_friction_holds_at_rest_as_fixed_nodes_do() {
+    use Formulation::{Smoothed, Standard};
+    let rows = [
+        (2, 0.02, 0.0, Standard, true),
+        (4, 0.02, 0.0, Smoothed, true),
+        (8, 0.02, 0.3, Standard, true),
+        (2, 20.0, 0.3, Standard, true),
+        (4, 20.0, 0.3, Smoothed, true),
+        (2, 0.02, 0.3, Standard, false),
+        (4, 0.02, 0.0, Smoothed, false),
+        (8, 20.0, 0.3, Standard, false),
+        (4, 0.02, 0.45, Smoothed, true),
+        (4, 0.02, 0.45, Standard, false),
+        (4, 0.02, 0.45, Standard, true),
+    ];
+    let mut wrong = Vec::new();
+    for (cells, size, nu, formulation, in_space) in rows {
+        let made = || cube(cells, size, nu, formulation, in_space);
+        let works = |friction: Option<f64>| [0.0, 2e-3].map(|shear| work_at_rest(made(), size, shear, friction));
+        let [exact, found] = [works(None), works(Some(10.0))];
+        let (pressed, sheared) = (found[0] / exact[0], (found[1] - found[0]) / (exact[1] - exact[0]));
+        let row = format!("{cells} {size} {nu} {formulation:?} {in_space}: pressed {pressed}, sheared {sheared}");
+        println!("{row}");
+        if (pressed - 1.0).abs() > 1e-2 || (sheared - 1.0).abs() > 1e-2 {
+            wrong.push(row);
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 /// A strip that a plane meets lengthwise: the wave in it comes back after 2 L/c, and until then the plane bears ρ c v on its section.

@@ -55,6 +55,9 @@ pub(crate) struct Candidate {
     pub(crate) is_pushed: bool,
     /// From the reference point of the shape to where the last force acted, where it is held [m].
     pub(super) lever: Vec3,
+    /// At rest: stretch of the tangential spring that stands for the way it gave since the last equilibrium [m].
+    #[serde(skip)]
+    pub(crate) brought_back: Vec3,
     /// Forces that are tried, before and after a sweep [N].
     #[serde(skip)]
     pub(super) trial: [Vec3; 2],
@@ -115,6 +118,7 @@ impl NodesOnShape {
                 is_held: false,
                 is_pushed: false,
                 lever: Vec3::zeros(),
+                brought_back: Vec3::zeros(),
                 trial: [Vec3::zeros(); 2],
             };
             self.candidates.insert(place, candidate);

@@ -1,8 +1,9 @@
 //! Contact at equilibrium, with rigid shapes and of discrete elements with each other: penalty springs, on where a node overlaps and off where it does not.
 //!
 //! Along the normal those of rigid shapes are so stiff that they count for little beside the elements. The tangential one remembers its
-//! stretch at the last equilibrium and slips where Coulomb's law lets it. The iteration takes them linear about its last iterate, what
-//! slips by its secant.
+//! force at the last equilibrium as a stretch, and slips where Coulomb's law lets it. The iteration takes them linear about its last iterate,
+//! what slips by its secant. Once forces balance, what sticks is brought back: the way it gave becomes stretch (augmented Lagrangian,
+//! Simo & Laursen 1992), until nothing that sticks has moved. No tangential spring stores energy.
 //! A spring that presses in the linear solution stays on in the next one, even where the curvature of its shape has left a gap.
 
 use fractum_contact::law::slip_to_cone;
@@ -16,14 +17,18 @@ use crate::coupling::Push;
 use crate::error::SceneError;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
+use crate::statics::anderson::Anderson;
 use crate::statics::check_supports;
 
 /// Gap over the size of the solid up to which a node counts as touching: what rounding leaves of a body that lies on a shape.
 const TOUCHING: f64 = 1e-9;
 
 /// How much stiffer along its normal than a wall of the material of the solid a rigid shape is: that wall gives way as half an element
-/// does. Across it a shape is as stiff as the wall: the secant of friction comes to what sticks by the smaller steps the stiffer it is.
+/// does. Across it a shape is as stiff as the wall, since what sticks is brought back.
 const RIGID: f64 = 100.0;
+
+/// Forces by which what sticks has given way over all tangential forces, below which it is where it stuck.
+const STUCK: f64 = 1e-3;
 
 /// A node that a shape or another node pushes: its force, linear about the state it was found at.
 #[derive(Clone, Copy, Debug)]
@@ -81,9 +86,12 @@ fn stiffness(c: &Candidate) -> [f64; 2] {
 
 /// A tangential spring at one instant.
 struct Tangential {
+    /// Stretch that bears the friction [m].
     slip: Vec3,
-    /// Way against friction since the last equilibrium [m].
+    /// What Coulomb's law took from the stretch [m].
     slid: Vec3,
+    /// Motion along the shape [m].
+    moved: Vec3,
 }
 
 /// A spring of a shape that presses at the end of a linear solution.
@@ -124,9 +132,9 @@ fn sense(ground: &NodesOnShape, frame: &Frame, c: &Candidate, place: &Vec3) -> (
 /// The tangential spring of a contact with the normal force `pressure` after a relative motion.
 fn tangential(c: &Candidate, normal: &Vec3, pressure: f64, moved: Vec3) -> Tangential {
     let ([_, stiff], across) = (stiffness(c), |v: Vec3| v - normal * v.dot(normal));
-    let trial = across(c.memory.slip + moved);
+    let trial = across(c.memory.slip + c.brought_back + moved);
     let slip = slip_to_cone(trial, stiff * trial.norm(), c.law.friction * pressure);
-    Tangential { slip, slid: trial - slip }
+    Tangential { slip, slid: trial - slip, moved: across(moved) }
 }
 
 impl RigidBody {
@@ -188,7 +196,7 @@ impl Scene {
                 // What a curved shape has left by the way along it is no loss of pressure.
                 let pressure = kept.unwrap_or(stiff * overlap.max(0.0));
                 let moved = field[i] - self.solid.displacement[i] - way;
-                let Tangential { slip, slid } = tangential(c, &normal, pressure, moved);
+                let Tangential { slip, slid, .. } = tangential(c, &normal, pressure, moved);
                 // What slips is held by the secant of its friction: iterates that go from sticking to slipping and back settle.
                 let (held, went) = (slip.norm(), slid.norm());
                 let holds = if held > 0.0 {
@@ -217,6 +225,47 @@ impl Scene {
             }
             None => (ground.frame, Vec3::zeros(), Vec3::zeros()),
         }
+    }
+
+    /// Starts from the friction of the last equilibrium.
+    pub(super) fn forget_brought_back(&mut self) {
+        let candidates = self.shape_contacts.iter_mut().flat_map(|ground| &mut ground.candidates);
+        candidates.for_each(|c| c.brought_back = Vec3::zeros());
+    }
+
+    /// Brings back what sticks but has given way since the last equilibrium; whether that is more than [`STUCK`].
+    ///
+    /// - `field`: displacements at which forces balance
+    /// - `times`: load parameters of the last equilibrium and of the field
+    pub(super) fn bring_back(&mut self, field: &[Vec3], times: [f64; 2], mixer: &mut Anderson) -> bool {
+        let (mut gave, mut forces) = (0.0, 0.0);
+        let (mut stretch, mut image) = (Vec::new(), Vec::new());
+        for ground in &self.shape_contacts {
+            let (mut frame, way, _) = self.motion_of(ground, times, 1.0);
+            frame.origin += way;
+            for c in ground.candidates.iter().filter(|c| c.law.friction > 0.0) {
+                let i = c.node as usize;
+                let (normal, overlap) = sense(ground, &frame, c, &(self.solid.reference[i] + field[i]));
+                let [stiff, stiff_across] = stiffness(c);
+                let moved = field[i] - self.solid.displacement[i] - way;
+                let found = tangential(c, &normal, stiff * overlap.max(0.0), moved);
+                forces += (stiff_across * found.slip).norm_squared();
+                if overlap > 0.0 && found.slid == Vec3::zeros() {
+                    gave += (stiff_across * found.moved).norm_squared();
+                }
+                stretch.extend_from_slice(c.brought_back.as_slice());
+                image.extend_from_slice((found.slip - c.memory.slip).as_slice());
+            }
+        }
+        if gave <= STUCK * STUCK * forces {
+            return false;
+        }
+        mixer.next(&mut stretch, &image);
+        let candidates = self.shape_contacts.iter_mut().flat_map(|ground| &mut ground.candidates);
+        for (c, stretch) in candidates.filter(|c| c.law.friction > 0.0).zip(stretch.chunks_exact(3)) {
+            c.brought_back = Vec3::from_column_slice(stretch);
+        }
+        true
     }
 
     /// Takes over the contacts of a state of equilibrium: memories, forces on the rigid bodies, their places, and the ledger.
@@ -260,9 +309,9 @@ impl Scene {
                 if c.radius == 0.0 && full > 0.0 && -overlap > full {
                     c.radius = full;
                 }
-                let Tangential { slip, slid } =
+                let Tangential { slip, moved, .. } =
                     tangential(c, &normal, pressure, solid.displacement[i] - before[i] - way);
-                friction += 0.5 * stiff_across * (c.memory.slip + slip).dot(&slid);
+                friction += 0.5 * stiff_across * (c.memory.slip + slip).dot(&moved);
                 let half = 0.5 * stiff;
                 // The way to a contact is without force, and so is that from it.
                 let idle = half
@@ -270,9 +319,9 @@ impl Scene {
                         - (overlap.max(0.0).powi(2) - was.max(0.0).powi(2)));
                 let force = normal * pressure - slip * stiff_across;
                 external += 0.5 * (c.force + force).dot(&way) - idle;
-                c.memory.slip = slip;
+                (c.memory.slip, c.brought_back) = (slip, Vec3::zeros());
                 (c.force, c.couple, c.arm) = (force, Vec3::zeros(), normal * (overlap - c.radius));
-                c.stored = half * overlap.max(0.0).powi(2) + 0.5 * stiff_across * slip.norm_squared();
+                c.stored = half * overlap.max(0.0).powi(2);
                 (c.friction, c.damping) = (0.0, 0.0);
                 (c.is_held, c.is_pushed) = (false, false);
                 if let Some(rigid_body) =

@@ -13,6 +13,8 @@ use crate::scene::Scene;
 
 /// Share of an opening below which no extrapolation goes.
 const LEAST_SHARE: f64 = 1e-3;
+/// Equilibria of a step at which what sticks is brought back: some four suffice, ten in stiff elements.
+const MOST_BROUGHT_BACK: usize = 16;
 
 impl StaticSolver {
     /// Whether the state found lies beyond states that are no equilibrium: some edge went further down its softening curve
@@ -43,12 +45,19 @@ impl StaticSolver {
         self.system.begin();
         self.begin(scene, points, growth, by_damage && !monotone);
         let (mut tau, mut found_at) = (longest, present);
-        for iteration in 1..=if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] } {
+        scene.forget_brought_back();
+        self.touching.stretch.reset();
+        let most = if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] };
+        // What sticks has moved a little at each equilibrium but the last.
+        let (mut iteration, mut brought_back, mut slowest) = (0, 0, 0);
+        while iteration < most {
+            iteration += 1;
             if (self.stop)() {
                 return Err(StepError::Interrupted { step: scene.clock.step, time: present });
             }
             self.iterations += 1;
-            self.find_contacts(scene, [present, found_at], longest, iteration == 1)?;
+            let first = iteration == 1 && brought_back == 0;
+            self.find_contacts(scene, [present, found_at], longest, first)?;
             let ahead = if tau.abs() > 1e-9 * self.settings.end { tau } else { longest };
             let here = scene.boundary_at(present, present);
             let there = scene.boundary_at(present, present + ahead);
@@ -70,8 +79,15 @@ impl StaticSolver {
             let (missing, forces) =
                 scene.unbalance(&self.trial, &self.response.start, &exact.force, &mut self.response.right);
             if missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
+                slowest = slowest.max(iteration);
+                if brought_back < MOST_BROUGHT_BACK
+                    && scene.bring_back(&self.response.start, [present, present + tau], &mut self.touching.stretch)
+                {
+                    (iteration, brought_back) = (0, brought_back + 1);
+                    continue;
+                }
                 self.largest_forces = self.largest_forces.max(forces);
-                return Ok(Some((present + tau, iteration)));
+                return Ok(Some((present + tau, slowest)));
             }
             // Of an elastic step nothing but the linear solution is left to improve.
             let linear = points.is_empty() && !scene.has_contacts();

@@ -112,6 +112,8 @@ struct Touching {
     /// Pairs of nodes that have touched so far and belong to no cell, and how many of them the system has places for.
     pairs: Vec<[u32; 2]>,
     coupled: usize,
+    /// Stretches of what is brought back, from one equilibrium of a step to the next.
+    stretch: Anderson,
 }
 
 /// What the edges see.
