@@ -1,4 +1,5 @@
-//! The steps of `docs/extending.md`, applied to a copy of the sources and checked by the compiler.
+//! The steps of `docs/extending.md`, applied to a copy of the sources and checked by the compiler; files and names that the pages for
+//! developers quote.
 //!
 //! The copy lies below the folder of build results and stays there, so that a second run compiles what has changed only. With
 //! `FRACTUM_EXTEND=run` the tests of the changed crates run in the copy as well.
@@ -139,6 +140,47 @@ fn additions_touch_as_many_files_as_the_document_says() {
     let toy = fs::read_to_string(root().join("crates/fractum-dem/src/bond/law/softening_spring.rs")).unwrap();
     let quoted = document.split("```").nth(1).and_then(|block| block.strip_prefix("rust\n")).unwrap();
     assert!(toy.contains(quoted), "{quoted}");
+}
+
+/// What stands between backticks in a text.
+fn spans(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').skip(1).step_by(2)
+}
+
+#[test]
+fn the_walk_names_files_and_what_is_in_them() {
+    let walk = fs::read_to_string(root().join("docs/walk.md")).unwrap();
+    let is_step =
+        |line: &&str| line.strip_prefix("| ").is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+    let mut rows = 0;
+    for row in walk.lines().filter(is_step) {
+        let cells: Vec<&str> = row.split('|').collect();
+        let [_, _, file, names, ..] = cells[..] else { panic!("{row}") };
+        let file = spans(file).next().unwrap_or_else(|| panic!("no file: {row}"));
+        let text = fs::read_to_string(root().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+        let missing: Vec<&str> = spans(names).filter(|name| !text.contains(*name)).collect();
+        assert!(missing.is_empty(), "{file} lacks {missing:?}");
+        rows += 1;
+    }
+    assert!(rows > 50, "{rows} rows");
+}
+
+#[test]
+fn pages_for_developers_name_files_that_there_are() {
+    let docs = root().join("docs");
+    let mut pages: Vec<PathBuf> =
+        fs::read_dir(docs.join("decisions")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    pages.extend(["architecture.md", "walk.md", "glossary.md", "notation.md"].map(|page| docs.join(page)));
+    for page in pages {
+        let text = fs::read_to_string(&page).unwrap();
+        let is_path = |span: &&str| {
+            let is_below = |folder: &&str| span.starts_with(*folder);
+            ["crates/", "tests/", "cases/", ".ci/"].iter().any(is_below)
+                && !span.contains(|c: char| c.is_whitespace() || c == '{' || c == '*')
+        };
+        let missing: Vec<&str> = spans(&text).filter(is_path).filter(|path| !root().join(path).exists()).collect();
+        assert!(missing.is_empty(), "{}: {missing:?}", page.display());
+    }
 }
 
 #[test]
