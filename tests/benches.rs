@@ -10,7 +10,7 @@ use std::{env, fs, io};
 
 use serde_json::{Value, json};
 
-/// A bench that takes so many times its share of before has become slower. The benches scatter by less on a shared machine (`docs/performance.md`).
+/// A bench that takes so many times its share of before has become slower. The benches scatter by less on a shared machine (`tests/README.md`).
 const SLOWER: f64 = 1.5;
 
 /// The calibrations of `tests/calibration.rs`.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs cubes that fly apart into discrete elements on one thread, and prints the table of births of docs/performance.md.
+"""Runs cubes that fly apart into discrete elements on one thread, and prints what births and removals cost (docs/performance.md).
 
 Needs the release build and the meshes: `cargo build --release`, `python3 meshes/make.py --large large/56k large/500k`.
 """

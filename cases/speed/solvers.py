@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs cases by equilibrium and by motion on one thread, and prints the tables of docs/performance.md.
+"""Runs cases by equilibrium and by motion on one thread, and prints their times (docs/performance.md).
 
 Needs the release build and the meshes: `cargo build --release`, `python3 meshes/make.py --large`. About ten minutes. Times are those of
 the processor, which other work on the machine hardly changes.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the cubes on one thread and on two, and prints the table of docs/performance.md.
+"""Runs the cubes on one thread and on two, and prints time and memory, of which docs/performance.md has the range.
 
 Needs the release build and the meshes: `cargo build --release`, `python3 meshes/make.py --large`.
 """
