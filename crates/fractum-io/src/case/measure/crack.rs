@@ -40,7 +40,7 @@ impl Measure for Crack {
         key("probes[].crack.measure", K::Choice(names::<CrackMeasure>), "required", "Angle between the direction and the plane of the crack (its line in 2D), in rad; or position of its centre or its foremost edge or bond along the direction, in m; or the angle of the helix to its axis, or of the cone's flank to the plane across its axis, in rad; or the part of the crack that lies on that cone. Of what has separated: area, in m^2; length in the plane, in m; number of separate cracks; or position of the foremost place along the direction, the tip, in m"),
         key("probes[].crack.along", K::Direction, "", "Direction; required but for area, length and count"),
         key("probes[].crack.point", K::Point(D::LENGTH), "[0, 0, 0]", "helix, cone and cone_share only: a point of the axis; for a cone the one in the surface, with the direction out of it"),
-        key("probes[].crack.where", K::Condition, "", "Which edges, elements and bonds count, by their middles; absent means all"),
+        key("probes[].crack.where", K::Condition, "", "Condition on the middles of the edges, elements and bonds that count; absent means all"),
     ];
 
     fn read(probe: &Table<'_>) -> Option<(Self, D)> {

@@ -33,10 +33,10 @@ impl Measure for Damaged {
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
         key("probes[].damaged", K::Table, "", "Elements that are damaged; removed ones are"),
-        key("probes[].damaged.measure", K::Choice(names::<DamagedMeasure>), "required", "Their volume, in m^3; their area in the plane, in m^2; or their share of the volume of all that is looked at"),
+        key("probes[].damaged.measure", K::Choice(names::<DamagedMeasure>), "required", "Their volume, in m^3; their area in 2D, in m^2; or their share of the volume of all selected elements"),
         key("probes[].damaged.threshold", K::Quantity(D::NONE), "0.5", "Mean damage over its edges from which on an element is damaged, within 0 and 1"),
         key("probes[].damaged.group", K::Text, "", "Mesh group of elements; absent means all that may be damaged"),
-        key("probes[].damaged.where", K::Condition, "", "Which elements are looked at, by their middles; absent means all"),
+        key("probes[].damaged.where", K::Condition, "", "Condition on the middles of the elements that count; absent means all"),
     ];
 
     fn read(probe: &Table<'_>) -> Option<(Self, D)> {

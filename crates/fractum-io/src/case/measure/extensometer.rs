@@ -28,7 +28,7 @@ impl Measure for ExtensometerBetween {
     const KEY: &'static str = "extensometer";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].extensometer", K::Table, "", "Elongation between two places of a body over their distance, as an extensometer or a strain gauge measures it; rotation is none"),
+        key("probes[].extensometer", K::Table, "", "Elongation between two points of a body over their distance, as an extensometer or a strain gauge measures it. A rotation of the body is no elongation"),
         key("probes[].extensometer.group", K::Text, "", "Mesh group or set of particles that its feet are on; required without `where`"),
         key("probes[].extensometer.where", K::Condition, "", "Which nodes or particles, by their positions at the start; without `group`: which nodes of all solid bodies"),
         key("probes[].extensometer.from", K::Point(D::LENGTH), "required", "Place of one foot"),

@@ -30,10 +30,10 @@ impl Measure for FragmentOf {
     const KEY: &'static str = "fragment";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].fragment", K::Table, "", "The fragment that holds the first node of a group"),
+        key("probes[].fragment", K::Table, "", "The fragment with the first node of a group"),
         key("probes[].fragment.group", K::Text, "", "Mesh group; required without `where`"),
         key("probes[].fragment.where", K::Condition, "", "Which nodes, by their positions at the start"),
-        key("probes[].fragment.measure", K::Choice(names::<FragmentMeasure>), "required", "Its mass, volume, size (diameter of the sphere of that volume, in the plane of the circle of that area), or the velocity of its centre of mass"),
+        key("probes[].fragment.measure", K::Choice(names::<FragmentMeasure>), "required", "Its mass, volume, size (diameter of the sphere of that volume, in 2D of the circle of that area), or the velocity of its centre of mass"),
         key("probes[].fragment.along", K::Direction, "", "Velocity only, required there: direction"),
     ];
 

@@ -16,7 +16,7 @@ impl Measure for FragmentSize {
     const KEY: &'static str = "fragment_size";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].fragment_size", K::Quantity(D::NONE), "", "Size below which this share of the mass of all fragments lies, in m: P50 for 0.5; within 0 and 1; without those that an absorbing or elastic boundary holds"),
+        key("probes[].fragment_size", K::Quantity(D::NONE), "", "Size below which this share of the mass of all fragments lies, in m: P50 for 0.5; within 0 and 1. Fragments that an absorbing or elastic boundary holds do not count"),
     ];
 
     fn read(probe: &Table<'_>) -> Option<(Self, D)> {

@@ -29,9 +29,9 @@ impl Measure for GasIn {
     const KEY: &'static str = "gas";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].gas", K::Table, "", "A number about the gas; not a number in stages at rest"),
+        key("probes[].gas", K::Table, "", "A number about the gas; NaN in static stages"),
         key("probes[].gas.measure", K::Choice(names::<GasMeasure>), "required", "Pressure, in Pa (of everything: mean over the volume); temperature, in K (mean over the mass); mass, in kg; internal energy, in J; room for gas, in m^3; area of the walls under pressure without load, in m^2; or mass that has leaked, in kg"),
-        key("probes[].gas.group", K::Text, "", "Group of a hole: its gas, or the area that gas from it wets; absent means all gas, in cracks too; not with leaked_mass"),
+        key("probes[].gas.group", K::Text, "", "Group of a hole: its gas, or the area that gas from it wets. Absent means all gas, also in cracks. Not with leaked_mass"),
     ];
 
     fn read(probe: &Table<'_>) -> Option<(Self, D)> {

@@ -22,7 +22,7 @@ impl Measure for HeatOfAll {
     const KEY: &'static str = "heat";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].heat", K::Choice(names::<HeatMeasure>), "", "Heat in J: stored since the start; brought by prescribed temperatures, by fluxes, powers and sources, by convection; what is missing in this balance; or the mechanical work of thermal expansion"),
+        key("probes[].heat", K::Choice(names::<HeatMeasure>), "", "Heat in J: stored since the start; brought in by prescribed temperatures (held), by fluxes, powers and sources (supplied), by convection; residual of this balance; or the mechanical work of thermal expansion"),
     ];
 
     fn read(probe: &Table<'_>) -> Option<(Self, D)> {

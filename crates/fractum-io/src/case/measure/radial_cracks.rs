@@ -39,7 +39,7 @@ impl Measure for RadialCracksAbout {
         key("probes[].radial_cracks.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
         key("probes[].radial_cracks.about.axis", K::Direction, "\"z\"", "Its direction"),
         key("probes[].radial_cracks.radius", K::Quantity(D::LENGTH), "", "count only, required there: radius of the circle, > 0"),
-        key("probes[].radial_cracks.where", K::Condition, "", "Which elements count, by their middles, such as those of a slice across the hole; absent means all"),
+        key("probes[].radial_cracks.where", K::Condition, "", "Condition on the middles of the elements that count, such as those of a slice across the hole; absent means all"),
     ];
 
     fn read(probe: &Table<'_>) -> Option<(Self, D)> {
