@@ -21,7 +21,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("stages[].name", K::Text, "required", "Name, unique among stages"),
     key("stages[].solver", K::Table, "required", "As [solver]; end is the time at which the stage ends, on the one clock of the run"),
     key("solver", K::Table, "", "Time and its steps; required where there are no stages"),
-    key("solver.kind", K::Choice(names::<SolverKind>), "\"explicit\"", "Kind of solver. explicit: motion over time. static: equilibrium under a load that grows slowly. auto: the one of these two that suits the scene and its loads. heat: conduction of heat alone"),
+    key("solver.kind", K::Choice(names::<SolverKind>), "\"explicit\"", "Kind of solver: motion over time, equilibrium under a load that grows slowly, whichever of both suits the scene and its loads, or conduction of heat alone"),
     key("solver.end", K::Quantity(D::TIME), "required", "End of the run, > 0"),
     key("solver.safety", K::Quantity(D::NONE), "0.8", "Factor on the stable time step, > 0 and at most 2; above 1 is unstable"),
     key("solver.time_step", K::Choice(names::<TimeStep>), "\"power-iteration\"", "How the stable step is found: for the whole mesh or all bonds, or rigorously by the worst element or particle"),
