@@ -52,6 +52,8 @@ pub(crate) struct Restraint {
     factor: f64,
     /// ν̂.
     askew: f64,
+    /// Whether a phase field spreads the crack, whose elements open less askew.
+    is_spread: bool,
     /// E' [Pa].
     pub(crate) modulus: f64,
     /// Ratio of the stress across the thickness to the sum of those in the plane; none in space.
@@ -61,16 +63,19 @@ pub(crate) struct Restraint {
 impl Restraint {
     pub(crate) fn of(body: &Body) -> Self {
         let (Hooke { lambda, mu, zz }, elastic) = (Hooke::of(body), &body.elastic);
+        let is_spread = body.damage.as_ref().is_some_and(|zone| zone.regularisation.is_some());
         match body.shape {
             ElementKind::T4 => Restraint {
                 factor: elastic.poisson_ratio,
                 askew: lambda / (lambda + 2.0 * mu),
+                is_spread,
                 modulus: elastic.young_modulus,
                 thickness: None,
             },
             ElementKind::T3 => Restraint {
                 factor: lambda / (lambda + 2.0 * mu),
                 askew: lambda / (lambda + 2.0 * mu),
+                is_spread,
                 modulus: 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu),
                 thickness: Some(zz * elastic.poisson_ratio),
             },
@@ -111,7 +116,8 @@ impl Restraint {
         if stress <= strength {
             return Seen { stress, share, lateral: at_onset };
         }
-        let counted = strength + (stress - strength) / self.obliquity(more / (first - strength)).sqrt();
+        let root = self.obliquity(more / (first - strength)).sqrt();
+        let counted = strength + (stress - strength) / if self.is_spread { root.sqrt() } else { root };
         Seen { stress: counted, share: share * (counted / stress), lateral: at_onset }
     }
 
