@@ -267,13 +267,23 @@ fn a_crack_costs_its_fracture_energy_at_any_poissons_ratio() {
 /// So it does where a phase field spreads it.
 #[test]
 fn a_crack_under_a_phase_field_costs_its_fracture_energy_at_any_poissons_ratio() {
-    let mut missed = Vec::new();
-    let kinds = [
+    costs_its_energy_under_a_phase_field(&[
         (ElementKind::T3, Plane::Strain, [24, 6], &[0.0, 0.3, 0.45][..]),
         (ElementKind::T3, Plane::Stress, [24, 6], &[0.0, 0.3, 0.45]),
-        (ElementKind::T4, Plane::Strain, [14, 2], &[0.45]),
-    ];
-    for (kind, plane, cells, ratios) in kinds {
+        (ElementKind::T4, Plane::Strain, [14, 2], &[0.0, 0.3]),
+    ]);
+}
+
+/// In space a bar of three cells has its energy at 0.45 too; one of two cells, less wide than its band, has 1.06 of it.
+#[test]
+#[ignore = "a minute: .ci/nightly heavy"]
+fn a_wide_bar_in_space_under_a_phase_field_has_its_energy() {
+    costs_its_energy_under_a_phase_field(&[(ElementKind::T4, Plane::Strain, [16, 3], &[0.45])]);
+}
+
+fn costs_its_energy_under_a_phase_field(kinds: &[(ElementKind, Plane, [u32; 2], &[f64])]) {
+    let mut missed = Vec::new();
+    for &(kind, plane, cells, ratios) in kinds {
         for &poisson_ratio in ratios {
             let bar = Bar { is_regularised: true, ..plain(kind, plane, poisson_ratio, cells, 5) };
             let [peak, energy, _] = torn(&bar);

@@ -45,7 +45,8 @@ impl Seen {
 ///
 /// m = (1 - ν̂ r)/(1 - 2 ν̂ r + r²) where r < ν̂ and 1 beyond, ν̂ = ν' in the plane, ν/(1-ν) in space,
 ///
-/// and the same strain may also be that of an element that is held in part. What exceeds f_t in x therefore counts by m^-½ (docs/theory/damage.md).
+/// and the same strain may also be that of an element that is held in part. What exceeds f_t in x therefore counts by m^-½ (docs/theory/damage.md). The wide band of
+/// a phase field opens less askew: by m^-¼ in the plane, and by x itself in space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Restraint {
     /// ν'.
@@ -116,8 +117,13 @@ impl Restraint {
         if stress <= strength {
             return Seen { stress, share, lateral: at_onset };
         }
-        let root = self.obliquity(more / (first - strength)).sqrt();
-        let counted = strength + (stress - strength) / if self.is_spread { root.sqrt() } else { root };
+        let obliquity = || self.obliquity(more / (first - strength)).sqrt();
+        let divisor = match (self.is_spread, self.thickness) {
+            (false, _) => obliquity(),
+            (true, Some(_)) => obliquity().sqrt(),
+            (true, None) => 1.0,
+        };
+        let counted = strength + (stress - strength) / divisor;
         Seen { stress: counted, share: share * (counted / stress), lateral: at_onset }
     }
 
