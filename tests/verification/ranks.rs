@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use fractum_fem::{
     Body, DamageLaw, ElementKind, Formulation, Kinematics, LocalDamping, Regularisation, Solid, Viscosity, facet_area,
+    neighbours,
 };
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_rectangle};
@@ -193,7 +194,7 @@ fn a_body_that_begins_to_turn_has_the_same_bits_on_any_number_of_ranks() {
 #[test]
 fn few_steps_of_a_body_that_breaks_need_all_nodes() {
     for scene in shared(3, 400, breaking) {
-        let [whole, all] = scene.solid.steps_of_ranks().unwrap();
+        let [whole, all] = neighbours::steps(&scene.solid).unwrap();
         assert!(all == 400 && 20 * whole <= all, "{whole} of {all} steps");
         assert!(!scene.debris.is_empty());
     }

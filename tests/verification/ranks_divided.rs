@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use fractum_fem::{
-    Body, BodyShare, CrackEdge, CrackFacet, DamageLaw, EdgeDamage, Formulation, Held, Kinematics, KnownAround,
-    LocalDamping, ReadBody, Regularisation, Solid, Viscosity,
+    Body, BodyShare, CrackEdge, CrackFacet, DamageLaw, EdgeDamage, Formulation, Kinematics, KnownAround, LocalDamping,
+    ReadBody, Regularisation, Replication, Solid, Viscosity, neighbours,
 };
 use fractum_math::Vec3;
 use fractum_parallel::{Exchange, threads};
@@ -45,14 +45,14 @@ fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> (Ve
     let parts = bodies.iter().zip(elements.iter().zip(&tags));
     let parts: Vec<ReadBody> = parts
         .map(|(body, (elements, tags))| {
-            let held = match &body.damage {
-                None => Held::Part,
+            let replication = match &body.damage {
+                None => Replication::Part,
                 Some(zone) if body.formulation == Formulation::Smoothed && zone.regularisation.is_none() => {
-                    Held::Elements
+                    Replication::Elements
                 }
-                Some(_) => Held::Whole,
+                Some(_) => Replication::Whole,
             };
-            ReadBody { formulation: body.formulation, elements, tags, held, sound: &[] }
+            ReadBody { formulation: body.formulation, elements, tags, replication, sound: &[] }
         })
         .collect();
     let shares = fractum_fem::deal(&**exchange, nodes, &parts, KnownAround::default());
@@ -95,14 +95,17 @@ fn same_as_whole(kinematics: Kinematics, damping: LocalDamping, viscous: bool) {
         on_two_threads(|| {
             let (bodies, shares) = dealt(&exchange, &nodes, all.clone());
             let numbers: Vec<Vec<u32>> = shares.iter().map(|share| share.numbers.clone()).collect();
-            let solid = Solid::divided(nodes.clone(), bodies, &shares, Arc::clone(&exchange)).unwrap();
-            assert!(solid.is_divided() && (0..2).all(|body| solid.element_count(body) == all[body].elements.len()));
+            let solid = neighbours::divided_solid(nodes.clone(), bodies, &shares, Arc::clone(&exchange)).unwrap();
+            assert!(
+                neighbours::is_divided(&solid)
+                    && (0..2).all(|body| neighbours::element_count(&solid, body) == all[body].elements.len())
+            );
             let mut scene = loaded(solid, facets.clone(), damping, viscous);
             assert_eq!(scene.stable_dt(), single.stable_dt());
             scene.share_out(exchange, &Watched::default());
             advance(&mut scene, 40);
             scene.gather_ranks();
-            scene.solid.gather_edge_values();
+            neighbours::gather_edge_values(&mut scene.solid);
             (scene, numbers)
         })
     };
@@ -123,7 +126,7 @@ fn same_as_whole(kinematics: Kinematics, damping: LocalDamping, viscous: bool) {
             assert!(4 * has < 3 * count, "{what}: {has} of {count} elements");
             for body in 0..2 {
                 let own = scene.solid.element_fields(body);
-                for (element, value) in own.iter().enumerate().filter(|(e, _)| scene.solid.tells_of(body, *e)) {
+                for (element, value) in own.iter().enumerate().filter(|(e, _)| scene.solid.owns(body, *e as u32)) {
                     told[body] += 1;
                     assert_eq!(*value, fields[body][numbers[body][element] as usize], "{what}: {body} {element}");
                 }
@@ -165,7 +168,8 @@ struct Broken {
 fn broken(scene: &Scene) -> Broken {
     let solid = &scene.solid;
     let mut histories = Vec::new();
-    (0..solid.body_count()).for_each(|body| solid.each_history(body, |_| (), |history| histories.push(*history)));
+    (0..solid.body_count())
+        .for_each(|body| neighbours::each_history(solid, body, |_| (), |history| histories.push(*history)));
     let mut state = serde_json::to_value(scene.state()).unwrap();
     state["solid"]["bodies"]
         .as_array_mut()
@@ -200,8 +204,8 @@ fn breaks_as_whole((nodes, all): (Vec<Vec3>, Vec<Body>), what: &str) {
     let run = |exchange: Arc<dyn Exchange>| {
         on_two_threads(|| {
             let (bodies, shares) = dealt(&exchange, &nodes, all.clone());
-            let solid = Solid::divided(nodes.clone(), bodies, &shares, Arc::clone(&exchange)).unwrap();
-            assert!(solid.is_divided() && solid.connected_pieces(all.len() / 2).is_none());
+            let solid = neighbours::divided_solid(nodes.clone(), bodies, &shares, Arc::clone(&exchange)).unwrap();
+            assert!(neighbours::is_divided(&solid) && neighbours::connected_pieces(&solid, all.len() / 2).is_none());
             let mut scene = pulled(solid);
             scene.share_out(exchange, &Watched::default());
             advance(&mut scene, 400);

@@ -34,7 +34,7 @@ mod error;
 mod fields;
 pub mod material;
 mod motion;
-mod neighbours;
+pub mod neighbours;
 mod secant;
 mod solid;
 
@@ -48,7 +48,7 @@ pub use cracks::separation::{SeparatedElement, SeparatedFacet, Separation};
 pub use damage::edge::EdgeDamage;
 pub use damage::restraint::Seen;
 pub use divided::{
-    BodyShare, ConnectedPieces, DividedBoundary, Held, KnownAround, ReadBody, SharedNodes, all_elements, deal,
+    BodyShare, ConnectedPieces, DividedBoundary, KnownAround, ReadBody, Replication, SharedNodes, all_elements, deal,
     divided_boundary,
 };
 pub use element::{CUT_MODES, InvertedElement, facet_area};
@@ -58,9 +58,6 @@ pub use material::{Criterion, CriterionKind, DamageLaw, Degradation, Elastic, So
 pub use motion::central_difference::{LocalDamping, WholeStep};
 pub use motion::subcycled_solid::Prescribe;
 pub use motion::time_step::StableStep;
-pub use neighbours::moved_nodes::MovedNodes;
-pub use neighbours::state_part::SolidPart;
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::Solid;
-pub use solid::part::Share;
 pub use solid::state::{BodyState, SolidState};

@@ -291,17 +291,17 @@ impl Solid {
         let mut next = 0;
         for block in blocks {
             let hooke = bodies[block.body].hooke;
-            let BlockLaw::Edges(law) = &mut block.law else { continue };
-            for cell in 0..law.field.state.len() {
+            let Block { law: BlockLaw::Edges(field), cells, dissipated, .. } = block else { continue };
+            for cell in 0..field.state.len() {
                 let seen = seen[next];
                 next += 1;
-                if seen.stress <= law.field.onset(cell) {
+                if seen.stress <= field.onset(cell) {
                     continue;
                 }
-                let strain = |field: &[Vec3]| Sym3::symmetric_part(&block.cells.gradient(cell, |node| field[node]));
-                let growth = law.field.load(cell, seen, 0.0);
+                let strain = |u: &[Vec3]| Sym3::symmetric_part(&cells.gradient(cell, |node| u[node]));
+                let growth = field.load(cell, seen, 0.0);
                 let taken = Taken::straight(0.5 * hooke.stress(strain(after)).dot(strain(before)));
-                law.dissipated += taken.by(growth) * block.cells.volume[cell];
+                *dissipated += taken.by(growth) * cells.volume[cell];
             }
         }
         for standard in bodies.iter_mut().filter_map(|model| model.standard.as_mut()) {

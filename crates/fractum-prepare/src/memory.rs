@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use fractum_io::build::{Held, held};
+use fractum_io::build::{Replication, replication};
 use fractum_io::case::model::{BodyKind, BondedBody, BondedShape, Case, LooseBody, LooseSource};
 use fractum_io::case::model::{PackingSource, ParticleSize, Region, SolidBody};
 use fractum_io::memory::{self, TooLarge};
@@ -66,9 +66,9 @@ pub fn check_memory(case: &Case, mesh: &Mesh, processes: Processes) -> Result<()
             BodyKind::Solid(own) if mesh.whole.is_some() => {
                 // This process has what it needs, and every process all nodes, and all elements of what may break.
                 let own_each = ELEMENT[usize::from(own.is_smoothed())][usize::from(own.damage)];
-                let own_each = match held(case, own) {
-                    Held::Elements => KNOWN + own_each / processes.all as f64,
-                    Held::Part | Held::Whole => own_each,
+                let own_each = match replication(case, own) {
+                    Replication::Elements => KNOWN + own_each / processes.all as f64,
+                    Replication::Part | Replication::Whole => own_each,
                 };
                 let nodes = mesh.group_nodes(&own.group.value).len() as f64 * NODE;
                 let count =

@@ -1,6 +1,6 @@
 use std::borrow::Cow;
 
-use fractum_fem::Solid;
+use fractum_fem::{Solid, neighbours};
 use fractum_math::{Connected, Vec3, connected};
 
 use crate::conditions::SurfaceSupports;
@@ -92,7 +92,7 @@ pub fn solid_pieces(solid: &Solid, joined_below: f64) -> Vec<Fragment> {
     let mut elements = vec![0usize; part.len()];
     let mut volume = vec![0.0; part.len()];
     for body in 0..solid.body_count() {
-        let connected = solid.connected_pieces(body);
+        let connected = neighbours::connected_pieces(solid, body);
         for &(node, count) in connected.iter().flat_map(|connected| &connected.pieces) {
             elements[part[node as usize] as usize] += count;
         }
@@ -151,7 +151,7 @@ pub(crate) fn single_share(solid: &Solid, joined_below: f64) -> Vec<f64> {
     let mut members = vec![0u32; part.len()];
     part.iter().for_each(|&place| members[place as usize] += 1);
     let of_body = |body: usize| {
-        if solid.connected_pieces(body).is_some() {
+        if neighbours::connected_pieces(solid, body).is_some() {
             return 0.0;
         }
         let corners = solid.body(body).shape.node_count();
@@ -188,7 +188,7 @@ fn joined_nodes(solid: &Solid, joined_below: f64) -> Vec<u32> {
 
 /// Pairs of nodes that live elements join.
 fn element_links(solid: &Solid, body: usize) -> impl Iterator<Item = [u32; 2]> + '_ {
-    let connected = solid.connected_pieces(body);
+    let connected = neighbours::connected_pieces(solid, body);
     let known = connected.into_iter().flat_map(|connected| &connected.links).copied();
     let corners = solid.body(body).shape.node_count();
     let alive = solid.body(body).elements.iter().zip(solid.alive(body)).filter(|(_, alive)| **alive);

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use fractum_fem::{Solid, SolidPart};
+use fractum_fem::Solid;
+use fractum_fem::neighbours::{self, SolidPart};
 use fractum_parallel::Exchange;
 
 use crate::scene::{Scene, SceneState};
@@ -51,10 +52,10 @@ impl Scene {
 
     /// Has every rank move the nodes that are looked at where elements were just removed.
     pub(crate) fn follow_removal(&mut self) {
-        if self.solid.is_shared() {
+        if neighbours::is_distributed(&self.solid) {
             let born = corners(&self.solid, &self.removals.last);
             let near = self.debris.nodes_near(&self.solid, born.into_iter());
-            self.solid.follow_nodes(&near);
+            neighbours::follow_nodes(&mut self.solid, &near);
         }
     }
 
@@ -75,27 +76,27 @@ impl Scene {
         let mut everywhere: Vec<u32> = self.supports.driven().chain(self.loads.points()).collect();
         everywhere.extend(&watched.nodes);
         everywhere.extend(self.nodes_of_others());
-        self.solid.share_out(exchange, &everywhere, sums);
+        neighbours::distribute(&mut self.solid, exchange, &everywhere, sums);
     }
 
     /// Brings displacements and velocities of all nodes up to date. All ranks must call it.
     pub fn gather_nodes(&mut self) {
-        self.solid.gather_nodes();
+        neighbours::gather_nodes(&mut self.solid);
     }
 
     /// The state in parts: what this rank knows best of the solids, and all the rest. All ranks must call it; none where no solid is
     /// shared.
     pub fn state_in_parts(&mut self) -> Option<(SceneState, SolidPart)> {
-        let part = self.solid.state_part().filter(|_| self.solid.body_count() > 0)?;
+        let part = neighbours::state_part(&self.solid).filter(|_| self.solid.body_count() > 0)?;
         self.gather_particles();
         self.gather_contacts();
         self.gather_supports();
-        Some((self.state_with(self.solid.state_beside_parts()), part))
+        Some((self.state_with(neighbours::state_beside_parts(&self.solid)), part))
     }
 
     /// A state by its parts, before the first step of a scene from the same case; none if they do not belong to it.
     pub fn joined(&self, beside: SceneState, parts: &[SolidPart]) -> Option<SceneState> {
-        beside.with_solid(|solid| self.solid.joined(solid, parts))
+        beside.with_solid(|solid| neighbours::joined(&self.solid, solid, parts))
     }
 
     /// Brings the motion of all particles up to date. All ranks must call it.
@@ -157,13 +158,13 @@ impl Scene {
 
     /// Brings what this rank has of the damage of others up to date. All ranks must call it, after a step that was measured.
     pub fn gather_damage(&mut self) {
-        self.solid.gather_damage();
+        neighbours::gather_damage(&mut self.solid);
     }
 
     /// Brings what this rank has of the nodes and cells of others up to date, before anyone looks at all of them. All ranks must
     /// call it. Energies are up to date without it where a step has measured.
     pub fn gather_ranks(&mut self) {
-        self.solid.gather_ranks();
+        neighbours::gather_all(&mut self.solid);
         self.gather_particles();
         self.gather_contacts();
         self.gather_supports();

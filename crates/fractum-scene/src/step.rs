@@ -1,5 +1,5 @@
 use fractum_dem::Particles;
-use fractum_fem::InvertedElement;
+use fractum_fem::{InvertedElement, neighbours};
 use fractum_math::{HalfSteps, Work};
 
 use crate::contacts::{HoldStep, Touching, hold_nodes};
@@ -133,7 +133,7 @@ impl Scene {
 
     /// Forces of the stress in solids at tⁿ.
     fn add_internal_forces(&mut self, step: &ThisStep, passed: &mut impl FnMut(Phase)) -> Result<(), StepError> {
-        self.solid.move_all_nodes_next(step.changes); // supports change their kinetic energy
+        neighbours::move_all_nodes_next(&mut self.solid, step.changes); // supports change their kinetic energy
         self.solid.set_parts(self.parts(step.dt_after), step.is_first);
         if self.solid.body_count() > 0 {
             self.solid.update_internal_forces(step.elapsed, step.measure);

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use fractum_fem::SolidPart;
+use fractum_fem::neighbours::SolidPart;
 use fractum_io::Compression;
 use fractum_io::build::BuiltScene;
 use fractum_io::case::Case;

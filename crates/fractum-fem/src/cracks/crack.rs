@@ -8,7 +8,6 @@ use crate::body::edges::BodyEdges;
 use crate::damage::edge::EdgeField;
 use crate::element::regular_edge;
 use crate::solid::Solid;
-use crate::solid::evaluate::Block;
 
 /// How far the damage of a solid has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -175,7 +174,7 @@ impl Solid {
         let (zone, _) = model.body.damage.as_ref().zip(model.phase.as_ref())?;
         let area = |edge: &CrackEdge| if edge.body == body { edge.damaged_area() } else { 0.0 };
         let needed = zone.law.fracture_energy * self.crack_edges().iter().map(area).sum::<f64>();
-        let taken: f64 = self.blocks.iter().filter(|block| block.body == body).map(Block::dissipated).sum();
+        let taken: f64 = self.blocks.iter().filter(|block| block.body == body).map(|block| block.dissipated).sum();
         (needed > 0.0).then(|| taken / needed)
     }
 
@@ -189,11 +188,10 @@ impl Solid {
         (count > 0.0).then(|| sum / count)
     }
 
-    /// Share of its volume that a body with a phase field has lost to its cracks, and the width π b of a band [m]; none without a phase field, or
-    /// where several processes have parts of the body.
+    /// Share of its volume that a body with a phase field has lost to its cracks, and the width π b of a band [m]; none without a phase field.
     pub fn lost_to_bands(&self, body: usize) -> Option<(f64, f64)> {
         let model = &self.bodies[body];
-        let field = model.phase.as_ref().filter(|_| model.divided.is_none())?;
+        let field = model.phase.as_ref()?;
         let (mut whole, mut lost) = (0.0, 0.0);
         for (volume, alive) in self.element_volumes(body).iter().zip(&model.alive) {
             whole += volume;

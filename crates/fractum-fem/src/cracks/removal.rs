@@ -49,7 +49,7 @@ impl Solid {
                 continue;
             }
             let touched = self.cells_around(body, &elements);
-            self.bring_cells(body, &elements, &touched);
+            self.with_neighbours(|neighbours, solid| neighbours.bring_cells(solid, body, &elements, &touched));
             let stored: Vec<f64> = touched.iter().map(|&cell| self.stored_energy(cell)).collect();
             energy += self.step_energy(body, dt, &touched);
             self.forget_ahead();
@@ -57,7 +57,7 @@ impl Solid {
             self.rebuild_cells_around(body, &elements);
             self.settle(dt, &touched, &stored);
             energy -= self.step_energy(body, dt, &touched);
-            self.tell_settled(body, &touched);
+            self.with_neighbours(|neighbours, solid| neighbours.exchange_settled(solid, body, &touched));
         }
         energy
     }
@@ -69,15 +69,15 @@ impl Solid {
         for (&(block, cell), &stored) in cells.iter().zip(stored).filter(|((block, _), _)| *block < ALONE) {
             let dt = self.own_step(&self.blocks[block as usize], dt);
             let Solid { blocks, bodies, displacement, velocity, .. } = self;
-            let Block { body, cells, law: BlockLaw::Edges(edges), .. } = &mut blocks[block as usize] else { continue };
+            let Block { body, cells, law: BlockLaw::Edges(field), .. } = &mut blocks[block as usize] else { continue };
             let step = Advance { displacement, velocity, dt, kinematics: bodies[*body].body.kinematics };
-            let mut edges = EdgesInStep { edges, cells, step };
+            let mut edges = EdgesInStep { field, cells, step, energy: None, dissipated: 0.0 };
             edges.settle(cell as usize);
             edges.weaken(cell as usize, stored);
         }
     }
 
-    /// Energy that a cell stores at present [J]; zero where this rank does not have it.
+    /// Energy that a cell stores at present [J]; zero where this process does not have it.
     fn stored_energy(&self, (block, cell): (u32, u32)) -> f64 {
         if block >= ALONE {
             return 0.0;
@@ -138,7 +138,10 @@ impl Solid {
             0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
         };
         let own = (0..).zip(cells).filter(|(_, (block, _))| *block < ALONE).map(|(place, at)| (place, of(at)));
-        self.of_all_ranks(body, cells.len(), own).into_iter().sum()
+        let mut all = vec![0.0; cells.len()];
+        let values = self.neighbours.gather_cells(body, own.collect());
+        values.into_iter().for_each(|(place, value)| all[place as usize] = value);
+        all.into_iter().sum()
     }
 
     /// Recomputes the cells in which dead elements had a share, from the elements that are alive.
@@ -163,7 +166,7 @@ impl Solid {
             let Some((block, cell)) = model.location.kept(edge) else { continue };
             let cells = &mut blocks[block as usize].cells;
             if cells.len() == 0 {
-                continue; // another rank has it
+                continue; // another process has it
             }
             nodes.clear();
             // Copies lie where their nodes do.
@@ -242,7 +245,7 @@ impl Block {
     pub(crate) fn nominal_stress(&self, cell: usize, hooke: &Hooke, strain: Sym3) -> Sym3 {
         let full = hooke.stress(strain);
         match &self.law {
-            BlockLaw::Edges(law) => law.field.nominal_stress(cell, hooke, strain).0,
+            BlockLaw::Edges(field) => field.nominal_stress(cell, hooke, strain).0,
             _ => full * (1.0 - self.damage_of(cell)),
         }
     }

@@ -7,16 +7,6 @@ use crate::cells::block::Cells;
 use crate::cells::kernel::{self, CellLaw};
 use crate::damage::edge::{EdgeDamage, EdgeField};
 
-/// The edges of one block of smoothed cells.
-#[derive(Clone, Debug)]
-pub(crate) struct EdgeCells {
-    pub(crate) field: EdgeField,
-    /// Energy dissipated in this block so far [J].
-    pub(crate) dissipated: f64,
-    /// Elastic energy of the last step, where it was asked for [J].
-    pub(crate) energy: Option<f64>,
-}
-
 /// The step that led to the present displacements.
 #[derive(Clone, Copy)]
 pub(crate) struct Advance<'a> {
@@ -45,33 +35,35 @@ impl Advance<'_> {
 
 /// The edges of one block in one step, as the law of their cells.
 pub(crate) struct EdgesInStep<'a> {
-    pub(crate) edges: &'a mut EdgeCells,
+    pub(crate) field: &'a mut EdgeField,
     pub(crate) cells: &'a Cells,
     pub(crate) step: Advance<'a>,
+    /// Elastic energy, where it is asked for [J].
+    pub(crate) energy: Option<f64>,
+    /// Energy dissipated by damage [J].
+    pub(crate) dissipated: f64,
 }
 
 impl EdgesInStep<'_> {
     /// Takes over the strain that an edge has all at once because elements around it left.
     ///
-    /// Nothing is booked as damage: the energy belongs to the removal.
+    /// What it books is not damage: the energy belongs to the removal.
     pub(crate) fn settle(&mut self, cell: usize) {
         let strain = self.step.strain_now(self.cells, cell);
-        let field = &self.edges.field;
-        let stress = field.softens.hooke.stress(strain);
-        if field.softens.criterion.surely_below(stress, field.threshold[cell]) {
+        let EdgeField { softens, threshold, .. } = &*self.field;
+        let stress = softens.hooke.stress(strain);
+        if softens.criterion.surely_below(stress, threshold[cell]) {
             return;
         }
-        let booked = (self.edges.dissipated, self.edges.energy);
         loaded_stress(self, cell, strain, stress);
-        (self.edges.dissipated, self.edges.energy) = booked;
         // The next forces belong to the same step.
-        self.edges.field.state[cell].strain = self.step.strain_before(self.cells, cell);
+        self.field.state[cell].strain = self.step.strain_before(self.cells, cell);
     }
 
     /// Takes from an edge the stiffness with which it would store more than `most` [J]; damage of a phase field has no value
     /// of its own.
     pub(crate) fn weaken(&mut self, cell: usize, most: f64) {
-        let field = &mut self.edges.field;
+        let field = &mut *self.field;
         if field.softens.regularised {
             return;
         }
@@ -91,7 +83,7 @@ impl EdgesInStep<'_> {
     #[inline(always)]
     fn intact_stress(&mut self, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 {
         let volume = self.cells.volume[cell];
-        if let Some(energy) = &mut self.edges.energy {
+        if let Some(energy) = &mut self.energy {
             *energy += 0.5 * stress.dot(strain) * volume;
         }
         stress * volume
@@ -102,7 +94,7 @@ impl EdgesInStep<'_> {
     /// - `closed`: part of the effective `stress` that damage leaves alone, where cracks close
     #[inline(always)]
     fn advance(&mut self, cell: usize, strain: Sym3, (stress, closed): (Sym3, Option<Sym3>), q: f64) -> Sym3 {
-        let EdgeCells { field, dissipated, energy } = &mut *self.edges;
+        let EdgesInStep { field, dissipated, energy, .. } = self;
         let volume = self.cells.volume[cell];
         let EdgeDamage { damage: damage_before, strain: kept, .. } = field.state[cell];
         let seen = field.softens.see(&field.state[cell], field.strength[cell], stress, q);
@@ -127,9 +119,9 @@ impl EdgesInStep<'_> {
 impl CellLaw for EdgesInStep<'_> {
     #[inline(always)]
     fn scaled_stress(&mut self, cell: usize, strain: Sym3, _volume: f64) -> Sym3 {
-        let softens = &self.edges.field.softens;
+        let softens = &self.field.softens;
         let stress = softens.hooke.stress(strain);
-        if softens.criterion.surely_below(stress, self.edges.field.threshold[cell]) {
+        if softens.criterion.surely_below(stress, self.field.threshold[cell]) {
             return self.intact_stress(cell, strain, stress);
         }
         loaded_stress(self, cell, strain, stress)
@@ -137,7 +129,7 @@ impl CellLaw for EdgesInStep<'_> {
 
     #[inline(always)]
     fn integrity(&self, cell: usize) -> f64 {
-        1.0 - self.edges.field.state[cell].damage
+        1.0 - self.field.state[cell].damage
     }
 }
 
@@ -154,7 +146,7 @@ impl CellLaw for FourEdgesInStep<'_> {
 
     #[inline(always)]
     fn scaled_stresses(&mut self, first: usize, strains: &[Sym3; FOUR], volumes: &[f64; FOUR]) -> [Sym3; FOUR] {
-        let EdgeField { softens, threshold, .. } = &self.0.edges.field;
+        let EdgeField { softens, threshold, .. } = &*self.0.field;
         let threshold = &threshold[first..first + FOUR];
         let (mut stresses, mut below, mut all_below) = ([Sym3::ZERO; FOUR], [true; FOUR], true);
         for k in 0..FOUR {
@@ -185,7 +177,7 @@ widest! {
 
 #[inline(always)]
 fn loaded_one(edges: &mut EdgesInStep<'_>, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 {
-    let EdgeField { softens, state, .. } = &edges.edges.field;
+    let EdgeField { softens, state, .. } = &*edges.field;
     let q = softens.equivalent(&state[cell], stress, edges.step.dt);
     let closed = softens.closed_stress(strain);
     edges.advance(cell, strain, (stress, closed), q)
@@ -213,7 +205,7 @@ fn loaded_four(
     strains: &[Sym3; FOUR],
     stresses: &[Sym3; FOUR],
 ) -> [Sym3; FOUR] {
-    let EdgeField { softens, state, .. } = &edges.edges.field;
+    let EdgeField { softens, state, .. } = &*edges.field;
     let q = softens.equivalent_of_four(&state[first..first + FOUR], stresses, below, edges.step.dt);
     let closed = softens.closed_stresses(strains);
     let mut scaled = [Sym3::ZERO; FOUR];

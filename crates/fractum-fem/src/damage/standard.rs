@@ -52,7 +52,7 @@ pub(crate) struct StandardCells {
     pub(crate) damage: Vec<f64>,
     /// ½ σ : ε between the stress before and the strain after the step: what damage dissipates per volume [J/m³].
     pub(crate) mixed_energy: Vec<f64>,
-    pub(crate) dissipated: f64,
+    /// Elastic energy of the present step, where it is asked for [J].
     pub(crate) energy: Option<f64>,
     /// Least stress that the edges of each cell had seen when it last took over their damage, less [`DOUBT`] [Pa]; they may have seen more.
     least_seen: Vec<f64>,
@@ -75,7 +75,6 @@ impl StandardCells {
             stress: vec![Sym3::ZERO; count],
             damage: zeros.clone(),
             mixed_energy: zeros.clone(),
-            dissipated: 0.0,
             energy: None,
             least_seen: zeros,
             may_load: vec![true; count],
@@ -108,13 +107,14 @@ impl StandardCells {
             !(criterion.surely_below(stress, least) || least > 0.0 && criterion.is_below_by_minors(stress, least));
     }
 
-    /// Gives a cell what its edges have: their damage and the least stress that one of them has seen; books what the damage dissipates.
-    pub(crate) fn take(&mut self, cell: usize, volume: f64, (damage, least_seen): (f64, f64)) {
+    /// Gives a cell what its edges have: their damage and the least stress that one of them has seen; returns what the damage dissipates per volume
+    /// [J/m³].
+    pub(crate) fn take(&mut self, cell: usize, (damage, least_seen): (f64, f64)) -> f64 {
         let damage = damage.max(self.damage[cell]);
         let taken = Taken::straight(self.mixed_energy[cell]).by(damage - self.damage[cell]);
-        self.dissipated += taken * volume;
         self.damage[cell] = damage;
         self.least_seen[cell] = least_seen * (1.0 - DOUBT);
+        taken
     }
 
     /// The next cell that [is to take over](StandardCells::expect_damage) the damage of its edges, ascending; it is so no longer.

@@ -7,7 +7,7 @@ use fractum_parallel::{Exchange, gather, post};
 use rayon::prelude::*;
 
 use super::order::{Key, Order};
-use super::{BodyShare, Held, KnownAround, ReadBody};
+use super::{BodyShare, KnownAround, ReadBody, Replication};
 use crate::body::Formulation;
 
 /// Words of an element on its way.
@@ -44,7 +44,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
     let mut shares: Vec<BodyShare> = (0..bodies.len())
         .map(|body| {
             assert!(u32::try_from(total(body)).is_ok(), "a body of {} elements", total(body));
-            BodyShare { count: total(body), held: bodies[body].held, ..BodyShare::default() }
+            BodyShare { count: total(body), replication: bodies[body].replication, ..BodyShare::default() }
         })
         .collect();
     let mut own = vec![0; bodies.len()];
@@ -52,7 +52,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
         let nodes = |key: &Key| [(key[2] >> 32) as u32, key[2] as u32];
         let body = run[0][0] as usize / 2;
         own[body] += run.len();
-        if bodies[body].held != Held::Whole {
+        if bodies[body].replication != Replication::Whole {
             shares[body].runs.push(run.iter().map(nodes).collect());
         }
     }
@@ -60,12 +60,12 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
     for of_rank in gather(exchange, &own) {
         shares.iter_mut().zip(of_rank).for_each(|(share, cells)| share.cells.push(cells));
     }
-    for (body, share) in bodies.iter().zip(&mut shares).filter(|(body, _)| body.held == Held::Elements) {
-        share.is_told = vec![false; share.count];
+    for (body, share) in bodies.iter().zip(&mut shares).filter(|(body, _)| body.replication == Replication::Elements) {
+        share.is_owned = vec![false; share.count];
         (share.elements, share.tags) = all_elements(exchange, body.elements, body.tags);
     }
     for word in post(exchange, words.told).into_iter().flatten() {
-        shares[(word >> 32) as usize].is_told[word as u32 as usize] = true;
+        shares[(word >> 32) as usize].is_owned[word as u32 as usize] = true;
     }
     let mut received = post(exchange, words.to);
     received.extend(gather(exchange, &words.to_all));
@@ -77,7 +77,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
     elements.into_iter().for_each(|at| add_to_share(packed(at), exchange.rank(), &mut shares));
     let mut is_measured = vec![false; if around.measured.is_empty() { 0 } else { nodes.len() }];
     around.measured.iter().for_each(|&node| is_measured[node as usize] = true);
-    for share in shares.iter_mut().filter(|share| share.held == Held::Part && !is_measured.is_empty()) {
+    for share in shares.iter_mut().filter(|share| share.replication == Replication::Part && !is_measured.is_empty()) {
         let all = |element: &[u32; 4]| element.iter().all(|&node| is_measured[node as usize]);
         let measured = (0..).zip(&share.elements).filter(|(_, element)| all(element)).map(|(number, _)| number);
         share.measured = measured.collect();
@@ -88,7 +88,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
 /// Which nodes those of bodies are that every rank needs whole. All ranks must call it.
 fn nodes_of_whole(exchange: &dyn Exchange, bodies: &[ReadBody], count: usize) -> Vec<bool> {
     let mut is_own = vec![false; count];
-    let whole = bodies.iter().filter(|body| body.held != Held::Part);
+    let whole = bodies.iter().filter(|body| body.replication != Replication::Part);
     whole.flat_map(|body| body.elements).flatten().for_each(|&node| is_own[node as usize] = true);
     let own: Vec<u32> = (0..).zip(&is_own).filter(|(_, is_own)| **is_own).map(|(node, _)| node).collect();
     let mut is_of_whole = is_own;
@@ -204,13 +204,13 @@ impl Cells<'_> {
             let end = count.min(begin + PACKED);
             let packed: Vec<([u32; 6], Words)> = (begin..end).into_par_iter().map(pack).collect();
             for (element, (mut ranks, packed)) in (begin..end).zip(packed) {
-                if self.body.held == Held::Elements {
+                if self.body.replication == Replication::Elements {
                     let teller = ranks.iter().min().expect("of six edges");
                     words.told[*teller as usize].push(packed[0]);
                     continue;
                 }
                 let is_for_all = self.body.elements[element].iter().any(|&node| is_near[node as usize]);
-                if self.body.held == Held::Whole || is_for_all {
+                if self.body.replication == Replication::Whole || is_for_all {
                     words.to_all.extend(packed);
                     continue;
                 }
@@ -233,7 +233,7 @@ fn add_to_share(&[head, a, b, tag, e, f, g]: &Words, me: usize, shares: &mut [Bo
     let ([r0, r1], [r2, r3], [r4, r5]) = (halves(e), halves(f), halves(g));
     let owners = [r0, r1, r2, r3, r4, r5];
     // The lowest rank with a cell of it tells of it.
-    share.is_told.push(owners.iter().min() == Some(&(me as u32)));
+    share.is_owned.push(owners.iter().min() == Some(&(me as u32)));
     share.owners.push(owners);
 }
 

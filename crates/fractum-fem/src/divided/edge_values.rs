@@ -31,7 +31,7 @@ impl EdgeValues {
     ) -> (Self, BTreeMap<u32, u32>) {
         let me = exchange.rank();
         let mut of_rank = vec![BTreeMap::<[u32; 2], u32>::new(); exchange.size()];
-        let told = (0..elements.len()).filter(|&element| share.is_told[element]);
+        let told = (0..elements.len()).filter(|&element| share.is_owned[element]);
         for element in told {
             for (at, edge) in TETRAHEDRON_EDGES.into_iter().enumerate() {
                 let rank = share.owners[element][at] as usize;

@@ -4,8 +4,8 @@
 //! into the same blocks; a rank gets a run of blocks with the elements around their cells. So every sum over blocks has the bits of one process.
 //! Every rank has all nodes. Blocks of others are there with their number and the nodes that this rank has too.
 //!
-//! Of bodies that break every rank has all elements, since all take out the same ones; of most of them no more cells than its own, and what it is
-//! told of the edges of others ([`Held`]). Elements of other bodies that have a node of them, or one that something else may touch, are on
+//! Of bodies that break every rank has all elements, since all take out the same ones; of most of them no more cells than its own, and what it
+//! receives of the edges of others ([`Replication`]). Elements of other bodies that have a node of them, or one that something else may touch, are on
 //! every rank too: what lies around such nodes is known to all.
 
 mod block_order;
@@ -16,7 +16,6 @@ mod nodes;
 mod order;
 mod pieces;
 pub(crate) mod places;
-pub(crate) mod told_edges;
 
 use std::collections::BTreeMap;
 
@@ -42,14 +41,14 @@ pub struct ReadBody<'a> {
     /// What the file calls each of them.
     pub tags: &'a [u64],
     /// How much of it every rank has.
-    pub held: Held,
+    pub replication: Replication,
     /// Which edges of each of them cannot be damaged, in the order of [`fractum_mesh::topology::TETRAHEDRON_EDGES`]; empty where all can, or none.
     pub sound: &'a [[bool; 6]],
 }
 
 /// How much of a body every rank has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Held {
+pub enum Replication {
     /// The elements around its cells.
     #[default]
     Part,
@@ -71,9 +70,9 @@ pub struct BodyShare {
     /// Elements of the whole body.
     pub count: usize,
     /// How much of it every rank has.
-    pub held: Held,
-    /// Which of them this rank tells of: every element has one rank that does.
-    pub is_told: Vec<bool>,
+    pub replication: Replication,
+    /// Which of them this rank owns: every element has one rank that does.
+    pub is_owned: Vec<bool>,
     /// Ranks whose cells the edges of each element are, in the order of [`fractum_mesh::topology::TETRAHEDRON_EDGES`]; the rank of the
     /// element where elements are the cells.
     pub owners: Vec<[u32; 6]>,
@@ -89,7 +88,7 @@ pub struct BodyShare {
 impl BodyShare {
     /// Whether every rank has all cells.
     pub(crate) fn is_whole(&self) -> bool {
-        self.held == Held::Whole
+        self.replication == Replication::Whole
     }
 
     /// Number of an element of this rank in the whole body.
@@ -99,9 +98,9 @@ impl BodyShare {
 
     /// Place of an element of the whole body among those of this rank; none where it does not have that.
     pub fn place(&self, number: u32) -> Option<usize> {
-        match self.held {
-            Held::Part => self.numbers.binary_search(&number).ok(),
-            Held::Elements | Held::Whole => Some(number as usize),
+        match self.replication {
+            Replication::Part => self.numbers.binary_search(&number).ok(),
+            Replication::Elements | Replication::Whole => Some(number as usize),
         }
     }
 
@@ -126,7 +125,7 @@ pub(crate) struct DividedBody {
     pub(crate) pieces: ConnectedPieces,
     /// Values of edges that others evaluate, at the last frame; empty where elements are the cells.
     pub(crate) values: EdgeValues,
-    /// Facets that are seen from outside, with the number of their element on this rank: of the elements that it tells of.
+    /// Facets that are seen from outside, with the number of their element on this rank: of the elements that it owns.
     pub(crate) skin: Vec<([u32; 3], u32)>,
 }
 

@@ -54,7 +54,7 @@ pub(crate) struct GivenToNodes<'a> {
 pub(crate) fn nodal_sums(exchange: &dyn Exchange, count: usize, bodies: &[GivenToNodes]) -> Vec<f64> {
     let told = || {
         bodies.iter().enumerate().flat_map(|(index, GivenToNodes { share, elements, values })| {
-            let told = (0..values.len()).filter(|&element| share.is_told[element]);
+            let told = (0..values.len()).filter(|&element| share.is_owned[element]);
             told.map(move |element| {
                 let order = (index as u64) << 32 | u64::from(share.number(element));
                 (elements[element], order, values[element])

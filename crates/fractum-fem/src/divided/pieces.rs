@@ -21,7 +21,7 @@ pub(crate) fn connected_pieces(
     let joined: Vec<[u32; 2]> = (0..).zip(own).filter(|(node, first)| node != first).map(<[u32; 2]>::from).collect();
     let first = connected(nodes, gather(exchange, &joined).into_iter().flatten());
     let mut told = BTreeMap::<u32, usize>::new();
-    for (element, _) in elements.iter().zip(&share.is_told).filter(|(_, is_told)| **is_told) {
+    for (element, _) in elements.iter().zip(&share.is_owned).filter(|(_, is_owned)| **is_owned) {
         *told.entry(first[element[0] as usize]).or_default() += 1;
     }
     let mut pieces = BTreeMap::<u32, usize>::new();

@@ -36,6 +36,11 @@ impl Places {
         Some(self.of(cell)).filter(|at| at.0 < ALONE)
     }
 
+    /// Whether those of all cells are kept or received here; else this process finds the values of others by itself.
+    pub(crate) fn keeps_all(&self) -> bool {
+        matches!(self, Places::All(_))
+    }
+
     /// Those of this rank, where it knows no others.
     pub(crate) fn own(&self) -> &[(u32, (u32, u32))] {
         if let Places::Own(own) = self { own } else { &[] }

@@ -1,11 +1,13 @@
 //! Stress, strain and damage of elements.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use fractum_math::Sym3;
 use rayon::prelude::*;
 
 use crate::body::edges::BodyEdges;
+use crate::cells::block::Cells;
 use crate::cells::kernel;
 use crate::divided::{ALONE, ELSEWHERE, EdgeValue};
 use crate::solid::Solid;
@@ -31,42 +33,41 @@ impl Solid {
         }
     }
 
-    /// Live elements of a body that this process tells of, ascending.
-    pub fn told_elements(&self, index: usize) -> Vec<u32> {
+    /// Live elements of a body that this process owns, ascending.
+    pub fn owned_elements(&self, index: usize) -> Vec<u32> {
         let alive = (0..).zip(&self.bodies[index].alive).filter(|(_, alive)| **alive).map(|(element, _)| element);
-        alive.filter(|&element: &u32| self.tells_of(index, element as usize)).collect()
+        alive.filter(|&element: &u32| self.owns(index, element)).collect()
     }
 
-    /// As [`Solid::element_fields`], of [`Solid::told_elements`].
-    pub fn told_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
-        self.told_means(index, |at| self.cell_field(index, at))
+    /// As [`Solid::element_fields`], of [`Solid::owned_elements`].
+    pub fn owned_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
+        self.owned_means(index, |at| self.cell_field(index, at))
     }
 
-    /// Strain of [`Solid::told_elements`], that of thermal expansion included: the mean over its edges where the body is smoothed.
-    pub fn told_strains(&self, index: usize) -> Vec<Sym3> {
-        let model = &self.bodies[index];
-        let means = self.told_means(index, |at| (self.cell_strain(model, at), 0.0));
+    /// Strain of [`Solid::owned_elements`], that of thermal expansion included: the mean over its edges where the body is smoothed.
+    pub fn owned_strains(&self, index: usize) -> Vec<Sym3> {
+        let means = self.owned_means(index, |at| (self.cell_strain(index, at), 0.0));
         means.into_iter().map(|(strain, _)| strain).collect()
     }
 
-    /// Means of the elements that this process tells of, from the cells alone that they need.
-    fn told_means(&self, index: usize, of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
-        let (model, told) = (&self.bodies[index], self.told_elements(index));
-        if model.is_told.is_empty() {
+    /// Means of the elements that this process owns, from the cells alone that they need.
+    fn owned_means(&self, index: usize, of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
+        let (model, owned) = (&self.bodies[index], self.owned_elements(index));
+        let alive = model.alive.iter().filter(|alive| **alive).count();
+        if owned.len() == alive && model.location.keeps_all() {
             let all = self.means(model, of_cell);
-            let is_all = told.len() == all.len();
-            return if is_all { all } else { told.into_iter().map(|element| all[element as usize]).collect() };
+            return if alive == all.len() { all } else { owned.into_iter().map(|e| all[e as usize]).collect() };
         }
         let Some(edges) = model.smoothed_edges() else {
-            return told.par_iter().map(|&element| of_cell(model.location.of(element))).collect();
+            return owned.par_iter().map(|&element| of_cell(model.location.of(element))).collect();
         };
-        let mut needed: Vec<u32> = told.par_iter().flat_map_iter(|&element| edges.of_element(element)).collect();
+        let mut needed: Vec<u32> = owned.par_iter().flat_map_iter(|&element| edges.of_element(element)).collect();
         needed.par_sort_unstable();
         needed.dedup();
         let place = |edge: u32| needed.binary_search(&edge).expect("one of those of its elements");
         let cells: Vec<(Sym3, f64)> = needed.par_iter().map(|&edge| of_cell(model.location.of(edge))).collect();
         let mean = |&element: &u32| model.mean_of_edges(&edges.of_element(element), |edge| cells[place(edge)]);
-        told.par_iter().map(mean).collect()
+        owned.par_iter().map(mean).collect()
     }
 
     /// As [`Solid::element_fields`] of one element.
@@ -79,7 +80,7 @@ impl Solid {
         }
     }
 
-    /// [`Solid::element_damages`] of a body of which this rank has its own cells alone, by what it has been told of others.
+    /// [`Solid::element_damages`] of a body of which this process has its own cells alone, by what it has received of others.
     pub(crate) fn damages_around(&self, index: usize) -> Vec<f64> {
         let model = &self.bodies[index];
         let mut damages: Vec<f64> = model.alive.iter().map(|alive| f64::from(u8::from(!alive))).collect();
@@ -104,14 +105,14 @@ impl Solid {
         let model = &self.bodies[index];
         match at.0 {
             ELSEWHERE => {
-                let EdgeValue { stress, damage, .. } = model.value_elsewhere(at.1);
+                let EdgeValue { stress, damage, .. } = self.neighbours.received_value(index, at.1);
                 return (stress, damage);
             }
             ALONE => {
                 let strain = self.strain_alone(model, at.1);
-                let told =
+                let received =
                     self.edge(index, at.1).map(|(field, place)| field.nominal_stress(place, &model.hooke, strain));
-                return told.unwrap_or_else(|| (model.hooke.stress(strain), 0.0));
+                return received.unwrap_or_else(|| (model.hooke.stress(strain), 0.0));
             }
             _ => {}
         }
@@ -122,13 +123,30 @@ impl Solid {
     }
 
     /// Strain of a cell, that of thermal expansion included.
-    pub(crate) fn cell_strain(&self, model: &BodyModel, at: (u32, u32)) -> Sym3 {
+    pub(crate) fn cell_strain(&self, index: usize, at: (u32, u32)) -> Sym3 {
+        let model = &self.bodies[index];
         match at.0 {
-            ELSEWHERE => return model.value_elsewhere(at.1).strain,
+            ELSEWHERE => return self.neighbours.received_value(index, at.1).strain,
             ALONE => return self.strain_alone(model, at.1),
             _ => {}
         }
         let (cells, cell) = self.cells_with(at);
         kernel::total_strain(&cells, cell, &self.displacement, model.body.kinematics)
+    }
+
+    /// Strain of a cell of which this process has no more than the elements around it.
+    fn strain_alone(&self, model: &BodyModel, cell: u32) -> Sym3 {
+        let cells = model.cells(&self.reference, &[cell]);
+        kernel::total_strain(&cells, 0, &self.displacement, model.body.kinematics)
+    }
+
+    /// The geometry of a cell (block, number), with its number there: by itself where this process does not keep its block.
+    pub(crate) fn cells_with(&self, (block, cell): (u32, u32)) -> (Cow<'_, Cells>, usize) {
+        let block = &self.blocks[block as usize];
+        let cell = cell as usize;
+        if cell < block.cells.len() {
+            return (Cow::Borrowed(&block.cells), cell);
+        }
+        (Cow::Owned(self.bodies[block.body].cells(&self.reference, &block.items[cell..=cell])), 0)
     }
 }

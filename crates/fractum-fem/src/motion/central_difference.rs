@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::solid::Solid;
+use crate::solid::neighbours::Neighbours;
 
 /// Damping that acts on the nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -56,12 +57,12 @@ impl Solid {
         held: &[u8],
         measure: bool,
     ) -> HalfSteps {
-        let part = self.part.take();
         let step = WholeStep { dt_before, dt_after, damping, held, measure };
-        self.kick_runs(&step, |chunk| part.as_ref()?.moved(chunk));
-        self.part = part;
-        self.tell_work();
-        self.note_motion();
+        self.with_neighbours(|neighbours, solid| {
+            let moving: &dyn Neighbours = neighbours;
+            solid.kick_runs(&step, |chunk| moving.moved(chunk));
+            neighbours.end_step(&mut solid.chunk_work);
+        });
         self.work_of_chunks()
     }
 

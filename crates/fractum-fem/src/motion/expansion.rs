@@ -153,7 +153,7 @@ mod tests {
             solid.begin_expansion([&cold, &hot]);
             let free = 0.5 * solid.expansion_work();
             solid.expand_to(1.0);
-            assert!(solid.told_strains(0).iter().all(|strain| strain.0 == [0.0; 6]), "nothing has moved yet");
+            assert!(solid.owned_strains(0).iter().all(|strain| strain.0 == [0.0; 6]), "nothing has moved yet");
             // Held in all directions: σ = -E α ΔT/(1 - 2 ν), energy 3/2 V E (α ΔT)²/(1 - 2 ν).
             solid.update_internal_forces(0.0, true);
             let pressure = -30e9 * ALPHA * 100.0 / 0.6;
@@ -170,7 +170,7 @@ mod tests {
             assert!(largest < 1e-9 * pressure.abs() && solid.elastic_energy() < 1e-12 * energy, "{largest}");
             let off =
                 |strain: &Sym3| (0..6).any(|k| (strain.0[k] - if k < 3 { ALPHA * 100.0 } else { 0.0 }).abs() > 1e-15);
-            assert!(!solid.told_strains(0).iter().any(off), "all of it is thermal strain");
+            assert!(!solid.owned_strains(0).iter().any(off), "all of it is thermal strain");
         }
     }
 

@@ -15,11 +15,7 @@ impl Solid {
     /// Its strain is beyond -1, where the law of small stretches says nothing. Where strains are those of an edge, it is the worst element
     /// around one whose mean deformation is turned inside out.
     pub fn inverted_element(&self) -> Option<InvertedElement> {
-        // The damage of a cell is known where it is evaluated.
-        match &self.part {
-            Some(part) => part.records.inverted,
-            None => self.inverted_of(&self.blocks),
-        }
+        self.neighbours.inverted(&|| self.inverted_of(&self.blocks))
     }
 
     /// Body and number of the inverted element, where it is crushed.
@@ -44,7 +40,6 @@ impl Solid {
             let measure = |place: &dyn Fn(usize) -> Vec3| measure_and_gradients(model.body.shape, &nodes.map(place)).0;
             let volume_ratio = measure(&|node| self.position(node)) / measure(&|node| self.reference[node]);
             let centre = nodes[..corners].iter().map(|&n| self.position(n)).sum::<Vec3>() / corners as f64;
-            let element = model.divided.as_ref().map_or(element, |divided| divided.numbers[element as usize]);
             InvertedElement { body, element, centre, volume_ratio, damage }
         };
         let alive = elements.iter().filter(|&&element| model.alive[element as usize]);

@@ -6,11 +6,11 @@ use rayon::prelude::*;
 use crate::cells::block::Cells;
 use crate::damage::Taken;
 use crate::damage::edge::{ABOVE_ALL, EdgeField};
-use crate::damage::edges_in_step::{Advance, EdgeCells};
+use crate::damage::edges_in_step::Advance;
 use crate::damage::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, PhaseField};
 use crate::damage::restraint::Seen;
 use crate::material::equivalent_stresses;
-use crate::solid::evaluate::BlockLaw;
+use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
 
 impl Solid {
@@ -48,7 +48,13 @@ impl Solid {
                 return;
             }
             solid.drive(body, field, dt);
-            field.sweep();
+            // Every process finds the edges of the standard formulation.
+            let is_smoothed = solid.bodies[body].standard.is_none();
+            field.sweep(|active| {
+                if is_smoothed {
+                    solid.neighbours.exchange_phase(active);
+                }
+            });
             field.book(|own| solid.taken_at_first(body, own, dt));
             solid.take_over(body, field);
             field.end_step();
@@ -76,7 +82,7 @@ impl Solid {
         }
         let blocks = blocks[own.clone()].par_iter_mut().zip(own).filter(|(_, index)| field.has_block(*index));
         blocks.for_each(|(block, _)| {
-            let BlockLaw::Edges(EdgeCells { field: cells, dissipated, .. }) = &mut block.law else { return };
+            let Block { law: BlockLaw::Edges(cells), dissipated, .. } = block else { return };
             for cell in 0..cells.edges.len() {
                 let Some((step, grown)) = field.change(cells.edges[cell]) else { continue };
                 cells.see(cell, step.seen);
@@ -149,8 +155,8 @@ impl Solid {
             return (&mut standard.field, edge as usize, None);
         }
         let (block, cell) = location.of(edge);
-        match &mut blocks[block as usize].law {
-            BlockLaw::Edges(law) => (&mut law.field, cell as usize, Some(&mut law.dissipated)),
+        match &mut blocks[block as usize] {
+            Block { law: BlockLaw::Edges(field), dissipated, .. } => (field, cell as usize, Some(dissipated)),
             _ => unreachable!("only edges that may be damaged become active"),
         }
     }

@@ -17,7 +17,7 @@ impl Solid {
     pub(crate) fn wake(&mut self, body: usize, field: &mut PhaseField) {
         let (mut woken, mut any) = (Vec::new(), false);
         let own = self.own_blocks();
-        let Solid { blocks, bodies, part, .. } = self;
+        let Solid { blocks, bodies, neighbours, .. } = self;
         let blocks = blocks.iter_mut().enumerate().filter(|(_, block)| block.body == body);
         for (cells, is_own) in blocks.filter_map(|(index, block)| Some((block.edge_field_mut()?, own.contains(&index))))
         {
@@ -26,10 +26,10 @@ impl Solid {
                 woken.extend(is_own.then(|| cells.above_strength()).into_iter().flatten());
             }
         }
-        if let Some(part) = part.as_ref().filter(|_| any) {
-            woken = part.name_edges(&woken);
+        if any {
+            woken = neighbours.gather_names(woken);
         }
-        // Every rank finds the edges of the standard formulation.
+        // Every process finds the edges of the standard formulation.
         if let Some(standard) = &mut bodies[body].standard
             && std::mem::take(&mut standard.field.woken)
         {
@@ -45,10 +45,10 @@ impl Solid {
         for &edge in edges {
             let strength = self.edge(body, edge).map_or(f64::INFINITY, |(cells, cell)| cells.strength[cell]);
             if strength.is_finite() && !field.is_active(edge) {
-                field.activate(&patch, (edge, self.rank_of_edge(model, edge)), field.law.a1(strength));
-                if model.standard.is_none() {
-                    field.wake_block(model.location.of(edge).0 as usize);
-                }
+                let block = (!model.needs_all_cells()).then(|| model.location.of(edge).0 as usize);
+                let rank = block.map_or(0, |block| self.neighbours.owner(block));
+                field.activate(&patch, (edge, rank), field.law.a1(strength));
+                block.into_iter().for_each(|block| field.wake_block(block));
             }
         }
     }

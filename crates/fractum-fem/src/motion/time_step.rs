@@ -64,7 +64,7 @@ impl Solid {
     }
 
     /// ω_max by the rigorous bound max over elements of their own highest frequency (holds for both formulations and
-    /// through removal). Ranks of which none has all elements must all call it.
+    /// through removal). Processes of which none has all elements must all call it.
     pub fn stable_step_bound(&self) -> StableStep {
         match &self.subcycling {
             Some(subcycling) => self.bound(|body, element| !subcycling.fine_elements[body][element as usize]),
@@ -87,7 +87,7 @@ impl Solid {
                 let (_, gradients) = geometry.element(element);
                 gradients[..corners].iter().map(|g| g.norm_squared()).sum::<f64>() * trace_factor * scale
             };
-            let meant = |&e: &u32| model.alive[e as usize] && counts(body, e) && self.tells_of(body, e as usize);
+            let meant = |&e: &u32| model.alive[e as usize] && counts(body, e) && self.owns(body, e);
             let meant: Vec<u32> = (0..model.body.elements.len() as u32).filter(meant).collect();
             let mut order: Vec<(f64, u32)> = meant.into_par_iter().map(|e| (trace(e as usize), e)).collect();
             order.par_sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -102,7 +102,8 @@ impl Solid {
                 }
             }
         }
-        self.worst_of_ranks(worst, worst_trace)
+        let (frequency, governing) = self.neighbours.worst((worst.frequency, worst.governing), worst_trace);
+        StableStep { frequency, governing }
     }
 
     /// Largest eigenvalue of M⁻¹K, in the symmetric form M^-½ K M^-½, of nodes that no cell joins to others.
@@ -119,7 +120,7 @@ impl Solid {
         self.evaluate_own(|bodies, _, block| block.evaluate_elastic(&bodies[block.body], &field));
         let mut force = field;
         self.sum_blocks(&mut force);
-        self.part.iter_mut().for_each(|part| part.tell_all(&mut force));
+        self.neighbours.gather_values(&mut force);
         force.par_iter_mut().zip(root).for_each(|(force, root)| *force *= -root);
         force
     }

@@ -1,7 +1,6 @@
 //! Bodies that have small strains until they turn.
 
 use fractum_math::{Mat3, Vec3};
-use fractum_parallel::{gather, gather_named};
 use rayon::prelude::*;
 
 use crate::body::{Body, Kinematics};
@@ -58,9 +57,7 @@ impl Solid {
             found = own.par_iter().filter(turns).map(|block| block.body as u32).collect();
             found.dedup();
         }
-        if let Some(part) = &self.part {
-            found = gather_named(&*part.exchange(), &found);
-        }
+        found = self.neighbours.gather_names(found);
         if found.is_empty() {
             return 0.0;
         }
@@ -72,7 +69,7 @@ impl Solid {
             self.bodies[body as usize].body.kinematics = Kinematics::Corotational;
         }
         self.see_strains_before(&found, dt);
-        self.part.iter_mut().for_each(|part| part.records.expect_events());
+        self.neighbours.expect_events();
         let after = self.energy_in_step(&found, dt);
         turning.extend(found);
         before - after
@@ -104,8 +101,8 @@ impl Solid {
             let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
             let Block { cells, law, .. } = block;
             match law {
-                BlockLaw::Edges(law) => {
-                    let damaged = law.field.state.iter_mut().enumerate().filter(|(_, edge)| edge.damage > 0.0);
+                BlockLaw::Edges(field) => {
+                    let damaged = field.state.iter_mut().enumerate().filter(|(_, edge)| edge.damage > 0.0);
                     damaged.for_each(|(cell, edge)| edge.strain = step.strain_before(cells, cell));
                 }
                 BlockLaw::Standard(law) => {
@@ -117,7 +114,7 @@ impl Solid {
         });
     }
 
-    /// Elastic energy of bodies as a step measures it, ½ σ : ε⁰ with the strain of the step before [J]; the same on all ranks.
+    /// Elastic energy of bodies as a step measures it, ½ σ : ε⁰ with the strain of the step before [J]; the same for all processes.
     fn energy_in_step(&self, bodies: &[u32], dt: f64) -> f64 {
         let of = |block: &Block| -> f64 {
             let model = &self.bodies[block.body];
@@ -133,9 +130,6 @@ impl Solid {
         let own = self.blocks[self.own_blocks()].par_iter();
         let own: Vec<f64> = own.filter(|block| bodies.contains(&(block.body as u32))).map(of).collect();
         // In the order of the blocks, whoever has them.
-        match &self.part {
-            Some(part) => gather(&*part.exchange(), &own).into_iter().flatten().sum(),
-            None => own.into_iter().sum(),
-        }
+        self.neighbours.gather_blocks(own).into_iter().sum()
     }
 }

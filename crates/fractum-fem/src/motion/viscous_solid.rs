@@ -57,7 +57,7 @@ impl Solid {
             let frequency = (square * stiffness * corners as f64 / body.elastic.density).sqrt();
             frequency * regular_edge(body.shape, volume / body.depth()) / wave_speed
         };
-        self.largest_of_ranks((0..body.elements.len()).into_par_iter().map(of).reduce(|| 0.0, f64::max))
+        self.neighbours.largest((0..body.elements.len()).into_par_iter().map(of).reduce(|| 0.0, f64::max))
     }
 }
 

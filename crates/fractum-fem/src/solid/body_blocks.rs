@@ -1,6 +1,5 @@
 //! The cells of a body in blocks, with their laws.
 
-use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use fractum_math::Vec3;
@@ -9,15 +8,14 @@ use crate::body::edges::BodyEdges;
 use crate::body::{Body, Formulation};
 use crate::cells::cell::{Bundle, Class, Geometry};
 use crate::damage::edge::{EdgeField, Softens};
-use crate::damage::edges_in_step::EdgeCells;
 use crate::damage::phase::PhaseField;
 use crate::damage::standard::{StandardCells, StandardDamage};
 use crate::damage::threshold::Threshold;
 use crate::divided::places::Places;
-use crate::divided::{BodyShare, Held};
+use crate::divided::{BodyShare, Replication};
 use crate::element::hooke::Hooke;
 use crate::error::SolidError;
-use crate::solid::body_model::{BodyModel, Chosen, KnownBody};
+use crate::solid::body_model::{BodyModel, Chosen};
 use crate::solid::evaluate::{Block, BlockLaw};
 
 impl BodyModel {
@@ -35,7 +33,7 @@ impl BodyModel {
         let hooke = Hooke::of(&body);
         let smoothed = body.formulation == Formulation::Smoothed;
         let geometry = Geometry { body: &body, nodes };
-        let known = chosen.share.filter(|share| share.held == Held::Elements);
+        let known = chosen.share.filter(|share| share.replication == Replication::Elements);
         let edges = (smoothed || body.damage.is_some()).then(|| match known {
             Some(share) => BodyEdges::sought(&body, nodes.len(), share.own_cells()),
             None => BodyEdges::tables(&body),
@@ -66,9 +64,6 @@ impl BodyModel {
         let (reduced_edges, largest_length_ratio) =
             threshold.as_ref().map_or((0, 0.0), |t| (t.reduced_edges, t.largest_length_ratio));
         let phase = threshold.as_ref().and_then(|t| t.phase).map(|law| Box::new(PhaseField::new(law, edge_count)));
-        let of_others = softens.as_ref().filter(|_| known.is_some());
-        let known =
-            of_others.map(|softens| Box::new(KnownBody { softens: Arc::clone(softens), told: BTreeMap::new() }));
         let around = edges.as_ref().and_then(BodyEdges::table_of_elements);
         let standard = match (softens, threshold, around) {
             (Some(softens), Some(t), Some(around)) if !smoothed => {
@@ -84,7 +79,6 @@ impl BodyModel {
             hooke,
             viscosity: None,
             alive,
-            is_told: Vec::new(),
             volumes: OnceLock::new(),
             edges,
             location,
@@ -92,8 +86,6 @@ impl BodyModel {
             phase,
             reduced_edges,
             largest_length_ratio,
-            divided: None,
-            known,
         };
         Ok((model, blocks))
     }
@@ -110,11 +102,10 @@ fn items_of(bundles: &[Bundle]) -> Vec<u32> {
 fn block_law(smoothed: bool, damage: Option<(&Arc<Softens>, &Threshold)>, items: &[u32]) -> BlockLaw {
     match damage {
         Some((softens, threshold)) if smoothed && threshold.strength(items[0]).is_finite() => {
-            let field = EdgeField::new(softens.clone(), items.to_vec(), threshold);
-            BlockLaw::Edges(EdgeCells { field, dissipated: 0.0, energy: None })
+            BlockLaw::Edges(EdgeField::new(softens.clone(), items.to_vec(), threshold))
         }
         Some((softens, _)) if !smoothed => BlockLaw::Standard(StandardCells::new(softens.clone(), items.len())),
-        _ => BlockLaw::Elastic { energy: None },
+        _ => BlockLaw::Elastic,
     }
 }
 

@@ -1,16 +1,14 @@
-use std::collections::BTreeMap;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use fractum_parallel::Exchange;
 
 use crate::body::Body;
 use crate::body::edges::BodyEdges;
 use crate::cells::viscosity::BodyViscosity;
-use crate::damage::edge::Softens;
 use crate::damage::phase::PhaseField;
 use crate::damage::standard::StandardDamage;
+use crate::divided::BodyShare;
 use crate::divided::places::Places;
-use crate::divided::{BodyShare, DividedBody};
 use crate::element::hooke::Hooke;
 
 /// A body as it runs.
@@ -20,8 +18,6 @@ pub(crate) struct BodyModel {
     pub(crate) hooke: Hooke,
     pub(crate) viscosity: Option<BodyViscosity>,
     pub(crate) alive: Vec<bool>,
-    /// Which elements this rank tells of, where bodies are divided among ranks; else empty.
-    pub(crate) is_told: Vec<bool>,
     /// Volumes of the elements without load [m³], once something asks for them.
     pub(crate) volumes: OnceLock<Vec<f64>>,
     /// Edges, with damage or in the smoothed formulation.
@@ -34,18 +30,6 @@ pub(crate) struct BodyModel {
     pub(crate) reduced_edges: usize,
     /// Largest ratio of a characteristic length to the largest one that softening allows.
     pub(crate) largest_length_ratio: f64,
-    /// What this rank knows of the whole body, where it does not have all of it.
-    pub(crate) divided: Option<Box<DividedBody>>,
-    /// What this rank knows of the cells of others, where it has all elements and no more cells than its own.
-    pub(crate) known: Option<Box<KnownBody>>,
-}
-
-/// What a rank knows of the cells of others of a body that may break and of which it has all elements.
-#[derive(Clone, Debug)]
-pub(crate) struct KnownBody {
-    pub(crate) softens: Arc<Softens>,
-    /// Block and cell of edges of others of which this rank has been told.
-    pub(crate) told: BTreeMap<u32, (u32, u32)>,
 }
 
 /// Which cells of a body are made.

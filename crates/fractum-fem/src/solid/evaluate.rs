@@ -8,21 +8,17 @@ use crate::cells::cell::Bundle;
 use crate::cells::kernel::{self, ElasticCells, ExpandingCells, Viscous};
 use crate::cells::viscosity::ViscousCells;
 use crate::damage::edge::EdgeField;
-use crate::damage::edges_in_step::{Advance, EdgeCells, EdgesInStep, FourEdgesInStep};
+use crate::damage::edges_in_step::{Advance, EdgesInStep, FourEdgesInStep};
 use crate::damage::standard::{self, StandardCells};
-use crate::divided::told_edges::{ToldEdge, ToldEdges};
 use crate::solid::body_model::BodyModel;
 
 /// How the cells of a block answer to strain.
 #[derive(Clone, Debug)]
 pub(crate) enum BlockLaw {
-    Elastic {
-        energy: Option<f64>,
-    },
-    Edges(EdgeCells),
+    Elastic,
+    /// Cells that are edges; of a block that is evaluated elsewhere those alone that are known here.
+    Edges(EdgeField),
     Standard(StandardCells),
-    /// What was told of the edges of another rank, which evaluates them.
-    Told(ToldEdges),
 }
 
 /// A block of cells of one body.
@@ -35,7 +31,11 @@ pub(crate) struct Block {
     /// Gradients of all its cells: what its evaluation costs.
     pub(crate) gradients: usize,
     pub(crate) law: BlockLaw,
-    /// Its part of the step; none where this process neither evaluates it nor needs its forces.
+    /// Elastic energy of the last step, where it was asked for [J].
+    pub(crate) energy: Option<f64>,
+    /// Energy dissipated by damage so far [J].
+    pub(crate) dissipated: f64,
+    /// Its part of the step; none where it is not evaluated here, nor its forces needed.
     pub(crate) scratch: Option<Scratch>,
     /// Power of the viscous stress in the last step [W].
     pub(crate) viscous_power: f64,
@@ -60,6 +60,8 @@ impl Block {
             items,
             gradients,
             law,
+            energy: None,
+            dissipated: 0.0,
             scratch: None,
             viscous_power: 0.0,
             viscous,
@@ -85,15 +87,12 @@ impl Block {
         measure: bool,
     ) {
         let is_plain = self.is_plain(model);
-        let Block { cells, scratch: Some(scratch), law, viscous_power, viscous, expansion_work, inverted, .. } = self
-        else {
-            return;
-        };
+        let Block { cells, scratch: Some(scratch), law, viscous, .. } = self else { return };
         if let BlockLaw::Standard(law) = law
             && is_plain
             && !measure
         {
-            law.energy = None;
+            self.energy = None;
             standard::forces(cells, &mut scratch.force, law);
             return;
         }
@@ -103,29 +102,34 @@ impl Block {
             viscous.begin_step();
         }
         let start = measure.then_some(0.0);
-        (*viscous_power, *inverted, *expansion_work) = match law {
-            BlockLaw::Elastic { energy } => {
+        (self.viscous_power, self.inverted, self.expansion_work) = match law {
+            BlockLaw::Elastic => {
                 let mut law = ElasticCells { hooke: model.hooke, energy: start };
                 let outcome = run(model, cells, scratch, &mut law, viscous);
-                *energy = law.energy;
+                self.energy = law.energy;
                 outcome
             }
-            BlockLaw::Edges(law) => {
-                law.energy = start;
+            BlockLaw::Edges(field) => {
                 let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
-                let by_fours = law.field.softens.is_unilateral() || law.field.is_mostly_damaged();
-                let mut edges = EdgesInStep { edges: law, cells, step };
-                if by_fours {
-                    run(model, cells, scratch, &mut FourEdgesInStep(edges), viscous)
+                let by_fours = field.softens.is_unilateral() || field.is_mostly_damaged();
+                let mut law = EdgesInStep { field, cells, step, energy: start, dissipated: self.dissipated };
+                let outcome = if by_fours {
+                    let mut fours = FourEdgesInStep(law);
+                    let outcome = run(model, cells, scratch, &mut fours, viscous);
+                    law = fours.0;
+                    outcome
                 } else {
-                    run(model, cells, scratch, &mut edges, viscous)
-                }
+                    run(model, cells, scratch, &mut law, viscous)
+                };
+                (self.energy, self.dissipated) = (law.energy, law.dissipated);
+                outcome
             }
             BlockLaw::Standard(law) => {
                 law.energy = start;
-                run(model, cells, scratch, law, viscous)
+                let outcome = run(model, cells, scratch, law, viscous);
+                self.energy = law.energy;
+                outcome
             }
-            BlockLaw::Told(_) => return,
         };
     }
 
@@ -166,59 +170,28 @@ impl Block {
     ///
     /// - `of_edges`: damage of an element by its edges, and the least stress that one of them has seen [Pa]
     pub(crate) fn take_element_damage(&mut self, of_edges: impl Fn(u32) -> (f64, f64)) {
-        let Block { cells, items, law: BlockLaw::Standard(law), .. } = self else { return };
+        let Block { cells, items, law: BlockLaw::Standard(law), dissipated, .. } = self else { return };
+        let mut take = |law: &mut StandardCells, cell: usize| {
+            *dissipated += law.take(cell, of_edges(items[cell])) * cells.volume[cell];
+        };
         // A phase field has its own list of what grows.
         if law.softens.regularised {
-            items.iter().enumerate().for_each(|(cell, &item)| law.take(cell, cells.volume[cell], of_edges(item)));
+            (0..items.len()).for_each(|cell| take(law, cell));
             return;
         }
         let mut word = 0;
         while let Some(cell) = law.next_stale(&mut word) {
-            law.take(cell, cells.volume[cell], of_edges(items[cell]));
+            take(law, cell);
         }
     }
 
     /// Damage of the edges that its cells are.
     pub(crate) fn edge_field(&self) -> Option<&EdgeField> {
-        match &self.law {
-            BlockLaw::Edges(law) => Some(&law.field),
-            BlockLaw::Told(told) => Some(&told.field),
-            _ => None,
-        }
+        if let BlockLaw::Edges(field) = &self.law { Some(field) } else { None }
     }
 
     pub(crate) fn edge_field_mut(&mut self) -> Option<&mut EdgeField> {
-        match &mut self.law {
-            BlockLaw::Edges(law) => Some(&mut law.field),
-            BlockLaw::Told(told) => Some(&mut told.field),
-            _ => None,
-        }
-    }
-
-    /// What was told of its edges, where another rank evaluates them.
-    pub(crate) fn told_edges(&self) -> Option<&ToldEdges> {
-        if let BlockLaw::Told(told) = &self.law { Some(told) } else { None }
-    }
-
-    /// Forgets what was told of its edges, where another rank evaluates them.
-    pub(crate) fn forget_told(&mut self) {
-        if let BlockLaw::Told(told) = &mut self.law {
-            told.forget();
-        }
-    }
-
-    /// Place of a cell in [`Block::edge_field`].
-    pub(crate) fn place_of(&self, cell: u32) -> Option<usize> {
-        self.told_edges().map_or(Some(cell as usize), |told| told.place(cell))
-    }
-
-    /// Takes over what another rank has told of an edge.
-    pub(crate) fn put_edge(&mut self, told: &ToldEdge) {
-        match &mut self.law {
-            BlockLaw::Edges(law) => law.field.put(told.cell as usize, told.history),
-            BlockLaw::Told(own) => own.put(told),
-            _ => {}
-        }
+        if let BlockLaw::Edges(field) = &mut self.law { Some(field) } else { None }
     }
 
     /// The cells of a block of a standard body with damage.
@@ -233,39 +206,10 @@ impl Block {
         self.inverted.is_some() || self.edge_field().is_some_and(of_edges)
     }
 
-    /// Elastic energy, where it was summed [J].
-    pub(crate) fn elastic(&self) -> f64 {
-        match &self.law {
-            BlockLaw::Elastic { energy } => energy.unwrap_or(0.0),
-            BlockLaw::Edges(law) => law.energy.unwrap_or(0.0),
-            BlockLaw::Standard(law) => law.energy.unwrap_or(0.0),
-            BlockLaw::Told(law) => law.energy.unwrap_or(0.0),
-        }
-    }
-
-    /// Takes over elastic and dissipated energy that another rank has found [J].
-    pub(crate) fn put_energies(&mut self, [elastic, taken]: [f64; 2]) {
-        match &mut self.law {
-            BlockLaw::Elastic { energy } => *energy = Some(elastic),
-            BlockLaw::Edges(law) => (law.energy, law.dissipated) = (Some(elastic), taken),
-            BlockLaw::Standard(law) => (law.energy, law.dissipated) = (Some(elastic), taken),
-            BlockLaw::Told(law) => (law.energy, law.dissipated) = (Some(elastic), taken),
-        }
-    }
-
-    pub(crate) fn dissipated(&self) -> f64 {
-        match &self.law {
-            BlockLaw::Elastic { .. } => 0.0,
-            BlockLaw::Edges(law) => law.dissipated,
-            BlockLaw::Standard(law) => law.dissipated,
-            BlockLaw::Told(law) => law.dissipated,
-        }
-    }
-
     pub(crate) fn damage_of(&self, cell: usize) -> f64 {
         match &self.law {
-            BlockLaw::Elastic { .. } | BlockLaw::Told(_) => 0.0,
-            BlockLaw::Edges(law) => law.field.history(cell).damage,
+            BlockLaw::Elastic => 0.0,
+            BlockLaw::Edges(field) => field.history(cell).damage,
             BlockLaw::Standard(law) => law.damage[cell],
         }
     }

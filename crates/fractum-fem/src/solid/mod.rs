@@ -1,19 +1,18 @@
 pub(crate) mod body_blocks;
 pub(crate) mod body_model;
 pub(crate) mod evaluate;
-pub(crate) mod part;
+pub(crate) mod neighbours;
 pub(crate) mod state;
 pub(crate) mod subcycling;
 
-use std::sync::Arc;
+use std::ops::Range;
 
 use fractum_math::{CHUNK, HalfSteps, Sym3, Vec3};
-use fractum_parallel::Exchange;
 use rayon::prelude::*;
 
 use crate::body::edges::BodyEdges;
 use crate::body::{Body, Formulation, Region};
-use crate::cells::block::NodeSlots;
+use crate::cells::block::{Cells, NodeSlots, Scratch};
 use crate::cells::cell::Geometry;
 use crate::damage::edge::EdgeField;
 use crate::damage::threshold::characteristic_length;
@@ -22,7 +21,7 @@ use crate::material::{Wave, rayleigh_wave_speed};
 pub(crate) use crate::solid::body_model::BodyModel;
 use crate::solid::body_model::Chosen;
 use crate::solid::evaluate::{Block, BlockLaw};
-use crate::solid::part::Part;
+use crate::solid::neighbours::{Alone, Neighbours};
 use crate::solid::subcycling::Subcycling;
 
 /// Finite elements of all solid bodies, with their nodes.
@@ -48,8 +47,8 @@ pub struct Solid {
     pub(crate) slots: NodeSlots,
     pub(crate) chunk_work: Vec<HalfSteps>,
     pub(crate) viscous_dissipation: f64,
-    /// The share of one of several ranks; none where this process does all.
-    pub(crate) part: Option<Box<Part>>,
+    /// Who has the rest of it.
+    pub(crate) neighbours: Box<dyn Neighbours>,
     /// Nodes of the mesh that stand twice, ascending; their copies are the nodes beyond those of the mesh. Arrays that change in a run
     /// and masses have the copies too.
     pub(crate) copies: Vec<u32>,
@@ -65,24 +64,16 @@ impl Solid {
     /// # Errors
     /// [`SolidError`] for elements without volume or too large for their fracture energy, for massless nodes, and beyond some 7 billion smoothed tetrahedra.
     pub fn new(nodes: Vec<Vec3>, bodies: Vec<Body>) -> Result<Self, SolidError> {
-        Solid::with_fine(nodes, bodies, &[], None)
-    }
-
-    /// The same, with the cells alone that this rank evaluates of those of an exchange, where no other are needed; see
-    /// [`Solid::share_out`].
-    ///
-    /// # Errors
-    /// As [`Solid::new`].
-    pub fn shared(nodes: Vec<Vec3>, bodies: Vec<Body>, exchange: Arc<dyn Exchange>) -> Result<Self, SolidError> {
-        Solid::with_fine(nodes, bodies, &[], Some(exchange))
+        Solid::with_fine(nodes, bodies, &[], |_, _| Box::new(Alone))
     }
 
     /// - `fine`: elements of each body whose cells have blocks of their own; empty where there are none
+    /// - `neighbours`: who has the rest, by the blocks of all and their nodes
     pub(crate) fn with_fine(
         nodes: Vec<Vec3>,
         bodies: Vec<Body>,
         fine: &[Vec<bool>],
-        exchange: Option<Arc<dyn Exchange>>,
+        neighbours: impl FnOnce(&[Block], &NodeSlots) -> Box<dyn Neighbours>,
     ) -> Result<Self, SolidError> {
         let mut mass = vec![0.0; nodes.len()];
         let mut blocks = Vec::new();
@@ -106,8 +97,8 @@ impl Solid {
             return Err(SolidError::MasslessNode { node });
         }
         let slots = NodeSlots::new(nodes.len(), blocks.iter().map(|b: &Block| b.cells.nodes.as_slice()))?;
-        let part = exchange.map(|exchange| Box::new(Part::new(exchange, &blocks, &slots)));
-        Ok(Solid::of_blocks(nodes, mass, models, blocks, slots, part))
+        let neighbours = neighbours(&blocks, &slots);
+        Ok(Solid::of_blocks(nodes, mass, models, blocks, slots, neighbours))
     }
 
     /// The solid of blocks whose cells have no geometry yet.
@@ -117,7 +108,7 @@ impl Solid {
         bodies: Vec<BodyModel>,
         blocks: Vec<Block>,
         slots: NodeSlots,
-        part: Option<Box<Part>>,
+        neighbours: Box<dyn Neighbours>,
     ) -> Self {
         let zero = vec![Vec3::zeros(); nodes.len()];
         let mut solid = Solid {
@@ -133,12 +124,45 @@ impl Solid {
             blocks,
             slots,
             viscous_dissipation: 0.0,
-            part,
+            neighbours,
             copies: Vec::new(),
             subcycling: None,
         };
         solid.make_cells();
         solid
+    }
+
+    /// Gives the cells that this process needs a geometry.
+    fn make_cells(&mut self) {
+        let own = self.own_blocks();
+        let Solid { blocks, bodies, reference, neighbours, .. } = self;
+        let is_needed = |index: usize, block: &Block| own.contains(&index) || bodies[block.body].needs_all_cells();
+        let needed = blocks.par_iter_mut().enumerate().filter(|(index, block)| is_needed(*index, block));
+        needed.for_each(|(_, block)| {
+            block.cells = bodies[block.body].cells(reference, &block.items);
+            block.scratch = Some(Scratch::new());
+            block.edge_field_mut().into_iter().for_each(EdgeField::keep_histories);
+        });
+        let halo = neighbours.halo_blocks();
+        halo.into_iter().for_each(|block| _ = blocks[block].scratch.get_or_insert_with(Scratch::new));
+    }
+
+    /// Blocks whose cells this process evaluates.
+    pub(crate) fn own_blocks(&self) -> Range<usize> {
+        self.neighbours.own_blocks(self.blocks.len())
+    }
+
+    /// Whether this process speaks for an element of a body: of several that have it one does.
+    pub fn owns(&self, body: usize, element: u32) -> bool {
+        self.neighbours.owns(body, element)
+    }
+
+    /// Has something done together with the neighbours, which the solid is without meanwhile.
+    pub(crate) fn with_neighbours<T>(&mut self, work: impl FnOnce(&mut dyn Neighbours, &mut Solid) -> T) -> T {
+        let mut neighbours = std::mem::replace(&mut self.neighbours, Box::new(Alone));
+        let outcome = work(&mut *neighbours, self);
+        self.neighbours = neighbours;
+        outcome
     }
 
     /// Gives a node mass beside that of its elements [kg], for ever.
@@ -178,7 +202,7 @@ impl Solid {
             block.evaluate(&bodies[block.body], &displacement, &velocity, dt, measure);
         });
         (self.subcycling, self.displacement, self.velocity) = (subcycling, displacement, velocity);
-        self.exchange_cells(measure);
+        self.with_neighbours(|neighbours, solid| neighbours.exchange_cells(solid, measure));
         let Solid { blocks, .. } = self;
         let power: f64 = blocks.iter().map(|b| b.viscous_power).sum();
         self.viscous_dissipation += power * dt;
@@ -186,27 +210,35 @@ impl Solid {
         self.keep_internal();
     }
 
+    /// Has `evaluate(bodies, index, block)` done to the blocks of this process, and gets the sums of others at its nodes.
+    pub(crate) fn evaluate_own(&mut self, evaluate: impl Fn(&[BodyModel], usize, &mut Block) + Sync) {
+        let own = self.own_blocks();
+        let Solid { blocks, bodies, neighbours, .. } = self;
+        neighbours.evaluate(blocks, &|blocks, is_meant| {
+            let blocks = blocks[own.clone()].par_iter_mut().zip(own.clone());
+            blocks.filter(|(_, index)| is_meant(*index)).for_each(|(block, index)| evaluate(bodies, index, block));
+        });
+    }
+
     /// Sums the forces of the blocks on each node.
     pub(crate) fn gather_forces(&mut self) {
         let mut force = std::mem::take(&mut self.force);
         self.sum_blocks(&mut force);
-        self.part.iter_mut().for_each(|part| part.tell_forces(&mut force));
+        self.neighbours.exchange_forces(&mut force);
         self.force = force;
     }
 
-    /// The same into `force`; of several ranks each has those on the nodes of its blocks then.
+    /// The same into `force`, of the nodes of own blocks.
     pub(crate) fn sum_blocks(&self, force: &mut [Vec3]) {
-        let Solid { blocks, slots, part, .. } = self;
-        let sum = |node: usize| slots.gather(node, |block| blocks[block].forces());
-        if let Some(part) = part {
-            force.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, force)| {
-                for run in part.pushed(chunk) {
-                    run.clone().for_each(|i| force[i] = sum(chunk * CHUNK + i));
-                }
-            });
-            return;
-        }
-        force.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(node, f)| *f = sum(node));
+        let Solid { blocks, slots, neighbours, .. } = self;
+        force.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, force)| {
+            let all = 0..force.len();
+            for run in neighbours.pushed(chunk).unwrap_or(std::slice::from_ref(&all)) {
+                let first = chunk * CHUNK + run.start;
+                let nodes = (first..).zip(&mut force[run.clone()]);
+                nodes.for_each(|(node, f)| *f = slots.gather(node, |block| blocks[block].forces()));
+            }
+        });
     }
 
     /// First passes of bodies with damage in the standard formulation: element stress, edge histories.
@@ -253,7 +285,7 @@ impl Solid {
         if let Some([elastic, _]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
             return elastic;
         }
-        self.blocks.iter().map(Block::elastic).sum()
+        self.blocks.iter().map(|block| block.energy.unwrap_or(0.0)).sum()
     }
 
     /// Energy dissipated by damage so far [J].
@@ -261,7 +293,7 @@ impl Solid {
         if let Some([_, dissipated]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
             return dissipated;
         }
-        self.blocks.iter().map(Block::dissipated).sum()
+        self.blocks.iter().map(|block| block.dissipated).sum()
     }
 
     /// Energy dissipated by viscosity so far [J].
@@ -296,15 +328,14 @@ impl Solid {
         if let Some((block, cell)) = model.location.kept(edge) {
             return Some((self.blocks[block as usize].edge_field()?, cell as usize));
         }
-        let &(block, cell) = model.known.as_ref()?.told.get(&edge)?;
-        let told = self.blocks[block as usize].told_edges()?;
-        Some((&told.field, told.place(cell)?))
+        let (block, place) = self.neighbours.received_edge(body, edge)?;
+        Some((self.blocks[block].edge_field()?, place))
     }
 
     /// Characteristic length of an edge that may be damaged [m]; none of any other.
     pub(crate) fn length_of_edge(&self, body: usize, edge: u32) -> Option<f64> {
         let model = &self.bodies[body];
-        let (Some(edges), Some(_)) = (&model.edges, &model.known) else {
+        let (Some(edges), false) = (&model.edges, model.location.keeps_all()) else {
             return self.edge(body, edge).map(|(field, index)| field.length[index]);
         };
         let may_break = match model.body.damage.as_ref().map(|zone| &zone.region) {
@@ -361,7 +392,7 @@ impl Solid {
     /// Damage of the elements of a body: the mean over its edges where it is smoothed, 1 where one has been removed.
     pub fn element_damages(&self, index: usize) -> Vec<f64> {
         let model = &self.bodies[index];
-        if model.known.is_some() {
+        if !model.location.keeps_all() {
             return self.damages_around(index);
         }
         let mut damage = vec![0.0; model.location.all().len()];
@@ -392,6 +423,16 @@ impl BodyModel {
     /// Edges that hold the strain of the body; none where its elements do.
     pub(crate) fn smoothed_edges(&self) -> Option<&BodyEdges> {
         self.edges.as_ref().filter(|_| self.body.formulation == Formulation::Smoothed)
+    }
+
+    /// Whether all its cells are needed by whoever needs one: edges of the standard formulation gather stresses of elements.
+    pub(crate) fn needs_all_cells(&self) -> bool {
+        self.standard.is_some()
+    }
+
+    /// Cells of some items of the body (elements, or edges if smoothed), of the elements that are there.
+    pub(crate) fn cells(&self, nodes: &[Vec3], items: &[u32]) -> Cells {
+        Geometry { body: &self.body, nodes }.cells(items, self.smoothed_edges(), |element| self.alive[element as usize])
     }
 
     /// Mean of stress and damage over the edges of an element.

@@ -1,16 +1,12 @@
 //! What changes in a solid during a run, for checkpoints.
 
 use fractum_math::{Sym3, Vec3};
-use fractum_parallel::gather;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Kinematics;
 use crate::damage::edge::{EdgeDamage, EdgeField};
 use crate::solid::Solid;
 use crate::solid::evaluate::{Block, BlockLaw};
-
-/// Edges whose histories ranks tell each other at a time.
-const TOLD_AT_ONCE: usize = 1 << 17;
 
 /// What changes in a body during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,7 +15,7 @@ pub struct BodyState {
     pub kinematics: Kinematics,
     /// Elements that are still there.
     pub alive: Vec<bool>,
-    /// Edge histories; empty without damage, and where no rank has all of them, see [`Solid::each_history`].
+    /// Edge histories; empty without damage, and where no process has all of them, see [`crate::neighbours::each_history`].
     pub edges: Vec<EdgeDamage>,
     /// Damage and last effective stress of elements (standard formulation with damage).
     pub elements: Vec<(f64, Sym3)>,
@@ -52,42 +48,17 @@ impl Solid {
             displacement: self.displacement.clone(),
             velocity: self.velocity.clone(),
             bodies: (0..self.bodies.len()).map(|body| self.body_state(body, self.kept_damage(body))).collect(),
-            dissipated: self.blocks.iter().map(Block::dissipated).collect(),
+            dissipated: self.blocks.iter().map(|block| block.dissipated).collect(),
             viscous_dissipation: self.viscous_dissipation,
             viscous: self.blocks.iter().map(|b| b.viscous.stress.clone()).collect(),
         }
     }
 
     fn kept_damage(&self, body: usize) -> Vec<EdgeDamage> {
-        if self.bodies[body].known.is_some() { Vec::new() } else { self.edge_damage(body) }
+        if self.bodies[body].location.keeps_all() { self.edge_damage(body) } else { Vec::new() }
     }
 
-    /// Edge histories of a body in the order of its edges, with their number first, those of all ranks a few at a time. All ranks must
-    /// call it.
-    pub fn each_history(&self, body: usize, see_count: impl FnOnce(usize), mut see: impl FnMut(&EdgeDamage)) {
-        let model = &self.bodies[body];
-        let (Some(part), Some(_), Some(edges)) = (&self.part, &model.known, &model.edges) else {
-            let all = self.edge_damage(body);
-            see_count(all.len());
-            return all.iter().for_each(see);
-        };
-        see_count(edges.len());
-        let own = model.location.own();
-        for begin in (0..edges.len()).step_by(TOLD_AT_ONCE) {
-            let at = |edge: usize| own.partition_point(|(own, _)| (*own as usize) < edge);
-            let history = |&(edge, (block, cell)): &(u32, (u32, u32))| {
-                let field = self.blocks[block as usize].edge_field();
-                let unbroken = EdgeDamage::intact(f64::INFINITY);
-                (edge, field.map_or(unbroken, |field| field.history(cell as usize)))
-            };
-            let mine: Vec<(u32, EdgeDamage)> = own[at(begin)..at(begin + TOLD_AT_ONCE)].iter().map(history).collect();
-            let mut all = gather(&*part.exchange(), &mine).concat();
-            all.sort_unstable_by_key(|(edge, _)| *edge);
-            all.iter().for_each(|(_, history)| see(history));
-        }
-    }
-
-    /// Edge histories of a body in the order of its edges, those of this rank and what it has been told of others; empty without damage.
+    /// Edge histories of a body in the order of its edges, those that are known here; empty without damage.
     pub fn edge_damage(&self, body: usize) -> Vec<EdgeDamage> {
         let model = &self.bodies[body];
         let Some(edges) = model.edges.as_ref().filter(|_| model.body.damage.is_some()) else { return Vec::new() };
@@ -134,8 +105,10 @@ impl Solid {
         let elements =
             if model.standard.is_some() { model.location.all().iter().map(of).collect() } else { Vec::new() };
         let phase = model.phase.as_ref().map_or_else(Vec::new, |field| field.state().collect());
-        // Nothing is removed of a body that no rank has whole.
-        let alive = model.divided.as_ref().map_or_else(|| model.alive.clone(), |divided| vec![true; divided.count]);
+        // Nothing is removed of a body of which no process has all elements.
+        let mut alive = vec![true; self.neighbours.element_count(body, model.alive.len())];
+        let numbers = (0..).map(|element| self.neighbours.number(body, element) as usize);
+        numbers.zip(&model.alive).for_each(|(number, &is_alive)| alive[number] = is_alive);
         BodyState { kinematics: model.body.kinematics, alive, edges, elements, phase }
     }
 
@@ -149,9 +122,9 @@ impl Solid {
         self.velocity = state.velocity;
         self.viscous_dissipation = state.viscous_dissipation;
         self.forget_ahead();
-        self.blocks.iter_mut().for_each(Block::forget_told);
+        self.neighbours.forget_received(&mut self.blocks);
         for (index, body) in state.bodies.into_iter().enumerate() {
-            let Solid { bodies, blocks, .. } = self;
+            let Solid { bodies, blocks, neighbours, .. } = self;
             let model = &mut bodies[index];
             model.body.kinematics = body.kinematics;
             let cells = blocks.iter_mut().filter(|block| block.body == index).filter_map(Block::edge_field_mut);
@@ -163,25 +136,19 @@ impl Solid {
                 }
             }
             blocks.iter_mut().for_each(Block::expect_any_damage);
-            if model.divided.is_none() {
-                model.alive = body.alive;
-            }
+            let saved = |element: u32| body.alive[neighbours.number(index, element) as usize];
+            (0..).zip(&mut model.alive).for_each(|(element, alive)| *alive = saved(element));
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
             self.rebuild_cells_around(index, &removed);
             self.restore_phase(index, &body.phase);
         }
-        self.tell_restored();
+        self.with_neighbours(|neighbours, solid| neighbours.exchange_restored(solid));
         let is_elsewhere = |block: &Block| block.items.is_empty();
         for (block, viscous) in self.blocks.iter_mut().zip(state.viscous).filter(|(block, _)| !is_elsewhere(block)) {
             block.viscous.stress = viscous;
         }
         for (block, dissipated) in self.blocks.iter_mut().zip(state.dissipated) {
-            match &mut block.law {
-                BlockLaw::Edges(law) => law.dissipated = dissipated,
-                BlockLaw::Standard(law) => law.dissipated = dissipated,
-                BlockLaw::Told(told) => told.dissipated = dissipated,
-                BlockLaw::Elastic { .. } => {}
-            }
+            block.dissipated = dissipated;
         }
     }
 }

@@ -27,7 +27,7 @@ mod tool_overlaps;
 
 pub use bonded::PreparedBody;
 pub use contacts::PreparedFacets;
-pub use division::{Held, SolidDivision, cannot_divide, divide, held, held_bodies};
+pub use division::{Replication, SolidDivision, cannot_divide, divide, replicated_bodies, replication};
 pub use doubts::doubts;
 pub use gauges::BuiltGauges;
 pub use ppv::PpvStations;
@@ -37,7 +37,7 @@ pub use ties::TieReport;
 
 use std::sync::Arc;
 
-use fractum_fem::{LocalDamping, Solid, Viscosity};
+use fractum_fem::{LocalDamping, Solid, Viscosity, neighbours};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_parallel::Exchange;
@@ -186,8 +186,11 @@ impl<'a> Context<'a> {
         warnings.extend(self.weibull_warnings(&solid, &parts));
         self.set_initial_velocity(&mut solid, &parts, &numbering);
         let mut boundary_of_parts = self.facets_of_parts(&parts, &numbering);
-        if solid.is_divided() {
-            boundary_of_parts.iter().enumerate().for_each(|(body, facets)| solid.note_skin(body, facets));
+        if neighbours::is_divided(&solid) {
+            boundary_of_parts
+                .iter()
+                .enumerate()
+                .for_each(|(body, facets)| neighbours::note_skin(&mut solid, body, facets));
         }
         let surface = Surface::new(&boundary, &parts, &numbering.positions);
         let (supports, surface_supports, loads) =
@@ -246,9 +249,11 @@ impl<'a> Context<'a> {
         let bodies = self.solid_bodies(parts, numbering, boundary)?;
         let nodes = numbering.positions.clone();
         let solid = match (&self.exchange, self.division) {
-            (Some(exchange), Some(division)) => Solid::divided(nodes, bodies, &division.bodies, Arc::clone(exchange)),
+            (Some(exchange), Some(division)) => {
+                neighbours::divided_solid(nodes, bodies, &division.bodies, Arc::clone(exchange))
+            }
             _ if self.case.solver.subcycling.is_some() => Solid::subcycled(nodes, bodies),
-            (Some(exchange), None) => Solid::shared(nodes, bodies, Arc::clone(exchange)),
+            (Some(exchange), None) => neighbours::shared_solid(nodes, bodies, Arc::clone(exchange)),
             (None, _) => Solid::new(nodes, bodies),
         };
         let mut solid = match solid {

@@ -1,4 +1,4 @@
-use fractum_fem::Solid;
+use fractum_fem::{Solid, neighbours};
 use fractum_math::{CHUNK, Vec3};
 use rayon::prelude::*;
 
@@ -104,7 +104,7 @@ impl DrivenPoints for Solid {
         let momentum = |v: &[Vec3], m: &[f64]| v.iter().zip(m).map(|(v, m)| v * *m).sum::<Vec3>();
         let chunks = self.velocity.par_chunks(CHUNK).zip(self.mass.par_chunks(CHUNK));
         partial.par_iter_mut().zip(chunks).for_each(|(sum, (v, m))| *sum = momentum(v, m));
-        self.tell_sums(partial);
+        neighbours::exchange_sums(self, partial);
         partial.iter().sum()
     }
 }

@@ -4,7 +4,8 @@
 //! −ρ c_P v_n n − ρ c_S v_t, which a plane wave at normal incidence does not feel as a border. An elastic one has springs,
 //! −k_n u_n n − k_t u_t. Both are lumped at the nodes, a third of every facet (half of an edge in the plane) each.
 
-use fractum_fem::{MovedNodes, Solid};
+use fractum_fem::Solid;
+use fractum_fem::neighbours::{self, MovedNodes};
 use fractum_math::Vec3;
 use nalgebra::Matrix3;
 
@@ -57,7 +58,7 @@ impl NodeMatrices {
     /// Has something done for every node that this process moves: its place among the nodes, the node, its matrix.
     fn for_each_moved(&mut self, solid: &mut Solid, mut act: impl FnMut(&mut Solid, usize, usize, &Matrix3<f64>)) {
         let NodeMatrices { nodes, matrix, moved } = self;
-        let places = solid.moved_among(nodes, moved);
+        let places = neighbours::moved_among(solid, nodes, moved);
         let mut act = |place: usize| act(solid, place, nodes[place] as usize, &matrix[place]);
         match places {
             Some(places) => places.iter().for_each(|&place| act(place as usize)),
@@ -116,7 +117,7 @@ impl SurfaceSupports {
     /// Brings the energies of all nodes up to date. All processes that share a solid must call it.
     pub(crate) fn gather(&mut self, solid: &Solid) {
         for (own, energies) in [(&mut self.dashpots, &mut self.taken), (&mut self.springs, &mut self.stored)] {
-            solid.tell_of_nodes(&own.nodes, &mut own.moved, energies);
+            neighbours::exchange_node_values(solid, &own.nodes, &mut own.moved, energies);
         }
     }
 

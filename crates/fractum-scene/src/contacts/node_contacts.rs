@@ -4,7 +4,7 @@
 use fractum_contact::law::ContactMemory;
 use fractum_contact::{Spheres, Touch};
 use fractum_dem::Particles;
-use fractum_fem::Solid;
+use fractum_fem::{Solid, neighbours};
 use fractum_math::{Work, connected};
 use serde::{Deserialize, Serialize};
 
@@ -260,7 +260,7 @@ pub fn pieces(solid: &Solid) -> Vec<u32> {
     let mut owner = vec![u32::MAX; solid.reference.len()];
     let mut links = Vec::new();
     for body in 0..solid.body_count() {
-        for node in solid.nodes_of(body) {
+        for node in neighbours::nodes_of(solid, body) {
             let first = &mut owner[node as usize];
             if *first == u32::MAX {
                 *first = body as u32;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use fractum_fem::Solid;
+use fractum_fem::{Solid, neighbours};
 use fractum_math::{Mat3, Ragged, Vec3};
 
 /// The element that turns with each attached particle.
@@ -38,7 +38,7 @@ impl Holders {
         let (mut first, mut first_number) = (vec![0], vec![0]);
         for body in 0..solid.body_count() {
             first.push(first[body] + solid.body(body).elements.len() as u32);
-            first_number.push(first_number[body] + solid.element_count(body) as u32);
+            first_number.push(first_number[body] + neighbours::element_count(solid, body) as u32);
         }
         let rows = (0..solid.body_count()).flat_map(|body| {
             let corners = solid.body(body).shape.node_count();
@@ -71,13 +71,13 @@ impl Holders {
     pub(crate) fn element(&self, solid: &Solid, number: u32, radius: f64) -> Option<Holder> {
         let body = self.first_number.partition_point(|&first| first <= number) - 1;
         // Every rank has the elements around particles.
-        let element = solid.element_of_number(body, number - self.first_number[body])?;
+        let element = neighbours::element_of_number(solid, body, number - self.first_number[body])?;
         self.at(solid, (body, element as usize), radius)
     }
 
     /// The same by body and element.
     fn at(&self, solid: &Solid, (body, element): (usize, usize), radius: f64) -> Option<Holder> {
-        let number = self.first_number[body] + solid.element_number(body, element as u32);
+        let number = self.first_number[body] + neighbours::element_number(solid, body, element as u32);
         let corners = solid.body(body).shape.node_count();
         let nodes = solid.body(body).elements[element];
         let live = &nodes[..corners];

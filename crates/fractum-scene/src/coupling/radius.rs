@@ -1,4 +1,4 @@
-use fractum_fem::Solid;
+use fractum_fem::{Solid, neighbours};
 use fractum_math::Vec3;
 
 /// Radii of the discrete elements at the nodes: as large as possible without overlap of mesh neighbours [m].
@@ -7,8 +7,8 @@ use fractum_math::Vec3;
 /// each by half of its smallest gap, until no room is left. The result does not depend on the order of anything. Ranks of which none has
 /// all elements must all call it.
 pub fn largest_radii(solid: &Solid) -> Vec<f64> {
-    let edges: Vec<[u32; 2]> = (0..solid.body_count()).flat_map(|body| solid.told_edges(body)).collect();
-    let Some(mut shared) = solid.shared_nodes() else { return grow(&solid.reference, &edges, |_| ()) };
+    let edges: Vec<[u32; 2]> = (0..solid.body_count()).flat_map(|body| neighbours::owned_edges(solid, body)).collect();
+    let Some(mut shared) = neighbours::shared_nodes(solid) else { return grow(&solid.reference, &edges, |_| ()) };
     let mut radius = grow(&solid.reference, &edges, |values| shared.take_least(values));
     shared.tell(&mut radius);
     radius

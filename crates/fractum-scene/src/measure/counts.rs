@@ -2,6 +2,7 @@
 
 use crate::contacts::NodesOnShape;
 use crate::scene::Scene;
+use fractum_fem::neighbours;
 
 /// What a probe counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +52,7 @@ impl Scene {
     pub fn counts(&self) -> Counts {
         Counts {
             nodes: self.solid.reference.len(),
-            elements: (0..self.solid.body_count()).map(|b| self.solid.element_count(b)).sum(),
+            elements: (0..self.solid.body_count()).map(|b| neighbours::element_count(&self.solid, b)).sum(),
             removed_elements: self.solid.removed_count() - self.removals.left.elements,
             crushed_elements: self.removals.tally.crushed,
             particles: self.debris.len() + self.bonded.particles.len()

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use fractum_io::build::{SolidDivision, cannot_divide, divide, held_bodies};
+use fractum_io::build::{SolidDivision, cannot_divide, divide, replicated_bodies};
 use fractum_io::case::model::{MeshSource, SolidGroup, WHOLE_MESH};
 use fractum_io::case::{Case, Diagnostic, Diagnostics, Place, Spanned, refuse_endless};
 use fractum_io::memory;
@@ -91,7 +91,7 @@ impl MeshFiles {
             Ok((mesh, division)) => {
                 let (own, all) = (mesh.tetrahedra.len(), mesh.tetrahedron_count());
                 let notes = std::iter::once(format!("this process has {own} of the {all} tetrahedra of the mesh"));
-                let notes = notes.chain(held_bodies(case)).collect();
+                let notes = notes.chain(replicated_bodies(case)).collect();
                 Ok(JoinedMesh { mesh, hash: hash(&hashes), division: Some(division), notes, warnings: Vec::new() })
             }
             Err(reason) => Ok(whole(read_files(source, processes.alike())?.mesh, &hashes, Some(reason))),

@@ -1,6 +1,6 @@
 //! Frames: what ParaView shows of one instant, a file per population.
 
-use fractum_fem::Solid;
+use fractum_fem::{Solid, neighbours};
 use fractum_io::build::BuiltGauges;
 use fractum_io::case::model::{BodyKind, Case, OutputField, OutputFields};
 use fractum_io::number::push_shortest;
@@ -138,7 +138,7 @@ impl GridLayout {
     /// - `cut`: which pieces of solids and particles this process writes
     pub(crate) fn new(scene: &Scene, file_order: &[u32], gauges: Vec<BuiltGauges>, case: &Case, cut: Cut) -> Self {
         let solid = &scene.solid;
-        let (file_order, numbers) = match solid.is_divided() {
+        let (file_order, numbers) = match neighbours::is_divided(solid) {
             true => told_nodes(solid, file_order),
             false => (file_order.to_vec(), Vec::new()),
         };
@@ -172,12 +172,12 @@ impl GridLayout {
 
 /// Nodes of the elements that this process tells of, in the order of the file, with their numbers in that.
 fn told_nodes(solid: &Solid, file_order: &[u32]) -> (Vec<u32>, Vec<i32>) {
-    let mut is_told = vec![false; file_order.len()];
+    let mut is_owned = vec![false; file_order.len()];
     for body in 0..solid.body_count() {
-        let elements = solid.body(body).elements.iter().enumerate().filter(|(e, _)| solid.tells_of(body, *e));
-        elements.flat_map(|(_, nodes)| nodes).for_each(|&node| is_told[node as usize] = true);
+        let elements = solid.body(body).elements.iter().enumerate().filter(|(e, _)| solid.owns(body, *e as u32));
+        elements.flat_map(|(_, nodes)| nodes).for_each(|&node| is_owned[node as usize] = true);
     }
-    let told = file_order.iter().zip(0..).filter(|(node, _)| is_told[**node as usize]);
+    let told = file_order.iter().zip(0..).filter(|(node, _)| is_owned[**node as usize]);
     told.map(|(&node, number)| (node, number)).unzip()
 }
 
@@ -275,7 +275,7 @@ fn of_elements(field: OutputField, solid: &Solid, stresses: &[Sym3]) -> Vec<Arra
             [values].into_iter().chain((0..).zip(names).map(direction)).collect()
         }
         OutputField::Strain => {
-            let strains = (0..solid.body_count()).flat_map(|body| solid.told_strains(body));
+            let strains = (0..solid.body_count()).flat_map(|body| solid.owned_strains(body));
             vec![Array::new("strain", strains.map(|strain| strain.0))]
         }
         OutputField::Reaction | OutputField::Fragment => Vec::new(),
@@ -308,7 +308,7 @@ impl ElementFields {
             let (corners, nodes) = (kind.nodes(), &solid.body(body).elements);
             let mut kept = Vec::new();
             let phases = solid.element_phase(body);
-            for (element, (stress, damage)) in solid.told_elements(body).into_iter().zip(solid.told_fields(body)) {
+            for (element, (stress, damage)) in solid.owned_elements(body).into_iter().zip(solid.owned_fields(body)) {
                 let element = element as usize;
                 kept.extend(nodes[element][..corners].iter().map(|&node| grid.place[node as usize]));
                 fields.add_stress(stress);

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use fractum_fem::{BodyState, Solid};
+use fractum_fem::{BodyState, Solid, neighbours};
 use fractum_io::case::model::{Case, Expect, ProbeKind};
 use fractum_io::expectation::Expectation;
 use fractum_io::summary::{self, Status, Summary};
@@ -108,7 +108,7 @@ fn fracture_of(body: &BondedBody) -> summary::Fracture {
 
 /// Hash of everything that changes in a scene.
 pub(crate) fn state_hash(scene: &Scene) -> u128 {
-    if scene.solid.is_divided() {
+    if neighbours::is_divided(&scene.solid) {
         return hash_of_divided(scene);
     }
     let mut bytes = postcard::to_stdvec(&scene.state()).unwrap_or_default();
@@ -130,12 +130,12 @@ fn hash_of_divided(scene: &Scene) -> u128 {
     add(&hash, &bodies.len());
     for (index, BodyState { kinematics, alive, edges: _, elements, phase }) in bodies.iter().enumerate() {
         add(&hash, &(kinematics, alive));
-        scene.solid.each_history(index, |count| add(&hash, &count), |history| add(&hash, history));
+        neighbours::each_history(&scene.solid, index, |count| add(&hash, &count), |history| add(&hash, history));
         add(&hash, &(elements, phase));
     }
     add(&hash, &state.between_bodies_and_stress());
-    add(&hash, &scene.solid.block_count());
-    scene.solid.each_viscous_block(|stress| add(&hash, &stress));
+    add(&hash, &neighbours::block_count(&scene.solid));
+    neighbours::each_viscous_block(&scene.solid, |stress| add(&hash, &stress));
     add(&hash, &state.behind_solids());
     hash.into_inner().digest128()
 }

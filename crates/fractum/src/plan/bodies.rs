@@ -4,7 +4,7 @@ use fractum_calibrate::crushing::Crushing;
 use fractum_calibrate::strength::Pulling;
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
-use fractum_fem::{ElementKind, Formulation, Kinematics, Plane};
+use fractum_fem::{ElementKind, Formulation, Kinematics, Plane, neighbours};
 use fractum_io::case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody, SolverKind};
 use fractum_io::number::quantity;
 use fractum_math::elementary::cbrt;
@@ -208,7 +208,7 @@ impl Plan {
         };
         let closing = body.damage.as_ref().is_some_and(|zone| zone.law.unilateral);
         let closing = if closing { ", cracks close under pressure" } else { "" };
-        let (count, volume) = (scene.solid.element_count(index), scene.solid.volume(index));
+        let (count, volume) = (neighbours::element_count(&scene.solid, index), neighbours::volume(&scene.solid, index));
         self.add(
             "body",
             format!(
@@ -274,7 +274,7 @@ fn smallest_extent(body: &fractum_fem::Body, nodes: &[Vec3]) -> f64 {
 
 fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
     let model = scene.solid.body(body);
-    let each = volume / scene.solid.element_count(body) as f64;
+    let each = volume / neighbours::element_count(&scene.solid, body) as f64;
     match model.shape {
         ElementKind::T4 => cbrt(6.0 * 2f64.sqrt() * each),
         ElementKind::T3 => (4.0 * each / model.thickness / 3f64.sqrt()).sqrt(),

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use fractum_dem::AnyBondLaw;
-use fractum_fem::{ElementKind, Formulation, Kinematics};
+use fractum_fem::{ElementKind, Formulation, Kinematics, neighbours};
 use fractum_io::vtk::WAITING;
 use fractum_scene::{BondedBody, Scene};
 
@@ -112,7 +112,7 @@ impl Cost {
                 Kinematics::Corotational => TURNING[usize::from(body.formulation == Formulation::Smoothed)],
                 Kinematics::Small | Kinematics::Auto => 1.0,
             };
-            let elements = scene.solid.element_count(index) as f64;
+            let elements = neighbours::element_count(&scene.solid, index) as f64;
             self.step += 1e-9 * of(&ELEMENT) * turning * elements;
             self.memory += of(memory) * elements;
             self.frame += FRAME[0] * elements;

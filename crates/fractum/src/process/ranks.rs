@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fractum_dem::ParticleShare;
-use fractum_fem::Share;
+use fractum_fem::neighbours::{self, SubdomainSize};
 use fractum_io::case::model::{BodyKind, BondLawKind, Case, Output, SolverKind};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
 use fractum_io::number::grouped;
@@ -160,8 +160,8 @@ impl Ranks {
         let Some(exchange) = &self.exchange else { return Vec::new() };
         let number = |count: usize| grouped(&count.to_string());
         let process = format!("process {} of {}", exchange.rank(), exchange.size());
-        let of_cells = |share: Share| {
-            let Share { blocks, nodes, shared_nodes, bytes, memory, keeps_all } = share;
+        let of_cells = |share: SubdomainSize| {
+            let SubdomainSize { blocks, nodes, shared_nodes, bytes, memory, keeps_all } = share;
             format!(
                 "{process}: {} blocks of cells, {} nodes, {} of them shared; {} bytes of forces sent per step; {} bytes of cells{}",
                 number(blocks),
@@ -184,13 +184,13 @@ impl Ranks {
         let alike = scene.keeps_particles_whole().filter(|_| !scene.bonded.is_empty());
         let alike =
             alike.map(|what| format!("every process moves all particles and computes all bonds, because of {what}"));
-        let cells = scene.solid.share().filter(|_| scene.solid.body_count() > 0).map(of_cells);
+        let cells = neighbours::subdomain_size(&scene.solid).filter(|_| scene.solid.body_count() > 0).map(of_cells);
         cells.into_iter().chain(scene.bonded.share().map(of_particles)).chain(alike).collect()
     }
 
     /// In how many steps all processes moved all nodes, in words; nothing of a process by itself.
     pub(crate) fn steps(&self, scene: &Scene) -> Option<String> {
-        let of_solids = scene.solid.steps_of_ranks().filter(|_| scene.solid.body_count() > 0);
+        let of_solids = neighbours::steps(&scene.solid).filter(|_| scene.solid.body_count() > 0);
         let [whole, all] = of_solids?.map(|steps| grouped(&steps.to_string()));
         Some(format!("every process moved all nodes in {whole} of {all} steps"))
     }

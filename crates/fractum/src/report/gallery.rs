@@ -1,5 +1,6 @@
 //! Pictures of a scene: its surface with the particles, coloured by damage, stress and temperature.
 
+use fractum_fem::neighbours;
 use std::path::Path;
 
 use fractum_io::atomic::Group;
@@ -33,7 +34,7 @@ impl Skin {
         let solid = &scene.solid;
         let mut skin = Skin::default();
         for body in 0..solid.body_count() {
-            let facets = solid.skin(body);
+            let facets = neighbours::skin(solid, body);
             // Elements share edges: where most of them are seen, the values of all edges are found once.
             let most = (6 * facets.len() > solid.alive(body).len()).then(|| solid.element_fields(body));
             for (nodes, element) in facets {

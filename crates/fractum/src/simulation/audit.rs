@@ -1,5 +1,6 @@
 //! What a run finds while it goes, as warnings.
 
+use fractum_fem::neighbours;
 use std::f64::consts::PI;
 
 use fractum_io::case::model::ProbeKind;
@@ -254,7 +255,7 @@ fn place(scene: &Scene, site: Site) -> String {
         Site::Scene => String::new(),
         Site::Element { body, element } => {
             let (number, middle) =
-                (scene.solid.element_number(body, element), scene.solid.element_middle(body, element));
+                (neighbours::element_number(&scene.solid, body, element), scene.solid.element_middle(body, element));
             format!("element {number} of body \"{}\" at {}", scene.solid.body(body).name, at(middle))
         }
         Site::Node(node) => format!("node at {}", at(scene.solid.reference[node as usize])),

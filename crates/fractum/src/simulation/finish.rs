@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use fractum_fem::{CrackFacet, Solid};
+use fractum_fem::{CrackFacet, Solid, neighbours};
 use fractum_io::atomic::{Group, create_folder};
 use fractum_io::attenuation;
 use fractum_io::case::model::{Case, Material};
@@ -118,7 +118,7 @@ impl Simulation {
     /// What is seen of the solids, for the process that draws it; those that share a mesh put it together.
     fn skin(&self) -> Option<gallery::Skin> {
         let leads = self.ranks.leads();
-        if self.scene.solid.is_divided() {
+        if neighbours::is_divided(&self.scene.solid) {
             let parts = self.ranks.gather(gallery::Skin::of(&self.scene));
             return leads.then(|| gallery::Skin::joined(parts));
         }
@@ -142,7 +142,7 @@ impl Simulation {
             let mut pictures = gallery::draw(scene, skin, folder, at_rest, files);
             recorder.finish_frame()?;
             // Frames of a mesh that no process has whole may be larger than the memory of one.
-            if !scene.solid.is_divided() {
+            if !neighbours::is_divided(&scene.solid) {
                 pictures.extend(strip(folder, peak, at_rest, files));
             }
             Ok(pictures)

@@ -1,5 +1,6 @@
 //! From a case file to a simulation before its next step.
 
+use fractum_fem::neighbours;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -159,7 +160,7 @@ impl Simulation {
             &built.file_order,
             built.gauges,
             &case,
-            ranks.cut(&case.output, scene.solid.is_divided()),
+            ranks.cut(&case.output, neighbours::is_divided(&scene.solid)),
         );
         let put_back = |loaded: Loaded<RunState>| put_back(loaded, &mut scene, &mut solver, &case);
         let earlier = loaded.as_ref().map_or(Vec::new(), |loaded| loaded.state.warnings.to_vec());

@@ -12,14 +12,11 @@
 //! Wu, *J. Mech. Phys. Solids* 103 (2017) 72-99, and 119 (2018) 20-42; the unknown on edges is our own.
 
 mod laplacian;
-mod ranks;
 mod rest;
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use fractum_math::{FOUR, Lane, widest};
-use fractum_parallel::Exchange;
 use rayon::prelude::*;
 
 use crate::body::edges::BodyEdges;
@@ -30,7 +27,6 @@ use crate::damage::restraint::Seen;
 use crate::error::SolidError;
 use crate::material::{Degradation, Softening};
 use laplacian::Rows;
-use ranks::Told;
 
 /// Value from which on the neighbours of an edge are active.
 const SPREADS: f64 = 1e-4;
@@ -129,13 +125,13 @@ pub(crate) struct Drive {
 #[derive(Clone, Debug)]
 pub(crate) struct ActiveEdge {
     pub(crate) edge: u32,
-    /// The rank that sweeps it; 0 where there is one process.
-    rank: u32,
+    /// The process that sweeps it.
+    pub(crate) rank: u32,
     pub(crate) drive: Drive,
     /// d at the end of the step before, and of the one before that.
     old: f64,
     before: f64,
-    next: f64,
+    pub(crate) next: f64,
     /// Its neighbours are active.
     spread: bool,
     /// Elements around it have left since the last forces, so that the stress of what is left did not act at the start of the step.
@@ -171,8 +167,8 @@ pub(crate) struct PhaseField {
     /// The same of the edges of every block of cells, up to the last with such edges.
     awake_blocks: Vec<bool>,
     rows: Rows,
-    /// Where several ranks share the edges.
-    told: Option<Box<Told>>,
+    /// The process whose active edges are advanced here.
+    pub(crate) rank: u32,
 }
 
 impl PhaseField {
@@ -190,7 +186,7 @@ impl PhaseField {
             awake: vec![false; edges.div_ceil(AT_LEAST)],
             awake_blocks: Vec::new(),
             rows: Rows::default(),
-            told: None,
+            rank: 0,
         }
     }
 
@@ -198,15 +194,10 @@ impl PhaseField {
         self.slot[edge as usize] != Self::ASLEEP
     }
 
-    /// Leaves the edges to the ranks of an exchange, each to the one that `rank_of` tells.
-    pub(crate) fn share_out(&mut self, exchange: Arc<dyn Exchange>, rank_of: impl Fn(u32) -> u32) {
-        self.told = Some(Box::new(Told::new(exchange)));
+    /// Leaves each edge to the process that `rank_of` says; this one is number `rank`.
+    pub(crate) fn distribute(&mut self, rank: u32, rank_of: impl Fn(u32) -> u32) {
+        self.rank = rank;
         self.active.iter_mut().for_each(|own| own.rank = rank_of(own.edge));
-    }
-
-    /// Number of this rank.
-    fn rank(&self) -> u32 {
-        self.told.as_ref().map_or(0, |told| told.rank())
     }
 
     /// Lets an edge of a rank take part from now on.
@@ -313,9 +304,11 @@ impl PhaseField {
     /// Advances d by a step of motion with the drives of its end.
     ///
     /// Begins with the growth of the step before; two sweeps then are as good as the exact solution.
-    pub(crate) fn sweep(&mut self) {
-        let rank = self.rank();
-        let PhaseField { law, value, active, slot, awake, rows, told, .. } = self;
+    ///
+    /// - `exchange`: gets the d of edges that are advanced elsewhere, after each sweep
+    pub(crate) fn sweep(&mut self, mut exchange: impl FnMut(&mut [ActiveEdge])) {
+        let PhaseField { law, value, active, slot, awake, rows, rank, .. } = self;
+        let rank = *rank;
         let placed = (&slot[..], &awake[..]);
         spread(value, placed, |slot| {
             let own = &active[slot];
@@ -328,15 +321,15 @@ impl PhaseField {
                     sweep_four(law, rows, group, field, four);
                 }
             });
-            told.iter_mut().for_each(|told| told.tell(active));
+            exchange(active);
             spread(value, placed, |slot| active[slot].next);
         }
     }
 
     /// Finds the damage of the edges whose d has grown, and what it takes of intact ones by `taken(edge)` [J].
     pub(crate) fn book(&mut self, taken: impl Fn(&ActiveEdge) -> Taken + Sync) {
-        let rank = self.rank();
-        let PhaseField { law, value, active, steps, .. } = self;
+        let PhaseField { law, value, active, steps, rank, .. } = self;
+        let rank = *rank;
         active.par_iter().zip(steps).with_min_len(AT_LEAST).for_each(|(own, step)| {
             let d = value[own.edge as usize];
             if d > own.old && own.rank == rank {
@@ -353,7 +346,7 @@ impl PhaseField {
         let slot = self.slot[edge as usize];
         let own = self.active.get(slot as usize)?;
         let (step, grown) = (&self.steps[slot as usize], self.value[edge as usize] > own.old);
-        (own.rank == self.rank() && (grown || step.seen.stress > 0.0)).then_some((step, grown))
+        (own.rank == self.rank && (grown || step.seen.stress > 0.0)).then_some((step, grown))
     }
 
     /// Takes d over.

@@ -8,6 +8,7 @@ use crate::body::{Body, Formulation};
 use crate::cells::block::NodeSlots;
 use crate::error::SolidError;
 use crate::solid::Solid;
+use crate::solid::neighbours::Alone;
 use crate::solid::subcycling::Subcycling;
 
 impl Solid {
@@ -17,7 +18,7 @@ impl Solid {
     /// As [`Solid::new`].
     pub fn subcycled(nodes: Vec<Vec3>, bodies: Vec<Body>) -> Result<Self, SolidError> {
         let fine = fine_elements(&nodes, &bodies);
-        let mut solid = Solid::with_fine(nodes, bodies, fine.as_deref().unwrap_or_default(), None)?;
+        let mut solid = Solid::with_fine(nodes, bodies, fine.as_deref().unwrap_or_default(), |_, _| Box::new(Alone))?;
         if let Some(fine) = fine {
             solid.link(fine)?;
         }

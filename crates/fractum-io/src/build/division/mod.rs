@@ -3,7 +3,7 @@
 mod beside;
 mod probed;
 
-pub use fractum_fem::Held;
+pub use fractum_fem::Replication;
 use fractum_fem::{BodyShare, DividedBoundary, Formulation, KnownAround, ReadBody, deal, divided_boundary};
 use fractum_math::Vec3;
 use fractum_mesh::topology::TETRAHEDRON_EDGES;
@@ -59,9 +59,9 @@ fn solids(case: &Case) -> impl Iterator<Item = (&str, &SolidBody)> {
 }
 
 /// What every process has of the bodies that may break, in words.
-pub fn held_bodies(case: &Case) -> Vec<String> {
-    let note = |(name, solid): (&str, &SolidBody)| match (held(case, solid), whole_for(case, solid)) {
-        (Held::Part, _) => None,
+pub fn replicated_bodies(case: &Case) -> Vec<String> {
+    let note = |(name, solid): (&str, &SolidBody)| match (replication(case, solid), whole_for(case, solid)) {
+        (Replication::Part, _) => None,
         (_, None) => Some(format!("every process has all elements of body \"{name}\", because of damage")),
         (_, Some(reason)) => Some(format!("every process has all of body \"{name}\", because of {reason}")),
     };
@@ -69,11 +69,11 @@ pub fn held_bodies(case: &Case) -> Vec<String> {
 }
 
 /// What every process has of a body, where several share a mesh.
-pub fn held(case: &Case, solid: &SolidBody) -> Held {
+pub fn replication(case: &Case, solid: &SolidBody) -> Replication {
     match whole_for(case, solid) {
-        Some(_) => Held::Whole,
-        None if solid.damage => Held::Elements,
-        None => Held::Part,
+        Some(_) => Replication::Whole,
+        None if solid.damage => Replication::Elements,
+        None => Replication::Part,
     }
 }
 
@@ -135,9 +135,9 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
     let sound: Vec<Vec<[bool; 6]>> = bodies
         .iter()
         .zip(&in_scene)
-        .map(|(body, elements)| match held(case, body) {
-            Held::Elements => sound_edges(body, elements, &numbering.positions),
-            Held::Part | Held::Whole => Vec::new(),
+        .map(|(body, elements)| match replication(case, body) {
+            Replication::Elements => sound_edges(body, elements, &numbering.positions),
+            Replication::Part | Replication::Whole => Vec::new(),
         })
         .collect();
     let read = bodies.iter().zip(&in_scene).zip(&tags).zip(&sound);
@@ -146,7 +146,7 @@ pub fn divide(case: &Case, mesh: Mesh, exchange: &dyn Exchange) -> Result<(Mesh,
             formulation: formulation(body),
             elements,
             tags,
-            held: held(case, body),
+            replication: replication(case, body),
             sound,
         })
         .collect();

@@ -163,14 +163,14 @@ impl Context<'_> {
         let shares = places.shares(edges);
         let share = self.division.map(|division| &division.bodies[edges.index]);
         let exchange = self.exchange.as_deref().filter(|_| share.is_some());
-        let is_told = |element: usize| share.is_none_or(|share| share.is_told[element]);
-        let total = spots::total(exchange, edges, &shares, is_told);
+        let is_owned = |element: usize| share.is_none_or(|share| share.is_owned[element]);
+        let total = spots::total(exchange, edges, &shares, is_owned);
         let reference = weibull.reference.measure();
         let [element, body] = [total.measure / total.elements, total.measure].map(|x| x / reference);
         let most = reach.level_kept(|radius| places.spot(edges, radius) / reference, element, body);
         let mut flaws = places.flaws_below(edges, most);
         flaws.retain(|(element, _)| edges.of_element(*element as usize).next().is_some());
-        let (levels, weakest) = weakest_of_edges(exchange, edges, &flaws, (reach, most), is_told);
+        let (levels, weakest) = weakest_of_edges(exchange, edges, &flaws, (reach, most), is_owned);
         let strength = damage.law.tensile_strength;
         let size = match edges.body.shape {
             ElementKind::T4 => cbrt(6.0 * 2f64.sqrt() * total.size),

@@ -20,19 +20,19 @@ pub(super) struct Total {
 
 /// Sums over the elements of all ranks, whatever their order: in whole numbers.
 ///
-/// - `shares`: volume or area of each element; `is_told`: elements that this rank counts
+/// - `shares`: volume or area of each element; `is_owned`: elements that this rank counts
 pub(super) fn total(
     exchange: Option<&dyn Exchange>,
     edges: &Edges<'_>,
     shares: &[f64],
-    is_told: impl Fn(usize) -> bool,
+    is_owned: impl Fn(usize) -> bool,
 ) -> Total {
     let edge_count = edges.body.shape.edge_count() as f64;
     let of_element = |element: usize| {
         let armed = edges.of_element(element).count() as f64 / edge_count;
         (armed > 0.0).then(|| [armed * shares[element], measure(edges, element)])
     };
-    let told = (0..shares.len()).filter(|&element| is_told(element) && shares[element] > 0.0);
+    let told = (0..shares.len()).filter(|&element| is_owned(element) && shares[element] > 0.0);
     let values: Vec<[f64; 2]> = told.filter_map(of_element).collect();
     let larger = |a: [f64; 2], b: &[f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
     let own = values.iter().fold([0.0; 2], larger);
@@ -55,16 +55,16 @@ pub(super) fn total(
 /// Level of the weakest flaw that reaches each edge: of those in its elements, and of those that reach its middle;
 /// at most `most`.
 ///
-/// - `flaws`: with the elements in which they are; `is_told`: elements that this rank tells others of
+/// - `flaws`: with the elements in which they are; `is_owned`: elements that this rank owns
 /// - returns the weakest flaw of all ranks too
 pub(super) fn weakest_of_edges(
     exchange: Option<&dyn Exchange>,
     edges: &Edges<'_>,
     flaws: &[(u32, Flaw)],
     (reach, most): (Reach, f64),
-    is_told: impl Fn(usize) -> bool,
+    is_owned: impl Fn(usize) -> bool,
 ) -> (Vec<f64>, Option<Flaw>) {
-    let told = flaws.iter().filter(|(element, _)| is_told(*element as usize));
+    let told = flaws.iter().filter(|(element, _)| is_owned(*element as usize));
     let told: Vec<[f64; 4]> = told.map(|(_, flaw)| flaw.numbers()).collect();
     let all = match exchange {
         Some(exchange) => gather(exchange, &told).concat(),

@@ -1,4 +1,4 @@
-//! Sums over all nodes: each chunk of nodes has a rank that adds what its nodes have, in their order, and tells all others.
+//! Sums over all nodes: each chunk of nodes has a rank that adds what its nodes have, in their order, and sends it to all others.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use crate::divided::RanksOfNodes;
 
 /// The chunks of every rank, and their nodes that other ranks have.
 #[derive(Clone, Debug)]
-pub(super) struct Chunks {
+pub(super) struct NodeSums {
     me: usize,
     /// The rank of each chunk: that which has most of its nodes, the lowest of these.
     owner: Vec<usize>,
@@ -18,7 +18,7 @@ pub(super) struct Chunks {
     nodes: Swapped<u32>,
 }
 
-impl Chunks {
+impl NodeSums {
     /// - `first`: first block of each rank, and the end
     pub(super) fn new(slots: &NodeSlots, first: &[usize], me: usize) -> Self {
         let ranks_of = |node: usize| {
@@ -38,7 +38,7 @@ impl Chunks {
             owner.push(own);
             for node in chunk {
                 let ranks = ranks_of(node);
-                // The lowest rank that has it tells of a node.
+                // The lowest rank that has it sends a node.
                 let Some(&teller) = ranks.first().filter(|_| !ranks.contains(&own)) else { continue };
                 if teller == me {
                     between.entry(own).or_default()[0].push(node as u32);
@@ -47,7 +47,7 @@ impl Chunks {
                 }
             }
         }
-        Chunks { me, owner, nodes: Swapped::new(between) }
+        NodeSums { me, owner, nodes: Swapped::new(between) }
     }
 
     /// The same where a rank knows no more than which nodes it has, and who else has these. All ranks must call it.
@@ -76,7 +76,7 @@ impl Chunks {
                 between.entry(teller).or_default()[1].push(node);
             }
         }
-        Chunks { me, owner, nodes: Swapped::new(between) }
+        NodeSums { me, owner, nodes: Swapped::new(between) }
     }
 
     /// Whether this rank adds what the nodes of a chunk have.
@@ -91,7 +91,7 @@ impl Chunks {
     }
 
     /// Gives every rank the sums of all chunks, once each has those of its own.
-    pub(super) fn tell<const N: usize>(&self, exchange: &dyn Exchange, sums: &mut [[f64; N]]) {
+    pub(super) fn exchange<const N: usize>(&self, exchange: &dyn Exchange, sums: &mut [[f64; N]]) {
         tell_by_owner(exchange, |chunk| self.owner[chunk], sums);
     }
 }

@@ -1,4 +1,4 @@
-//! Sums of blocks that neighbours swap, and nodes whose values all are told.
+//! Sums of blocks that neighbours exchange, and nodes whose values all receive.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use crate::cells::block::{NodeSlots, Slot};
 
 /// Who sends which sums to whom.
 #[derive(Clone, Debug)]
-pub(super) struct Plan {
+pub(super) struct Halo {
     /// Slots of the sums.
     pub(super) sums: Swapped<Slot>,
     /// Which blocks have sums that others wait for.
@@ -19,7 +19,7 @@ pub(super) struct Plan {
     pub(super) runs: Vec<Vec<Range<usize>>>,
 }
 
-impl Plan {
+impl Halo {
     /// - `first`: first block of each rank, and the end
     pub(super) fn new(slots: &NodeSlots, first: &[usize], me: usize) -> Self {
         let mut between = BTreeMap::<usize, [Vec<Slot>; 2]>::new();
@@ -40,11 +40,11 @@ impl Plan {
         let sums = Swapped::new(between);
         let mut is_outer = vec![false; *first.last().expect("runs of blocks have an end")];
         sums.sent().for_each(|slot| is_outer[slot.block()] = true);
-        Plan { sums, is_outer, runs: is_own.chunks(CHUNK).map(runs_of).collect() }
+        Halo { sums, is_outer, runs: is_own.chunks(CHUNK).map(runs_of).collect() }
     }
 }
 
-/// All nodes, with those of which each rank tells.
+/// All nodes, with those that each rank sends.
 #[derive(Clone, Debug)]
 pub(super) struct AllNodes {
     pub(super) tellers: Tellers,
@@ -63,7 +63,7 @@ impl AllNodes {
     }
 }
 
-/// Who tells all others of a node: the lowest rank that has a block there.
+/// Who sends a node to all others: the lowest rank that has a block there.
 #[derive(Clone, Debug)]
 pub(super) enum Tellers {
     /// As the blocks of all ranks show.
@@ -73,7 +73,7 @@ pub(super) enum Tellers {
 }
 
 impl Tellers {
-    /// Nodes of which each rank tells all others.
+    /// Nodes that each rank sends to all others.
     ///
     /// - `first`: first block of each rank, and the end
     pub(super) fn told(&self, slots: &NodeSlots, first: &[usize], nodes: impl Iterator<Item = u32>) -> Told {

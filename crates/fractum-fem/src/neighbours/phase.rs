@@ -1,15 +1,12 @@
 //! The active edges of a phase field that several ranks advance: each sweeps those of its own blocks, and all know every d.
 
-use std::sync::Arc;
-
 use fractum_parallel::Exchange;
 
-use super::ActiveEdge;
+use crate::damage::phase::ActiveEdge;
 
-/// What the ranks tell each other of the active edges of a body.
-#[derive(Clone, Debug)]
-pub(super) struct Told {
-    exchange: Arc<dyn Exchange>,
+/// What the ranks send each other of the active edges of a body.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PhaseExchange {
     /// Active edges of each rank.
     counts: Vec<usize>,
     /// Where the next edge of each rank is in `all`.
@@ -18,20 +15,14 @@ pub(super) struct Told {
     all: Vec<f64>,
 }
 
-impl Told {
-    pub(super) fn new(exchange: Arc<dyn Exchange>) -> Self {
-        let zeros = vec![0; exchange.size()];
-        Told { exchange, counts: zeros.clone(), places: zeros, own: Vec::new(), all: Vec::new() }
-    }
-
-    pub(super) fn rank(&self) -> u32 {
-        self.exchange.rank() as u32
-    }
-
+impl PhaseExchange {
     /// Gives every rank the d that the others have found.
-    pub(super) fn tell(&mut self, active: &mut [ActiveEdge]) {
-        let Told { exchange, counts, places, own, all } = self;
-        counts.fill(0);
+    pub(super) fn gather(&mut self, exchange: &dyn Exchange, active: &mut [ActiveEdge]) {
+        let PhaseExchange { counts, places, own, all } = self;
+        for counts in [&mut *counts, places] {
+            counts.clear();
+            counts.resize(exchange.size(), 0);
+        }
         own.clear();
         for edge in &*active {
             counts[edge.rank as usize] += 1;

@@ -9,16 +9,16 @@ use crate::solid::evaluate::Block;
 
 /// What happened in a step, on any rank.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Events {
+pub(super) struct Happened {
     /// A cell was turned inside out.
-    pub(crate) inverted: bool,
+    pub(super) inverted: bool,
     /// An edge broke.
-    pub(crate) broken: bool,
+    pub(super) broken: bool,
 }
 
-/// What the ranks tell each other of their blocks, see [`record`].
+/// What the ranks send each other of their blocks, see [`record`].
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Records {
+pub(super) struct Events {
     /// Something can happen in a block that all ranks must know.
     has_events: bool,
     /// Numbers of all blocks and of own ones, where all ranks need them in every step; else empty.
@@ -26,40 +26,34 @@ pub(crate) struct Records {
     own: Vec<f64>,
     counts: Vec<usize>,
     /// An element that the last forces found turned inside out, where no rank has all elements.
-    pub(crate) inverted: Option<InvertedElement>,
+    pub(super) inverted: Option<InvertedElement>,
 }
 
-/// Numbers of a block in [`Records`].
+/// Numbers of a block in [`Events`].
 const RECORD: usize = 4;
 /// In a record: edges have passed their strength, edges broke.
 const WOKEN: f64 = 1.0;
 const BROKEN: f64 = 2.0;
 
-impl Records {
+impl Events {
     /// - `counts`: blocks of each rank
     /// - `has_events`: whether something can happen in a block that all ranks must know; `always`: whether all need the numbers of
     ///   every block in every step
     pub(super) fn new(counts: impl Iterator<Item = usize>, rank: usize, [has_events, always]: [bool; 2]) -> Self {
         if !always {
-            return Records { has_events, ..Records::default() };
+            return Events { has_events, ..Events::default() };
         }
         let counts: Vec<usize> = counts.map(|count| RECORD * count).collect();
-        Records {
-            has_events,
-            all: vec![0.0; counts.iter().sum()],
-            own: vec![0.0; counts[rank]],
-            counts,
-            inverted: None,
-        }
+        Events { has_events, all: vec![0.0; counts.iter().sum()], own: vec![0.0; counts[rank]], counts, inverted: None }
     }
 
     /// From now on something can happen that all ranks must know.
-    pub(crate) fn expect_events(&mut self) {
+    pub(super) fn expect(&mut self) {
         self.has_events = true;
     }
 
-    /// Tells all ranks what they need of every block, or of those alone in which something has happened.
-    pub(super) fn tell(&mut self, exchange: &dyn Exchange, own: Range<usize>, blocks: &mut [Block]) -> Events {
+    /// Gives all ranks what they need of every block, or of those alone in which something has happened.
+    pub(super) fn exchange(&mut self, exchange: &dyn Exchange, own: Range<usize>, blocks: &mut [Block]) -> Happened {
         if !self.all.is_empty() {
             let records = self.own.chunks_exact_mut(RECORD).zip(&blocks[own.clone()]);
             records.for_each(|(to, block)| to.copy_from_slice(&record(block)));
@@ -69,7 +63,7 @@ impl Records {
         }
         let happened = || blocks[own.clone()].iter().any(Block::has_event);
         if !self.has_events || exchange.any(u64::from(happened())) == 0 {
-            return Events::default();
+            return Happened::default();
         }
         let with_event = own.clone().filter(|&index| blocks[index].has_event());
         let mine: Vec<(usize, [f64; RECORD])> = with_event.map(|index| (index, record(&blocks[index]))).collect();
@@ -77,12 +71,16 @@ impl Records {
     }
 }
 
-/// Takes over what the ranks have told of blocks; what has happened on any of them.
-fn take_over(records: impl Iterator<Item = (usize, [f64; RECORD])>, own: Range<usize>, blocks: &mut [Block]) -> Events {
-    let mut events = Events::default();
+/// Takes over what the ranks have sent of blocks; what has happened on any of them.
+fn take_over(
+    records: impl Iterator<Item = (usize, [f64; RECORD])>,
+    own: Range<usize>,
+    blocks: &mut [Block],
+) -> Happened {
+    let mut happened = Happened::default();
     for (index, [power, shock, inverted, edges]) in records {
-        events.inverted |= inverted >= 0.0;
-        events.broken |= edges >= BROKEN;
+        happened.inverted |= inverted >= 0.0;
+        happened.broken |= edges >= BROKEN;
         let block = &mut blocks[index];
         if !own.contains(&index) {
             (block.viscous_power, block.viscous.shock) = (power, shock);
@@ -92,7 +90,7 @@ fn take_over(records: impl Iterator<Item = (usize, [f64; RECORD])>, own: Range<u
             }
         }
     }
-    events
+    happened
 }
 
 /// What all ranks need of a block: viscous power [W], part of the shock, a cell that is turned inside out or
