@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use fractum_fem::{
     Body, Criterion, CriterionKind, DamageLaw, DamageZone, Elastic, ElementKind, Formulation, Plane, Region,
-    Regularisation, Softening, Solid, SolidError,
+    Regularisation, Softening, Solid, SolidError, fields,
 };
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
@@ -150,7 +150,7 @@ fn torn(bar: &Bar) -> [f64; 3] {
     let corners = kind.node_count();
     let place =
         |e: &[u32; 4]| e[..corners].iter().map(|&n| solid.reference[n as usize].x).sum::<f64>() / corners as f64;
-    let elements = solid.body(0).elements.iter().zip(solid.element_damages(0));
+    let elements = solid.body(0).elements.iter().zip(fields::element_damages(&solid, 0));
     let beside = elements.filter(|(e, _)| (place(e) - 0.5 * end).abs() > far);
     [
         peak / (area * WEAKER * law.tensile_strength),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use fractum_fem::{
     Body, DamageLaw, ElementKind, Formulation, Kinematics, LocalDamping, Regularisation, Solid, Viscosity, facet_area,
-    neighbours,
+    motion, neighbours,
 };
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_rectangle};
@@ -67,9 +67,9 @@ pub(crate) fn shared(ranks: usize, steps: u64, made: impl Fn() -> Scene + Sync) 
     let run = |exchange: Arc<dyn Exchange>| {
         on_two_threads(|| {
             let mut scene = made();
-            scene.share_out(exchange, &Watched::default());
+            scene.distribute(exchange, &Watched::default());
             advance(&mut scene, steps);
-            scene.gather_ranks();
+            scene.gather_all();
             scene
         })
     };
@@ -82,7 +82,7 @@ pub(crate) fn shared(ranks: usize, steps: u64, made: impl Fn() -> Scene + Sync) 
 /// The scene of a single process after `steps`, once any number of ranks has come to the same.
 pub(crate) fn same_on_ranks(steps: u64, made: impl Fn() -> Scene + Sync) -> Scene {
     let mut single = made();
-    assert_eq!(single.cannot_be_shared(), None);
+    assert_eq!(single.cannot_be_distributed(), None);
     advance(&mut single, steps);
     let expected = bits(&single);
     for ranks in RANKS {
@@ -135,7 +135,7 @@ fn a_viscous_body_with_absorbing_ends_has_the_same_bits_on_any_number_of_ranks()
     let made = || {
         let (nodes, body) = block();
         let mut solid = Solid::new(nodes, vec![body.smoothed()]).unwrap();
-        solid.set_viscosity(Viscosity { stiffness_time: 1e-8, bulk_linear: 0.06, bulk_quadratic: 1.2 });
+        motion::set_viscosity(&mut solid, Viscosity { stiffness_time: 1e-8, bulk_linear: 0.06, bulk_quadratic: 1.2 });
         set_moving(&mut solid);
         for velocity in &mut solid.velocity {
             velocity.x *= 300.0; // strong enough for the step to follow the shock
@@ -268,7 +268,7 @@ fn a_state_goes_on_with_any_number_of_ranks() {
 fn the_parts_of_all_ranks_are_the_state_of_a_single_process() {
     let viscous = || {
         let mut scene = breaking();
-        scene.solid.set_viscosity(Viscosity { stiffness_time: 1e-8, ..Viscosity::default() });
+        motion::set_viscosity(&mut scene.solid, Viscosity { stiffness_time: 1e-8, ..Viscosity::default() });
         scene
     };
     let standard = || breaking_by_phase_field(ElementKind::T4, Formulation::Standard);
@@ -280,7 +280,7 @@ fn the_parts_of_all_ranks_are_the_state_of_a_single_process() {
             let save = |exchange: Arc<dyn Exchange>| {
                 on_two_threads(|| {
                     let mut scene = made();
-                    scene.share_out(exchange, &Watched::default());
+                    scene.distribute(exchange, &Watched::default());
                     advance(&mut scene, 331);
                     scene.state_in_parts().unwrap()
                 })

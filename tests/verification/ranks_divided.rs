@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use fractum_fem::{
-    Body, BodyShare, CrackEdge, CrackFacet, DamageLaw, EdgeDamage, Formulation, Kinematics, KnownAround, LocalDamping,
-    ReadBody, Regularisation, Replication, Solid, Viscosity, neighbours,
+    Body, BodyShare, CrackEdge, CrackFacet, CrackSurface, DamageLaw, EdgeDamage, Formulation, Kinematics, KnownAround,
+    LocalDamping, ReadBody, Regularisation, Replication, Solid, Viscosity, cracks, fields, motion, neighbours,
 };
 use fractum_math::Vec3;
 use fractum_parallel::{Exchange, threads};
@@ -73,7 +73,7 @@ fn dealt(exchange: &Arc<dyn Exchange>, nodes: &[Vec3], bodies: Vec<Body>) -> (Ve
 /// The scene of a solid of these bodies: `damping`, and whether it is viscous.
 fn loaded(mut solid: Solid, facets: Vec<[u32; 3]>, damping: LocalDamping, viscous: bool) -> Scene {
     if viscous {
-        solid.set_viscosity(Viscosity { stiffness_time: 1e-8, bulk_linear: 0.06, bulk_quadratic: 1.2 });
+        motion::set_viscosity(&mut solid, Viscosity { stiffness_time: 1e-8, bulk_linear: 0.06, bulk_quadratic: 1.2 });
     }
     set_moving(&mut solid);
     let value = Arc::new(|t: f64, _: &Vec3| 1e6 * (t / 1e-5).min(1.0));
@@ -90,7 +90,7 @@ fn same_as_whole(kinematics: Kinematics, damping: LocalDamping, viscous: bool) {
     let facets: Vec<[u32; 3]> = surface(&whole).into_iter().filter(top).collect();
     let mut single = loaded(whole, facets.clone(), damping, viscous);
     advance(&mut single, 40);
-    let fields: Vec<_> = (0..2).map(|body| single.solid.element_fields(body)).collect();
+    let fields: Vec<_> = (0..2).map(|body| fields::element_fields(&single.solid, body)).collect();
     let run = |exchange: Arc<dyn Exchange>| {
         on_two_threads(|| {
             let (bodies, shares) = dealt(&exchange, &nodes, all.clone());
@@ -102,9 +102,9 @@ fn same_as_whole(kinematics: Kinematics, damping: LocalDamping, viscous: bool) {
             );
             let mut scene = loaded(solid, facets.clone(), damping, viscous);
             assert_eq!(scene.stable_dt(), single.stable_dt());
-            scene.share_out(exchange, &Watched::default());
+            scene.distribute(exchange, &Watched::default());
             advance(&mut scene, 40);
-            scene.gather_ranks();
+            scene.gather_all();
             neighbours::gather_edge_values(&mut scene.solid);
             (scene, numbers)
         })
@@ -125,7 +125,7 @@ fn same_as_whole(kinematics: Kinematics, damping: LocalDamping, viscous: bool) {
             let has: usize = numbers.iter().map(Vec::len).sum();
             assert!(4 * has < 3 * count, "{what}: {has} of {count} elements");
             for body in 0..2 {
-                let own = scene.solid.element_fields(body);
+                let own = fields::element_fields(&scene.solid, body);
                 for (element, value) in own.iter().enumerate().filter(|(e, _)| scene.solid.owns(body, *e as u32)) {
                     told[body] += 1;
                     assert_eq!(*value, fields[body][numbers[body][element] as usize], "{what}: {body} {element}");
@@ -181,12 +181,12 @@ fn broken(scene: &Scene) -> Broken {
         histories,
         counts: scene.counts(),
         radii: largest_radii(solid),
-        facets: solid.crack_surface().facets,
+        facets: CrackSurface::of(solid).facets,
         pieces: solid_pieces(solid, 0.05).into_iter().map(|piece| piece.nodes).collect(),
-        edges: solid.crack_edges(),
+        edges: cracks::crack_edges(solid),
         damages: (0..solid.body_count())
             .filter(|&b| solid.body(b).damage.is_some())
-            .map(|b| solid.element_damages(b))
+            .map(|b| fields::element_damages(solid, b))
             .collect(),
     }
 }
@@ -207,9 +207,9 @@ fn breaks_as_whole((nodes, all): (Vec<Vec3>, Vec<Body>), what: &str) {
             let solid = neighbours::divided_solid(nodes.clone(), bodies, &shares, Arc::clone(&exchange)).unwrap();
             assert!(neighbours::is_divided(&solid) && neighbours::connected_pieces(&solid, all.len() / 2).is_none());
             let mut scene = pulled(solid);
-            scene.share_out(exchange, &Watched::default());
+            scene.distribute(exchange, &Watched::default());
             advance(&mut scene, 400);
-            scene.gather_ranks();
+            scene.gather_all();
             // Radii are found together.
             broken(&scene)
         })

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use fractum_fem::{
     Body, DamageLaw, ElementKind, Formulation, Kinematics, LocalDamping, Plane, Regularisation, Solid, Viscosity,
+    motion,
 };
 use fractum_math::Vec3;
 use fractum_mesh::generate::structured_rectangle;
@@ -369,7 +370,7 @@ fn a_cube_that_becomes_debris_within_some_steps_keeps_its_balance_and_has_the_sa
 fn damping_of_every_kind_is_booked() {
     let (nodes, body) = jittered_box(CELLS, SIZE);
     let mut solid = Solid::new(nodes, vec![body.smoothed()]).unwrap();
-    solid.set_viscosity(Viscosity { stiffness_time: 2e-7, bulk_linear: 0.06, bulk_quadratic: 1.2 });
+    motion::set_viscosity(&mut solid, Viscosity { stiffness_time: 2e-7, bulk_linear: 0.06, bulk_quadratic: 1.2 });
     for i in 0..solid.velocity.len() {
         solid.velocity[i] = Vec3::x() * (solid.reference[i].x - 0.5 * SIZE.x) * 10.0;
     }

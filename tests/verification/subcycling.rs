@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fractum_fem::{Body, Formulation, LocalDamping, Solid, SolidError};
+use fractum_fem::{Body, Formulation, LocalDamping, Solid, SolidError, motion};
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
@@ -101,7 +101,7 @@ fn a_long_run_near_the_limit_gains_no_energy() {
     for (node, velocity) in solid.velocity.iter_mut().enumerate() {
         *velocity = Vec3::from_fn(|axis, _| fractum_tests::noise(3 * node + axis));
     }
-    solid.set_copies_off();
+    motion::set_copies_off(&mut solid);
     let mut settings = settings(1.0, 1e-6);
     settings.time_step.safety = 0.95;
     let mut scene = scene(solid, Vec::new(), Vec::new(), settings);
@@ -132,7 +132,7 @@ fn loads_and_supports_work_on_both_sides_of_the_link() {
         let sets = [("bottom", bottom, 2, Motion::Fixed), ("top", tops.clone(), 2, lift)];
         let mut supports = Vec::new();
         for (name, points, axis, motion) in sets {
-            let all = solid.with_copies(points);
+            let all = motion::with_copies(&solid, points);
             for is_fine in [false, true] {
                 let own = all.iter().copied().filter(|&n| solid.is_fine(n as usize) == is_fine).collect();
                 let mut support = Support::new(name, own, axis, motion.clone());
@@ -144,7 +144,7 @@ fn loads_and_supports_work_on_both_sides_of_the_link() {
         let mut settings = settings(4e-3, 1e-6);
         settings.damping = LocalDamping { local, mass_rate: 50.0 };
         let mut scene = scene(solid, supports, vec![weight], settings);
-        let places = scene.supports().places(&scene.solid.with_copies(tops));
+        let places = scene.supports().places(&motion::with_copies(&scene.solid, tops));
         let (mut sum, mut steps) = (0.0, 0.0);
         while !scene.is_finished() {
             scene.step(true).unwrap();

@@ -68,7 +68,8 @@ pub use fracture::{
 };
 pub use measure::{Piece, StrainGauge, StrainMeasure, crack_shape, pieces, strain, stress};
 pub use particles::{
-    CentralDifference, NearPairs, ParticleDamping, ParticlePart, ParticleShare, Particles, PastForces, TimeStep,
+    CentralDifference, NearPairs, ParticleDamping, ParticleSubdomain, ParticleSubdomainSize, Particles, PastForces,
+    TimeStep,
 };
 pub use statics::{
     Batch, Breaking, BreakingOutcome, CriticalLoad, Dof6, Equilibrium, Lattice, LatticeSupports, LoadPoint, LoadStage,

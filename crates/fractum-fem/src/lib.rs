@@ -26,25 +26,27 @@
 
 mod body;
 mod cells;
-mod cracks;
+pub mod cracks;
 mod damage;
 mod divided;
 mod element;
 mod error;
-mod fields;
+pub mod fields;
 pub mod material;
-mod motion;
+pub mod motion;
 pub mod neighbours;
+pub mod removal;
 mod secant;
 mod solid;
+mod state;
 
 pub use body::edges::BodyEdges;
 pub use body::{Body, DamageZone, ElementKind, Formulation, Kinematics, Plane, Region, Regularisation};
 pub use cells::viscosity::Viscosity;
-pub use cracks::crack::{CrackEdge, CrackPlane, Fracture};
-pub use cracks::crack_network::{CrackCell, CrackMouth, CrackNetwork, CrackNetworkState, CrackSide};
-pub use cracks::crack_surface::{CrackFacet, CrackSurface};
-pub use cracks::separation::{SeparatedElement, SeparatedFacet, Separation};
+pub use cracks::{
+    CrackCell, CrackEdge, CrackFacet, CrackMouth, CrackNetwork, CrackNetworkState, CrackPlane, CrackSide, CrackSurface,
+    Fracture, SeparatedElement, SeparatedFacet, Separation,
+};
 pub use damage::edge::EdgeDamage;
 pub use damage::restraint::Seen;
 pub use divided::{
@@ -53,11 +55,9 @@ pub use divided::{
 };
 pub use element::{CUT_MODES, InvertedElement, facet_area};
 pub use error::SolidError;
-pub use fields::extremes::{Extreme, Extremes};
+pub use fields::{Extreme, Extremes};
 pub use material::{Criterion, CriterionKind, DamageLaw, Degradation, Elastic, Softening, Wave};
-pub use motion::central_difference::{LocalDamping, WholeStep};
-pub use motion::subcycled_solid::Prescribe;
-pub use motion::time_step::StableStep;
+pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::Solid;
-pub use solid::state::{BodyState, SolidState};
+pub use state::{BodyState, SolidState};

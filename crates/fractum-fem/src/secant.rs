@@ -9,6 +9,7 @@ use crate::body::{Formulation, Kinematics};
 use crate::damage::Taken;
 use crate::damage::edge::EdgeDamage;
 use crate::damage::restraint::{Restraint, Seen};
+use crate::motion::phase_damage::{phase_values, raise_phases, trial_phases};
 use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
 
@@ -145,7 +146,7 @@ impl Solid {
             BlockLaw::Elastic { .. } => Vec::new(),
             _ => (0..block.cells.len()).map(|cell| block.damage_of(cell)).collect(),
         };
-        CellDamage { cells: self.blocks.iter().map(of).collect(), phases: self.phase_values() }
+        CellDamage { cells: self.blocks.iter().map(of).collect(), phases: phase_values(self) }
     }
 
     /// The edges that may be damaged, in the order of [`Solid::effective_stresses`].
@@ -258,7 +259,7 @@ impl Solid {
                 next(field.state.len(), trial);
             }
         }
-        self.trial_phases(seen, &mut trial.cells, &mut trial.phases);
+        trial_phases(self, seen, &mut trial.cells, &mut trial.phases);
         let mut damage = Vec::new();
         let mut first = self.blocks.iter().filter_map(Block::edge_field).map(|field| field.state.len()).sum::<usize>();
         for (body, model) in self.bodies.iter().enumerate() {
@@ -311,7 +312,7 @@ impl Solid {
             }
         }
         self.blocks.iter_mut().for_each(Block::expect_any_damage);
-        self.raise_phases(&trial.phases, before, after);
+        raise_phases(self, &trial.phases, before, after);
     }
 
     /// Whether some body may be damaged.

@@ -14,7 +14,7 @@ pub struct Message {
     pub receive: Vec<f64>,
 }
 
-/// What the ranks tell each other.
+/// What the ranks send each other.
 pub trait Exchange: Debug + Send + Sync {
     /// Number of this rank, from 0.
     fn rank(&self) -> usize;
@@ -48,7 +48,11 @@ pub fn gather_named<T: Serialize + DeserializeOwned>(exchange: &dyn Exchange, ow
 }
 
 /// Gives every rank the values of all items, each by the rank that owns it.
-pub fn tell_by_owner<const N: usize>(exchange: &dyn Exchange, owner: impl Fn(usize) -> usize, values: &mut [[f64; N]]) {
+pub fn gather_by_owner<const N: usize>(
+    exchange: &dyn Exchange,
+    owner: impl Fn(usize) -> usize,
+    values: &mut [[f64; N]],
+) {
     let mut counts = vec![0; exchange.size()];
     (0..values.len()).for_each(|item| counts[owner(item)] += N);
     let own = (0..values.len()).filter(|&item| owner(item) == exchange.rank()).flat_map(|item| values[item]);

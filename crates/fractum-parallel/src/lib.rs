@@ -14,8 +14,8 @@ mod threads;
 mod values;
 
 pub use crate::division::{rank_of, runs_by_weight, runs_of};
-pub use crate::exchange::{Exchange, Message, gather, gather_named, post, tell_by_owner};
+pub use crate::exchange::{Exchange, Message, gather, gather_by_owner, gather_named, post};
 #[cfg(feature = "mpi")]
 pub use crate::mpi::{World, initialize};
-pub use crate::values::{Swapped, Told};
+pub use crate::values::{Exchanged, Gathered};
 pub use threads::threads;

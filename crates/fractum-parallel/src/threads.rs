@@ -110,7 +110,7 @@ mod tests {
                     end.gather(&vec![1.0 + me as f64; me], &[0, 1, 2], &mut all);
                     assert_eq!(all, [2.0, 3.0, 3.0]);
                     let mut by_owner = [[me as f64, 1.0], [me as f64, 2.0], [me as f64, 3.0], [me as f64, 4.0]];
-                    crate::exchange::tell_by_owner(&**end, |item| [2, 0, 2, 1][item], &mut by_owner);
+                    crate::exchange::gather_by_owner(&**end, |item| [2, 0, 2, 1][item], &mut by_owner);
                     assert_eq!(by_owner, [[2.0, 1.0], [0.0, 2.0], [2.0, 3.0], [1.0, 4.0]]);
                     assert_eq!(crate::exchange::gather_named(&**end, &vec![me; me]), [1, 2, 2]);
                     assert_eq!(crate::exchange::gather_named::<usize>(&**end, &Vec::new()), []);

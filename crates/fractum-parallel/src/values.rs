@@ -1,22 +1,22 @@
-//! Values of some items that ranks tell each other.
+//! Values of some items that ranks send each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::exchange::{Exchange, Message};
 
-/// Items of which each rank tells all others some.
+/// Items of which each rank sends some to all others.
 #[derive(Clone, Debug)]
-pub struct Told {
+pub struct Gathered {
     items: Vec<Vec<u32>>,
     counts: Vec<usize>,
     own: Vec<f64>,
     all: Vec<f64>,
 }
 
-impl Told {
+impl Gathered {
     /// - `items`: those of every rank
     pub fn new(items: Vec<Vec<u32>>) -> Self {
-        Told { counts: vec![0; items.len()], items, own: Vec::new(), all: Vec::new() }
+        Gathered { counts: vec![0; items.len()], items, own: Vec::new(), all: Vec::new() }
     }
 
     /// The items of a rank.
@@ -29,22 +29,22 @@ impl Told {
         (self.own, self.all) = (Vec::new(), Vec::new());
     }
 
-    /// Tells these items too.
-    pub fn append(&mut self, more: &Told) {
+    /// Gathers these items too.
+    pub fn append(&mut self, more: &Gathered) {
         self.items.iter_mut().zip(&more.items).for_each(|(items, more)| items.extend(more));
     }
 
     /// Gives every rank the `N` values of these items.
     ///
     /// - `get`, `put`: read them from what this rank has, and write them there
-    pub fn tell<const N: usize, S: ?Sized>(
+    pub fn gather<const N: usize, S: ?Sized>(
         &mut self,
         exchange: &dyn Exchange,
         values: &mut S,
         get: impl Fn(&S, usize) -> [f64; N],
         put: impl Fn(&mut S, usize, [f64; N]),
     ) {
-        let Told { items, counts, own, all } = self;
+        let Gathered { items, counts, own, all } = self;
         counts.iter_mut().zip(&*items).for_each(|(count, items)| *count = N * items.len());
         let total = counts.iter().sum();
         if total == 0 {
@@ -62,16 +62,16 @@ impl Told {
 
 /// Items whose values ranks send each other: which to send and which to receive, neighbour by neighbour.
 #[derive(Clone, Debug)]
-pub struct Swapped<T> {
+pub struct Exchanged<T> {
     messages: Vec<Message>,
     items: Vec<[Vec<T>; 2]>,
 }
 
-impl<T: Copy> Swapped<T> {
+impl<T: Copy> Exchanged<T> {
     /// - `between`: what is sent to another rank, and what comes from it; both in the order of that rank
     pub fn new(between: BTreeMap<usize, [Vec<T>; 2]>) -> Self {
         let message = |&rank: &usize| Message { rank, ..Message::default() };
-        Swapped { messages: between.keys().map(message).collect(), items: between.into_values().collect() }
+        Exchanged { messages: between.keys().map(message).collect(), items: between.into_values().collect() }
     }
 
     /// The same of sets.
@@ -80,7 +80,7 @@ impl<T: Copy> Swapped<T> {
         T: Ord,
     {
         let lists = |(rank, sets): (usize, [BTreeSet<T>; 2])| (rank, sets.map(|set| set.into_iter().collect()));
-        Swapped::new(between.into_iter().map(lists).collect())
+        Exchanged::new(between.into_iter().map(lists).collect())
     }
 
     /// What is sent.
@@ -116,10 +116,10 @@ impl<T: Copy> Swapped<T> {
         }
     }
 
-    /// Swaps the `N` values of all items.
+    /// Exchanges the `N` values of all items.
     ///
     /// - `get`, `put`: read them from what this rank has, and write them there
-    pub fn tell<const N: usize, S: ?Sized>(
+    pub fn exchange<const N: usize, S: ?Sized>(
         &mut self,
         exchange: &dyn Exchange,
         values: &mut S,

@@ -1,6 +1,6 @@
 //! From the forces of tⁿ to the velocities after it and the displacements of tⁿ⁺¹.
 
-use fractum_fem::{Prescribe, WholeStep};
+use fractum_fem::{Prescribe, WholeStep, motion};
 use fractum_math::{HalfSteps, sum_chunks};
 
 use crate::clock::Clock;
@@ -56,7 +56,7 @@ impl Scene {
         let (damping, Scene { solid, supports, .. }) = (self.settings.damping, self);
         let held = supports.shared_held();
         let step = WholeStep { dt_before, dt_after, damping, held: &held, measure };
-        solid.advance_in_parts(step, |solid, prescribe| match prescribe {
+        motion::advance_in_parts(solid, step, |solid, prescribe| match prescribe {
             Prescribe::Remember { fine } => {
                 supports.remember(solid, Some(fine));
                 HalfSteps::default()
@@ -78,7 +78,7 @@ impl Scene {
         bonded.start_half_a_step_early(dt);
         contacts.start_half_a_step_early(dt);
         for i in 0..solid.mass.len() {
-            let half_kick = match solid.own_acceleration(i, dt) {
+            let half_kick = match motion::own_acceleration(solid, i, dt) {
                 Some((acceleration, dt)) => acceleration * (0.5 * dt),
                 None => solid.force[i] * (0.5 * dt / solid.mass[i]),
             };

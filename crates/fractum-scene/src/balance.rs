@@ -122,7 +122,7 @@ impl Scene {
 
     /// The element or bonded particle with the largest kinetic energy, or with a value that is not a number.
     fn culprit(&mut self) -> String {
-        self.gather_ranks();
+        self.gather_all();
         let solid = &self.solid;
         let energy = |node: u32| {
             let i = node as usize;

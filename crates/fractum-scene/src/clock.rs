@@ -1,4 +1,4 @@
-use fractum_fem::{Solid, StableStep};
+use fractum_fem::{Solid, StableStep, motion};
 use serde::{Deserialize, Serialize};
 
 /// How the time step is chosen.
@@ -74,9 +74,9 @@ impl Frequencies {
     ///
     /// - `bound`: whether the rigorous bound of the elements is taken
     pub(crate) fn of_solid(solid: &mut Solid, bound: bool) -> Self {
-        let stable = if bound { solid.stable_step_bound() } else { solid.stable_step() };
-        let motion = if solid.has_damage() { solid.motion_frequency() } else { 0.0 };
-        Frequencies { motion, ..Self::of(stable, solid.fine_stable_step(bound)) }
+        let stable = if bound { motion::stable_step_bound(solid) } else { solid.stable_step() };
+        let motion = if solid.has_damage() { motion::motion_frequency(solid) } else { 0.0 };
+        Frequencies { motion, ..Self::of(stable, motion::fine_stable_step(solid, bound)) }
     }
 
     /// Those of solids without contact.

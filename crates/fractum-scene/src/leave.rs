@@ -6,6 +6,7 @@ use crate::conditions::Population;
 use crate::domain::{Domain, Left};
 use crate::fragment::parts;
 use crate::scene::Scene;
+use fractum_fem::removal;
 
 /// Steps between two looks for pieces that have left the domain.
 const STEPS_BETWEEN_FAREWELLS: u64 = 100;
@@ -121,7 +122,8 @@ impl Scene {
             let leaving = of_body.filter(|((_, nodes), alive)| **alive && leaves[nodes[0] as usize]);
             elements.extend(leaving.map(|((element, _), _)| (body, element)));
         }
-        let mut energy = self.debris.spin_energy(&self.solid, leaves) + self.solid.take_out(dt, &elements);
+        let mut energy =
+            self.debris.spin_energy(&self.solid, leaves) + removal::take_out(&mut self.solid, dt, &elements);
         let Scene { solid, removals, .. } = self;
         for node in (0..leaves.len()).filter(|&node| leaves[node]) {
             let (mass, velocity) = (solid.mass[node], std::mem::take(&mut solid.velocity[node]));

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use fractum_fem::Solid;
 use fractum_fem::neighbours::{self, SolidPart};
+use fractum_fem::{Solid, removal};
 use fractum_parallel::Exchange;
 
 use crate::scene::{Scene, SceneState};
@@ -19,17 +19,17 @@ pub struct Watched {
 
 impl Scene {
     /// What ranks cannot share of this scene, in words; none where they can.
-    pub fn cannot_be_shared(&self) -> Option<&'static str> {
+    pub fn cannot_be_distributed(&self) -> Option<&'static str> {
         if self.optional.heat.is_some() {
             return Some("heat");
         }
-        self.bonded.cannot_be_shared().filter(|_| self.solid.body_count() == 0)
+        self.bonded.cannot_be_distributed().filter(|_| self.solid.body_count() == 0)
     }
 
     /// What has every rank do alike what particles and bonds do, in words; none where they are shared.
     pub fn keeps_particles_whole(&self) -> Option<&'static str> {
         let few = || (!self.bonded.has_blocks()).then_some("their number: up to 2048 are not divided");
-        self.bonded.cannot_be_shared().or_else(few)
+        self.bonded.cannot_be_distributed().or_else(few)
     }
 
     /// Whether every step needs sums over all nodes: of what damping takes, or of the momentum that gravity works on.
@@ -40,7 +40,7 @@ impl Scene {
 
     /// Nodes that contacts, discrete elements, ties, and pressure and gas in cracks look at. Every rank does alike what is no cell of a solid.
     fn nodes_of_others(&mut self) -> Vec<u32> {
-        let mut touching = corners(&self.solid, &self.solid.removed_elements());
+        let mut touching = corners(&self.solid, &removal::removed_elements(&self.solid));
         self.contacts.each_node(|node| touching.push(node));
         touching.extend(self.shape_contacts.iter().flat_map(|ground| &ground.candidates).map(|c| c.node));
         let tied = self.ties.nodes();
@@ -60,13 +60,13 @@ impl Scene {
     }
 
     /// Leaves a share of the cells, particles and bonds to each rank of an exchange. Every rank must have the same scene in the same
-    /// state, and all of them step it together from then on; see [`Scene::gather_ranks`].
+    /// state, and all of them step it together from then on; see [`Scene::gather_all`].
     ///
     /// - `watched`: nodes and particles that are looked at after every step, where that is more than those of supports that move and of loads
-    pub fn share_out(&mut self, exchange: Arc<dyn Exchange>, watched: &Watched) {
+    pub fn distribute(&mut self, exchange: Arc<dyn Exchange>, watched: &Watched) {
         if self.keeps_particles_whole().is_none() {
             let near: Vec<u32> = watched.particles.iter().copied().chain(self.contacts.near()).collect();
-            self.bonded.share_out(Arc::clone(&exchange), near.into_iter());
+            self.bonded.distribute(Arc::clone(&exchange), near.into_iter());
             self.bonded.set_near(self.contacts.near_pairs());
         }
         if self.solid.body_count() == 0 {
@@ -137,7 +137,7 @@ impl Scene {
         }
     }
 
-    /// Has every rank move the particles that may touch what all ranks look at, and tells the motion of those that may touch each other.
+    /// Has every rank move the particles that may touch what all ranks look at, and sends the motion of those that may touch each other.
     pub(crate) fn follow_near(&mut self) {
         let Scene { bonded, contacts, .. } = self;
         if !bonded.is_shared() {
@@ -163,7 +163,7 @@ impl Scene {
 
     /// Brings what this rank has of the nodes and cells of others up to date, before anyone looks at all of them. All ranks must
     /// call it. Energies are up to date without it where a step has measured.
-    pub fn gather_ranks(&mut self) {
+    pub fn gather_all(&mut self) {
         neighbours::gather_all(&mut self.solid);
         self.gather_particles();
         self.gather_contacts();

@@ -1,4 +1,4 @@
-use fractum_fem::{BodyState, LocalDamping, Solid, SolidState, StableStep};
+use fractum_fem::{BodyState, LocalDamping, Solid, SolidState, StableStep, motion};
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -153,7 +153,7 @@ impl Scene {
     ) -> Self {
         let bound = settings.time_step.element_bound || solid.reference.is_empty();
         let frequencies = Frequencies::of_solid(&mut solid, bound);
-        solid.set_copies_off();
+        motion::set_copies_off(&mut solid);
         if !shape_contacts.is_empty() {
             debris.prepare(&solid);
             shape_contacts.iter_mut().for_each(|ground| ground.watch(surface, &solid, &debris));

@@ -1,6 +1,6 @@
 //! The largest stable step of a scene.
 
-use fractum_fem::StableStep;
+use fractum_fem::{StableStep, motion};
 
 use crate::clock::{Clock, Frequencies, TimeStepSettings};
 use crate::gas::Gas;
@@ -67,7 +67,7 @@ impl Scene {
         let contact = contact.max(self.bonded.damping_ratio());
         let damping = self.settings.damping;
         let xi = 0.5 * self.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
-        let xi = xi + self.solid.bulk_damping_ratio();
+        let xi = xi + motion::bulk_damping_ratio(&self.solid);
         2.0 / frequency * ((1.0 + xi * xi).sqrt() - xi)
     }
 

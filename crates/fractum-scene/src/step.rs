@@ -1,5 +1,5 @@
 use fractum_dem::Particles;
-use fractum_fem::{InvertedElement, neighbours};
+use fractum_fem::{InvertedElement, motion, neighbours, removal};
 use fractum_math::{HalfSteps, Work};
 
 use crate::contacts::{HoldStep, Touching, hold_nodes};
@@ -134,7 +134,8 @@ impl Scene {
     /// Forces of the stress in solids at tⁿ.
     fn add_internal_forces(&mut self, step: &ThisStep, passed: &mut impl FnMut(Phase)) -> Result<(), StepError> {
         neighbours::move_all_nodes_next(&mut self.solid, step.changes); // supports change their kinetic energy
-        self.solid.set_parts(self.parts(step.dt_after), step.is_first);
+        let parts = self.parts(step.dt_after);
+        motion::set_short_steps(&mut self.solid, parts, step.is_first);
         if self.solid.body_count() > 0 {
             self.solid.update_internal_forces(step.elapsed, step.measure);
             self.refuse_inverted_elements()?;
@@ -166,7 +167,7 @@ impl Scene {
     }
 
     fn refuse_inverted_elements(&self) -> Result<(), StepError> {
-        let inverted = self.solid.inverted_element().filter(|inverted| !inverted.is_crushed());
+        let inverted = motion::inverted_element(&self.solid).filter(|inverted| !inverted.is_crushed());
         let Some(InvertedElement { body, element, centre, volume_ratio, .. }) = inverted else { return Ok(()) };
         let (step, time, dt, limit) = (self.clock.step, self.clock.time, self.clock.dt_before, self.stable_dt());
         let body = self.solid.body(body).name.clone();
@@ -208,7 +209,7 @@ impl Scene {
 
     /// Hands the forces of tied particles to the solids, where there are any; all ranks know the forces on what all of them move.
     fn pass_on_ties(&mut self, passed: &mut impl FnMut(Phase)) {
-        self.bonded.tell_forces();
+        self.bonded.exchange_forces();
         if !self.ties.is_empty() {
             self.ties.pass_on(&mut self.solid, &mut self.bonded.particles);
             passed(Phase::Ties);
@@ -277,7 +278,7 @@ impl Scene {
     fn change_solids(&mut self, dt: f64) -> StepReport {
         let mut turning = Vec::new();
         // What small strains had found beyond was never put in.
-        self.books.time_step += self.solid.let_turn(self.clock.step, dt, &mut turning);
+        self.books.time_step += motion::let_turn(&mut self.solid, self.clock.step, dt, &mut turning);
         StepReport { turning, ..self.release_cut_elements(dt) }
     }
 
@@ -286,11 +287,11 @@ impl Scene {
     /// - `dt`: time since the forces were last computed [s]
     pub(crate) fn release_cut_elements(&mut self, dt: f64) -> StepReport {
         self.removals.last.clear();
-        if let Some((body, element)) = self.solid.crushed_element() {
+        if let Some((body, element)) = motion::crushed_element(&self.solid) {
             self.removals.tally.crushed += 1;
             self.note(Notice::Crushed, Site::Element { body, element }, 1.0);
         }
-        let energy = self.solid.remove_cut_elements(dt, &mut self.removals.last);
+        let energy = removal::remove_cut_elements(&mut self.solid, dt, &mut self.removals.last);
         let mut report = StepReport { removed: self.removals.last.len(), ..StepReport::default() };
         if report.removed > 0 {
             self.follow_removal();
@@ -320,7 +321,7 @@ impl Scene {
                 if present.frequency > self.frequencies.stable.frequency {
                     self.frequencies.stable = present;
                 }
-                let fine = self.solid.fine_stable_step(false);
+                let fine = motion::fine_stable_step(&mut self.solid, false);
                 if fine.zip(self.frequencies.fine).is_some_and(|(now, before)| now.frequency > before.frequency) {
                     self.frequencies.fine = fine;
                 }

@@ -1,6 +1,6 @@
 //! Steps of two sizes: how many short ones lie in a long one.
 
-use fractum_fem::StableStep;
+use fractum_fem::{StableStep, motion};
 use serde::{Deserialize, Serialize};
 
 use crate::clock::{Frequencies, TimeStepSettings};
@@ -30,20 +30,20 @@ impl Scene {
     /// Most short steps in a long one, share of the cells that take them, and the number of nodes that stand twice; none where all
     /// cells take the same step.
     pub fn subcycling(&self) -> Option<(u32, f64, usize)> {
-        let (share, linked) = self.solid.fine_shares()?;
+        let (share, linked) = motion::fine_shares(&self.solid)?;
         Some((self.parts(self.clock.dt_after), share, linked))
     }
 
     /// What changes where steps have two sizes, for a checkpoint.
     pub fn subcycling_state(&self) -> Option<SubcyclingState> {
-        let (parts, fine) = self.solid.parts().zip(self.frequencies.fine)?;
+        let (parts, fine) = motion::short_steps(&self.solid).zip(self.frequencies.fine)?;
         Some(SubcyclingState { parts, frequency: fine.frequency, governing: fine.governing })
     }
 
     /// Puts it back, after the state of the scene.
     pub fn restore_subcycling(&mut self, state: Option<SubcyclingState>) {
         let Some(SubcyclingState { parts, frequency, governing }) = state else { return };
-        self.solid.restore_parts(parts);
+        motion::restore_short_steps(&mut self.solid, parts);
         self.frequencies.fine = Some(StableStep { frequency, governing });
     }
 }

@@ -38,6 +38,7 @@ use crate::process::last_words::LastWords;
 use crate::process::ranks::Ranks;
 use crate::solver::{Measured, Solver, SolverState};
 use end::End;
+use fractum_fem::cracks;
 use messages::Messages;
 pub use origin::for_shell;
 pub(crate) use origin::kept_hash;
@@ -274,7 +275,7 @@ impl Simulation {
             self.save()?;
         }
         if self.recorder.frame_is_due(self.scene.clock.time, !self.solver.follows_path()) {
-            self.scene.gather_ranks();
+            self.scene.gather_all();
             let Simulation { recorder, scene, phases, .. } = self;
             phases.timed(Part::Output, || recorder.frame(scene))?;
         }
@@ -291,14 +292,14 @@ impl Simulation {
         self.messages.tell(&text)?;
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         let was_moving = self.solver.moves();
-        self.scene.gather_ranks();
+        self.scene.gather_all();
         // From the state at t = 0, as a resumed run does.
         self.solver = self.ranks.together(Solver::new(&built.scene, &built, &mut self.phases))?;
         self.scene.begin_stage(built.scene);
         self.solver.take_over(&mut self.scene, was_moving);
         self.recorder.set_probes(built.probes);
         self.case = Arc::new(case);
-        self.ranks.share_out(&mut self.scene, |scene| self.recorder.watch_points(scene))
+        self.ranks.distribute(&mut self.scene, |scene| self.recorder.watch_points(scene))
     }
 
     /// An instant in words.
@@ -326,7 +327,7 @@ impl Simulation {
                 (Some(scene), self.ranks.processes().all)
             }
             None => {
-                self.scene.gather_ranks();
+                self.scene.gather_all();
                 (self.ranks.leads().then(|| self.scene.state()), 0)
             }
         };
@@ -391,7 +392,7 @@ impl Simulation {
             elastic: ledger[EnergyKind::Elastic],
             dissipated: ledger.spent(),
             balance_error: ledger.relative_residual(),
-            broken_edges: self.scene.solid.fracture().broken_edges as u64,
+            broken_edges: cracks::fracture(&self.scene.solid).broken_edges as u64,
             broken_bonds: counts.broken_bonds as u64,
             particles: counts.particles as u64,
             load: self.load().map(|(index, unit)| (self.load_and_peak(index), unit)),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use fractum_dem::{BeamSection, Particles};
-use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, Solid, Viscosity};
+use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, Solid, Viscosity, cracks, motion};
 use fractum_math::{Rotation, Vec3};
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
@@ -75,7 +75,7 @@ fn where_x(nodes: &[Vec3], x: f64) -> Vec<u32> {
 /// The block, held at one end and pulled at the other at `speed` [m/s], with a pressure and gravity.
 fn pulled(nodes: Vec<Vec3>, body: Body, speed: f64, viscosity: Viscosity) -> Scene {
     let mut solid = Solid::new(nodes, vec![body]).unwrap();
-    solid.set_viscosity(viscosity);
+    motion::set_viscosity(&mut solid, viscosity);
     pulled_solid(solid, SIZE.x, speed)
 }
 
@@ -244,16 +244,16 @@ fn a_warm_step_allocates_nothing() {
 
         let mut scene = pulled(nodes.clone(), armed(smoothed.clone()), 0.01, calm);
         assert_eq!(requests(&mut scene), 0, "smoothed with armed damage");
-        assert_eq!(scene.solid.fracture().damaged_edges, 0);
+        assert_eq!(cracks::fracture(&scene.solid).damaged_edges, 0);
 
         // ρ c v = 4.7 MPa: the end that is pulled is damaged; it is too tough to be cut through in these steps.
         let mut scene = pulled(nodes.clone(), armed(smoothed.clone()), 0.5, calm);
         assert_eq!(requests(&mut scene), 0, "smoothed with growing damage");
-        assert!(scene.solid.fracture().damaged_edges > 0);
+        assert!(cracks::fracture(&scene.solid).damaged_edges > 0);
 
         let mut scene = pulled(nodes.clone(), armed(plain.clone()), 0.5, calm);
         assert_eq!(requests(&mut scene), 0, "standard with growing damage");
-        assert!(scene.solid.fracture().damaged_edges > 0);
+        assert!(cracks::fracture(&scene.solid).damaged_edges > 0);
 
         let mut scene = graded(nodes.clone(), armed(smoothed.clone()));
         assert_eq!(requests(&mut scene), 0, "steps of two sizes");

@@ -1,6 +1,6 @@
 //! A crack in one element that is torn and held sideways: softening, lateral restraint and the balance of energy together.
 
-use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Formulation, Plane, Softening, Solid};
+use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Formulation, Plane, Softening, Solid, fields};
 use fractum_math::{Mat3, Vec3};
 use nalgebra::{Rotation3, Vector3};
 
@@ -100,7 +100,7 @@ impl Cell {
     /// Stress across the crack [Pa].
     fn stress(&self) -> f64 {
         let normal = self.axes.column(0);
-        normal.dot(&(self.solid.element_fields(0)[0].0.to_matrix() * normal))
+        normal.dot(&(fields::element_fields(&self.solid, 0)[0].0.to_matrix() * normal))
     }
 }
 

@@ -11,7 +11,7 @@ use super::law::{LocalBond, Separation};
 use super::loads::{LoadLanes, LoadSizes};
 use super::network::BondNetwork;
 use crate::DemError;
-use crate::particles::{ParticlePart, Particles};
+use crate::particles::{ParticleSubdomain, Particles};
 
 macro_rules! laws {
     ($($(#[$doc:meta])* $name:ident($law:ty),)*) => {
@@ -149,9 +149,9 @@ impl Bonds {
         each!(self, network => network.take_separated(out));
     }
 
-    /// See [`BondNetwork::share_out`].
-    pub fn share_out(&mut self, part: &ParticlePart) {
-        each!(self, network => network.share_out(part));
+    /// See [`BondNetwork::distribute`].
+    pub fn distribute(&mut self, part: &ParticleSubdomain) {
+        each!(self, network => network.distribute(part));
     }
 
     /// See [`BondNetwork::can_be_shared`].

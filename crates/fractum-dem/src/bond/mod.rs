@@ -1,6 +1,7 @@
 //! Bonds that join particles: their laws, the network that computes them, the graph of those that hold.
 
 mod block;
+mod distributed;
 mod graph;
 mod kept_loads;
 mod kinds;
@@ -8,11 +9,10 @@ mod law;
 mod loads;
 mod mean_strain;
 mod network;
-mod network_part;
 mod nonlocal;
 mod separating;
-mod share;
 mod space_cells;
+mod subdomain;
 
 pub(crate) use graph::check_pairs;
 pub use graph::{BondGraph, HalfEdge, Parts};

@@ -9,7 +9,7 @@ use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, sum_energies};
 use super::graph::{BondGraph, check_pairs};
 use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
 use super::mean_strain::{MeanStrain, Separating};
-use super::network_part::NetworkPart;
+use super::subdomain::BondSubdomain;
 use crate::DemError;
 use crate::lanes::WIDTH;
 use crate::particles::{Particles, SHARED};
@@ -38,7 +38,7 @@ pub struct BondNetwork<L: BondLaw> {
     /// What separates under them.
     pub(super) separating: Separating,
     /// The blocks of this process, where several share the bonds.
-    pub(super) part: Option<Box<NetworkPart>>,
+    pub(super) part: Option<Box<BondSubdomain>>,
 }
 
 impl<L: BondLaw> BondNetwork<L> {

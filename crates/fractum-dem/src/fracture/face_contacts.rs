@@ -7,7 +7,7 @@ use fractum_contact::close_pairs_of;
 use super::faces::{Face, FaceWork};
 use super::moving::Fracture;
 use crate::bond::Bonds;
-use crate::particles::{ParticlePart, Particles, SHARED};
+use crate::particles::{ParticleSubdomain, Particles, SHARED};
 
 /// Gap up to which strangers are listed, over the smallest radius.
 const SKIN: f64 = 0.5;
@@ -17,11 +17,16 @@ impl Fracture {
     ///
     /// - `part`: that of this process, where several share the body
     /// - `dt` [s]: the step that led here
-    pub fn add_contact_forces(&mut self, particles: &mut Particles, part: Option<&ParticlePart>, dt: f64) -> FaceWork {
+    pub fn add_contact_forces(
+        &mut self,
+        particles: &mut Particles,
+        part: Option<&ParticleSubdomain>,
+        dt: f64,
+    ) -> FaceWork {
         if self.pairs.is_empty() {
             return FaceWork::default();
         }
-        let own = part.map_or(0..particles.len(), ParticlePart::own);
+        let own = part.map_or(0..particles.len(), ParticleSubdomain::own);
         let Fracture { pairs, works, .. } = self;
         works.fill(FaceWork::default());
         let mut of_others = FaceWork::default();
@@ -42,7 +47,7 @@ impl Fracture {
                 particles.moment[ends[1]] += twist;
             }
         }
-        part.into_iter().for_each(|part| self.tell_works(part));
+        part.into_iter().for_each(|part| self.gather_works(part));
         self.works.iter().fold(FaceWork::default(), |mut sum, work| {
             sum.contact += work.contact;
             sum.kinks += work.kinks;

@@ -2,13 +2,13 @@
 
 mod crack;
 pub mod criterion;
+mod exchanges;
 mod face_contacts;
 mod faces;
 mod moving;
 mod search;
 mod separated;
-mod share;
-mod share_faces;
+mod subdomain;
 
 pub(crate) use crack::facet_area;
 pub use crack::{Crack, Occasion};

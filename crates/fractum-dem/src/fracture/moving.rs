@@ -9,7 +9,7 @@ use super::faces::{CrackFaces, Face, FaceWork};
 use super::search::{Break, FailureSearch, ListedBonds, LoadedBonds};
 use crate::DemError;
 use crate::bond::{BondForces, BondGraph, Bonds, LoadLanes, LoadSizes, Separation};
-use crate::particles::{ParticlePart, Particles, SHARED};
+use crate::particles::{ParticleSubdomain, Particles, SHARED};
 
 /// A criterion in the company of a moving network: breaks bonds, keeps the list of them, and lets their particles touch.
 ///
@@ -261,7 +261,7 @@ impl Fracture {
         let energy = |broken: &Break| bonds.energy_of(broken.bond as usize, particles).total();
         energies.clear();
         energies.extend(breaks.iter().map(energy));
-        search.tell_breaks(breaks, energies);
+        search.gather_breaks(breaks, energies);
     }
 
     /// Breaks what was found last, or lists what has separated by its law. Returns the number of bonds.
@@ -293,12 +293,12 @@ impl Fracture {
     /// - `particles`: with the velocities and spins vⁿ⁺½ of that step
     /// - `part`: that of this process, where several share the body
     /// - `dt` [s]: the step
-    pub fn book_last_work(&mut self, particles: &Particles, part: Option<&ParticlePart>, dt: f64) {
+    pub fn book_last_work(&mut self, particles: &Particles, part: Option<&ParticleSubdomain>, dt: f64) {
         let mut acting = std::mem::take(&mut self.acting);
-        let told = part.map(|part| self.tell_powers(part, &acting, particles));
+        let powers = part.map(|part| self.gather_powers(part, &acting, particles));
         for (k, (crack, forces)) in acting.iter().enumerate() {
             let crack = &mut self.cracks[*crack];
-            let power = told.as_ref().map_or_else(|| power_of(forces, crack.pair, particles), |told| told[k]);
+            let power = powers.as_ref().map_or_else(|| power_of(forces, crack.pair, particles), |powers| powers[k]);
             crack.energy -= 0.5 * dt * power;
             self.released -= 0.5 * dt * power;
         }

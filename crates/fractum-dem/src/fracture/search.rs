@@ -6,10 +6,10 @@ use fractum_parallel::gather_named;
 use super::criterion::{
     BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule, SeenBonds, weakness_of,
 };
-use super::share::SearchPart;
+use super::subdomain::SearchSubdomain;
 use crate::DemError;
 use crate::bond::{BondGraph, Bonds, LoadLanes, LoadSizes};
-use crate::particles::ParticlePart;
+use crate::particles::ParticleSubdomain;
 
 /// What a criterion needs to know of a bonded body.
 pub trait LoadedBonds: Sync {
@@ -70,7 +70,7 @@ pub struct FailureSearch {
     overloaded: Vec<FailureSite>,
     worst: Option<FailureSite>,
     /// Sites of this process, where several share them.
-    part: Option<Box<SearchPart>>,
+    part: Option<Box<SearchSubdomain>>,
 }
 
 impl FailureSearch {
@@ -188,17 +188,17 @@ impl FailureSearch {
     }
 
     /// Leaves the sites to ranks: particles to those that move them, bonds to those that compute them.
-    pub(super) fn share_out(&mut self, part: &ParticlePart, bonds: &Bonds, graph: &BondGraph) {
+    pub(super) fn distribute(&mut self, part: &ParticleSubdomain, bonds: &Bonds, graph: &BondGraph) {
         let rings = match self.criterion.level() {
             None | Some(Level::Own) => 0,
             Some(Level::Neighbours) => 1,
             Some(Level::Second) => 2,
         };
-        self.part = Some(Box::new(SearchPart::new(part, bonds, graph, rings)));
+        self.part = Some(Box::new(SearchSubdomain::new(part, bonds, graph, rings)));
     }
 
     /// The bonds that break on any rank, and their energies [J], by those of this one.
-    pub(super) fn tell_breaks(&self, own: &mut Vec<Break>, energies: &mut Vec<f64>) {
+    pub(super) fn gather_breaks(&self, own: &mut Vec<Break>, energies: &mut Vec<f64>) {
         if let Some(part) = &self.part {
             let with_energy = own.iter().zip(&*energies).map(|(Break { bond, mode }, energy)| (*bond, *mode, *energy));
             let mine: Vec<(u32, BreakMode, f64)> = with_energy.collect();
@@ -266,7 +266,7 @@ impl FailureSearch {
                 let (virial, volume) = (&virials[own.clone()], &volume[own.clone()]);
                 let mut any = criterion.virials_reach(virial, volume, *fraction, any_limit, &mut reaching[own.clone()]);
                 if let Some(part) = part {
-                    any |= part.tell(virials, reaching);
+                    any |= part.exchange_virials(virials, reaching);
                 }
                 if any {
                     let around = Neighbourhoods { graph, members, inverse, virials, weakness, first: own.start };
@@ -303,7 +303,7 @@ impl FailureSearch {
                 body.virials(&mut self.virials);
                 let FailureSearch { members, inverse, virials, weakness, stress, part, reaching, .. } = self;
                 let own = part.as_ref().map_or(0..virials.len(), |part| part.particles());
-                part.iter_mut().for_each(|part| _ = part.tell(virials, reaching));
+                part.iter_mut().for_each(|part| _ = part.exchange_virials(virials, reaching));
                 let around = Neighbourhoods { graph, members, inverse, virials, weakness, first: own.start };
                 criterion.search(&around, &mut stress[own], limit)
             }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::kernel::{self, Moving};
 use super::step::{ParticleDamping, TimeStep};
-use super::{BLOCK, ParticlePart, Particles, PastForces, free};
+use super::{BLOCK, ParticleSubdomain, Particles, PastForces, free};
 
 impl Particles {
     /// Number of entries that [`Particles::kick_and_drift`] needs for its partial sums.
@@ -33,7 +33,7 @@ impl Particles {
     /// [`Particles::kick_and_drift`] of what a rank moves. All ranks must call it.
     pub fn kick_and_drift_part(
         &mut self,
-        part: &ParticlePart,
+        part: &ParticleSubdomain,
         step: &TimeStep,
         before: &mut PastForces,
         partial: &mut [HalfSteps],
@@ -43,7 +43,7 @@ impl Particles {
         self.advance(own, step, before, &mut partial[blocks]);
         part.of_others().iter().for_each(|run| self.advance_run(run.clone(), step, before));
         if step.measure || !step.damping.is_off() {
-            part.tell_work(partial);
+            part.gather_work(partial);
         }
         partial.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
     }

@@ -2,15 +2,15 @@
 
 mod central_difference;
 mod kernel;
-mod part;
 mod past_forces;
 mod step;
+mod subdomain;
 
 pub use central_difference::CentralDifference;
 pub(crate) use kernel::turned;
-pub use part::{NearPairs, ParticlePart, ParticleShare};
 pub use past_forces::PastForces;
 pub use step::{ParticleDamping, TimeStep};
+pub use subdomain::{NearPairs, ParticleSubdomain, ParticleSubdomainSize};
 
 use fractum_math::{Rotation, Vec3};
 use rayon::prelude::*;
@@ -114,7 +114,7 @@ impl Particles {
     }
 
     /// [`Particles::clear_forces`] of what a rank moves.
-    pub fn clear_forces_of_part(&mut self, part: &ParticlePart) {
+    pub fn clear_forces_of_part(&mut self, part: &ParticleSubdomain) {
         for run in part.moved() {
             clear(&mut self.force[run.clone()], &mut self.moment[run]);
         }

@@ -455,7 +455,10 @@ mod tests {
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
         let body = Body::new("box", ElementKind::T4, mesh.tetrahedra, elastic).smoothed();
         let mut solid = Solid::new(mesh.nodes, vec![body]).unwrap();
-        solid.set_viscosity(Viscosity { stiffness_time: 1e-6, bulk_linear: 0.06, bulk_quadratic: 1.2 });
+        crate::motion::viscous_solid::set_viscosity(
+            &mut solid,
+            Viscosity { stiffness_time: 1e-6, bulk_linear: 0.06, bulk_quadratic: 1.2 },
+        );
         for (i, (u, v)) in solid.displacement.iter_mut().zip(&mut solid.velocity).enumerate() {
             *u = Vec3::new(0.7 * i as f64, 1.1 * i as f64, 1.7 * i as f64).map(|x| 0.01 * x.sin());
             *v = Vec3::new(1.3 * i as f64, 0.3 * i as f64, 0.9 * i as f64).map(|x| 2.0 * x.cos());

@@ -3,10 +3,11 @@
 use fractum_math::elementary::asin;
 use fractum_math::{Sym3, Vec3};
 
-use crate::body::ElementKind;
 use crate::body::edges::BodyEdges;
 use crate::damage::edge::EdgeField;
 use crate::element::regular_edge;
+use crate::fields::element_fields::cells_with;
+use crate::motion::phase_damage::element_phase;
 use crate::solid::Solid;
 
 /// How far the damage of a solid has come.
@@ -90,120 +91,113 @@ impl CrackPlane {
     }
 }
 
-impl Solid {
-    /// Counts damaged and broken edges and removed elements.
-    pub fn fracture(&self) -> Fracture {
-        let mut count = Fracture::default();
-        for edge in self.damaged_fields().flat_map(|(_, field)| &field.state) {
-            count.damaged_edges += usize::from(edge.damage > 0.0);
-            count.broken_edges += usize::from(edge.broken);
+/// Counts damaged and broken edges and removed elements.
+pub fn fracture(solid: &Solid) -> Fracture {
+    let mut count = Fracture::default();
+    for edge in solid.damaged_fields().flat_map(|(_, field)| &field.state) {
+        count.damaged_edges += usize::from(edge.damage > 0.0);
+        count.broken_edges += usize::from(edge.broken);
+    }
+    count.removed_elements = removed_count(solid);
+    count
+}
+
+/// Number of elements that have been removed so far.
+pub fn removed_count(solid: &Solid) -> usize {
+    solid.bodies.iter().map(|body| body.alive.iter().filter(|alive| !**alive).count()).sum()
+}
+
+/// All damaged edges, body by body in the order of their edges.
+pub fn crack_edges(solid: &Solid) -> Vec<CrackEdge> {
+    let fields: Vec<(usize, &EdgeField)> = solid.damaged_fields().collect();
+    let mut found = Vec::new();
+    for (body, model) in solid.bodies.iter().enumerate() {
+        // Field and place of each edge; walking through them costs less than sorting those of the blocks.
+        let count = model.edges.as_ref().map_or(0, BodyEdges::len);
+        let mut places: Vec<Option<(u32, u32)>> = vec![None; count];
+        for (index, (_, field)) in (0..).zip(&fields).filter(|(_, (of, _))| *of == body) {
+            let damaged = (0..).zip(&field.state).filter(|(_, state)| state.damage > 0.0);
+            damaged.for_each(|(at, _)| places[field.edges[at as usize] as usize] = Some((index, at)));
         }
-        count.removed_elements = self.removed_count();
-        count
+        let edge = |(field, at): (u32, u32)| crack_edge(solid, body, fields[field as usize].1, at as usize);
+        found.extend(places.into_iter().flatten().map(edge));
     }
+    found
+}
 
-    /// Number of elements that have been removed so far.
-    pub fn removed_count(&self) -> usize {
-        self.bodies.iter().map(|body| body.alive.iter().filter(|alive| !**alive).count()).sum()
+fn crack_edge(solid: &Solid, body: usize, field: &EdgeField, at: usize) -> CrackEdge {
+    let (model, edge, state) = (&solid.bodies[body], field.edges[at], &field.state[at]);
+    let volume = volume_of_edge(solid, body, edge);
+    let (area, left) = match &model.phase {
+        None => (volume / field.length[at], (1.0 - state.damage) * state.kappa / field.strength[at]),
+        Some(phase) => (
+            volume * phase.area_density(edge as usize) / state.damage,
+            field.softens.residual_ratio(state.kappa, field.strength[at], field.length[at]),
+        ),
+    };
+    let ends = model.edges.iter().flat_map(|edges| edges.nodes(edge));
+    CrackEdge {
+        body,
+        edge,
+        middle: ends.map(|node| solid.reference[node as usize]).sum::<Vec3>() * 0.5,
+        area,
+        damage: state.damage,
+        softened: 1.0 - left,
     }
+}
 
-    /// All damaged edges, body by body in the order of their edges.
-    pub fn crack_edges(&self) -> Vec<CrackEdge> {
-        let fields: Vec<(usize, &EdgeField)> = self.damaged_fields().collect();
-        let mut found = Vec::new();
-        for (body, model) in self.bodies.iter().enumerate() {
-            // Field and place of each edge; walking through them costs less than sorting those of the blocks.
-            let count = model.edges.as_ref().map_or(0, BodyEdges::len);
-            let mut places: Vec<Option<(u32, u32)>> = vec![None; count];
-            for (index, (_, field)) in (0..).zip(&fields).filter(|(_, (of, _))| *of == body) {
-                let damaged = (0..).zip(&field.state).filter(|(_, state)| state.damage > 0.0);
-                damaged.for_each(|(at, _)| places[field.edges[at as usize] as usize] = Some((index, at)));
+/// Share of an edge in the volume of the elements around it, whether they are still there or not [m³].
+fn volume_of_edge(solid: &Solid, body: usize, edge: u32) -> f64 {
+    let model = &solid.bodies[body];
+    let Some(edges) = &model.edges else { return 0.0 };
+    let elements = edges.around(edge);
+    // The cell of an edge that has lost no element knows its volume.
+    if model.standard.is_none() && elements.iter().all(|&e| model.alive[e as usize]) {
+        return match model.location.kept(edge) {
+            Some(at) => {
+                let (cells, cell) = cells_with(solid, at);
+                cells.volume[cell]
             }
-            let edge = |(field, at): (u32, u32)| self.crack_edge(body, fields[field as usize].1, at as usize);
-            found.extend(places.into_iter().flatten().map(edge));
-        }
-        found
-    }
-
-    fn crack_edge(&self, body: usize, field: &EdgeField, at: usize) -> CrackEdge {
-        let (model, edge, state) = (&self.bodies[body], field.edges[at], &field.state[at]);
-        let volume = self.volume_of_edge(body, edge);
-        let (area, left) = match &model.phase {
-            None => (volume / field.length[at], (1.0 - state.damage) * state.kappa / field.strength[at]),
-            Some(phase) => (
-                volume * phase.area_density(edge as usize) / state.damage,
-                field.softens.residual_ratio(state.kappa, field.strength[at], field.length[at]),
-            ),
+            None => model.cells(&solid.reference, &[edge]).volume[0],
         };
-        let ends = model.edges.iter().flat_map(|edges| edges.nodes(edge));
-        CrackEdge {
-            body,
-            edge,
-            middle: ends.map(|node| self.reference[node as usize]).sum::<Vec3>() * 0.5,
-            area,
-            damage: state.damage,
-            softened: 1.0 - left,
-        }
     }
+    let share = 1.0 / model.body.shape.edge_count() as f64;
+    elements.iter().map(|&e| share * solid.element_volume(body, e)).sum()
+}
 
-    /// Share of an edge in the volume of the elements around it, whether they are still there or not [m³].
-    fn volume_of_edge(&self, body: usize, edge: u32) -> f64 {
-        let model = &self.bodies[body];
-        let Some(edges) = &model.edges else { return 0.0 };
-        let elements = edges.around(edge);
-        // The cell of an edge that has lost no element knows its volume.
-        if model.standard.is_none() && elements.iter().all(|&e| model.alive[e as usize]) {
-            return match model.location.kept(edge) {
-                Some(at) => {
-                    let (cells, cell) = self.cells_with(at);
-                    cells.volume[cell]
-                }
-                None => model.cells(&self.reference, &[edge]).volume[0],
-            };
-        }
-        let share = 1.0 / model.body.shape.edge_count() as f64;
-        elements.iter().map(|&e| share * self.element_volume(body, e)).sum()
-    }
+/// Energy that damage has taken in a body with a phase field over the fracture energy of its area of crack; none without one, or without a crack.
+///
+/// About 1 where cracks have opened, less before. The field is driven by the equivalent stress, so that a band that is sheared takes up to 2 (1 + ν) times the
+/// fracture energy under Rankine's criterion.
+pub fn cost_of_bands(solid: &Solid, body: usize) -> Option<f64> {
+    let model = &solid.bodies[body];
+    let (zone, _) = model.body.damage.as_ref().zip(model.phase.as_ref())?;
+    let area = |edge: &CrackEdge| if edge.body == body { edge.damaged_area() } else { 0.0 };
+    let needed = zone.law.fracture_energy * crack_edges(solid).iter().map(area).sum::<f64>();
+    let taken: f64 = solid.blocks.iter().filter(|block| block.body == body).map(|block| block.dissipated).sum();
+    (needed > 0.0).then(|| taken / needed)
+}
 
-    /// Energy that damage has taken in a body with a phase field over the fracture energy of its area of crack; none without one, or without a crack.
-    ///
-    /// About 1 where cracks have opened, less before. The field is driven by the equivalent stress, so that a band that is sheared takes up to 2 (1 + ν) times the
-    /// fracture energy under Rankine's criterion.
-    pub fn cost_of_bands(&self, body: usize) -> Option<f64> {
-        let model = &self.bodies[body];
-        let (zone, _) = model.body.damage.as_ref().zip(model.phase.as_ref())?;
-        let area = |edge: &CrackEdge| if edge.body == body { edge.damaged_area() } else { 0.0 };
-        let needed = zone.law.fracture_energy * self.crack_edges().iter().map(area).sum::<f64>();
-        let taken: f64 = self.blocks.iter().filter(|block| block.body == body).map(|block| block.dissipated).sum();
-        (needed > 0.0).then(|| taken / needed)
-    }
+/// Mean size of the elements along the cracks of a body with a phase field [m]; none without one, or without a crack.
+pub fn size_along_cracks(solid: &Solid, body: usize) -> Option<f64> {
+    let model = &solid.bodies[body];
+    let cracked = element_phase(solid, body)?;
+    let sizes = solid.element_volumes(body).iter().zip(cracked).filter(|(_, phase)| *phase > 0.5);
+    let sizes = sizes.map(|(volume, _)| regular_edge(model.body.shape, volume / model.body.depth()));
+    let (sum, count) = sizes.fold((0.0, 0.0), |(sum, count), size| (sum + size, count + 1.0));
+    (count > 0.0).then(|| sum / count)
+}
 
-    /// Mean size of the elements along the cracks of a body with a phase field [m]; none without one, or without a crack.
-    pub fn size_along_cracks(&self, body: usize) -> Option<f64> {
-        let model = &self.bodies[body];
-        let cracked = self.element_phase(body)?;
-        let sizes = self.element_volumes(body).iter().zip(cracked).filter(|(_, phase)| *phase > 0.5);
-        let sizes = sizes.map(|(volume, _)| regular_edge(model.body.shape, volume / model.body.depth()));
-        let (sum, count) = sizes.fold((0.0, 0.0), |(sum, count), size| (sum + size, count + 1.0));
-        (count > 0.0).then(|| sum / count)
+/// Share of its volume that a body with a phase field has lost to its cracks, and the width π b of a band [m]; none without a phase field.
+pub fn lost_to_bands(solid: &Solid, body: usize) -> Option<(f64, f64)> {
+    let model = &solid.bodies[body];
+    let field = model.phase.as_ref()?;
+    let (mut whole, mut lost) = (0.0, 0.0);
+    for (volume, alive) in solid.element_volumes(body).iter().zip(&model.alive) {
+        whole += volume;
+        lost += if *alive { 0.0 } else { *volume };
     }
-
-    /// Share of its volume that a body with a phase field has lost to its cracks, and the width π b of a band [m]; none without a phase field.
-    pub fn lost_to_bands(&self, body: usize) -> Option<(f64, f64)> {
-        let model = &self.bodies[body];
-        let field = model.phase.as_ref()?;
-        let (mut whole, mut lost) = (0.0, 0.0);
-        for (volume, alive) in self.element_volumes(body).iter().zip(&model.alive) {
-            whole += volume;
-            lost += if *alive { 0.0 } else { *volume };
-        }
-        Some((lost / whole, std::f64::consts::PI * field.law.length))
-    }
-
-    /// Whether the solid is plane.
-    pub fn is_plane(&self) -> bool {
-        self.bodies.iter().any(|model| model.body.shape == ElementKind::T3)
-    }
+    Some((lost / whole, std::f64::consts::PI * field.law.length))
 }
 
 #[cfg(test)]
@@ -211,7 +205,7 @@ mod tests {
     use fractum_mesh::generate::structured_rectangle;
 
     use super::*;
-    use crate::body::{Body, Plane, Regularisation};
+    use crate::body::{Body, ElementKind, Plane, Regularisation};
     use crate::material::{DamageLaw, Elastic};
 
     fn at(x: f64, y: f64, z: f64) -> (Vec3, f64) {
@@ -253,7 +247,7 @@ mod tests {
             }
             solid.update_internal_forces(dt, false);
         }
-        solid.cost_of_bands(0).unwrap()
+        cost_of_bands(&solid, 0).unwrap()
     }
 
     /// Without lateral contraction both bands see the same equivalent stress, and store ½ τ²/G and ½ σ²/E under it.

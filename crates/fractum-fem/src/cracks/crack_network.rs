@@ -127,7 +127,7 @@ impl CrackNetwork {
         let of_mouth = &self.mouths[mouth];
         let live = of_mouth.facets.iter().zip(&of_mouth.live).filter(|(_, live)| **live).map(|(facet, _)| facet);
         let walls = self.cells_of(mouth).flat_map(CrackCell::walls);
-        live.chain(walls).map(|facet| solid.facet_area(facet, |node| solid.reference[node as usize]).norm()).sum()
+        live.chain(walls).map(|facet| area_at(solid, facet, |node| solid.reference[node as usize]).norm()).sum()
     }
 
     /// Takes over elements that have just been removed.
@@ -293,34 +293,32 @@ impl CrackCell {
     }
 }
 
-impl Solid {
-    /// Area times unit normal of a facet with its nodes at these places [m²]; of an edge in the plane length times thickness.
-    pub fn facet_area(&self, nodes: &[u32; 3], at: impl Fn(u32) -> Vec3) -> Vec3 {
-        let thickness = || self.bodies.first().map_or(1.0, |model| model.body.thickness);
-        facet_area(nodes.map(at), (nodes[1] == nodes[2]).then(thickness))
-    }
+/// Area times unit normal of a facet with its nodes at these places [m²]; of an edge in the plane length times thickness.
+pub fn area_at(solid: &Solid, nodes: &[u32; 3], at: impl Fn(u32) -> Vec3) -> Vec3 {
+    let thickness = || solid.bodies.first().map_or(1.0, |model| model.body.thickness);
+    facet_area(nodes.map(at), (nodes[1] == nodes[2]).then(thickness))
+}
 
-    /// Volume of an element at tⁿ [m³]; negative where it is turned inside out.
-    pub fn present_volume(&self, body: usize, element: u32) -> f64 {
-        let body = &self.bodies[body].body;
-        let places = body.elements[element as usize].map(|node| self.position(node as usize));
-        measure_and_gradients(body.shape, &places).0 * body.depth()
-    }
+/// Volume of an element at tⁿ [m³]; negative where it is turned inside out.
+pub fn present_volume(solid: &Solid, body: usize, element: u32) -> f64 {
+    let body = &solid.bodies[body].body;
+    let places = body.elements[element as usize].map(|node| solid.position(node as usize));
+    measure_and_gradients(body.shape, &places).0 * body.depth()
+}
 
-    /// Characteristic length of an element: the mean over its edges that may be damaged, else the edge of the regular
-    /// element of its size [m].
-    pub fn characteristic_length(&self, body: usize, element: u32) -> f64 {
-        let model = &self.bodies[body];
-        let count = model.body.shape.edge_count();
-        let edges = model.edges.iter().flat_map(|edges| edges.of_element(element).into_iter().take(count));
-        let lengths = edges.filter_map(|edge| self.length_of_edge(body, edge));
-        let (sum, number) = lengths.fold((0.0, 0.0), |(sum, number), length| (sum + length, number + 1.0));
-        if number > 0.0 {
-            return sum / number;
-        }
-        let nodes = model.body.elements[element as usize].map(|node| self.reference[node as usize]);
-        regular_edge(model.body.shape, measure_and_gradients(model.body.shape, &nodes).0)
+/// Characteristic length of an element: the mean over its edges that may be damaged, else the edge of the regular
+/// element of its size [m].
+pub fn characteristic_length(solid: &Solid, body: usize, element: u32) -> f64 {
+    let model = &solid.bodies[body];
+    let count = model.body.shape.edge_count();
+    let edges = model.edges.iter().flat_map(|edges| edges.of_element(element).into_iter().take(count));
+    let lengths = edges.filter_map(|edge| solid.length_of_edge(body, edge));
+    let (sum, number) = lengths.fold((0.0, 0.0), |(sum, number), length| (sum + length, number + 1.0));
+    if number > 0.0 {
+        return sum / number;
     }
+    let nodes = model.body.elements[element as usize].map(|node| solid.reference[node as usize]);
+    regular_edge(model.body.shape, measure_and_gradients(model.body.shape, &nodes).0)
 }
 
 fn side_count(solid: &Solid, body: usize) -> usize {
@@ -514,7 +512,7 @@ mod tests {
             .cells()
             .iter()
             .flat_map(CrackCell::walls)
-            .map(|wall| solid.facet_area(wall, |node| solid.reference[node as usize]))
+            .map(|wall| area_at(&solid, wall, |node| solid.reference[node as usize]))
             .sum();
         assert!(gone.len() > 10 && total.norm() < 1e-15, "{total:?}");
     }

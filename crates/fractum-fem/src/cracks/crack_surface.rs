@@ -53,6 +53,17 @@ impl CrackSurface {
         self.facets.iter().map(|facet| facet.area).sum::<f64>() + 0.0
     }
 
+    /// The surface that the removal of elements has opened, at the present displacements.
+    pub fn of(solid: &Solid) -> Self {
+        let mut facets = Vec::new();
+        for (body, model) in solid.bodies.iter().enumerate() {
+            for removed in (0u32..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(element, _)| element) {
+                add_exposed(solid, body, removed, &mut facets);
+            }
+        }
+        CrackSurface::new(facets)
+    }
+
     fn new(facets: Vec<CrackFacet>) -> Self {
         // Edges with their facets; in the plane the ends of the sides.
         let mut shared: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * facets.len());
@@ -76,47 +87,34 @@ impl CrackSurface {
     }
 }
 
-impl Solid {
-    /// The surface that the removal of elements has opened, at the present displacements.
-    pub fn crack_surface(&self) -> CrackSurface {
-        let mut facets = Vec::new();
-        for (body, model) in self.bodies.iter().enumerate() {
-            for removed in (0u32..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(element, _)| element) {
-                self.add_exposed(body, removed, &mut facets);
-            }
-        }
-        CrackSurface::new(facets)
-    }
-
-    /// Adds the facets that the removal of one element exposes.
-    fn add_exposed(&self, body: usize, removed: u32, facets: &mut Vec<CrackFacet>) {
-        let model = &self.bodies[body];
-        let Some(edges) = &model.edges else { return };
-        let element = model.body.elements[removed as usize];
-        let sides = if model.body.shape == ElementKind::T4 { &SIDES_T4[..] } else { &SIDES_T3[..] };
-        for &(local, opposite, edge, third) in sides {
-            let around = edges.around(edges.of_element(removed)[edge]);
-            if let Some(behind) = behind(model, &around, element[third]) {
-                let nodes = local.map(|k| element[k]);
-                facets.push(self.crack_facet(body, behind, removed, nodes, element[opposite]));
-            }
+/// Adds the facets that the removal of one element exposes.
+fn add_exposed(solid: &Solid, body: usize, removed: u32, facets: &mut Vec<CrackFacet>) {
+    let model = &solid.bodies[body];
+    let Some(edges) = &model.edges else { return };
+    let element = model.body.elements[removed as usize];
+    let sides = if model.body.shape == ElementKind::T4 { &SIDES_T4[..] } else { &SIDES_T3[..] };
+    for &(local, opposite, edge, third) in sides {
+        let around = edges.around(edges.of_element(removed)[edge]);
+        if let Some(behind) = behind(model, &around, element[third]) {
+            let nodes = local.map(|k| element[k]);
+            facets.push(crack_facet(solid, body, behind, removed, nodes, element[opposite]));
         }
     }
+}
 
-    fn crack_facet(&self, body: usize, element: u32, removed: u32, nodes: [u32; 3], opposite: u32) -> CrackFacet {
-        let [a, b, c] = nodes.map(|node| self.position(node as usize));
-        let moved = nodes.map(|node| self.displacement[node as usize]);
-        let (area, centre, mean) = if nodes[1] == nodes[2] {
-            let along = b - a;
-            let thickness = self.bodies[body].body.thickness;
-            (Vec3::new(along.y, -along.x, 0.0) * thickness, (a + b) * 0.5, (moved[0] + moved[1]) * 0.5)
-        } else {
-            ((b - a).cross(&(c - a)) * 0.5, (a + b + c) / 3.0, (moved[0] + moved[1] + moved[2]) / 3.0)
-        };
-        let normal = area.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
-        let opening = (self.displacement[opposite as usize] - mean).dot(&normal);
-        CrackFacet { body, element, removed, nodes, centre, area: area.norm(), normal, opening }
-    }
+fn crack_facet(solid: &Solid, body: usize, element: u32, removed: u32, nodes: [u32; 3], opposite: u32) -> CrackFacet {
+    let [a, b, c] = nodes.map(|node| solid.position(node as usize));
+    let moved = nodes.map(|node| solid.displacement[node as usize]);
+    let (area, centre, mean) = if nodes[1] == nodes[2] {
+        let along = b - a;
+        let thickness = solid.bodies[body].body.thickness;
+        (Vec3::new(along.y, -along.x, 0.0) * thickness, (a + b) * 0.5, (moved[0] + moved[1]) * 0.5)
+    } else {
+        ((b - a).cross(&(c - a)) * 0.5, (a + b + c) / 3.0, (moved[0] + moved[1] + moved[2]) / 3.0)
+    };
+    let normal = area.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
+    let opening = (solid.displacement[opposite as usize] - mean).dot(&normal);
+    CrackFacet { body, element, removed, nodes, centre, area: area.norm(), normal, opening }
 }
 
 /// The element with the node `third` among those around an edge that are still there.
@@ -138,13 +136,13 @@ mod tests {
         let mut body = Body::new("bar", shape, elements, elastic).smoothed().with_damage(law);
         body.thickness = 0.3;
         let mut solid = Solid::new(nodes, vec![body]).unwrap();
-        assert!(solid.crack_surface().facets.is_empty());
+        assert!(CrackSurface::of(&solid).facets.is_empty());
         // The column of elements between x = 2 and 3 opens by 5 mm.
         for (u, p) in solid.displacement.iter_mut().zip(&solid.reference) {
             u.x = if p.x > 0.25 { 5e-3 } else { 0.0 };
         }
         solid.update_internal_forces(0.0, false);
-        solid.remove_cut_elements(0.0, &mut Vec::new());
+        crate::removal::remove_cut_elements(&mut solid, 0.0, &mut Vec::new());
         solid
     }
 
@@ -156,7 +154,7 @@ mod tests {
         let solids =
             [broken(ElementKind::T3, flat.nodes, elements), broken(ElementKind::T4, deep.nodes, deep.tetrahedra)];
         for solid in &solids {
-            let crack = solid.crack_surface();
+            let crack = CrackSurface::of(&solid);
             let section = 0.2 * 0.3;
             assert!((crack.area() / (2.0 * section) - 1.0).abs() < 1e-12, "{}", crack.area());
             for (index, facet) in crack.facets.iter().enumerate() {

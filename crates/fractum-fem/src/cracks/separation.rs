@@ -48,66 +48,66 @@ pub struct Separation {
     pub facets: Vec<SeparatedFacet>,
 }
 
-impl Solid {
+impl Separation {
     /// What has separated so far.
-    pub fn separation(&self) -> Separation {
+    pub fn of(solid: &Solid) -> Self {
         let mut elements = Vec::new();
-        for body in 0..self.body_count() {
-            let removed = (0u32..).zip(self.alive(body)).filter(|(_, alive)| !**alive).map(|(element, _)| element);
-            let middle = |element| self.element_middle(body, element);
+        for body in 0..solid.body_count() {
+            let removed = (0u32..).zip(solid.alive(body)).filter(|(_, alive)| !**alive).map(|(element, _)| element);
+            let middle = |element| solid.element_middle(body, element);
             elements.extend(removed.map(|element| SeparatedElement { body, element, middle: middle(element) }));
         }
         if elements.is_empty() {
             return Separation::default();
         }
-        Separation { elements, facets: self.separated_facets(&self.crack_surface()) }
+        Separation { elements, facets: separated_facets(solid, &CrackSurface::of(solid)) }
     }
+}
 
-    fn separated_facets(&self, surface: &CrackSurface) -> Vec<SeparatedFacet> {
-        let vectors: Vec<Vec3> = surface.facets.iter().map(|facet| self.area_without_load(facet)).collect();
-        let same_face = |a: &Vec3, b: &Vec3| a.dot(b) > OTHER_FACE * (a.norm_squared() * b.norm_squared()).sqrt();
-        let mut mean = vectors.clone();
-        for _ in 0..PASSES {
-            let around = |index: usize| {
-                let others = surface.neighbours.row(index).iter().map(|&other| other as usize);
-                let others = others.filter(|&other| same_face(&vectors[index], &vectors[other]));
-                mean[index] + others.map(|other| mean[other]).sum::<Vec3>()
-            };
-            mean = (0..mean.len()).map(around).collect();
-        }
-        let projected = |(area, mean): (&Vec3, &Vec3)| match mean.try_normalize(0.0) {
-            Some(normal) => area.dot(&normal).max(0.0),
-            None => area.norm(),
+fn separated_facets(solid: &Solid, surface: &CrackSurface) -> Vec<SeparatedFacet> {
+    let vectors: Vec<Vec3> = surface.facets.iter().map(|facet| area_without_load(solid, facet)).collect();
+    let same_face = |a: &Vec3, b: &Vec3| a.dot(b) > OTHER_FACE * (a.norm_squared() * b.norm_squared()).sqrt();
+    let mut mean = vectors.clone();
+    for _ in 0..PASSES {
+        let around = |index: usize| {
+            let others = surface.neighbours.row(index).iter().map(|&other| other as usize);
+            let others = others.filter(|&other| same_face(&vectors[index], &vectors[other]));
+            mean[index] + others.map(|other| mean[other]).sum::<Vec3>()
         };
-        let areas = vectors.iter().zip(&mean).map(projected);
-        let facet = |(facet, area): (&CrackFacet, f64)| SeparatedFacet {
-            body: facet.body,
-            removed: facet.removed,
-            area: 0.5 * area,
-        };
-        surface.facets.iter().zip(areas).map(facet).collect()
+        mean = (0..mean.len()).map(around).collect();
     }
+    let projected = |(area, mean): (&Vec3, &Vec3)| match mean.try_normalize(0.0) {
+        Some(normal) => area.dot(&normal).max(0.0),
+        None => area.norm(),
+    };
+    let areas = vectors.iter().zip(&mean).map(projected);
+    let facet = |(facet, area): (&CrackFacet, f64)| SeparatedFacet {
+        body: facet.body,
+        removed: facet.removed,
+        area: 0.5 * area,
+    };
+    surface.facets.iter().zip(areas).map(facet).collect()
+}
 
-    /// Area of a facet times its normal without load; of a side in the plane its length times the thickness [m²].
-    fn area_without_load(&self, facet: &CrackFacet) -> Vec3 {
-        let plane = facet.nodes[1] == facet.nodes[2];
-        let corners = facet.nodes.map(|node| self.reference[node as usize]);
-        facet_area(corners, plane.then_some(self.body(facet.body).thickness))
-    }
+/// Area of a facet times its normal without load; of a side in the plane its length times the thickness [m²].
+fn area_without_load(solid: &Solid, facet: &CrackFacet) -> Vec3 {
+    let plane = facet.nodes[1] == facet.nodes[2];
+    let corners = facet.nodes.map(|node| solid.reference[node as usize]);
+    facet_area(corners, plane.then_some(solid.body(facet.body).thickness))
+}
 
-    /// The crack that each of these removed elements is part of, numbered in their order, and how many cracks there are;
-    /// elements of one crack share nodes.
-    pub fn separate_cracks(&self, elements: &[SeparatedElement]) -> (Vec<u32>, u32) {
-        let corners = |of: &SeparatedElement| {
-            let body = self.body(of.body);
-            body.elements[of.element as usize][..body.shape.node_count()].to_vec()
-        };
-        let mut ends: Vec<(u32, u32)> =
-            (0..).zip(elements).flat_map(|(i, of)| corners(of).into_iter().map(move |n| (n, i))).collect();
-        ends.sort_unstable();
-        let links = ends.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
-        numbered_parts(elements.len(), links)
-    }
+/// The crack that each of these removed elements is part of, numbered in their order, and how many cracks there are;
+/// elements of one crack share nodes.
+pub fn separate_cracks(solid: &Solid, elements: &[SeparatedElement]) -> (Vec<u32>, u32) {
+    let corners = |of: &SeparatedElement| {
+        let body = solid.body(of.body);
+        body.elements[of.element as usize][..body.shape.node_count()].to_vec()
+    };
+    let mut ends: Vec<(u32, u32)> =
+        (0..).zip(elements).flat_map(|(i, of)| corners(of).into_iter().map(move |n| (n, i))).collect();
+    ends.sort_unstable();
+    let links = ends.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
+    numbered_parts(elements.len(), links)
 }
 
 #[cfg(test)]
@@ -131,12 +131,12 @@ mod tests {
             u.y = beyond(p);
         }
         solid.update_internal_forces(0.0, false);
-        solid.remove_cut_elements(0.0, &mut Vec::new());
+        crate::removal::remove_cut_elements(&mut solid, 0.0, &mut Vec::new());
         solid
     }
 
     fn area(solid: &Solid) -> f64 {
-        solid.separation().facets.iter().map(|facet| facet.area).sum()
+        Separation::of(solid).facets.iter().map(|facet| facet.area).sum()
     }
 
     /// Moves inner nodes by up to half of the reach each way, always the same.
@@ -201,10 +201,10 @@ mod tests {
             }
         };
         let solid = plane(true, bands);
-        let Separation { elements, .. } = solid.separation();
-        let (part, count) = solid.separate_cracks(&elements);
+        let Separation { elements, .. } = Separation::of(&solid);
+        let (part, count) = separate_cracks(&solid, &elements);
         assert_eq!(count, 2);
         assert!(elements.iter().zip(&part).all(|(of, &part)| (of.middle.y < 0.5 * SIDE) == (part == 0)));
-        assert_eq!(plane(false, |_| 0.0).separation(), Separation::default());
+        assert_eq!(Separation::of(&plane(false, |_| 0.0)), Separation::default());
     }
 }

@@ -209,7 +209,7 @@ mod tests {
         let mut body = Body::new("plate", ElementKind::T3, elements, elastic).smoothed();
         body = body.with_damage(DamageLaw::rankine(3e6, 1000.0));
         body.damage.as_mut().unwrap().regularisation = Some(Regularisation { length: None });
-        Solid::new(nodes, vec![body]).unwrap().phase_sizes(0).unwrap()
+        crate::motion::phase_sizes(&Solid::new(nodes, vec![body]).unwrap(), 0).unwrap()
     }
 
     #[test]

@@ -39,7 +39,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
     let mut is_near = nodes_of_whole(exchange, bodies, nodes.len());
     around.touched.iter().chain(around.measured).for_each(|&node| is_near[node as usize] = true);
     let none = || vec![Vec::new(); exchange.size()];
-    let mut words = OnTheirWay { to: none(), to_all: Vec::new(), told: none() };
+    let mut words = OnTheirWay { to: none(), to_all: Vec::new(), owned: none() };
     cells.iter().for_each(|cells| cells.pack(&order, &is_near, &mut words));
     let mut shares: Vec<BodyShare> = (0..bodies.len())
         .map(|body| {
@@ -64,7 +64,7 @@ pub fn deal(exchange: &dyn Exchange, nodes: &[Vec3], bodies: &[ReadBody], around
         share.is_owned = vec![false; share.count];
         (share.elements, share.tags) = all_elements(exchange, body.elements, body.tags);
     }
-    for word in post(exchange, words.told).into_iter().flatten() {
+    for word in post(exchange, words.owned).into_iter().flatten() {
         shares[(word >> 32) as usize].is_owned[word as u32 as usize] = true;
     }
     let mut received = post(exchange, words.to);
@@ -131,8 +131,8 @@ struct OnTheirWay {
     to: Vec<Vec<u64>>,
     /// Those that every rank gets.
     to_all: Vec<u64>,
-    /// Body and number of elements that every rank gets otherwise, for the rank that tells of them.
-    told: Vec<Vec<u64>>,
+    /// Body and number of elements that every rank gets otherwise, for the rank that owns them.
+    owned: Vec<Vec<u64>>,
 }
 
 /// The curve through the cells of each body.
@@ -205,8 +205,8 @@ impl Cells<'_> {
             let packed: Vec<([u32; 6], Words)> = (begin..end).into_par_iter().map(pack).collect();
             for (element, (mut ranks, packed)) in (begin..end).zip(packed) {
                 if self.body.replication == Replication::Elements {
-                    let teller = ranks.iter().min().expect("of six edges");
-                    words.told[*teller as usize].push(packed[0]);
+                    let owner = ranks.iter().min().expect("of six edges");
+                    words.owned[*owner as usize].push(packed[0]);
                     continue;
                 }
                 let is_for_all = self.body.elements[element].iter().any(|&node| is_near[node as usize]);
@@ -232,7 +232,7 @@ fn add_to_share(&[head, a, b, tag, e, f, g]: &Words, me: usize, shares: &mut [Bo
     share.numbers.push(head as u32);
     let ([r0, r1], [r2, r3], [r4, r5]) = (halves(e), halves(f), halves(g));
     let owners = [r0, r1, r2, r3, r4, r5];
-    // The lowest rank with a cell of it tells of it.
+    // The lowest rank with a cell of it owns it.
     share.is_owned.push(owners.iter().min() == Some(&(me as u32)));
     share.owners.push(owners);
 }

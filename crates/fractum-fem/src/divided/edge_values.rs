@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use fractum_math::Sym3;
 use fractum_mesh::topology::TETRAHEDRON_EDGES;
-use fractum_parallel::{Exchange, Swapped, post};
+use fractum_parallel::{Exchange, Exchanged, post};
 
 use super::{BodyShare, EdgeValue};
 use crate::body::edges::BodyEdges;
@@ -16,7 +16,7 @@ const NUMBERS: usize = 13;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EdgeValues {
     /// Edges that are sent, by their number on this rank, and places in `values` of those that come.
-    swapped: Option<Swapped<u32>>,
+    swapped: Option<Exchanged<u32>>,
     pub(crate) values: Vec<EdgeValue>,
 }
 
@@ -31,8 +31,8 @@ impl EdgeValues {
     ) -> (Self, BTreeMap<u32, u32>) {
         let me = exchange.rank();
         let mut of_rank = vec![BTreeMap::<[u32; 2], u32>::new(); exchange.size()];
-        let told = (0..elements.len()).filter(|&element| share.is_owned[element]);
-        for element in told {
+        let owned = (0..elements.len()).filter(|&element| share.is_owned[element]);
+        for element in owned {
             for (at, edge) in TETRAHEDRON_EDGES.into_iter().enumerate() {
                 let rank = share.owners[element][at] as usize;
                 if rank != me {
@@ -61,7 +61,7 @@ impl EdgeValues {
             between.entry(rank).or_default()[0].extend(words.iter().map(number));
         }
         let values = vec![EdgeValue::default(); places.len()];
-        (EdgeValues { swapped: Some(Swapped::new(between)), values }, places)
+        (EdgeValues { swapped: Some(Exchanged::new(between)), values }, places)
     }
 
     /// Gets the values of others. All ranks must call it.
@@ -80,6 +80,6 @@ impl EdgeValues {
             let [stress, strain] = [0, 6].map(|first| Sym3(std::array::from_fn(|k| numbers[first + k])));
             values[place as usize] = EdgeValue { stress, damage: numbers[12], strain };
         };
-        swapped.tell(exchange, &mut self.values, get, put);
+        swapped.exchange(exchange, &mut self.values, get, put);
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use fractum_parallel::{Exchange, Swapped, Told, post};
+use fractum_parallel::{Exchange, Exchanged, Gathered, post};
 use rayon::prelude::*;
 
 use super::{BodyShare, NodesOfOthers};
@@ -30,7 +30,7 @@ impl Runs<'_> {
     }
 
     /// Gives every rank a value of every node, by who looks after it.
-    fn tell(&self, own: &[f64]) -> Vec<f64> {
+    fn gather(&self, own: &[f64]) -> Vec<f64> {
         let counts: Vec<usize> =
             (0..self.exchange.size()).map(|rank| self.first(rank + 1) - self.first(rank)).collect();
         let mut all = vec![0.0; self.count];
@@ -52,24 +52,24 @@ pub(crate) struct GivenToNodes<'a> {
 ///
 /// - `count`: how many nodes there are
 pub(crate) fn nodal_sums(exchange: &dyn Exchange, count: usize, bodies: &[GivenToNodes]) -> Vec<f64> {
-    let told = || {
+    let owned = || {
         bodies.iter().enumerate().flat_map(|(index, GivenToNodes { share, elements, values })| {
-            let told = (0..values.len()).filter(|&element| share.is_owned[element]);
-            told.map(move |element| {
+            let owned = (0..values.len()).filter(|&element| share.is_owned[element]);
+            owned.map(move |element| {
                 let order = (index as u64) << 32 | u64::from(share.number(element));
                 (elements[element], order, values[element])
             })
         })
     };
     let mut is_own = vec![false; count];
-    told().for_each(|(nodes, ..)| nodes.iter().for_each(|&node| is_own[node as usize] = true));
+    owned().for_each(|(nodes, ..)| nodes.iter().for_each(|&node| is_own[node as usize] = true));
     let own: Vec<u32> = (0..count as u32).filter(|&node| is_own[node as usize]).collect();
     let ranks = RanksOfNodes::new(exchange, count, &own);
     let runs = Runs { exchange, count };
-    // Where one rank tells of all elements it has them in order; else who looks after the node puts them in order.
+    // Where one rank owns all elements it has them in order; else who looks after the node puts them in order.
     let mut alone = vec![0.0; count];
     let mut words = vec![Vec::new(); exchange.size()];
-    for (nodes, order, part) in told() {
+    for (nodes, order, part) in owned() {
         for node in nodes {
             if ranks.shared.contains_key(&node) {
                 words[runs.rank(node)].extend([u64::from(node), order, part.to_bits()]);
@@ -89,19 +89,19 @@ pub(crate) fn nodal_sums(exchange: &dyn Exchange, count: usize, bodies: &[GivenT
     let after = runs.own();
     let mut sums = vec![0.0; after.len()];
     parts.iter().for_each(|&[node, _, part]| sums[node as usize - after.start] += f64::from_bits(part));
-    runs.tell(&sums)
+    runs.gather(&sums)
 }
 
-/// Nodes of elements that several ranks tell of, for values that all elements around a node decide.
+/// Nodes of elements that several ranks own, for values that all elements around a node decide.
 #[derive(Debug)]
 pub struct SharedNodes {
     exchange: Arc<dyn Exchange>,
-    swapped: Swapped<u32>,
-    told: Told,
+    swapped: Exchanged<u32>,
+    gathered: Gathered,
 }
 
 impl SharedNodes {
-    /// - `own`: nodes of the elements that this rank tells of, ascending; all ranks must call it
+    /// - `own`: nodes of the elements that this rank owns, ascending; all ranks must call it
     pub(crate) fn new(exchange: Arc<dyn Exchange>, count: usize, own: &[u32]) -> Self {
         let ranks = RanksOfNodes::new(&*exchange, count, own);
         let mut between = BTreeMap::<usize, [Vec<u32>; 2]>::new();
@@ -110,9 +110,9 @@ impl SharedNodes {
                 between.entry(other as usize).or_default().iter_mut().for_each(|nodes| nodes.push(node));
             }
         }
-        let mut told = vec![Vec::new(); exchange.size()];
-        (0..).zip(&ranks.lowest).for_each(|(node, &rank)| told[rank as usize].push(node));
-        SharedNodes { exchange, swapped: Swapped::new(between), told: Told::new(told) }
+        let mut owned = vec![Vec::new(); exchange.size()];
+        (0..).zip(&ranks.lowest).for_each(|(node, &rank)| owned[rank as usize].push(node));
+        SharedNodes { exchange, swapped: Exchanged::new(between), gathered: Gathered::new(owned) }
     }
 
     /// Leaves the least value of all ranks at each node. All ranks must call it.
@@ -123,9 +123,9 @@ impl SharedNodes {
     }
 
     /// Gives every rank the values of all nodes. All ranks must call it.
-    pub fn tell(&mut self, values: &mut [f64]) {
+    pub fn gather(&mut self, values: &mut [f64]) {
         let put = |values: &mut [f64], node: usize, [value]: [f64; 1]| values[node] = value;
-        self.told.tell(&*self.exchange, values, |values, node| [values[node]], put);
+        self.gathered.gather(&*self.exchange, values, |values, node| [values[node]], put);
     }
 }
 
@@ -150,7 +150,7 @@ impl RanksOfNodes {
             nodes.iter().for_each(|&node| ranks[node as usize - after.start].push(rank as u32));
         }
         let lowest: Vec<f64> = ranks.iter().map(|ranks| f64::from(ranks.first().copied().unwrap_or(0))).collect();
-        let lowest = runs.tell(&lowest).into_iter().map(|rank| rank as u32).collect();
+        let lowest = runs.gather(&lowest).into_iter().map(|rank| rank as u32).collect();
         let mut words = vec![Vec::new(); exchange.size()];
         for (node, ranks) in (after.start as u64..).zip(&ranks) {
             for &rank in ranks {

@@ -20,12 +20,12 @@ pub(crate) fn connected_pieces(
     let own = connected(nodes, elements.iter().flat_map(|&[a, b, c, d]| [[a, b], [a, c], [a, d]]));
     let joined: Vec<[u32; 2]> = (0..).zip(own).filter(|(node, first)| node != first).map(<[u32; 2]>::from).collect();
     let first = connected(nodes, gather(exchange, &joined).into_iter().flatten());
-    let mut told = BTreeMap::<u32, usize>::new();
+    let mut owned = BTreeMap::<u32, usize>::new();
     for (element, _) in elements.iter().zip(&share.is_owned).filter(|(_, is_owned)| **is_owned) {
-        *told.entry(first[element[0] as usize]).or_default() += 1;
+        *owned.entry(first[element[0] as usize]).or_default() += 1;
     }
     let mut pieces = BTreeMap::<u32, usize>::new();
-    for (node, elements) in gather(exchange, &told).into_iter().flatten() {
+    for (node, elements) in gather(exchange, &owned).into_iter().flatten() {
         *pieces.entry(node).or_default() += elements;
     }
     let links = (0..).zip(first).filter(|(node, first)| node != first).map(<[u32; 2]>::from).collect();

@@ -9,144 +9,170 @@ use rayon::prelude::*;
 use crate::body::edges::BodyEdges;
 use crate::cells::block::Cells;
 use crate::cells::kernel;
+use crate::damage::edge::EdgeField;
 use crate::divided::{ALONE, ELSEWHERE, EdgeValue};
 use crate::solid::Solid;
 use crate::solid::body_model::BodyModel;
+use crate::solid::evaluate::Block;
 
-impl Solid {
-    /// Nominal stress [Pa] and damage of every element of a body: means over its edges where it is smoothed.
-    pub fn element_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
-        let model = &self.bodies[index];
-        self.means(model, |at| self.cell_field(index, at))
-    }
+/// Nominal stress [Pa] and damage of every element of a body: means over its edges where it is smoothed.
+pub fn element_fields(solid: &Solid, index: usize) -> Vec<(Sym3, f64)> {
+    let model = &solid.bodies[index];
+    means(model, |at| cell_field(solid, index, at))
+}
 
-    /// What cells hold, as means over the edges of each element where the body is smoothed.
-    fn means(&self, model: &BodyModel, of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
-        let count = model.smoothed_edges().map_or(model.alive.len(), BodyEdges::len) as u32;
-        let cells: Vec<(Sym3, f64)> = (0..count).into_par_iter().map(|cell| of_cell(model.location.of(cell))).collect();
-        match model.smoothed_edges() {
-            None => cells,
-            Some(edges) => {
-                let mean = |element| model.mean_of_edges(&edges.of_element(element), |edge| cells[edge as usize]);
-                (0..model.alive.len() as u32).into_par_iter().map(mean).collect()
-            }
+/// What cells hold, as means over the edges of each element where the body is smoothed.
+fn means(model: &BodyModel, of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
+    let count = model.smoothed_edges().map_or(model.alive.len(), BodyEdges::len) as u32;
+    let cells: Vec<(Sym3, f64)> = (0..count).into_par_iter().map(|cell| of_cell(model.location.of(cell))).collect();
+    match model.smoothed_edges() {
+        None => cells,
+        Some(edges) => {
+            let mean = |element| model.mean_of_edges(&edges.of_element(element), |edge| cells[edge as usize]);
+            (0..model.alive.len() as u32).into_par_iter().map(mean).collect()
         }
     }
+}
 
-    /// Live elements of a body that this process owns, ascending.
-    pub fn owned_elements(&self, index: usize) -> Vec<u32> {
-        let alive = (0..).zip(&self.bodies[index].alive).filter(|(_, alive)| **alive).map(|(element, _)| element);
-        alive.filter(|&element: &u32| self.owns(index, element)).collect()
+/// Live elements of a body that this process owns, ascending.
+pub fn owned_elements(solid: &Solid, index: usize) -> Vec<u32> {
+    let alive = (0..).zip(&solid.bodies[index].alive).filter(|(_, alive)| **alive).map(|(element, _)| element);
+    alive.filter(|&element: &u32| solid.owns(index, element)).collect()
+}
+
+/// As [`element_fields`], of [`owned_elements`].
+pub fn owned_fields(solid: &Solid, index: usize) -> Vec<(Sym3, f64)> {
+    owned_means(solid, index, |at| cell_field(solid, index, at))
+}
+
+/// Strain of [`owned_elements`], that of thermal expansion included: the mean over its edges where the body is smoothed.
+pub fn owned_strains(solid: &Solid, index: usize) -> Vec<Sym3> {
+    let means = owned_means(solid, index, |at| (cell_strain(solid, index, at), 0.0));
+    means.into_iter().map(|(strain, _)| strain).collect()
+}
+
+/// Means of the elements that this process owns, from the cells alone that they need.
+fn owned_means(
+    solid: &Solid,
+    index: usize,
+    of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send,
+) -> Vec<(Sym3, f64)> {
+    let (model, owned) = (&solid.bodies[index], owned_elements(solid, index));
+    let alive = model.alive.iter().filter(|alive| **alive).count();
+    if owned.len() == alive && model.location.keeps_all() {
+        let all = means(model, of_cell);
+        return if alive == all.len() { all } else { owned.into_iter().map(|e| all[e as usize]).collect() };
     }
+    let Some(edges) = model.smoothed_edges() else {
+        return owned.par_iter().map(|&element| of_cell(model.location.of(element))).collect();
+    };
+    let mut needed: Vec<u32> = owned.par_iter().flat_map_iter(|&element| edges.of_element(element)).collect();
+    needed.par_sort_unstable();
+    needed.dedup();
+    let place = |edge: u32| needed.binary_search(&edge).expect("one of those of its elements");
+    let cells: Vec<(Sym3, f64)> = needed.par_iter().map(|&edge| of_cell(model.location.of(edge))).collect();
+    let mean = |&element: &u32| model.mean_of_edges(&edges.of_element(element), |edge| cells[place(edge)]);
+    owned.par_iter().map(mean).collect()
+}
 
-    /// As [`Solid::element_fields`], of [`Solid::owned_elements`].
-    pub fn owned_fields(&self, index: usize) -> Vec<(Sym3, f64)> {
-        self.owned_means(index, |at| self.cell_field(index, at))
+/// As [`element_fields`] of one element.
+pub fn element_field(solid: &Solid, index: usize, element: u32) -> (Sym3, f64) {
+    let model = &solid.bodies[index];
+    let cell = |cell: u32| cell_field(solid, index, model.location.of(cell));
+    match model.smoothed_edges() {
+        None => cell(element),
+        Some(edges) => model.mean_of_edges(&edges.of_element(element), cell),
     }
+}
 
-    /// Strain of [`Solid::owned_elements`], that of thermal expansion included: the mean over its edges where the body is smoothed.
-    pub fn owned_strains(&self, index: usize) -> Vec<Sym3> {
-        let means = self.owned_means(index, |at| (self.cell_strain(index, at), 0.0));
-        means.into_iter().map(|(strain, _)| strain).collect()
+/// [`element_damages`] of a body of which this process has its own cells alone, by what it has received of others.
+pub(crate) fn damages_around(solid: &Solid, index: usize) -> Vec<f64> {
+    let model = &solid.bodies[index];
+    let mut damages: Vec<f64> = model.alive.iter().map(|alive| f64::from(u8::from(!alive))).collect();
+    let Some(edges) = &model.edges else { return damages };
+    let fields = solid.damaged_fields().filter(|(body, _)| *body == index).map(|(_, field)| field);
+    let damaged = fields.flat_map(|field| {
+        let histories = field.edges.iter().zip(&field.state).filter(|(_, history)| history.damage > 0.0);
+        histories.map(|(&edge, history)| (edge, history.damage))
+    });
+    let damage: BTreeMap<u32, f64> = damaged.collect();
+    let mut around: Vec<u32> = damage.keys().flat_map(|&edge| edges.around(edge).into_owned()).collect();
+    around.sort_unstable();
+    around.dedup();
+    for element in around.into_iter().filter(|&element| model.alive[element as usize]) {
+        let of_edge = |edge: u32| (Sym3::ZERO, damage.get(&edge).copied().unwrap_or(0.0));
+        damages[element as usize] = model.mean_of_edges(&edges.of_element(element), of_edge).1;
     }
+    damages
+}
 
-    /// Means of the elements that this process owns, from the cells alone that they need.
-    fn owned_means(&self, index: usize, of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
-        let (model, owned) = (&self.bodies[index], self.owned_elements(index));
-        let alive = model.alive.iter().filter(|alive| **alive).count();
-        if owned.len() == alive && model.location.keeps_all() {
-            let all = self.means(model, of_cell);
-            return if alive == all.len() { all } else { owned.into_iter().map(|e| all[e as usize]).collect() };
+pub(crate) fn cell_field(solid: &Solid, index: usize, at: (u32, u32)) -> (Sym3, f64) {
+    let model = &solid.bodies[index];
+    match at.0 {
+        ELSEWHERE => {
+            let EdgeValue { stress, damage, .. } = solid.neighbours.received_value(index, at.1);
+            return (stress, damage);
         }
-        let Some(edges) = model.smoothed_edges() else {
-            return owned.par_iter().map(|&element| of_cell(model.location.of(element))).collect();
-        };
-        let mut needed: Vec<u32> = owned.par_iter().flat_map_iter(|&element| edges.of_element(element)).collect();
-        needed.par_sort_unstable();
-        needed.dedup();
-        let place = |edge: u32| needed.binary_search(&edge).expect("one of those of its elements");
-        let cells: Vec<(Sym3, f64)> = needed.par_iter().map(|&edge| of_cell(model.location.of(edge))).collect();
-        let mean = |&element: &u32| model.mean_of_edges(&edges.of_element(element), |edge| cells[place(edge)]);
-        owned.par_iter().map(mean).collect()
+        ALONE => {
+            let strain = strain_alone(solid, model, at.1);
+            let received =
+                solid.edge(index, at.1).map(|(field, place)| field.nominal_stress(place, &model.hooke, strain));
+            return received.unwrap_or_else(|| (model.hooke.stress(strain), 0.0));
+        }
+        _ => {}
     }
+    let (cells, place) = cells_with(solid, at);
+    let strain = kernel::elastic_strain(&cells, place, &solid.displacement, model.body.kinematics);
+    let (block, cell) = (&solid.blocks[at.0 as usize], at.1 as usize);
+    (block.nominal_stress(cell, &model.hooke, strain), block.damage_of(cell))
+}
 
-    /// As [`Solid::element_fields`] of one element.
-    pub fn element_field(&self, index: usize, element: u32) -> (Sym3, f64) {
-        let model = &self.bodies[index];
-        let cell = |cell: u32| self.cell_field(index, model.location.of(cell));
-        match model.smoothed_edges() {
-            None => cell(element),
-            Some(edges) => model.mean_of_edges(&edges.of_element(element), cell),
+/// Strain of a cell, that of thermal expansion included.
+pub(crate) fn cell_strain(solid: &Solid, index: usize, at: (u32, u32)) -> Sym3 {
+    let model = &solid.bodies[index];
+    match at.0 {
+        ELSEWHERE => return solid.neighbours.received_value(index, at.1).strain,
+        ALONE => return strain_alone(solid, model, at.1),
+        _ => {}
+    }
+    let (cells, cell) = cells_with(solid, at);
+    kernel::total_strain(&cells, cell, &solid.displacement, model.body.kinematics)
+}
+
+/// Strain of a cell of which this process has no more than the elements around it.
+fn strain_alone(solid: &Solid, model: &BodyModel, cell: u32) -> Sym3 {
+    let cells = model.cells(&solid.reference, &[cell]);
+    kernel::total_strain(&cells, 0, &solid.displacement, model.body.kinematics)
+}
+
+/// The geometry of a cell (block, number), with its number there: by itself where this process does not keep its block.
+pub(crate) fn cells_with(solid: &Solid, (block, cell): (u32, u32)) -> (Cow<'_, Cells>, usize) {
+    let block = &solid.blocks[block as usize];
+    let cell = cell as usize;
+    if cell < block.cells.len() {
+        return (Cow::Borrowed(&block.cells), cell);
+    }
+    (Cow::Owned(solid.bodies[block.body].cells(&solid.reference, &block.items[cell..=cell])), 0)
+}
+
+/// Damage of the elements of a body: the mean over its edges where it is smoothed, 1 where one has been removed.
+pub fn element_damages(solid: &Solid, index: usize) -> Vec<f64> {
+    let model = &solid.bodies[index];
+    if !model.location.keeps_all() {
+        return damages_around(solid, index);
+    }
+    let mut damage = vec![0.0; model.location.all().len()];
+    let may_be_damaged = |block: &&Block| block.edge_field().is_none_or(EdgeField::is_damaged);
+    for block in solid.blocks.iter().filter(|block| block.body == index).filter(may_be_damaged) {
+        for (cell, &item) in block.items.iter().enumerate() {
+            damage[item as usize] = block.damage_of(cell);
         }
     }
-
-    /// [`Solid::element_damages`] of a body of which this process has its own cells alone, by what it has received of others.
-    pub(crate) fn damages_around(&self, index: usize) -> Vec<f64> {
-        let model = &self.bodies[index];
-        let mut damages: Vec<f64> = model.alive.iter().map(|alive| f64::from(u8::from(!alive))).collect();
-        let Some(edges) = &model.edges else { return damages };
-        let fields = self.damaged_fields().filter(|(body, _)| *body == index).map(|(_, field)| field);
-        let damaged = fields.flat_map(|field| {
-            let histories = field.edges.iter().zip(&field.state).filter(|(_, history)| history.damage > 0.0);
-            histories.map(|(&edge, history)| (edge, history.damage))
-        });
-        let damage: BTreeMap<u32, f64> = damaged.collect();
-        let mut around: Vec<u32> = damage.keys().flat_map(|&edge| edges.around(edge).into_owned()).collect();
-        around.sort_unstable();
-        around.dedup();
-        for element in around.into_iter().filter(|&element| model.alive[element as usize]) {
-            let of_edge = |edge: u32| (Sym3::ZERO, damage.get(&edge).copied().unwrap_or(0.0));
-            damages[element as usize] = model.mean_of_edges(&edges.of_element(element), of_edge).1;
-        }
-        damages
-    }
-
-    pub(crate) fn cell_field(&self, index: usize, at: (u32, u32)) -> (Sym3, f64) {
-        let model = &self.bodies[index];
-        match at.0 {
-            ELSEWHERE => {
-                let EdgeValue { stress, damage, .. } = self.neighbours.received_value(index, at.1);
-                return (stress, damage);
-            }
-            ALONE => {
-                let strain = self.strain_alone(model, at.1);
-                let received =
-                    self.edge(index, at.1).map(|(field, place)| field.nominal_stress(place, &model.hooke, strain));
-                return received.unwrap_or_else(|| (model.hooke.stress(strain), 0.0));
-            }
-            _ => {}
-        }
-        let (cells, place) = self.cells_with(at);
-        let strain = kernel::elastic_strain(&cells, place, &self.displacement, model.body.kinematics);
-        let (block, cell) = (&self.blocks[at.0 as usize], at.1 as usize);
-        (block.nominal_stress(cell, &model.hooke, strain), block.damage_of(cell))
-    }
-
-    /// Strain of a cell, that of thermal expansion included.
-    pub(crate) fn cell_strain(&self, index: usize, at: (u32, u32)) -> Sym3 {
-        let model = &self.bodies[index];
-        match at.0 {
-            ELSEWHERE => return self.neighbours.received_value(index, at.1).strain,
-            ALONE => return self.strain_alone(model, at.1),
-            _ => {}
-        }
-        let (cells, cell) = self.cells_with(at);
-        kernel::total_strain(&cells, cell, &self.displacement, model.body.kinematics)
-    }
-
-    /// Strain of a cell of which this process has no more than the elements around it.
-    fn strain_alone(&self, model: &BodyModel, cell: u32) -> Sym3 {
-        let cells = model.cells(&self.reference, &[cell]);
-        kernel::total_strain(&cells, 0, &self.displacement, model.body.kinematics)
-    }
-
-    /// The geometry of a cell (block, number), with its number there: by itself where this process does not keep its block.
-    pub(crate) fn cells_with(&self, (block, cell): (u32, u32)) -> (Cow<'_, Cells>, usize) {
-        let block = &self.blocks[block as usize];
-        let cell = cell as usize;
-        if cell < block.cells.len() {
-            return (Cow::Borrowed(&block.cells), cell);
-        }
-        (Cow::Owned(self.bodies[block.body].cells(&self.reference, &block.items[cell..=cell])), 0)
-    }
+    let of_cell = |cell: u32| (Sym3::ZERO, damage[cell as usize]);
+    let of_element = |(element, &alive): (u32, &bool)| match model.smoothed_edges() {
+        _ if !alive => 1.0,
+        None => damage[element as usize],
+        Some(edges) => model.mean_of_edges(&edges.of_element(element), of_cell).1,
+    };
+    (0..).zip(&model.alive).map(of_element).collect()
 }

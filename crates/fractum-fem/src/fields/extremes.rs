@@ -51,74 +51,72 @@ fn larger(a: Found, b: Found) -> Found {
     }
 }
 
-impl Solid {
-    /// Largest values of the present displacements.
-    pub fn extremes(&self) -> Extremes {
-        let of_blocks: Vec<[Found; 4]> =
-            (0..self.blocks.len() as u32).into_par_iter().map(|block| self.extremes_of(block)).collect();
-        let all = of_blocks.into_iter().fold([None; 4], |mut all, own| {
-            all.iter_mut().zip(own).for_each(|(all, own)| *all = larger(*all, own));
-            all
-        });
-        let [rotation, strain, tension, compression] = all.map(|found| {
-            let (value, block, cell) = found?;
-            let own = &self.blocks[block as usize];
-            Some(Extreme { body: own.body, element: self.element_around(own, cell as usize), value })
-        });
-        Extremes { rotation, strain, tension, compression }
-    }
+/// Largest values of the present displacements.
+pub fn extremes(solid: &Solid) -> Extremes {
+    let of_blocks: Vec<[Found; 4]> =
+        (0..solid.blocks.len() as u32).into_par_iter().map(|block| extremes_of(solid, block)).collect();
+    let all = of_blocks.into_iter().fold([None; 4], |mut all, own| {
+        all.iter_mut().zip(own).for_each(|(all, own)| *all = larger(*all, own));
+        all
+    });
+    let [rotation, strain, tension, compression] = all.map(|found| {
+        let (value, block, cell) = found?;
+        let own = &solid.blocks[block as usize];
+        Some(Extreme { body: own.body, element: element_around(solid, own, cell as usize), value })
+    });
+    Extremes { rotation, strain, tension, compression }
+}
 
-    fn extremes_of(&self, index: u32) -> [Found; 4] {
-        let mut found: [Found; 4] = [None; 4];
-        let block = &self.blocks[index as usize];
-        let model = &self.bodies[block.body];
-        let small = model.body.kinematics != Kinematics::Corotational;
-        let zone = model.body.damage.as_ref();
-        let kept_whole = zone.filter(|zone| match block.law {
-            BlockLaw::Elastic { .. } => model.smoothed_edges().is_some(),
-            BlockLaw::Standard(_) => matches!(zone.region, Region::Edges(_)),
-            _ => false,
-        });
-        let in_tension = zone.filter(|zone| zone.law.criterion.kind() == CriterionKind::Rankine);
-        for cell in 0..block.cells.len() {
-            if block.cells.volume[cell] == 0.0 || block.damage_of(cell) > CARRIES {
-                continue;
-            }
-            let h = block.cells.gradient(cell, |node| self.displacement[node]);
-            if small {
-                found[0] = larger(found[0], Some((asin(turn(&h).min(1.0)), index, cell as u32)));
-            }
-            let elastic = block.cells.elastic_strain(cell, strain(&h, model.body.kinematics));
-            found[1] = larger(found[1], Some((norm(elastic), index, cell as u32)));
-            let unarmed = kept_whole.filter(|zone| model.may_not_part(zone, block.items[cell]));
-            if unarmed.is_none() && in_tension.is_none() {
-                continue;
-            }
-            let stress = model.hooke.stress(elastic);
-            // An element at the border of the region may be damaged in part.
-            let carried = 1.0 - block.damage_of(cell);
-            // Principal values are found where they may be the largest.
-            let bound = norm(stress);
-            for (which, zone, sign) in [(2, unarmed, carried), (3, in_tension, -1.0)] {
-                let Some(strength) = zone.map(|zone| zone.law.tensile_strength) else { continue };
-                if found[which].is_none_or(|(value, ..)| bound > value * strength) {
-                    let values = stress.principal_values().map(|value| sign * value / strength);
-                    let largest = values.into_iter().fold(0.0, f64::max);
-                    found[which] = larger(found[which], Some((largest, index, cell as u32)));
-                }
+fn extremes_of(solid: &Solid, index: u32) -> [Found; 4] {
+    let mut found: [Found; 4] = [None; 4];
+    let block = &solid.blocks[index as usize];
+    let model = &solid.bodies[block.body];
+    let small = model.body.kinematics != Kinematics::Corotational;
+    let zone = model.body.damage.as_ref();
+    let kept_whole = zone.filter(|zone| match block.law {
+        BlockLaw::Elastic { .. } => model.smoothed_edges().is_some(),
+        BlockLaw::Standard(_) => matches!(zone.region, Region::Edges(_)),
+        _ => false,
+    });
+    let in_tension = zone.filter(|zone| zone.law.criterion.kind() == CriterionKind::Rankine);
+    for cell in 0..block.cells.len() {
+        if block.cells.volume[cell] == 0.0 || block.damage_of(cell) > CARRIES {
+            continue;
+        }
+        let h = block.cells.gradient(cell, |node| solid.displacement[node]);
+        if small {
+            found[0] = larger(found[0], Some((asin(turn(&h).min(1.0)), index, cell as u32)));
+        }
+        let elastic = block.cells.elastic_strain(cell, strain(&h, model.body.kinematics));
+        found[1] = larger(found[1], Some((norm(elastic), index, cell as u32)));
+        let unarmed = kept_whole.filter(|zone| model.may_not_part(zone, block.items[cell]));
+        if unarmed.is_none() && in_tension.is_none() {
+            continue;
+        }
+        let stress = model.hooke.stress(elastic);
+        // An element at the border of the region may be damaged in part.
+        let carried = 1.0 - block.damage_of(cell);
+        // Principal values are found where they may be the largest.
+        let bound = norm(stress);
+        for (which, zone, sign) in [(2, unarmed, carried), (3, in_tension, -1.0)] {
+            let Some(strength) = zone.map(|zone| zone.law.tensile_strength) else { continue };
+            if found[which].is_none_or(|(value, ..)| bound > value * strength) {
+                let values = stress.principal_values().map(|value| sign * value / strength);
+                let largest = values.into_iter().fold(0.0, f64::max);
+                found[which] = larger(found[which], Some((largest, index, cell as u32)));
             }
         }
-        found
     }
+    found
+}
 
-    /// An element of a cell, a live one if there is one.
-    fn element_around(&self, block: &Block, cell: usize) -> u32 {
-        let (model, item) = (&self.bodies[block.body], block.items[cell]);
-        let one = [item];
-        let around = model.smoothed_edges().map_or(Cow::Borrowed(&one[..]), |edges| edges.around(item));
-        let alive = around.iter().copied().find(|&element| model.alive[element as usize]);
-        alive.unwrap_or(around[0])
-    }
+/// An element of a cell, a live one if there is one.
+fn element_around(solid: &Solid, block: &Block, cell: usize) -> u32 {
+    let (model, item) = (&solid.bodies[block.body], block.items[cell]);
+    let one = [item];
+    let around = model.smoothed_edges().map_or(Cow::Borrowed(&one[..]), |edges| edges.around(item));
+    let alive = around.iter().copied().find(|&element| model.alive[element as usize]);
+    alive.unwrap_or(around[0])
 }
 
 impl BodyModel {
@@ -168,11 +166,11 @@ mod tests {
         for angle in [0.01, 0.1, 0.3] {
             let mut solid = cube(|_| {});
             moved(&mut solid, turned(angle));
-            let rotation = solid.extremes().rotation.unwrap();
+            let rotation = extremes(&solid).rotation.unwrap();
             assert!((rotation.value / angle - 1.0).abs() < 1e-9, "{rotation:?}");
             let mut solid = cube(|body| body.kinematics = Kinematics::Corotational);
             moved(&mut solid, turned(angle));
-            let found = solid.extremes();
+            let found = extremes(&solid);
             assert!(found.rotation.is_none() && found.strain.unwrap().value < 1e-12, "{found:?}");
         }
     }
@@ -195,19 +193,19 @@ mod tests {
             let mut solid = cube(guarded);
             // Uniaxial strain of 2 ft/E in tension, then of 10 ft/E in compression.
             moved(&mut solid, |x| Vec3::new(2e-4 * x.x, 0.0, 0.0));
-            let found = solid.extremes();
+            let found = extremes(&solid);
             assert!((found.tension.unwrap().value - 2.0).abs() < 1e-9, "{found:?}");
             // Principal values that are equal are found to the root of rounding.
             assert!(found.compression.unwrap().value.abs() < 1e-7, "{found:?}");
             assert!((found.strain.unwrap().value / 2e-4 - 1.0).abs() < 1e-9);
             moved(&mut solid, |x| Vec3::new(-1e-3 * x.x, 0.0, 0.0));
-            let found = solid.extremes();
+            let found = extremes(&solid);
             assert!(found.tension.unwrap().value.abs() < 1e-7, "{found:?}");
             assert!((found.compression.unwrap().value - 10.0).abs() < 1e-9, "{found:?}");
             // A body that may be damaged everywhere needs no look in tension.
             let mut solid = cube(with_damage);
             moved(&mut solid, |x| Vec3::new(2e-4 * x.x, 0.0, 0.0));
-            assert!(solid.extremes().tension.is_none());
+            assert!(extremes(&solid).tension.is_none());
         }
     }
 
@@ -230,7 +228,7 @@ mod tests {
             let mut solid = cube(region);
             let strain = |z: f64| if top { 4e-4 * (z - 0.5).max(0.0) } else { 4e-4 * (0.5 - z).max(0.0) };
             moved(&mut solid, |x| Vec3::new(strain(x.z) * x.x, 0.0, 0.0));
-            solid.extremes().tension.unwrap().value
+            extremes(&solid).tension.unwrap().value
         };
         assert!(tension(true) > 1.0 && tension(false) < 1e-7, "{} {}", tension(true), tension(false));
     }

@@ -60,10 +60,10 @@ impl Solid {
         let step = WholeStep { dt_before, dt_after, damping, held, measure };
         self.with_neighbours(|neighbours, solid| {
             let moving: &dyn Neighbours = neighbours;
-            solid.kick_runs(&step, |chunk| moving.moved(chunk));
+            kick_runs(solid, &step, |chunk| moving.moved(chunk));
             neighbours.end_step(&mut solid.chunk_work);
         });
-        self.work_of_chunks()
+        work_of_chunks(self)
     }
 
     /// Velocity of a node after a kick under a force, as [`Solid::kick_and_drift`] gives it [m/s]; held axes keep theirs.
@@ -78,72 +78,72 @@ impl Solid {
     pub fn mobility(&self, node: usize, held: u8) -> Vec3 {
         free_axes(held) * self.inverse_mass[node]
     }
+}
 
-    /// What [`Solid::kick_runs`] has found, in sum.
-    pub(crate) fn work_of_chunks(&self) -> HalfSteps {
-        self.chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
-    }
+/// What [`kick_runs`] has found, in sum.
+pub(crate) fn work_of_chunks(solid: &Solid) -> HalfSteps {
+    solid.chunk_work.iter().fold(HalfSteps::default(), |sum, &part| sum + part)
+}
 
-    /// [`Solid::kick_and_drift`] of some nodes; see [`Solid::work_of_chunks`].
-    ///
-    /// - `runs`: runs of nodes in a chunk, counted from its first; none where these are all nodes
-    pub(crate) fn kick_runs<'a>(
-        &mut self,
-        step: &WholeStep,
-        runs: impl Fn(usize) -> Option<&'a [Range<usize>]> + Sync,
-    ) {
-        let WholeStep { dt_before, dt_after, damping, held, measure } = *step;
-        let dt_kick = 0.5 * (dt_before + dt_after);
-        let Solid { displacement, velocity, force, inverse_mass, chunk_work, .. } = self;
-        let plain = damping.is_off() && !measure;
-        displacement
-            .par_chunks_mut(CHUNK)
-            .zip(velocity.par_chunks_mut(CHUNK))
-            .zip(chunk_work.par_iter_mut())
-            .enumerate()
-            .for_each(|(chunk, ((displacement, velocity), work))| {
-                *work = HalfSteps::default();
-                let all = 0..velocity.len();
-                for run in runs(chunk).unwrap_or(std::slice::from_ref(&all)) {
-                    let first = chunk * CHUNK + run.start;
-                    let (displacement, velocity) = (&mut displacement[run.clone()], &mut velocity[run.clone()]);
-                    let (force, inverse_mass) = (&force[first..], &inverse_mass[first..]);
-                    if plain {
-                        for i in 0..velocity.len() {
-                            velocity[i] += force[i] * (inverse_mass[i] * dt_kick);
-                            displacement[i] += velocity[i] * dt_after;
-                        }
-                        continue;
-                    }
+/// [`Solid::kick_and_drift`] of some nodes; see [`work_of_chunks`].
+///
+/// - `runs`: runs of nodes in a chunk, counted from its first; none where these are all nodes
+pub(crate) fn kick_runs<'a>(
+    solid: &mut Solid,
+    step: &WholeStep,
+    runs: impl Fn(usize) -> Option<&'a [Range<usize>]> + Sync,
+) {
+    let WholeStep { dt_before, dt_after, damping, held, measure } = *step;
+    let dt_kick = 0.5 * (dt_before + dt_after);
+    let Solid { displacement, velocity, force, inverse_mass, chunk_work, .. } = solid;
+    let plain = damping.is_off() && !measure;
+    displacement
+        .par_chunks_mut(CHUNK)
+        .zip(velocity.par_chunks_mut(CHUNK))
+        .zip(chunk_work.par_iter_mut())
+        .enumerate()
+        .for_each(|(chunk, ((displacement, velocity), work))| {
+            *work = HalfSteps::default();
+            let all = 0..velocity.len();
+            for run in runs(chunk).unwrap_or(std::slice::from_ref(&all)) {
+                let first = chunk * CHUNK + run.start;
+                let (displacement, velocity) = (&mut displacement[run.clone()], &mut velocity[run.clone()]);
+                let (force, inverse_mass) = (&force[first..], &inverse_mass[first..]);
+                if plain {
                     for i in 0..velocity.len() {
-                        let before = velocity[i];
-                        let mut total = force[i];
-                        let mut resist = Vec3::zeros();
-                        if !damping.is_off() {
-                            let free = free_axes(held.get(first + i).copied().unwrap_or(0));
-                            resist = damping_force(
-                                damping,
-                                total.component_mul(&free),
-                                before.component_mul(&free),
-                                inverse_mass[i],
-                            );
-                            total += resist;
-                        }
-                        let after = before + total * (inverse_mass[i] * dt_kick);
-                        velocity[i] = after;
-                        displacement[i] += after * dt_after;
-                        if measure {
-                            let mirrored = before + total * (inverse_mass[i] * dt_before);
-                            work.before.kinetic += 0.5 / inverse_mass[i] * before.dot(&mirrored);
-                            let mirrored = after - total * (inverse_mass[i] * dt_after);
-                            work.after.kinetic += 0.5 / inverse_mass[i] * after.dot(&mirrored);
-                        }
-                        work.before.damping -= 0.5 * dt_before * resist.dot(&before);
-                        work.after.damping -= 0.5 * dt_after * resist.dot(&after);
+                        velocity[i] += force[i] * (inverse_mass[i] * dt_kick);
+                        displacement[i] += velocity[i] * dt_after;
                     }
+                    continue;
                 }
-            });
-    }
+                for i in 0..velocity.len() {
+                    let before = velocity[i];
+                    let mut total = force[i];
+                    let mut resist = Vec3::zeros();
+                    if !damping.is_off() {
+                        let free = free_axes(held.get(first + i).copied().unwrap_or(0));
+                        resist = damping_force(
+                            damping,
+                            total.component_mul(&free),
+                            before.component_mul(&free),
+                            inverse_mass[i],
+                        );
+                        total += resist;
+                    }
+                    let after = before + total * (inverse_mass[i] * dt_kick);
+                    velocity[i] = after;
+                    displacement[i] += after * dt_after;
+                    if measure {
+                        let mirrored = before + total * (inverse_mass[i] * dt_before);
+                        work.before.kinetic += 0.5 / inverse_mass[i] * before.dot(&mirrored);
+                        let mirrored = after - total * (inverse_mass[i] * dt_after);
+                        work.after.kinetic += 0.5 / inverse_mass[i] * after.dot(&mirrored);
+                    }
+                    work.before.damping -= 0.5 * dt_before * resist.dot(&before);
+                    work.after.damping -= 0.5 * dt_after * resist.dot(&after);
+                }
+            }
+        });
 }
 
 pub(crate) fn free_axes(bits: u8) -> Vec3 {

@@ -14,71 +14,69 @@ use crate::solid::Solid;
 use crate::solid::body_model::BodyModel;
 use crate::solid::evaluate::Block;
 
-impl Solid {
-    /// Lets bodies expand with temperature, before the first step.
-    ///
-    /// - `coefficients`: α of each body [1/K]; 0 leaves it as it is
-    pub fn set_expansion(&mut self, coefficients: &[f64]) {
-        let Solid { blocks, bodies, reference, .. } = self;
-        blocks.par_iter_mut().filter(|block| coefficients[block.body] != 0.0).for_each(|block| {
-            let model = &bodies[block.body];
-            let geometry = Geometry { body: &model.body, nodes: reference };
-            let zero = vec![0.0; block.cells.len()];
-            block.cells.thermal = Some(Box::new(ThermalStrain {
-                coefficient: coefficients[block.body],
-                unit: Sym3([1.0, 1.0, model.hooke.zz, 0.0, 0.0, 0.0]),
-                weights: weights(block, model, &geometry),
-                start: zero.clone(),
-                change: zero,
-                passed: [0.0; 2],
-            }));
-        });
-    }
+/// Lets bodies expand with temperature, before the first step.
+///
+/// - `coefficients`: α of each body [1/K]; 0 leaves it as it is
+pub fn set_expansion(solid: &mut Solid, coefficients: &[f64]) {
+    let Solid { blocks, bodies, reference, .. } = solid;
+    blocks.par_iter_mut().filter(|block| coefficients[block.body] != 0.0).for_each(|block| {
+        let model = &bodies[block.body];
+        let geometry = Geometry { body: &model.body, nodes: reference };
+        let zero = vec![0.0; block.cells.len()];
+        block.cells.thermal = Some(Box::new(ThermalStrain {
+            coefficient: coefficients[block.body],
+            unit: Sym3([1.0, 1.0, model.hooke.zz, 0.0, 0.0, 0.0]),
+            weights: weights(block, model, &geometry),
+            start: zero.clone(),
+            change: zero,
+            passed: [0.0; 2],
+        }));
+    });
+}
 
-    /// Takes over temperatures T - T₀ of the nodes [K] as if they had always been so.
-    pub fn start_expanded(&mut self, rise: &[f64]) {
-        self.blocks.par_iter_mut().for_each(|block| block.begin_change([rise; 2]));
-    }
+/// Takes over temperatures T - T₀ of the nodes [K] as if they had always been so.
+pub fn start_expanded(solid: &mut Solid, rise: &[f64]) {
+    solid.blocks.par_iter_mut().for_each(|block| block.begin_change([rise; 2]));
+}
 
-    /// Begins a change of temperatures, along which [`Solid::expand_to`] leads.
-    ///
-    /// - `rises`: T - T₀ of the nodes now, and at the end of the change [K]
-    pub fn begin_expansion(&mut self, rises: [&[f64]; 2]) {
-        let Solid { blocks, bodies, displacement, .. } = self;
-        blocks.par_iter_mut().for_each(|block| {
-            block.begin_change(rises);
-            let Some(own) = &block.cells.thermal else { return };
-            let model = &bodies[block.body];
-            let work = |cell: usize| {
-                let strain = elastic_strain(&block.cells, cell, displacement, model.body.kinematics);
-                let change = own.unit * own.change[cell];
-                -block.cells.volume[cell] * block.nominal_stress(cell, &model.hooke, strain).dot(change)
-            };
-            block.expansion_work = (0..block.cells.len()).map(work).sum();
-        });
-    }
+/// Begins a change of temperatures, along which [`expand_to`] leads.
+///
+/// - `rises`: T - T₀ of the nodes now, and at the end of the change [K]
+pub fn begin_expansion(solid: &mut Solid, rises: [&[f64]; 2]) {
+    let Solid { blocks, bodies, displacement, .. } = solid;
+    blocks.par_iter_mut().for_each(|block| {
+        block.begin_change(rises);
+        let Some(own) = &block.cells.thermal else { return };
+        let model = &bodies[block.body];
+        let work = |cell: usize| {
+            let strain = elastic_strain(&block.cells, cell, displacement, model.body.kinematics);
+            let change = own.unit * own.change[cell];
+            -block.cells.volume[cell] * block.nominal_stress(cell, &model.hooke, strain).dot(change)
+        };
+        block.expansion_work = (0..block.cells.len()).map(work).sum();
+    });
+}
 
-    /// Leads thermal strains to a part of the present change of temperatures, 0 to 1, for the step that follows.
-    pub fn expand_to(&mut self, part: f64) {
-        for own in self.blocks.iter_mut().filter_map(|block| block.cells.thermal.as_mut()) {
-            own.passed = [own.passed[1], part];
-        }
+/// Leads thermal strains to a part of the present change of temperatures, 0 to 1, for the step that follows.
+pub fn expand_to(solid: &mut Solid, part: f64) {
+    for own in solid.blocks.iter_mut().filter_map(|block| block.cells.thermal.as_mut()) {
+        own.passed = [own.passed[1], part];
     }
+}
 
-    /// Work that the whole of the present change of temperatures does at the stresses of the last step, -Σ V σ : Δεᵗ [J].
-    pub fn expansion_work(&self) -> f64 {
-        self.blocks.iter().map(|block| block.expansion_work).sum()
-    }
+/// Work that the whole of the present change of temperatures does at the stresses of the last step, -Σ V σ : Δεᵗ [J].
+pub fn expansion_work(solid: &Solid) -> f64 {
+    solid.blocks.iter().map(|block| block.expansion_work).sum()
+}
 
-    /// Heat that an element conducts per conductivity, as its local edges and ∫ -∇Nᵢ·∇Nⱼ dV of each [m].
-    pub fn element_conduction(&self, body: usize, element: u32) -> impl Iterator<Item = ([u32; 2], f64)> + use<> {
-        let model = &self.bodies[body];
-        let geometry = Geometry { body: &model.body, nodes: &self.reference };
-        let (volume, gradients) = geometry.element(element as usize);
-        let (nodes, count) = (model.body.elements[element as usize], model.body.shape.node_count());
-        let pairs = (0..count).flat_map(move |i| (i + 1..count).map(move |j| (i, j)));
-        pairs.map(move |(i, j)| ([nodes[i], nodes[j]], -volume * gradients[i].dot(&gradients[j])))
-    }
+/// Heat that an element conducts per conductivity, as its local edges and ∫ -∇Nᵢ·∇Nⱼ dV of each [m].
+pub fn element_conduction(solid: &Solid, body: usize, element: u32) -> impl Iterator<Item = ([u32; 2], f64)> + use<> {
+    let model = &solid.bodies[body];
+    let geometry = Geometry { body: &model.body, nodes: &solid.reference };
+    let (volume, gradients) = geometry.element(element as usize);
+    let (nodes, count) = (model.body.elements[element as usize], model.body.shape.node_count());
+    let pairs = (0..count).flat_map(move |i| (i + 1..count).map(move |j| (i, j)));
+    pairs.map(move |(i, j)| ([nodes[i], nodes[j]], -volume * gradients[i].dot(&gradients[j])))
 }
 
 impl Block {
@@ -140,7 +138,7 @@ mod tests {
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
         let body = Body::new("box", ElementKind::T4, mesh.tetrahedra, elastic);
         let mut solid = Solid::new(mesh.nodes, vec![if smoothed { body.smoothed() } else { body }]).unwrap();
-        solid.set_expansion(&[ALPHA]);
+        set_expansion(&mut solid, &[ALPHA]);
         solid
     }
 
@@ -150,19 +148,22 @@ mod tests {
             let mut solid = cube(smoothed);
             let count = solid.reference.len();
             let [cold, hot] = [0.0, 100.0].map(|rise| vec![rise; count]);
-            solid.begin_expansion([&cold, &hot]);
-            let free = 0.5 * solid.expansion_work();
-            solid.expand_to(1.0);
-            assert!(solid.owned_strains(0).iter().all(|strain| strain.0 == [0.0; 6]), "nothing has moved yet");
+            begin_expansion(&mut solid, [&cold, &hot]);
+            let free = 0.5 * expansion_work(&solid);
+            expand_to(&mut solid, 1.0);
+            assert!(
+                crate::fields::element_fields::owned_strains(&solid, 0).iter().all(|strain| strain.0 == [0.0; 6]),
+                "nothing has moved yet"
+            );
             // Held in all directions: σ = -E α ΔT/(1 - 2 ν), energy 3/2 V E (α ΔT)²/(1 - 2 ν).
             solid.update_internal_forces(0.0, true);
             let pressure = -30e9 * ALPHA * 100.0 / 0.6;
-            let (stress, _) = solid.element_field(0, 7);
+            let (stress, _) = crate::fields::element_fields::element_field(&solid, 0, 7);
             assert!((stress.0[0] / pressure - 1.0).abs() < 1e-12 && stress.0[3].abs() < 1.0, "{stress:?}");
             let energy = -1.5 * pressure * ALPHA * 100.0;
             assert!((solid.elastic_energy() / energy - 1.0).abs() < 1e-12);
             // Half of the work at no stress, half at the full one.
-            let work = free + 0.5 * solid.expansion_work();
+            let work = free + 0.5 * expansion_work(&solid);
             assert!(free == 0.0 && (work / energy - 1.0).abs() < 1e-12, "{work} {energy}");
             solid.displacement = solid.reference.iter().map(|x| x * (ALPHA * 100.0)).collect();
             solid.update_internal_forces(0.0, true);
@@ -170,7 +171,10 @@ mod tests {
             assert!(largest < 1e-9 * pressure.abs() && solid.elastic_energy() < 1e-12 * energy, "{largest}");
             let off =
                 |strain: &Sym3| (0..6).any(|k| (strain.0[k] - if k < 3 { ALPHA * 100.0 } else { 0.0 }).abs() > 1e-15);
-            assert!(!solid.owned_strains(0).iter().any(off), "all of it is thermal strain");
+            assert!(
+                !crate::fields::element_fields::owned_strains(&solid, 0).iter().any(off),
+                "all of it is thermal strain"
+            );
         }
     }
 
@@ -180,7 +184,7 @@ mod tests {
         let slope = Vec3::new(3.0, -2.0, 5.0);
         let temperature: Vec<f64> = solid.reference.iter().map(|x| slope.dot(x)).collect();
         let power: f64 = (0..solid.body(0).elements.len() as u32)
-            .flat_map(|element| solid.element_conduction(0, element))
+            .flat_map(|element| element_conduction(&solid, 0, element))
             .map(|([i, j], g)| g * (temperature[i as usize] - temperature[j as usize]).powi(2))
             .sum();
         assert!((power / slope.norm_squared() - 1.0).abs() < 1e-12, "{power}");

@@ -9,42 +9,40 @@ use crate::element::{InvertedElement, measure_and_gradients};
 use crate::solid::Solid;
 use crate::solid::evaluate::Block;
 
-impl Solid {
-    /// An element of a corotational body that the last forces found turned inside out while it still carried load.
-    ///
-    /// Its strain is beyond -1, where the law of small stretches says nothing. Where strains are those of an edge, it is the worst element
-    /// around one whose mean deformation is turned inside out.
-    pub fn inverted_element(&self) -> Option<InvertedElement> {
-        self.neighbours.inverted(&|| self.inverted_of(&self.blocks))
-    }
+/// An element of a corotational body that the last forces found turned inside out while it still carried load.
+///
+/// Its strain is beyond -1, where the law of small stretches says nothing. Where strains are those of an edge, it is the worst element
+/// around one whose mean deformation is turned inside out.
+pub fn inverted_element(solid: &Solid) -> Option<InvertedElement> {
+    solid.neighbours.inverted(&|| inverted_of(solid, &solid.blocks))
+}
 
-    /// Body and number of the inverted element, where it is crushed.
-    pub fn crushed_element(&self) -> Option<(usize, u32)> {
-        let crushed = self.inverted_element().filter(InvertedElement::is_crushed)?;
-        Some((crushed.body, crushed.element))
-    }
+/// Body and number of the inverted element, where it is crushed.
+pub fn crushed_element(solid: &Solid) -> Option<(usize, u32)> {
+    let crushed = inverted_element(solid).filter(InvertedElement::is_crushed)?;
+    Some((crushed.body, crushed.element))
+}
 
-    /// That of the first of some blocks that has one.
-    pub(crate) fn inverted_of(&self, blocks: &[Block]) -> Option<InvertedElement> {
-        let (block, cell) = blocks.iter().find_map(|block| Some((block, block.inverted?)))?;
-        let (body, model, item) = (block.body, &self.bodies[block.body], block.items[cell]);
-        let one = [item];
-        let of_edge = model.smoothed_edges().map_or(Cow::Borrowed(&[][..]), |edges| edges.around(item));
-        let elements = match model.body.formulation {
-            Formulation::Standard => &one[..],
-            Formulation::Smoothed => &of_edge,
-        };
-        let (corners, damage) = (model.body.shape.node_count(), block.damage_of(cell));
-        let of = |&element: &u32| {
-            let nodes = model.body.elements[element as usize].map(|node| node as usize);
-            let measure = |place: &dyn Fn(usize) -> Vec3| measure_and_gradients(model.body.shape, &nodes.map(place)).0;
-            let volume_ratio = measure(&|node| self.position(node)) / measure(&|node| self.reference[node]);
-            let centre = nodes[..corners].iter().map(|&n| self.position(n)).sum::<Vec3>() / corners as f64;
-            InvertedElement { body, element, centre, volume_ratio, damage }
-        };
-        let alive = elements.iter().filter(|&&element| model.alive[element as usize]);
-        alive.map(of).min_by(|a, b| a.volume_ratio.total_cmp(&b.volume_ratio))
-    }
+/// That of the first of some blocks that has one.
+pub(crate) fn inverted_of(solid: &Solid, blocks: &[Block]) -> Option<InvertedElement> {
+    let (block, cell) = blocks.iter().find_map(|block| Some((block, block.inverted?)))?;
+    let (body, model, item) = (block.body, &solid.bodies[block.body], block.items[cell]);
+    let one = [item];
+    let of_edge = model.smoothed_edges().map_or(Cow::Borrowed(&[][..]), |edges| edges.around(item));
+    let elements = match model.body.formulation {
+        Formulation::Standard => &one[..],
+        Formulation::Smoothed => &of_edge,
+    };
+    let (corners, damage) = (model.body.shape.node_count(), block.damage_of(cell));
+    let of = |&element: &u32| {
+        let nodes = model.body.elements[element as usize].map(|node| node as usize);
+        let measure = |place: &dyn Fn(usize) -> Vec3| measure_and_gradients(model.body.shape, &nodes.map(place)).0;
+        let volume_ratio = measure(&|node| solid.position(node)) / measure(&|node| solid.reference[node]);
+        let centre = nodes[..corners].iter().map(|&n| solid.position(n)).sum::<Vec3>() / corners as f64;
+        InvertedElement { body, element, centre, volume_ratio, damage }
+    };
+    let alive = elements.iter().filter(|&&element| model.alive[element as usize]);
+    alive.map(of).min_by(|a, b| a.volume_ratio.total_cmp(&b.volume_ratio))
 }
 
 #[cfg(test)]
@@ -52,6 +50,7 @@ mod tests {
     use fractum_math::Vec3;
     use fractum_mesh::generate::structured_box;
 
+    use super::*;
     use crate::body::{Body, ElementKind, Kinematics};
     use crate::material::{DamageLaw, Elastic};
     use crate::solid::Solid;
@@ -78,9 +77,9 @@ mod tests {
     fn an_element_that_still_carries_is_no_crushed_one() {
         for smoothed in [false, true] {
             let mut solid = inside_out(0.3, smoothed);
-            assert!(solid.inverted_element().is_some() && solid.crushed_element().is_none());
+            assert!(inverted_element(&solid).is_some() && crushed_element(&solid).is_none());
             let mut removed = Vec::new();
-            solid.remove_cut_elements(0.0, &mut removed);
+            crate::removal::remove_cut_elements(&mut solid, 0.0, &mut removed);
             assert!(removed.is_empty());
         }
     }
@@ -91,8 +90,8 @@ mod tests {
             let mut solid = inside_out(0.7, smoothed);
             let mut removed = Vec::new();
             for _ in 0..5 {
-                let (crushed, before) = (solid.crushed_element().unwrap(), solid.elastic_energy());
-                let taken = solid.remove_cut_elements(0.0, &mut removed);
+                let (crushed, before) = (crushed_element(&solid).unwrap(), solid.elastic_energy());
+                let taken = crate::removal::remove_cut_elements(&mut solid, 0.0, &mut removed);
                 assert_eq!(removed.last(), Some(&crushed));
                 solid.update_internal_forces(0.0, true);
                 let after = solid.elastic_energy();

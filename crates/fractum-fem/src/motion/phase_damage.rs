@@ -10,242 +10,241 @@ use crate::damage::edges_in_step::Advance;
 use crate::damage::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, PhaseField};
 use crate::damage::restraint::Seen;
 use crate::material::equivalent_stresses;
+use crate::motion::phase_edges::{activate, wake};
 use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
 
-impl Solid {
-    /// Whether the damage of some body is a phase field.
-    pub fn has_phase_fields(&self) -> bool {
-        self.bodies.iter().any(|model| model.phase.is_some())
-    }
+/// Whether the damage of some body is a phase field.
+pub fn has_phase_fields(solid: &Solid) -> bool {
+    solid.bodies.iter().any(|model| model.phase.is_some())
+}
 
-    /// Length of the phase field of a body, where it has one, and mean size of the elements in which it may occur [m].
-    pub fn phase_sizes(&self, body: usize) -> Option<[f64; 2]> {
-        self.bodies[body].phase.as_ref().map(|field| [field.law.length, field.law.size])
-    }
+/// Length of the phase field of a body, where it has one, and mean size of the elements in which it may occur [m].
+pub fn phase_sizes(solid: &Solid, body: usize) -> Option<[f64; 2]> {
+    solid.bodies[body].phase.as_ref().map(|field| [field.law.length, field.law.size])
+}
 
-    /// Phase field of every element of a body, 0 to 1: the mean over its edges; none without a phase field.
-    pub fn element_phase(&self, body: usize) -> Option<Vec<f64>> {
-        let model = &self.bodies[body];
-        let (field, edges) = (model.phase.as_ref()?, model.edges.as_ref()?);
-        let count = model.body.shape.edge_count();
-        let mean = |element| {
-            let of = edges.of_element(element);
-            of[..count].iter().map(|&e| field.value[e as usize]).sum::<f64>() / count as f64
-        };
-        Some((0..model.alive.len() as u32).map(mean).collect())
-    }
+/// Phase field of every element of a body, 0 to 1: the mean over its edges; none without a phase field.
+pub fn element_phase(solid: &Solid, body: usize) -> Option<Vec<f64>> {
+    let model = &solid.bodies[body];
+    let (field, edges) = (model.phase.as_ref()?, model.edges.as_ref()?);
+    let count = model.body.shape.edge_count();
+    let mean = |element| {
+        let of = edges.of_element(element);
+        of[..count].iter().map(|&e| field.value[e as usize]).sum::<f64>() / count as f64
+    };
+    Some((0..model.alive.len() as u32).map(mean).collect())
+}
 
-    /// Lets the phase fields follow the displacements of a step; nothing has moved where `dt` is zero.
-    pub(crate) fn update_phase_fields(&mut self, dt: f64) {
-        if dt <= 0.0 {
+/// Lets the phase fields follow the displacements of a step; nothing has moved where `dt` is zero.
+pub(crate) fn update_phase_fields(solid: &mut Solid, dt: f64) {
+    if dt <= 0.0 {
+        return;
+    }
+    for_each_phase_field(solid, |solid, body, field| {
+        let before = field.active.len();
+        wake(solid, body, field);
+        if field.active.is_empty() {
             return;
         }
-        self.for_each_phase_field(|solid, body, field| {
-            let before = field.active.len();
-            solid.wake(body, field);
-            if field.active.is_empty() {
-                return;
-            }
-            solid.drive(body, field, dt);
-            // Every process finds the edges of the standard formulation.
-            let is_smoothed = solid.bodies[body].standard.is_none();
-            field.sweep(|active| {
-                if is_smoothed {
-                    solid.neighbours.exchange_phase(active);
-                }
-            });
-            field.book(|own| solid.taken_at_first(body, own, dt));
-            solid.take_over(body, field);
-            field.end_step();
-            let mut reached = Vec::new();
-            field.newly_reached(&mut reached);
-            solid.activate(body, field, &reached);
-            let model = &solid.bodies[body];
-            if model.standard.is_none() {
-                field.arrange(before, |edge| model.location.of(edge));
+        drive(solid, body, field, dt);
+        // Every process finds the edges of the standard formulation.
+        let is_smoothed = solid.bodies[body].standard.is_none();
+        field.sweep(|active| {
+            if is_smoothed {
+                solid.neighbours.exchange_phase(active);
             }
         });
-    }
-
-    /// Lets the histories of edges see what they have seen in a step, and softens those whose d has grown.
-    fn take_over(&mut self, body: usize, field: &PhaseField) {
-        let own = self.own_blocks();
-        let Solid { blocks, bodies, .. } = self;
-        if let Some(standard) = &mut bodies[body].standard {
-            for edge in field.active.iter().map(|own| own.edge) {
-                if let Some((step, true)) = field.change(edge) {
-                    standard.field.soften(edge as usize, step.stiffness);
-                }
-            }
-            return;
-        }
-        let blocks = blocks[own.clone()].par_iter_mut().zip(own).filter(|(_, index)| field.has_block(*index));
-        blocks.for_each(|(block, _)| {
-            let Block { law: BlockLaw::Edges(cells), dissipated, .. } = block else { return };
-            for cell in 0..cells.edges.len() {
-                let Some((step, grown)) = field.change(cells.edges[cell]) else { continue };
-                cells.see(cell, step.seen);
-                if !grown {
-                    continue;
-                }
-                let growth = cells.soften(cell, step.stiffness);
-                if growth > 0.0 {
-                    *dissipated += step.taken.by(growth);
-                }
-            }
-        });
-    }
-
-    pub(crate) fn for_each_phase_field(&mut self, mut work: impl FnMut(&mut Solid, usize, &mut PhaseField)) {
-        for body in 0..self.bodies.len() {
-            let Some(mut field) = self.bodies[body].phase.take() else { continue };
-            work(self, body, &mut field);
-            self.bodies[body].phase = Some(field);
-        }
-    }
-
-    /// What drives the active edges at the present displacements.
-    fn drive(&self, body: usize, field: &mut PhaseField, dt: f64) {
-        let model = &self.bodies[body];
-        let compliance = 0.5 / model.body.opening_modulus();
-        let PhaseField { active, steps, .. } = field;
-        if let Some(standard) = &model.standard {
-            active.par_iter_mut().with_min_len(AT_LEAST).for_each(|own| {
-                let kappa = standard.field.state[own.edge as usize].kappa;
-                let volume = self.edge_volume(model, own.edge);
-                own.drive = Drive { volume, energy: kappa * kappa * compliance, ..own.drive };
-            });
-            return;
-        }
-        let fours = active.par_chunks_mut(FOUR).zip(steps.par_chunks_mut(FOUR));
-        fours.with_min_len(AT_LEAST / FOUR).for_each(|(active, steps)| drive_four(self, body, dt, active, steps));
-    }
-
-    /// What the first damage of an active edge takes if it grows [J].
-    fn taken_at_first(&self, body: usize, own: &ActiveEdge, dt: f64) -> Taken {
-        let model = &self.bodies[body];
-        let Some((cells, EdgeField { softens, .. }, cell)) = self.cell_of(model, own.edge) else {
-            return Taken::default();
-        };
-        let step = self.advance_of(model, dt);
-        let (before, strain) = (step.strain_before(cells, cell), step.strain_now(cells, cell));
-        let (stress, closed) = (softens.hooke.stress(strain), softens.closed_stress(strain));
-        softens.taken(0.0, [before, strain], stress, closed).of(cells.volume[cell])
-    }
-
-    fn advance_of(&self, model: &BodyModel, dt: f64) -> Advance<'_> {
-        let Solid { displacement, velocity, .. } = self;
-        Advance { displacement, velocity, dt, kinematics: model.body.kinematics }
-    }
-
-    /// The smoothed cell of an edge, with its number, among those of its block that may be damaged.
-    #[inline(always)]
-    fn cell_of(&self, model: &BodyModel, edge: u32) -> Option<(&Cells, &EdgeField, usize)> {
-        let (block, cell) = model.location.kept(edge)?;
-        let block = &self.blocks[block as usize];
-        Some((&block.cells, block.edge_field()?, cell as usize))
-    }
-
-    /// The history of an active edge, and where its dissipation is booked; elements book that of a standard body.
-    fn history_of(&mut self, body: usize, edge: u32) -> (&mut EdgeField, usize, Option<&mut f64>) {
-        let Solid { blocks, bodies, .. } = self;
-        let BodyModel { standard, location, .. } = &mut bodies[body];
-        if let Some(standard) = standard {
-            return (&mut standard.field, edge as usize, None);
-        }
-        let (block, cell) = location.of(edge);
-        match &mut blocks[block as usize] {
-            Block { law: BlockLaw::Edges(field), dissipated, .. } => (field, cell as usize, Some(dissipated)),
-            _ => unreachable!("only edges that may be damaged become active"),
-        }
-    }
-
-    /// Volume of an edge [m³]: its share of the elements around it that are there.
-    fn edge_volume(&self, model: &BodyModel, edge: u32) -> f64 {
-        let of = |(block, cell): (u32, u32)| self.blocks[block as usize].cells.volume[cell as usize];
+        field.book(|own| taken_at_first(solid, body, own, dt));
+        take_over(solid, body, field);
+        field.end_step();
+        let mut reached = Vec::new();
+        field.newly_reached(&mut reached);
+        activate(solid, body, field, &reached);
+        let model = &solid.bodies[body];
         if model.standard.is_none() {
-            return of(model.location.of(edge));
+            field.arrange(before, |edge| model.location.of(edge));
         }
-        let Some(edges) = &model.edges else { return 0.0 };
-        let around = edges.around(edge);
-        let sum: f64 = around.iter().map(|&element| of(model.location.of(element))).sum();
-        sum / model.body.shape.edge_count() as f64
-    }
+    });
+}
 
-    /// Finds the phase fields once every edge has seen what it sees, and replaces the trial damage of the cells that are edges.
-    ///
-    /// - `values`: d of the edges of every body, from which the search starts
-    pub(crate) fn trial_phases(&self, seen: &[Seen], cells: &mut [Vec<f64>], values: &mut [Vec<f64>]) {
-        if !self.has_phase_fields() {
-            return;
+/// Lets the histories of edges see what they have seen in a step, and softens those whose d has grown.
+fn take_over(solid: &mut Solid, body: usize, field: &PhaseField) {
+    let own = solid.own_blocks();
+    let Solid { blocks, bodies, .. } = solid;
+    if let Some(standard) = &mut bodies[body].standard {
+        for edge in field.active.iter().map(|own| own.edge) {
+            if let Some((step, true)) = field.change(edge) {
+                standard.field.soften(edge as usize, step.stiffness);
+            }
         }
-        let mut next = 0;
-        let mut first = |count: usize| {
-            next += count;
-            next - count
-        };
-        let first_of_block: Vec<usize> =
-            self.blocks.iter().map(|block| first(block.edge_field().map_or(0, |field| field.state.len()))).collect();
-        for (body, (model, value)) in self.bodies.iter().zip(values).enumerate() {
-            let first = first(model.standard.as_ref().map_or(0, |standard| standard.field.state.len()));
-            let Some(field) = &model.phase else { continue };
-            let compliance = 0.5 / model.body.opening_modulus();
-            let seen_by = |edge: u32| match model.standard {
-                Some(_) => seen[first + edge as usize],
-                None => {
-                    let (block, cell) = model.location.of(edge);
-                    seen[first_of_block[block as usize] + cell as usize]
-                }
-            };
-            let drive = |own: &ActiveEdge| {
-                let known = self.edge(body, own.edge).map_or(0.0, |(cells, cell)| cells.state[cell].kappa);
-                let (kappa, volume) = (known.max(seen_by(own.edge).stress), self.edge_volume(model, own.edge));
-                Drive { volume, energy: kappa * kappa * compliance, ..own.drive }
-            };
-            let drives: Vec<Drive> = field.active.iter().map(drive).collect();
-            field.settle(&drives, value);
-            if model.standard.is_some() {
+        return;
+    }
+    let blocks = blocks[own.clone()].par_iter_mut().zip(own).filter(|(_, index)| field.has_block(*index));
+    blocks.for_each(|(block, _)| {
+        let Block { law: BlockLaw::Edges(cells), dissipated, .. } = block else { return };
+        for cell in 0..cells.edges.len() {
+            let Some((step, grown)) = field.change(cells.edges[cell]) else { continue };
+            cells.see(cell, step.seen);
+            if !grown {
                 continue;
             }
-            for own in &field.active {
-                let stiffness = field.law.stiffness(own.drive.a1, value[own.edge as usize]);
-                let (block, cell) = model.location.of(own.edge);
-                let trial = &mut cells[block as usize][cell as usize];
-                *trial = trial.max(1.0 - seen_by(own.edge).share * stiffness);
+            let growth = cells.soften(cell, step.stiffness);
+            if growth > 0.0 {
+                *dissipated += step.taken.by(growth);
             }
         }
-    }
+    });
+}
 
-    /// d of the edges of every body, empty where it has no phase field.
-    pub(crate) fn phase_values(&self) -> Vec<Vec<f64>> {
-        self.bodies.iter().map(|model| model.phase.as_ref().map_or_else(Vec::new, |f| f.value.clone())).collect()
+pub(crate) fn for_each_phase_field(solid: &mut Solid, mut work: impl FnMut(&mut Solid, usize, &mut PhaseField)) {
+    for body in 0..solid.bodies.len() {
+        let Some(mut field) = solid.bodies[body].phase.take() else { continue };
+        work(solid, body, &mut field);
+        solid.bodies[body].phase = Some(field);
     }
+}
 
-    /// Lets the phase fields have the values that a trial found, as the solid goes straight from the displacements `before` to
-    /// `after`, and books what damage takes on the way.
-    pub(crate) fn raise_phases(&mut self, values: &[Vec<f64>], before: &[Vec3], after: &[Vec3]) {
-        self.for_each_phase_field(|solid, body, field| {
-            let hooke = solid.bodies[body].hooke;
-            let law = field.law;
-            field.take_rest(&values[body], |own, d| {
-                let taken = match &solid.bodies[body] {
-                    model if model.standard.is_some() => Taken::default(),
-                    model => {
-                        let (block, cell) = model.location.of(own.edge);
-                        let (cells, cell) = (&solid.blocks[block as usize].cells, cell as usize);
-                        let strain = |field: &[Vec3]| Sym3::symmetric_part(&cells.gradient(cell, |node| field[node]));
-                        Taken::straight(0.5 * hooke.stress(strain(after)).dot(strain(before))).of(cells.volume[cell])
-                    }
-                };
-                let (cells, cell, dissipated) = solid.history_of(body, own.edge);
-                let growth = cells.soften(cell, law.stiffness(own.drive.a1, d));
-                if let Some(dissipated) = dissipated {
-                    *dissipated += taken.by(growth);
-                }
-            });
+/// What drives the active edges at the present displacements.
+fn drive(solid: &Solid, body: usize, field: &mut PhaseField, dt: f64) {
+    let model = &solid.bodies[body];
+    let compliance = 0.5 / model.body.opening_modulus();
+    let PhaseField { active, steps, .. } = field;
+    if let Some(standard) = &model.standard {
+        active.par_iter_mut().with_min_len(AT_LEAST).for_each(|own| {
+            let kappa = standard.field.state[own.edge as usize].kappa;
+            let volume = edge_volume(solid, model, own.edge);
+            own.drive = Drive { volume, energy: kappa * kappa * compliance, ..own.drive };
         });
+        return;
     }
+    let fours = active.par_chunks_mut(FOUR).zip(steps.par_chunks_mut(FOUR));
+    fours.with_min_len(AT_LEAST / FOUR).for_each(|(active, steps)| drive_four(solid, body, dt, active, steps));
+}
+
+/// What the first damage of an active edge takes if it grows [J].
+fn taken_at_first(solid: &Solid, body: usize, own: &ActiveEdge, dt: f64) -> Taken {
+    let model = &solid.bodies[body];
+    let Some((cells, EdgeField { softens, .. }, cell)) = cell_of(solid, model, own.edge) else {
+        return Taken::default();
+    };
+    let step = advance_of(solid, model, dt);
+    let (before, strain) = (step.strain_before(cells, cell), step.strain_now(cells, cell));
+    let (stress, closed) = (softens.hooke.stress(strain), softens.closed_stress(strain));
+    softens.taken(0.0, [before, strain], stress, closed).of(cells.volume[cell])
+}
+
+fn advance_of<'a>(solid: &'a Solid, model: &BodyModel, dt: f64) -> Advance<'a> {
+    let Solid { displacement, velocity, .. } = solid;
+    Advance { displacement, velocity, dt, kinematics: model.body.kinematics }
+}
+
+/// The smoothed cell of an edge, with its number, among those of its block that may be damaged.
+#[inline(always)]
+fn cell_of<'a>(solid: &'a Solid, model: &BodyModel, edge: u32) -> Option<(&'a Cells, &'a EdgeField, usize)> {
+    let (block, cell) = model.location.kept(edge)?;
+    let block = &solid.blocks[block as usize];
+    Some((&block.cells, block.edge_field()?, cell as usize))
+}
+
+/// The history of an active edge, and where its dissipation is booked; elements book that of a standard body.
+fn history_of(solid: &mut Solid, body: usize, edge: u32) -> (&mut EdgeField, usize, Option<&mut f64>) {
+    let Solid { blocks, bodies, .. } = solid;
+    let BodyModel { standard, location, .. } = &mut bodies[body];
+    if let Some(standard) = standard {
+        return (&mut standard.field, edge as usize, None);
+    }
+    let (block, cell) = location.of(edge);
+    match &mut blocks[block as usize] {
+        Block { law: BlockLaw::Edges(field), dissipated, .. } => (field, cell as usize, Some(dissipated)),
+        _ => unreachable!("only edges that may be damaged become active"),
+    }
+}
+
+/// Volume of an edge [m³]: its share of the elements around it that are there.
+fn edge_volume(solid: &Solid, model: &BodyModel, edge: u32) -> f64 {
+    let of = |(block, cell): (u32, u32)| solid.blocks[block as usize].cells.volume[cell as usize];
+    if model.standard.is_none() {
+        return of(model.location.of(edge));
+    }
+    let Some(edges) = &model.edges else { return 0.0 };
+    let around = edges.around(edge);
+    let sum: f64 = around.iter().map(|&element| of(model.location.of(element))).sum();
+    sum / model.body.shape.edge_count() as f64
+}
+
+/// Finds the phase fields once every edge has seen what it sees, and replaces the trial damage of the cells that are edges.
+///
+/// - `values`: d of the edges of every body, from which the search starts
+pub(crate) fn trial_phases(solid: &Solid, seen: &[Seen], cells: &mut [Vec<f64>], values: &mut [Vec<f64>]) {
+    if !has_phase_fields(solid) {
+        return;
+    }
+    let mut next = 0;
+    let mut first = |count: usize| {
+        next += count;
+        next - count
+    };
+    let first_of_block: Vec<usize> =
+        solid.blocks.iter().map(|block| first(block.edge_field().map_or(0, |field| field.state.len()))).collect();
+    for (body, (model, value)) in solid.bodies.iter().zip(values).enumerate() {
+        let first = first(model.standard.as_ref().map_or(0, |standard| standard.field.state.len()));
+        let Some(field) = &model.phase else { continue };
+        let compliance = 0.5 / model.body.opening_modulus();
+        let seen_by = |edge: u32| match model.standard {
+            Some(_) => seen[first + edge as usize],
+            None => {
+                let (block, cell) = model.location.of(edge);
+                seen[first_of_block[block as usize] + cell as usize]
+            }
+        };
+        let drive = |own: &ActiveEdge| {
+            let known = solid.edge(body, own.edge).map_or(0.0, |(cells, cell)| cells.state[cell].kappa);
+            let (kappa, volume) = (known.max(seen_by(own.edge).stress), edge_volume(solid, model, own.edge));
+            Drive { volume, energy: kappa * kappa * compliance, ..own.drive }
+        };
+        let drives: Vec<Drive> = field.active.iter().map(drive).collect();
+        field.settle(&drives, value);
+        if model.standard.is_some() {
+            continue;
+        }
+        for own in &field.active {
+            let stiffness = field.law.stiffness(own.drive.a1, value[own.edge as usize]);
+            let (block, cell) = model.location.of(own.edge);
+            let trial = &mut cells[block as usize][cell as usize];
+            *trial = trial.max(1.0 - seen_by(own.edge).share * stiffness);
+        }
+    }
+}
+
+/// d of the edges of every body, empty where it has no phase field.
+pub(crate) fn phase_values(solid: &Solid) -> Vec<Vec<f64>> {
+    solid.bodies.iter().map(|model| model.phase.as_ref().map_or_else(Vec::new, |f| f.value.clone())).collect()
+}
+
+/// Lets the phase fields have the values that a trial found, as the solid goes straight from the displacements `before` to
+/// `after`, and books what damage takes on the way.
+pub(crate) fn raise_phases(solid: &mut Solid, values: &[Vec<f64>], before: &[Vec3], after: &[Vec3]) {
+    for_each_phase_field(solid, |solid, body, field| {
+        let hooke = solid.bodies[body].hooke;
+        let law = field.law;
+        field.take_rest(&values[body], |own, d| {
+            let taken = match &solid.bodies[body] {
+                model if model.standard.is_some() => Taken::default(),
+                model => {
+                    let (block, cell) = model.location.of(own.edge);
+                    let (cells, cell) = (&solid.blocks[block as usize].cells, cell as usize);
+                    let strain = |field: &[Vec3]| Sym3::symmetric_part(&cells.gradient(cell, |node| field[node]));
+                    Taken::straight(0.5 * hooke.stress(strain(after)).dot(strain(before))).of(cells.volume[cell])
+                }
+            };
+            let (cells, cell, dissipated) = history_of(solid, body, own.edge);
+            let growth = cells.soften(cell, law.stiffness(own.drive.a1, d));
+            if let Some(dissipated) = dissipated {
+                *dissipated += taken.by(growth);
+            }
+        });
+    });
 }
 
 widest! {
@@ -257,14 +256,14 @@ widest! {
 fn driven_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], steps: &mut [EdgeStep]) {
     let model = &solid.bodies[body];
     let compliance = 0.5 / model.body.opening_modulus();
-    let (step, own_blocks) = (solid.advance_of(model, dt), solid.own_blocks());
+    let (step, own_blocks) = (advance_of(solid, model, dt), solid.own_blocks());
     let (mut strains, mut stresses, mut kappa) = ([Sym3::ZERO; FOUR], [Sym3::ZERO; FOUR], Lane::splat(ABOVE_ALL));
     let (mut states, mut softens) = ([None; FOUR], None);
     for (k, own) in active.iter_mut().enumerate() {
         if !own_blocks.contains(&(model.location.of(own.edge).0 as usize)) {
             continue;
         }
-        let Some((cells, field, cell)) = solid.cell_of(model, own.edge) else { continue };
+        let Some((cells, field, cell)) = cell_of(solid, model, own.edge) else { continue };
         strains[k] = step.strain_now(cells, cell);
         stresses[k] = field.softens.hooke.stress(strains[k]);
         kappa.0[k] = field.state[cell].kappa;
@@ -326,7 +325,7 @@ mod tests {
         body.plane = Plane::Stress;
         body.damage.as_mut().unwrap().regularisation = Some(Regularisation { length: None });
         let mut solid = Solid::new(nodes, vec![body]).unwrap();
-        solid.wake_phase_fields();
+        crate::motion::phase_edges::wake_phase_fields(&mut solid);
         solid
     }
 
@@ -358,7 +357,7 @@ mod tests {
             for removed in [None, Some(12u32)] {
                 if let Some(element) = removed {
                     solid.bodies[0].alive[element as usize] = false;
-                    solid.rebuild_cells_around(0, &[element]);
+                    crate::removal::rebuild_cells_around(&mut solid, 0, &[element]);
                 }
                 let matrix = dense(field(&solid));
                 let scale = matrix.amax();
@@ -394,7 +393,7 @@ mod tests {
         let mut d: Vec<f64> = crossed.iter().map(|&c| f64::from(u8::from(c))).collect();
         solid.bodies[0].phase.as_mut().unwrap().value.clone_from(&d);
         let field = field(&solid);
-        let volume = |own: &ActiveEdge| solid.edge_volume(&solid.bodies[0], own.edge);
+        let volume = |own: &ActiveEdge| edge_volume(&solid, &solid.bodies[0], own.edge);
         let drives: Vec<Drive> =
             field.active.iter().map(|own| Drive { volume: volume(own), energy: 0.0, a1: 20.0 }).collect();
         (0..20).for_each(|_| field.settle(&drives, &mut d));

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::cells::cell::Geometry;
 use crate::element::hooke::Hooke;
+use crate::motion::subcycled_solid::forget_ahead;
 use crate::solid::Solid;
 
 /// Lanczos steps of the estimate.
@@ -35,95 +36,95 @@ impl Solid {
     ///
     /// Where cells take steps of two sizes it is that of those with the longer ones. Ranks that share the cells must all call it.
     pub fn stable_step(&mut self) -> StableStep {
-        let frequency = 1.02 * self.largest_eigenvalue(|solid, node| !solid.is_fine(node)).sqrt();
-        StableStep { frequency, ..self.stable_step_bound() }
+        let frequency = 1.02 * highest_eigenvalue(self, |solid, node| !solid.is_fine(node)).sqrt();
+        StableStep { frequency, ..stable_step_bound(self) }
     }
+}
 
-    /// Frequency of the present motion, √(v·K v / v·M v) [rad/s]: that of a vibration whose velocities these are, 0 where nothing
-    /// moves or all moves alike. Ranks that share the cells must all call it.
-    pub fn motion_frequency(&mut self) -> f64 {
-        let root: Vec<f64> = self.inverse_mass.iter().map(|m| m.sqrt()).collect();
-        let scaled: Vec<Vec3> =
-            self.velocity.iter().zip(&root).map(|(v, r)| if *r > 0.0 { v / *r } else { Vec3::zeros() }).collect();
-        let energy = sum_chunks(scaled.len(), |node| scaled[node].norm_squared());
-        if energy == 0.0 {
-            return 0.0;
-        }
-        let stiff = self.scaled_stiffness(&scaled, &root);
-        (sum_chunks(scaled.len(), |node| scaled[node].dot(&stiff[node])) / energy).max(0.0).sqrt()
+/// Frequency of the present motion, √(v·K v / v·M v) [rad/s]: that of a vibration whose velocities these are, 0 where nothing
+/// moves or all moves alike. Ranks that share the cells must all call it.
+pub fn motion_frequency(solid: &mut Solid) -> f64 {
+    let root: Vec<f64> = solid.inverse_mass.iter().map(|m| m.sqrt()).collect();
+    let scaled: Vec<Vec3> =
+        solid.velocity.iter().zip(&root).map(|(v, r)| if *r > 0.0 { v / *r } else { Vec3::zeros() }).collect();
+    let energy = sum_chunks(scaled.len(), |node| scaled[node].norm_squared());
+    if energy == 0.0 {
+        return 0.0;
     }
+    let stiff = scaled_stiffness(solid, &scaled, &root);
+    (sum_chunks(scaled.len(), |node| scaled[node].dot(&stiff[node])) / energy).max(0.0).sqrt()
+}
 
-    /// As [`Solid::stable_step`], of the cells with the shorter steps; none where all take the same.
-    pub fn fine_stable_step(&mut self, bound: bool) -> Option<StableStep> {
-        let fine = self.subcycling.as_ref()?.fine_elements.clone();
-        let worst = self.bound(|body, element| fine[body][element as usize]);
-        if bound {
-            return Some(worst);
-        }
-        Some(StableStep { frequency: 1.02 * self.largest_eigenvalue(Solid::is_fine).sqrt(), ..worst })
+/// As [`Solid::stable_step`], of the cells with the shorter steps; none where all take the same.
+pub fn fine_stable_step(solid: &mut Solid, by_elements: bool) -> Option<StableStep> {
+    let fine = solid.subcycling.as_ref()?.fine_elements.clone();
+    let worst = bound(solid, |body, element| fine[body][element as usize]);
+    if by_elements {
+        return Some(worst);
     }
+    Some(StableStep { frequency: 1.02 * highest_eigenvalue(solid, Solid::is_fine).sqrt(), ..worst })
+}
 
-    /// ω_max by the rigorous bound max over elements of their own highest frequency (holds for both formulations and
-    /// through removal). Processes of which none has all elements must all call it.
-    pub fn stable_step_bound(&self) -> StableStep {
-        match &self.subcycling {
-            Some(subcycling) => self.bound(|body, element| !subcycling.fine_elements[body][element as usize]),
-            None => self.bound(|_, _| true),
-        }
+/// ω_max by the rigorous bound max over elements of their own highest frequency (holds for both formulations and
+/// through removal). Processes of which none has all elements must all call it.
+pub fn stable_step_bound(solid: &Solid) -> StableStep {
+    match &solid.subcycling {
+        Some(subcycling) => bound(solid, |body, element| !subcycling.fine_elements[body][element as usize]),
+        None => bound(solid, |_, _| true),
     }
+}
 
-    /// The bound over some elements: body, element.
-    fn bound(&self, counts: impl Fn(usize, u32) -> bool) -> StableStep {
-        let mut worst = StableStep { frequency: 0.0, governing: (0, 0) };
-        let mut worst_trace = 0.0;
-        for (body, model) in self.bodies.iter().enumerate() {
-            let geometry = Geometry { body: &model.body, nodes: &self.reference };
-            let corners = model.body.shape.node_count();
-            let scale = corners as f64 / model.body.elastic.density;
-            // The trace of the 6×6 dual bounds its largest eigenvalue: most elements need no eigenvalue.
-            let hooke = &model.hooke;
-            let trace_factor = hooke.lambda + 2.0 * hooke.mu + 2.0 * hooke.mu;
-            let trace = |element: usize| {
-                let (_, gradients) = geometry.element(element);
-                gradients[..corners].iter().map(|g| g.norm_squared()).sum::<f64>() * trace_factor * scale
-            };
-            let meant = |&e: &u32| model.alive[e as usize] && counts(body, e) && self.owns(body, e);
-            let meant: Vec<u32> = (0..model.body.elements.len() as u32).filter(meant).collect();
-            let mut order: Vec<(f64, u32)> = meant.into_par_iter().map(|e| (trace(e as usize), e)).collect();
-            order.par_sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            for (trace, element) in order {
-                if trace <= worst.frequency * worst.frequency {
-                    break;
-                }
-                let frequency = element_frequency(&geometry, hooke, element as usize);
-                if frequency > worst.frequency {
-                    worst = StableStep { frequency, governing: (body, element) };
-                    worst_trace = trace;
-                }
+/// The bound over some elements: body, element.
+fn bound(solid: &Solid, counts: impl Fn(usize, u32) -> bool) -> StableStep {
+    let mut worst = StableStep { frequency: 0.0, governing: (0, 0) };
+    let mut worst_trace = 0.0;
+    for (body, model) in solid.bodies.iter().enumerate() {
+        let geometry = Geometry { body: &model.body, nodes: &solid.reference };
+        let corners = model.body.shape.node_count();
+        let scale = corners as f64 / model.body.elastic.density;
+        // The trace of the 6×6 dual bounds its largest eigenvalue: most elements need no eigenvalue.
+        let hooke = &model.hooke;
+        let trace_factor = hooke.lambda + 2.0 * hooke.mu + 2.0 * hooke.mu;
+        let trace = |element: usize| {
+            let (_, gradients) = geometry.element(element);
+            gradients[..corners].iter().map(|g| g.norm_squared()).sum::<f64>() * trace_factor * scale
+        };
+        let meant = |&e: &u32| model.alive[e as usize] && counts(body, e) && solid.owns(body, e);
+        let meant: Vec<u32> = (0..model.body.elements.len() as u32).filter(meant).collect();
+        let mut order: Vec<(f64, u32)> = meant.into_par_iter().map(|e| (trace(e as usize), e)).collect();
+        order.par_sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        for (trace, element) in order {
+            if trace <= worst.frequency * worst.frequency {
+                break;
+            }
+            let frequency = element_frequency(&geometry, hooke, element as usize);
+            if frequency > worst.frequency {
+                worst = StableStep { frequency, governing: (body, element) };
+                worst_trace = trace;
             }
         }
-        let (frequency, governing) = self.neighbours.worst((worst.frequency, worst.governing), worst_trace);
-        StableStep { frequency, governing }
     }
+    let (frequency, governing) = solid.neighbours.worst((worst.frequency, worst.governing), worst_trace);
+    StableStep { frequency, governing }
+}
 
-    /// Largest eigenvalue of M⁻¹K, in the symmetric form M^-½ K M^-½, of nodes that no cell joins to others.
-    fn largest_eigenvalue(&mut self, counts: impl Fn(&Solid, usize) -> bool) -> f64 {
-        let root = |(node, m): (usize, &f64)| if counts(self, node) { m.sqrt() } else { 0.0 };
-        let root: Vec<f64> = self.inverse_mass.iter().enumerate().map(root).collect();
-        largest_eigenvalue(root.len(), LANCZOS_STEPS, |q| self.scaled_stiffness(q, &root))
-    }
+/// Largest eigenvalue of M⁻¹K, in the symmetric form M^-½ K M^-½, of nodes that no cell joins to others.
+fn highest_eigenvalue(solid: &mut Solid, counts: impl Fn(&Solid, usize) -> bool) -> f64 {
+    let root = |(node, m): (usize, &f64)| if counts(solid, node) { m.sqrt() } else { 0.0 };
+    let root: Vec<f64> = solid.inverse_mass.iter().enumerate().map(root).collect();
+    largest_eigenvalue(root.len(), LANCZOS_STEPS, |q| scaled_stiffness(solid, q, &root))
+}
 
-    /// M^-½ K M^-½ q.
-    fn scaled_stiffness(&mut self, q: &[Vec3], root: &[f64]) -> Vec<Vec3> {
-        self.forget_ahead(); // it shares the memory of forces
-        let field: Vec<Vec3> = q.par_iter().zip(root).map(|(v, r)| v * *r).collect();
-        self.evaluate_own(|bodies, _, block| block.evaluate_elastic(&bodies[block.body], &field));
-        let mut force = field;
-        self.sum_blocks(&mut force);
-        self.neighbours.gather_values(&mut force);
-        force.par_iter_mut().zip(root).for_each(|(force, root)| *force *= -root);
-        force
-    }
+/// M^-½ K M^-½ q.
+fn scaled_stiffness(solid: &mut Solid, q: &[Vec3], root: &[f64]) -> Vec<Vec3> {
+    forget_ahead(solid); // it shares the memory of forces
+    let field: Vec<Vec3> = q.par_iter().zip(root).map(|(v, r)| v * *r).collect();
+    solid.evaluate_own(|bodies, _, block| block.evaluate_elastic(&bodies[block.body], &field));
+    let mut force = field;
+    solid.sum_blocks(&mut force);
+    solid.neighbours.gather_values(&mut force);
+    force.par_iter_mut().zip(root).for_each(|(force, root)| *force *= -root);
+    force
 }
 
 /// Highest frequency of an element by itself, with its share of the mass [rad/s].

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::body::{Body, Kinematics};
 use crate::damage::edges_in_step::Advance;
 use crate::element::CARRIES;
+use crate::motion::subcycled_solid::{forget_ahead, own_step};
 use crate::solid::Solid;
 use crate::solid::body_model::BodyModel;
 use crate::solid::evaluate::{Block, BlockLaw};
@@ -36,100 +37,98 @@ pub(crate) fn turn(h: &Mat3) -> f64 {
     0.5 * turn.norm()
 }
 
-impl Solid {
-    /// Has those bodies of [`Kinematics::Auto`] that have begun to turn be corotational from now on. All ranks must call it after each step.
-    ///
-    /// - `step`: number of the step; cells are looked at now and then, an eighth of them at a time
-    /// - `dt`: time since the forces were last computed, in which the nodes moved with their present velocities [s]
-    /// - `turning`: gets the bodies that turn from now on
-    /// - returns the elastic energy that small strains had found in them beyond that of corotational ones [J]
-    pub fn let_turn(&mut self, step: u64, dt: f64, turning: &mut Vec<u32>) -> f64 {
-        let is_auto = |model: &BodyModel| model.body.kinematics == Kinematics::Auto;
-        if !step.is_multiple_of(STEPS_BETWEEN_LOOKS) || !self.bodies.iter().any(is_auto) {
-            return 0.0;
-        }
-        let first = (step / STEPS_BETWEEN_LOOKS % LOOKS) as usize;
-        let own = &self.blocks[self.own_blocks()];
-        let turns = |block: &&Block| self.turns(block, first, STEPS_BETWEEN_LOOKS as f64 * dt);
-        // Nothing is allocated while no body turns.
-        let mut found = Vec::new();
-        if own.par_iter().any(|block| turns(&block)) {
-            found = own.par_iter().filter(turns).map(|block| block.body as u32).collect();
-            found.dedup();
-        }
-        found = self.neighbours.gather_names(found);
-        if found.is_empty() {
-            return 0.0;
-        }
-        found.sort_unstable();
+/// Has those bodies of [`Kinematics::Auto`] that have begun to turn be corotational from now on. All ranks must call it after each step.
+///
+/// - `step`: number of the step; cells are looked at now and then, an eighth of them at a time
+/// - `dt`: time since the forces were last computed, in which the nodes moved with their present velocities [s]
+/// - `turning`: gets the bodies that turn from now on
+/// - returns the elastic energy that small strains had found in them beyond that of corotational ones [J]
+pub fn let_turn(solid: &mut Solid, step: u64, dt: f64, turning: &mut Vec<u32>) -> f64 {
+    let is_auto = |model: &BodyModel| model.body.kinematics == Kinematics::Auto;
+    if !step.is_multiple_of(STEPS_BETWEEN_LOOKS) || !solid.bodies.iter().any(is_auto) {
+        return 0.0;
+    }
+    let first = (step / STEPS_BETWEEN_LOOKS % LOOKS) as usize;
+    let own = &solid.blocks[solid.own_blocks()];
+    let turns = |block: &&Block| turns(solid, block, first, STEPS_BETWEEN_LOOKS as f64 * dt);
+    // Nothing is allocated while no body turns.
+    let mut found = Vec::new();
+    if own.par_iter().any(|block| turns(&block)) {
+        found = own.par_iter().filter(turns).map(|block| block.body as u32).collect();
         found.dedup();
-        let before = self.energy_in_step(&found, dt);
-        self.forget_ahead();
-        for &body in &found {
-            self.bodies[body as usize].body.kinematics = Kinematics::Corotational;
-        }
-        self.see_strains_before(&found, dt);
-        self.neighbours.expect_events();
-        let after = self.energy_in_step(&found, dt);
-        turning.extend(found);
-        before - after
     }
-
-    /// Whether a cell of a block, one of eight, will have turned after a time [s] if its nodes go on as they do.
-    fn turns(&self, block: &Block, first: usize, ahead: f64) -> bool {
-        let body = &self.bodies[block.body].body;
-        if body.kinematics != Kinematics::Auto {
-            return false;
-        }
-        let least = body.least_turn();
-        let then = |node: usize| self.displacement[node] + self.velocity[node] * ahead;
-        (first..block.cells.len()).step_by(LOOKS as usize).any(|cell| {
-            let carries = block.cells.volume[cell] > 0.0 && block.damage_of(cell) <= CARRIES;
-            carries && turn(&block.cells.gradient(cell, then)) > least
-        })
+    found = solid.neighbours.gather_names(found);
+    if found.is_empty() {
+        return 0.0;
     }
+    found.sort_unstable();
+    found.dedup();
+    let before = energy_in_step(solid, &found, dt);
+    forget_ahead(solid);
+    for &body in &found {
+        solid.bodies[body as usize].body.kinematics = Kinematics::Corotational;
+    }
+    see_strains_before(solid, &found, dt);
+    solid.neighbours.expect_events();
+    let after = energy_in_step(solid, &found, dt);
+    turning.extend(found);
+    before - after
+}
 
-    /// Keeps the strains of the step before, from which damage finds what it dissipates, as the present kinematics see them.
-    fn see_strains_before(&mut self, bodies: &[u32], dt: f64) {
-        let own = self.own_blocks();
-        let steps: Vec<f64> = self.blocks.iter().map(|block| self.own_step(block, dt)).collect();
-        let Solid { blocks, bodies: models, displacement, velocity, .. } = self;
-        let (displacement, velocity) = (&displacement[..], &velocity[..]);
-        let blocks = blocks[own.clone()].par_iter_mut().zip(&steps[own]);
-        blocks.filter(|(block, _)| bodies.contains(&(block.body as u32))).for_each(|(block, &dt)| {
-            let model = &models[block.body];
-            let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
-            let Block { cells, law, .. } = block;
-            match law {
-                BlockLaw::Edges(field) => {
-                    let damaged = field.state.iter_mut().enumerate().filter(|(_, edge)| edge.damage > 0.0);
-                    damaged.for_each(|(cell, edge)| edge.strain = step.strain_before(cells, cell));
-                }
-                BlockLaw::Standard(law) => {
-                    (0..cells.len())
-                        .for_each(|cell| law.stress[cell] = model.hooke.stress(step.strain_before(cells, cell)));
-                }
-                _ => {}
+/// Whether a cell of a block, one of eight, will have turned after a time [s] if its nodes go on as they do.
+fn turns(solid: &Solid, block: &Block, first: usize, ahead: f64) -> bool {
+    let body = &solid.bodies[block.body].body;
+    if body.kinematics != Kinematics::Auto {
+        return false;
+    }
+    let least = body.least_turn();
+    let then = |node: usize| solid.displacement[node] + solid.velocity[node] * ahead;
+    (first..block.cells.len()).step_by(LOOKS as usize).any(|cell| {
+        let carries = block.cells.volume[cell] > 0.0 && block.damage_of(cell) <= CARRIES;
+        carries && turn(&block.cells.gradient(cell, then)) > least
+    })
+}
+
+/// Keeps the strains of the step before, from which damage finds what it dissipates, as the present kinematics see them.
+fn see_strains_before(solid: &mut Solid, bodies: &[u32], dt: f64) {
+    let own = solid.own_blocks();
+    let steps: Vec<f64> = solid.blocks.iter().map(|block| own_step(solid, block, dt)).collect();
+    let Solid { blocks, bodies: models, displacement, velocity, .. } = solid;
+    let (displacement, velocity) = (&displacement[..], &velocity[..]);
+    let blocks = blocks[own.clone()].par_iter_mut().zip(&steps[own]);
+    blocks.filter(|(block, _)| bodies.contains(&(block.body as u32))).for_each(|(block, &dt)| {
+        let model = &models[block.body];
+        let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
+        let Block { cells, law, .. } = block;
+        match law {
+            BlockLaw::Edges(field) => {
+                let damaged = field.state.iter_mut().enumerate().filter(|(_, edge)| edge.damage > 0.0);
+                damaged.for_each(|(cell, edge)| edge.strain = step.strain_before(cells, cell));
             }
-        });
-    }
+            BlockLaw::Standard(law) => {
+                (0..cells.len())
+                    .for_each(|cell| law.stress[cell] = model.hooke.stress(step.strain_before(cells, cell)));
+            }
+            _ => {}
+        }
+    });
+}
 
-    /// Elastic energy of bodies as a step measures it, ½ σ : ε⁰ with the strain of the step before [J]; the same for all processes.
-    fn energy_in_step(&self, bodies: &[u32], dt: f64) -> f64 {
-        let of = |block: &Block| -> f64 {
-            let model = &self.bodies[block.body];
-            let (displacement, velocity, dt) = (&self.displacement, &self.velocity, self.own_step(block, dt));
-            let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
-            let cells = (0..block.cells.len()).filter(|&cell| block.cells.volume[cell] > 0.0);
-            let energy = cells.map(|cell| {
-                let stress = block.nominal_stress(cell, &model.hooke, step.strain_now(&block.cells, cell));
-                0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
-            });
-            energy.sum()
-        };
-        let own = self.blocks[self.own_blocks()].par_iter();
-        let own: Vec<f64> = own.filter(|block| bodies.contains(&(block.body as u32))).map(of).collect();
-        // In the order of the blocks, whoever has them.
-        self.neighbours.gather_blocks(own).into_iter().sum()
-    }
+/// Elastic energy of bodies as a step measures it, ½ σ : ε⁰ with the strain of the step before [J]; the same for all processes.
+fn energy_in_step(solid: &Solid, bodies: &[u32], dt: f64) -> f64 {
+    let of = |block: &Block| -> f64 {
+        let model = &solid.bodies[block.body];
+        let (displacement, velocity, dt) = (&solid.displacement, &solid.velocity, own_step(solid, block, dt));
+        let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
+        let cells = (0..block.cells.len()).filter(|&cell| block.cells.volume[cell] > 0.0);
+        let energy = cells.map(|cell| {
+            let stress = block.nominal_stress(cell, &model.hooke, step.strain_now(&block.cells, cell));
+            0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
+        });
+        energy.sum()
+    };
+    let own = solid.blocks[solid.own_blocks()].par_iter();
+    let own: Vec<f64> = own.filter(|block| bodies.contains(&(block.body as u32))).map(of).collect();
+    // In the order of the blocks, whoever has them.
+    solid.neighbours.gather_blocks(own).into_iter().sum()
 }

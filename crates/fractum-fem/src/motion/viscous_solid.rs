@@ -11,54 +11,52 @@ use crate::solid::body_model::BodyModel;
 /// Least b₂² l |ε̇_v|/c that the time step counts with.
 const SMALLEST_SHOCK: f64 = 0.01;
 
-impl Solid {
-    /// Adds viscous stress to every body.
-    pub fn set_viscosity(&mut self, viscosity: Viscosity) {
-        if viscosity.is_off() {
-            return;
-        }
-        for index in 0..self.bodies.len() {
-            let (shape_factor, wave_speed) = (self.shape_factor(index), self.p_wave_speed(index));
-            let model = &mut self.bodies[index];
-            let density = model.body.elastic.density;
-            model.viscosity = Some(BodyViscosity { constants: viscosity, density, wave_speed, shape_factor });
-        }
-        for block in &mut self.blocks {
-            block.viscous = ViscousCells::new(&self.bodies[block.body].body, &block.cells.volume);
-        }
+/// Adds viscous stress to every body.
+pub fn set_viscosity(solid: &mut Solid, viscosity: Viscosity) {
+    if viscosity.is_off() {
+        return;
     }
+    for index in 0..solid.bodies.len() {
+        let (shape_factor, wave_speed) = (shape_factor(solid, index), solid.p_wave_speed(index));
+        let model = &mut solid.bodies[index];
+        let density = model.body.elastic.density;
+        model.viscosity = Some(BodyViscosity { constants: viscosity, density, wave_speed, shape_factor });
+    }
+    for block in &mut solid.blocks {
+        block.viscous = ViscousCells::new(&solid.bodies[block.body].body, &block.cells.volume);
+    }
+}
 
-    /// Share of critical damping that bulk viscosity has at most in the highest mode of an element, by the rates of the last
-    /// forces; rises in steps of √2, since a change of the time step costs a little of the energy balance.
-    pub fn bulk_damping_ratio(&self) -> f64 {
-        let of = |(index, model): (usize, &BodyModel)| {
-            let viscosity = model.viscosity.as_ref().filter(|own| own.constants.has_bulk())?;
-            let own = self.blocks.iter().filter(|block| block.body == index);
-            let shock = own.map(|block| block.viscous.shock).fold(0.0, f64::max);
-            let mut coefficient = SMALLEST_SHOCK;
-            while coefficient < shock {
-                coefficient *= std::f64::consts::SQRT_2;
-            }
-            let coefficient = if viscosity.constants.bulk_quadratic > 0.0 { coefficient } else { 0.0 };
-            Some(0.5 * viscosity.shape_factor * (viscosity.constants.bulk_linear + coefficient))
-        };
-        self.bodies.iter().enumerate().filter_map(of).fold(0.0, f64::max)
-    }
+/// Share of critical damping that bulk viscosity has at most in the highest mode of an element, by the rates of the last
+/// forces; rises in steps of √2, since a change of the time step costs a little of the energy balance.
+pub fn bulk_damping_ratio(solid: &Solid) -> f64 {
+    let of = |(index, model): (usize, &BodyModel)| {
+        let viscosity = model.viscosity.as_ref().filter(|own| own.constants.has_bulk())?;
+        let own = solid.blocks.iter().filter(|block| block.body == index);
+        let shock = own.map(|block| block.viscous.shock).fold(0.0, f64::max);
+        let mut coefficient = SMALLEST_SHOCK;
+        while coefficient < shock {
+            coefficient *= std::f64::consts::SQRT_2;
+        }
+        let coefficient = if viscosity.constants.bulk_quadratic > 0.0 { coefficient } else { 0.0 };
+        Some(0.5 * viscosity.shape_factor * (viscosity.constants.bulk_linear + coefficient))
+    };
+    solid.bodies.iter().enumerate().filter_map(of).fold(0.0, f64::max)
+}
 
-    /// Largest ω l/c of the elements of a body, by the trace of each stiffness.
-    fn shape_factor(&self, index: usize) -> f64 {
-        let body = &self.bodies[index].body;
-        let geometry = Geometry { body, nodes: &self.reference };
-        let (corners, wave_speed) = (body.shape.node_count(), self.p_wave_speed(index));
-        let stiffness = self.bodies[index].hooke.lambda + 4.0 * self.bodies[index].hooke.mu;
-        let of = |element: usize| {
-            let (volume, gradients) = geometry.element(element);
-            let square: f64 = gradients[..corners].iter().map(|g| g.norm_squared()).sum();
-            let frequency = (square * stiffness * corners as f64 / body.elastic.density).sqrt();
-            frequency * regular_edge(body.shape, volume / body.depth()) / wave_speed
-        };
-        self.neighbours.largest((0..body.elements.len()).into_par_iter().map(of).reduce(|| 0.0, f64::max))
-    }
+/// Largest ω l/c of the elements of a body, by the trace of each stiffness.
+fn shape_factor(solid: &Solid, index: usize) -> f64 {
+    let body = &solid.bodies[index].body;
+    let geometry = Geometry { body, nodes: &solid.reference };
+    let (corners, wave_speed) = (body.shape.node_count(), solid.p_wave_speed(index));
+    let stiffness = solid.bodies[index].hooke.lambda + 4.0 * solid.bodies[index].hooke.mu;
+    let of = |element: usize| {
+        let (volume, gradients) = geometry.element(element);
+        let square: f64 = gradients[..corners].iter().map(|g| g.norm_squared()).sum();
+        let frequency = (square * stiffness * corners as f64 / body.elastic.density).sqrt();
+        frequency * regular_edge(body.shape, volume / body.depth()) / wave_speed
+    };
+    solid.neighbours.largest((0..body.elements.len()).into_par_iter().map(of).reduce(|| 0.0, f64::max))
 }
 
 #[cfg(test)]
@@ -84,7 +82,7 @@ mod tests {
         };
         let body = Body { plane, thickness, ..Body::new("block", kind, elements, elastic) };
         let mut solid = Solid::new(nodes, vec![body]).unwrap();
-        solid.set_viscosity(Viscosity { stiffness_time: 0.0, bulk_linear: 0.06, bulk_quadratic: 1.2 });
+        set_viscosity(&mut solid, Viscosity { stiffness_time: 0.0, bulk_linear: 0.06, bulk_quadratic: 1.2 });
         solid
     }
 
@@ -94,7 +92,7 @@ mod tests {
         for (kind, plane) in
             [(ElementKind::T3, Plane::Strain), (ElementKind::T3, Plane::Stress), (ElementKind::T4, Plane::Strain)]
         {
-            let at = |thickness, scale| solid(kind, plane, thickness, scale).bulk_damping_ratio();
+            let at = |thickness, scale| bulk_damping_ratio(&solid(kind, plane, thickness, scale));
             let one = at(1.0, 1.0);
             assert!(one > 0.06 && one < 0.3, "{one}");
             for (thickness, scale) in [(0.01, 1.0), (30.0, 1.0), (1.0, 1e-3)] {
@@ -106,7 +104,7 @@ mod tests {
                 v.x = -0.5 * speed * p.x;
             }
             shocked.update_internal_forces(0.0, false);
-            assert!(shocked.bulk_damping_ratio() > 2.0 * one, "{kind:?}");
+            assert!(bulk_damping_ratio(&shocked) > 2.0 * one, "{kind:?}");
         }
     }
 }

@@ -7,6 +7,7 @@ use fractum_math::Vec3;
 use super::subdomain::Nodes;
 use super::{subdomain, subdomain_mut};
 use crate::divided::EdgeValue;
+use crate::fields::element_fields::{cell_field, cell_strain};
 use crate::solid::Solid;
 
 /// Has every rank move all nodes in the next step, where something needs all of them.
@@ -66,8 +67,8 @@ pub fn gather_edge_values(solid: &mut Solid) {
         let Some(mut divided) = own.bodies.get_mut(body).and_then(|body| body.divided.take()) else { continue };
         divided.values.swap(&*exchange, |edge| {
             let at = solid.bodies[body].location.of(edge);
-            let (stress, damage) = solid.cell_field(body, at);
-            EdgeValue { stress, damage, strain: solid.cell_strain(body, at) }
+            let (stress, damage) = cell_field(solid, body, at);
+            EdgeValue { stress, damage, strain: cell_strain(solid, body, at) }
         });
         if let Some(own) = subdomain_mut(&mut solid.neighbours) {
             own.bodies[body].divided = Some(divided);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use fractum_math::CHUNK;
-use fractum_parallel::{Swapped, Told, rank_of, runs_of};
+use fractum_parallel::{Exchanged, Gathered, rank_of, runs_of};
 
 use crate::cells::block::{NodeSlots, Slot};
 
@@ -12,7 +12,7 @@ use crate::cells::block::{NodeSlots, Slot};
 #[derive(Clone, Debug)]
 pub(super) struct Halo {
     /// Slots of the sums.
-    pub(super) sums: Swapped<Slot>,
+    pub(super) sums: Exchanged<Slot>,
     /// Which blocks have sums that others wait for.
     pub(super) is_outer: Vec<bool>,
     /// Nodes of the blocks of this rank, in runs of each chunk, counted from its first.
@@ -37,7 +37,7 @@ impl Halo {
                 receive.extend(of_rank);
             }
         }
-        let sums = Swapped::new(between);
+        let sums = Exchanged::new(between);
         let mut is_outer = vec![false; *first.last().expect("runs of blocks have an end")];
         sums.sent().for_each(|slot| is_outer[slot.block()] = true);
         Halo { sums, is_outer, runs: is_own.chunks(CHUNK).map(runs_of).collect() }
@@ -47,47 +47,47 @@ impl Halo {
 /// All nodes, with those that each rank sends.
 #[derive(Clone, Debug)]
 pub(super) struct AllNodes {
-    pub(super) tellers: Tellers,
-    pub(super) told: Told,
+    pub(super) senders: Senders,
+    pub(super) gathered: Gathered,
 }
 
 impl AllNodes {
     /// - `first`: first block of each rank, and the end
-    pub(super) fn new(tellers: Tellers, slots: &NodeSlots, first: &[usize]) -> Self {
-        AllNodes { told: tellers.told(slots, first, 0..slots.len() as u32), tellers }
+    pub(super) fn new(senders: Senders, slots: &NodeSlots, first: &[usize]) -> Self {
+        AllNodes { gathered: senders.gathered(slots, first, 0..slots.len() as u32), senders }
     }
 
     /// Whether no rank knows the blocks of all.
     pub(super) fn are_divided(&self) -> bool {
-        matches!(self.tellers, Tellers::Known(_))
+        matches!(self.senders, Senders::Known(_))
     }
 }
 
 /// Who sends a node to all others: the lowest rank that has a block there.
 #[derive(Clone, Debug)]
-pub(super) enum Tellers {
+pub(super) enum Senders {
     /// As the blocks of all ranks show.
     OfSlots,
     /// The rank of every node.
     Known(Vec<u32>),
 }
 
-impl Tellers {
+impl Senders {
     /// Nodes that each rank sends to all others.
     ///
     /// - `first`: first block of each rank, and the end
-    pub(super) fn told(&self, slots: &NodeSlots, first: &[usize], nodes: impl Iterator<Item = u32>) -> Told {
+    pub(super) fn gathered(&self, slots: &NodeSlots, first: &[usize], nodes: impl Iterator<Item = u32>) -> Gathered {
         let mut of_rank = vec![Vec::new(); first.len() - 1];
         for node in nodes {
             let rank = match self {
-                Tellers::OfSlots => {
+                Senders::OfSlots => {
                     let slot = slots.of(node as usize).next().expect("a node has mass, and so a cell");
                     rank_of(first, slot.block())
                 }
-                Tellers::Known(ranks) => ranks[node as usize] as usize,
+                Senders::Known(ranks) => ranks[node as usize] as usize,
             };
             of_rank[rank].push(node);
         }
-        Told::new(of_rank)
+        Gathered::new(of_rank)
     }
 }

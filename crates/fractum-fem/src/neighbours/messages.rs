@@ -59,10 +59,10 @@ impl Subdomain {
 
     /// Gives all ranks a value of every node, once each has those of its own blocks.
     pub(super) fn gather_nodes(&mut self, values: &mut [Vec3]) {
-        gather_vectors(&mut self.all.told, &*self.exchange, values);
+        gather_vectors(&mut self.all.gathered, &*self.exchange, values);
         if self.is_divided() {
             // Where memory is short this is more than a share of it.
-            self.all.told.release();
+            self.all.gathered.release();
         }
     }
 

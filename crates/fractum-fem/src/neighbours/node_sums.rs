@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use fractum_math::{CHUNK, Vec3};
-use fractum_parallel::{Exchange, Swapped, gather, rank_of, tell_by_owner};
+use fractum_parallel::{Exchange, Exchanged, gather, gather_by_owner, rank_of};
 
 use crate::cells::block::NodeSlots;
 use crate::divided::RanksOfNodes;
@@ -15,7 +15,7 @@ pub(super) struct NodeSums {
     /// The rank of each chunk: that which has most of its nodes, the lowest of these.
     owner: Vec<usize>,
     /// Nodes of own chunks that other ranks have, and the other way round.
-    nodes: Swapped<u32>,
+    nodes: Exchanged<u32>,
 }
 
 impl NodeSums {
@@ -47,7 +47,7 @@ impl NodeSums {
                 }
             }
         }
-        NodeSums { me, owner, nodes: Swapped::new(between) }
+        NodeSums { me, owner, nodes: Exchanged::new(between) }
     }
 
     /// The same where a rank knows no more than which nodes it has, and who else has these. All ranks must call it.
@@ -76,7 +76,7 @@ impl NodeSums {
                 between.entry(teller).or_default()[1].push(node);
             }
         }
-        NodeSums { me, owner, nodes: Swapped::new(between) }
+        NodeSums { me, owner, nodes: Exchanged::new(between) }
     }
 
     /// Whether this rank adds what the nodes of a chunk have.
@@ -87,11 +87,11 @@ impl NodeSums {
     /// Gets values of the nodes of own chunks that other ranks have.
     pub(super) fn fetch(&mut self, exchange: &dyn Exchange, values: &mut [Vec3]) {
         let get = |values: &[Vec3], node: u32| values[node as usize].into();
-        self.nodes.tell(exchange, values, get, |values, node, from: [f64; 3]| values[node as usize] = from.into());
+        self.nodes.exchange(exchange, values, get, |values, node, from: [f64; 3]| values[node as usize] = from.into());
     }
 
     /// Gives every rank the sums of all chunks, once each has those of its own.
     pub(super) fn exchange<const N: usize>(&self, exchange: &dyn Exchange, sums: &mut [[f64; N]]) {
-        tell_by_owner(exchange, |chunk| self.owner[chunk], sums);
+        gather_by_owner(exchange, |chunk| self.owner[chunk], sums);
     }
 }

@@ -15,6 +15,7 @@ use crate::damage::edge::EdgeField;
 use crate::damage::phase::ActiveEdge;
 use crate::divided::EdgeValue;
 use crate::element::InvertedElement;
+use crate::motion::inverted::inverted_of;
 use crate::solid::evaluate::Block;
 use crate::solid::neighbours::{Evaluate, Neighbours};
 use crate::solid::{BodyModel, Solid};
@@ -114,15 +115,15 @@ impl Neighbours for Subdomain {
         }
         self.events.inverted = None;
         if inverted {
-            let found = solid.inverted_of(&solid.blocks[own]);
+            let found = inverted_of(solid, &solid.blocks[own]);
             let found = found.map(|own| InvertedElement { element: self.number(own.body, own.element), ..own });
             self.events.inverted = gather(&*self.exchange, &found).into_iter().flatten().next();
         }
     }
 
     fn exchange_forces(&mut self, force: &mut [Vec3]) {
-        let told = if self.needs.now == Nodes::All { &mut self.all.told } else { &mut self.everywhere };
-        gather_vectors(told, &*self.exchange, force);
+        let gathered = if self.needs.now == Nodes::All { &mut self.all.gathered } else { &mut self.everywhere };
+        gather_vectors(gathered, &*self.exchange, force);
         if self.needs.now == Nodes::Summed {
             self.sums.fetch(&*self.exchange, force);
         }

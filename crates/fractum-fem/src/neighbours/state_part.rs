@@ -8,7 +8,8 @@ use super::subdomain;
 use crate::damage::edge::{EdgeDamage, EdgeField};
 use crate::solid::Solid;
 use crate::solid::evaluate::Block;
-use crate::solid::state::{BodyState, SolidState};
+use crate::state::body_state;
+use crate::state::{BodyState, SolidState};
 
 /// What changes in the cells and nodes of a rank. The parts of all ranks have every node and cell once.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -49,7 +50,7 @@ pub fn state_beside_parts(solid: &Solid) -> SolidState {
     SolidState {
         displacement: Vec::new(),
         velocity: Vec::new(),
-        bodies: (0..solid.bodies.len()).map(|body| solid.body_state(body, Vec::new())).collect(),
+        bodies: (0..solid.bodies.len()).map(|body| body_state(solid, body, Vec::new())).collect(),
         dissipated: Vec::new(),
         viscous_dissipation: solid.viscous_dissipation,
         viscous: Vec::new(),

@@ -12,11 +12,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use fractum_math::{CHUNK, Vec3};
-use fractum_parallel::{Exchange, Told, rank_of, runs_by_weight, runs_of};
+use fractum_parallel::{Exchange, Gathered, rank_of, runs_by_weight, runs_of};
 
 use super::body_subdomain::BodySubdomain;
 use super::events::Events;
-use super::halo::{AllNodes, Halo, Tellers};
+use super::halo::{AllNodes, Halo, Senders};
 use super::node_sums::NodeSums;
 use super::phase::PhaseExchange;
 use crate::cells::block::{Cells, NodeSlots, Slot};
@@ -37,7 +37,7 @@ pub(crate) struct Subdomain {
     /// All nodes.
     pub(super) all: AllNodes,
     /// Nodes that every rank moves in every step.
-    pub(super) everywhere: Told,
+    pub(super) everywhere: Gathered,
     /// Whether a node is one of them.
     is_everywhere: Vec<bool>,
     /// Who sums over which nodes.
@@ -107,7 +107,7 @@ impl Subdomain {
         let weights: Vec<usize> = blocks.iter().map(|block| block.gradients.max(1)).collect();
         let first = runs_by_weight(&weights, exchange.size());
         let sums = NodeSums::new(slots, &first, exchange.rank());
-        Subdomain::with(exchange, BlockOrder::of_whole(first), Vec::new(), sums, Tellers::OfSlots, slots)
+        Subdomain::with(exchange, BlockOrder::of_whole(first), Vec::new(), sums, Senders::OfSlots, slots)
     }
 
     /// The part of a rank that has no more of the blocks of others than their numbers, but those of whole bodies.
@@ -123,7 +123,7 @@ impl Subdomain {
         let own = blocks[first[exchange.rank()]..first[exchange.rank() + 1]].iter();
         let nodes: BTreeSet<u32> = own.flat_map(|block| &block.cells.nodes).copied().collect();
         let sums = NodeSums::divided(&*exchange, &ranks, &nodes);
-        Subdomain::with(exchange, order, bodies, sums, Tellers::Known(ranks.lowest), slots)
+        Subdomain::with(exchange, order, bodies, sums, Senders::Known(ranks.lowest), slots)
     }
 
     fn with(
@@ -131,15 +131,15 @@ impl Subdomain {
         order: BlockOrder,
         bodies: Vec<BodySubdomain>,
         sums: NodeSums,
-        tellers: Tellers,
+        senders: Senders,
         slots: &NodeSlots,
     ) -> Self {
         Subdomain {
             halo: Halo::new(slots, &order.first, exchange.rank()),
             bodies,
             sums,
-            all: AllNodes::new(tellers, slots, &order.first),
-            everywhere: Told::new(vec![Vec::new(); exchange.size()]),
+            all: AllNodes::new(senders, slots, &order.first),
+            everywhere: Gathered::new(vec![Vec::new(); exchange.size()]),
             is_everywhere: vec![false; slots.len()],
             moved: MovedRuns::default(),
             events: Events::default(),
@@ -157,7 +157,7 @@ impl Subdomain {
     /// - `everywhere`: nodes that every rank shall move; `always`: those that every step needs
     /// - `events`: whether something can happen in a block, and whether all need the numbers of all blocks, see [`Events::new`]
     pub(super) fn begin_stage(&mut self, slots: &NodeSlots, everywhere: &[u32], always: Nodes, events: [bool; 2]) {
-        self.everywhere = Told::new(vec![Vec::new(); self.exchange.size()]);
+        self.everywhere = Gathered::new(vec![Vec::new(); self.exchange.size()]);
         self.is_everywhere.fill(false);
         self.moved.of_chunks.clone_from(&self.halo.runs);
         self.move_everywhere(slots, everywhere);
@@ -168,7 +168,7 @@ impl Subdomain {
     }
 
     /// Has every rank move these nodes in every step; those of them that not every rank has moved before.
-    fn move_everywhere(&mut self, slots: &NodeSlots, nodes: &[u32]) -> Told {
+    fn move_everywhere(&mut self, slots: &NodeSlots, nodes: &[u32]) -> Gathered {
         self.moved.changes += 1;
         let new: BTreeSet<u32> = nodes.iter().copied().filter(|&node| !self.is_everywhere[node as usize]).collect();
         new.iter().for_each(|&node| self.is_everywhere[node as usize] = true);
@@ -178,17 +178,17 @@ impl Subdomain {
             self.halo.runs[chunk].iter().for_each(|run| moved[run.clone()].fill(true));
             self.moved.of_chunks[chunk] = runs_of(&moved);
         }
-        let told = self.all.tellers.told(slots, &self.order.first, new.into_iter());
-        self.everywhere.append(&told);
-        told
+        let gathered = self.all.senders.gathered(slots, &self.order.first, new.into_iter());
+        self.everywhere.append(&gathered);
+        gathered
     }
 
     /// Sends all ranks displacements and velocities of nodes that not every rank moves, and has every rank move them from now on.
     pub(super) fn follow(&mut self, slots: &NodeSlots, nodes: &[u32], [displacement, velocity]: [&mut [Vec3]; 2]) {
-        let mut told = self.move_everywhere(slots, nodes);
+        let mut gathered = self.move_everywhere(slots, nodes);
         if self.needs.present < Nodes::All {
-            gather_vectors(&mut told, &*self.exchange, displacement);
-            gather_vectors(&mut told, &*self.exchange, velocity);
+            gather_vectors(&mut gathered, &*self.exchange, displacement);
+            gather_vectors(&mut gathered, &*self.exchange, velocity);
         }
     }
 
@@ -249,7 +249,7 @@ impl Subdomain {
 
     /// Nodes that this rank sends to the others, where all get all.
     pub(super) fn sent_nodes(&self) -> &[u32] {
-        self.all.told.of(self.exchange.rank())
+        self.all.gathered.of(self.exchange.rank())
     }
 
     /// Lets go of what only the rank needs that evaluates a block: cells, and sums at nodes that this rank does not have.
@@ -270,7 +270,7 @@ impl Subdomain {
 }
 
 /// Gives every rank the vectors at some nodes.
-pub(super) fn gather_vectors(told: &mut Told, exchange: &dyn Exchange, values: &mut [Vec3]) {
+pub(super) fn gather_vectors(gathered: &mut Gathered, exchange: &dyn Exchange, values: &mut [Vec3]) {
     let put = |values: &mut [Vec3], node: usize, from: [f64; 3]| values[node] = from.into();
-    told.tell(exchange, values, |values, node| values[node].into(), put);
+    gathered.gather(exchange, values, |values, node| values[node].into(), put);
 }

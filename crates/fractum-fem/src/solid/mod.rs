@@ -2,7 +2,6 @@ pub(crate) mod body_blocks;
 pub(crate) mod body_model;
 pub(crate) mod evaluate;
 pub(crate) mod neighbours;
-pub(crate) mod state;
 pub(crate) mod subcycling;
 
 use std::ops::Range;
@@ -11,7 +10,7 @@ use fractum_math::{CHUNK, HalfSteps, Sym3, Vec3};
 use rayon::prelude::*;
 
 use crate::body::edges::BodyEdges;
-use crate::body::{Body, Formulation, Region};
+use crate::body::{Body, ElementKind, Formulation, Region};
 use crate::cells::block::{Cells, NodeSlots, Scratch};
 use crate::cells::cell::Geometry;
 use crate::damage::edge::EdgeField;
@@ -20,7 +19,7 @@ use crate::error::SolidError;
 use crate::material::{Wave, rayleigh_wave_speed};
 pub(crate) use crate::solid::body_model::BodyModel;
 use crate::solid::body_model::Chosen;
-use crate::solid::evaluate::{Block, BlockLaw};
+use crate::solid::evaluate::Block;
 use crate::solid::neighbours::{Alone, Neighbours};
 use crate::solid::subcycling::Subcycling;
 
@@ -183,33 +182,6 @@ impl Solid {
         self.displacement[node] - self.initial_displacement.get(node).copied().unwrap_or_default()
     }
 
-    /// Replaces `force` by the internal forces of the present displacements, and advances damage.
-    ///
-    /// - `dt`: time since the last call [s] (for rate-dependent laws)
-    /// - `measure`: whether to sum the elastic energy, see [`Solid::elastic_energy`]
-    pub fn update_internal_forces(&mut self, dt: f64, measure: bool) {
-        self.load_standard_edges(dt);
-        self.update_phase_fields(dt);
-        self.damage_standard_elements();
-        let (subcycling, displacement, velocity) =
-            (self.subcycling.take(), std::mem::take(&mut self.displacement), std::mem::take(&mut self.velocity));
-        self.evaluate_own(|bodies, index, block| {
-            let dt = match &subcycling {
-                Some(subcycling) if subcycling.is_ahead(index) => return,
-                Some(subcycling) if block.is_fine => dt / subcycling.parts_before(),
-                _ => dt,
-            };
-            block.evaluate(&bodies[block.body], &displacement, &velocity, dt, measure);
-        });
-        (self.subcycling, self.displacement, self.velocity) = (subcycling, displacement, velocity);
-        self.with_neighbours(|neighbours, solid| neighbours.exchange_cells(solid, measure));
-        let Solid { blocks, .. } = self;
-        let power: f64 = blocks.iter().map(|b| b.viscous_power).sum();
-        self.viscous_dissipation += power * dt;
-        self.gather_forces();
-        self.keep_internal();
-    }
-
     /// Has `evaluate(bodies, index, block)` done to the blocks of this process, and gets the sums of others at its nodes.
     pub(crate) fn evaluate_own(&mut self, evaluate: impl Fn(&[BodyModel], usize, &mut Block) + Sync) {
         let own = self.own_blocks();
@@ -241,45 +213,6 @@ impl Solid {
         });
     }
 
-    /// First passes of bodies with damage in the standard formulation: element stress, edge histories.
-    fn load_standard_edges(&mut self, dt: f64) {
-        if self.bodies.iter().all(|b| b.standard.is_none()) {
-            return;
-        }
-        let Solid { displacement, blocks, bodies, .. } = self;
-        blocks.par_iter_mut().for_each(|block| block.effective_stress(&bodies[block.body], displacement));
-        for model in bodies {
-            let BodyModel { standard: Some(standard), alive, location, .. } = model else { continue };
-            standard.update_edges(dt, alive, |element| {
-                let (block, cell) = location.of(element);
-                (blocks[block as usize].standard_cells(), cell as usize)
-            });
-            for element in standard.elements_of_growth() {
-                let (block, cell) = location.of(element);
-                if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
-                    law.expect_damage(cell as usize);
-                }
-            }
-        }
-    }
-
-    /// Gives the elements of the standard formulation the damage of their edges, where that may have grown.
-    fn damage_standard_elements(&mut self) {
-        let Solid { blocks, bodies, .. } = self;
-        for (index, model) in bodies.iter().enumerate() {
-            let BodyModel { standard: Some(standard), edges: Some(edges), .. } = model else { continue };
-            blocks.par_iter_mut().filter(|b| b.body == index).for_each(|block| {
-                let edge = |edge: u32| &standard.field.state[edge as usize];
-                block.take_element_damage(|element| {
-                    let of = edges.of_element(element);
-                    let own = &of[..standard.shape.edge_count()];
-                    let least_seen = own.iter().map(|&e| edge(e).kappa).fold(f64::INFINITY, f64::min);
-                    (standard.element_damage(own, |e| edge(e).damage), least_seen)
-                });
-            });
-        }
-    }
-
     /// Elastic energy at the last measured step [J].
     pub fn elastic_energy(&self) -> f64 {
         if let Some([elastic, _]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
@@ -303,20 +236,12 @@ impl Solid {
 
     /// Damage of the edges of all bodies: blocks of smoothed cells first, then standard bodies.
     pub(crate) fn edge_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
-        self.cell_fields().chain(self.standard_fields())
+        cell_fields(self).chain(standard_fields(self))
     }
 
     /// Those that may hold damaged edges: standard bodies do not count theirs.
     pub(crate) fn damaged_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
-        self.cell_fields().filter(|(_, field)| field.is_damaged()).chain(self.standard_fields())
-    }
-
-    fn cell_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
-        self.blocks.iter().filter_map(|block| Some((block.body, block.edge_field()?)))
-    }
-
-    fn standard_fields(&self) -> impl Iterator<Item = (usize, &EdgeField)> {
-        (0..).zip(&self.bodies).filter_map(|(body, model)| Some((body, &model.standard.as_ref()?.field)))
+        cell_fields(self).filter(|(_, field)| field.is_damaged()).chain(standard_fields(self))
     }
 
     /// Where the damage of an edge of a body is kept; none where it may not be damaged.
@@ -389,34 +314,48 @@ impl Solid {
         (self.bodies[index].reduced_edges, self.bodies[index].largest_length_ratio)
     }
 
-    /// Damage of the elements of a body: the mean over its edges where it is smoothed, 1 where one has been removed.
-    pub fn element_damages(&self, index: usize) -> Vec<f64> {
-        let model = &self.bodies[index];
-        if !model.location.keeps_all() {
-            return self.damages_around(index);
-        }
-        let mut damage = vec![0.0; model.location.all().len()];
-        let may_be_damaged = |block: &&Block| block.edge_field().is_none_or(EdgeField::is_damaged);
-        for block in self.blocks.iter().filter(|block| block.body == index).filter(may_be_damaged) {
-            for (cell, &item) in block.items.iter().enumerate() {
-                damage[item as usize] = block.damage_of(cell);
-            }
-        }
-        let of_cell = |cell: u32| (Sym3::ZERO, damage[cell as usize]);
-        let of_element = |(element, &alive): (u32, &bool)| match model.smoothed_edges() {
-            _ if !alive => 1.0,
-            None => damage[element as usize],
-            Some(edges) => model.mean_of_edges(&edges.of_element(element), of_cell).1,
-        };
-        (0..).zip(&model.alive).map(of_element).collect()
-    }
-
     /// Centre of an element without load [m].
     pub fn element_middle(&self, index: usize, element: u32) -> Vec3 {
         let body = &self.bodies[index].body;
         let corners = &body.elements[element as usize][..body.shape.node_count()];
         corners.iter().map(|&n| self.reference[n as usize]).sum::<Vec3>() / corners.len() as f64
     }
+
+    /// Shares what elements of bodies have equally among their corners; what every node has of it then.
+    pub fn lumped(&self, elements: impl Iterator<Item = (usize, u32, f64)>) -> Vec<f64> {
+        let mut nodes = vec![0.0; self.reference.len()];
+        for (body, element, value) in elements {
+            let own = &self.bodies[body].body;
+            let corners = own.shape.node_count();
+            let share = value / corners as f64;
+            own.elements[element as usize][..corners].iter().for_each(|&node| nodes[node as usize] += share);
+        }
+        nodes
+    }
+
+    /// Volumes of the elements of a body without load [m³], found once.
+    pub fn element_volumes(&self, body: usize) -> &[f64] {
+        let volumes = || (0..self.bodies[body].alive.len() as u32).map(|e| self.element_volume(body, e)).collect();
+        self.bodies[body].volumes.get_or_init(volumes)
+    }
+
+    /// Volume of an element without load [m³].
+    pub fn element_volume(&self, body: usize, element: u32) -> f64 {
+        Geometry { body: &self.bodies[body].body, nodes: &self.reference }.element(element as usize).0
+    }
+
+    /// Whether the solid is plane.
+    pub fn is_plane(&self) -> bool {
+        self.bodies.iter().any(|model| model.body.shape == ElementKind::T3)
+    }
+}
+
+fn cell_fields(solid: &Solid) -> impl Iterator<Item = (usize, &EdgeField)> {
+    solid.blocks.iter().filter_map(|block| Some((block.body, block.edge_field()?)))
+}
+
+fn standard_fields(solid: &Solid) -> impl Iterator<Item = (usize, &EdgeField)> {
+    (0..).zip(&solid.bodies).filter_map(|(body, model)| Some((body, &model.standard.as_ref()?.field)))
 }
 
 impl BodyModel {

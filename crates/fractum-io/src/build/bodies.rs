@@ -1,7 +1,7 @@
 //! Solid bodies: elements, nodes, materials, strength.
 
 use fractum_fem as fem;
-use fractum_fem::{CriterionKind, DamageLaw, DamageZone, Elastic, Formulation, Plane, Region, Solid};
+use fractum_fem::{CriterionKind, DamageLaw, DamageZone, Elastic, Formulation, Plane, Region, Solid, motion};
 use fractum_math::Vec3;
 use fractum_mesh::renumber::hilbert_order;
 use fractum_mesh::topology;
@@ -240,7 +240,9 @@ impl<'a> Context<'a> {
         let mut warnings = Vec::new();
         for (index, part) in parts.iter().enumerate() {
             let (reduced, ratio) = solid.length_report(index);
-            if let Some([length, size]) = solid.phase_sizes(index).filter(|[length, size]| *length < 1.5 * size) {
+            if let Some([length, size]) =
+                motion::phase_sizes(solid, index).filter(|[length, size]| *length < 1.5 * size)
+            {
                 let found = format!(": phase field of length {length:.3e} m on elements of {size:.3e} m");
                 warnings.push(
                     Diagnostic::warning(Code::PhaseFieldLength, &part.place, found)
@@ -251,7 +253,7 @@ impl<'a> Context<'a> {
                 let found = format!(": strength lowered on {reduced} edges that are too long for the fracture energy");
                 let note = Diagnostic::warning(Code::StrengthLowered, &part.place, found);
                 warnings.push(note.remedy("refine the mesh where cracks are expected"));
-            } else if solid.phase_sizes(index).is_none() && ratio > 0.25 {
+            } else if motion::phase_sizes(solid, index).is_none() && ratio > 0.25 {
                 let percent = 100.0 * ratio;
                 let found =
                     format!(": the longest element reaches {percent:.0} % of the length at which softening snaps back");

@@ -37,7 +37,7 @@ pub use ties::TieReport;
 
 use std::sync::Arc;
 
-use fractum_fem::{LocalDamping, Solid, Viscosity, neighbours};
+use fractum_fem::{LocalDamping, Solid, Viscosity, motion, neighbours};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_parallel::Exchange;
@@ -268,11 +268,14 @@ impl<'a> Context<'a> {
             }
         };
         let damping = self.case.damping;
-        solid.set_viscosity(Viscosity {
-            stiffness_time: damping.stiffness,
-            bulk_linear: damping.bulk_linear,
-            bulk_quadratic: damping.bulk_quadratic,
-        });
+        motion::set_viscosity(
+            &mut solid,
+            Viscosity {
+                stiffness_time: damping.stiffness,
+                bulk_linear: damping.bulk_linear,
+                bulk_quadratic: damping.bulk_quadratic,
+            },
+        );
         Some(solid)
     }
 

@@ -1,6 +1,6 @@
 //! Steps of two sizes: what a scene with them cannot have, and its supports.
 
-use fractum_fem::{Formulation, Solid};
+use fractum_fem::{Formulation, Solid, motion};
 use fractum_scene::Support;
 
 use super::Context;
@@ -57,7 +57,7 @@ pub(super) fn by_step(supports: Vec<Support>, solid: &Solid) -> Vec<Support> {
         return supports;
     }
     let of = |support: Support| {
-        let points = solid.with_copies(support.points);
+        let points = motion::with_copies(solid, support.points);
         let (fine, coarse): (Vec<u32>, Vec<u32>) = points.into_iter().partition(|&point| solid.is_fine(point as usize));
         [(true, fine), (false, coarse)].map(|(is_fine, points)| {
             let mut part = Support::new(&support.name, points, support.axis, support.motion.clone());

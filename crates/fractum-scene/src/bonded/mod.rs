@@ -1,5 +1,6 @@
 //! Bonded bodies: particles of their own beside the solids, joined by bonds of a law.
 
+mod distributed;
 mod fields;
 mod frequency;
 mod leave;
@@ -7,13 +8,12 @@ mod momentum;
 mod piece;
 mod plan;
 mod points;
-mod share;
 mod state;
 
 use std::ops::Range;
 
 use fractum_dem::{
-    AnyBondLaw, BondEnergy, BondGraph, Bonds, Crack, Fracture, Occasion, ParticleDamping, ParticlePart, Particles,
+    AnyBondLaw, BondEnergy, BondGraph, Bonds, Crack, Fracture, Occasion, ParticleDamping, ParticleSubdomain, Particles,
     PastForces, TimeStep,
 };
 use fractum_fem::LocalDamping;
@@ -145,7 +145,7 @@ pub struct Bonded {
     /// Forces of the step before, where that scheme is used.
     past: PastForces,
     /// What this process moves, where several share the particles.
-    part: Option<Box<ParticlePart>>,
+    part: Option<Box<ParticleSubdomain>>,
 }
 
 impl Bonded {
@@ -432,7 +432,7 @@ impl Bonded {
         work.after.kinetic -= counted_twice;
         follow(points.particles);
         work.after.external += 0.5 * dt_after * loads.power(&points);
-        part.iter_mut().for_each(|part| part.tell_ghosts(particles));
+        part.iter_mut().for_each(|part| part.exchange_ghosts(particles));
         for body in bodies.iter_mut() {
             body.bonds.book_last_work(particles, dt_after);
             let fracture = body.fracture.iter_mut();

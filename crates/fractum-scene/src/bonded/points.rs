@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use fractum_dem::{ParticlePart, Particles};
+use fractum_dem::{ParticleSubdomain, Particles};
 use fractum_math::{CHUNK, Vec3};
 use rayon::prelude::*;
 
@@ -14,11 +14,11 @@ pub(super) struct ParticlePoints<'a> {
     pub(super) particles: &'a mut Particles,
     pub(super) reference: &'a [Vec3],
     pub(super) tied: &'a [u32],
-    pub(super) part: Option<&'a ParticlePart>,
+    pub(super) part: Option<&'a ParticleSubdomain>,
 }
 
 /// Particles whose momentum is summed before that of others.
-const BLOCK: usize = ParticlePart::BLOCK;
+const BLOCK: usize = ParticleSubdomain::BLOCK;
 
 macro_rules! points {
     ($type:ty) => {
@@ -93,7 +93,7 @@ impl DrivenPoints for ParticlePoints<'_> {
             }
             Some(part) => {
                 let mut sums: Vec<[f64; 3]> = blocks.map(|block| of_block(block).into()).collect();
-                part.tell_blocks(BLOCK, &mut sums);
+                part.gather_blocks(BLOCK, &mut sums);
                 let of_chunk = |blocks: &[[f64; 3]]| blocks.iter().map(|&sum| Vec3::from(sum)).sum::<Vec3>();
                 sums.chunks(CHUNK / BLOCK).map(of_chunk).sum()
             }

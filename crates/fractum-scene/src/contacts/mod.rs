@@ -3,6 +3,7 @@
 
 mod between;
 mod debris_among;
+mod distributed;
 mod edge_contacts;
 mod flat_faces;
 mod held_nodes;
@@ -11,12 +12,11 @@ mod node_contacts;
 mod nodes_on_shape;
 mod nodes_on_surface;
 mod rigid_body;
-mod share;
 mod solid_surface;
 
 use fractum_contact::law::{ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair};
 use fractum_contact::{SphereContacts, Spheres, SurfaceContacts, Touch};
-use fractum_dem::{ParticlePart, Particles};
+use fractum_dem::{ParticleSubdomain, Particles};
 use fractum_fem::Solid;
 use fractum_math::{HalfSteps, Vec3, Work};
 use serde::{Deserialize, Serialize};
@@ -227,7 +227,7 @@ impl Contacts {
     /// - `dt` [s]: the step that led here
     pub(crate) fn add_forces(
         &mut self,
-        part: Option<&ParticlePart>,
+        part: Option<&ParticleSubdomain>,
         solid: &mut Solid,
         particles: &mut Particles,
         dt: f64,

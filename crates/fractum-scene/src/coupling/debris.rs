@@ -8,7 +8,7 @@ pub(crate) use at_rest::Push;
 pub use pairs::Pair;
 
 use fractum_contact::law::{ContactParameters, ElasticMaterial, Linear};
-use fractum_fem::Solid;
+use fractum_fem::{Solid, removal};
 use fractum_math::{HalfSteps, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -316,7 +316,7 @@ impl Debris {
                 self.state.attached[particle] = self.holders.is_held(solid, node);
             }
         }
-        self.open_edges(solid, solid.edges_without_elements(removed));
+        self.open_edges(solid, removal::edges_without_elements(solid, removed));
     }
 
     fn holder_of(&self, solid: &Solid, node: u32) -> Option<Holder> {

@@ -10,7 +10,7 @@ pub fn largest_radii(solid: &Solid) -> Vec<f64> {
     let edges: Vec<[u32; 2]> = (0..solid.body_count()).flat_map(|body| neighbours::owned_edges(solid, body)).collect();
     let Some(mut shared) = neighbours::shared_nodes(solid) else { return grow(&solid.reference, &edges, |_| ()) };
     let mut radius = grow(&solid.reference, &edges, |values| shared.take_least(values));
-    shared.tell(&mut radius);
+    shared.gather(&mut radius);
     radius
 }
 

@@ -1,4 +1,4 @@
-use fractum_fem::Solid;
+use fractum_fem::{Solid, cracks};
 use fractum_math::Vec3;
 
 use super::hole_ends::HoleEnds;
@@ -67,7 +67,7 @@ pub(crate) fn enclosed_volume(
 ) -> f64 {
     let Some(base) = facets.first().map(|facet| ends.base(at(facet[0]))) else { return 0.0 };
     let moment = |facet: &[u32; 3]| {
-        let area = solid.facet_area(facet, at);
+        let area = cracks::area_at(solid, facet, at);
         let [a, b, c] = facet.map(at);
         if facet[1] == facet[2] {
             area.dot(&((a + b) * 0.5 - base)) / 2.0

@@ -9,7 +9,7 @@ mod hole_ends;
 mod measure;
 mod settings;
 
-use fractum_fem::{CrackCell, CrackNetwork, CrackNetworkState, CrackSide, Solid};
+use fractum_fem::{CrackCell, CrackNetwork, CrackNetworkState, CrackSide, Solid, cracks};
 use fractum_gas::{Amount, Contents, Network, Passage};
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
@@ -161,7 +161,7 @@ impl Gas {
             let cell = self.cracks.cells()[number].clone();
             let (body, element) = (cell.body as usize, cell.element);
             let volume = solid.element_volume(body, element);
-            let length = solid.characteristic_length(body, element);
+            let length = cracks::characteristic_length(solid, body, element);
             self.cavities.push(Cavity::crack(volume, length, self.least_opening));
             self.network.push_cell(Amount::default());
             for (side, nodes) in cell.sides.iter().zip(&cell.nodes) {
@@ -188,7 +188,7 @@ impl Gas {
         let plane = nodes[1] == nodes[2];
         let centre = if plane { (a + b) * 0.5 } else { (a + b + c) / 3.0 };
         let other = if let CrackSide::Cell(other) = side { middle(&cells[other as usize]) } else { centre };
-        let area = solid.facet_area(nodes, |node| solid.reference[node as usize]).norm();
+        let area = cracks::area_at(solid, nodes, |node| solid.reference[node as usize]).norm();
         // The crack cuts an edge of the plane in a point, a triangle in a line of about the root of its area.
         let width = if plane { area / (b - a).norm() } else { area.sqrt() };
         Passage { cells: [0; 2], length: (other - own).norm(), width, opening: 0.0 }
@@ -203,7 +203,7 @@ impl Gas {
             cavity.enclose(enclosed_volume(solid, &hole.facets, &hole.ends, at));
         }
         for (cavity, cell) in of_cracks.iter_mut().zip(cracks.cells()) {
-            cavity.enclose(solid.present_volume(cell.body as usize, cell.element));
+            cavity.enclose(cracks::present_volume(solid, cell.body as usize, cell.element));
         }
         volumes.clear();
         volumes.extend(cavities.iter().map(|cavity| cavity.volume));
@@ -222,8 +222,9 @@ impl Gas {
         wall_area.clear();
         wall_area.resize(cavities.len(), 0.0);
         let mut add = |cell: usize, nodes: &[u32; 3]| {
-            let area = solid.facet_area(nodes, |node| solid.position(node as usize));
-            let area = area * share_of_torn(&area, &solid.facet_area(nodes, |node| solid.reference[node as usize]));
+            let area = cracks::area_at(solid, nodes, |node| solid.position(node as usize));
+            let area =
+                area * share_of_torn(&area, &cracks::area_at(solid, nodes, |node| solid.reference[node as usize]));
             wall_area[cell] += area.norm();
             walls.push(Wall { cell: cell as u32, nodes: *nodes, area });
         };
@@ -295,7 +296,7 @@ impl Gas {
                 continue;
             }
             let middle = |node: u32| solid.position(node as usize) - solid.velocity[node as usize] * (0.5 * elapsed);
-            let area = solid.facet_area(nodes, middle);
+            let area = cracks::area_at(solid, nodes, middle);
             let work = push * area.dot(&mean_velocity(solid, nodes)) * elapsed;
             let energy = |cell: usize| LARGEST_EXCHANGE * self.network.contents().cells[cell].energy.max(0.0);
             let work = work.clamp(-energy(own), energy(other));

@@ -1,6 +1,6 @@
 //! Thermal expansion of cells and bonds, and the work it does.
 
-use fractum_fem::Solid;
+use fractum_fem::{Solid, motion};
 use serde::{Deserialize, Serialize};
 
 use super::step::SAME_TIME;
@@ -60,7 +60,7 @@ impl Expansion {
         if solids.iter().chain(of_bonded).all(|coefficient| *coefficient == 0.0) {
             return None;
         }
-        solid.set_expansion(solids);
+        motion::set_expansion(solid, solids);
         let expands = of_bonded.iter().enumerate().filter(|(_, coefficient)| **coefficient != 0.0);
         let bonds = expands.map(|(body, &coefficient)| {
             let own = &bonded.bodies()[body].bonds;
@@ -86,7 +86,7 @@ impl Expansion {
     pub(super) fn start(&mut self, time: f64, solid: &mut Solid, bonded: &mut Bonded, temperature: &[f64]) {
         (self.from, self.now, self.span) = (temperature.to_vec(), temperature.to_vec(), [time; 2]);
         self.find_rises(temperature);
-        solid.start_expanded(&self.rises[0]);
+        motion::start_expanded(solid, &self.rises[0]);
         self.set_lengths(bonded);
         self.bonds.iter_mut().for_each(|own| own.forget(bonded));
     }
@@ -104,7 +104,7 @@ impl Expansion {
         (self.span, self.passed) = (span, [0.0; 2]);
         self.find_rises(temperature);
         let [from, to] = &self.rises;
-        solid.begin_expansion([from, to]);
+        motion::begin_expansion(solid, [from, to]);
     }
 
     /// Leads temperatures to a time of the present change [s], for the step that follows; returns half of the work of the
@@ -114,7 +114,7 @@ impl Expansion {
         let part = if end > begin { ((time - begin) / (end - begin)).min(1.0) } else { 1.0 };
         self.passed = [self.passed[1], part];
         self.find_now(temperature);
-        solid.expand_to(part);
+        motion::expand_to(solid, part);
         self.bonds.iter_mut().for_each(|own| own.forget(bonded));
         self.set_lengths(bonded);
         self.half_work(solid, bonded)
@@ -127,7 +127,7 @@ impl Expansion {
 
     fn half_work(&mut self, solid: &Solid, bonded: &mut Bonded) -> f64 {
         let [before, now] = self.passed;
-        let mut work = 0.5 * (now - before) * solid.expansion_work();
+        let mut work = 0.5 * (now - before) * motion::expansion_work(solid);
         for own in &self.bonds {
             work += own.half_work(bonded);
         }
@@ -172,7 +172,7 @@ impl Expansion {
         self.begin(span, solid, temperature);
         for part in passed {
             self.passed = [self.passed[1], part];
-            solid.expand_to(part);
+            motion::expand_to(solid, part);
             self.find_now(temperature);
             self.bonds.iter_mut().for_each(|own| own.forget(bonded));
             self.set_lengths(bonded);

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use fractum_fem::Solid;
+use fractum_fem::{Solid, motion};
 use fractum_heat::{HeatNetwork, PackedSphere, effective_conductivity};
 use fractum_math::Vec3;
 
@@ -62,7 +62,7 @@ impl Pairs {
         let mut all: Vec<([u32; 2], f64)> = Vec::new();
         for (body, material) in solids.iter().enumerate() {
             for element in 0..solid.body(body).elements.len() as u32 {
-                let own = solid.element_conduction(body, element);
+                let own = motion::element_conduction(solid, body, element);
                 all.extend(own.map(|([i, j], g)| ([i.min(j), i.max(j)], g * material.conductivity)));
             }
         }

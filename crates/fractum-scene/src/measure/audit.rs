@@ -1,6 +1,6 @@
 //! Looks at the state of a scene: is the theory still valid?
 
-use fractum_fem::{Extreme, Extremes};
+use fractum_fem::{Extreme, Extremes, fields};
 
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
@@ -103,7 +103,7 @@ impl Scene {
         if self.solid.body_count() == 0 || all.into_iter().all(|what| self.has_noticed(what)) {
             return;
         }
-        let Extremes { rotation, strain, tension, compression } = self.solid.extremes();
+        let Extremes { rotation, strain, tension, compression } = fields::extremes(&self.solid);
         let found = [rotation, strain, tension, compression];
         for ((what, extreme), limit) in all.into_iter().zip(found).zip([TURNED, STRAINED, OVERLOADED, PRESSED]) {
             if let Some(Extreme { body, element, value }) = extreme.filter(|extreme| extreme.value > limit) {

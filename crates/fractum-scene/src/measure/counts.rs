@@ -2,7 +2,7 @@
 
 use crate::contacts::NodesOnShape;
 use crate::scene::Scene;
-use fractum_fem::neighbours;
+use fractum_fem::{cracks, neighbours};
 
 /// What a probe counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,12 +48,12 @@ impl Counts {
 }
 
 impl Scene {
-    /// Counts of everything but fragments and edges, of which [`Solid::fracture`] tells.
+    /// Counts of everything but fragments and edges, of which [`fractum_fem::cracks::fracture`] tells.
     pub fn counts(&self) -> Counts {
         Counts {
             nodes: self.solid.reference.len(),
             elements: (0..self.solid.body_count()).map(|b| neighbours::element_count(&self.solid, b)).sum(),
-            removed_elements: self.solid.removed_count() - self.removals.left.elements,
+            removed_elements: cracks::removed_count(&self.solid) - self.removals.left.elements,
             crushed_elements: self.removals.tally.crushed,
             particles: self.debris.len() + self.bonded.particles.len()
                 - self.removals.left.particles(self.solid.reference.len()).count(),
@@ -69,8 +69,8 @@ impl Scene {
     pub fn count(&self, kind: CountKind) -> usize {
         match kind {
             CountKind::Fragments => self.fragments().len(),
-            CountKind::BrokenEdges => self.solid.fracture().broken_edges,
-            CountKind::DamagedEdges => self.solid.fracture().damaged_edges,
+            CountKind::BrokenEdges => cracks::fracture(&self.solid).broken_edges,
+            CountKind::DamagedEdges => cracks::fracture(&self.solid).damaged_edges,
             kind => self.counts().of(kind),
         }
     }

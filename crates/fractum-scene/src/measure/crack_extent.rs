@@ -1,7 +1,7 @@
 //! How much has separated: length, area and number of cracks, and where they have come to.
 
 use fractum_dem::crack_shape::Axis;
-use fractum_fem::{SeparatedElement, Separation};
+use fractum_fem::{SeparatedElement, Separation, cracks};
 use fractum_math::{Vec3, numbered_parts};
 
 use crate::measure::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
@@ -74,7 +74,7 @@ fn measure_extent(
     match measure {
         CrackMeasure::Length => facets.map(|facet| facet.area / solid.body(facet.body).thickness).sum::<f64>() + 0.0,
         CrackMeasure::Count => {
-            let (_, of_solids) = solid.separate_cracks(&separated_within(separation, inside));
+            let (_, of_solids) = cracks::separate_cracks(&solid, &separated_within(separation, inside));
             let pairs: Vec<[u32; 2]> = broken.map(|crack| crack.pair).collect();
             f64::from(of_solids + separate_pairs(pairs))
         }

@@ -1,6 +1,6 @@
 //! Facets of a group as they are at present, and fragments: area, enclosed volume, the piece that holds some nodes, sizes.
 
-use fractum_fem::Solid;
+use fractum_fem::{Solid, cracks};
 use fractum_math::Vec3;
 use fractum_math::elementary::cbrt;
 
@@ -45,7 +45,7 @@ impl Probe for SurfaceProbe {
         let solid = &probed.scene.solid;
         let at = |node: u32| solid.position(node as usize);
         match self.measure {
-            SurfaceMeasure::Area => self.facets.iter().map(|facet| solid.facet_area(facet, at).norm()).sum(),
+            SurfaceMeasure::Area => self.facets.iter().map(|facet| cracks::area_at(&solid, facet, at).norm()).sum(),
             SurfaceMeasure::Volume => enclosed_volume(solid, &self.facets, &HoleEnds::default(), at),
         }
     }

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::fmt;
 
-use fractum_fem::{CrackEdge, Fracture, Separation};
+use fractum_fem::{CrackEdge, Fracture, Separation, cracks, fields};
 use fractum_math::Sym3;
 
 use crate::contacts::ContactProbe;
@@ -115,27 +115,27 @@ impl<'a> ProbedScene<'a> {
 
     /// [`fractum_fem::Solid::fracture`], found once.
     pub fn fracture(&self) -> &Fracture {
-        self.fracture.get_or_init(|| self.scene.solid.fracture())
+        self.fracture.get_or_init(|| cracks::fracture(&self.scene.solid))
     }
 
     /// Stress of an element [Pa]; of all elements of its body at once where a probe has many of them.
     pub fn stress(&self, body: usize, element: u32, has_many: bool) -> Sym3 {
         let solid = &self.scene.solid;
         if !has_many {
-            return solid.element_field(body, element).0;
+            return fields::element_field(&solid, body, element).0;
         }
-        let all = || solid.element_fields(body).into_iter().map(|(stress, _)| stress).collect();
+        let all = || fields::element_fields(&solid, body).into_iter().map(|(stress, _)| stress).collect();
         self.stresses[body].get_or_init(all)[element as usize]
     }
 
     /// [`fractum_fem::Solid::crack_edges`], found once.
     pub fn crack_edges(&self) -> &[CrackEdge] {
-        self.crack_edges.get_or_init(|| self.scene.solid.crack_edges())
+        self.crack_edges.get_or_init(|| cracks::crack_edges(&self.scene.solid))
     }
 
     /// What has separated, found once.
     pub fn separation(&self) -> &Separation {
-        self.separation.get_or_init(|| self.scene.solid.separation())
+        self.separation.get_or_init(|| Separation::of(&self.scene.solid))
     }
 
     /// A count.

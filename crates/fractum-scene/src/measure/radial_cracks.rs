@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use fractum_dem::crack_shape::Axis;
-use fractum_fem::{SeparatedElement, Separation, Solid};
+use fractum_fem::{SeparatedElement, Separation, Solid, cracks};
 use fractum_math::Vec3;
 
 use crate::measure::crack_extent::separated_within;
@@ -109,14 +109,14 @@ impl RadialCracks {
             .filter(|(_, [least, most])| *least <= outer && *most >= inner)
             .collect();
         let elements: Vec<SeparatedElement> = near.iter().map(|(of, _)| *of).collect();
-        let (part, parts) = solid.separate_cracks(&elements);
+        let (part, parts) = cracks::separate_cracks(solid, &elements);
         let reach = reach(near.iter().map(|(_, extent)| *extent), &part, parts);
         let crosses = |part: u32| reach[part as usize][0] <= inner && reach[part as usize][1] >= outer;
         let on_circle = |((of, [least, most]), part): (&(SeparatedElement, [f64; 2]), &u32)| {
             (*least <= self.radius && *most >= self.radius && crosses(*part)).then_some(*of)
         };
         let on_circle: Vec<SeparatedElement> = near.iter().zip(&part).filter_map(on_circle).collect();
-        let (set, sets) = solid.separate_cracks(&on_circle);
+        let (set, sets) = cracks::separate_cracks(solid, &on_circle);
         let of_set = |number: u32| on_circle.iter().zip(&set).filter(move |(_, set)| **set == number);
         let is_ring = |number: &u32| self.lies_all_around(of_set(*number).map(|(of, _)| of.middle));
         (0..sets).filter(|number| !is_ring(number)).count() as u32
@@ -131,7 +131,7 @@ impl RadialCracks {
     }
 
     fn longest(&self, solid: &Solid, separated: &[SeparatedElement]) -> f64 {
-        let (part, parts) = solid.separate_cracks(separated);
+        let (part, parts) = cracks::separate_cracks(solid, separated);
         let reach = reach(separated.iter().map(|of| self.extent(solid, of)), &part, parts);
         reach.iter().map(|[from, to]| to - from).fold(0.0, f64::max)
     }
@@ -194,7 +194,7 @@ mod tests {
 
     fn measured(solid: &Solid, measure: RadialMeasure, radius: f64) -> f64 {
         let axis = Axis { point: centre(), direction: Vec3::z() };
-        RadialCracks::new(solid, measure, axis, radius, None).at_present(solid, &solid.separation())
+        RadialCracks::new(solid, measure, axis, radius, None).at_present(solid, &Separation::of(solid))
     }
 
     /// On a ray at this angle, from one distance to another.

@@ -20,7 +20,7 @@ mod static_dynamic;
 mod support_check;
 mod system;
 
-use fractum_fem::{CellDamage, Seen};
+use fractum_fem::{CellDamage, Seen, motion};
 use fractum_math::{Sym3, Vec3};
 use fractum_sparse::SparseError;
 use serde::{Deserialize, Serialize};
@@ -242,7 +242,7 @@ impl StaticSolver {
     /// # Errors
     /// [`StepError`] if there is none, or none that the iteration finds.
     pub fn step(&mut self, scene: &mut Scene) -> Result<StepReport, StepError> {
-        scene.solid.wake_phase_fields();
+        motion::wake_phase_fields(&mut scene.solid);
         let points = scene.solid.damage_points();
         self.damage = scene.solid.cell_damage();
         let intact = points.iter().all(|point| point.damage < INTACT);

@@ -1,7 +1,7 @@
 //! From equilibrium to motion where a step has no equilibrium, and back once the motion has died.
 
 use fractum_contact::Frame;
-use fractum_fem::LocalDamping;
+use fractum_fem::{LocalDamping, motion};
 use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -90,7 +90,7 @@ impl Scene {
     }
 
     fn find_step(&mut self, element_bound: bool) {
-        let stable = if element_bound { self.solid.stable_step_bound() } else { self.solid.stable_step() };
+        let stable = if element_bound { motion::stable_step_bound(&self.solid) } else { self.solid.stable_step() };
         self.frequencies = Frequencies::of(stable, None);
         self.debris.search(&self.solid);
         self.update_wall_frequency();

@@ -1,6 +1,6 @@
 //! Frames: what ParaView shows of one instant, a file per population.
 
-use fractum_fem::{Solid, neighbours};
+use fractum_fem::{CrackSurface, Solid, fields, motion, neighbours};
 use fractum_io::build::BuiltGauges;
 use fractum_io::case::model::{BodyKind, Case, OutputField, OutputFields};
 use fractum_io::number::push_shortest;
@@ -70,7 +70,7 @@ impl Frame {
         if let Some(gas) = scene.gas().filter(|gas| gas.cells().nth(gas.hole_count()).is_some()) {
             whole.push((Population::Gas, gas_cells::file(scene, gas)?));
         }
-        let crack = scene.solid.crack_surface();
+        let crack = CrackSurface::of(&scene.solid);
         if !crack.facets.is_empty() {
             whole.push((Population::Cracks, cracks::facets_file(&scene.solid, &crack, None)?));
         }
@@ -275,7 +275,7 @@ fn of_elements(field: OutputField, solid: &Solid, stresses: &[Sym3]) -> Vec<Arra
             [values].into_iter().chain((0..).zip(names).map(direction)).collect()
         }
         OutputField::Strain => {
-            let strains = (0..solid.body_count()).flat_map(|body| solid.owned_strains(body));
+            let strains = (0..solid.body_count()).flat_map(|body| fields::owned_strains(solid, body));
             vec![Array::new("strain", strains.map(|strain| strain.0))]
         }
         OutputField::Reaction | OutputField::Fragment => Vec::new(),
@@ -301,14 +301,16 @@ struct ElementFields {
 impl ElementFields {
     fn of(scene: &Scene, grid: &GridLayout) -> Self {
         let solid = &scene.solid;
-        let phase_field = solid.has_phase_fields();
+        let phase_field = motion::has_phase_fields(&solid);
         let mut fields = ElementFields::default();
         let mut stresses = Vec::new();
         for (body, kind) in grid.kinds.iter().enumerate() {
             let (corners, nodes) = (kind.nodes(), &solid.body(body).elements);
             let mut kept = Vec::new();
-            let phases = solid.element_phase(body);
-            for (element, (stress, damage)) in solid.owned_elements(body).into_iter().zip(solid.owned_fields(body)) {
+            let phases = motion::element_phase(&solid, body);
+            for (element, (stress, damage)) in
+                fields::owned_elements(&solid, body).into_iter().zip(fields::owned_fields(&solid, body))
+            {
                 let element = element as usize;
                 kept.extend(nodes[element][..corners].iter().map(|&node| grid.place[node as usize]));
                 fields.add_stress(stress);

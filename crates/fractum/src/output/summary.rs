@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use fractum_fem::{BodyState, Solid, neighbours};
+use fractum_fem::{BodyState, Solid, cracks, neighbours};
 use fractum_io::case::model::{Case, Expect, ProbeKind};
 use fractum_io::expectation::Expectation;
 use fractum_io::summary::{self, Status, Summary};
@@ -18,7 +18,7 @@ use crate::phases::Phases;
 
 /// What the last state of the scene tells.
 pub(crate) fn of_scene(scene: &Scene) -> Summary {
-    let (counts, fracture) = (scene.counts(), scene.solid.fracture());
+    let (counts, fracture) = (scene.counts(), cracks::fracture(&scene.solid));
     Summary {
         fractum: env!("CARGO_PKG_VERSION").to_owned(),
         threads: rayon::current_num_threads(),

@@ -4,7 +4,7 @@ use fractum_calibrate::crushing::Crushing;
 use fractum_calibrate::strength::Pulling;
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
-use fractum_fem::{ElementKind, Formulation, Kinematics, Plane, neighbours};
+use fractum_fem::{ElementKind, Formulation, Kinematics, Plane, motion, neighbours};
 use fractum_io::case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody, SolverKind};
 use fractum_io::number::quantity;
 use fractum_math::elementary::cbrt;
@@ -232,7 +232,7 @@ impl Plan {
                     if d.regularisation.is_some() { "longest possible" } else { "snap-back length" }
                 ),
             );
-            if let Some([length, size]) = scene.solid.phase_sizes(index) {
+            if let Some([length, size]) = motion::phase_sizes(&scene.solid, index) {
                 let depth = smallest_extent(body, &scene.solid.reference);
                 self.add("", format!(
                     "phase field of length b = {}, {:.1} of the elements where cracks are expected ({}); b is {:.1} % of the smallest extent of the body, {}: in bending across it a peak without notch is about that much too high (0.9 to 1.2 times)",

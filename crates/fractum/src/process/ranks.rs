@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fractum_dem::ParticleShare;
+use fractum_dem::ParticleSubdomainSize;
 use fractum_fem::neighbours::{self, SubdomainSize};
 use fractum_io::case::model::{BodyKind, BondLawKind, Case, Output, SolverKind};
 use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
@@ -145,13 +145,13 @@ impl Ranks {
     ///
     /// # Errors
     /// [`Failure::Input`] for a scene that cannot be shared.
-    pub(crate) fn share_out(&self, scene: &mut Scene, watched: impl FnOnce(&Scene) -> Watched) -> Result<(), Failure> {
+    pub(crate) fn distribute(&self, scene: &mut Scene, watched: impl FnOnce(&Scene) -> Watched) -> Result<(), Failure> {
         let Some(exchange) = &self.exchange else { return Ok(()) };
         let refuse =
             |what| Failure::input(format!("{what} cannot be run by several processes yet; run without mpirun"));
-        self.together(scene.cannot_be_shared().map_or(Ok(()), |what| Err(refuse(what))))?;
+        self.together(scene.cannot_be_distributed().map_or(Ok(()), |what| Err(refuse(what))))?;
         let watched = watched(scene);
-        scene.share_out(Arc::clone(exchange), &watched);
+        scene.distribute(Arc::clone(exchange), &watched);
         Ok(())
     }
 
@@ -172,8 +172,8 @@ impl Ranks {
                 if keeps_all { ", those of all processes: damage in the standard formulation needs them" } else { "" }
             )
         };
-        let of_particles = |share: ParticleShare| {
-            let ParticleShare { particles, ghosts, everywhere } = share;
+        let of_particles = |share: ParticleSubdomainSize| {
+            let ParticleSubdomainSize { particles, ghosts, everywhere } = share;
             format!(
                 "{process}: {} particles, and the motion of {} others; {} particles moved by every process",
                 number(particles),

@@ -1,6 +1,6 @@
 //! Pictures of a scene: its surface with the particles, coloured by damage, stress and temperature.
 
-use fractum_fem::neighbours;
+use fractum_fem::{fields, neighbours};
 use std::path::Path;
 
 use fractum_io::atomic::Group;
@@ -36,10 +36,11 @@ impl Skin {
         for body in 0..solid.body_count() {
             let facets = neighbours::skin(solid, body);
             // Elements share edges: where most of them are seen, the values of all edges are found once.
-            let most = (6 * facets.len() > solid.alive(body).len()).then(|| solid.element_fields(body));
+            let most = (6 * facets.len() > solid.alive(body).len()).then(|| fields::element_fields(solid, body));
             for (nodes, element) in facets {
                 let of_element = |all: &Vec<_>| all[element as usize];
-                let (stress, damage) = most.as_ref().map_or_else(|| solid.element_field(body, element), of_element);
+                let (stress, damage) =
+                    most.as_ref().map_or_else(|| fields::element_field(solid, body, element), of_element);
                 skin.facets.push(nodes);
                 skin.damage.push(damage);
                 skin.stress.push(stress.principal_values()[0]);

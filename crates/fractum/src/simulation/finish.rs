@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use fractum_fem::{CrackFacet, Solid, neighbours};
+use fractum_fem::{CrackFacet, CrackSurface, Solid, neighbours};
 use fractum_io::atomic::{Group, create_folder};
 use fractum_io::attenuation;
 use fractum_io::case::model::{Case, Material};
@@ -31,7 +31,7 @@ impl Simulation {
     /// [`Failure::Stopped`] for a step that failed, with its results written all the same; what cannot be written.
     pub fn finish(mut self) -> Result<Outcome, Failure> {
         let end = self.take_end()?;
-        self.scene.gather_ranks();
+        self.scene.gather_all();
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         self.ranks.steps(&self.scene).map_or(Ok(()), |steps| self.messages.log.line(steps))?;
         let state_hash = self.state_hash();
@@ -159,7 +159,7 @@ impl Simulation {
             // The forces and energies of the last instant: one more step, of which nothing else is kept.
             let (time, dt) = (scene.clock.time, scene.clock.dt_after);
             if scene.step(true).is_ok() {
-                scene.gather_ranks();
+                scene.gather_all();
                 recorder.row(scene, Measured { time, dt, in_motion: true }, true)?;
             }
         }
@@ -191,7 +191,7 @@ fn add_cracks(scene: &Scene, folder: &Path, removed: &[(u32, u32, f64)], files: 
     if bonds {
         add_broken_bonds(scene, folder, files)?;
     }
-    let crack = scene.solid.crack_surface();
+    let crack = CrackSurface::of(&scene.solid);
     if crack.facets.is_empty() {
         return Ok(());
     }

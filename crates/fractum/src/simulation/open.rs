@@ -94,7 +94,7 @@ impl Simulation {
         let begun = Self::begin(input, (path, options), (loaded, goes_on.as_deref()), started, Arc::clone(&ranks));
         let mut simulation = ranks.together(begun)?;
         let Simulation { scene, recorder, messages, .. } = &mut simulation;
-        ranks.share_out(scene, |scene| recorder.watch_points(scene))?;
+        ranks.distribute(scene, |scene| recorder.watch_points(scene))?;
         ranks.share(scene).into_iter().try_for_each(|share| messages.log.line(share))?;
         if goes_on.is_none() && !simulation.solver.moves() {
             // A path begins where nothing acts.

@@ -483,7 +483,7 @@ mod tests {
         let mut body = body.with_damage(DamageLaw::rankine(3e6, 100.0));
         body.damage.as_mut().unwrap().regularisation = Some(Regularisation { length: None });
         let mut solid = Solid::new(mesh.nodes, vec![body]).unwrap();
-        solid.wake_phase_fields();
+        crate::motion::phase_edges::wake_phase_fields(&mut solid);
         let field = solid.bodies[0].phase.as_mut().unwrap();
         let d: Vec<f64> = (0..field.value.len()).map(|edge| (edge as f64).sin()).collect();
         let rows = |field: &PhaseField| {

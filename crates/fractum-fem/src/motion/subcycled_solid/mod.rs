@@ -16,7 +16,7 @@ use fractum_math::{CHUNK, HalfSteps, Vec3};
 use linked_node::LinkedNode;
 use rayon::prelude::*;
 
-use crate::motion::central_difference::{WholeStep, free_axes};
+use crate::motion::central_difference::{WholeStep, free_axes, kick_runs, work_of_chunks};
 use crate::solid::Solid;
 use crate::solid::evaluate::Block;
 use crate::solid::subcycling::Subcycling;
@@ -61,129 +61,129 @@ impl Solid {
             Some(copy) => self.copies[copy] as usize,
         }
     }
+}
 
-    /// Nodes of the mesh, ascending, with their copies after them.
-    pub fn with_copies(&self, mut nodes: Vec<u32>) -> Vec<u32> {
-        let copies = (self.reference.len() as u32..).zip(&self.copies);
-        let of: Vec<u32> = copies.filter(|(_, node)| nodes.binary_search(node).is_ok()).map(|(copy, _)| copy).collect();
-        nodes.extend(of);
-        nodes
-    }
+/// Nodes of the mesh, ascending, with their copies after them.
+pub fn with_copies(solid: &Solid, mut nodes: Vec<u32>) -> Vec<u32> {
+    let copies = (solid.reference.len() as u32..).zip(&solid.copies);
+    let of: Vec<u32> = copies.filter(|(_, node)| nodes.binary_search(node).is_ok()).map(|(copy, _)| copy).collect();
+    nodes.extend(of);
+    nodes
+}
 
-    /// Shares of cells and nodes with short steps, and the number of nodes that stand twice; none where all take the same.
-    pub fn fine_shares(&self) -> Option<(f64, usize)> {
-        self.subcycling.as_ref()?;
-        let cells = |fine: bool| -> usize {
-            self.blocks.iter().filter(|block| !fine || block.is_fine).map(|block| block.cells.len()).sum()
-        };
-        Some((cells(true) as f64 / cells(false).max(1) as f64, self.copies.len()))
-    }
+/// Shares of cells and nodes with short steps, and the number of nodes that stand twice; none where all take the same.
+pub fn fine_shares(solid: &Solid) -> Option<(f64, usize)> {
+    solid.subcycling.as_ref()?;
+    let cells = |fine: bool| -> usize {
+        solid.blocks.iter().filter(|block| !fine || block.is_fine).map(|block| block.cells.len()).sum()
+    };
+    Some((cells(true) as f64 / cells(false).max(1) as f64, solid.copies.len()))
+}
 
-    /// Begins a step with this many short ones in it; it follows the last one.
-    ///
-    /// - `is_first`: whether there is none before it
-    pub fn set_parts(&mut self, parts: u32, is_first: bool) {
-        let Some(own) = &mut self.subcycling else { return };
-        own.parts = [if is_first { parts } else { own.parts[1] }, parts];
-    }
+/// Begins a step with this many short ones in it; it follows the last one.
+///
+/// - `is_first`: whether there is none before it
+pub fn set_short_steps(solid: &mut Solid, parts: u32, is_first: bool) {
+    let Some(own) = &mut solid.subcycling else { return };
+    own.parts = [if is_first { parts } else { own.parts[1] }, parts];
+}
 
-    /// Short steps in the last step; none where all nodes take the same.
-    pub fn parts(&self) -> Option<u32> {
-        Some(self.subcycling.as_ref()?.parts[1])
-    }
+/// Short steps in the last step; none where all nodes take the same.
+pub fn short_steps(solid: &Solid) -> Option<u32> {
+    Some(solid.subcycling.as_ref()?.parts[1])
+}
 
-    /// Takes the number of short steps in the last one.
-    pub fn restore_parts(&mut self, parts: u32) {
-        self.subcycling.iter_mut().for_each(|own| own.parts = [parts; 2]);
-    }
+/// Takes the number of short steps in the last one.
+pub fn restore_short_steps(solid: &mut Solid, parts: u32) {
+    solid.subcycling.iter_mut().for_each(|own| own.parts = [parts; 2]);
+}
 
-    /// Gives copies the velocities of their nodes.
-    pub fn set_copies_off(&mut self) {
-        for (copy, &node) in (self.reference.len()..).zip(&self.copies) {
-            self.velocity[copy] = self.velocity[node as usize];
-        }
+/// Gives copies the velocities of their nodes.
+pub fn set_copies_off(solid: &mut Solid) {
+    for (copy, &node) in (solid.reference.len()..).zip(&solid.copies) {
+        solid.velocity[copy] = solid.velocity[node as usize];
     }
+}
 
-    /// Where steps have two sizes: acceleration at tⁿ [m/s²], of a node and its copy that of both together; and their step before tⁿ,
-    /// of a whole one `dt` [s].
-    pub fn own_acceleration(&self, node: usize, dt: f64) -> Option<(Vec3, f64)> {
-        let own = self.subcycling.as_ref()?;
-        let dt = if self.is_fine(node) { dt / f64::from(own.parts[0]) } else { dt };
-        let original = self.original(node);
-        let Ok(link) = self.copies.binary_search(&(original as u32)) else {
-            return Some((self.force[node] * self.inverse_mass[node], dt));
-        };
-        let both = [original, self.reference.len() + link];
-        let force = both.iter().map(|&i| self.force[i]).sum::<Vec3>();
-        Some((force / both.iter().map(|&i| self.mass[i]).sum::<f64>(), dt))
-    }
+/// Where steps have two sizes: acceleration at tⁿ [m/s²], of a node and its copy that of both together; and their step before tⁿ,
+/// of a whole one `dt` [s].
+pub fn own_acceleration(solid: &Solid, node: usize, dt: f64) -> Option<(Vec3, f64)> {
+    let own = solid.subcycling.as_ref()?;
+    let dt = if solid.is_fine(node) { dt / f64::from(own.parts[0]) } else { dt };
+    let original = solid.original(node);
+    let Ok(link) = solid.copies.binary_search(&(original as u32)) else {
+        return Some((solid.force[node] * solid.inverse_mass[node], dt));
+    };
+    let both = [original, solid.reference.len() + link];
+    let force = both.iter().map(|&i| solid.force[i]).sum::<Vec3>();
+    Some((force / both.iter().map(|&i| solid.mass[i]).sum::<f64>(), dt))
+}
 
-    /// Once the internal forces are those of tⁿ: what is added to them stays until tⁿ⁺¹.
-    pub(crate) fn keep_internal(&mut self) {
-        let Some(own) = &mut self.subcycling else { return };
-        own.is_ahead = false;
-        own.outer.copy_from_slice(&self.force);
-    }
+/// Once the internal forces are those of tⁿ: what is added to them stays until tⁿ⁺¹.
+pub(crate) fn keep_internal(solid: &mut Solid) {
+    let Some(own) = &mut solid.subcycling else { return };
+    own.is_ahead = false;
+    own.outer.copy_from_slice(&solid.force);
+}
 
-    /// The last step of the cells of a block, where that of the scene was `dt` [s].
-    pub(crate) fn own_step(&self, block: &Block, dt: f64) -> f64 {
-        match &self.subcycling {
-            Some(own) if block.is_fine => dt / f64::from(own.parts[1]),
-            _ => dt,
-        }
+/// The last step of the cells of a block, where that of the scene was `dt` [s].
+pub(crate) fn own_step(solid: &Solid, block: &Block, dt: f64) -> f64 {
+    match &solid.subcycling {
+        Some(own) if block.is_fine => dt / f64::from(own.parts[1]),
+        _ => dt,
     }
+}
 
-    /// After cells have changed, no forces are known in advance.
-    pub(crate) fn forget_ahead(&mut self) {
-        self.subcycling.iter_mut().for_each(|own| own.is_ahead = false);
-    }
+/// After cells have changed, no forces are known in advance.
+pub(crate) fn forget_ahead(solid: &mut Solid) {
+    solid.subcycling.iter_mut().for_each(|own| own.is_ahead = false);
+}
 
-    /// As [`Solid::kick_and_drift`], with short steps for the nodes that need them.
-    ///
-    /// - `prescribe`: sees to what is prescribed, before and after some nodes move
-    pub fn advance_in_parts(
-        &mut self,
-        step: WholeStep,
-        mut prescribe: impl FnMut(&mut Solid, Prescribe) -> HalfSteps,
-    ) -> HalfSteps {
-        let Some(mut own) = self.subcycling.take() else { return HalfSteps::default() };
-        let parts = f64::from(own.parts[1]);
-        let long = [step.dt_before, step.dt_after];
-        let (before, after) = (step.dt_before / f64::from(own.parts[0]), step.dt_after / parts);
-        own.outer.iter_mut().zip(&self.force).for_each(|(outer, force)| *outer = force - *outer);
-        own.has_outer = own.outer.iter().zip(&own.is_fine).any(|(outer, is_fine)| *is_fine && *outer != Vec3::zeros());
-        let mut work = HalfSteps::default();
-        // Whoever put these forces on has booked their work for whole steps.
-        work.before.external += own.outer_work(self, 0.5 * (before - step.dt_before));
-        for fine in [false, true] {
-            prescribe(self, Prescribe::Remember { fine });
-        }
-        work += own.kick(self, false, long, &step);
-        work += own.kick(self, true, [before, after], &step);
-        work += own.kick_linked(self, [before, after], &step);
-        for (fine, [dt_before, dt_after]) in [(false, long), (true, [before, after])] {
-            work += prescribe(self, Prescribe::Impose { fine, since: 0.0, dt_before, dt_after });
-        }
-        own.energies = [self.elastic_energy(), self.dissipated_energy()];
-        own.look_ahead(self, &step);
-        let step = WholeStep { measure: false, ..step };
-        for part in 1..own.parts[1] {
-            work.after.external += own.outer_work(self, after);
-            own.update_fine_forces(self, after);
-            prescribe(self, Prescribe::Remember { fine: true });
-            let share = f64::from(part) / parts;
-            let mut later = own.kick(self, true, [after; 2], &step);
-            later += own.kick_fine_linked(self, share, after, &step);
-            let since = share * step.dt_after;
-            later += prescribe(self, Prescribe::Impose { fine: true, since, dt_before: after, dt_after: after });
-            // All of it lies after tⁿ.
-            work.after += later.before;
-            work.after += later.after;
-        }
-        work.after.external += own.outer_work(self, 0.5 * (after - step.dt_after));
-        self.subcycling = Some(own);
-        work
+/// As [`Solid::kick_and_drift`], with short steps for the nodes that need them.
+///
+/// - `prescribe`: sees to what is prescribed, before and after some nodes move
+pub fn advance_in_parts(
+    solid: &mut Solid,
+    step: WholeStep,
+    mut prescribe: impl FnMut(&mut Solid, Prescribe) -> HalfSteps,
+) -> HalfSteps {
+    let Some(mut own) = solid.subcycling.take() else { return HalfSteps::default() };
+    let parts = f64::from(own.parts[1]);
+    let long = [step.dt_before, step.dt_after];
+    let (before, after) = (step.dt_before / f64::from(own.parts[0]), step.dt_after / parts);
+    own.outer.iter_mut().zip(&solid.force).for_each(|(outer, force)| *outer = force - *outer);
+    own.has_outer = own.outer.iter().zip(&own.is_fine).any(|(outer, is_fine)| *is_fine && *outer != Vec3::zeros());
+    let mut work = HalfSteps::default();
+    // Whoever put these forces on has booked their work for whole steps.
+    work.before.external += own.outer_work(solid, 0.5 * (before - step.dt_before));
+    for fine in [false, true] {
+        prescribe(solid, Prescribe::Remember { fine });
     }
+    work += own.kick(solid, false, long, &step);
+    work += own.kick(solid, true, [before, after], &step);
+    work += own.kick_linked(solid, [before, after], &step);
+    for (fine, [dt_before, dt_after]) in [(false, long), (true, [before, after])] {
+        work += prescribe(solid, Prescribe::Impose { fine, since: 0.0, dt_before, dt_after });
+    }
+    own.energies = [solid.elastic_energy(), solid.dissipated_energy()];
+    own.look_ahead(solid, &step);
+    let step = WholeStep { measure: false, ..step };
+    for part in 1..own.parts[1] {
+        work.after.external += own.outer_work(solid, after);
+        own.update_fine_forces(solid, after);
+        prescribe(solid, Prescribe::Remember { fine: true });
+        let share = f64::from(part) / parts;
+        let mut later = own.kick(solid, true, [after; 2], &step);
+        later += own.kick_fine_linked(solid, share, after, &step);
+        let since = share * step.dt_after;
+        later += prescribe(solid, Prescribe::Impose { fine: true, since, dt_before: after, dt_after: after });
+        // All of it lies after tⁿ.
+        work.after += later.before;
+        work.after += later.after;
+    }
+    work.after.external += own.outer_work(solid, 0.5 * (after - step.dt_after));
+    solid.subcycling = Some(own);
+    work
 }
 
 impl Subcycling {
@@ -204,8 +204,8 @@ impl Subcycling {
     /// Kicks the nodes with short steps or those with long ones, but those that stand twice.
     fn kick(&self, solid: &mut Solid, fine: bool, [dt_before, dt_after]: [f64; 2], step: &WholeStep) -> HalfSteps {
         let step = WholeStep { dt_before, dt_after, ..*step };
-        solid.kick_runs(&step, |chunk| self.runs[usize::from(fine)].get(chunk).map(Vec::as_slice));
-        solid.work_of_chunks()
+        kick_runs(solid, &step, |chunk| self.runs[usize::from(fine)].get(chunk).map(Vec::as_slice));
+        work_of_chunks(solid)
     }
 
     /// Kicks nodes and their copies at tⁿ.

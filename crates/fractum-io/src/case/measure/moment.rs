@@ -10,6 +10,7 @@ use crate::case::key_kind::{KeyDoc, KeyKind as K, key};
 use crate::case::reader::Table;
 use crate::case::selection::{Selection, selection};
 use crate::case::unit::Dimension as D;
+use fractum_fem::motion;
 
 /// Moment of support reactions about an axis [N m].
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +45,7 @@ impl Measure for Moment {
     fn resolve(&self, scene: &mut Scenery<'_>) -> Option<Box<dyn Probe>> {
         scene.refuse_out_of_plane(&self.on, &self.about.direction);
         let nodes = scene.names.nodes(&self.on);
-        let nodes = scene.solid.with_copies(nodes);
+        let nodes = motion::with_copies(&scene.solid, nodes);
         let places = scene.held_places(&self.on, &nodes, None);
         Some(ProbeOfPoints::boxed(Population::Nodes, PointProbe::Moment { places, about: self.about }))
     }

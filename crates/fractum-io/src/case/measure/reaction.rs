@@ -10,6 +10,7 @@ use crate::case::key_kind::{KeyDoc, KeyKind as K, key};
 use crate::case::reader::Table;
 use crate::case::selection::{GroupUse, Selection};
 use crate::case::unit::Dimension as D;
+use fractum_fem::motion;
 
 /// Sum of support reactions [N], or the force of a rigid body.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +60,7 @@ impl Measure for Reaction {
             return rigid;
         }
         let nodes = scene.names.nodes(on);
-        let nodes = scene.solid.with_copies(nodes);
+        let nodes = motion::with_copies(&scene.solid, nodes);
         let places = scene.held_places(on, &nodes, Some(&along));
         Some(ProbeOfPoints::boxed(Population::Nodes, PointProbe::Reaction { places, along }))
     }

@@ -6,7 +6,7 @@
 
 use fractum_contact::SphereGrid;
 use fractum_contact::law::ContactMemory;
-use fractum_fem::Solid;
+use fractum_fem::{Solid, removal};
 use fractum_math::Vec3;
 use rayon::prelude::*;
 
@@ -116,7 +116,7 @@ impl Debris {
             for k in 0..near.around.len() {
                 let nodes = [node.min(near.around[k]), node.max(near.around[k])];
                 // Neighbours that an element still joins are held by it.
-                if near.rows.find(nodes).is_none() && !(self.both_held(nodes) && solid.is_live_edge(nodes)) {
+                if near.rows.find(nodes).is_none() && !(self.both_held(nodes) && removal::is_live_edge(solid, nodes)) {
                     let newborn = nodes.iter().any(|&n| self.particle_of[n as usize] as usize >= near.listed);
                     near.rows.add(nodes[0], self.new_entry(solid, nodes, false, newborn));
                 }

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::Kinematics;
 use crate::damage::edge::{EdgeDamage, EdgeField};
+use crate::motion::phase_edges::restore_phase;
+use crate::motion::subcycled_solid::forget_ahead;
+use crate::removal::rebuild_cells_around;
 use crate::solid::Solid;
 use crate::solid::evaluate::{Block, BlockLaw};
 
@@ -47,15 +50,11 @@ impl Solid {
         SolidState {
             displacement: self.displacement.clone(),
             velocity: self.velocity.clone(),
-            bodies: (0..self.bodies.len()).map(|body| self.body_state(body, self.kept_damage(body))).collect(),
+            bodies: (0..self.bodies.len()).map(|body| body_state(self, body, kept_damage(self, body))).collect(),
             dissipated: self.blocks.iter().map(|block| block.dissipated).collect(),
             viscous_dissipation: self.viscous_dissipation,
             viscous: self.blocks.iter().map(|b| b.viscous.stress.clone()).collect(),
         }
-    }
-
-    fn kept_damage(&self, body: usize) -> Vec<EdgeDamage> {
-        if self.bodies[body].location.keeps_all() { self.edge_damage(body) } else { Vec::new() }
     }
 
     /// Edge histories of a body in the order of its edges, those that are known here; empty without damage.
@@ -96,22 +95,6 @@ impl Solid {
         });
     }
 
-    pub(crate) fn body_state(&self, body: usize, edges: Vec<EdgeDamage>) -> BodyState {
-        let model = &self.bodies[body];
-        let of = |&(block, cell): &(u32, u32)| match &self.blocks[block as usize].law {
-            BlockLaw::Standard(law) => (law.damage[cell as usize], law.stress[cell as usize]),
-            _ => (0.0, Sym3::ZERO),
-        };
-        let elements =
-            if model.standard.is_some() { model.location.all().iter().map(of).collect() } else { Vec::new() };
-        let phase = model.phase.as_ref().map_or_else(Vec::new, |field| field.state().collect());
-        // Nothing is removed of a body of which no process has all elements.
-        let mut alive = vec![true; self.neighbours.element_count(body, model.alive.len())];
-        let numbers = (0..).map(|element| self.neighbours.number(body, element) as usize);
-        numbers.zip(&model.alive).for_each(|(number, &is_alive)| alive[number] = is_alive);
-        BodyState { kinematics: model.body.kinematics, alive, edges, elements, phase }
-    }
-
     /// Puts a saved state back. The solid must have been built from the same bodies.
     ///
     /// # Panics
@@ -121,7 +104,7 @@ impl Solid {
         self.displacement = state.displacement;
         self.velocity = state.velocity;
         self.viscous_dissipation = state.viscous_dissipation;
-        self.forget_ahead();
+        forget_ahead(self);
         self.neighbours.forget_received(&mut self.blocks);
         for (index, body) in state.bodies.into_iter().enumerate() {
             let Solid { bodies, blocks, neighbours, .. } = self;
@@ -139,8 +122,8 @@ impl Solid {
             let saved = |element: u32| body.alive[neighbours.number(index, element) as usize];
             (0..).zip(&mut model.alive).for_each(|(element, alive)| *alive = saved(element));
             let removed: Vec<u32> = (0..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(e, _)| e).collect();
-            self.rebuild_cells_around(index, &removed);
-            self.restore_phase(index, &body.phase);
+            rebuild_cells_around(self, index, &removed);
+            restore_phase(self, index, &body.phase);
         }
         self.with_neighbours(|neighbours, solid| neighbours.exchange_restored(solid));
         let is_elsewhere = |block: &Block| block.items.is_empty();
@@ -151,4 +134,23 @@ impl Solid {
             block.dissipated = dissipated;
         }
     }
+}
+
+fn kept_damage(solid: &Solid, body: usize) -> Vec<EdgeDamage> {
+    if solid.bodies[body].location.keeps_all() { solid.edge_damage(body) } else { Vec::new() }
+}
+
+pub(crate) fn body_state(solid: &Solid, body: usize, edges: Vec<EdgeDamage>) -> BodyState {
+    let model = &solid.bodies[body];
+    let of = |&(block, cell): &(u32, u32)| match &solid.blocks[block as usize].law {
+        BlockLaw::Standard(law) => (law.damage[cell as usize], law.stress[cell as usize]),
+        _ => (0.0, Sym3::ZERO),
+    };
+    let elements = if model.standard.is_some() { model.location.all().iter().map(of).collect() } else { Vec::new() };
+    let phase = model.phase.as_ref().map_or_else(Vec::new, |field| field.state().collect());
+    // Nothing is removed of a body of which no process has all elements.
+    let mut alive = vec![true; solid.neighbours.element_count(body, model.alive.len())];
+    let numbers = (0..).map(|element| solid.neighbours.number(body, element) as usize);
+    numbers.zip(&model.alive).for_each(|(number, &is_alive)| alive[number] = is_alive);
+    BodyState { kinematics: model.body.kinematics, alive, edges, elements, phase }
 }

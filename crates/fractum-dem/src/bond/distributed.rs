@@ -8,13 +8,13 @@ use rayon::prelude::*;
 use super::block::{BOUNDS, Block, VIRIALS, sum_bonds};
 use super::law::BondLaw;
 use super::network::{BLOCK, BondNetwork};
-use super::network_part::NetworkPart;
-use crate::particles::{ParticlePart, Particles};
+use super::subdomain::BondSubdomain;
+use crate::particles::{ParticleSubdomain, Particles};
 
 impl<L: BondLaw> BondNetwork<L> {
     /// Leaves the blocks of bonds to the ranks that have their first particles.
-    pub fn share_out(&mut self, part: &ParticlePart) {
-        let part = NetworkPart::new(part, &self.blocks);
+    pub fn distribute(&mut self, part: &ParticleSubdomain) {
+        let part = BondSubdomain::new(part, &self.blocks);
         for [block, _] in part.received() {
             self.blocks[block as usize].make_room_for_details();
         }

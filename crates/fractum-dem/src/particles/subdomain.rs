@@ -1,32 +1,32 @@
 //! The particles that one of several ranks moves.
 //!
 //! A rank has a run of particles, in the order of their numbers, and the bonds whose first particle is one of them. It gets what
-//! the bonds of others sum for its particles, moves these, and tells their motion to ranks whose bonds reach them: such a rank
+//! the bonds of others sum for its particles, moves these, and sends their motion to ranks whose bonds reach them: such a rank
 //! keeps *ghosts* of them. What needs a particle beside bonds and contacts among particles (supports, loads, rigid bodies, ties) is done by all
-//! ranks alike: they are told the forces on it, and all move it. The rest is told before anyone looks at it, and out of date between.
+//! ranks alike: they receive the forces on it, and all move it. The rest is gathered before anyone looks at it, and out of date between.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
 use fractum_math::{HalfSteps, Rotation, Vec3};
-use fractum_parallel::{Exchange, Swapped, Told, rank_of, runs_by_weight, runs_of};
+use fractum_parallel::{Exchange, Exchanged, Gathered, rank_of, runs_by_weight, runs_of};
 use nalgebra::Quaternion;
 
 use super::{BLOCK, Particles, PastForces, SHARED};
 
 /// The share of a rank.
 #[derive(Clone, Debug)]
-pub struct ParticlePart {
+pub struct ParticleSubdomain {
     exchange: Arc<dyn Exchange>,
     /// First particle of each rank, and the end; each begins a block of bonds.
     first: Vec<usize>,
     /// Particles of others that bonds, contacts and strangers of this rank reach, and the other way round.
     near: [Near; 3],
-    /// Those whose motion is told: all of these but what every rank moves.
-    ghosts: Swapped<u32>,
+    /// Those whose motion is sent: all of these but what every rank moves.
+    ghosts: Exchanged<u32>,
     /// Particles that every rank moves.
-    everywhere: Told,
+    everywhere: Gathered,
     is_everywhere: Vec<bool>,
     /// Runs of those of others among them.
     of_others: Vec<Range<usize>>,
@@ -36,12 +36,12 @@ pub struct ParticlePart {
     all: Vec<f64>,
 }
 
-/// How much a rank has to do and to tell in a step.
+/// How much a rank has to do and to send in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ParticleShare {
+pub struct ParticleSubdomainSize {
     /// Particles of its own.
     pub particles: usize,
-    /// Particles of others whose motion it is told.
+    /// Particles of others whose motion it receives.
     pub ghosts: usize,
     /// Particles that every rank moves.
     pub everywhere: usize,
@@ -64,7 +64,7 @@ const MOTION: usize = 13;
 /// Force and moment.
 const LOAD: usize = 6;
 
-impl ParticlePart {
+impl ParticleSubdomain {
     /// Particles that a rank has as a whole.
     pub const BLOCK: usize = SHARED;
 
@@ -78,10 +78,10 @@ impl ParticlePart {
         let first: Vec<usize> = blocks.iter().map(|block| (block * SHARED).min(count)).collect();
         let mut bonded = Near::new();
         add_near(&mut bonded, &first, exchange.rank(), pairs);
-        ParticlePart {
+        ParticleSubdomain {
             ghosts: swapped([&bonded], |_| true),
             near: [bonded, Near::new(), Near::new()],
-            everywhere: Told::new(vec![Vec::new(); exchange.size()]),
+            everywhere: Gathered::new(vec![Vec::new(); exchange.size()]),
             is_everywhere: vec![false; count],
             of_others: Vec::new(),
             is_whole: true,
@@ -109,8 +109,8 @@ impl ParticlePart {
     }
 
     /// What this rank does of the work.
-    pub fn share(&self) -> ParticleShare {
-        ParticleShare {
+    pub fn share(&self) -> ParticleSubdomainSize {
+        ParticleSubdomainSize {
             particles: self.own().len(),
             ghosts: self.ghosts.received().count(),
             everywhere: self.is_everywhere.iter().filter(|is| **is).count(),
@@ -128,15 +128,15 @@ impl ParticlePart {
             self.is_everywhere[i as usize] = true;
             of_rank[rank_of(&self.first, i as usize)].push(i);
         }
-        let mut told = Told::new(of_rank);
+        let mut gathered = Gathered::new(of_rank);
         if !self.is_whole {
-            told.tell(&*self.exchange, particles, motion, put_motion);
+            gathered.gather(&*self.exchange, particles, motion, put_motion);
         }
-        told.tell(&*self.exchange, particles, load, put_load);
+        gathered.gather(&*self.exchange, particles, load, put_load);
         if !past.force.is_empty() {
-            told.tell(&*self.exchange, past, past_load, put_past_load);
+            gathered.gather(&*self.exchange, past, past_load, put_past_load);
         }
-        self.everywhere.append(&told);
+        self.everywhere.append(&gathered);
         let own = self.own();
         let is_others = |(i, is): (usize, &bool)| *is && !own.contains(&i);
         self.of_others = runs_of(&self.is_everywhere.iter().enumerate().map(is_others).collect::<Vec<_>>());
@@ -157,8 +157,8 @@ impl ParticlePart {
     }
 
     /// Tells all ranks the forces on the particles that every rank moves, once each has those on its own.
-    pub fn tell_forces(&mut self, particles: &mut Particles) {
-        self.everywhere.tell(&*self.exchange, particles, load, put_load);
+    pub fn exchange_forces(&mut self, particles: &mut Particles) {
+        self.everywhere.gather(&*self.exchange, particles, load, put_load);
     }
 
     /// Particles of other ranks that this one moves as well, in runs.
@@ -172,10 +172,10 @@ impl ParticlePart {
     }
 
     /// Tells the motion of own particles to the ranks that have ghosts of them.
-    pub fn tell_ghosts(&mut self, particles: &mut Particles) {
+    pub fn exchange_ghosts(&mut self, particles: &mut Particles) {
         let get = |particles: &Particles, i: u32| motion(particles, i as usize);
         let put = |particles: &mut Particles, i: u32, from| put_motion(particles, i as usize, from);
-        self.ghosts.tell(&*self.exchange, particles, get, put);
+        self.ghosts.exchange(&*self.exchange, particles, get, put);
         self.forget_others();
     }
 
@@ -207,7 +207,7 @@ impl ParticlePart {
         put: impl Fn(&mut S, usize, [f64; N]),
     ) {
         let range = self.own();
-        let ParticlePart { exchange, first, own, all, .. } = self;
+        let ParticleSubdomain { exchange, first, own, all, .. } = self;
         own.clear();
         own.extend(range.clone().flat_map(|i| get(values, i)));
         let counts: Vec<usize> = first.windows(2).map(|first| N * (first[1] - first[0])).collect();
@@ -221,7 +221,7 @@ impl ParticlePart {
     /// Gives every rank the values of all blocks of particles, once each has those of its own.
     ///
     /// - `size`: particles of a block, a power of two of at most 2048
-    pub fn tell_blocks<const N: usize>(&self, size: usize, values: &mut [[f64; N]]) {
+    pub fn gather_blocks<const N: usize>(&self, size: usize, values: &mut [[f64; N]]) {
         let blocks = |first: usize| first.div_ceil(size);
         let counts: Vec<usize> = self.first.windows(2).map(|first| N * (blocks(first[1]) - blocks(first[0]))).collect();
         let Range { start, end } = self.own();
@@ -232,9 +232,9 @@ impl ParticlePart {
     }
 
     /// The same of what a step has done with each block, by [`Particles::kick_and_drift`].
-    pub(super) fn tell_work(&self, partial: &mut [HalfSteps]) {
+    pub(super) fn gather_work(&self, partial: &mut [HalfSteps]) {
         let mut all: Vec<[f64; 4]> = partial.iter().map(HalfSteps::of_motion).collect();
-        self.tell_blocks(BLOCK, &mut all);
+        self.gather_blocks(BLOCK, &mut all);
         partial.iter_mut().zip(all).for_each(|(work, numbers)| work.set_motion(numbers));
     }
 }
@@ -253,13 +253,13 @@ fn add_near(near: &mut Near, first: &[usize], me: usize, pairs: impl Iterator<It
     }
 }
 
-fn swapped<'a>(all: impl IntoIterator<Item = &'a Near>, is_told: impl Fn(u32) -> bool) -> Swapped<u32> {
+fn swapped<'a>(all: impl IntoIterator<Item = &'a Near>, is_sent: impl Fn(u32) -> bool) -> Exchanged<u32> {
     let mut between = BTreeMap::<usize, [BTreeSet<u32>; 2]>::new();
     for (&rank, sets) in all.into_iter().flatten() {
-        let told = between.entry(rank).or_default();
-        (0..2).for_each(|k| told[k].extend(sets[k].iter().copied().filter(|&i| is_told(i))));
+        let gathered = between.entry(rank).or_default();
+        (0..2).for_each(|k| gathered[k].extend(sets[k].iter().copied().filter(|&i| is_sent(i))));
     }
-    Swapped::of_sets(between)
+    Exchanged::of_sets(between)
 }
 
 fn motion(particles: &Particles, i: usize) -> [f64; MOTION] {

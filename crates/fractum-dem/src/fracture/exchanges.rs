@@ -1,22 +1,22 @@
 //! A body that breaks where several ranks share it: crack faces belong to the ranks of both particles, alike; what the others need is
-//! told by the rank of the first.
+//! sent by the rank of the first.
 
-use fractum_parallel::{gather, rank_of, tell_by_owner};
+use fractum_parallel::{gather, gather_by_owner, rank_of};
 
 use super::faces::{Face, FaceWork};
 use super::moving::{Fracture, power_of};
 use crate::bond::{BondForces, Bonds};
-use crate::particles::{ParticlePart, Particles, SHARED};
+use crate::particles::{ParticleSubdomain, Particles, SHARED};
 
 impl Fracture {
     /// Leaves search and faces to ranks. Every rank must have the same body in the same state; from then on each finds what fails of its
     /// own, and all break it.
-    pub fn share_out(&mut self, part: &ParticlePart, bonds: &Bonds) {
-        self.search.iter_mut().for_each(|search| search.share_out(part, bonds, &self.graph));
+    pub fn distribute(&mut self, part: &ParticleSubdomain, bonds: &Bonds) {
+        self.search.iter_mut().for_each(|search| search.distribute(part, bonds, &self.graph));
     }
 
     /// Brings all faces up to date on every rank. All ranks must call it.
-    pub fn gather_faces(&mut self, part: &ParticlePart) {
+    pub fn gather_faces(&mut self, part: &ParticleSubdomain) {
         if self.pairs.is_empty() {
             return;
         }
@@ -30,13 +30,13 @@ impl Fracture {
     }
 
     /// Gives every rank the energies of all faces.
-    pub(super) fn tell_works(&mut self, part: &ParticlePart) {
+    pub(super) fn gather_works(&mut self, part: &ParticleSubdomain) {
         let numbers = |work: &FaceWork| {
             let FaceWork { contact, kinks } = work;
             [contact.stored, contact.friction, contact.damping, *kinks]
         };
         let mut all: Vec<[f64; 4]> = self.works.iter().map(numbers).collect();
-        part.tell_blocks(SHARED, &mut all);
+        part.gather_blocks(SHARED, &mut all);
         for (work, [stored, friction, damping, kinks]) in self.works.iter_mut().zip(all) {
             (work.contact.stored, work.contact.friction, work.contact.damping) = (stored, friction, damping);
             work.kinks = kinks;
@@ -44,9 +44,9 @@ impl Fracture {
     }
 
     /// The powers of bonds that broke last, each by the rank that has the first particle [W].
-    pub(super) fn tell_powers(
+    pub(super) fn gather_powers(
         &self,
-        part: &ParticlePart,
+        part: &ParticleSubdomain,
         acting: &[(usize, BondForces)],
         particles: &Particles,
     ) -> Vec<f64> {
@@ -54,7 +54,7 @@ impl Fracture {
         let power = |of: &(usize, BondForces)| [power_of(&of.1, self.cracks[of.0].pair, particles)];
         let mut powers: Vec<[f64; 1]> = acting.iter().map(power).collect();
         if !powers.is_empty() {
-            tell_by_owner(&**part.exchange(), |k| rank_of(part.first(), first(&acting[k])), &mut powers);
+            gather_by_owner(&**part.exchange(), |k| rank_of(part.first(), first(&acting[k])), &mut powers);
         }
         powers.into_iter().flatten().collect()
     }

@@ -5,25 +5,25 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use fractum_math::Sym3;
-use fractum_parallel::{Exchange, Swapped, gather, rank_of};
+use fractum_parallel::{Exchange, Exchanged, gather, rank_of};
 
 use super::criterion::FailureSite;
 use crate::bond::{BondGraph, Bonds};
-use crate::particles::ParticlePart;
+use crate::particles::ParticleSubdomain;
 
 /// The sites of a rank.
 #[derive(Clone, Debug)]
-pub(super) struct SearchPart {
+pub(super) struct SearchSubdomain {
     exchange: Arc<dyn Exchange>,
     particles: Range<usize>,
     bonds: Range<usize>,
     /// Particles of others in the neighbourhoods of own ones, and the other way round.
-    virials: Swapped<u32>,
+    virials: Exchanged<u32>,
 }
 
-impl SearchPart {
+impl SearchSubdomain {
     /// - `rings`: how many bonds lead from a particle to the farthest of its neighbourhood
-    pub(super) fn new(part: &ParticlePart, bonds: &Bonds, graph: &BondGraph, rings: usize) -> Self {
+    pub(super) fn new(part: &ParticleSubdomain, bonds: &Bonds, graph: &BondGraph, rings: usize) -> Self {
         let (exchange, first) = (Arc::clone(part.exchange()), part.first());
         let me = exchange.rank();
         let mut between = BTreeMap::<usize, [BTreeSet<u32>; 2]>::new();
@@ -48,8 +48,8 @@ impl SearchPart {
                 }
             }
         }
-        let virials = Swapped::of_sets(between);
-        SearchPart { particles: part.own(), bonds: bonds.own_bonds(), virials, exchange }
+        let virials = Exchanged::of_sets(between);
+        SearchSubdomain { particles: part.own(), bonds: bonds.own_bonds(), virials, exchange }
     }
 
     pub(super) fn particles(&self) -> Range<usize> {
@@ -67,7 +67,7 @@ impl SearchPart {
 
     /// Tells the virials of own particles, and whether they reach a limit, to those that have them in neighbourhoods. Whether one of others
     /// does.
-    pub(super) fn tell(&mut self, virials: &mut [Sym3], reaching: &mut [bool]) -> bool {
+    pub(super) fn exchange_virials(&mut self, virials: &mut [Sym3], reaching: &mut [bool]) -> bool {
         self.virials.fill(|i| {
             let [a, b, c, d, e, f] = virials[i as usize].0;
             [a, b, c, d, e, f, f64::from(u8::from(reaching[i as usize]))]

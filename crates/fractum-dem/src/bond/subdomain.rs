@@ -1,29 +1,29 @@
-//! What ranks tell each other of the sums of blocks of bonds.
+//! What ranks send each other of the sums of blocks of bonds.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use fractum_parallel::{Exchange, Swapped, rank_of};
+use fractum_parallel::{Exchange, Exchanged, rank_of};
 
 use super::block::Block;
 use super::law::BondLaw;
-use crate::particles::{ParticlePart, SHARED};
+use crate::particles::{ParticleSubdomain, SHARED};
 
 /// The share of a rank.
 #[derive(Clone, Debug)]
-pub(super) struct NetworkPart {
+pub(super) struct BondSubdomain {
     exchange: Arc<dyn Exchange>,
     /// First block of each rank, and the end.
     first: Vec<usize>,
     /// Sums (block, slot) of own blocks at particles of others, and the other way round.
-    sums: Swapped<[u32; 2]>,
+    sums: Exchanged<[u32; 2]>,
     /// Blocks with sums that others wait for.
     is_outer: Vec<bool>,
 }
 
-impl NetworkPart {
-    pub(super) fn new<L: BondLaw>(part: &ParticlePart, blocks: &[Block<L>]) -> Self {
+impl BondSubdomain {
+    pub(super) fn new<L: BondLaw>(part: &ParticleSubdomain, blocks: &[Block<L>]) -> Self {
         let exchange = Arc::clone(part.exchange());
         let first: Vec<usize> = part.first().iter().map(|first| first.div_ceil(SHARED)).collect();
         let mut between = BTreeMap::<usize, [Vec<[u32; 2]>; 2]>::new();
@@ -42,7 +42,7 @@ impl NetworkPart {
                 }
             }
         }
-        NetworkPart { exchange, first, sums: Swapped::new(between), is_outer }
+        BondSubdomain { exchange, first, sums: Exchanged::new(between), is_outer }
     }
 
     /// Own blocks.
@@ -81,7 +81,7 @@ impl NetworkPart {
         put: impl Fn(&mut Block<L>, usize, [f64; N]),
         mut work: impl FnMut(&mut [Block<L>], &[bool]),
     ) {
-        let NetworkPart { exchange, sums, is_outer, .. } = self;
+        let BondSubdomain { exchange, sums, is_outer, .. } = self;
         sums.fill(|[block, slot]| get(&blocks[block as usize], slot as usize));
         sums.swap(&**exchange, &mut || work(blocks, is_outer));
         sums.read(|[block, slot], from| put(&mut blocks[block as usize], slot as usize, from));

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use fractum_contact::law::HertzMemory;
 use fractum_contact::{SUMMED_SPHERES, Spheres};
-use fractum_dem::{ParticlePart, Particles};
+use fractum_dem::{ParticleSubdomain, Particles};
 use fractum_fem::Solid;
 use fractum_math::Work;
 use fractum_parallel::gather;
@@ -34,7 +34,7 @@ impl Contacts {
     /// The same by the way of all particles, of which each rank looks at its own. All ranks must call it.
     pub(crate) fn due_on_any(
         &mut self,
-        part: &ParticlePart,
+        part: &ParticleSubdomain,
         solid: &Solid,
         debris: &Debris,
         particles: &Particles,
@@ -90,14 +90,14 @@ impl Contacts {
     }
 
     /// Adds the forces of pairs to the particles of a rank; the energies of all.
-    pub(super) fn add_forces_among(&mut self, part: &ParticlePart, particles: &mut Particles, dt: f64) -> Work {
+    pub(super) fn add_forces_among(&mut self, part: &ParticleSubdomain, particles: &mut Particles, dt: f64) -> Work {
         let Some(among) = &mut self.among else { return Work::default() };
         let Particles { position, velocity, spin, radius, force, moment, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
         among.add_forces_on(part.own(), &spheres, force, moment, dt);
         let numbers = |work: &Work| [work.stored, work.friction, work.damping];
         let mut all: Vec<[f64; 3]> = among.works().iter().map(numbers).collect();
-        part.tell_blocks(SUMMED_SPHERES, &mut all);
+        part.gather_blocks(SUMMED_SPHERES, &mut all);
         for (work, [stored, friction, damping]) in among.works().iter_mut().zip(all) {
             *work = Work::contact(stored, friction, damping);
         }
@@ -110,7 +110,7 @@ impl Contacts {
     }
 
     /// Brings the forces of all pairs up to date on every rank. All ranks must call it.
-    pub(crate) fn gather_loads(&mut self, part: &ParticlePart) {
+    pub(crate) fn gather_loads(&mut self, part: &ParticleSubdomain) {
         if let Some(among) = &mut self.among {
             let own: Vec<[f64; 3]> = among.forces(part.own()).map(Into::into).collect();
             among.put_forces(gather(&**part.exchange(), &own).into_iter().flatten().map(Into::into));
@@ -118,7 +118,7 @@ impl Contacts {
     }
 
     /// Brings the memory of all pairs up to date on every rank. All ranks must call it.
-    pub(crate) fn gather_memories(&mut self, part: &ParticlePart) {
+    pub(crate) fn gather_memories(&mut self, part: &ParticleSubdomain) {
         if let Some(among) = &mut self.among {
             let own: Vec<(bool, HertzMemory)> = among.memories(part.own());
             among.put_memories(gather(&**part.exchange(), &own).into_iter().flatten());

@@ -1,15 +1,15 @@
-//! Particles that several ranks share, see [`ParticlePart`].
+//! Particles that several ranks share, see [`ParticleSubdomain`].
 
 use std::sync::Arc;
 
-use fractum_dem::{NearPairs, ParticlePart, ParticleShare, Particles};
+use fractum_dem::{NearPairs, ParticleSubdomain, ParticleSubdomainSize, Particles};
 use fractum_parallel::Exchange;
 
 use super::{Bonded, BondedBody};
 
 impl Bonded {
     /// Why ranks cannot share particles and bonds, in words; none where they can.
-    pub(crate) fn cannot_be_shared(&self) -> Option<&'static str> {
+    pub(crate) fn cannot_be_distributed(&self) -> Option<&'static str> {
         let any = |is: fn(&BondedBody) -> bool| self.bodies.iter().any(is);
         let breaks_by_criterion = |body: &BondedBody| body.fracture.as_ref().is_some_and(|f| !f.is_by_law());
         if any(|body| !body.bonds.can_be_shared()) {
@@ -25,18 +25,18 @@ impl Bonded {
 
     /// Whether there are so many particles that some can have them and others not.
     pub(crate) fn has_blocks(&self) -> bool {
-        self.particles.len() > ParticlePart::BLOCK
+        self.particles.len() > ParticleSubdomain::BLOCK
     }
 
     /// Leaves a share of particles and bonds to each rank of an exchange. Every rank must have the same ones in the same state.
     ///
     /// - `everywhere`: particles that every rank shall move
-    pub(crate) fn share_out(&mut self, exchange: Arc<dyn Exchange>, everywhere: impl Iterator<Item = u32>) {
+    pub(crate) fn distribute(&mut self, exchange: Arc<dyn Exchange>, everywhere: impl Iterator<Item = u32>) {
         let pairs = self.bodies.iter().flat_map(|body| body.bonds.pairs()).copied();
-        let part = ParticlePart::new(exchange, self.particles.len(), pairs);
+        let part = ParticleSubdomain::new(exchange, self.particles.len(), pairs);
         for BondedBody { bonds, fracture, .. } in &mut self.bodies {
-            bonds.share_out(&part);
-            fracture.iter_mut().for_each(|fracture| fracture.share_out(&part, bonds));
+            bonds.distribute(&part);
+            fracture.iter_mut().for_each(|fracture| fracture.distribute(&part, bonds));
         }
         self.part = Some(Box::new(part));
         self.set_strangers();
@@ -52,7 +52,7 @@ impl Bonded {
     }
 
     /// What this process does of the work; none where it does all.
-    pub fn share(&self) -> Option<ParticleShare> {
+    pub fn share(&self) -> Option<ParticleSubdomainSize> {
         Some(self.part.as_ref()?.share())
     }
 
@@ -62,7 +62,7 @@ impl Bonded {
     }
 
     /// The share of this process, where several share the particles, with all particles.
-    pub(crate) fn with_part<T>(&mut self, work: impl FnOnce(Option<&ParticlePart>, &mut Particles) -> T) -> T {
+    pub(crate) fn with_part<T>(&mut self, work: impl FnOnce(Option<&ParticleSubdomain>, &mut Particles) -> T) -> T {
         work(self.part.as_deref(), &mut self.particles)
     }
 
@@ -73,9 +73,9 @@ impl Bonded {
     }
 
     /// Tells all ranks the forces on the particles that all of them move.
-    pub(crate) fn tell_forces(&mut self) {
+    pub(crate) fn exchange_forces(&mut self) {
         let Bonded { part, particles, .. } = self;
-        part.iter_mut().for_each(|part| part.tell_forces(particles));
+        part.iter_mut().for_each(|part| part.exchange_forces(particles));
     }
 
     /// See [`Particles::start_half_a_step_early`]; each rank knows the forces on what it moves.
@@ -113,7 +113,7 @@ impl Bonded {
         }
     }
 
-    /// Tells the motion of particles that may touch from now on, see [`ParticlePart::set_near`].
+    /// Tells the motion of particles that may touch from now on, see [`ParticleSubdomain::set_near`].
     pub(crate) fn set_near(&mut self, pairs: &[[u32; 2]]) {
         self.part.iter_mut().for_each(|part| part.set_near(NearPairs::Contacts, pairs.iter().copied()));
     }
