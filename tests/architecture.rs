@@ -241,7 +241,7 @@ fn every_crate_has_a_front_page_and_the_rules_of_the_workspace() {
 const METHODS: usize = 60;
 
 /// Types that have had more, with what they may have: a number here only ever falls.
-const CROWDED: [(&str, &str, usize); 2] = [("fractum-scene", "Scene", 147), ("fractum-io", "Context", 100)];
+const CROWDED: [(&str, &str, usize); 2] = [("fractum-scene", "Scene", 94), ("fractum-io", "Context", 100)];
 
 /// Lines of a file without its tests that no file passes which does one job.
 const FILE: usize = 600;
@@ -291,7 +291,9 @@ fn types_are_state_and_files_stay_readable() {
             let crowded = CROWDED.iter().find(|(of_crate, crowded, _)| *of_crate == name && *crowded == of);
             let most = crowded.map_or(METHODS, |(.., most)| *most);
             if count > most || crowded.is_some() && count < most {
-                wrong.push(format!("{name}: {of} has {count} methods, at most {most}; make what acts on it free functions"));
+                wrong.push(format!(
+                    "{name}: {of} has {count} methods, at most {most}; make what acts on it free functions"
+                ));
             }
         }
     }

@@ -11,7 +11,7 @@ use fractum_io::case::model::ProbeKind;
 use fractum_io::summary::hash_text;
 use fractum_io::warning::Warning;
 use fractum_math::Vec3;
-use fractum_scene::{EnergyKind, Population, Scene};
+use fractum_scene::{CountKind, EnergyKind, Population, Scene};
 use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
@@ -235,14 +235,14 @@ impl Core {
             let (energies, all) = (PyDict::new(py), PyDict::new(py));
             let ledger = scene.ledger();
             EnergyKind::ALL.into_iter().try_for_each(|kind| energies.set_item(kind.name(), ledger[kind]))?;
-            let (counts, fracture) = (scene.counts(), scene.solid.fracture());
+            let counts = scene.counts();
             for (name, count) in [
                 ("nodes", counts.nodes),
                 ("elements", counts.elements),
                 ("removed_elements", counts.removed_elements),
                 ("crushed_elements", counts.crushed_elements),
-                ("damaged_edges", fracture.damaged_edges),
-                ("broken_edges", fracture.broken_edges),
+                ("damaged_edges", scene.count(CountKind::DamagedEdges)),
+                ("broken_edges", scene.count(CountKind::BrokenEdges)),
                 ("particles", counts.particles),
                 ("contacts", counts.contacts),
                 ("bonds", counts.bonds),

@@ -150,7 +150,7 @@ fn torn(bar: &Bar) -> [f64; 3] {
     let corners = kind.node_count();
     let place =
         |e: &[u32; 4]| e[..corners].iter().map(|&n| solid.reference[n as usize].x).sum::<f64>() / corners as f64;
-    let elements = solid.body(0).elements.iter().zip(fields::element_damages(&solid, 0));
+    let elements = solid.body(0).elements.iter().zip(fields::element_damages(solid, 0));
     let beside = elements.filter(|(e, _)| (place(e) - 0.5 * end).abs() > far);
     [
         peak / (area * WEAKER * law.tensile_strength),

@@ -12,7 +12,7 @@ use fractum_parallel::{Exchange, threads};
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
     ContactParameters, Gravity, Load, Loads, Motion, NodalForce, Pressure, Scene, SceneState, Support, SupportedFacet,
-    Supports, SurfaceSupports, Watched,
+    Supports, SurfaceSupports, Watched, ranks,
 };
 use fractum_tests::{CONCRETE, jittered_box, noise, settings, surface};
 
@@ -67,9 +67,9 @@ pub(crate) fn shared(ranks: usize, steps: u64, made: impl Fn() -> Scene + Sync) 
     let run = |exchange: Arc<dyn Exchange>| {
         on_two_threads(|| {
             let mut scene = made();
-            scene.distribute(exchange, &Watched::default());
+            ranks::distribute(&mut scene, exchange, &Watched::default());
             advance(&mut scene, steps);
-            scene.gather_all();
+            ranks::gather_all(&mut scene);
             scene
         })
     };
@@ -82,7 +82,7 @@ pub(crate) fn shared(ranks: usize, steps: u64, made: impl Fn() -> Scene + Sync) 
 /// The scene of a single process after `steps`, once any number of ranks has come to the same.
 pub(crate) fn same_on_ranks(steps: u64, made: impl Fn() -> Scene + Sync) -> Scene {
     let mut single = made();
-    assert_eq!(single.cannot_be_distributed(), None);
+    assert_eq!(ranks::cannot_be_distributed(&single), None);
     advance(&mut single, steps);
     let expected = bits(&single);
     for ranks in RANKS {
@@ -280,9 +280,9 @@ fn the_parts_of_all_ranks_are_the_state_of_a_single_process() {
             let save = |exchange: Arc<dyn Exchange>| {
                 on_two_threads(|| {
                     let mut scene = made();
-                    scene.distribute(exchange, &Watched::default());
+                    ranks::distribute(&mut scene, exchange, &Watched::default());
                     advance(&mut scene, 331);
-                    scene.state_in_parts().unwrap()
+                    ranks::state_in_parts(&mut scene).unwrap()
                 })
             };
             let (mut states, mut parts): (Vec<_>, Vec<_>) = std::thread::scope(|scope| {
@@ -291,10 +291,10 @@ fn the_parts_of_all_ranks_are_the_state_of_a_single_process() {
                 started.into_iter().map(|thread| thread.join().unwrap()).unzip()
             });
             let beside = states.swap_remove(0);
-            let whole = made().joined(beside.clone(), &parts).unwrap();
+            let whole = ranks::joined(&made(), beside.clone(), &parts).unwrap();
             assert!(whole == single.state(), "{ranks} ranks");
             parts.pop();
-            assert!(made().joined(beside, &parts).is_none(), "{ranks} ranks");
+            assert!(ranks::joined(&made(), beside, &parts).is_none(), "{ranks} ranks");
         }
     }
 }

@@ -9,7 +9,7 @@ use fractum_fem::{
 use fractum_math::Vec3;
 use fractum_parallel::{Exchange, threads};
 use fractum_scene::coupling::largest_radii;
-use fractum_scene::{Counts, Gravity, Load, Pressure, Scene, Watched, solid_pieces};
+use fractum_scene::{Counts, Gravity, Load, Pressure, Scene, Watched, ranks, solid_pieces};
 use fractum_tests::{jittered_box, surface};
 
 use crate::ranks::{RANKS, advance, ends, on_two_threads, scene, set_moving};
@@ -102,9 +102,9 @@ fn same_as_whole(kinematics: Kinematics, damping: LocalDamping, viscous: bool) {
             );
             let mut scene = loaded(solid, facets.clone(), damping, viscous);
             assert_eq!(scene.stable_dt(), single.stable_dt());
-            scene.distribute(exchange, &Watched::default());
+            ranks::distribute(&mut scene, exchange, &Watched::default());
             advance(&mut scene, 40);
-            scene.gather_all();
+            ranks::gather_all(&mut scene);
             neighbours::gather_edge_values(&mut scene.solid);
             (scene, numbers)
         })
@@ -207,9 +207,9 @@ fn breaks_as_whole((nodes, all): (Vec<Vec3>, Vec<Body>), what: &str) {
             let solid = neighbours::divided_solid(nodes.clone(), bodies, &shares, Arc::clone(&exchange)).unwrap();
             assert!(neighbours::is_divided(&solid) && neighbours::connected_pieces(&solid, all.len() / 2).is_none());
             let mut scene = pulled(solid);
-            scene.distribute(exchange, &Watched::default());
+            ranks::distribute(&mut scene, exchange, &Watched::default());
             advance(&mut scene, 400);
-            scene.gather_all();
+            ranks::gather_all(&mut scene);
             // Radii are found together.
             broken(&scene)
         })

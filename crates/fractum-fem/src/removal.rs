@@ -12,8 +12,9 @@ use crate::element::cut_modes;
 use crate::element::hooke::Hooke;
 use crate::motion::inverted::crushed_element;
 use crate::motion::phase_edges::refresh_phase;
-use crate::motion::subcycled_solid::{forget_ahead, own_step};
+use crate::motion::subcycled_solid::own_step;
 use crate::solid::evaluate::{Block, BlockLaw};
+use crate::solid::subcycling::forget_ahead;
 use crate::solid::{BodyModel, Solid};
 
 /// Removes every element for which all edges of one cut are broken, and a crushed one; returns the energy that went with them [J].

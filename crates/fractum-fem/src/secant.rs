@@ -143,7 +143,7 @@ impl Solid {
     /// Damage of the cells as it stands.
     pub fn cell_damage(&self) -> CellDamage {
         let of = |block: &Block| match &block.law {
-            BlockLaw::Elastic { .. } => Vec::new(),
+            BlockLaw::Elastic => Vec::new(),
             _ => (0..block.cells.len()).map(|cell| block.damage_of(cell)).collect(),
         };
         CellDamage { cells: self.blocks.iter().map(of).collect(), phases: phase_values(self) }

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::body::Kinematics;
 use crate::damage::edge::{EdgeDamage, EdgeField};
 use crate::motion::phase_edges::restore_phase;
-use crate::motion::subcycled_solid::forget_ahead;
 use crate::removal::rebuild_cells_around;
 use crate::solid::Solid;
 use crate::solid::evaluate::{Block, BlockLaw};
+use crate::solid::subcycling::forget_ahead;
 
 /// What changes in a body during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,12 +1,12 @@
 //! From the forces of tⁿ to the velocities after it and the displacements of tⁿ⁺¹.
 
+use fractum_dem::Particles;
 use fractum_fem::{Prescribe, WholeStep, motion};
 use fractum_math::{HalfSteps, sum_chunks};
 
-use crate::clock::Clock;
+use crate::clock::{Clock, Phase};
 use crate::conditions::Kick;
 use crate::scene::Scene;
-use crate::step::Phase;
 
 impl Scene {
     /// Advances nodes, particles and rigid bodies with the forces of tⁿ; prescribed motion takes the place of free motion.
@@ -14,79 +14,87 @@ impl Scene {
         let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
         let mut work = if self.solid.is_subcycled() {
             passed(Phase::Motion);
-            let work = self.advance_in_parts(measure);
+            let work = advance_in_parts(self, measure);
             passed(Phase::Subcycling);
             work
         } else {
-            self.advance_together(measure)
+            advance_together(self, measure)
         };
         work += self.debris.turn(&self.solid, dt_before, dt_after, measure);
-        work += self.move_bonded(measure);
+        work += move_bonded(self, measure);
         work += self.contacts.move_bodies(time, dt_before, dt_after);
         work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
         self.loads.spend_gas_work(&self.solid, dt_after);
-        self.book_late_damping(&work);
+        book_late_damping(self, &work);
         work
     }
+}
 
-    /// Keeps apart what damping of nodes and particles takes in the second half of a run.
-    fn book_late_damping(&mut self, work: &HalfSteps) {
-        if self.settings.damping.is_off() || self.clock.time < 0.5 * self.settings.time_step.end {
-            return;
+/// Keeps apart what damping of nodes and particles takes in the second half of a run.
+fn book_late_damping(scene: &mut Scene, work: &HalfSteps) {
+    if scene.settings.damping.is_off() || scene.clock.time < 0.5 * scene.settings.time_step.end {
+        return;
+    }
+    let before = if scene.clock.begins_motion() { 0.0 } else { work.before.damping };
+    scene.books.late_damping += before + work.after.damping;
+}
+
+/// Advances all nodes by the same step.
+fn advance_together(scene: &mut Scene, measure: bool) -> HalfSteps {
+    let Clock { time, dt_before, dt_after, .. } = scene.clock;
+    let begins = scene.clock.begins_motion();
+    let (damping, Scene { solid, supports, .. }) = (scene.settings.damping, scene);
+    supports.remember(solid, None);
+    let mut work = solid.kick_and_drift(dt_before, dt_after, damping, supports.held(), measure);
+    work += supports.impose(solid, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true, begins });
+    work
+}
+
+/// Advances the nodes that need it by short steps, and the others by one.
+fn advance_in_parts(scene: &mut Scene, measure: bool) -> HalfSteps {
+    let Clock { time, dt_before, dt_after, .. } = scene.clock;
+    let begins = scene.clock.begins_motion();
+    let (damping, Scene { solid, supports, .. }) = (scene.settings.damping, scene);
+    let held = supports.shared_held();
+    let step = WholeStep { dt_before, dt_after, damping, held: &held, measure };
+    motion::advance_in_parts(solid, step, |solid, prescribe| match prescribe {
+        Prescribe::Remember { fine } => {
+            supports.remember(solid, Some(fine));
+            HalfSteps::default()
         }
-        let before = if self.clock.begins_motion() { 0.0 } else { work.before.damping };
-        self.books.late_damping += before + work.after.damping;
-    }
-
-    /// Advances all nodes by the same step.
-    fn advance_together(&mut self, measure: bool) -> HalfSteps {
-        let Clock { time, dt_before, dt_after, .. } = self.clock;
-        let begins = self.clock.begins_motion();
-        let (damping, Scene { solid, supports, .. }) = (self.settings.damping, self);
-        supports.remember(solid, None);
-        let mut work = solid.kick_and_drift(dt_before, dt_after, damping, supports.held(), measure);
-        work += supports.impose(solid, &Kick { time, dt_before, dt_after, is_fine: None, is_first: true, begins });
-        work
-    }
-
-    /// Advances the nodes that need it by short steps, and the others by one.
-    fn advance_in_parts(&mut self, measure: bool) -> HalfSteps {
-        let Clock { time, dt_before, dt_after, .. } = self.clock;
-        let begins = self.clock.begins_motion();
-        let (damping, Scene { solid, supports, .. }) = (self.settings.damping, self);
-        let held = supports.shared_held();
-        let step = WholeStep { dt_before, dt_after, damping, held: &held, measure };
-        motion::advance_in_parts(solid, step, |solid, prescribe| match prescribe {
-            Prescribe::Remember { fine } => {
-                supports.remember(solid, Some(fine));
-                HalfSteps::default()
-            }
-            Prescribe::Impose { fine, since, dt_before, dt_after } => {
-                let (time, is_first) = (time + since, since == 0.0);
-                let kick =
-                    Kick { time, dt_before, dt_after, is_fine: Some(fine), is_first, begins: begins && is_first };
-                supports.impose(solid, &kick)
-            }
-        })
-    }
-
-    /// The velocities given at the start become those of the half step before it; returns the kinetic energy of those given [J].
-    pub(crate) fn start_half_a_step_early(&mut self, dt: f64) -> f64 {
-        let Scene { solid, supports, bonded, contacts, .. } = self;
-        let of_node = |i: usize| 0.5 * solid.mass[i] * solid.velocity[i].norm_squared();
-        let given = sum_chunks(solid.mass.len(), of_node) + bonded.kinetic_energy() + contacts.kinetic_energy();
-        bonded.start_half_a_step_early(dt);
-        contacts.start_half_a_step_early(dt);
-        for i in 0..solid.mass.len() {
-            let half_kick = match motion::own_acceleration(solid, i, dt) {
-                Some((acceleration, dt)) => acceleration * (0.5 * dt),
-                None => solid.force[i] * (0.5 * dt / solid.mass[i]),
-            };
-            let held = supports.held().get(i).copied().unwrap_or(0);
-            for axis in (0..3).filter(|axis| held & (1 << axis) == 0) {
-                solid.velocity[i][axis] -= half_kick[axis];
-            }
+        Prescribe::Impose { fine, since, dt_before, dt_after } => {
+            let (time, is_first) = (time + since, since == 0.0);
+            let kick = Kick { time, dt_before, dt_after, is_fine: Some(fine), is_first, begins: begins && is_first };
+            supports.impose(solid, &kick)
         }
-        given
+    })
+}
+
+/// The velocities given at the start become those of the half step before it; returns the kinetic energy of those given [J].
+pub(crate) fn start_half_a_step_early(scene: &mut Scene, dt: f64) -> f64 {
+    let Scene { solid, supports, bonded, contacts, .. } = scene;
+    let of_node = |i: usize| 0.5 * solid.mass[i] * solid.velocity[i].norm_squared();
+    let given = sum_chunks(solid.mass.len(), of_node) + bonded.kinetic_energy() + contacts.kinetic_energy();
+    bonded.start_half_a_step_early(dt);
+    contacts.start_half_a_step_early(dt);
+    for i in 0..solid.mass.len() {
+        let half_kick = match motion::own_acceleration(solid, i, dt) {
+            Some((acceleration, dt)) => acceleration * (0.5 * dt),
+            None => solid.force[i] * (0.5 * dt / solid.mass[i]),
+        };
+        let held = supports.held().get(i).copied().unwrap_or(0);
+        for axis in (0..3).filter(|axis| held & (1 << axis) == 0) {
+            solid.velocity[i][axis] -= half_kick[axis];
+        }
     }
+    given
+}
+
+pub(crate) fn move_bonded(scene: &mut Scene, measure: bool) -> HalfSteps {
+    if scene.bonded.is_empty() {
+        return HalfSteps::default();
+    }
+    let Scene { bonded, ties, solid, settings, clock, .. } = scene;
+    let follow = |particles: &mut Particles| ties.follow(solid, particles);
+    bonded.advance(*clock, settings.damping, measure, follow)
 }

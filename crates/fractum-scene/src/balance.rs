@@ -2,10 +2,11 @@
 
 use fractum_math::{HalfSteps, Vec3, Work};
 
+use crate::clock::ThisStep;
 use crate::error::StepError;
 use crate::ledger::EnergyKind;
+use crate::ranks::gather_all;
 use crate::scene::Scene;
-use crate::step::ThisStep;
 
 /// Elastic energy over all energy put in, above which a run is unstable: a mode of the highest frequency at 0.95 of the
 /// stable step reaches 10.
@@ -15,93 +16,6 @@ const UNSTABLE_RATIO: f64 = 20.0;
 const IN_SITU_ROUND_OFF: f64 = 1e-9;
 
 impl Scene {
-    /// Enters the work of both half steps around tⁿ, and completes the ledger where it is measured.
-    ///
-    /// - `given`: kinetic energy that velocities of the start had half a step before [J]
-    pub(crate) fn book(
-        &mut self,
-        step: &ThisStep,
-        contact: Work,
-        work: HalfSteps,
-        given: f64,
-    ) -> Result<(), StepError> {
-        self.books += contact;
-        if !step.is_first {
-            self.books += work.before;
-        }
-        if step.measure {
-            // What central differences keep less of the energy of a start out of balance, ⅛ Δt² Σ F²/m, but for what shapes stop.
-            let missing = if step.is_first { (given - work.before.kinetic).max(0.0) - contact.damping } else { 0.0 };
-            self.ledger[EnergyKind::Kinetic] = work.before.kinetic + missing;
-            self.ledger[EnergyKind::Contact] = contact.stored;
-            self.close_balance()?;
-            self.books.time_step += missing;
-        }
-        if step.changes {
-            self.books.time_step += work.before.kinetic - work.after.kinetic;
-        }
-        self.books += work.after;
-        Ok(())
-    }
-
-    /// Completes the ledger of tⁿ and holds it against the guard.
-    fn close_balance(&mut self) -> Result<(), StepError> {
-        let Scene { ledger, solid, bonded, books, contacts, optional, .. } = self;
-        optional.surface_supports.gather(solid);
-        let bonds = bonded.energy();
-        ledger[EnergyKind::BondTension] = bonds.tension;
-        ledger[EnergyKind::BondBending] = bonds.bending;
-        ledger[EnergyKind::BondTorsion] = bonds.torsion;
-        ledger[EnergyKind::Elastic] = solid.elastic_energy() + bonds.total();
-        // The sum over no block at all is -0.
-        ledger[EnergyKind::Damage] = solid.dissipated_energy() + bonded.dissipated_energy() + 0.0;
-        ledger[EnergyKind::External] = books.external;
-        ledger[EnergyKind::Removed] = books.removed + bonded.released_energy();
-        ledger[EnergyKind::Friction] = books.friction;
-        ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
-        ledger[EnergyKind::TimeStep] = books.time_step;
-        ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();
-        ledger[EnergyKind::Left] = books.left;
-        ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
-        if self.clock.step == 0 {
-            ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];
-            ledger.initial += ledger[EnergyKind::Damping]; // rigid shapes stop what meets them at once
-            if !solid.initial_displacement.is_empty() {
-                ledger.in_situ = ledger[EnergyKind::Elastic];
-            }
-            // Less than this is no energy: bodies that wait for a rigid body move by what rounding leaves, and so does rock
-            // under stress.
-            ledger.scale = bonded.round_off_energy(self.clock.dt_after) + IN_SITU_ROUND_OFF * ledger.in_situ;
-        }
-        if let Some(gas) = self.loads.gas() {
-            let [held, supplied, leaked] = gas.energies();
-            ledger[EnergyKind::Gas] = held;
-            ledger[EnergyKind::GasSupplied] = supplied;
-            ledger[EnergyKind::GasLeaked] = leaked;
-            // What the gas has done is in play; what it holds may be much more.
-            ledger.scale = ledger.scale.max((supplied - held - leaked).abs());
-        }
-        // The first touch of a rigid body is found to a step only; it is measured by what a particle takes from it, not by the little
-        // work done so far.
-        ledger.scale = ledger.scale.max(contacts.touch_energy(&bonded.particles));
-        ledger.update_maxima();
-        let (relative, finite) = (ledger.relative_residual(), ledger.residual().is_finite());
-        let (step, time, dt, limit) = (self.clock.step, self.clock.time, self.clock.dt_after, self.stable_dt());
-        if !finite || !relative.is_finite() {
-            return Err(StepError::NotFinite { step, time, dt, limit, culprit: self.culprit() });
-        }
-        // An unstable run keeps the discrete balance while it blows up: its energies grow with opposite signs.
-        let ratio = (self.ledger[EnergyKind::Elastic] - self.ledger.in_situ) / self.ledger.scale;
-        if ratio > UNSTABLE_RATIO {
-            return Err(StepError::Unstable { step, time, ratio, dt, limit, culprit: self.culprit() });
-        }
-        let allowed = self.settings.balance_stop;
-        if relative > allowed {
-            return Err(StepError::Unbalanced { step, time, relative, allowed, dt, limit, culprit: self.culprit() });
-        }
-        Ok(())
-    }
-
     /// The ledger of a state of equilibrium.
     pub(crate) fn book_equilibrium(&mut self) -> Result<(), StepError> {
         let Scene { ledger, solid, books, .. } = self;
@@ -117,46 +31,129 @@ impl Scene {
             return Ok(());
         }
         let (step, time, dt, limit) = (self.clock.step, self.clock.time, self.clock.dt_before, f64::INFINITY);
-        Err(StepError::NotFinite { step, time, dt, limit, culprit: self.culprit() })
+        Err(StepError::NotFinite { step, time, dt, limit, culprit: culprit(self) })
     }
+}
 
-    /// The element or bonded particle with the largest kinetic energy, or with a value that is not a number.
-    fn culprit(&mut self) -> String {
-        self.gather_all();
-        let solid = &self.solid;
-        let energy = |node: u32| {
-            let i = node as usize;
-            let energy = solid.mass[i] * solid.velocity[i].norm_squared();
-            if energy.is_finite() && solid.displacement[i].iter().all(|c| c.is_finite()) {
-                energy
-            } else {
-                f64::INFINITY
-            }
-        };
-        let mut worst = (-1.0, 0, 0);
-        for body in 0..solid.body_count() {
-            let corners = solid.body(body).shape.node_count();
-            for (element, nodes) in solid.body(body).elements.iter().enumerate() {
-                let sum: f64 = nodes[..corners].iter().map(|&n| energy(n)).sum();
-                if sum > worst.0 {
-                    worst = (sum, body, element);
-                }
-            }
+/// Completes the ledger of tⁿ and holds it against the guard.
+fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
+    let Scene { ledger, solid, bonded, books, contacts, optional, .. } = scene;
+    optional.surface_supports.gather(solid);
+    let bonds = bonded.energy();
+    ledger[EnergyKind::BondTension] = bonds.tension;
+    ledger[EnergyKind::BondBending] = bonds.bending;
+    ledger[EnergyKind::BondTorsion] = bonds.torsion;
+    ledger[EnergyKind::Elastic] = solid.elastic_energy() + bonds.total();
+    // The sum over no block at all is -0.
+    ledger[EnergyKind::Damage] = solid.dissipated_energy() + bonded.dissipated_energy() + 0.0;
+    ledger[EnergyKind::External] = books.external;
+    ledger[EnergyKind::Removed] = books.removed + bonded.released_energy();
+    ledger[EnergyKind::Friction] = books.friction;
+    ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
+    ledger[EnergyKind::TimeStep] = books.time_step;
+    ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();
+    ledger[EnergyKind::Left] = books.left;
+    ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
+    if scene.clock.step == 0 {
+        ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];
+        ledger.initial += ledger[EnergyKind::Damping]; // rigid shapes stop what meets them at once
+        if !solid.initial_displacement.is_empty() {
+            ledger.in_situ = ledger[EnergyKind::Elastic];
         }
-        let (largest, body, element) = worst;
-        if let Some((energy, particle)) = self.bonded.fastest()
-            && energy > largest
-        {
-            return particle;
-        }
-        let nodes = &solid.body(body).elements[element];
-        let centre: Vec3 = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / 4.0;
-        format!(
-            "element {element} of body {} at ({:.4e}, {:.4e}, {:.4e}) m",
-            solid.body(body).name,
-            centre.x,
-            centre.y,
-            centre.z
-        )
+        // Less than this is no energy: bodies that wait for a rigid body move by what rounding leaves, and so does rock
+        // under stress.
+        ledger.scale = bonded.round_off_energy(scene.clock.dt_after) + IN_SITU_ROUND_OFF * ledger.in_situ;
     }
+    if let Some(gas) = scene.loads.gas() {
+        let [held, supplied, leaked] = gas.energies();
+        ledger[EnergyKind::Gas] = held;
+        ledger[EnergyKind::GasSupplied] = supplied;
+        ledger[EnergyKind::GasLeaked] = leaked;
+        // What the gas has done is in play; what it holds may be much more.
+        ledger.scale = ledger.scale.max((supplied - held - leaked).abs());
+    }
+    // The first touch of a rigid body is found to a step only; it is measured by what a particle takes from it, not by the little
+    // work done so far.
+    ledger.scale = ledger.scale.max(contacts.touch_energy(&bonded.particles));
+    ledger.update_maxima();
+    let (relative, finite) = (ledger.relative_residual(), ledger.residual().is_finite());
+    let (step, time, dt, limit) = (scene.clock.step, scene.clock.time, scene.clock.dt_after, scene.stable_dt());
+    if !finite || !relative.is_finite() {
+        return Err(StepError::NotFinite { step, time, dt, limit, culprit: culprit(scene) });
+    }
+    // An unstable run keeps the discrete balance while it blows up: its energies grow with opposite signs.
+    let ratio = (scene.ledger[EnergyKind::Elastic] - scene.ledger.in_situ) / scene.ledger.scale;
+    if ratio > UNSTABLE_RATIO {
+        return Err(StepError::Unstable { step, time, ratio, dt, limit, culprit: culprit(scene) });
+    }
+    let allowed = scene.settings.balance_stop;
+    if relative > allowed {
+        return Err(StepError::Unbalanced { step, time, relative, allowed, dt, limit, culprit: culprit(scene) });
+    }
+    Ok(())
+}
+
+/// The element or bonded particle with the largest kinetic energy, or with a value that is not a number.
+fn culprit(scene: &mut Scene) -> String {
+    gather_all(scene);
+    let solid = &scene.solid;
+    let energy = |node: u32| {
+        let i = node as usize;
+        let energy = solid.mass[i] * solid.velocity[i].norm_squared();
+        if energy.is_finite() && solid.displacement[i].iter().all(|c| c.is_finite()) { energy } else { f64::INFINITY }
+    };
+    let mut worst = (-1.0, 0, 0);
+    for body in 0..solid.body_count() {
+        let corners = solid.body(body).shape.node_count();
+        for (element, nodes) in solid.body(body).elements.iter().enumerate() {
+            let sum: f64 = nodes[..corners].iter().map(|&n| energy(n)).sum();
+            if sum > worst.0 {
+                worst = (sum, body, element);
+            }
+        }
+    }
+    let (largest, body, element) = worst;
+    if let Some((energy, particle)) = scene.bonded.fastest()
+        && energy > largest
+    {
+        return particle;
+    }
+    let nodes = &solid.body(body).elements[element];
+    let centre: Vec3 = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / 4.0;
+    format!(
+        "element {element} of body {} at ({:.4e}, {:.4e}, {:.4e}) m",
+        solid.body(body).name,
+        centre.x,
+        centre.y,
+        centre.z
+    )
+}
+
+/// Enters the work of both half steps around tⁿ, and completes the ledger where it is measured.
+///
+/// - `given`: kinetic energy that velocities of the start had half a step before [J]
+pub(crate) fn book(
+    scene: &mut Scene,
+    step: &ThisStep,
+    contact: Work,
+    work: HalfSteps,
+    given: f64,
+) -> Result<(), StepError> {
+    scene.books += contact;
+    if !step.is_first {
+        scene.books += work.before;
+    }
+    if step.measure {
+        // What central differences keep less of the energy of a start out of balance, ⅛ Δt² Σ F²/m, but for what shapes stop.
+        let missing = if step.is_first { (given - work.before.kinetic).max(0.0) - contact.damping } else { 0.0 };
+        scene.ledger[EnergyKind::Kinetic] = work.before.kinetic + missing;
+        scene.ledger[EnergyKind::Contact] = contact.stored;
+        close_balance(scene)?;
+        scene.books.time_step += missing;
+    }
+    if step.changes {
+        scene.books.time_step += work.before.kinetic - work.after.kinetic;
+    }
+    scene.books += work.after;
+    Ok(())
 }

@@ -84,3 +84,47 @@ impl Frequencies {
         Frequencies { stable, fine, motion: 0.0, walls_square: 0.0, contact_square: 0.0, contact_peak: 0.0 }
     }
 }
+
+/// The step around tⁿ that is being done.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ThisStep {
+    /// Whether motion begins with it.
+    pub(crate) is_first: bool,
+    /// Whether the ledger of tⁿ is wanted.
+    pub(crate) measure: bool,
+    /// Whether the steps before and after tⁿ differ.
+    pub(crate) changes: bool,
+    /// tⁿ [s].
+    pub(crate) time: f64,
+    /// Time since the forces of before; zero where nothing has moved [s].
+    pub(crate) elapsed: f64,
+    /// Step to tⁿ [s].
+    pub(crate) dt_before: f64,
+    /// Step from tⁿ [s].
+    pub(crate) dt_after: f64,
+}
+
+/// A part of the step, for those who time it. A step passes those alone that its scene has work for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Phase {
+    /// Internal forces, damage included.
+    Solid,
+    /// Motion and internal forces in short steps, of the cells that need them.
+    Subcycling,
+    /// Temperatures, and the strains that follow them.
+    Heat,
+    /// Forces of the bonds, and the loads on their particles.
+    Bonds,
+    /// Search for overloaded bonds, and their breaking.
+    Fracture,
+    /// Contact of particles and rigid bodies, search included.
+    Contact,
+    /// Forces that tied particles hand to solids.
+    Ties,
+    /// Gas in holes and cracks.
+    Gas,
+    /// Loads, supports and the motion of the nodes.
+    Motion,
+    /// Removal of elements and birth of particles.
+    Transition,
+}

@@ -1,11 +1,10 @@
 //! Heat in the step of a scene, and alone.
 
-use crate::clock::Clock;
+use crate::clock::{Clock, Phase};
 use crate::error::StepError;
 use crate::heat::{Heat, HeatState};
 use crate::scene::Scene;
 use crate::stable_step::equal_steps;
-use crate::step::Phase;
 
 impl Scene {
     /// The same scene with heat, before its first step.
@@ -51,39 +50,39 @@ impl Scene {
         self.clock.advance(dt);
         Ok(())
     }
+}
 
-    /// Books the work of the last expansion at the present stresses.
-    pub(crate) fn finish_expansion(&mut self, passed: &mut impl FnMut(Phase)) {
-        let Scene { optional, solid, bonded, books, .. } = self;
-        if let Some(heat) = &mut optional.heat {
-            books.external += heat.finish_expansion(solid, bonded);
-            passed(Phase::Heat);
-        }
+/// Books the work of the last expansion at the present stresses.
+pub(crate) fn finish_expansion(scene: &mut Scene, passed: &mut impl FnMut(Phase)) {
+    let Scene { optional, solid, bonded, books, .. } = scene;
+    if let Some(heat) = &mut optional.heat {
+        books.external += heat.finish_expansion(solid, bonded);
+        passed(Phase::Heat);
     }
+}
 
-    /// Conducts heat for the step that follows, where its own step is due, and expands bodies by it; returns half of the work of
-    /// the expansion, at the present stresses [J].
-    ///
-    /// - `passed`: is told what was done before, and the conduction
-    pub(crate) fn conduct(&mut self, dt: f64, passed: &mut impl FnMut(Phase)) -> Result<f64, StepError> {
-        let (step, time) = (self.clock.step, self.clock.time);
-        let (target, end) = (time + dt, self.settings.time_step.end);
-        let Scene { optional, solid, bonded, .. } = self;
-        let Some(heat) = &mut optional.heat else { return Ok(0.0) };
-        passed(Phase::Motion);
-        let conducted = heat.conduct_for([time, target, end], solid, bonded);
-        let conducted = conducted.map_err(|reason| StepError::Heat { step, time, reason })?;
-        let work = heat.expand(target, solid, bonded);
-        if conducted || heat.expands() {
-            passed(Phase::Heat);
-        }
-        Ok(work)
+/// Conducts heat for the step that follows, where its own step is due, and expands bodies by it; returns half of the work of
+/// the expansion, at the present stresses [J].
+///
+/// - `passed`: is told what was done before, and the conduction
+pub(crate) fn conduct(scene: &mut Scene, dt: f64, passed: &mut impl FnMut(Phase)) -> Result<f64, StepError> {
+    let (step, time) = (scene.clock.step, scene.clock.time);
+    let (target, end) = (time + dt, scene.settings.time_step.end);
+    let Scene { optional, solid, bonded, .. } = scene;
+    let Some(heat) = &mut optional.heat else { return Ok(0.0) };
+    passed(Phase::Motion);
+    let conducted = heat.conduct_for([time, target, end], solid, bonded);
+    let conducted = conducted.map_err(|reason| StepError::Heat { step, time, reason })?;
+    let work = heat.expand(target, solid, bonded);
+    if conducted || heat.expands() {
+        passed(Phase::Heat);
     }
+    Ok(work)
+}
 
-    /// Nothing conducts through elements that have left.
-    pub(crate) fn heat_loses_elements(&mut self) {
-        if let Some(heat) = &mut self.optional.heat {
-            heat.lose_elements();
-        }
+/// Nothing conducts through elements that have left.
+pub(crate) fn heat_loses_elements(scene: &mut Scene) {
+    if let Some(heat) = &mut scene.optional.heat {
+        heat.lose_elements();
     }
 }

@@ -24,7 +24,7 @@ mod heat;
 mod leave;
 mod ledger;
 mod measure;
-mod ranks;
+pub mod ranks;
 mod scene;
 mod stable_step;
 pub mod statics;
@@ -34,7 +34,7 @@ mod time_function;
 mod watch;
 
 pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest};
-pub use clock::{Clock, TimeStepSettings};
+pub use clock::{Clock, Phase, TimeStepSettings};
 pub use conditions::*;
 pub use contacts::{
     ContactBody, ContactMaterial, ContactProbe, Contacts, Drive, FlatFaces, Form, Inertia, NodesOnShape, Overlap,
@@ -68,7 +68,7 @@ pub use measure::velocity_station::{PeakVelocity, StationPlace, VelocityStation}
 pub use ranks::Watched;
 pub use scene::{Scene, SceneSettings, SceneState};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
-pub use step::{Phase, StepReport};
+pub use step::StepReport;
 pub use subcycling::SubcyclingState;
 pub use time_function::TimeFunction;
 pub use watch::{Notice, Noticed, Site};

@@ -17,158 +17,156 @@ pub struct Watched {
     pub particles: Vec<u32>,
 }
 
-impl Scene {
-    /// What ranks cannot share of this scene, in words; none where they can.
-    pub fn cannot_be_distributed(&self) -> Option<&'static str> {
-        if self.optional.heat.is_some() {
-            return Some("heat");
-        }
-        self.bonded.cannot_be_distributed().filter(|_| self.solid.body_count() == 0)
+/// What ranks cannot share of this scene, in words; none where they can.
+pub fn cannot_be_distributed(scene: &Scene) -> Option<&'static str> {
+    if scene.optional.heat.is_some() {
+        return Some("heat");
     }
+    scene.bonded.cannot_be_distributed().filter(|_| scene.solid.body_count() == 0)
+}
 
-    /// What has every rank do alike what particles and bonds do, in words; none where they are shared.
-    pub fn keeps_particles_whole(&self) -> Option<&'static str> {
-        let few = || (!self.bonded.has_blocks()).then_some("their number: up to 2048 are not divided");
-        self.bonded.cannot_be_distributed().or_else(few)
-    }
+/// What has every rank do alike what particles and bonds do, in words; none where they are shared.
+pub fn keeps_particles_whole(scene: &Scene) -> Option<&'static str> {
+    let few = || (!scene.bonded.has_blocks()).then_some("their number: up to 2048 are not divided");
+    scene.bonded.cannot_be_distributed().or_else(few)
+}
 
-    /// Whether every step needs sums over all nodes: of what damping takes, or of the momentum that gravity works on.
-    fn needs_sums(&self) -> bool {
-        let damping = self.settings.damping;
-        damping.local != 0.0 || damping.mass_rate != 0.0 || self.loads.has_weight()
-    }
+/// Whether every step needs sums over all nodes: of what damping takes, or of the momentum that gravity works on.
+fn needs_sums(scene: &Scene) -> bool {
+    let damping = scene.settings.damping;
+    damping.local != 0.0 || damping.mass_rate != 0.0 || scene.loads.has_weight()
+}
 
-    /// Nodes that contacts, discrete elements, ties, and pressure and gas in cracks look at. Every rank does alike what is no cell of a solid.
-    fn nodes_of_others(&mut self) -> Vec<u32> {
-        let mut touching = corners(&self.solid, &removal::removed_elements(&self.solid));
-        self.contacts.each_node(|node| touching.push(node));
-        touching.extend(self.shape_contacts.iter().flat_map(|ground| &ground.candidates).map(|c| c.node));
-        let tied = self.ties.nodes();
-        if touching.is_empty() {
-            return tied.collect();
-        }
-        tied.chain(self.debris.nodes_near(&self.solid, touching.into_iter())).collect()
+/// Nodes that contacts, discrete elements, ties, and pressure and gas in cracks look at. Every rank does alike what is no cell of a solid.
+fn nodes_of_others(scene: &mut Scene) -> Vec<u32> {
+    let mut touching = corners(&scene.solid, &removal::removed_elements(&scene.solid));
+    scene.contacts.each_node(|node| touching.push(node));
+    touching.extend(scene.shape_contacts.iter().flat_map(|ground| &ground.candidates).map(|c| c.node));
+    let tied = scene.ties.nodes();
+    if touching.is_empty() {
+        return tied.collect();
     }
+    tied.chain(scene.debris.nodes_near(&scene.solid, touching.into_iter())).collect()
+}
 
-    /// Has every rank move the nodes that are looked at where elements were just removed.
-    pub(crate) fn follow_removal(&mut self) {
-        if neighbours::is_distributed(&self.solid) {
-            let born = corners(&self.solid, &self.removals.last);
-            let near = self.debris.nodes_near(&self.solid, born.into_iter());
-            neighbours::follow_nodes(&mut self.solid, &near);
-        }
+/// Has every rank move the nodes that are looked at where elements were just removed.
+pub(crate) fn follow_removal(scene: &mut Scene) {
+    if neighbours::is_distributed(&scene.solid) {
+        let born = corners(&scene.solid, &scene.removals.last);
+        let near = scene.debris.nodes_near(&scene.solid, born.into_iter());
+        neighbours::follow_nodes(&mut scene.solid, &near);
     }
+}
 
-    /// Leaves a share of the cells, particles and bonds to each rank of an exchange. Every rank must have the same scene in the same
-    /// state, and all of them step it together from then on; see [`Scene::gather_all`].
-    ///
-    /// - `watched`: nodes and particles that are looked at after every step, where that is more than those of supports that move and of loads
-    pub fn distribute(&mut self, exchange: Arc<dyn Exchange>, watched: &Watched) {
-        if self.keeps_particles_whole().is_none() {
-            let near: Vec<u32> = watched.particles.iter().copied().chain(self.contacts.near()).collect();
-            self.bonded.distribute(Arc::clone(&exchange), near.into_iter());
-            self.bonded.set_near(self.contacts.near_pairs());
-        }
-        if self.solid.body_count() == 0 {
-            return;
-        }
-        let sums = self.needs_sums();
-        let mut everywhere: Vec<u32> = self.supports.driven().chain(self.loads.points()).collect();
-        everywhere.extend(&watched.nodes);
-        everywhere.extend(self.nodes_of_others());
-        neighbours::distribute(&mut self.solid, exchange, &everywhere, sums);
+/// Leaves a share of the cells, particles and bonds to each rank of an exchange. Every rank must have the same scene in the same
+/// state, and all of them step it together from then on; see [`gather_all`].
+///
+/// - `watched`: nodes and particles that are looked at after every step, where that is more than those of supports that move and of loads
+pub fn distribute(scene: &mut Scene, exchange: Arc<dyn Exchange>, watched: &Watched) {
+    if keeps_particles_whole(scene).is_none() {
+        let near: Vec<u32> = watched.particles.iter().copied().chain(scene.contacts.near()).collect();
+        scene.bonded.distribute(Arc::clone(&exchange), near.into_iter());
+        scene.bonded.set_near(scene.contacts.near_pairs());
     }
+    if scene.solid.body_count() == 0 {
+        return;
+    }
+    let sums = needs_sums(scene);
+    let mut everywhere: Vec<u32> = scene.supports.driven().chain(scene.loads.points()).collect();
+    everywhere.extend(&watched.nodes);
+    everywhere.extend(nodes_of_others(scene));
+    neighbours::distribute(&mut scene.solid, exchange, &everywhere, sums);
+}
 
-    /// Brings displacements and velocities of all nodes up to date. All ranks must call it.
-    pub fn gather_nodes(&mut self) {
-        neighbours::gather_nodes(&mut self.solid);
-    }
+/// Brings displacements and velocities of all nodes up to date. All ranks must call it.
+pub fn gather_nodes(scene: &mut Scene) {
+    neighbours::gather_nodes(&mut scene.solid);
+}
 
-    /// The state in parts: what this rank knows best of the solids, and all the rest. All ranks must call it; none where no solid is
-    /// shared.
-    pub fn state_in_parts(&mut self) -> Option<(SceneState, SolidPart)> {
-        let part = neighbours::state_part(&self.solid).filter(|_| self.solid.body_count() > 0)?;
-        self.gather_particles();
-        self.gather_contacts();
-        self.gather_supports();
-        Some((self.state_with(neighbours::state_beside_parts(&self.solid)), part))
-    }
+/// The state in parts: what this rank knows best of the solids, and all the rest. All ranks must call it; none where no solid is
+/// shared.
+pub fn state_in_parts(scene: &mut Scene) -> Option<(SceneState, SolidPart)> {
+    let part = neighbours::state_part(&scene.solid).filter(|_| scene.solid.body_count() > 0)?;
+    gather_particles(scene);
+    gather_contacts(scene);
+    gather_supports(scene);
+    Some((scene.state_with(neighbours::state_beside_parts(&scene.solid)), part))
+}
 
-    /// A state by its parts, before the first step of a scene from the same case; none if they do not belong to it.
-    pub fn joined(&self, beside: SceneState, parts: &[SolidPart]) -> Option<SceneState> {
-        beside.with_solid(|solid| neighbours::joined(&self.solid, solid, parts))
-    }
+/// A state by its parts, before the first step of a scene from the same case; none if they do not belong to it.
+pub fn joined(scene: &Scene, beside: SceneState, parts: &[SolidPart]) -> Option<SceneState> {
+    beside.with_solid(|solid| neighbours::joined(&scene.solid, solid, parts))
+}
 
-    /// Brings the motion of all particles up to date. All ranks must call it.
-    pub fn gather_motion(&mut self) {
-        self.bonded.gather_motion();
-    }
+/// Brings the motion of all particles up to date. All ranks must call it.
+pub fn gather_motion(scene: &mut Scene) {
+    scene.bonded.gather_motion();
+}
 
-    /// Brings the memory of some bonds (body, bond) up to date. All ranks must name the same ones.
-    pub fn gather_bonds(&mut self, bonds: &[(u32, u32)]) {
-        self.bonded.gather_bonds(bonds);
-    }
+/// Brings the memory of some bonds (body, bond) up to date. All ranks must name the same ones.
+pub fn gather_bonds(scene: &mut Scene, bonds: &[(u32, u32)]) {
+    scene.bonded.gather_bonds(bonds);
+}
 
-    /// Brings particles and what their bonds and crack faces remember up to date. All ranks must call it.
-    pub fn gather_particles(&mut self) {
-        self.bonded.gather();
-    }
+/// Brings particles and what their bonds and crack faces remember up to date. All ranks must call it.
+pub fn gather_particles(scene: &mut Scene) {
+    scene.bonded.gather();
+}
 
-    /// Brings the memory of contacts among particles up to date. All ranks must call it.
-    pub fn gather_contacts(&mut self) {
-        let Scene { bonded, contacts, .. } = self;
-        bonded.with_part(|part, _| part.into_iter().for_each(|part| contacts.gather_memories(part)));
-    }
+/// Brings the memory of contacts among particles up to date. All ranks must call it.
+pub fn gather_contacts(scene: &mut Scene) {
+    let Scene { bonded, contacts, .. } = scene;
+    bonded.with_part(|part, _| part.into_iter().for_each(|part| contacts.gather_memories(part)));
+}
 
-    /// Brings the energies of supports on facets up to date. All ranks must call it.
-    fn gather_supports(&mut self) {
-        let Scene { optional, solid, .. } = self;
-        optional.surface_supports.gather(solid);
-    }
+/// Brings the energies of supports on facets up to date. All ranks must call it.
+fn gather_supports(scene: &mut Scene) {
+    let Scene { optional, solid, .. } = scene;
+    optional.surface_supports.gather(solid);
+}
 
-    /// Does the searches for contacts of particles that are due on any rank.
-    pub(crate) fn search_together(&mut self) {
-        let Scene { bonded, contacts, solid, debris, .. } = self;
-        let due = bonded.with_part(|part, particles| Some(contacts.due_on_any(part?, solid, debris, particles)));
-        if let Some(due) = due.filter(|due| due.contains(&true)) {
-            bonded.gather_motion();
-            contacts.search(&due, solid, debris, &bonded.particles);
-            self.follow_near();
-        }
+/// Does the searches for contacts of particles that are due on any rank.
+pub(crate) fn search_together(scene: &mut Scene) {
+    let Scene { bonded, contacts, solid, debris, .. } = scene;
+    let due = bonded.with_part(|part, particles| Some(contacts.due_on_any(part?, solid, debris, particles)));
+    if let Some(due) = due.filter(|due| due.contains(&true)) {
+        bonded.gather_motion();
+        contacts.search(&due, solid, debris, &bonded.particles);
+        follow_near(scene);
     }
+}
 
-    /// Has every rank move the particles that may touch what all ranks look at, and sends the motion of those that may touch each other.
-    pub(crate) fn follow_near(&mut self) {
-        let Scene { bonded, contacts, .. } = self;
-        if !bonded.is_shared() {
-            return;
-        }
-        bonded.follow(&contacts.near().collect::<Vec<_>>());
-        bonded.set_near(contacts.near_pairs());
+/// Has every rank move the particles that may touch what all ranks look at, and sends the motion of those that may touch each other.
+pub(crate) fn follow_near(scene: &mut Scene) {
+    let Scene { bonded, contacts, .. } = scene;
+    if !bonded.is_distributed() {
+        return;
     }
+    bonded.follow(&contacts.near().collect::<Vec<_>>());
+    bonded.set_near(contacts.near_pairs());
+}
 
-    /// Brings the forces between particles up to date, where probes ask for them. All ranks must call it.
-    pub(crate) fn gather_watched(&mut self) {
-        if self.contacts.watches_pairs() {
-            let Scene { bonded, contacts, .. } = self;
-            bonded.gather_motion();
-            bonded.with_part(|part, _| part.into_iter().for_each(|part| contacts.gather_loads(part)));
-        }
+/// Brings the forces between particles up to date, where probes ask for them. All ranks must call it.
+pub(crate) fn gather_watched(scene: &mut Scene) {
+    if scene.contacts.watches_pairs() {
+        let Scene { bonded, contacts, .. } = scene;
+        bonded.gather_motion();
+        bonded.with_part(|part, _| part.into_iter().for_each(|part| contacts.gather_loads(part)));
     }
+}
 
-    /// Brings what this rank has of the damage of others up to date. All ranks must call it, after a step that was measured.
-    pub fn gather_damage(&mut self) {
-        neighbours::gather_damage(&mut self.solid);
-    }
+/// Brings what this rank has of the damage of others up to date. All ranks must call it, after a step that was measured.
+pub fn gather_damage(scene: &mut Scene) {
+    neighbours::gather_damage(&mut scene.solid);
+}
 
-    /// Brings what this rank has of the nodes and cells of others up to date, before anyone looks at all of them. All ranks must
-    /// call it. Energies are up to date without it where a step has measured.
-    pub fn gather_all(&mut self) {
-        neighbours::gather_all(&mut self.solid);
-        self.gather_particles();
-        self.gather_contacts();
-        self.gather_supports();
-    }
+/// Brings what this rank has of the nodes and cells of others up to date, before anyone looks at all of them. All ranks must
+/// call it. Energies are up to date without it where a step has measured.
+pub fn gather_all(scene: &mut Scene) {
+    neighbours::gather_all(&mut scene.solid);
+    gather_particles(scene);
+    gather_contacts(scene);
+    gather_supports(scene);
 }
 
 /// Nodes of elements (body, number).

@@ -33,7 +33,7 @@ impl Scene {
     ///
     /// Contacts know no short steps: where something may touch, all cells take those of the fine ones.
     pub fn stable_dt(&self) -> f64 {
-        let (Frequencies { stable, fine, .. }, contacts) = (self.frequencies, self.contact_frequency_square());
+        let (Frequencies { stable, fine, .. }, contacts) = (self.frequencies, contact_frequency_square(self));
         let stable = match fine {
             Some(fine) if contacts > 0.0 => self.stable_dt_at(fine.frequency, contacts),
             _ => self.stable_dt_at(stable.frequency, contacts),
@@ -45,13 +45,6 @@ impl Scene {
     /// Whether given velocities that change from node to node ask for a smaller step than stability does.
     pub fn given_velocities_govern(&self) -> bool {
         self.frequencies.motion > 0.0 && self.stable_dt() == PHASE / self.frequencies.motion
-    }
-
-    fn contact_frequency_square(&self) -> f64 {
-        let divisor = self.bonded.step_divisor();
-        let gas = self.loads.gas().map_or(0.0, Gas::frequency_square);
-        let Frequencies { walls_square, contact_square, .. } = self.frequencies;
-        walls_square + contact_square + self.contacts.frequency_square() * divisor * divisor + gas
     }
 
     /// - `solids`: highest frequency of the solids by themselves [rad/s]
@@ -120,6 +113,13 @@ impl Scene {
             *contact_peak = now;
         }
     }
+}
+
+fn contact_frequency_square(scene: &Scene) -> f64 {
+    let divisor = scene.bonded.step_divisor();
+    let gas = scene.loads.gas().map_or(0.0, Gas::frequency_square);
+    let Frequencies { walls_square, contact_square, .. } = scene.frequencies;
+    walls_square + contact_square + scene.contacts.frequency_square() * divisor * divisor + gas
 }
 
 /// The largest step up to `dt` that divides what is left of a run into equal ones [s].

@@ -25,7 +25,7 @@ use fractum_io::origin::Origin;
 use fractum_io::summary::Summary;
 use fractum_io::warning::Warning;
 use fractum_prepare::Cache;
-use fractum_scene::{EnergyKind, HeatState, Scene, SceneState, StepError, SubcyclingState};
+use fractum_scene::{EnergyKind, HeatState, Scene, SceneState, StepError, SubcyclingState, ranks};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
@@ -275,7 +275,7 @@ impl Simulation {
             self.save()?;
         }
         if self.recorder.frame_is_due(self.scene.clock.time, !self.solver.follows_path()) {
-            self.scene.gather_all();
+            ranks::gather_all(&mut self.scene);
             let Simulation { recorder, scene, phases, .. } = self;
             phases.timed(Part::Output, || recorder.frame(scene))?;
         }
@@ -292,7 +292,7 @@ impl Simulation {
         self.messages.tell(&text)?;
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         let was_moving = self.solver.moves();
-        self.scene.gather_all();
+        ranks::gather_all(&mut self.scene);
         // From the state at t = 0, as a resumed run does.
         self.solver = self.ranks.together(Solver::new(&built.scene, &built, &mut self.phases))?;
         self.scene.begin_stage(built.scene);
@@ -320,14 +320,14 @@ impl Simulation {
     fn save(&mut self) -> Result<(), Failure> {
         self.finish_pieces()?;
         self.recorder.join_overlaps(&self.ranks);
-        let (scene, parts) = match self.scene.state_in_parts() {
+        let (scene, parts) = match ranks::state_in_parts(&mut self.scene) {
             Some((scene, part)) => {
                 let written = self.save_part(&part);
                 self.ranks.together(written)?;
                 (Some(scene), self.ranks.processes().all)
             }
             None => {
-                self.scene.gather_all();
+                ranks::gather_all(&mut self.scene);
                 (self.ranks.leads().then(|| self.scene.state()), 0)
             }
         };

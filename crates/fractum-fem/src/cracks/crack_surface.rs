@@ -154,7 +154,7 @@ mod tests {
         let solids =
             [broken(ElementKind::T3, flat.nodes, elements), broken(ElementKind::T4, deep.nodes, deep.tetrahedra)];
         for solid in &solids {
-            let crack = CrackSurface::of(&solid);
+            let crack = CrackSurface::of(solid);
             let section = 0.2 * 0.3;
             assert!((crack.area() / (2.0 * section) - 1.0).abs() < 1e-12, "{}", crack.area());
             for (index, facet) in crack.facets.iter().enumerate() {

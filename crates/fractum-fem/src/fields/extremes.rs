@@ -74,7 +74,7 @@ fn extremes_of(solid: &Solid, index: u32) -> [Found; 4] {
     let small = model.body.kinematics != Kinematics::Corotational;
     let zone = model.body.damage.as_ref();
     let kept_whole = zone.filter(|zone| match block.law {
-        BlockLaw::Elastic { .. } => model.smoothed_edges().is_some(),
+        BlockLaw::Elastic => model.smoothed_edges().is_some(),
         BlockLaw::Standard(_) => matches!(zone.region, Region::Edges(_)),
         _ => false,
     });

@@ -10,7 +10,7 @@ use crate::damage::edges_in_step::Advance;
 use crate::damage::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, PhaseField};
 use crate::damage::restraint::Seen;
 use crate::material::equivalent_stresses;
-use crate::motion::phase_edges::{activate, wake};
+use crate::motion::phase_edges::{activate, for_each_phase_field, wake};
 use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
 
@@ -95,14 +95,6 @@ fn take_over(solid: &mut Solid, body: usize, field: &PhaseField) {
             }
         }
     });
-}
-
-pub(crate) fn for_each_phase_field(solid: &mut Solid, mut work: impl FnMut(&mut Solid, usize, &mut PhaseField)) {
-    for body in 0..solid.bodies.len() {
-        let Some(mut field) = solid.bodies[body].phase.take() else { continue };
-        work(solid, body, &mut field);
-        solid.bodies[body].phase = Some(field);
-    }
 }
 
 /// What drives the active edges at the present displacements.

@@ -2,8 +2,16 @@
 
 use crate::cells::cell::Geometry;
 use crate::damage::phase::{Patch, PhaseField};
-use crate::motion::phase_damage::for_each_phase_field;
 use crate::solid::{BodyModel, Solid};
+
+/// Does some work with the phase field of each body, which the solid is without meanwhile.
+pub(crate) fn for_each_phase_field(solid: &mut Solid, mut work: impl FnMut(&mut Solid, usize, &mut PhaseField)) {
+    for body in 0..solid.bodies.len() {
+        let Some(mut field) = solid.bodies[body].phase.take() else { continue };
+        work(solid, body, &mut field);
+        solid.bodies[body].phase = Some(field);
+    }
+}
 
 /// Lets every edge take part in the phase field of its body, as a search for equilibrium needs it.
 pub fn wake_phase_fields(solid: &mut Solid) {

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use crate::cells::cell::Geometry;
 use crate::element::hooke::Hooke;
-use crate::motion::subcycled_solid::forget_ahead;
 use crate::solid::Solid;
+use crate::solid::subcycling::forget_ahead;
 
 /// Lanczos steps of the estimate.
 const LANCZOS_STEPS: usize = 48;

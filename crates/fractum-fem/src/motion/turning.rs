@@ -6,10 +6,11 @@ use rayon::prelude::*;
 use crate::body::{Body, Kinematics};
 use crate::damage::edges_in_step::Advance;
 use crate::element::CARRIES;
-use crate::motion::subcycled_solid::{forget_ahead, own_step};
+use crate::motion::subcycled_solid::own_step;
 use crate::solid::Solid;
 use crate::solid::body_model::BodyModel;
 use crate::solid::evaluate::{Block, BlockLaw};
+use crate::solid::subcycling::forget_ahead;
 
 /// Steps between two looks, and the number of looks in which every cell is seen once.
 const STEPS_BETWEEN_LOOKS: u64 = 16;

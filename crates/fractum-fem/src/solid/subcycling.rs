@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use fractum_math::Vec3;
 
+use crate::solid::Solid;
+
 /// What a solid keeps where its cells take steps of two sizes.
 #[derive(Clone, Debug)]
 pub(crate) struct Subcycling {
@@ -48,4 +50,9 @@ impl Subcycling {
     pub(crate) fn parts_before(&self) -> f64 {
         f64::from(self.parts[0])
     }
+}
+
+/// After cells have changed, no forces are known in advance.
+pub(crate) fn forget_ahead(solid: &mut Solid) {
+    solid.subcycling.iter_mut().for_each(|own| own.is_ahead = false);
 }

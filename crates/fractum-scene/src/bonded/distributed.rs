@@ -57,7 +57,7 @@ impl Bonded {
     }
 
     /// Whether several ranks share the particles.
-    pub(crate) fn is_shared(&self) -> bool {
+    pub(crate) fn is_distributed(&self) -> bool {
         self.part.is_some()
     }
 

@@ -26,10 +26,10 @@ const DEEP: f64 = 0.1;
 impl Scene {
     /// Looks whether the present state is still one that the models of the scene know. Nothing of the state changes.
     pub fn audit(&mut self) {
-        self.look_at_temperatures();
-        self.look_at_damping();
-        self.look_at_springs();
-        self.look_at_solids();
+        look_at_temperatures(self);
+        look_at_damping(self);
+        look_at_springs(self);
+        look_at_solids(self);
         self.look_at_overlaps();
     }
 
@@ -64,64 +64,64 @@ impl Scene {
     pub fn noticed(&self) -> impl Iterator<Item = &Noticed> {
         self.optional.watch.first.iter().flatten()
     }
+}
 
-    /// Whether something of this kind has been noticed before, so that nobody needs to look again.
-    fn has_noticed(&self, what: Notice) -> bool {
-        self.optional.watch.first[what as usize].is_some()
+/// Whether something of this kind has been noticed before, so that nobody needs to look again.
+fn has_noticed(scene: &Scene, what: Notice) -> bool {
+    scene.optional.watch.first[what as usize].is_some()
+}
+
+fn look_at_damping(scene: &mut Scene) {
+    let share = scene.books.late_damping / scene.ledger.scale;
+    if scene.ledger.scale > 0.0 && share > DAMPED {
+        scene.note(Notice::Damping, Site::Scene, share);
     }
+    let share = scene.books.stopped / scene.ledger.scale;
+    if scene.ledger.scale > 0.0 && share > STOPPED {
+        scene.note(Notice::Stopped, Site::Scene, share);
+    }
+}
 
-    fn look_at_damping(&mut self) {
-        let share = self.books.late_damping / self.ledger.scale;
-        if self.ledger.scale > 0.0 && share > DAMPED {
-            self.note(Notice::Damping, Site::Scene, share);
-        }
-        let share = self.books.stopped / self.ledger.scale;
-        if self.ledger.scale > 0.0 && share > STOPPED {
-            self.note(Notice::Stopped, Site::Scene, share);
+/// Looks at what the springs of contact hold beside the solids, as long as nothing else touches.
+fn look_at_springs(scene: &mut Scene) {
+    let alone = scene.debris.is_empty() && scene.bonded.particles.is_empty() && scene.solid.body_count() > 0;
+    if !alone || has_noticed(scene, Notice::Springs) {
+        return;
+    }
+    let [springs, solids] = &mut scene.books.pressed;
+    *springs += scene.ledger[EnergyKind::Contact];
+    *solids += scene.ledger[EnergyKind::Elastic];
+    let share = *springs / (*springs + *solids);
+    // An impact is over in the first half of the run.
+    if scene.clock.time > 0.5 * scene.settings.time_step.end && *springs > 0.0 && share > SOFT {
+        scene.note(Notice::Springs, Site::Scene, share);
+    }
+}
+
+fn look_at_solids(scene: &mut Scene) {
+    use Notice::{Compression, Rotation, Strain, TensionOutside};
+    let all = [Rotation, Strain, TensionOutside, Compression];
+    if scene.solid.body_count() == 0 || all.into_iter().all(|what| has_noticed(scene, what)) {
+        return;
+    }
+    let Extremes { rotation, strain, tension, compression } = fields::extremes(&scene.solid);
+    let found = [rotation, strain, tension, compression];
+    for ((what, extreme), limit) in all.into_iter().zip(found).zip([TURNED, STRAINED, OVERLOADED, PRESSED]) {
+        if let Some(Extreme { body, element, value }) = extreme.filter(|extreme| extreme.value > limit) {
+            scene.note(what, Site::Element { body, element }, value);
         }
     }
+}
 
-    /// Looks at what the springs of contact hold beside the solids, as long as nothing else touches.
-    fn look_at_springs(&mut self) {
-        let alone = self.debris.is_empty() && self.bonded.particles.is_empty() && self.solid.body_count() > 0;
-        if !alone || self.has_noticed(Notice::Springs) {
-            return;
-        }
-        let [springs, solids] = &mut self.books.pressed;
-        *springs += self.ledger[EnergyKind::Contact];
-        *solids += self.ledger[EnergyKind::Elastic];
-        let share = *springs / (*springs + *solids);
-        // An impact is over in the first half of the run.
-        if self.clock.time > 0.5 * self.settings.time_step.end && *springs > 0.0 && share > SOFT {
-            self.note(Notice::Springs, Site::Scene, share);
-        }
-    }
-
-    fn look_at_solids(&mut self) {
-        use Notice::{Compression, Rotation, Strain, TensionOutside};
-        let all = [Rotation, Strain, TensionOutside, Compression];
-        if self.solid.body_count() == 0 || all.into_iter().all(|what| self.has_noticed(what)) {
-            return;
-        }
-        let Extremes { rotation, strain, tension, compression } = fields::extremes(&self.solid);
-        let found = [rotation, strain, tension, compression];
-        for ((what, extreme), limit) in all.into_iter().zip(found).zip([TURNED, STRAINED, OVERLOADED, PRESSED]) {
-            if let Some(Extreme { body, element, value }) = extreme.filter(|extreme| extreme.value > limit) {
-                self.note(what, Site::Element { body, element }, value);
-            }
-        }
-    }
-
-    fn look_at_temperatures(&mut self) {
-        let Some(heat) = self.heat().filter(|_| !self.has_noticed(Notice::BelowZero)) else { return };
-        let coldest = |temperatures: &[f64]| {
-            let all = temperatures.iter().copied().enumerate().filter(|(_, t)| *t < 0.0);
-            all.min_by(|a, b| a.1.total_cmp(&b.1))
-        };
-        let node = coldest(heat.of_nodes()).map(|(node, t)| (Site::Node(node as u32), t));
-        let found = node.or_else(|| coldest(heat.of_particles()).map(|(i, t)| (Site::Particle(i as u32), t)));
-        if let Some((site, temperature)) = found {
-            self.note(Notice::BelowZero, site, temperature);
-        }
+fn look_at_temperatures(scene: &mut Scene) {
+    let Some(heat) = scene.heat().filter(|_| !has_noticed(scene, Notice::BelowZero)) else { return };
+    let coldest = |temperatures: &[f64]| {
+        let all = temperatures.iter().copied().enumerate().filter(|(_, t)| *t < 0.0);
+        all.min_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let node = coldest(heat.of_nodes()).map(|(node, t)| (Site::Node(node as u32), t));
+    let found = node.or_else(|| coldest(heat.of_particles()).map(|(i, t)| (Site::Particle(i as u32), t)));
+    if let Some((site, temperature)) = found {
+        scene.note(Notice::BelowZero, site, temperature);
     }
 }

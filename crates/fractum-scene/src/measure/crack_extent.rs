@@ -74,7 +74,7 @@ fn measure_extent(
     match measure {
         CrackMeasure::Length => facets.map(|facet| facet.area / solid.body(facet.body).thickness).sum::<f64>() + 0.0,
         CrackMeasure::Count => {
-            let (_, of_solids) = cracks::separate_cracks(&solid, &separated_within(separation, inside));
+            let (_, of_solids) = cracks::separate_cracks(solid, &separated_within(separation, inside));
             let pairs: Vec<[u32; 2]> = broken.map(|crack| crack.pair).collect();
             f64::from(of_solids + separate_pairs(pairs))
         }

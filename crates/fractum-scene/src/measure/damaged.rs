@@ -45,7 +45,7 @@ impl Probe for DamagedPart {
         let solid = &probed.scene.solid;
         let mut damaged = 0.0;
         for of_body in self.elements.chunk_by(|a, b| a.0 == b.0) {
-            let damage = fields::element_damages(&solid, of_body[0].0);
+            let damage = fields::element_damages(solid, of_body[0].0);
             let counts = |of: &&(usize, u32, f64)| damage[of.1 as usize] >= self.threshold;
             damaged = of_body.iter().filter(counts).fold(damaged, |sum, (_, _, size)| sum + size);
         }

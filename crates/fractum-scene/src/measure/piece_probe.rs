@@ -45,7 +45,7 @@ impl Probe for SurfaceProbe {
         let solid = &probed.scene.solid;
         let at = |node: u32| solid.position(node as usize);
         match self.measure {
-            SurfaceMeasure::Area => self.facets.iter().map(|facet| cracks::area_at(&solid, facet, at).norm()).sum(),
+            SurfaceMeasure::Area => self.facets.iter().map(|facet| cracks::area_at(solid, facet, at).norm()).sum(),
             SurfaceMeasure::Volume => enclosed_volume(solid, &self.facets, &HoleEnds::default(), at),
         }
     }

@@ -122,9 +122,9 @@ impl<'a> ProbedScene<'a> {
     pub fn stress(&self, body: usize, element: u32, has_many: bool) -> Sym3 {
         let solid = &self.scene.solid;
         if !has_many {
-            return fields::element_field(&solid, body, element).0;
+            return fields::element_field(solid, body, element).0;
         }
-        let all = || fields::element_fields(&solid, body).into_iter().map(|(stress, _)| stress).collect();
+        let all = || fields::element_fields(solid, body).into_iter().map(|(stress, _)| stress).collect();
         self.stresses[body].get_or_init(all)[element as usize]
     }
 

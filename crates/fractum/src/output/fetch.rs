@@ -1,6 +1,6 @@
 //! What several processes tell each other so that probes can be looked at.
 
-use fractum_scene::{NeededPoints, Probe, ProbeNeeds, Scene, Watched};
+use fractum_scene::{NeededPoints, Probe, ProbeNeeds, Scene, Watched, ranks};
 
 /// Part of all points up to which those of a probe are followed by every process.
 const WATCHED_PART: usize = 50;
@@ -49,19 +49,19 @@ pub(crate) fn points_of_probes(probes: &[Option<Box<dyn Probe>>], scene: &Scene)
 pub(crate) fn fetch_together<'a>(fetches: impl Iterator<Item = &'a Fetch> + Clone, scene: &mut Scene) {
     let any = |of: fn(&Fetch) -> bool| fetches.clone().any(of);
     if any(|fetch| fetch.damage) {
-        scene.gather_damage();
+        ranks::gather_damage(scene);
     }
     if any(|fetch| fetch.nodes) {
-        scene.gather_nodes();
+        ranks::gather_nodes(scene);
     }
     if any(|fetch| fetch.particles) {
-        scene.gather_motion();
+        ranks::gather_motion(scene);
     }
     if any(|fetch| fetch.contacts) {
-        scene.gather_contacts();
+        ranks::gather_contacts(scene);
     }
     let bonds: Vec<(u32, u32)> = fetches.flat_map(|fetch| &fetch.bonds).copied().collect();
     if !bonds.is_empty() {
-        scene.gather_bonds(&bonds);
+        ranks::gather_bonds(scene, &bonds);
     }
 }

@@ -301,15 +301,15 @@ struct ElementFields {
 impl ElementFields {
     fn of(scene: &Scene, grid: &GridLayout) -> Self {
         let solid = &scene.solid;
-        let phase_field = motion::has_phase_fields(&solid);
+        let phase_field = motion::has_phase_fields(solid);
         let mut fields = ElementFields::default();
         let mut stresses = Vec::new();
         for (body, kind) in grid.kinds.iter().enumerate() {
             let (corners, nodes) = (kind.nodes(), &solid.body(body).elements);
             let mut kept = Vec::new();
-            let phases = motion::element_phase(&solid, body);
+            let phases = motion::element_phase(solid, body);
             for (element, (stress, damage)) in
-                fields::owned_elements(&solid, body).into_iter().zip(fields::owned_fields(&solid, body))
+                fields::owned_elements(solid, body).into_iter().zip(fields::owned_fields(solid, body))
             {
                 let element = element as usize;
                 kept.extend(nodes[element][..corners].iter().map(|&node| grid.place[node as usize]));

@@ -12,7 +12,7 @@ use fractum_io::number::grouped;
 use fractum_io::vtk::Cut;
 use fractum_parallel::{Exchange, gather};
 use fractum_prepare::Processes;
-use fractum_scene::{Scene, Watched};
+use fractum_scene::{Scene, Watched, ranks};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -149,9 +149,9 @@ impl Ranks {
         let Some(exchange) = &self.exchange else { return Ok(()) };
         let refuse =
             |what| Failure::input(format!("{what} cannot be run by several processes yet; run without mpirun"));
-        self.together(scene.cannot_be_distributed().map_or(Ok(()), |what| Err(refuse(what))))?;
+        self.together(ranks::cannot_be_distributed(scene).map_or(Ok(()), |what| Err(refuse(what))))?;
         let watched = watched(scene);
-        scene.distribute(Arc::clone(exchange), &watched);
+        ranks::distribute(scene, Arc::clone(exchange), &watched);
         Ok(())
     }
 
@@ -181,7 +181,7 @@ impl Ranks {
                 number(everywhere)
             )
         };
-        let alike = scene.keeps_particles_whole().filter(|_| !scene.bonded.is_empty());
+        let alike = ranks::keeps_particles_whole(scene).filter(|_| !scene.bonded.is_empty());
         let alike =
             alike.map(|what| format!("every process moves all particles and computes all bonds, because of {what}"));
         let cells = neighbours::subdomain_size(&scene.solid).filter(|_| scene.solid.body_count() > 0).map(of_cells);

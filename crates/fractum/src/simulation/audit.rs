@@ -104,7 +104,7 @@ impl Simulation {
     fn warn_of_short_lengths(&mut self) -> Result<(), Failure> {
         let solid = &self.scene.solid;
         let found = (0..solid.body_count()).filter_map(|body| {
-            let ([length, _], size) = motion::phase_sizes(&solid, body).zip(cracks::size_along_cracks(&solid, body))?;
+            let ([length, _], size) = motion::phase_sizes(solid, body).zip(cracks::size_along_cracks(solid, body))?;
             if length >= LEAST_SIZES * size {
                 return None;
             }
@@ -125,8 +125,8 @@ impl Simulation {
     fn warn_of_merged_bands(&mut self) -> Result<(), Failure> {
         let solid = &self.scene.solid;
         let bodies = (0..solid.body_count()).filter_map(|body| {
-            let [length, _] = motion::phase_sizes(&solid, body)?;
-            Some((&solid.body(body).name, cracks::cost_of_bands(&solid, body)?, length))
+            let [length, _] = motion::phase_sizes(solid, body)?;
+            Some((&solid.body(body).name, cracks::cost_of_bands(solid, body)?, length))
         });
         let sheared = bodies.filter(|(_, cost, _)| *cost > SHEARED);
         let found = sheared.map(|(name, cost, length)| {

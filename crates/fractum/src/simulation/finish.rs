@@ -10,7 +10,7 @@ use fractum_io::case::model::{Case, Material};
 use fractum_io::fragments::{self, Fragment};
 use fractum_io::number::{at_instant, quantity, significant};
 use fractum_io::summary::{Breakage, Hashes, Status, Summary, hash_text};
-use fractum_scene::{Scene, fragment_size};
+use fractum_scene::{Scene, fragment_size, ranks};
 
 use super::{End, Outcome, Saved, Simulation};
 use crate::error::{ExitCode, Failure};
@@ -31,7 +31,7 @@ impl Simulation {
     /// [`Failure::Stopped`] for a step that failed, with its results written all the same; what cannot be written.
     pub fn finish(mut self) -> Result<Outcome, Failure> {
         let end = self.take_end()?;
-        self.scene.gather_all();
+        ranks::gather_all(&mut self.scene);
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         self.ranks.steps(&self.scene).map_or(Ok(()), |steps| self.messages.log.line(steps))?;
         let state_hash = self.state_hash();
@@ -159,7 +159,7 @@ impl Simulation {
             // The forces and energies of the last instant: one more step, of which nothing else is kept.
             let (time, dt) = (scene.clock.time, scene.clock.dt_after);
             if scene.step(true).is_ok() {
-                scene.gather_all();
+                ranks::gather_all(scene);
                 recorder.row(scene, Measured { time, dt, in_motion: true }, true)?;
             }
         }

@@ -13,7 +13,7 @@ use fractum_io::checkpoint::{self, CheckpointError, Header, Identity, Loaded};
 use fractum_io::log::RunLog;
 use fractum_io::number::{at_instant, instant_text};
 use fractum_io::warning::{Code, Warning};
-use fractum_scene::Scene;
+use fractum_scene::{Scene, ranks};
 
 use super::messages::Messages;
 use super::origin::{forget_case, keep_case, origin};
@@ -286,7 +286,7 @@ fn put_back(
              in proportion to it, and kind = \"auto\" chooses by it; restore the end, or start again with --overwrite",
         ));
     }
-    let whole = if state.parts == 0 { Some(state.scene) } else { scene.joined(state.scene, &state.solids) };
+    let whole = if state.parts == 0 { Some(state.scene) } else { ranks::joined(scene, state.scene, &state.solids) };
     let damaged = || CheckpointError::Corrupt { path, what: "its parts are not those of this mesh".to_owned() };
     scene.restore(whole.ok_or_else(damaged)?);
     scene.restore_heat(state.heat);

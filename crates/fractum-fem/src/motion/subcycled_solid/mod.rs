@@ -134,11 +134,6 @@ pub(crate) fn own_step(solid: &Solid, block: &Block, dt: f64) -> f64 {
     }
 }
 
-/// After cells have changed, no forces are known in advance.
-pub(crate) fn forget_ahead(solid: &mut Solid) {
-    solid.subcycling.iter_mut().for_each(|own| own.is_ahead = false);
-}
-
 /// As [`Solid::kick_and_drift`], with short steps for the nodes that need them.
 ///
 /// - `prescribe`: sees to what is prescribed, before and after some nodes move

@@ -45,7 +45,7 @@ impl Measure for Moment {
     fn resolve(&self, scene: &mut Scenery<'_>) -> Option<Box<dyn Probe>> {
         scene.refuse_out_of_plane(&self.on, &self.about.direction);
         let nodes = scene.names.nodes(&self.on);
-        let nodes = motion::with_copies(&scene.solid, nodes);
+        let nodes = motion::with_copies(scene.solid, nodes);
         let places = scene.held_places(&self.on, &nodes, None);
         Some(ProbeOfPoints::boxed(Population::Nodes, PointProbe::Moment { places, about: self.about }))
     }

@@ -60,7 +60,7 @@ impl Measure for Reaction {
             return rigid;
         }
         let nodes = scene.names.nodes(on);
-        let nodes = motion::with_copies(&scene.solid, nodes);
+        let nodes = motion::with_copies(scene.solid, nodes);
         let places = scene.held_places(on, &nodes, Some(&along));
         Some(ProbeOfPoints::boxed(Population::Nodes, PointProbe::Reaction { places, along }))
     }
