@@ -7,6 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use fractum::{Failure, Input, Options, Simulation, cache_of_user, load};
+use fractum_fem::fields;
 use fractum_io::case::model::ProbeKind;
 use fractum_io::summary::hash_text;
 use fractum_io::warning::Warning;
@@ -372,7 +373,8 @@ impl Core {
                     return Err(Failure::input(format!("no solid body {body}")));
                 }
                 // On threads of their own: those of the steps may wait for what holds the simulation here.
-                let fields = if computed { self.looks.install(|| solid.element_fields(body)) } else { Vec::new() };
+                let fields =
+                    if computed { self.looks.install(|| fields::element_fields(solid, body)) } else { Vec::new() };
                 let alive = if computed { Vec::new() } else { solid.alive(body).to_vec() };
                 Ok((alive, fields))
             })
