@@ -3,6 +3,8 @@
 use crate::network::{Amount, Network};
 use crate::slit::{Passage, SlitFlow};
 
+/// Largest storage of a cell: its pressure stays, and products with it stay numbers.
+const FIRMEST: f64 = 1e100;
 /// Residual of the pressures over the right-hand side at which the iteration ends. The flows conserve mass whatever it is.
 const TOLERANCE: f64 = 1e-9;
 /// Iterations at most.
@@ -60,7 +62,9 @@ impl Network {
         }
         // The rate of a cell is Σ C times the change of its pressure per mass, which gives that change back.
         storage.clear();
-        storage.extend(rate.iter().zip(&*diagonal).map(|(rate, c)| if *rate > 0.0 { c / (rate * dt) } else { 1.0 }));
+        storage.extend(
+            rate.iter().zip(&*diagonal).map(|(rate, c)| if *rate > 0.0 { (c / (rate * dt)).min(FIRMEST) } else { 1.0 }),
+        );
         diagonal.iter_mut().zip(&*storage).for_each(|(d, s)| *d += s);
     }
 
