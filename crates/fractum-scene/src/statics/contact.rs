@@ -2,7 +2,7 @@
 //!
 //! Along the normal those of rigid shapes are so stiff that they count for little beside the elements. The tangential one remembers its
 //! force at the last equilibrium as a stretch, and slips where Coulomb's law lets it. The iteration takes them linear about its last iterate,
-//! what slips by its secant. Once forces balance, what sticks is brought back: the way it gave becomes stretch (augmented Lagrangian,
+//! what slips by its given force. Once forces balance, what sticks is brought back: the way it gave becomes stretch (augmented Lagrangian,
 //! Simo & Laursen 1992), until nothing that sticks has moved. No tangential spring stores energy.
 //! A spring that presses in the linear solution stays on in the next one, even where the curvature of its shape has left a gap.
 
@@ -160,15 +160,25 @@ impl Scene {
 
     /// Springs of the nodes that touch at the last equilibrium, and of those that just do not.
     pub(super) fn springs_at_rest(&self) -> Vec<Spring> {
-        self.springs(&self.solid.displacement, [self.clock.time; 2], 1.0, Also::Near)
+        self.springs(&self.solid.displacement, [self.clock.time; 2], 1.0, 1.0, Also::Near)
     }
 
     /// Springs of the nodes that touch shapes or each other under a displacement field.
     ///
     /// - `times`: load parameters of the last equilibrium and of the field
     /// - `ahead`: duration from which the pace of the shapes is taken [s]
+    /// - `slipping`: part of the secant of friction by which what slips is held along its way, where its force does not change: all of
+    ///   it comes to the end by many small steps, little of it may go from sticking to slipping and back for ever, and none leaves what
+    ///   only friction holds without a stiffness
     /// - `also`: what does not touch, and has a spring
-    pub(super) fn springs(&self, field: &[Vec3], times: [f64; 2], ahead: f64, also: Also) -> Vec<Spring> {
+    pub(super) fn springs(
+        &self,
+        field: &[Vec3],
+        times: [f64; 2],
+        ahead: f64,
+        slipping: f64,
+        also: Also,
+    ) -> Vec<Spring> {
         let pushed = |push: Push| {
             let stiffness = push.normal * push.normal.transpose() * push.stiffness;
             let force = push.normal * (push.stiffness * push.overlap);
@@ -194,10 +204,12 @@ impl Scene {
                 }
                 let [stiff, stiff_across] = stiffness(c);
                 // What a curved shape has left by the way along it is no loss of pressure.
-                let pressure = kept.unwrap_or(stiff * overlap.max(0.0));
+                // How far a node that has just come went in is not how it will be pressed: it rubs from the next iterate on.
+                let is_new = matches!(also, Also::Kept(_)) && kept.is_none();
+                let pressure = if is_new { 0.0 } else { kept.unwrap_or(stiff * overlap.max(0.0)) };
                 let moved = field[i] - self.solid.displacement[i] - way;
                 let Tangential { slip, slid, .. } = tangential(c, &normal, pressure, moved);
-                // What slips is held by the secant of its friction: iterates that go from sticking to slipping and back settle.
+                // What slips has a force that is given, and turns with its way.
                 let (held, went) = (slip.norm(), slid.norm());
                 let holds = if held > 0.0 {
                     stiff_across * held / (held + went)
@@ -207,7 +219,11 @@ impl Scene {
                     0.0
                 };
                 let along = normal * normal.transpose();
-                let stiffness = along * stiff + (Mat3::identity() - along) * holds;
+                let mut stiffness = along * stiff + (Mat3::identity() - along) * holds;
+                if went > 0.0 && held > 0.0 {
+                    let way = slip / held;
+                    stiffness -= way * way.transpose() * ((1.0 - slipping) * holds);
+                }
                 let least = if kept.is_some() { f64::NEG_INFINITY } else { 0.0 };
                 let force = normal * (stiff * overlap.max(least)) - slip * stiff_across;
                 let rate = stiffness * pace;
@@ -250,7 +266,8 @@ impl Scene {
                 let moved = field[i] - self.solid.displacement[i] - way;
                 let found = tangential(c, &normal, stiff * overlap.max(0.0), moved);
                 forces += (stiff_across * found.slip).norm_squared();
-                if overlap > 0.0 && found.slid == Vec3::zeros() {
+                // What slips along its own friction has not yet turned round.
+                if overlap > 0.0 && (found.slid == Vec3::zeros() || found.moved.dot(&found.slip) < 0.0) {
                     gave += (stiff_across * found.moved).norm_squared();
                 }
                 stretch.extend_from_slice(c.brought_back.as_slice());

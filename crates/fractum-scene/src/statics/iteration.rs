@@ -13,6 +13,10 @@ use crate::scene::Scene;
 
 /// Share of an opening below which no extrapolation goes.
 const LEAST_SHARE: f64 = 1e-3;
+/// Part of the secant of friction that holds what slips: at first, and once that has not come to an end.
+const SLIPPING: [f64; 2] = [0.01, 1.0];
+/// Iterations with the first of them, where damage may fall from one to the next (all of them), and where it only grows.
+const SLIPPING_FREELY: [usize; 2] = [ITERATIONS[0], 60];
 /// Equilibria of a step at which what sticks is brought back: some four suffice, ten in stiff elements.
 const MOST_BROUGHT_BACK: usize = 16;
 
@@ -57,7 +61,8 @@ impl StaticSolver {
             }
             self.iterations += 1;
             let first = iteration == 1 && brought_back == 0;
-            self.find_contacts(scene, [present, found_at], longest, first)?;
+            let slipping = SLIPPING[usize::from(iteration > SLIPPING_FREELY[usize::from(monotone)])];
+            self.find_contacts(scene, [present, found_at], longest, slipping, first)?;
             let ahead = if tau.abs() > 1e-9 * self.settings.end { tau } else { longest };
             let here = scene.boundary_at(present, present);
             let there = scene.boundary_at(present, present + ahead);
@@ -72,7 +77,7 @@ impl StaticSolver {
                 self.touching.keep(&self.response.start, since);
                 self.touching.place.clone_from(&self.response.start);
                 scene.debris.meet(&scene.solid, &self.touching.place);
-                for spring in scene.springs(&self.touching.place, [present, found_at], longest, Also::Nothing) {
+                for spring in scene.springs(&self.touching.place, [present, found_at], longest, 1.0, Also::Nothing) {
                     spring.push(spring.force, &mut exact.force);
                 }
             }
@@ -80,9 +85,10 @@ impl StaticSolver {
                 scene.unbalance(&self.trial, &self.response.start, &exact.force, &mut self.response.right);
             if missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
                 slowest = slowest.max(iteration);
-                if brought_back < MOST_BROUGHT_BACK
-                    && scene.bring_back(&self.response.start, [present, present + tau], &mut self.touching.stretch)
-                {
+                if scene.bring_back(&self.response.start, [present, present + tau], &mut self.touching.stretch) {
+                    if brought_back == MOST_BROUGHT_BACK {
+                        return Ok(None);
+                    }
                     (iteration, brought_back) = (0, brought_back + 1);
                     continue;
                 }
@@ -143,10 +149,17 @@ impl StaticSolver {
     }
 
     /// Finds what touches in the last iterate, and brings the matrix up to date.
-    fn find_contacts(&mut self, scene: &mut Scene, times: [f64; 2], longest: f64, near: bool) -> Result<(), StepError> {
+    fn find_contacts(
+        &mut self,
+        scene: &mut Scene,
+        times: [f64; 2],
+        longest: f64,
+        slipping: f64,
+        near: bool,
+    ) -> Result<(), StepError> {
         scene.debris.meet(&scene.solid, &self.touching.place);
         let also = if near { Also::Near } else { Also::Kept(&self.touching.kept) };
-        self.touching.springs = scene.springs(&self.touching.place, times, longest, also);
+        self.touching.springs = scene.springs(&self.touching.place, times, longest, slipping, also);
         self.couple(scene)?;
         if !(self.elastic && self.prepared && scene.shape_contacts.is_empty()) {
             let prepared = self.system.prepare(scene, &self.trial, &self.touching.springs);

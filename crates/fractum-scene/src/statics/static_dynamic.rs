@@ -77,7 +77,7 @@ impl Scene {
     fn move_from_rest(&mut self, element_bound: bool) {
         // Tangential springs let go: none stores energy at rest. Constraints hold what they held.
         let candidates = self.shape_contacts.iter_mut().flat_map(|ground| &mut ground.candidates);
-        candidates.for_each(|c| c.memory.slip = Vec3::zeros());
+        candidates.for_each(|c| (c.memory.slip, c.brought_back) = (Vec3::zeros(), Vec3::zeros()));
         self.find_step(element_bound);
         let clock = &mut self.clock;
         (clock.dt_before, clock.dt_min) = (clock.dt_after, clock.dt_min.min(clock.dt_after));
